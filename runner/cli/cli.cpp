@@ -90,7 +90,7 @@ void addSelection(CLI::App* app, Selection& selection) {
 }
 
 void addOnly(CLI::App* app, std::vector<std::string>& only) {
-    addEach(app, "--only", only, "only cases with this value", "KEY=VALUE");
+    addEach(app, "--only", only, "only these cases; * and ? match; repeat for more", "KEY=VALUE");
 }
 
 void addFrom(CLI::App* app, std::vector<std::string>& from) {
@@ -109,7 +109,7 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     addFrom(app, options.from);
     app->add_option("--budget", options.budget, "only tables that decide most claims in TIME")
         ->option_text("TIME");
-    app->add_option("--jobs", options.jobs, "quality cases at once")
+    app->add_option("--jobs", options.jobs, "cases at once, where no times are taken")
         ->check(CLI::Range(1, 256))
         ->option_text("N");
     app->add_option("--max-failures", options.failuresAtMost, "stop after so many failed cases")
@@ -229,7 +229,7 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
         ->check(CLI::Range(1, 10000))
         ->option_text("N");
     addFrom(submitApp, s.from);
-    submitApp->add_option("--jobs", s.jobs, "quality cases at once, a shard")
+    submitApp->add_option("--jobs", s.jobs, "cases at once in a shard, where no times are taken")
         ->check(CLI::Range(1, 256))
         ->option_text("N");
     submitApp->add_option("--partition", s.partition, "as for sbatch")->option_text("PARTITION");

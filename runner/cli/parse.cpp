@@ -24,6 +24,13 @@ const CLI::App* chosenCommand(const CLI::App& app) {
     return chosen.empty() ? &app : chosenCommand(*chosen.front());
 }
 
+/// What follows `gfxrepro help` to say more of a command: "image crop".
+std::string nameBehindHelp(const CLI::App& command) {
+    const CLI::App* above = command.get_parent();
+    const bool isNested = above && above->get_parent();
+    return (isNested ? nameBehindHelp(*above) + ' ' : "") + command.get_name();
+}
+
 /// What a command asks for and was not given, with an example.
 UsageError missingError(const CLI::App& command, const std::string& problem) {
     for (const CLI::Option* option : command.get_options()) {
@@ -49,8 +56,9 @@ UsageError usageError(const CLI::App& app, const CLI::ParseError& problem) {
             const std::string option = extra.substr(0, extra.find('='));
             return UsageError(whose + "unknown option '" + option + "'" +
                               suggestion(option, optionNames(command)) +
-                              (&command == &app ? "; see 'gfxrepro --help'"
-                                                : "; see 'gfxrepro help " + name + "'"));
+                              (&command == &app
+                                   ? "; see 'gfxrepro --help'"
+                                   : "; see 'gfxrepro help " + nameBehindHelp(command) + "'"));
         }
         if (&command == &app) {
             return UsageError("unknown command '" + extra + "'" +
@@ -124,6 +132,8 @@ void parse(CLI::App& app, int argc, const char* const* argv) {
         const std::vector<const char*> words = spelledOut(argc, argv);
         app.parse(static_cast<int>(words.size()), words.data());
     } catch (const CLI::Success& help) {  // --help, --version: CLI11 answers them by throwing
+        const std::vector<std::string> extras = app.remaining(true);
+        if (!extras.empty() && !extras.front().starts_with('-')) throw usageError(app, help);
         std::ostringstream text;
         app.exit(help, text, text);
         fmt::print("{}", text.str());  // flushed, and checked, with all else at the program's end

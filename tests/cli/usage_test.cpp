@@ -59,6 +59,8 @@ TEST(Usage, UnknownOption) {
               "run'\n");
     EXPECT_EQ(refusal({"--verbose"}, folder),
               "gfxrepro: unknown option '--verbose'; see 'gfxrepro --help'\n");
+    EXPECT_EQ(refusal({"image", "crop", "--force"}, folder),
+              "gfxrepro: crop: unknown option '--force'; see 'gfxrepro help image crop'\n");
 }
 
 TEST(Usage, MissingConfig) {
@@ -276,6 +278,9 @@ TEST(Usage, DescribesForProgramsToo) {
 TEST(Usage, HelpAndVersionAreCommandsToo) {
     EXPECT_EQ(gfxrepro({"help"}).out, gfxrepro({"--help"}).out);
     EXPECT_EQ(gfxrepro({"help", "image", "diff"}).out, gfxrepro({"image", "diff", "--help"}).out);
+    EXPECT_EQ(refusal({"help", "reprodcue"}, TemporaryFolder()),
+              "gfxrepro: unknown command 'reprodcue'; did you mean 'reproduce'?; see 'gfxrepro "
+              "--help'\n");
     EXPECT_EQ(gfxrepro({"version"}).out, gfxrepro({"--version"}).out);
 }
 
