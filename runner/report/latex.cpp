@@ -6,6 +6,7 @@
 
 #include "runner/core/text.h"
 #include "runner/report/markup.h"
+#include "runner/tables/labels.h"
 #include "runner/tables/moved_clocks.h"
 #include "runner/tables/printed_parameters.h"
 
@@ -41,6 +42,19 @@ std::string unique(const std::string& key, std::set<std::string>& taken) {
     return candidate;
 }
 
+/// The labels of the rows; scenes of one's own as their files, wherever these lie.
+std::vector<std::vector<std::string>> labelsOf(const tables::Table& table) {
+    std::vector<std::vector<std::string>> rows;
+    for (const tables::TableRow& row : table.rows) rows.push_back(row.labels);
+    const auto shown = tables::shownLabels(rows, table.words);
+    for (std::vector<std::string>& labels : rows) {
+        for (std::size_t i = 0; i < labels.size(); ++i) {
+            if (labels[i].starts_with('/')) labels[i] = shown[i].at(labels[i]);
+        }
+    }
+    return rows;
+}
+
 std::string cite(const std::string& key) {
     return fmt::format("\\gfxrepro{{{}}}", key);
 }
@@ -48,11 +62,11 @@ std::string cite(const std::string& key) {
 class LatexWriter {
   public:
     LatexWriter(const tables::Table& table, const std::vector<std::string>& runNotes)
-        : table_(table), runNotes_(runNotes) {
+        : table_(table), runNotes_(runNotes), rowLabels_(labelsOf(table)) {
         std::set<std::string> rows, columns;
-        for (const tables::TableRow& row : table.rows) {
+        for (const std::vector<std::string>& labels : rowLabels_) {
             std::vector<std::string> parts;
-            for (const std::string& label : row.labels) parts.push_back(latexKeyPart(label));
+            for (const std::string& label : labels) parts.push_back(latexKeyPart(label));
             rowKeys_.push_back(unique(joined(parts, "/"), rows));
         }
         for (const tables::TableColumn& column : table.columns) {
@@ -169,7 +183,7 @@ class LatexWriter {
         const tables::TableRow& row = table_.rows[index];
         std::vector<std::string> cells;
         // Braces: after \\ a bracket or star would be its argument.
-        for (const std::string& label : row.labels) {
+        for (const std::string& label : rowLabels_[index]) {
             cells.push_back(fmt::format("{{{}}}", escapeLatex(label)));
         }
         if (table_.hasSources()) cells.emplace_back(tables::sceneSourceName(row.source));
@@ -200,6 +214,7 @@ class LatexWriter {
 
     const tables::Table& table_;
     const std::vector<std::string>& runNotes_;
+    const std::vector<std::vector<std::string>> rowLabels_;  // beside the rows
     const std::string parameters_ = tables::parametersLine(table_);
     std::vector<std::string> rowKeys_;     // beside the rows
     std::vector<std::string> columnKeys_;  // beside the columns

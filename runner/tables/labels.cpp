@@ -48,6 +48,11 @@ bool isName(std::string_view name) {
     return std::ranges::all_of(name, [](char c) { return isWordCharacter(c) || c == '/'; });
 }
 
+/// "model.glb" of "/home/me/model.glb"; empty of what is no path from the root.
+std::string_view fileName(std::string_view name) {
+    return name.starts_with('/') ? name.substr(name.rfind('/') + 1) : std::string_view();
+}
+
 std::string withBlanks(std::string_view name) {
     std::string text(name);
     std::ranges::replace(text, '_', ' ');
@@ -121,6 +126,10 @@ Quantity quantityOf(std::string_view name, const Words& words, std::string_view 
     }
     for (const Suffix& one : kOwn) {
         if (name == one.name) return {std::string(one.quantity), std::string(one.unit)};
+    }
+    if (const std::string_view file = fileName(name); !file.empty()) {
+        const auto known = words.find(std::string(file));
+        return withUnit(known == words.end() ? std::string(file) : known->second, unit);
     }
     if (!isName(name)) return withUnit(std::string(name), unit);
     if (hasSuffix && own.size() > suffix->name.size()) {

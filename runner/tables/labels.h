@@ -28,7 +28,8 @@ struct Quantity {
 
 /// A name's words: those of `words`; else its own, without the folder before them and without the
 /// unit that they end with ("bird nest" of "outdoor/bird_nest"). That unit goes before `unit`, the
-/// one that was recorded. What is no such name stays as it is.
+/// one that was recorded. Of a path from the root its file is shown; what else is no such name
+/// stays as it is.
 Quantity quantityOf(std::string_view name, const Words& words = {}, std::string_view unit = {});
 /// Of a column that several axes make, the parts one after another: "draw, low".
 Quantity quantityOf(const TableColumn& column, const Words& words);

@@ -73,6 +73,19 @@ layout: {rows: scene, columns: {e: {metric: error}}, cell: "{mean:.2f}/{max:.0f}
     EXPECT_THAT(latex, HasSubstr("{zju2005/9.9/a/e/max/low}{"));
 }
 
+TEST(Latex, AFileOfOnesOwnIsCalledByItsName) {
+    const std::string latex = tableLatex(tableFrom(R"(
+sweep: {scene: [/home/me/ring.obj, /a/x.obj, /b/x.obj]}
+layout: {rows: scene, columns: {e: {metric: error}}}
+)",
+                                                   {}));
+    EXPECT_THAT(keysOf(latex),
+                testing::ElementsAre("zju2005/9.9", "zju2005/9.9/ring.obj/e",
+                                     "zju2005/9.9/-a-x.obj/e", "zju2005/9.9/-b-x.obj/e"));
+    EXPECT_THAT(latex, HasSubstr("{ring.obj} & "));
+    EXPECT_EQ(latex.find("/home/me"), std::string::npos);
+}
+
 /// Labels that differ only in what a key cannot hold, and some that TeX would act on.
 TEST(Latex, KeysAreSafeAndUnique) {
     const std::string latex = tableLatex(tableFrom(R"(

@@ -26,6 +26,17 @@ TEST(Labels, ANameIsItsWordsAndTheUnitThatItEndsWith) {
               "light samples a side");
 }
 
+TEST(Labels, AFileOfOnesOwnIsItsName) {
+    EXPECT_EQ(shownName("/home/me/my_scan.ply"), "my_scan.ply");
+    EXPECT_EQ(shownName("/home/me/my_scan.ply", {{"my_scan.ply", "the scan"}}), "the scan");
+    EXPECT_EQ(shownName("/"), "/");
+    const auto shown = shownNames({"/a/x.obj", "/b/x.obj", "/b/y.obj"});
+    EXPECT_EQ(shown.at("/a/x.obj"), "/a/x.obj");
+    EXPECT_EQ(shown.at("/b/y.obj"), "y.obj");
+    EXPECT_EQ(shownCase("sweep/mine scene=/a/x.obj light_ratio=0.25", "sweep/mine"),
+              "x.obj, light ratio 0.25");
+}
+
 TEST(Labels, TheRecordedUnitIsThatOfANameWithoutOne) {
     EXPECT_EQ(quantityOf("gpu_time_ms", {}, "ms").text(), "gpu time [ms]");
     EXPECT_EQ(quantityOf("clusters", {}, "cluster").text(), "clusters");
