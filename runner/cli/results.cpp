@@ -222,6 +222,11 @@ void saySentReport(const fs::path& file) {
 }
 
 /// Says now and then how far the pictures of a large run are.
+/// Of cases that recorded nothing: no file is written.
+bool isEmpty(const tables::Table& table) {
+    return table.columns.empty();
+}
+
 void sayPictures(std::size_t done, std::size_t all) {
     constexpr std::size_t kEvery = 250;
     if (done % kEvery == 0 && done < all) tell("report: {} of {} pictures\n", done, all);
@@ -252,7 +257,9 @@ int conclude(const fs::path& runDir) {
     sayVerdicts(conclusion.claims);
     annotate(conclusion.claims);
     sayPrintedCells(conclusion.printedCells);
-    say("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
+    if (!std::ranges::all_of(conclusion.tables, isEmpty)) {
+        say("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
+    }
     sayReport(runDir / "report.html");
     return failing > 0 ? kExitClaimFailed : kExitOk;
 }
@@ -262,8 +269,13 @@ int table(const std::string& runDir, const std::string& out) {
     const results::Results conclusion = results::writeResults(
         runDir, run, {.tables = true, .claims = false, .report = false, .out = out});
     const std::string folder = (fs::path(out) / "tables").string();
-    for (const config::Experiment& experiment : run.plan.experiments) {
-        say("{}: {}/{}.csv .md .tex\n", experiment.id, folder, experiment.slug());
+    for (std::size_t i = 0; i < conclusion.tables.size(); ++i) {
+        const config::Experiment& experiment = run.plan.experiments[i];
+        if (isEmpty(conclusion.tables[i])) {
+            say("{}: no table, for no case has a result\n", experiment.id);
+        } else {
+            say("{}: {}/{}.csv .md .tex\n", experiment.id, folder, experiment.slug());
+        }
     }
     sayPrintedCells(conclusion.printedCells);
     sayNotes(run.manifest);

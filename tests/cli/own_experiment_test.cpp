@@ -366,6 +366,23 @@ TEST(OwnExperiment, CheckSaysHowToNameAParameter) {
               "{bin_exponent: {method: clustered}}` in `sweep`, for the cases that have it\n");
 }
 
+TEST(OwnExperiment, NoTableIsNamedWhereNoCaseHasAResult) {
+    const TemporaryFolder folder;
+    folder.write("rough.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
+    const std::string config =
+        folder.write("mine.yaml",
+                     "sweep_of: mine\ntitle: Mine\ntechnique: shadow_mapping\nscene: rough.obj\n"
+                     "params: {light_place: scene}\nmeasure: {lane: quality}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run =
+        gfxrepro({"reproduce", config, "--device", "software", "--quiet", "--out", dir});
+    EXPECT_EQ(run.exitCode, 4) << run.err;
+    EXPECT_FALSE(fs::exists(dir + "/tables"));
+    EXPECT_EQ(run.out.find("tables: "), std::string::npos) << run.out;
+    EXPECT_THAT(gfxrepro({"table", dir}).out,
+                HasSubstr("sweep/mine: no table, for no case has a result\n"));
+}
+
 TEST(OwnExperiment, AValueOfWhatIsExtendedMayBeSwept) {
     const TemporaryFolder folder;
     folder.write("base.yaml", "params: {number: 1}\n");
