@@ -188,6 +188,8 @@ std::string MachineState::sentence() const {
         return fmt::format("The machine was not quiet while this was timed: {}.",
                            joined(wrong, "; "));
     }
+    // Too short to tell: less than the kernel's ticks, and yet a large share.
+    if (othersS() > kLoadedShare * processorS_ || stolenS_ > kStolenShare * processorS_) return "";
     std::vector<std::string> parts;
     if (processorS_ > 0.0) {
         parts.push_back(fmt::format("other processes took {} of {} processor{}, the host {}",

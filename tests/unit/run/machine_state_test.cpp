@@ -115,6 +115,7 @@ TEST(MachineState, IsNotLoadedByALittle) {
     const MachineReading shortly = machine.read();
     machine.busyS += 0.1;
     EXPECT_THAT(stateOf(shortly, machine.read()).problems(), IsEmpty());
+    EXPECT_EQ(stateOf(shortly, machine.read()).sentence(), "");  // nor called quiet
 }
 
 TEST(MachineState, IsStolenFromByItsHost) {
