@@ -136,7 +136,8 @@ SchemaSection sweep() {
          {"list", "[[{axis: value}]]", "[]", "each block: points spelt out; keys may differ",
           listOf(listOf(pairs(), 1))},
          {"exclude", "[{axis: value}]", "[]", "drops points that match all pairs", listOf(pairs())},
-         {"when", "{axis: {other: value}}", "{}", "the axis varies only there", mapOf(pairs())}},
+         {"when", "{axis: {other: value}}", "{}",
+          "the axis applies only there: elsewhere tables show no value of it", mapOf(pairs())}},
         true,
         axisType()};
 }

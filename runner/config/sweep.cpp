@@ -8,6 +8,7 @@
 #include "runner/config/experiment.h"
 #include "runner/config/scene_reference.h"
 #include "runner/config/sections.h"
+#include "runner/config/when.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::config {
@@ -198,32 +199,6 @@ class Factors {
     std::vector<std::string> axes_;
     std::vector<SourceLocation> places_;  // beside `axes_`
 };
-
-const Node* valueAt(const AxisPoint& point, std::string_view axis) {
-    for (const auto& [name, value] : point) {
-        if (name == axis) return &value;
-    }
-    return nullptr;
-}
-
-bool matchesAll(const AxisPoint& point, const Node& conditions) {
-    return std::all_of(conditions.entries().begin(), conditions.entries().end(),
-                       [&](const auto& condition) {
-                           const Node* value = valueAt(point, condition.key());
-                           return value && matchesAny(*value, condition.value);
-                       });
-}
-
-/// Leaves out the axes whose condition is false. That may make further conditions false.
-void applyWhen(const Node& when, AxisPoint& point) {
-    for (std::size_t before = point.size() + 1; before != point.size();) {
-        before = point.size();
-        std::erase_if(point, [&, whole = point](const auto& axis) {
-            const Node* conditions = when.find(axis.key());
-            return conditions && !matchesAll(whole, *conditions);
-        });
-    }
-}
 
 void requireConditions(const Node& conditions, std::string_view what,
                        const std::vector<std::string>& axes) {

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <set>
 #include <unordered_map>
 
+#include "runner/config/when.h"
 #include "runner/records/csv.h"
 
 namespace gfxrepro::tables {
@@ -36,16 +38,40 @@ std::optional<std::string> valueIn(const Json& params, const std::string& axis) 
     return jsonText(*value);
 }
 
-AxisValues axesOf(const PlannedCase& item, const std::vector<std::string>& axes) {
+std::optional<std::string> valueOf(const PlannedCase& item, const std::string& axis) {
+    if (axis == "scene") {
+        if (const auto named = valueIn(item.params, kStandsFor)) return named;
+        if (!item.scene.empty()) return item.scene;
+    }
+    return valueIn(item.params, axis);
+}
+
+/// The axes that the sweep's `when` leaves out of the case: its parameters have them with their
+/// defaults.
+std::set<std::string> leftOut(const PlannedCase& item, const config::Node& when) {
+    std::set<std::string> names, conditional;
+    for (const auto& [axis, conditions] : when.entries()) {
+        conditional.insert(axis);
+        names.insert(axis);
+        for (const auto& [name, value] : conditions.entries()) names.insert(name);
+    }
+    config::AxisPoint point;
+    for (const std::string& name : names) {
+        if (const auto value = valueOf(item, name)) {
+            point.emplace_back(name, config::Node::scalar(*value));
+        }
+    }
+    config::applyWhen(when, point);
+    for (const auto& [name, value] : point) conditional.erase(name);
+    return conditional;
+}
+
+AxisValues axesOf(const PlannedCase& item, const std::vector<std::string>& axes,
+                  const config::Node* when) {
+    const std::set<std::string> absent = when ? leftOut(item, *when) : std::set<std::string>();
     AxisValues values;
     for (const std::string& axis : axes) {
-        if (const auto named = valueIn(item.params, kStandsFor); axis == "scene" && named) {
-            values.push_back(named);
-        } else if (axis == "scene" && !item.scene.empty()) {
-            values.emplace_back(item.scene);
-        } else {
-            values.push_back(valueIn(item.params, axis));
-        }
+        values.push_back(absent.contains(axis) ? std::string(kLeftOut) : valueOf(item, axis));
     }
     return values;
 }
@@ -87,7 +113,8 @@ std::vector<const records::Record*> CaseRecords::Attempt::values(std::string_vie
 
 std::vector<CaseRecords> groupByCase(std::span<const PlannedCase> planned,
                                      const std::vector<records::Record>& records,
-                                     std::string_view table, const std::vector<std::string>& axes) {
+                                     std::string_view table, const std::vector<std::string>& axes,
+                                     const config::Node* when) {
     struct Place {
         std::size_t index;  // in `cases`
         int sample;
@@ -103,7 +130,7 @@ std::vector<CaseRecords> groupByCase(std::span<const PlannedCase> planned,
         const std::size_t index =
             sample ? families.try_emplace(familyOf(item), next).first->second : next;
         if (index == next) {
-            cases.push_back({item.id, axesOf(item, axes), {}, item.scene, item.params});
+            cases.push_back({item.id, axesOf(item, axes, when), {}, item.scene, item.params});
             isSeeded.push_back(sample.has_value());
         }
         places[item.id] = {index, sample.value_or(0)};

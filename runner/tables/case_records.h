@@ -37,6 +37,9 @@ struct PlannedCase {
     std::vector<std::string> axes;  // names of those that are swept
 };
 
+/// In place of the value of an axis that does not apply to a case.
+inline constexpr std::string_view kLeftOut = "–";
+
 /// A case with the last attempt of each of its processes; without any where it was not run. Where
 /// scenes are taken at several seeds, a seed is to a case what a process is to a time: cases that
 /// differ by it alone are one, whose process k has the k-th seed.
@@ -65,9 +68,11 @@ struct CaseRecords {
 
 /// The cases of `table` in the order of the plan, with their records, which must outlive the
 /// result. A later row of a case replaces an earlier one of the same place; a failure replaces all
-/// before it. Beside cases at several seeds those without a seed count at each.
+/// before it. Beside cases at several seeds those without a seed count at each. On an axis that
+/// `when` of the sweep leaves out of a case it has the value kLeftOut.
 std::vector<CaseRecords> groupByCase(std::span<const PlannedCase> planned,
                                      const std::vector<records::Record>& records,
-                                     std::string_view table, const std::vector<std::string>& axes);
+                                     std::string_view table, const std::vector<std::string>& axes,
+                                     const config::Node* when = nullptr);
 
 }  // namespace gfxrepro::tables

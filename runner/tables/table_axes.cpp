@@ -157,7 +157,9 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const Pl
         }
     }
     addAxesOf(layout.cell, cases.axes);
-    cases.cases = groupByCase(planned, records, experiment.id, cases.axes);
+    const config::Node& sweep = experiment.sweep;
+    cases.cases = groupByCase(planned, records, experiment.id, cases.axes,
+                              sweep.isMap() ? sweep.find("when") : nullptr);
     cases.frameCount = experiment.measure.frames;
     std::vector<const AxisValues*> values;
     for (const CaseRecords& item : cases.cases) values.push_back(&item.axes);

@@ -67,6 +67,25 @@ TEST(DefaultLayout, ShowsTimesThenMetricsAndTellsWhatIsAlikeOnce) {
     EXPECT_EQ(table.columns[2].doc, "wrong");
 }
 
+/// The records of such a case have the parameter's default, which it does not use.
+TEST(DefaultLayout, AnAxisThatDoesNotApplyHasNoValue) {
+    RecordMaker maker;
+    double voxels = 0.0;
+    for (const char* params :
+         {R"({"method": "bins", "gain": 2})", R"({"method": "bins", "gain": 4})",
+          R"({"method": "none", "gain": 1})"}) {
+        maker.beginCase("", params).add("voxels", {++voxels}, "", "voxel");
+    }
+    Recorded records = maker.records();
+    for (records::Record& record : records) record.table = "sweep/s";
+    for (PlannedCase& item : records.cases) item.table = "sweep/s";
+    const Table table = buildTable(
+        sweepOf("{method: [bins, none], gain: [2, 4], when: {gain: {method: bins}}}"), records);
+    std::vector<std::string> gains;
+    for (const TableRow& row : table.rows) gains.push_back(row.labels.at(1));
+    EXPECT_THAT(gains, ElementsAre("2", "4", "–"));
+}
+
 TEST(DefaultLayout, WhatACaseDoesNotRecordIsBlank) {
     Recorded records = recordedAt({32, 64});
     std::erase_if(records, [](const records::Record& record) {
