@@ -223,9 +223,7 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
         ->option_text("DIR");
     submitApp->add_option("--engine", s.engine, "who starts the shards")
         ->check(CLI::IsMember({"slurm", "commands"}));
-    submitApp
-        ->add_option("--shards", s.shardCount,
-                     "how many; as many as the predicted half hours where it is not given")
+    submitApp->add_option("--shards", s.shardCount, "default: one for each predicted half hour")
         ->check(CLI::Range(1, 10000))
         ->option_text("N");
     addFrom(submitApp, s.from);

@@ -59,7 +59,8 @@ void addConvert(CLI::App& image, ImageConvertOptions& o, std::function<int()>& c
         ->option_text("A,B,C");
     app->add_option("--range", o.range, "of one channel (default: all of it)")
         ->option_text("LOW,HIGH");
-    addChoice(app, "--colours", o.colours, "magma|grey|cool_warm", "of one channel");
+    addChoice(app, "--colours", o.colours, "auto|magma|grey|cool_warm",
+              "of one channel; auto: cool_warm for values of both signs, else magma");
     app->callback([&] { command = [&] { return imageConvert(o); }; });
 }
 

@@ -79,10 +79,20 @@ Range rangeOf(const ExrImage::Channel& channel) {
     return range;
 }
 
+/// Values of both signs, as an error's, get a map whose middle is 0.
 Image8 falseColours(const ExrImage::Channel& channel, const ImageConvertOptions& options) {
-    const Range range = options.range.empty() ? rangeOf(channel) : parseRange(options.range);
-    say("{}: {:g} to {:g} in {}\n", channel.name, range.low, range.high, options.colours);
-    return image::coloured(channel.values, colourMapOf(options.colours), range.low, range.high);
+    Range range = options.range.empty() ? rangeOf(channel) : parseRange(options.range);
+    std::string colours = options.colours;
+    if (colours == "auto") {
+        const bool isSigned = range.low * range.high < 0.0F;
+        colours = isSigned ? "cool_warm" : "magma";
+        if (isSigned && options.range.empty()) {
+            range.high = std::max(-range.low, range.high);
+            range.low = -range.high;
+        }
+    }
+    say("{}: {:g} to {:g} in {}\n", channel.name, range.low, range.high, colours);
+    return image::coloured(channel.values, colourMapOf(colours), range.low, range.high);
 }
 
 bool areDirections(const ExrImage& image) {

@@ -9,7 +9,6 @@
 
 namespace gfxrepro::cli {
 
-// The names are printed and not drawn: text on images would take a font and a library for it.
 int imageSheet(const ImageSheetOptions& options) {
     if (image::isExrFile(options.out)) {
         throw UsageError(options.out + ": a contact sheet is a .png");
@@ -23,7 +22,7 @@ int imageSheet(const ImageSheetOptions& options) {
     image::SheetLayout layout;
     layout.columns = options.columns;
     layout.cellWidthPx = options.widthPx;
-    image::writePng(options.out, image::contactSheet(images, layout));
+    image::writePng(options.out, image::contactSheet(images, layout, options.files));
     const auto columns = std::min(static_cast<std::size_t>(options.columns), options.files.size());
     for (std::size_t i = 0; i < options.files.size(); ++i) {
         say("row {} column {}  {}\n", i / columns + 1, i % columns + 1, options.files[i]);

@@ -4,17 +4,20 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "runner/core/error.h"
 #include "runner/image/resample.h"
+#include "runner/image/text.h"
 
 namespace gfxrepro::image {
 
 namespace {
 
 constexpr int kMaxSidePx = 32768;
-constexpr std::uint8_t kGround = 96;
+constexpr std::uint8_t kGround = 96, kInk = 255;
+constexpr int kBelowCaptionPx = 3;
 
 /// Three channels; alpha is laid over the ground.
 void paste(const Image8& image, int left, int top, Image8& sheet) {
@@ -32,20 +35,31 @@ void paste(const Image8& image, int left, int top, Image8& sheet) {
     }
 }
 
+/// The end of a caption that is wider than its cell.
+std::string fitting(const std::string& caption, int widthPx) {
+    const auto most = static_cast<std::size_t>(widthPx / kLetterWidthPx);
+    if (caption.size() <= most) return caption;
+    const std::string dots(std::min<std::size_t>(most, 2), '.');
+    return dots + caption.substr(caption.size() - (most - dots.size()));
+}
+
 }  // namespace
 
-Image8 contactSheet(std::span<const Image8> images, const SheetLayout& layout) {
+Image8 contactSheet(std::span<const Image8> images, const SheetLayout& layout,
+                    std::span<const std::string> captions) {
     if (images.empty()) throw Error("a contact sheet needs an image");
     if (layout.columns < 1 || layout.cellWidthPx < 1 || layout.gapPx < 0) {
         throw Error(fmt::format("a contact sheet of {} columns of {} pixels has no size",
                                 layout.columns, layout.cellWidthPx));
     }
     const auto columns = std::min(static_cast<std::size_t>(layout.columns), images.size());
+    const int captionPx = captions.empty() ? 0 : kLetterHeightPx + kBelowCaptionPx;
     std::vector<std::int64_t> rowHeights;
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (images[i].empty()) throw Error(fmt::format("image {} is empty", i + 1));
         if (i % columns == 0) rowHeights.push_back(0);
-        rowHeights.back() = std::max(rowHeights.back(), heightAt(images[i], layout.cellWidthPx));
+        rowHeights.back() =
+            std::max(rowHeights.back(), captionPx + heightAt(images[i], layout.cellWidthPx));
     }
     const std::int64_t pitch = std::int64_t{layout.cellWidthPx} + layout.gapPx;
     const std::int64_t width = static_cast<std::int64_t>(columns) * pitch + layout.gapPx;
@@ -60,8 +74,13 @@ Image8 contactSheet(std::span<const Image8> images, const SheetLayout& layout) {
     for (std::size_t i = 0; i < images.size(); ++i) {
         const auto column = static_cast<std::int64_t>(i % columns);
         if (i > 0 && column == 0) top += rowHeights[i / columns - 1] + layout.gapPx;
-        paste(resizedTo(images[i], layout.cellWidthPx),
-              static_cast<int>(layout.gapPx + column * pitch), static_cast<int>(top), sheet);
+        const auto left = static_cast<int>(layout.gapPx + column * pitch);
+        if (!captions.empty()) {
+            drawText(sheet, left, static_cast<int>(top), fitting(captions[i], layout.cellWidthPx),
+                     kInk);
+        }
+        paste(resizedTo(images[i], layout.cellWidthPx), left, static_cast<int>(top) + captionPx,
+              sheet);
     }
     return sheet;
 }

@@ -261,6 +261,20 @@ TEST_F(ImageCommands, CropOfPngAndRefusals) {
               "convert' makes one of the other\n");
 }
 
+TEST_F(ImageCommands, ConvertShowsSignedValuesAroundZero) {
+    ImageF error(2, 1, 1);
+    error.at(0, 0) = -0.25F;
+    error.at(1, 0) = 1.0F;
+    ExrImage exr;
+    exr.add(error, {"error.R"}, image::ExrPixelType::Float);
+    const std::string in = write("e.exr", exr);
+    EXPECT_EQ(out({"image", "convert", in, "--out", at("e.png"), "--channels", "error.R"}),
+              "error.R: -1 to 1 in cool_warm\n");
+    EXPECT_EQ(out({"image", "convert", in, "--out", at("e.png"), "--channels", "error.R",
+                   "--colours", "magma"}),
+              "error.R: -0.25 to 1 in magma\n");
+}
+
 TEST_F(ImageCommands, ContactSheetPutsImagesInOrder) {
     const std::string red = write("r.png", [] {
         Image8 image(10, 20, 3);
@@ -278,11 +292,14 @@ TEST_F(ImageCommands, ContactSheetPutsImagesInOrder) {
               "row 1 column 1  DIR/r.png\nrow 1 column 2  DIR/g.png\nrow 2 column 1  DIR/e.exr\n");
     const Image8 sheet = image::readPng8(at("s.png"));
     EXPECT_EQ(sheet.width(), 2 * 40 + 3 * 8);
-    EXPECT_EQ(sheet.height(), 80 + 30 + 3 * 8);
-    EXPECT_EQ(sheet.at(8, 87, 0), 200);
-    EXPECT_EQ(sheet.at(56 + 20, 8 + 20, 2), 50);
-    EXPECT_EQ(sheet.at(56 + 20, 8 + 60, 2), 96);   // below the lower one of a row
-    EXPECT_EQ(sheet.at(8 + 39, 96 + 29, 1), 255);  // the right half of the EXR file
+    constexpr int kCaption = 10;
+    EXPECT_EQ(sheet.height(), 80 + 30 + 2 * kCaption + 3 * 8);
+    EXPECT_EQ(sheet.at(8, kCaption + 87, 0), 200);
+    EXPECT_EQ(sheet.at(56 + 20, kCaption + 8 + 20, 2), 50);
+    EXPECT_EQ(sheet.at(56 + 20, kCaption + 8 + 60, 2), 96);  // below the lower one of a row
+    // The right half of the EXR file.
+    EXPECT_EQ(sheet.at(8 + 39, 2 * kCaption + 96 + 29, 1), 255);
+    EXPECT_EQ(sheet.at(8 + 1, 8 + 5, 1), 255) << "of the dots before its name's end";
     EXPECT_EQ(refusal({"image", "contact-sheet", "--out", at("s.exr"), red}),
               "gfxrepro: DIR/s.exr: a contact sheet is a .png\n");
 }

@@ -42,6 +42,7 @@ std::vector<std::vector<std::string>> allCommands() {
         std::istringstream stream(line.substr(13));
         commands.emplace_back();
         for (std::string word; stream >> word && !word.starts_with("[");) {
+            std::erase(word, '\\');  // "contact\-sheet"
             commands.back().push_back(word);
         }
     }

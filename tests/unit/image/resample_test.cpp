@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include <limits>
+#include <string>
 
 #include "runner/image/contact_sheet.h"
+#include "runner/image/text.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::image {
@@ -104,6 +106,26 @@ TEST(ResizedTo, SharesPixelsAndMagnifies) {
     EXPECT_EQ(resizedTo(Image8(100, 1, 3, 7), 3).height(), 1);
     EXPECT_EQ(errorText([] { resizedTo(Image8(1, 32768, 1), 2); }),
               "an image of 1x32768 would have 2x65536 pixels; 32768 a side are allowed");
+}
+
+TEST(Text, LettersAreDrawnFromTheUpperLeftAndCutAtTheEdges) {
+    Image8 image(14, 9, 3, 0);
+    drawText(image, 1, 1, "Lé", 200);
+    std::string seen;
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) seen += image.at(x, y, 1) == 200 ? '#' : '.';
+        seen += '\n';
+    }
+    EXPECT_EQ(seen,
+              "..............\n"
+              ".#......###...\n"
+              ".#.....#...#.#\n"
+              ".#.........#..\n"
+              ".#........#...\n"
+              ".#.......#....\n"
+              ".#............\n"
+              ".#####...#....\n"
+              "..............\n");
 }
 
 TEST(ContactSheet, LaysAlphaOverTheGroundAndRefuses) {
