@@ -72,24 +72,25 @@ void addTimes(const config::Experiment& experiment, const std::vector<records::R
     table.notes = timeNotes(times, experiment.measure, namesOf(cases, table.words));
 }
 
-bool hasValue(const Cell& cell) {
-    return !cell.values.empty();
+/// With a value, or with a time that was taken beside other cases and is no result.
+bool isRecorded(const Cell& cell) {
+    return !cell.values.empty() || cell.status == records::Status::Ambiguous;
 }
 
 /// What the cases of a cell did not record is blank where others of its row and of its column were
 /// recorded: other methods, or more images, have it. A whole row or column without a value is
 /// missing, as one of a misspelt metric, and so is what is printed.
 void blankWhatOthersHave(Table& table) {
-    std::vector<bool> isRecorded;
+    std::vector<bool> isOfOthers;
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        isRecorded.push_back(std::ranges::any_of(
-            table.rows, [&](const TableRow& row) { return hasValue(row.cells[i]); }));
+        isOfOthers.push_back(std::ranges::any_of(
+            table.rows, [&](const TableRow& row) { return isRecorded(row.cells[i]); }));
     }
     for (TableRow& row : table.rows) {
-        if (std::ranges::none_of(row.cells, hasValue)) continue;
+        if (std::ranges::none_of(row.cells, isRecorded)) continue;
         for (std::size_t i = 0; i < row.cells.size(); ++i) {
             Cell& cell = row.cells[i];
-            if (!cell.isUnrecorded || !isRecorded[i] || cell.printed) continue;
+            if (!cell.isUnrecorded || !isOfOthers[i] || cell.printed) continue;
             cell.isPlanned = false;
             cell.measured.clear();
         }
