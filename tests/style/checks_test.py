@@ -8,7 +8,7 @@ import tempfile
 SCRIPTS = pathlib.Path(sys.argv[1])
 
 
-def run(script, files):
+def run(script, files, **options):
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
         for name, text in files.items():
@@ -16,7 +16,7 @@ def run(script, files):
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text)
         result = subprocess.run([sys.executable, SCRIPTS / script, folder],
-                                capture_output=True, text=True)
+                                capture_output=True, text=True, **options)
         return result.returncode, result.stdout
 
 
@@ -94,4 +94,14 @@ code, output = run("check_style", {"techniques/README.md": "", "techniques/a/REA
 if code != 0:
     sys.exit(f"check_style found something in good GLSL:\n{output}")
 expect("check_style", {"runner/core/a.cpp": ""}, "runner/core: no README.md")
+# One version of clang-format decides; another is not asked, and that is said.
+for version, wanted in {"14.0.6": (1, "runner/a.h:1:1: error: code should be clang-formatted\n"),
+                        "19.1.7": (0, "style: formatting was not looked at: clang-format 14 is not here\nstyle: nothing found\n")}.items():
+    with tempfile.TemporaryDirectory() as folder:
+        stand_in = pathlib.Path(folder) / "clang-format"
+        stand_in.write_text(f"#!/bin/sh\nif [ $1 = --version ]; then echo clang-format version {version}\n"
+                            "else echo runner/a.h:1:1: error: code should be clang-formatted >&2; fi\n")
+        stand_in.chmod(0o755)
+        if run("check_style", GOOD, env={"PATH": folder}) != wanted:
+            sys.exit(f"check_style asked clang-format {version}, or did not")
 print("checks find violations")
