@@ -7,13 +7,15 @@ start_cluster() {
     chmod 700 "$D/munge"
     head -c 128 /dev/urandom >"$D/munge/key"
     chmod 600 "$D/munge/key"
-    local host
+    local host address
     host=$(hostname -s)
+    # What the name stands for: Slurm 24 listens nowhere else.
+    address=$(getent ahostsv4 "$host" | awk 'NR == 1 {print $1}')
     # cred_expire: a requeued task waits until its old credential has expired, 2 minutes by default.
     # config_overrides: two nodes of two CPUs on whatever this machine has.
     cat >"$D/slurm.conf" <<CONF
 ClusterName=gfxrepro
-SlurmctldHost=$host(127.0.0.1)
+SlurmctldHost=$host($address)
 SlurmctldPort=$base
 SlurmUser=$(id -un)
 SlurmdUser=$(id -un)
@@ -43,8 +45,8 @@ ReturnToService=2
 MinJobAge=3600
 KillWait=2
 MailProg=/bin/true
-NodeName=n1 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((base + 1)) CPUs=2 RealMemory=2000
-NodeName=n2 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((base + 2)) CPUs=2 RealMemory=2000
+NodeName=n1 NodeHostname=$host NodeAddr=$address Port=$((base + 1)) CPUs=2 RealMemory=2000
+NodeName=n2 NodeHostname=$host NodeAddr=$address Port=$((base + 2)) CPUs=2 RealMemory=2000
 PartitionName=main Nodes=ALL Default=YES MaxTime=60 State=UP
 CONF
     export SLURM_CONF=$D/slurm.conf
@@ -60,9 +62,9 @@ both_idle() { [ "$(timeout 5 sinfo -hN -o %T 2>/dev/null | grep -c '^idle$')" = 
 
 # wait_for SECONDS COMMAND…: false when it never came true.
 wait_for() {
-    local tries=$(($1 * 10))
+    local end=$((SECONDS + $1))
     shift
-    for _ in $(seq "$tries"); do
+    while [ $SECONDS -lt $end ]; do
         "$@" && return 0
         sleep 0.1
     done
