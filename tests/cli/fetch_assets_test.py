@@ -44,10 +44,12 @@ class Handler(http.server.BaseHTTPRequestHandler):
             self.send_header("Location", "http://localhost:1/bunny.tar.gz")
             self.end_headers()
             return
-        content = self.files.get(self.path)
+        content = self.files.get(self.path, b"")
         self.send_response(200 if content else 404)
+        # Else the connection's end is the content's, which curl takes for cut off where TLS is not closed, too.
+        self.send_header("Content-Length", str(len(content)))
         self.end_headers()
-        self.wfile.write(content or b"")
+        self.wfile.write(content)
 
     def log_message(self, *_):
         pass
