@@ -48,9 +48,10 @@ with_source() {
     git -c safe.directory="$source" clone --quiet --no-hardlinks "$source" "$1/src"
 }
 
-# inside FOLDER COMMAND: in the system, with the clone as the current folder.
+# inside FOLDER COMMAND: in the system, with the clone as the current folder. A mount of its own: a test makes namespaces in it.
 inside() {
-    unshare --mount bash -c 'for name in proc dev sys; do mount --rbind "/$name" "$1/$name"; done
+    unshare --mount bash -c 'mount --bind "$1" "$1"
+        for name in proc dev sys; do mount --rbind "/$name" "$1/$name"; done
         mkdir -p "$1/home/.cache/ccache" && mount --bind "$2" "$1/home/.cache/ccache"
         exec env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/home \
             "$(command -v chroot)" "$1" sh -ec "cd /src; $3"' _ "$1" "$cache" "$2"
