@@ -103,11 +103,10 @@ void requireNamedSweeps(const config::Node& node) {
 /// Throws Error for a scene that the technique of a case cannot take.
 void requireTaken(const Context& context, const run::Case& item, const config::Node& reference,
                   const scene::Scene& scene) {
-    const technique::TechniqueInfo& info =
-        technique::findTechnique(context.techniques, item.technique, {});
     config::Params params(item.given, "technique '" + item.technique + "'");
     if (!item.offered.isNull()) params.offer(item.offered);
-    const auto technique = technique::makeTechnique(info, item.program, params);
+    const auto technique = technique::makeTechnique(
+        technique::findTechnique(context.techniques, item.technique, {}), item.program, params);
     try {
         technique->requireScene(scene);
     } catch (const Error& error) {
