@@ -38,8 +38,9 @@ std::string originSummaryLine(const std::vector<ClaimResult>& results) {
     std::vector<std::string> parts;
     for (const auto& [origin, name] : kGroups) {
         std::vector<ClaimResult> alike;
-        std::ranges::copy_if(results, std::back_inserter(alike),
-                             [&](const ClaimResult& result) { return result.origin == origin; });
+        std::ranges::copy_if(
+            results, std::back_inserter(alike),
+            [origin = origin](const ClaimResult& result) { return result.origin == origin; });
         if (!alike.empty()) parts.push_back(fmt::format("{} {}", name, claimSummaryLine(alike)));
     }
     return parts.empty() ? claimSummaryLine(results) : joined(parts, "; ");

@@ -1,6 +1,3 @@
-#include "runner/run/run.h"
-#include "runner/run/manifest.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -24,7 +21,9 @@
 #include "runner/core/processors.h"
 #include "runner/results/import_run.h"
 #include "runner/run/machine_state.h"
+#include "runner/run/manifest.h"
 #include "runner/run/not_survived.h"
+#include "runner/run/run.h"
 #include "runner/run/run_files.h"
 #include "runner/run/twins.h"
 #include "runner/scene/height_map.h"
@@ -274,7 +273,7 @@ void putFailedLast(const std::vector<run::Json>& log, std::vector<run::Unit>& un
         }
         failed.emplace(event.value("case", ""), event.value("process", 0));
     }
-    std::ranges::stable_partition(units, [&](const run::Unit& unit) {
+    std::stable_partition(units.begin(), units.end(), [&](const run::Unit& unit) {
         return !failed.contains({unit.item->id, unit.process});
     });
 }

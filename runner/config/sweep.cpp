@@ -272,7 +272,9 @@ void requireNotFixed(const Experiment& experiment) {
         if (!isTyped && !(isOwn && fixed.line > 0)) continue;
         if (points.empty()) points = expandSweep(experiment.sweep);
         // Where the sweep leaves the axis out, a case takes the fixed value.
-        const auto isIn = [&](const AxisPoint& point) { return valueAt(point, axis) != nullptr; };
+        const auto isIn = [&axis = axis](const AxisPoint& point) {
+            return valueAt(point, axis) != nullptr;
+        };
         if (!std::ranges::all_of(points, isIn)) continue;
         throw Error(fixed,
                     "'" + axis + "' is swept, too, in " + toString(*swept) +

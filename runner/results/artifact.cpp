@@ -146,9 +146,10 @@ Places copyProgramFiles(const run::StoredRun& run, const fs::path& target) {
         for (const auto& [path, name] : programFiles(run.plan, experiment)) {
             const fs::path inside = path.lexically_relative(folder);
             if (inside.empty() || *inside.begin() == "..") continue;
-            const bool isMeasured = std::ranges::any_of(uses, [&](const run::ProgramUse& use) {
+            const auto isThis = [&path = path, &name = name](const run::ProgramUse& use) {
                 return use.file == name && use.sha256 == sha256OfFile(path);
-            });
+            };
+            const bool isMeasured = std::ranges::any_of(uses, isThis);
             if (!isMeasured) continue;
             const fs::path place = configPlace(experiment).parent_path() / inside;
             fs::create_directories((target / place).parent_path());

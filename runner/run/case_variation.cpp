@@ -77,7 +77,7 @@ void requireTaken(const config::Experiment& experiment, const std::vector<Case>&
     }
     if (experiment.sceneInstead.isNull()) return;
     for (const auto& [name, other] : experiment.sceneInstead.entries()) {
-        const auto isTaken = [&](const Case& item) {
+        const auto isTaken = [&name = name](const Case& item) {
             return !item.standsFor.isNull() && item.standsFor.text() == name;
         };
         if (std::ranges::any_of(cases, isTaken)) continue;

@@ -88,8 +88,9 @@ std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& 
             addRound(std::move(cases), process, units);
         }
     }
-    std::ranges::stable_partition(
-        units, [](const Unit& unit) { return unit.item->measure.lane == Lane::Quality; });
+    std::stable_partition(units.begin(), units.end(), [](const Unit& unit) {
+        return unit.item->measure.lane == Lane::Quality;
+    });
     return units;
 }
 

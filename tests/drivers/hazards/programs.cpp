@@ -87,7 +87,7 @@ Program describe(GLuint id) {
     glGetObjectLabel(GL_PROGRAM, id, 256, nullptr, label.data());
     program.name = label[0] ? label.data() : "program " + std::to_string(id);
     const auto [readOnly, others] = declarationsOf(id);
-    const auto isWritten = [&](const std::string& name) {
+    const auto isWritten = [&readOnly = readOnly, &others = others](const std::string& name) {
         const std::string plain = name.substr(0, name.find('['));
         return others.contains(plain) || !readOnly.contains(plain);
     };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -161,7 +162,7 @@ TEST(Comparison, TheWatchFindsTenPercentInNineNightsOfTenWhicheverSeriesItIs) {
 /// Recorded times as a night of alternating runs, the second build's `change` times as long.
 std::vector<Difference> recordedNight(std::size_t first, int rounds, double change) {
     std::size_t next = first;
-    const auto take = [&] { return test::kRecordedMs.at(next++ % test::kRecordedMs.size()); };
+    const auto take = [&] { return test::kRecordedMs[next++ % std::size(test::kRecordedMs)]; };
     return compareByTurns([&](Sides& sides, const std::set<std::string>&) {
         for (int round = 0; round < rounds; ++round) {
             const double a = take(), b = take();

@@ -1,14 +1,12 @@
 // Times of one build, measured 400 times in a row: what noise of a real machine looks like.
 #pragma once
 
-#include <array>
-
 namespace gfxrepro::regression::test {
 
 /// ms a frame (median of 3) of `shadow_mapping` on shadows/town_square, 256², a map of 512², each
 /// in a process of its own; llvmpipe 22.3 on two cores of a shared machine. Neighbours differ by 16
 /// % (standard deviation).
-inline constexpr std::array kRecordedMs = {
+inline constexpr double kRecordedMs[] = {
     14.38, 18.05, 17.87, 17.60, 15.27, 16.11, 15.74, 16.01, 17.21, 19.73, 16.42, 17.35, 17.94,
     17.50, 12.66, 13.74, 12.03, 17.06, 13.22, 16.46, 17.48, 17.21, 17.86, 17.21, 13.45, 17.45,
     17.57, 11.99, 15.52, 17.08, 17.63, 16.86, 15.78, 17.30, 14.29, 16.42, 14.93, 17.46, 17.58,
