@@ -1,9 +1,10 @@
+#include "runner/claims/kept_claims.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-#include "runner/claims/kept_claims.h"
 #include "runner/config/schema.h"
 #include "runner/core/files.h"
 #include "runner/records/csv.h"

@@ -1,6 +1,4 @@
 // Shards into one run.
-#include "runner/cluster/merge.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/results.h"
+#include "runner/cluster/merge.h"
 #include "runner/run/manifest.h"
 
 namespace gfxrepro::cli {

@@ -1,4 +1,6 @@
 // Tables, claims and report, made again from a run's records; no GPU needed.
+#include "runner/cli/results.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -12,7 +14,6 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/cli/results.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
 #include "runner/report/gnuplot.h"

@@ -1,8 +1,5 @@
 // How tables' claims depend on their assumptions: each table is measured once for each of their
 // values, alternately, so that a budget serves all tables alike.
-#include "runner/studies/sensitivity.h"
-#include "runner/results/results.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -17,9 +14,11 @@
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
+#include "runner/results/results.h"
 #include "runner/run/child_process.h"
 #include "runner/run/run.h"
 #include "runner/studies/budget.h"
+#include "runner/studies/sensitivity.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::cli {

@@ -1,6 +1,4 @@
 // A plan handed to other machines: as a Slurm array job with a merge behind it, or as commands.
-#include "runner/cluster/submission.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "runner/cli/slurm.h"
 #include "runner/cluster/kept_program.h"
 #include "runner/cluster/shards.h"
+#include "runner/cluster/submission.h"
 #include "runner/config/json_shape.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"

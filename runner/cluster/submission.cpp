@@ -1,11 +1,12 @@
 #include "runner/cluster/submission.h"
-#include "runner/core/text.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+
+#include "runner/core/text.h"
 
 namespace gfxrepro::cluster {
 

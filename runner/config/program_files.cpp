@@ -1,11 +1,12 @@
 // Which files decide what a program does.
+#include "runner/config/program_files.h"
+
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 
 #include "runner/config/program.h"
-#include "runner/config/program_files.h"
 #include "runner/config/sections.h"
 #include "runner/core/hash.h"
 #include "runner/core/text.h"

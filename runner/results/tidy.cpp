@@ -1,7 +1,6 @@
 #include "runner/results/tidy.h"
 
 #include <algorithm>
-#include <memory>
 #include <set>
 #include <utility>
 
@@ -68,17 +67,15 @@ std::string laneName(const run::Case& item) {
 Frame parameterFrame(const Frame& cases) {
     constexpr std::size_t kFirst = std::size(kCaseColumns);
     const std::size_t count = cases.columns.size() - kFirst;
-    // Of one case after another each row is made once.
-    const auto row = std::make_shared<std::pair<std::size_t, std::vector<FrameValue>>>(
-        cases.rowCount, std::vector<FrameValue>{});
     return {"case_params",
             {"case_id", "param", "value"},
             cases.rowCount * count,
-            [cases, count, row](std::size_t i) {
-                if (row->first != i / count) *row = {i / count, cases.row(i / count)};
+            // Of one case after another each row is made once.
+            [cases, count, at = cases.rowCount,
+             row = std::vector<FrameValue>{}](std::size_t i) mutable {
+                if (i / count != std::exchange(at, i / count)) row = cases.row(at);
                 const std::size_t column = kFirst + i % count;
-                return std::vector<FrameValue>{row->second.front(), cases.columns[column],
-                                               row->second[column]};
+                return std::vector<FrameValue>{row.front(), cases.columns[column], row[column]};
             }};
 }
 

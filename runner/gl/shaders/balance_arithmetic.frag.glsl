@@ -1,4 +1,5 @@
 #version 450 core
+// The arithmetic by fragments: balance.cpp times it beside the compute invocations'.
 #include "gl/balance_arithmetic.glsl"
 layout(location = 0) out vec4 colour;
 

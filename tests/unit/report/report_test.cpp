@@ -1,5 +1,4 @@
 #include "runner/report/report.h"
-#include "runner/report/gnuplot.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -12,6 +11,7 @@
 #include "runner/core/files.h"
 #include "runner/image/png_io.h"
 #include "runner/records/images.h"
+#include "runner/report/gnuplot.h"
 #include "runner/tables/labels.h"
 #include "runner/tables/moved_clocks.h"
 #include "tests/support/support.h"

@@ -1,6 +1,5 @@
 // Which cases are measured once, and what the others get.
 #include "runner/run/twins.h"
-#include "runner/run/file_stem.h"
 
 #include <gmock/gmock.h>
 
@@ -9,6 +8,7 @@
 #include "runner/cluster/shards.h"
 #include "runner/core/files.h"
 #include "runner/core/hash.h"
+#include "runner/run/file_stem.h"
 #include "runner/run/rounds.h"
 #include "tests/support/support.h"
 #include "tests/unit/run/plan_fixture.h"
