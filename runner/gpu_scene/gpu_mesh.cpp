@@ -44,9 +44,4 @@ void GpuMesh::draw(int first, int count) const {
                    reinterpret_cast<const void*>(offsetBytes));
 }
 
-std::size_t GpuMesh::sizeBytes() const {
-    return positions.sizeBytes() + normals.sizeBytes() + texcoords.sizeBytes() +
-           colors.sizeBytes() + indices.sizeBytes();
-}
-
 }  // namespace gfxrepro::gpu_scene

@@ -30,7 +30,6 @@ struct GpuMesh {
     /// 0 at `first`.
     void draw(int first, int count) const;
     void draw() const { draw(0, triangleCount); }
-    std::size_t sizeBytes() const;
 };
 
 /// The rasterized look at a scene, by the formula of raycast::renderPreview, vertex colours

@@ -1,7 +1,6 @@
 #include "runner/raycast/ray_tracer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "runner/raycast/embree.h"
@@ -9,8 +8,6 @@
 namespace gfxrepro::raycast {
 
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 template <class T, void (*release)(T)>
 struct Releaser {
@@ -67,15 +64,6 @@ RTCRayHit rayHitAlong(const RTCRay& ray) {
     return rayHit;
 }
 
-/// One triangle met by a ray.
-struct Record {
-    float distance;
-    unsigned geometry;
-    unsigned triangle;
-    bool isEntering;      // the ray meets the outside
-    float edgeClearance;  // smallest barycentric weight
-};
-
 /// What is kept of an instance; its number is the number of the Embree geometry.
 struct Placed {
     unsigned firstTriangle = 0;  // of the flattened scene
@@ -126,23 +114,6 @@ void collectSelected(const RTCFilterFunctionNArguments* arguments) {
     *arguments->valid = 0;
 }
 
-/// Extends Embree's context likewise.
-struct CollectingContext {
-    QueryContext base;
-    std::vector<Record>* records;
-};
-
-/// Notes a hit and rejects it, so that traversal goes on.
-void collect(const RTCFilterFunctionNArguments* arguments) {
-    GFXREPRO_ASSERT_EQ(arguments->N, 1U);
-    const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
-    const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
-    reinterpret_cast<CollectingContext*>(arguments->context)
-        ->records->push_back({ray->tfar, hit->geomID, hit->primID, isEntering(*ray, *hit),
-                              std::min({hit->u, hit->v, 1.0F - hit->u - hit->v})});
-    *arguments->valid = 0;
-}
-
 }  // namespace
 
 struct RayTracer::Impl {
@@ -153,8 +124,6 @@ struct RayTracer::Impl {
     explicit Impl(const scene::Scene& scene);
     void addInstance(const scene::Mesh& mesh, const glm::mat4& worldFromMesh, unsigned id);
     SelectingContext selecting(Faces faces, unsigned ignored) const;
-    /// Every triangle along the ray once, by distance.
-    std::vector<Record> recordsAlong(const glm::vec3& origin, const glm::vec3& direction) const;
 };
 
 RayTracer::Impl::Impl(const scene::Scene& scene)
@@ -202,26 +171,6 @@ SelectingContext RayTracer::Impl::selecting(Faces faces, unsigned ignored) const
     context.faces = faces;
     context.ignored = ignored;
     return context;
-}
-
-std::vector<Record> RayTracer::Impl::recordsAlong(const glm::vec3& origin,
-                                                  const glm::vec3& direction) const {
-    std::vector<Record> records;
-    CollectingContext context{};
-    context.records = &records;
-    RTCRayHit rayHit = rayHitAlong(rayAlong(origin, glm::normalize(direction), 0.0F, kInfinity));
-    intersect(bvh.get(), rayHit, context.base, &collect);
-    const auto inOrder = [](const Record& a, const Record& b) {
-        return std::tie(a.distance, a.geometry, a.triangle) <
-               std::tie(b.distance, b.geometry, b.triangle);
-    };
-    // The filter may see a triangle twice where the hierarchy refers to it twice.
-    const auto isSame = [](const Record& a, const Record& b) {
-        return a.geometry == b.geometry && a.triangle == b.triangle;
-    };
-    std::sort(records.begin(), records.end(), inOrder);
-    records.erase(std::unique(records.begin(), records.end(), isSame), records.end());
-    return records;
 }
 
 RayTracer::RayTracer(const scene::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
@@ -278,47 +227,6 @@ bool RayTracer::isOccluded(const glm::vec3& origin, const glm::vec3& direction, 
     RTCRay ray = rayAlong(origin, glm::normalize(direction), tMin, tMax);
     occluded(impl_->bvh.get(), ray, context.base, isPlain ? nullptr : &rejectOthers);
     return ray.tfar < 0.0F;  // Embree's sign for "something is in the way"
-}
-
-std::vector<float> RayTracer::allHits(const glm::vec3& origin, const glm::vec3& direction) const {
-    std::vector<float> distances;
-    for (const Record& record : impl_->recordsAlong(origin, direction)) {
-        distances.push_back(record.distance);
-    }
-    return distances;
-}
-
-std::vector<float> RayTracer::crossings(const glm::vec3& origin, const glm::vec3& direction) const {
-    // Distances of one edge from its two triangles differ by rounding, which grows with the
-    // coordinates that went into them.
-    const float scale = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
-    std::vector<float> distances;
-    float lastOfFacing[2] = {-kInfinity, -kInfinity};
-    for (const Record& record : impl_->recordsAlong(origin, direction)) {
-        const float tolerance =
-            16.0F * std::numeric_limits<float>::epsilon() * std::max(scale, record.distance);
-        float& last = lastOfFacing[record.isEntering ? 1 : 0];
-        if (record.distance - last > tolerance) distances.push_back(record.distance);
-        last = record.distance;
-    }
-    return distances;
-}
-
-bool RayTracer::isInside(const glm::vec3& point) const {
-    // Skew to each other, to the axes and to their diagonals.
-    constexpr glm::vec3 kDirections[] = {{0.577F, 0.211F, 0.789F},   {-0.683F, 0.557F, 0.472F},
-                                         {0.331F, -0.871F, 0.363F},  {0.149F, 0.937F, -0.317F},
-                                         {-0.411F, -0.343F, 0.845F}, {0.893F, -0.239F, -0.381F},
-                                         {-0.271F, 0.619F, -0.737F}, {-0.797F, -0.523F, -0.301F}};
-    constexpr float kClearance = 1e-4F;  // of barycentric weights, far above their rounding
-    for (const glm::vec3& direction : kDirections) {
-        const std::vector<Record> records = impl_->recordsAlong(point, direction);
-        const bool isClear = std::all_of(records.begin(), records.end(), [&](const Record& r) {
-            return r.edgeClearance > kClearance;
-        });
-        if (isClear) return records.size() % 2 == 1;
-    }
-    throw Error("no ray from the point stays clear of edges: the mesh is too fine for its size");
 }
 
 WorldTriangle RayTracer::triangle(unsigned flattenedTriangle) const {

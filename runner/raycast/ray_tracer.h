@@ -50,7 +50,7 @@ constexpr unsigned kNoTriangle = std::numeric_limits<unsigned>::max();
 /// A BVH over the instanced triangles of a scene; it keeps no reference to the scene. Watertight
 /// (Embree's robust mode): no ray slips between triangles that share an edge. The price is that a
 /// ray through a shared edge may be reported for both triangles; closestHit() and isOccluded() do
-/// not care, for counting there are crossings() and isInside().
+/// not care, hitsBetween() has both.
 ///
 /// Directions need not be of unit length; distances, tMin and tMax always count along the unit
 /// direction, in the scene's units. All queries may run on several threads at once.
@@ -73,18 +73,6 @@ class RayTracer {
     /// Whether there is a hit in (tMin, tMax). `ignored` (of the flattened scene) does not count.
     bool isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin, float tMax,
                     Faces faces = Faces::All, unsigned ignored = kNoTriangle) const;
-    /// Distances of all hits, ascending; every triangle counts, so a crossing at a shared edge may
-    /// stand there twice.
-    std::vector<float> allHits(const glm::vec3& origin, const glm::vec3& direction) const;
-    /// As allHits(), but hits at one distance (to 16 units in the last place) that face the same
-    /// way count once: the crossings of the surface. Two parallel sheets nearer than that merge,
-    /// too.
-    std::vector<float> crossings(const glm::vec3& origin, const glm::vec3& direction) const;
-    /// Parity of crossings: whether the point lies inside of closed surfaces (an odd number of
-    /// nested ones). Exact unless the point is within rounding of the surface: of several fixed
-    /// directions the first is taken whose ray stays clear of all edges. Throws Error when none
-    /// does.
-    bool isInside(const glm::vec3& point) const;
 
     /// By its number in scene::flattened(scene).triangles.
     WorldTriangle triangle(unsigned flattenedTriangle) const;

@@ -28,9 +28,8 @@ Scene city(config::Params& params, std::uint64_t seed);
 /// share what the wood leaves.
 Scene tree(config::Params& params, std::uint64_t seed);
 
-/// The baseline V₀V₁ that four_objects is made for, in diagonals of its box.
-constexpr float kFourObjectsSpread = 0.5F;
-/// Four boxes and two views of which neither sees C ([xie2017] Fig. 11–12).
+/// Four boxes and two views of which neither sees C ([xie2017] Fig. 11–12), for a baseline V₀V₁ of
+/// half its box's diagonal.
 Scene fourObjects(config::Params& params, std::uint64_t seed);
 
 }  // namespace gfxrepro::scene

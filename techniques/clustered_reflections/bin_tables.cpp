@@ -8,24 +8,6 @@
 #include "runner/core/error.h"
 
 namespace gfxrepro::clustered_reflections {
-namespace {
-
-/// Borders between n bins begin here.
-std::size_t firstBorder(int bins) {
-    return static_cast<std::size_t>((bins - 1) * (bins - 2) / 2);
-}
-
-bool isInSecondHalf(const glm::vec2& v) {
-    return !(v.y > 0.0F || (v.y == 0.0F && v.x > 0.0F));
-}
-
-/// Is the angle of a at least that of b, both in [0°, 360°) from +x? As in assign_bins.frag.
-bool isAtLeast(const glm::vec2& a, const glm::vec2& b) {
-    if (isInSecondHalf(a) != isInSecondHalf(b)) return isInSecondHalf(a);
-    return b.x * a.y >= b.y * a.x;
-}
-
-}  // namespace
 
 BinTables::BinTables(const BinSettings& settings)
     : maxBins(settings.maxThetaBins, settings.maxPhiBins) {
@@ -109,23 +91,6 @@ long long BinTables::mostBins(std::vector<int> parts) const {
         if (m > 0) most = std::max(most, m * atMost(1.0 / (static_cast<double>(n) * m)));
     }
     return static_cast<long long>(most);
-}
-
-glm::ivec2 BinTables::binOf(const glm::vec2& normalOctahedral, const glm::ivec2& bins) const {
-    const glm::vec3 n = reflections::directionFromOctahedral(normalOctahedral);
-    glm::ivec2 bin(0);
-    if (n.x != 0.0F || n.z != 0.0F) {
-        for (int k = 1; k < bins.x; ++k) {
-            const auto border = firstBorder(bins.x) + static_cast<std::size_t>(k - 1);
-            if (isAtLeast({n.x, n.z}, thetaBorders[border])) bin.x = k;
-        }
-    }
-    const float lengthSquare = n.x * n.x + n.y * n.y + n.z * n.z;
-    for (int k = 1; k < bins.y; ++k) {
-        const auto border = firstBorder(bins.y) + static_cast<std::size_t>(k - 1);
-        if (n.y * std::abs(n.y) <= phiBorders[border] * lengthSquare) bin.y = k;
-    }
-    return bin;
 }
 
 }  // namespace gfxrepro::clustered_reflections

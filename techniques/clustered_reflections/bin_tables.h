@@ -19,8 +19,6 @@ struct BinTables {
     /// No more bins than this have curved reflectors together, whatever their areas are; `parts`
     /// has the number of them that each object consists of.
     long long mostBins(std::vector<int> parts) const;
-    /// (i, j) of a normal as the G-buffer stores it.
-    glm::ivec2 binOf(const glm::vec2& normalOctahedral, const glm::ivec2& bins) const;
 
     glm::ivec2 maxBins;
     /// The least a_R / n_v for k + 2 theta bins, k = 0 … maxThetaBins − 2; then for phi's.

@@ -211,15 +211,6 @@ const Clusters& ClusteredTracer::clusters() const {
     return impl_->builder.clusters();
 }
 
-const ClusterImages& ClusteredTracer::images() const {
-    return impl_->images;
-}
-
-float ClusteredTracer::imageScale() const {
-    if (impl_->atlas) return impl_->atlas->state().scale;
-    return impl_->visible ? impl_->visible->state().scale : 1.0F;
-}
-
 ClusteredTracer::Drawn ClusteredTracer::drawn() const {
     Drawn drawn;
     std::vector<glm::ivec4> sizes = impl_->sizes;

@@ -66,10 +66,6 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     int clusterCount() const;
     std::vector<ClusterCamera> cameras() const;
     const Clusters& clusters() const;
-    /// The images' texture: of the last cluster, or of all in the atlas.
-    const ClusterImages& images() const;
-    /// By which the atlas scaled all images to fit them in; 1 one by one.
-    float imageScale() const;
     /// What the images of the last trace() were drawn with, all together; nothing where there are
     /// none.
     struct Drawn {

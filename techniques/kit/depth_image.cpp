@@ -12,10 +12,6 @@ GLenum glFormatOf(DepthFormat format) {
     return format == DepthFormat::Unorm24 ? GL_DEPTH_COMPONENT24 : GL_DEPTH_COMPONENT32F;
 }
 
-std::size_t pixelCount(const View& view) {
-    return static_cast<std::size_t>(view.sizePx.x) * static_cast<std::size_t>(view.sizePx.y);
-}
-
 }  // namespace
 
 DepthImage::DepthImage(const View& imageView, DepthFormat format)
@@ -38,17 +34,6 @@ HostDepthImage readDepthImage(const DepthImage& image) {
     host.depthM = image.depth.read<float>(GL_RED, GL_FLOAT, 1);
     host.triangleId = image.triangleId.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
     return host;
-}
-
-void writeDepthImage(const HostDepthImage& host, DepthImage& image) {
-    GFXREPRO_ASSERT(host.view.sizePx == image.view.sizePx);
-    GFXREPRO_ASSERT_EQ(host.shading.size(), pixelCount(image.view));
-    GFXREPRO_ASSERT_EQ(host.depthM.size(), pixelCount(image.view));
-    GFXREPRO_ASSERT_EQ(host.triangleId.size(), pixelCount(image.view));
-    image.view = host.view;
-    image.shading.upload(GL_RGBA, GL_UNSIGNED_BYTE, host.shading.data());
-    image.depth.upload(GL_RED, GL_FLOAT, host.depthM.data());
-    image.triangleId.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, host.triangleId.data());
 }
 
 image::ImageF shadingPicture(const HostDepthImage& image, const glm::vec3& background) {

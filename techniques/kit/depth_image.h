@@ -49,8 +49,6 @@ struct HostDepthImage {
 
 /// Reads back; waits for the device.
 HostDepthImage readDepthImage(const DepthImage& image);
-/// Writes a host image into one of the same size (for images sampled by ray casting).
-void writeDepthImage(const HostDepthImage& host, DepthImage& image);
 
 /// The shading as an image, rows from the top, 3 linear channels; `background` where there is no
 /// sample.

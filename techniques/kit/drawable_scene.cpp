@@ -140,11 +140,4 @@ void DrawableScene::drawDepthOnly() const {
     FlushedDraws().draw(0, static_cast<std::uint32_t>(triangleCount_), drawTriangles);
 }
 
-std::size_t DrawableScene::sizeBytes() const {
-    std::size_t sum = positions_.sizeBytes() + normals_.sizeBytes() + texcoords_.sizeBytes() +
-                      colors_.sizeBytes() + indices_.sizeBytes();
-    for (const gl::Texture& texture : textures_) sum += texture.sizeBytes();
-    return sum;
-}
-
 }  // namespace gfxrepro::kit

@@ -41,7 +41,6 @@ class DrawableScene {
     /// Whether a mesh has no vertex normals.
     bool hasFlatParts() const { return hasFlatParts_; }
     const scene::Box& bounds() const { return bounds_; }
-    std::size_t sizeBytes() const;
 
   private:
     /// Consecutive triangles that are drawn with one state.

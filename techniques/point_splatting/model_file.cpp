@@ -243,8 +243,5 @@ std::span<const float> ModelFile::radiusTable() const {
 const scene::Box& ModelFile::bounds() const {
     return content_->header.bounds;
 }
-bool ModelFile::isKept() const {
-    return content_->file != nullptr;
-}
 
 }  // namespace gfxrepro::point_splatting

@@ -40,7 +40,6 @@ class ModelFile {
     const scene::Box& bounds() const;
 
     bool wasBuilt() const { return wasBuilt_; }  // by openOrBuild(), else found
-    bool isKept() const;                         // on disk
 
   private:
     struct Content;

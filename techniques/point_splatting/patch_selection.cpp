@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "techniques/point_splatting/splat_math.h"
-
 namespace gfxrepro::point_splatting {
 
 namespace {
@@ -101,6 +99,11 @@ std::uint32_t arrivedLevel(const Patch& patch, std::span<const Level> levels, fl
         --level;
     }
     return level;
+}
+
+double cEta(double fovRad) {
+    const double tangent = std::tan(0.5 * fovRad);
+    return std::sqrt(2.0 * tangent * tangent + 1.0);
 }
 
 SplatMode modeFor(float ratio, float cEta, const SelectionSettings& settings) {

@@ -58,6 +58,8 @@ struct DrawnPatch {
     SplatMode mode = SplatMode::FullEwa;
 };
 
+/// C_η = √(2 tan²(fov / 2) + 1) of Eq. (13), for a square window.
+double cEta(double fovRad);
 /// The mode by `ratio` = S_proj / S_h: reconstruction alone above c_max, the low-pass alone where
 /// C_η times it is below c_min, else both (from Eq. 13).
 SplatMode modeFor(float ratio, float cEta, const SelectionSettings& settings);

@@ -63,8 +63,10 @@ class PixelMatcher {
   public:
     PixelMatcher(const gl::ShaderLibrary& shaders, const MatchingSettings& settings);
     /// For every reflective sample of `key`; the others become invalid. The search begins at the
-    /// sample itself, or where firstOffset() says if there are `previous` offsets, of the same key
-    /// frame.
+    /// sample itself; with `previous` offsets, of the same key frame, where its own ended or else
+    /// that of a near sample of the reflector, and without any of them there is none.
+    /// Departure [xie2017] Algorithm 9: it begins again in the sample, and all that have left the
+    /// reflector walk to its border again in each frame.
     void match(const ReflectionDepthImage& key, const glm::vec3& eyeWorld, const Offsets* previous,
                Offsets& result) const;
     /// Waits for the device.
@@ -94,13 +96,6 @@ HostReflectionDepthImage readReflectionDepthImage(const ReflectionDepthImage& im
 /// that turn their backs to R match.
 float matchingDistance(const glm::vec3& candidateWorld, const glm::vec3& candidateNormal,
                        const glm::vec3& reflectedWorld, const glm::vec3& eyeWorld);
-
-/// The offset that a search begins with: the sample's own of the frame before, else that of a near
-/// sample of the reflector; nothing: it is not searched.
-/// Departure [xie2017] Algorithm 9: it begins again in the sample, and all that have left the
-/// reflector walk to its border again in each frame.
-std::optional<glm::vec2> firstOffset(const HostReflectionDepthImage& key, glm::ivec2 sample,
-                                     const std::vector<glm::vec2>& previous);
 
 struct HostMatch {
     std::optional<glm::vec2> offset;  // whole pixels in first order; nothing: invalid

@@ -226,30 +226,6 @@ float matchingDistance(const glm::vec3& candidateWorld, const glm::vec3& candida
     return std::sqrt(squared(missAt(candidateWorld, candidateNormal, reflectedWorld, eyeWorld)));
 }
 
-std::optional<glm::vec2> firstOffset(const HostReflectionDepthImage& key, glm::ivec2 sample,
-                                     const std::vector<glm::vec2>& previous) {
-    const reflections::HostGBuffer& gbuffer = key.gbuffer;
-    const int reflector = gbuffer.reflector(gbuffer.indexOf(sample));
-    const auto isOnReflector = [&](glm::ivec2 pixel) {
-        return glm::all(glm::greaterThanEqual(pixel, glm::ivec2(0))) &&
-               glm::all(glm::lessThan(pixel, gbuffer.view.sizePx)) &&
-               gbuffer.reflector(gbuffer.indexOf(pixel)) == reflector;
-    };
-    for (int reach = 0; reach <= kStartReach; reach = std::max(2 * reach, 1)) {
-        for (int i = 0; i < (reach == 0 ? 1 : 9); ++i) {
-            const glm::ivec2 from = sample + reach * glm::ivec2(i % 3 - 1, i / 3 - 1);
-            if (!isOnReflector(from)) continue;
-            const glm::vec2 offset = previous[gbuffer.indexOf(from)];
-            if (offset.x == kInvalidOffset) continue;
-            const glm::ivec2 whole(glm::floor(offset + 0.5F));
-            if (isOnReflector(sample + whole)) return glm::vec2(whole);
-            // Beyond the border it begins where the other one ended.
-            return glm::vec2(isOnReflector(from + whole) ? from + whole - sample : glm::ivec2(0));
-        }
-    }
-    return std::nullopt;
-}
-
 HostMatch matchOnHost(const HostReflectionDepthImage& key, glm::ivec2 sample,
                       const glm::vec3& eyeWorld, std::optional<glm::vec2> previous,
                       const MatchingSettings& settings) {

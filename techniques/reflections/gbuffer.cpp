@@ -147,10 +147,6 @@ HostGBuffer readGBuffer(const GBuffer& gbuffer) {
     return host;
 }
 
-float HostGBuffer::reflectivity(std::size_t index) const {
-    return static_cast<float>((surface[index] >> 16) & 0xFFU) / 255.0F;
-}
-
 float HostGBuffer::glossiness(std::size_t index) const {
     return static_cast<float>(surface[index] >> 24) / 255.0F;
 }

@@ -60,7 +60,6 @@ struct HostGBuffer {
     }
     bool isReflective(std::size_t index) const { return reflector(index) != 0; }
     int reflector(std::size_t index) const { return static_cast<int>(surface[index] & 0xFFFFU); }
-    float reflectivity(std::size_t index) const;
     float glossiness(std::size_t index) const;
     glm::vec3 positionWorld(glm::ivec2 pixel) const;
     /// The mirror direction at a sample: unit.

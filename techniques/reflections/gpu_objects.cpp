@@ -238,12 +238,4 @@ void GpuObjects::drawAll() const {
     draw(all);
 }
 
-std::size_t GpuObjects::sizeBytes() const {
-    return positions_.sizeBytes() + normals_.sizeBytes() + texcoords_.sizeBytes() +
-           colors_.sizeBytes() + indices_.sizeBytes() + objectOfTriangle_.sizeBytes() +
-           records_.sizeBytes() + lights_.sizeBytes() + objectIndices_.sizeBytes() +
-           textureLayers_.sizeBytes() +
-           (scene_->valueLevels().front().empty() ? 0 : valueLayers_.sizeBytes());
-}
-
 }  // namespace gfxrepro::reflections

@@ -46,7 +46,6 @@ class GpuObjects {
     std::uint32_t mostTrianglesPerDraw() const;
     std::span<const glm::mat4> poses() const { return poses_; }
     std::span<const scene::Box> boundsWorld() const { return boundsWorld_; }  // in the present pose
-    std::size_t sizeBytes() const;
 
     // For building acceleration structures on the device: tightly packed floats and 32-bit indices,
     // the object of each triangle, and the objects' records (objects.glsl).

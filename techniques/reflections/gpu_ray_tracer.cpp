@@ -16,9 +16,9 @@ constexpr unsigned kMaxGroups = 65535;
 /// What ray_list.comp.glsl counts and the indirect dispatch reads.
 struct Arguments {
     std::uint32_t groups[3] = {0, 0, 0};
-    std::uint32_t samples = 0, rays = 0;
+    std::uint32_t samples = 0;
 };
-static_assert(sizeof(Arguments) == 20);
+static_assert(sizeof(Arguments) == 16);
 
 gl::Defines passDefines(const ReflectiveScene& scene) {
     gl::Defines defines = surfaceDefines(scene);
@@ -69,7 +69,6 @@ void GpuRayTracer::listSamples(const GBuffer& gbuffer, const gl::Texture* wanted
     if (samples_.sizeBytes() != bytes) samples_ = gl::Buffer(bytes);
     arguments_.clear();  // on the device: a write would wait for the last frame's trace
     list_.set("isChosen", wanted ? 1 : 0);
-    setLobe(list_, lobe_, diagonalM_);
     const int tiles = ceilDivided(size.x, kTileWidth) * ceilDivided(size.y, kTileHeight);
     list_.dispatch({static_cast<GLuint>(ceilDivided(tiles, kListGroupSize)), 1, 1},
                    gl::Resources{{"Samples", samples_},
@@ -99,11 +98,6 @@ void GpuRayTracer::traceSamples(const GBuffer& gbuffer, ReflectionTarget& target
 
 std::size_t GpuRayTracer::sizeBytes() const {
     return bvh_.sizeBytes() + samples_.sizeBytes() + arguments_.sizeBytes();
-}
-
-GpuRayTracer::Counts GpuRayTracer::lastCounts() const {
-    const Arguments arguments = arguments_.read<Arguments>(1).front();
-    return {arguments.samples, arguments.rays};
 }
 
 }  // namespace gfxrepro::reflections

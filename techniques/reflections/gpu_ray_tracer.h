@@ -22,11 +22,6 @@ class GpuRayTracer final : public ReflectionTracer {
     std::size_t sizeBytes() const override;
 
     const GpuBvh& bvh() const { return bvh_; }
-    /// Samples and rays of the last trace(); waits for the device.
-    struct Counts {
-        std::uint32_t samples = 0, rays = 0;
-    };
-    Counts lastCounts() const;
 
   private:
     void listSamples(const GBuffer& gbuffer, const gl::Texture* wanted);

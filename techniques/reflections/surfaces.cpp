@@ -67,13 +67,11 @@ std::vector<glm::vec3> anyTriangleNormals(const scene::Mesh& mesh) {
     return normals;
 }
 
-/// Unit normals of all vertices; counts those that the mesh did not have.
-std::vector<glm::vec3> repairedNormals(const scene::Mesh& mesh, int& repairedCount) {
+/// Unit normals of all vertices, those that the mesh has where they are usable.
+std::vector<glm::vec3> repairedNormals(const scene::Mesh& mesh) {
     std::vector<glm::vec3> normals = mesh.normals;
     normals.resize(mesh.positions.size(), glm::vec3(0.0F));
-    repairedCount = static_cast<int>(
-        std::count_if(normals.begin(), normals.end(), [](const auto& n) { return !isUsable(n); }));
-    if (repairedCount > 0) {
+    if (!std::all_of(normals.begin(), normals.end(), isUsable)) {
         const std::vector<glm::vec3> weighted = scene::vertexNormals(mesh);
         const std::vector<glm::vec3> any = anyTriangleNormals(mesh);
         for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -111,9 +109,9 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
                                  TextureFilter filter)
     : scene_(scene), rule_(rule), filter_(filter) {
     for (const std::string& line : scene_.warnings) warn(line);
-    transmissiveCount_ = dropTransmissive(scene_);
-    if (transmissiveCount_ > 0) {
-        warn(fmt::format("{} of {} objects let light through and are left out", transmissiveCount_,
+    const int transmissiveCount = dropTransmissive(scene_);
+    if (transmissiveCount > 0) {
+        warn(fmt::format("{} of {} objects let light through and are left out", transmissiveCount,
                          scene.instances.size()));
     }
     std::vector<PartOrigin> parts;
@@ -264,10 +262,8 @@ void ReflectiveScene::addGeometry(const scene::Mesh& mesh, Object& object) {
     object.triangleCount = static_cast<std::uint32_t>(mesh.triangles.size());
     object.boundsMesh = mesh.bounds();
 
-    int repairedCount = 0;
-    const std::vector<glm::vec3> normals = repairedNormals(mesh, repairedCount);
+    const std::vector<glm::vec3> normals = repairedNormals(mesh);
     if (object.reflector != 0) {
-        repairedNormalCount_ += repairedCount;
         object.isPlanar = object.normalLayer < 0 &&
                           isPlanar(mesh.positions, normals, glm::length(object.boundsMesh.size()));
     }

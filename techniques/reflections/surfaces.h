@@ -99,10 +99,7 @@ class ReflectiveScene {
     std::span<const scene::PointLight> lights() const { return lights_; }
     int reflectorCount() const { return reflectorCount_; }
     int wholeReflectorCount() const { return wholeReflectorCount_; }  // objects, not their parts
-    int transmissiveCount() const { return transmissiveCount_; }      // objects left out
-    /// Vertices of reflectors whose normals were missing, not finite or zero.
-    int repairedNormalCount() const { return repairedNormalCount_; }
-    const scene::Box& boundsWorld() const { return boundsWorld_; }  // rest pose
+    const scene::Box& boundsWorld() const { return boundsWorld_; }    // rest pose
     float diagonalM() const;
 
     /// What of the scene is not shown as it is: a line each, of the scene by name.
@@ -164,8 +161,7 @@ class ReflectiveScene {
     bool hasWarnedOfEmptyView_ = false;
     std::vector<scene::PointLight> lights_;
     scene::Box boundsWorld_;
-    int reflectorCount_ = 0, wholeReflectorCount_ = 0, transmissiveCount_ = 0,
-        repairedNormalCount_ = 0;
+    int reflectorCount_ = 0, wholeReflectorCount_ = 0;
 };
 
 /// Light that leaves a diffuse surface, without shadows, clamped to [0, 1]:

@@ -83,18 +83,10 @@ ShadowMap ShadowMapRenderer::makeMap(glm::ivec2 sizePx) const {
     return map;
 }
 
-bool ShadowMapRenderer::isCurrent(const kit::DrawableScene& scene, std::span<const Light> lights,
-                                  std::uint64_t sceneVersion) const {
-    return scene_ == &scene && sceneVersion_ == sceneVersion &&
-           std::equal(lights.begin(), lights.end(), lights_.begin(), lights_.end());
-}
-
-void ShadowMapRenderer::render(const kit::DrawableScene& scene, std::span<const Light> lights,
-                               std::uint64_t sceneVersion) {
+void ShadowMapRenderer::render(const kit::DrawableScene& scene, std::span<const Light> lights) {
     if (lights.size() > kMaxLights) {
         throw Error(fmt::format("{} lights with shadows: at most {}", lights.size(), kMaxLights));
     }
-    scene_ = nullptr;  // nothing is current if this throws
     lights_.assign(lights.begin(), lights.end());
     maps_.resize(lights.size());
     for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -108,8 +100,6 @@ void ShadowMapRenderer::render(const kit::DrawableScene& scene, std::span<const 
     glDisable(GL_POLYGON_OFFSET_FILL);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDepthMask(GL_TRUE);
-    scene_ = &scene;
-    sceneVersion_ = sceneVersion;
 }
 
 void ShadowMapRenderer::drawDepth(const kit::DrawableScene& scene, const ShadowMap& map) const {

@@ -34,15 +34,9 @@ class ShadowMapRenderer {
     ShadowMapRenderer(const gl::ShaderLibrary& shaders, const ShadowMapSettings& settings);
 
     /// Draws the maps of all lights. Casters are opaque (alpha is not tested) and not culled.
-    /// `sceneVersion` is the caller's count of changes to the scene. Throws Error for lights
-    /// without a view (viewsOf) and for more than kMaxLights, UnsupportedError for maps beyond the
-    /// device's limits.
-    void render(const kit::DrawableScene& scene, std::span<const Light> lights,
-                std::uint64_t sceneVersion = 0);
-    /// Whether the maps show this scene and these lights ([zju2005] Sec. 4.1: they are used again
-    /// while lights and objects stand still).
-    bool isCurrent(const kit::DrawableScene& scene, std::span<const Light> lights,
-                   std::uint64_t sceneVersion = 0) const;
+    /// Throws Error for lights without a view (viewsOf) and for more than kMaxLights,
+    /// UnsupportedError for maps beyond the device's limits.
+    void render(const kit::DrawableScene& scene, std::span<const Light> lights);
 
     const ShadowMapSettings& settings() const { return settings_; }
     const std::vector<StepDeclaration>& steps() const { return steps_; }
@@ -62,8 +56,6 @@ class ShadowMapRenderer {
     kit::WholeImage wholeImage_;
     std::vector<Light> lights_;
     std::vector<ShadowMap> maps_;
-    const kit::DrawableScene* scene_ = nullptr;  // compared, never followed
-    std::uint64_t sceneVersion_ = 0;
 };
 
 }  // namespace gfxrepro::shadow_mapping

@@ -24,10 +24,6 @@ glm::vec3 forwardOf(const kit::View& view) {
     return -glm::vec3(glm::transpose(view.viewFromWorld)[2]);
 }
 
-std::size_t Receivers::sizeBytes() const {
-    return positions.sizeBytes() + normals.sizeBytes() + shading.sizeBytes();
-}
-
 Receivers renderReceivers(const gl::ShaderLibrary& shaders, const kit::DrawableScene& scene,
                           const kit::View& view) {
     const gl::Pass pass(shaders,

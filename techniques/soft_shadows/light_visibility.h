@@ -18,8 +18,6 @@ struct Receivers {
     gl::Texture positions;  // RGBA32F, world space; w is 0 where nothing is seen
     gl::Texture normals;    // RGBA16F, unit, geometric, turned to the eye
     gl::Texture shading;    // RGBA8, linear, the surface's colour without light
-
-    std::size_t sizeBytes() const;
 };
 
 Receivers renderReceivers(const gl::ShaderLibrary& shaders, const kit::DrawableScene& scene,

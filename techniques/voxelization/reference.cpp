@@ -208,36 +208,6 @@ Solid solid(const LatticeMesh& mesh, int resolution) {
     return result;
 }
 
-DenseGrid outside(const DenseGrid& surface) {
-    const int n = surface.resolution();
-    DenseGrid result(WorksheetLayout(n, 1));
-    std::vector<glm::ivec3> open;
-    const auto reach = [&](const glm::ivec3& voxel) {
-        if (surface.isFull(voxel) || result.isFull(voxel)) return;
-        result.set(voxel, 1);
-        open.push_back(voxel);
-    };
-    for (int a = 0; a < n; ++a) {
-        for (int b = 0; b < n; ++b) {
-            for (const int side : {0, n - 1}) {
-                for (Axis axis : kAxes) reach(volumeFromLocal(axis, glm::ivec3(a, b, side)));
-            }
-        }
-    }
-    while (!open.empty()) {
-        const glm::ivec3 voxel = open.back();
-        open.pop_back();
-        for (int axis = 0; axis < 3; ++axis) {
-            for (const int step : {-1, 1}) {
-                glm::ivec3 next = voxel;
-                next[axis] += step;
-                if (next[axis] >= 0 && next[axis] < n) reach(next);
-            }
-        }
-    }
-    return result;
-}
-
 std::size_t countMissing(const DenseGrid& expected, const DenseGrid& grid) {
     const int n = expected.resolution();
     GFXREPRO_ASSERT_EQ(n, grid.resolution());

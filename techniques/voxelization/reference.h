@@ -22,9 +22,6 @@ struct Solid {
 };
 Solid solid(const LatticeMesh& mesh, int resolution);
 
-/// Empty voxels that a path over faces of empty voxels joins to the grid's boundary.
-DenseGrid outside(const DenseGrid& surface);
-
 /// Number of voxels that are full in `expected` and empty in `grid`.
 std::size_t countMissing(const DenseGrid& expected, const DenseGrid& grid);
 

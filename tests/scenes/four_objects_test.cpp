@@ -23,7 +23,7 @@ class FourObjects : public testing::Test {
         const glm::vec3 forward = glm::normalize(camera.target - camera.position);
         const glm::vec3 right = glm::normalize(glm::cross(forward, camera.up));
         const glm::vec3 up = glm::cross(right, forward);
-        const float sideM = scene::kFourObjectsSpread * glm::length(scene_.bounds().size());
+        const float sideM = 0.5F * glm::length(scene_.bounds().size());  // the baseline
         middle_ = camera.position - up * (sideM * std::sqrt(3.0F) / 6.0F);
         left_ = middle_ - right * (0.5F * sideM);
         right_ = middle_ + right * (0.5F * sideM);

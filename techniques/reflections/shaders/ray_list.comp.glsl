@@ -3,7 +3,6 @@
 // of the indirect dispatch that traces them. An invocation takes a tile of 8 × 4 samples, so that
 // neighbours in the list are neighbours in the image: their rays go the same way through the BVH.
 #include "reflections/gbuffer.glsl"
-#include "reflections/lobe.glsl"
 
 layout(local_size_x = LIST_GROUP_SIZE) in;
 
@@ -14,7 +13,6 @@ layout(std430) restrict writeonly buffer Samples {
 layout(std430) restrict buffer Arguments {
     uint groups[3];
     uint sampleCount;
-    uint rayCount;
 };
 
 uniform bool isChosen;  // whether `wanted` counts
@@ -31,7 +29,6 @@ void main() {
     if (4 * tile.y >= size.y) return;
 
     uint found = 0u;  // a bit a sample
-    uint rays = 0u;
     for (int place = 0; place < 32; ++place) {
         ivec2 pixel = sampleOf(tile, place);
         if (any(greaterThanEqual(pixel, size))) continue;
@@ -39,7 +36,6 @@ void main() {
         if (reflectorOf(surface) == 0u) continue;
         if (isChosen && texelFetch(wanted, pixel, 0).r == 0u) continue;
         found |= 1u << place;
-        rays += uint(raysOf(glossinessOf(surface)));
     }
     if (found == 0u) return;
     groups[1] = 1u;  // cleared with the counts
@@ -47,7 +43,6 @@ void main() {
     // The order of tiles in the list is left to chance: each sample writes only its own pixel.
     uint count = uint(bitCount(found));
     uint begin = atomicAdd(sampleCount, count);
-    atomicAdd(rayCount, rays);
     atomicMax(groups[0],
               min((begin + count + TRACE_GROUP_SIZE - 1u) / TRACE_GROUP_SIZE, MAX_GROUPS));
     while (found != 0u) {

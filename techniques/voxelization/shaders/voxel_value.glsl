@@ -1,5 +1,6 @@
-// What the bits of a voxel say: the GLSL side of voxel_value.h, for voxels of VOXEL_BITS (8, 16 or
-// 32) bits. 0 is empty; no encoding gives 0.
+// What the bits of a voxel say: a quantised normal or colour, for voxels of VOXEL_BITS (8, 16 or 32)
+// bits. 0 is empty; no encoding gives 0. The host has the same codes in
+// tests/techniques/voxelization/voxel_value.h.
 
 const uvec2 kNormalLevels = VOXEL_BITS == 8 ? uvec2(15u) : VOXEL_BITS == 16 ? uvec2(255u) : uvec2(65535u, 32767u);
 const uvec3 kColorBits = VOXEL_BITS == 8 ? uvec3(3u, 3u, 2u) : VOXEL_BITS == 16 ? uvec3(5u, 6u, 5u) : uvec3(8u);

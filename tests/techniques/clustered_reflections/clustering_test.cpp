@@ -269,16 +269,16 @@ TEST_F(ClusteringTest, PartsShareTheirObjectsCount) {
 TEST(BinTables, ThetaRunsFromXTowardsZAndPhiFromY) {
     const BinTables tables({.maxThetaBins = 16, .maxPhiBins = 16});
     const glm::ivec2 grid(8, 4);
-    EXPECT_EQ(tables.binOf(octahedral({1, 0.1F, 0.1F}), grid), glm::ivec2(0, 1));
-    EXPECT_EQ(tables.binOf(octahedral({0.1F, 0.1F, 1}), grid), glm::ivec2(1, 1));
-    EXPECT_EQ(tables.binOf(octahedral({-0.1F, -0.1F, 1}), grid), glm::ivec2(2, 2));
-    EXPECT_EQ(tables.binOf(octahedral({-1, 0.1F, -0.1F}), grid), glm::ivec2(4, 1));
-    EXPECT_EQ(tables.binOf(octahedral({1, 0.1F, -0.1F}), grid), glm::ivec2(7, 1));
-    EXPECT_EQ(tables.binOf(octahedral({0, 1, 0}), grid), glm::ivec2(0, 0));
-    EXPECT_EQ(tables.binOf(octahedral({0, -1, 0}), grid), glm::ivec2(0, 3));
+    EXPECT_EQ(binOnHost(tables, octahedral({1, 0.1F, 0.1F}), grid), glm::ivec2(0, 1));
+    EXPECT_EQ(binOnHost(tables, octahedral({0.1F, 0.1F, 1}), grid), glm::ivec2(1, 1));
+    EXPECT_EQ(binOnHost(tables, octahedral({-0.1F, -0.1F, 1}), grid), glm::ivec2(2, 2));
+    EXPECT_EQ(binOnHost(tables, octahedral({-1, 0.1F, -0.1F}), grid), glm::ivec2(4, 1));
+    EXPECT_EQ(binOnHost(tables, octahedral({1, 0.1F, -0.1F}), grid), glm::ivec2(7, 1));
+    EXPECT_EQ(binOnHost(tables, octahedral({0, 1, 0}), grid), glm::ivec2(0, 0));
+    EXPECT_EQ(binOnHost(tables, octahedral({0, -1, 0}), grid), glm::ivec2(0, 3));
     // On borders: the bin that begins there.
-    EXPECT_EQ(tables.binOf(octahedral({1, 0, 1}), grid), glm::ivec2(1, 2));
-    EXPECT_EQ(tables.binOf(octahedral({1, 1, 0}), grid), glm::ivec2(0, 1));
+    EXPECT_EQ(binOnHost(tables, octahedral({1, 0, 1}), grid), glm::ivec2(1, 2));
+    EXPECT_EQ(binOnHost(tables, octahedral({1, 1, 0}), grid), glm::ivec2(0, 1));
 
     Random random(4);
     for (int i = 0; i < 20000; ++i) {
@@ -292,7 +292,7 @@ TEST(BinTables, ThetaRunsFromXTowardsZAndPhiFromY) {
             glm::dvec2(theta, std::acos(d.y) / std::numbers::pi) * glm::dvec2(bins);
         // The stored normal is rounded: 1e-5 bins from a border either side will do.
         if (glm::any(glm::lessThan(glm::abs(at - glm::round(at)), glm::dvec2(1e-5)))) continue;
-        EXPECT_EQ(tables.binOf(octahedral(n), bins), glm::ivec2(at));
+        EXPECT_EQ(binOnHost(tables, octahedral(n), bins), glm::ivec2(at));
     }
 }
 

@@ -1,11 +1,47 @@
 #include "tests/techniques/clustered_reflections/clusters_on_host.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
-#include "techniques/clustered_reflections/bin_tables.h"
-
 namespace gfxrepro::clustered_reflections {
+
+namespace {
+
+/// Borders between n bins begin here.
+std::size_t firstBorder(int bins) {
+    return static_cast<std::size_t>((bins - 1) * (bins - 2) / 2);
+}
+
+bool isInSecondHalf(const glm::vec2& v) {
+    return !(v.y > 0.0F || (v.y == 0.0F && v.x > 0.0F));
+}
+
+/// Is the angle of a at least that of b, both in [0°, 360°) from +x? As in assign_bins.frag.
+bool isAtLeast(const glm::vec2& a, const glm::vec2& b) {
+    if (isInSecondHalf(a) != isInSecondHalf(b)) return isInSecondHalf(a);
+    return b.x * a.y >= b.y * a.x;
+}
+
+}  // namespace
+
+glm::ivec2 binOnHost(const BinTables& tables, const glm::vec2& normalOctahedral,
+                     const glm::ivec2& bins) {
+    const glm::vec3 n = reflections::directionFromOctahedral(normalOctahedral);
+    glm::ivec2 bin(0);
+    if (n.x != 0.0F || n.z != 0.0F) {
+        for (int k = 1; k < bins.x; ++k) {
+            const auto border = firstBorder(bins.x) + static_cast<std::size_t>(k - 1);
+            if (isAtLeast({n.x, n.z}, tables.thetaBorders[border])) bin.x = k;
+        }
+    }
+    const float lengthSquare = n.x * n.x + n.y * n.y + n.z * n.z;
+    for (int k = 1; k < bins.y; ++k) {
+        const auto border = firstBorder(bins.y) + static_cast<std::size_t>(k - 1);
+        if (n.y * std::abs(n.y) <= tables.phiBorders[border] * lengthSquare) bin.y = k;
+    }
+    return bin;
+}
 
 HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
                            const reflections::ReflectiveScene& scene, const BinSettings& bins,
@@ -45,7 +81,7 @@ HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
     for (std::size_t i = 0; i < pixels; ++i) {
         const std::size_t r = reflectorAt(i);
         if (r == 0) continue;
-        const glm::ivec2 ij = tables.binOf(gbuffer.normalOctahedral[i], grids[r]);
+        const glm::ivec2 ij = binOnHost(tables, gbuffer.normalOctahedral[i], grids[r]);
         bin[i] = firstBins[r] + ij.y * grids[r].x + ij.x;
         ++samplesOfBin[static_cast<std::size_t>(bin[i])];
     }

@@ -4,10 +4,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "techniques/clustered_reflections/bin_tables.h"
 #include "techniques/clustered_reflections/cluster_cameras.h"
 #include "techniques/clustered_reflections/clustering.h"
 
 namespace gfxrepro::clustered_reflections {
+
+/// (i, j) of a normal as the G-buffer stores it.
+glm::ivec2 binOnHost(const BinTables& tables, const glm::vec2& normalOctahedral,
+                     const glm::ivec2& bins);
 
 /// ClusterBuilder::build() by NormalBins, to the bit. Reads
 /// HostGBuffer::normalOctahedral and surface.

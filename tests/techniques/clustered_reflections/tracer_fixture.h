@@ -20,7 +20,7 @@ struct Traced {
     std::vector<std::uint8_t> environment;
     std::vector<ClusterCamera> cameras;
     std::vector<std::uint16_t> clusterOfSample;
-    float imageScale = 1.0F;
+    ClusteredTracer::Drawn drawn;
     std::size_t sizeBytes = 0;
     std::vector<gl::PassTime> passes;
     std::vector<reflections::GlCall> calls;
@@ -72,7 +72,7 @@ class TracerTest : public test::SuiteDeviceTest {
         traced.cameras = tracer.cameras();
         traced.clusterOfSample = tracer.clusters().clusterOfSample.read<std::uint16_t>(
             GL_RED_INTEGER, GL_UNSIGNED_SHORT, 1);
-        traced.imageScale = tracer.imageScale();
+        traced.drawn = tracer.drawn();
         traced.sizeBytes = tracer.sizeBytes() + gbuffer.sizeBytes() + target.sizeBytes();
         traced.passes = profiler.collect();
         return traced;

@@ -8,6 +8,7 @@
 #include "runner/core/files.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/depth_sampling/host_images.h"
+#include "tests/techniques/kit/write_depth_image.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {

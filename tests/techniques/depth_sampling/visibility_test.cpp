@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runner/core/random.h"
+#include "tests/support/crossings.h"
 #include "tests/techniques/depth_sampling/brute_visibility.h"
 #include "tests/techniques/depth_sampling/visibility_scenes.h"
 
@@ -135,7 +136,7 @@ TEST(Visibility, PeeledLayersAreTheRanksAlongARay) {
     for (int pixel = 0; pixel < 48 * 48; ++pixel) {
         const glm::ivec2 at(pixel % 48, pixel / 48);
         const std::vector<float> ranks =
-            tracer.crossings(view.eyeWorld, rayThrough(view, glm::vec2(at) + 0.5F));
+            test::crossings(tracer, view.eyeWorld, rayThrough(view, glm::vec2(at) + 0.5F));
         deepest = std::max(deepest, ranks.size());
         for (std::size_t j = 0; j < kLayers; ++j) {
             const auto point = layers.sample(j, at);

@@ -2,6 +2,7 @@
 #include "techniques/kit/depth_image.h"
 
 #include "tests/techniques/kit/depth_image_fixture.h"
+#include "tests/techniques/kit/write_depth_image.h"
 
 namespace gfxrepro::kit {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "runner/core/files.h"
 #include "runner/core/random.h"
-#include "techniques/point_splatting/splat_math.h"
 
 namespace gfxrepro::point_splatting {
 namespace {

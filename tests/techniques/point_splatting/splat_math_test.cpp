@@ -1,4 +1,4 @@
-#include "techniques/point_splatting/splat_math.h"
+#include "tests/techniques/point_splatting/splat_math.h"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "runner/core/random.h"
+#include "techniques/point_splatting/patch_selection.h"
 
 namespace gfxrepro::point_splatting {
 namespace {

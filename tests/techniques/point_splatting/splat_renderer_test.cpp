@@ -3,8 +3,8 @@
 
 #include <glm/gtc/constants.hpp>
 
-#include "techniques/point_splatting/splat_math.h"
 #include "tests/techniques/point_splatting/splat_fixture.h"
+#include "tests/techniques/point_splatting/splat_math.h"
 
 namespace gfxrepro::point_splatting {
 namespace {

@@ -2,8 +2,8 @@
 #include <filesystem>
 
 #include "runner/core/random.h"
-#include "techniques/point_splatting/splat_math.h"
 #include "tests/techniques/point_splatting/splat_fixture.h"
+#include "tests/techniques/point_splatting/splat_math.h"
 
 namespace gfxrepro::point_splatting {
 namespace {

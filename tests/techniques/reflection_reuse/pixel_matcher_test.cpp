@@ -2,10 +2,39 @@
 // against the search on the host.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "techniques/reflection_reuse/matching_constants.h"
 #include "tests/techniques/reflection_reuse/key_frame.h"
 
 namespace gfxrepro::reflection_reuse {
 namespace {
+
+/// The offset that a search begins with, of those of the frame before: the sample's own, else that
+/// of a near sample of the reflector; nothing: it is not searched.
+std::optional<glm::vec2> firstOffset(const HostReflectionDepthImage& key, glm::ivec2 sample,
+                                     const std::vector<glm::vec2>& previous) {
+    const reflections::HostGBuffer& gbuffer = key.gbuffer;
+    const int reflector = gbuffer.reflector(gbuffer.indexOf(sample));
+    const auto isOnReflector = [&](glm::ivec2 pixel) {
+        return glm::all(glm::greaterThanEqual(pixel, glm::ivec2(0))) &&
+               glm::all(glm::lessThan(pixel, gbuffer.view.sizePx)) &&
+               gbuffer.reflector(gbuffer.indexOf(pixel)) == reflector;
+    };
+    for (int reach = 0; reach <= kStartReach; reach = std::max(2 * reach, 1)) {
+        for (int i = 0; i < (reach == 0 ? 1 : 9); ++i) {
+            const glm::ivec2 from = sample + reach * glm::ivec2(i % 3 - 1, i / 3 - 1);
+            if (!isOnReflector(from)) continue;
+            const glm::vec2 offset = previous[gbuffer.indexOf(from)];
+            if (offset.x == kInvalidOffset) continue;
+            const glm::ivec2 whole(glm::floor(offset + 0.5F));
+            if (isOnReflector(sample + whole)) return glm::vec2(whole);
+            // Beyond the border it begins where the other one ended.
+            return glm::vec2(isOnReflector(from + whole) ? from + whole - sample : glm::ivec2(0));
+        }
+    }
+    return std::nullopt;
+}
 
 double invalidShare(const MatchingCounts& counts) {
     return counts.reflectiveSamples > 0

@@ -127,7 +127,7 @@ TEST_F(CompositeTest, FresnelReflectsMoreAtGrazingViews) {
             const std::size_t i = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
             const glm::vec3 toEye = glm::normalize(host.view.eyeWorld - host.positionWorld({x, y}));
             const float cosine = std::clamp(glm::dot(host.normalWorld[i], toEye), 0.0F, 1.0F);
-            const float s = host.reflectivity(i);
+            const float s = reflectivityOf(host, i);
             const float share = s + (1.0F - s) * std::pow(1.0F - cosine, 5.0F);
             const glm::vec3 own = host.diffuse[i];
             glm::vec3 colour = own;

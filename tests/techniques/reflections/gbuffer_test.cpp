@@ -94,7 +94,7 @@ TEST_F(GBufferTest, SeesWhatRaysMeet) {
             ++ofReflector[host.reflector(i)];
             ASSERT_EQ(host.reflector(i), object.reflector);
             ASSERT_EQ(host.isReflective(i), object.reflector != 0);
-            ASSERT_EQ(host.reflectivity(i), object.reflectivity);
+            ASSERT_EQ(reflectivityOf(host, i), object.reflectivity);
             ASSERT_EQ(host.glossiness(i), object.glossiness);
 
             const glm::mat3 toWorld(glm::transpose(glm::inverse(objects.poses()[hit->instance])));
@@ -168,7 +168,7 @@ void main() {
             ASSERT_LE(glm::distance(glm::vec3(found[0]), host.positionWorld({x, y})), 1e-5F);
             ASSERT_EQ(found[0].w, static_cast<float>(host.reflector(i)));
             ASSERT_LE(glm::distance(glm::vec3(found[1]), host.normalWorld[i]), 1e-6F);
-            ASSERT_NEAR(found[1].w, host.reflectivity(i), 1e-7F);
+            ASSERT_NEAR(found[1].w, reflectivityOf(host, i), 1e-7F);
             ASSERT_LE(glm::distance(glm::vec3(found[2]), host.mirrorDirection({x, y})), 2e-6F);
             ASSERT_NEAR(found[2].w, host.glossiness(i), 1e-7F);
             ASSERT_EQ(glm::vec3(found[3]), host.diffuse[i]);
@@ -256,7 +256,7 @@ TEST_F(GBufferTest, TakesRoughnessAndMetalnessOfTexels) {
     EXPECT_FALSE(halves.host.isReflective(halves.left));
     EXPECT_EQ(halves.host.surface[halves.left], 0U);
     EXPECT_EQ(halves.host.reflector(halves.right), 1);
-    EXPECT_EQ(halves.host.reflectivity(halves.right), 100.0F / 255.0F);
+    EXPECT_EQ(reflectivityOf(halves.host, halves.right), 100.0F / 255.0F);
     EXPECT_EQ(halves.host.glossiness(halves.right), 82.0F / 255.0F);
     scene.setGlossiness(0.2F);
     const Halves one(shaders, scene);

@@ -8,10 +8,16 @@
 #include "runner/core/files.h"
 #include "runner/core/random.h"
 #include "scenes/shared/mesh_builder.h"
+#include "techniques/reflections/gbuffer.h"
 #include "techniques/reflections/gpu_objects.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::reflections {
+
+/// What the G-buffer keeps of a sample's reflectivity.
+inline float reflectivityOf(const HostGBuffer& host, std::size_t index) {
+    return static_cast<float>((host.surface[index] >> 16) & 0xFFU) / 255.0F;
+}
 
 inline glm::vec3 randomIn(Random& random, float low, float high) {
     const float x = random.uniform(low, high);

@@ -267,18 +267,6 @@ TEST_F(ShadowMapsTest, VarianceOfTwoParallelPlanesIsTheLitShareOfTheBlur) {
     EXPECT_GT(between, 10);
 }
 
-TEST_F(ShadowMapsTest, MapsAreKeptWhileNothingMoves) {
-    const kit::DrawableScene scene(floorAndSquare());
-    ShadowMapRenderer maps(shaders, {.sizePx = 32});
-    std::vector<Light> lights{spotLight()};
-    EXPECT_FALSE(maps.isCurrent(scene, lights));
-    maps.render(scene, lights);
-    EXPECT_TRUE(maps.isCurrent(scene, lights));
-    EXPECT_FALSE(maps.isCurrent(scene, lights, 1));
-    lights[0].positionWorld.x += 0.1F;
-    EXPECT_FALSE(maps.isCurrent(scene, lights));
-}
-
 TEST_F(ShadowMapsTest, MapsBeyondTheDeviceAndTooManyLightsAreRefused) {
     const kit::DrawableScene scene(floorAndSquare());
     GLint limit = 0;

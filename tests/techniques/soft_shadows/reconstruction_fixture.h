@@ -4,6 +4,7 @@
 #include "techniques/kit/depth_image_renderer.h"
 #include "techniques/soft_shadows/reconstruction.h"
 #include "tests/gl/suite_device.h"
+#include "tests/techniques/kit/write_depth_image.h"
 #include "tests/techniques/soft_shadows/reference_mesh.h"
 
 namespace gfxrepro::soft_shadows {

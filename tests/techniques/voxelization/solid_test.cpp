@@ -3,6 +3,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "runner/raycast/ray_tracer.h"
+#include "tests/support/crossings.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
 
 namespace gfxrepro::voxelization {
@@ -33,14 +34,14 @@ Differences countAgainstRays(const DenseGrid& grid, const LatticeMesh& lattice) 
         for (int x = 0; x < n; ++x) {
             const glm::vec3 start(static_cast<float>(x) + 0.5F + 0x1p-12F,
                                   static_cast<float>(y) + 0.5F + 0x1p-15F, -1);
-            const std::vector<float> hits = tracer.allHits(start, {0, 0, 1});
+            const auto hits = test::allHits(tracer, start, {0, 0, 1});
             for (int z = 0; z < n; ++z) {
                 const float centre = static_cast<float>(z) + 1.5F;
-                const auto before =
-                    std::ranges::count_if(hits, [&](float distance) { return distance < centre; });
+                const auto before = std::ranges::count_if(
+                    hits, [&](const auto& hit) { return hit.distance < centre; });
                 if (grid.isFull({x, y, z}) == (before % 2 == 1)) continue;
-                const bool isOnSurface = std::ranges::any_of(hits, [&](float distance) {
-                    return std::abs(distance - centre) * kLatticePerVoxel < 1.0F;
+                const bool isOnSurface = std::ranges::any_of(hits, [&](const auto& hit) {
+                    return std::abs(hit.distance - centre) * kLatticePerVoxel < 1.0F;
                 });
                 ++(isOnSurface ? result.onSurface : result.elsewhere);
             }

@@ -6,9 +6,9 @@
 
 #include "techniques/voxelization/implicit.h"
 #include "techniques/voxelization/parametric.h"
-#include "techniques/voxelization/voxel_value.h"
 #include "tests/support/support.h"
 #include "tests/techniques/voxelization/gl_fixture.h"
+#include "tests/techniques/voxelization/voxel_value.h"
 
 namespace gfxrepro::voxelization {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "runner/gl/pass.h"
 #include "techniques/voxelization/axis_split.h"
-#include "techniques/voxelization/voxel_value.h"
 #include "techniques/voxelization/voxelization.h"
+#include "tests/techniques/voxelization/voxel_value.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
 
 namespace gfxrepro::voxelization {

@@ -1,4 +1,4 @@
-#include "techniques/point_splatting/splat_math.h"
+#include "tests/techniques/point_splatting/splat_math.h"
 
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -33,11 +33,6 @@ double jacobianDeterminant(const EyeSplat& splat) {
 double projectedArea(const EyeSplat& splat) {
     return glm::pi<double>() * splat.radius * splat.radius * cosineToNormal(splat) /
            (splat.centre.z * splat.centre.z);
-}
-
-double cEta(double fovRad) {
-    const double tangent = std::tan(0.5 * fovRad);
-    return std::sqrt(2.0 * tangent * tangent + 1.0);
 }
 
 glm::dmat2 ewaCovariance(const EyeSplat& splat, double focalPx, double lowPassRadiusPx) {

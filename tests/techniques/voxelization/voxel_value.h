@@ -1,5 +1,5 @@
 // What the bits of a voxel say, beside "full": a quantised normal or colour. 0 is empty.
-// The GLSL side is shaders/voxel_value.glsl; both give the same codes.
+// By the host: what voxel_value.glsl gives.
 #pragma once
 
 #include <cstdint>

@@ -19,8 +19,6 @@ glm::dmat2 screenJacobian(const EyeSplat& splat);
 double jacobianDeterminant(const EyeSplat& splat);
 /// S_proj = π r_k² cos θ / o_z², for focal length 1 (the text of it lost o_z², which Eq. 12 needs).
 double projectedArea(const EyeSplat& splat);
-/// C_η = √(2 tan²(fov / 2) + 1) of Eq. (13), for a square window.
-double cEta(double fovRad);
 /// H = J V^r Jᵀ + V^h of Eq. (3), in pixels².
 glm::dmat2 ewaCovariance(const EyeSplat& splat, double focalPx, double lowPassRadiusPx);
 

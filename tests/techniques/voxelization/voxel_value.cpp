@@ -1,4 +1,4 @@
-#include "techniques/voxelization/voxel_value.h"
+#include "tests/techniques/voxelization/voxel_value.h"
 
 #include <algorithm>
 #include <cmath>
