@@ -10,6 +10,11 @@ if(GFXREPRO_SANITIZE)
         -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(gfxrepro_options INTERFACE -fsanitize=address,undefined)
 endif()
+if(GFXREPRO_SANITIZE_THREADS)
+    target_include_directories(gfxrepro_options INTERFACE "${CMAKE_SOURCE_DIR}/tests/threads")
+    target_compile_options(gfxrepro_options INTERFACE -fsanitize=thread -fno-omit-frame-pointer)
+    target_link_options(gfxrepro_options INTERFACE -fsanitize=thread)
+endif()
 
 add_library(gfxrepro_warnings INTERFACE)
 target_compile_options(gfxrepro_warnings INTERFACE

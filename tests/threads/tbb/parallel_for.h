@@ -1,0 +1,3 @@
+#pragma once
+
+#include <tbb/by_threads.h>
