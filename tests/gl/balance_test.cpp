@@ -52,10 +52,6 @@ TEST_F(Balance, EveryKindOfWorkHasARate) {
         EXPECT_GT(rate, 1e-3);
         EXPECT_LT(rate, 1e6);
     }
-    if (device.info().isSoftware) {  // the cores do both
-        EXPECT_GT(balance.fragmentShare(), 0.05);
-        EXPECT_LT(balance.fragmentShare(), 20.0);
-    }
 }
 
 }  // namespace
