@@ -12,7 +12,8 @@ namespace gfxrepro::run {
 
 namespace {
 
-constexpr double kCountTolerance = 1e-5;
+constexpr double kPrimitiveTolerance = 1e-5;
+constexpr double kInvocationTolerance = 1e-4;
 constexpr double kFragmentTolerance = 0.01;
 constexpr float kImageTolerance = 0.01F;
 
@@ -23,8 +24,8 @@ std::string whyCountsDiffer(const gl::Work& first, const gl::Work& other, std::s
         if (!why.empty() || std::abs(x - y) <= tolerance * std::max(x, y)) return;
         why = fmt::format("repeat {} has {} {}, repeat 0 has {}", repeat, b, what, a);
     };
-    compare("primitives", first.primitives, other.primitives, kCountTolerance);
-    compare("compute invocations", first.invocations, other.invocations, kCountTolerance);
+    compare("primitives", first.primitives, other.primitives, kPrimitiveTolerance);
+    compare("compute invocations", first.invocations, other.invocations, kInvocationTolerance);
     compare("fragments", first.fragments, other.fragments, kFragmentTolerance);
     return why;
 }

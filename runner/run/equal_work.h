@@ -31,9 +31,10 @@ struct RepeatWork {
 };
 
 /// Why the times of these repeats of one frame cannot stand, with the numbers; empty if they can.
-/// Primitives and compute invocations must be the same but for 1e-5: a GPU's lists that grow by
-/// atomic counters are in another order each time, and of two triangles at one depth the first is
-/// seen (one point of 2.5 million primitives of reused reflections on an H100). Fragments may
+/// Primitives must be the same but for 1e-5, compute invocations but for 1e-4: a GPU's lists that
+/// grow by atomic counters are in another order each time, and of two triangles at one depth the
+/// first is seen (of reused reflections on an H100 one point of 2.5 million primitives, and of 1.2
+/// million invocations the 64 of one work group). Fragments may
 /// differ by 1 %: early depth tests of a parallel rasterizer depend on the order. Pictures may
 /// differ by 1 % of their range in the mean of a cell: sums of floats do as well.
 std::string whyUnequal(const std::vector<RepeatWork>& repeats);

@@ -55,6 +55,16 @@ TEST(EqualWork, APointOfMillionsMayDependOnTheOrder) {
               "repeat 1 has 2480476 primitives, repeat 0 has 2480376");
 }
 
+TEST(EqualWork, AWorkGroupOfAMillionInvocationsMayDependOnTheOrder) {
+    RepeatWork first = work(5, 1000), other = first;
+    first.counts->invocations = 1'233'024;
+    other.counts->invocations = 1'233'088;
+    EXPECT_EQ(whyUnequal({first, other}), "");
+    other.counts->invocations = 1'233'152;
+    EXPECT_EQ(whyUnequal({first, other}),
+              "repeat 1 has 1233152 compute invocations, repeat 0 has 1233024");
+}
+
 TEST(EqualWork, DifferencesAreNamedWithTheirNumbers) {
     EXPECT_EQ(whyUnequal({work(5, 1000), work(5, 1000), work(6, 1000)}),
               "repeat 2 has 6 primitives, repeat 0 has 5");
