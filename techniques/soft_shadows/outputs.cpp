@@ -17,6 +17,8 @@ config::Outputs outputs() {
              Better::Lower},
             {"visibility_error_max", "light sample", "visibility error of the worst pixel",
              Better::Lower},
+            {"coverage_pct", "%", "share of the picture's pixels that show a surface",
+             Better::Neither, kIsDetail},
             {"caster_triangles", "triangle", "triangles that cast the shadows"},
             {"mesh_triangles", "triangle", "triangles of the meshes made of depth images"},
             {"mesh_bytes", "byte", "memory of these meshes", Better::Lower},

@@ -32,6 +32,11 @@ int HostVisibilityMask::litSamples(std::size_t pixel) const {
     return lit;
 }
 
+std::size_t HostReceivers::covered() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(positions, [](const glm::vec4& p) { return p.w != 0.0F; }));
+}
+
 HostReceivers readReceivers(const Receivers& receivers) {
     HostReceivers host;
     host.sizePx = receivers.view.sizePx;

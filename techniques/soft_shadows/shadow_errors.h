@@ -14,6 +14,9 @@ struct HostReceivers {
     glm::ivec2 sizePx{0};
     std::vector<glm::vec4> positions, normals;  // as in Receivers, rows from the bottom
     std::vector<glm::u8vec4> shading;
+
+    /// Pixels that show a surface.
+    std::size_t covered() const;
 };
 
 /// As VisibilityMask, layer by layer, rows from the bottom.

@@ -1,7 +1,10 @@
 #include "techniques/soft_shadows/soft_shadows.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "runner/core/error.h"
 #include "techniques/kit/requirements.h"
 
 namespace gfxrepro::soft_shadows {
@@ -34,6 +37,16 @@ void addGround(scene::Scene& scene, float sizeInDiagonals) {
     scene.meshes.push_back(std::move(ground));
 }
 
+/// Errors of a picture without a surface would be 0.
+void requireReceivers(const HostReceivers& receivers, const scene::Camera& camera) {
+    if (receivers.covered() > 0) return;
+    const glm::vec3& eye = camera.position;
+    throw Error(
+        fmt::format("the picture shows no surface: from ({:g}, {:g}, {:g}) nothing of the scene or "
+                    "its ground is in view; change the scene's camera",
+                    eye.x, eye.y, eye.z));
+}
+
 /// The first `count` of a list of images, as the renderer takes them.
 std::vector<const kit::DepthImage*> firstOf(const std::vector<kit::DepthImage>& images,
                                             std::size_t count) {
@@ -64,6 +77,7 @@ void SoftShadows::setup(technique::SetupContext& context) {
     receivers_ =
         renderReceivers(context.shaders, *drawable_, kit::viewOf(camera, context.outputSizePx));
     hostReceivers_ = readReceivers(receivers_);
+    requireReceivers(hostReceivers_, camera);
     mask_ = LightVisibility::makeMask(context.outputSizePx, params_.lightGrid);
     if (params_.method == Method::RayTraced || params_.tracesTruth) tracer_.emplace(scene_);
     visibility_.emplace(context.shaders, params_.shadowMap);

@@ -104,6 +104,8 @@ const HostVisibilityMask& SoftShadows::tracedTruth() {
 }
 
 void SoftShadows::record(technique::Recorder& recorder) {
+    recorder.metric("coverage_pct",
+                    kit::percent(hostReceivers_.covered(), hostReceivers_.positions.size()), "%");
     if (params_.measuresErrors) recordErrors(recorder, "geometry", geometryTruth());
     if (params_.tracesTruth) recordErrors(recorder, "ray_traced", tracedTruth());
     if (params_.method != Method::RayTraced) {

@@ -117,6 +117,21 @@ TEST_F(SoftShadowsTest, RefusesScenesThatCastNothingAndLightsInside) {
                           device.limits().maxTextureSizePx));
 }
 
+TEST_F(SoftShadowsTest, APictureOfNothingIsRefusedAndTheShareOfOneIsRecorded) {
+    scene::Scene scene = plateOverFloor();
+    const double withGround = run("geometry", "", scene).at("coverage_pct");
+    const double without = run("geometry", "ground: false", scene).at("coverage_pct");
+    EXPECT_GT(without, 0.0);
+    EXPECT_GT(withGround, without);
+    EXPECT_LE(withGround, 100.0);
+    scene.cameras[0].target = {1.0F, 9.0F, 4.0F};  // up and away
+    for (const std::string method : {"geometry", "non_redundant", "ray_traced"}) {
+        EXPECT_EQ(errorText([&] { run(method, "", scene); }),
+                  "the picture shows no surface: from (1, 4, 5) nothing of the scene or its ground "
+                  "is in view; change the scene's camera");
+    }
+}
+
 TEST_F(SoftShadowsTest, ShadowMapsOfTheGeometryAreTheTruth) {
     const Metrics metrics =
         run("geometry", "traced_truth: true, light_views: true", plateOverFloor());
