@@ -49,6 +49,22 @@ TEST_P(Calibration, CatalogueAndPresetHoldWhatWasFitted) {
     }
 }
 
+TEST_P(Calibration, NumbersAreThoseOfShippedTablesAndOfConventionalImages) {
+    const auto config = kSource / "configs/calibration" / (std::string(GetParam()) + ".yaml");
+    const config::Node scene = config::parseYaml(readFile(config), config.string());
+    EXPECT_FALSE(scene.find("params")) << "the preset says which method";
+    const auto preset = kSource / "configs/presets/depth-sampling-calibration.yaml";
+    const config::Node shared = config::parseYaml(readFile(preset), preset.string());
+    EXPECT_EQ(shared.find("params")->find("method")->text(), "conventional");
+    // A table beside the calibration is found, too: a copy may mark other cells as fitted.
+    for (const auto& [column, target] : scene.find("fit")->entries()) {
+        const std::string table = target.find("table")->text();
+        EXPECT_TRUE(table.starts_with("xie2017/table-")) << column;
+        EXPECT_TRUE(std::filesystem::exists(kSource / "configs" / table)) << column;
+        EXPECT_FALSE(std::filesystem::exists(config.parent_path() / table)) << column;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, Calibration,
                          testing::Values("bird_nest", "grass", "city", "tree"));
 
