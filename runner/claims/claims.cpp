@@ -296,6 +296,20 @@ int processesOfPaper(const config::Experiment& experiment) {
         .measure.processes;
 }
 
+/// Why a claim's kind of time is not that of what it reads; empty if it is.
+std::string whyWrongKind(const ClaimSpec& claim, ClaimReader& reader) {
+    if (reader.readsTime() && !claim.timeKind) {
+        return "reads a time and needs 'kind': algorithmic | architectural | absolute";
+    }
+    if (!reader.readsTime() && claim.timeKind) return "has a 'kind' and reads no time";
+    if (claim.timeKind && *claim.timeKind != ClaimSpec::TimeKind::Absolute &&
+        reader.asksForATimeAsSuch()) {
+        return "holds a time against a number, which neither a count of work nor another machine "
+               "decides; its 'kind' is absolute";
+    }
+    return "";
+}
+
 /// Scenes that a verdict in the profile, or in any, is taken over.
 int seedsAtMost(const config::Experiment& experiment, const std::optional<std::string>& profile) {
     int seeds = experiment.measure.sceneSeeds;
@@ -352,20 +366,11 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
                 "is of a calibrated input, and reads cells that 'printed.calibrated' does not "
                 "mark");
         }
-        if (reader.readsTime() && !claim.timeKind) {
-            complain("reads a time and needs 'kind': algorithmic | architectural | absolute");
-        }
-        if (!reader.readsTime() && claim.timeKind) complain("has a 'kind' and reads no time");
+        if (const std::string why = whyWrongKind(claim, reader); !why.empty()) complain(why);
         if (isOfDocument && claim.timeKind && paperProcesses < config::kFewestRounds) {
             complain(
                 fmt::format("is of a time: the paper profile needs processes: {} or more, has {}",
                             config::kFewestRounds, paperProcesses));
-        }
-        if (claim.timeKind && *claim.timeKind != ClaimSpec::TimeKind::Absolute &&
-            reader.asksForATimeAsSuch()) {
-            complain(
-                "holds a time against a number, which neither a count of work nor another machine "
-                "decides; its 'kind' is absolute");
         }
     }
 }

@@ -17,9 +17,6 @@ void deleteBuffer(GLuint id) {
 void deleteTexture(GLuint id) {
     glDeleteTextures(1, &id);
 }
-void deleteSampler(GLuint id) {
-    glDeleteSamplers(1, &id);
-}
 void deleteFramebuffer(GLuint id) {
     glDeleteFramebuffers(1, &id);
 }

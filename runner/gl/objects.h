@@ -37,7 +37,6 @@ class Name {
 };
 void deleteBuffer(GLuint id);
 void deleteTexture(GLuint id);
-void deleteSampler(GLuint id);
 void deleteFramebuffer(GLuint id);
 void deleteVertexArray(GLuint id);
 void deleteQuery(GLuint id);

@@ -150,6 +150,37 @@ std::string boundsLegend(const tables::Table& table) {
                            : "");
 }
 
+/// What stands below a table.
+std::string notesMarkdown(const tables::Table& table,
+                          const std::vector<std::map<std::string, std::string>>& shown) {
+    std::string text;
+    if (table.hasCalibrated()) {
+        text += fmt::format("\n{} {}.\n", tables::kCalibratedMark, tables::kCalibratedLegend);
+    }
+    if (const auto clock = tables::movedClock(table)) {
+        text +=
+            fmt::format("\n{} {}.\n", tables::kMovedClockMark, tables::movedClockLegend(*clock));
+    }
+    if (!table.remark.empty()) text += fmt::format("\nRemark: {}\n", escapeMarkdown(table.remark));
+    for (const std::string& note : table.notes)
+        text += fmt::format("\nNote: {}\n", escapeMarkdown(note));
+    std::vector<std::string> absent;
+    for (const tables::TableRow& row : table.printedRows) {
+        std::vector<std::string> said;
+        for (std::size_t i = 0; i < row.labels.size(); ++i)
+            said.push_back(shown[i].at(row.labels[i]));
+        for (const tables::Cell& cell : row.cells) {
+            if (cell.printed) said.push_back(*cell.printed);
+        }
+        absent.push_back(joined(said));
+    }
+    if (!absent.empty()) {
+        text += fmt::format("\nNote: printed, but not part of this run: {}\n",
+                            escapeMarkdown(joined(absent, "; ")));
+    }
+    return text;
+}
+
 std::string tableMarkdown(const tables::Table& table) {
     std::string text = fmt::format("# {}\n\n", escapeMarkdown(table.label + ". " + table.title));
     text += table.isOnlyPrinted ? "As printed; nothing is measured." : boundsLegend(table);
@@ -190,31 +221,7 @@ std::string tableMarkdown(const tables::Table& table) {
             text += fmt::format(" {} |", markdownCell(cell, table.isOnlyPrinted));
         text += "\n";
     }
-    if (table.hasCalibrated()) {
-        text += fmt::format("\n{} {}.\n", tables::kCalibratedMark, tables::kCalibratedLegend);
-    }
-    if (const auto clock = tables::movedClock(table)) {
-        text +=
-            fmt::format("\n{} {}.\n", tables::kMovedClockMark, tables::movedClockLegend(*clock));
-    }
-    if (!table.remark.empty()) text += fmt::format("\nRemark: {}\n", escapeMarkdown(table.remark));
-    for (const std::string& note : table.notes)
-        text += fmt::format("\nNote: {}\n", escapeMarkdown(note));
-    std::vector<std::string> absent;
-    for (const tables::TableRow& row : table.printedRows) {
-        std::vector<std::string> said;
-        for (std::size_t i = 0; i < row.labels.size(); ++i)
-            said.push_back(shown[i].at(row.labels[i]));
-        for (const tables::Cell& cell : row.cells) {
-            if (cell.printed) said.push_back(*cell.printed);
-        }
-        absent.push_back(joined(said));
-    }
-    if (!absent.empty()) {
-        text += fmt::format("\nNote: printed, but not part of this run: {}\n",
-                            escapeMarkdown(joined(absent, "; ")));
-    }
-    return text;
+    return text + notesMarkdown(table, shown);
 }
 
 std::string claimsCsv(const std::vector<claims::ClaimResult>& results,

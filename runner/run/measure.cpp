@@ -80,6 +80,17 @@ void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
                     "byte", "");
 }
 
+std::vector<SceneUse> scenesOfCase(const SceneCache& scenes) {
+    std::vector<SceneUse> used;
+    for (const SceneCache::Entry& entry : scenes.entries()) {
+        if (!entry.isOfThisCase) continue;
+        const scene::Origin& origin = entry.scene.origin;
+        used.push_back({entry.reference, std::string(scene::kindName(origin.kind)),
+                        origin.description, origin.sha256});
+    }
+    return used;
+}
+
 bool isTimeOfFrame(const std::string& metric) {
     return metric == "wall_time_ms" || metric == "frame_rate" || metric == "gpu_time_ms" ||
            metric == "cpu_time_ms" || metric == "process_time_ms";
@@ -327,13 +338,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
     } else if (scene) {
         recordMemory(context, *scene, recorder);
     }
-
-    for (const SceneCache::Entry& entry : context.scenes.entries()) {
-        if (!entry.isOfThisCase) continue;
-        const scene::Origin& origin = entry.scene.origin;
-        result.scenes.push_back({entry.reference, std::string(scene::kindName(origin.kind)),
-                                 origin.description, origin.sha256});
-    }
+    result.scenes = scenesOfCase(context.scenes);
     return result;
 }
 
