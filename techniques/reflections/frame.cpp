@@ -26,13 +26,19 @@ void FrameSettings::readGlossiness(config::Params& params, const std::string& te
         "glossiness", -1.0,
         {"of all reflectors, 0 a mirror, 1 the widest lobe; -1: as their materials say", "1", -1.0,
          1.0}));
-    if (given >= 0.0F) {
-        glossiness = given;
-    } else if (given != -1.0F) {
+    if (given == -1.0F) return;
+    if (given < 0.0F) {
         throw Error(
             params.locationOf("glossiness"),
             fmt::format("technique '{}': glossiness is {}; allowed: -1, 0 … 1", technique, given));
     }
+    if (given > 0.0F && given < 0.5F / 255.0F) {  // surfaces hold it in 255ths
+        throw Error(params.locationOf("glossiness"),
+                    fmt::format("technique '{}': glossiness is {}, which is drawn as a mirror; "
+                                "allowed: -1, 0, 0.002 … 1",
+                                technique, given));
+    }
+    glossiness = given;
 }
 
 void FrameSettings::readRoughness(config::Params& params) {

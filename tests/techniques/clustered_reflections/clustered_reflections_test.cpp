@@ -97,6 +97,11 @@ TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
     EXPECT_EQ(message("{glossiness: 1.5}"),
               "case.yaml:1:14: technique 'clustered_reflections': glossiness is 1.5; allowed: -1 … "
               "1");
+    EXPECT_EQ(
+        message("{glossiness: 0.001}"),
+        "case.yaml:1:14: technique 'clustered_reflections': glossiness is 0.001, which is drawn "
+        "as a mirror; allowed: -1, 0, 0.002 … 1");
+    EXPECT_EQ(message("{glossiness: 0.002}"), "no error");
     EXPECT_EQ(message("{method: embree, bin_gain: 2}"),
               "case.yaml:1:28: 'bin_gain' needs 'method: clustered'");
     EXPECT_EQ(message("{method: ray_traced, depth_images: atlas}"),
