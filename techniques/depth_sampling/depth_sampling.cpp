@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
+#include <vector>
 
 #include "techniques/depth_sampling/next_view.h"
 #include "techniques/depth_sampling/outputs.h"
@@ -30,22 +31,39 @@ std::vector<kit::View> viewsOf(const std::vector<scene::Camera>& cameras, glm::i
     return views;
 }
 
+/// As many independent samples as would leave the mean of the frames' shares (0 … 1) as uncertain as
+/// the frames leave it (Kish 1965, "Survey Sampling", the design effect); at most all `samples`, as
+/// those of a frame go together.
+double effectiveSamples(const std::vector<double>& shares, double mean, double samples) {
+    double squares = 0.0;
+    for (const double share : shares) squares += (share - mean) * (share - mean);
+    const auto frames = static_cast<double>(shares.size());
+    const double varianceOfMean = squares / (frames - 1.0) / frames;
+    const double effective = mean * (1.0 - mean) / varianceOfMean;
+    return std::isfinite(effective) ? std::clamp(effective, 1.0, samples) : samples;
+}
+
 void recordAvailability(technique::Recorder& recorder, const std::vector<FrameCounts>& frames) {
-    double sumPct = 0.0;
-    double minPct = std::numeric_limits<double>::infinity();
-    int seen = 0;  // a frame without samples says nothing
+    std::vector<double> shares;  // a frame without samples says nothing
+    double samples = 0.0, sum = 0.0;
+    const FrameCounts* worst = nullptr;
+    const auto shareOf = [](const FrameCounts& frame) {
+        return static_cast<double>(frame.available) / static_cast<double>(frame.samples);
+    };
     for (const FrameCounts& frame : frames) {
         if (frame.samples == 0) continue;
-        const double availablePct = kit::percent(frame.available, frame.samples);
-        sumPct += availablePct;
-        minPct = std::min(minPct, availablePct);
-        ++seen;
+        shares.push_back(shareOf(frame));
+        sum += shares.back();
+        samples += static_cast<double>(frame.samples);
+        if (!worst || shares.back() < shareOf(*worst)) worst = &frame;
     }
-    if (seen == 0) return;
-    const double meanPct = sumPct / seen;
-    recorder.metric("available_mean_pct", meanPct, "%");
-    recorder.metric("available_min_pct", minPct, "%");
-    recorder.metric("unavailable_mean_pct", 100.0 - meanPct, "%");
+    if (!worst) return;
+    const double mean = sum / static_cast<double>(shares.size());
+    const double count = effectiveSamples(shares, mean, samples);
+    recorder.share("available_mean_pct", mean * count, count, "sample");
+    recorder.share("available_min_pct", static_cast<double>(worst->available),
+                   static_cast<double>(worst->samples), "sample");
+    recorder.metric("unavailable_mean_pct", 100.0 * (1.0 - mean), "%");
 }
 
 /// A conventional image without samples is of a view that looks past the scene. A later one of the
@@ -162,8 +180,8 @@ void DepthSampling::record(technique::Recorder& recorder) {
     if (params_.measured == Measured::OutputFrame) {
         const FrameCounts counts = pixelExperiment_->outputFrameCounts();
         if (counts.samples > 0) {
-            recorder.metric("available_pct", kit::percent(counts.available, counts.samples), "%",
-                            "output_frame");
+            recorder.share("available_pct", static_cast<double>(counts.available),
+                           static_cast<double>(counts.samples), "sample", "output_frame");
         }
     }
     // The reference images are the same in each frame.

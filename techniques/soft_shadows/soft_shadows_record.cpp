@@ -216,8 +216,12 @@ void SoftShadows::recordLightView(technique::Recorder& recorder, const char* nam
         agreement.missing += measured[pixel] == 1.0F || difference > tolerance ? 1 : 0;
         agreement.nearer += difference < -tolerance ? 1 : 0;
     }
-    recorder.metric("missing_pct", kit::percent(agreement.missing, agreement.covered), "%", name);
-    recorder.metric("nearer_pct", kit::percent(agreement.nearer, agreement.covered), "%", name);
+    const auto ofCovered = [&](const char* metric, std::size_t part) {
+        recorder.share(metric, static_cast<double>(part), static_cast<double>(agreement.covered),
+                       "pixel", name);
+    };
+    ofCovered("missing_pct", agreement.missing);
+    ofCovered("nearer_pct", agreement.nearer);
     if (!params_.showsPictures) return;
     const std::string casters = fmt::format("casters_{}", name);
     const auto record = [&](const std::string& imageName, const std::vector<float>& windowDepths,

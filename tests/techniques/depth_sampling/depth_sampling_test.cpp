@@ -183,6 +183,9 @@ TEST_F(DepthSamplingTest, AnOutputFrameAtAReferenceViewFindsEverything) {
                 scene);
         EXPECT_EQ(metrics.at("available_mean_pct"), 100) << redundancy;
         EXPECT_EQ(metrics.at("available_min_pct"), 100) << redundancy;
+        // Frames that are alike: their mean is as certain as all their samples.
+        EXPECT_EQ(metrics.at("available_mean_pct_of"), 2 * metrics.at("available_min_pct_of"))
+            << redundancy;
         EXPECT_EQ(metrics.at("unavailable_mean_pct"), 0) << redundancy;
         EXPECT_EQ(metrics.at("output_frames"), 2) << redundancy;
     }
@@ -218,6 +221,8 @@ TEST_F(DepthSamplingTest, MeasuresKeepTheirBounds) {
             }
             EXPECT_NEAR(metrics.at("useful_sum_pct"), usefulSumPct, 1e-9);
             EXPECT_LE(metrics.at("available_min_pct"), metrics.at("available_mean_pct"));
+            EXPECT_GE(metrics.at("available_mean_pct_of"), 1);
+            EXPECT_LE(metrics.at("available_mean_pct_of"), 20 * 48 * 48);
         }
         // Image 1 keeps every sample of the conventional image 1 that image 0 lacks; only the
         // others make room for occluded ones. (Image 2 may lose some to occluded ones of image 1.)
