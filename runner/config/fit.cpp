@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "runner/config/checks.h"
 #include "runner/config/sections.h"
@@ -32,14 +33,43 @@ Selection selectionOf(const LayoutAxis& axis, const std::string& value) {
     return selection;
 }
 
-/// The cell at `row` (beside the row axes) and a column; several column axes are not needed here.
-Selection cellSelection(const Layout& layout, const Names& row, const std::string& column) {
-    Selection selection = layout.cell;
-    for (std::size_t i = 0; i < layout.rows.size(); ++i) {
-        selection = laidOver(selection, selectionOf(layout.rows[i], row[i]));
+/// The labels of an axis: its own, or the values that a sweep gives it.
+Names labelsOf(const LayoutAxis& axis, const std::vector<AxisPoint>& sweep) {
+    Names labels;
+    for (const auto& [label, selection] : axis.labels) labels.push_back(label);
+    if (!axis.isSweepAxis()) return labels;
+    for (const AxisPoint& point : sweep) {
+        for (const auto& [name, value] : point) {
+            const bool isValue = name == axis.name && value.isScalar();
+            if (isValue && std::ranges::count(labels, value.text()) == 0) {
+                labels.push_back(value.text());
+            }
+        }
     }
-    if (layout.columns.size() != 1) return selection;
-    return laidOver(selection, selectionOf(layout.columns.front(), column));
+    return labels;
+}
+
+/// The cell at `row` (beside the row axes) and a column, which the labels of the column axes name.
+Selection cellSelection(const Experiment& experiment, const Names& row, const std::string& column) {
+    const Layout& layout = experiment.layout;
+    Selection cell = layout.cell;
+    for (std::size_t i = 0; i < layout.rows.size(); ++i) {
+        cell = laidOver(cell, selectionOf(layout.rows[i], row[i]));
+    }
+    const std::vector<AxisPoint> sweep = expandSweep(experiment.sweep);
+    std::map<std::string, Selection> columns{{"", cell}};
+    for (const LayoutAxis& axis : layout.columns) {
+        std::map<std::string, Selection> finer;
+        for (const auto& [name, above] : columns) {
+            for (const std::string& label : labelsOf(axis, sweep)) {
+                const std::string own = name.empty() ? label : name + "_" + label;
+                finer.emplace(own, laidOver(above, selectionOf(axis, label)));
+            }
+        }
+        columns = std::move(finer);
+    }
+    const auto found = columns.find(column);
+    return found == columns.end() ? cell : found->second;
 }
 
 /// The one method of a cell's cases; empty where it is not one or not said.
@@ -158,8 +188,8 @@ Node withPrintedCell(const Node& entry, const std::string& column, const Experim
     }
     const Names row = rowLabels(required(entry, what, "row"), table.layout, what);
     const Node& theirs = required(entry, what, "column");
-    const Selection cell = cellSelection(table.layout, row, lineOf(theirs, what + ": column"));
-    const Selection own = cellSelection(fit.layout, Names(fit.layout.rows.size()), column);
+    const Selection cell = cellSelection(table, row, lineOf(theirs, what + ": column"));
+    const Selection own = cellSelection(fit, Names(fit.layout.rows.size()), column);
     // What a fit may read compares no methods: that is how the other rows stay blind.
     const std::string method = methodOf(fit, own), printedMethod = methodOf(table, cell);
     if (method.empty()) {

@@ -97,6 +97,25 @@ TEST_F(FitTest, RefusesWhatComparesMethods) {
               "DIR/zju/a.yaml:8:6: fit: 'a': the cases are not all of one method in 'params'");
 }
 
+TEST_F(FitTest, FindsAColumnByTheLabelsOfAllItsAxes) {
+    folder.write("p/table.yaml",
+                 "table: p/1\ntitle: t\ntechnique: x\n"
+                 "sweep: {scene: [grass, tree], method: [conventional, better]}\n"
+                 "layout:\n  axes:\n    error:\n"
+                 "      mean: {metric: redundant_pct}\n      worst: {metric: min_pct}\n"
+                 "  rows: scene\n  columns: [error, method]\n"
+                 "printed:\n  calibrated: [{scene: grass}]\n"
+                 "  values: |\n    scene,mean_conventional,mean_better,worst_conventional\n"
+                 "    grass,70,1,2\n    tree,3,4,5\n");
+    EXPECT_EQ(fitTargets(load(text("grass", "mean_conventional"))).at(0).printed, 70.0);
+    EXPECT_EQ(errorOf("grass", "mean_better"),
+              "DIR/zju/a.yaml:9:57: fit: 'a': the printed cell is of method 'better', the cases of "
+              "'conventional'; a fit sees what compares no methods");
+    EXPECT_EQ(errorOf("grass", "worst_conventional"),
+              "DIR/zju/a.yaml:9:57: fit: 'a': the column is redundant_pct, the printed cell "
+              "min_pct");
+}
+
 TEST_F(FitTest, RefusesMethodsThatThePaperComparesEvenIfItMeasuresThem) {
     EXPECT_EQ(errorOf("grass", "ours", "params: {method: better}"), "no error");
     const std::string path = "p/table.yaml";
