@@ -13,8 +13,7 @@
 
 namespace gfxrepro::depth_sampling {
 
-/// Which definition makes the images and measures them.
-enum class Redundancy { Pixel, Visibility };
+using kit::Redundancy;  // which definition makes the images and measures them
 
 /// Where reference images are taken.
 enum class Placement {

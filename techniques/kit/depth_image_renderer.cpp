@@ -48,17 +48,23 @@ void clear(const DepthImage& target, DepthFormat format) {
     target.framebuffer.clearDepth(isReversed(format) ? 0.0F : 1.0F);
 }
 
-/// What [xie2017] Algorithm 3 reads of the earlier images.
-gl::Resources earlierIds(const gl::Pass& pass, const View& view,
-                         std::span<const DepthImage* const> earlier) {
-    gl::Resources ids{};
+/// What [xie2017] Algorithms 2 and 3 read of the earlier images.
+gl::Resources earlierImages(const gl::Pass& pass, const View& view,
+                            std::span<const DepthImage* const> earlier, Redundancy redundancy) {
+    gl::Resources images{};
     for (std::size_t j = 0; j < earlier.size(); ++j) {
         const DepthImage& image = *earlier[j];
-        ids.add({fmt::format("earlierIds[{}]", j), image.triangleId});
+        if (redundancy == Redundancy::Visibility) {
+            images.add({fmt::format("earlierDepths[{}]", j), image.depth});
+            pass.set(fmt::format("earlierFootprintPerDepth[{}]", j).c_str(),
+                     footprintPerDepth(image.view));
+        } else {
+            images.add({fmt::format("earlierIds[{}]", j), image.triangleId});
+        }
         pass.set(fmt::format("earlierFromHere[{}]", j).c_str(), reprojection(view, image.view));
         pass.set(fmt::format("earlierSizePx[{}]", j).c_str(), glm::vec2(image.view.sizePx));
     }
-    return ids;
+    return images;
 }
 
 }  // namespace
@@ -77,6 +83,7 @@ const gl::Pass& DepthImageRenderer::passFor(const Variant& variant) {
     defines["FLAT_PARTS"] = variant.hasFlatParts ? 1 : 0;
     defines["GEOMETRY_STAGE"] = hasGeometryStage ? 1 : 0;
     defines["TEXTURES"] = variant.hasTextures ? 1 : 0;
+    defines["VISIBILITY_TEST"] = variant.redundancy == Redundancy::Visibility ? 1 : 0;
     defines["kDepthTarget"] = kDepthTarget;
     defines["kShadingTarget"] = kShadingTarget;
     defines["kTriangleIdTarget"] = kTriangleIdTarget;
@@ -86,11 +93,12 @@ const gl::Pass& DepthImageRenderer::passFor(const Variant& variant) {
 }
 
 void DepthImageRenderer::render(const DrawableScene& scene, DepthImage& target,
-                                std::span<const DepthImage* const> earlier) {
+                                std::span<const DepthImage* const> earlier, Redundancy redundancy) {
     GFXREPRO_ASSERT(earlier.size() <= kMaxEarlierImages);
     const View& view = target.view;
-    const gl::Pass& pass = passFor({static_cast<int>(earlier.size()), scene.hasTextures(),
-                                    scene.isAlphaTested(), scene.hasFlatParts()});
+    const gl::Pass& pass =
+        passFor({static_cast<int>(earlier.size()), redundancy, scene.hasTextures(),
+                 scene.isAlphaTested(), scene.hasFlatParts()});
     const glm::mat4 clipFromWorld = clipFromView(view, format_) * view.viewFromWorld;
     pass.set("clipFromWorld", clipFromWorld);
     pass.set("viewFromWorld", view.viewFromWorld);
@@ -108,7 +116,7 @@ void DepthImageRenderer::render(const DrawableScene& scene, DepthImage& target,
     } else {
         glDepthFunc(GL_LESS);
     }
-    scene.draw(pass, earlierIds(pass, view, earlier));
+    scene.draw(pass, earlierImages(pass, view, earlier, redundancy));
     // The defaults, which other passes take for granted.
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     glDepthFunc(GL_LESS);

@@ -16,6 +16,12 @@ enum class TriangleIds {
     GeometryShader,  // handed on by a geometry stage, as the thesis has it
 };
 
+/// By which definition a sample is redundant with an earlier view ([xie2017] Sec. 2.2.1).
+enum class Redundancy {
+    Pixel,       // Algorithm 3: the earlier image holds its triangle where it lands
+    Visibility,  // Algorithm 2: the earlier view sees it, by the depths of its conventional image
+};
+
 /// At most this many earlier images can be tested against: with the base colours sixteen textures,
 /// as many as a stage of every OpenGL 4.5 takes.
 constexpr int kMaxEarlierImages = 15;
@@ -37,13 +43,16 @@ class DepthImageRenderer {
     ///   - conventional image: `earlier` is empty
     ///   - non-redundant image i: `earlier` is I₀ … Iᵢ₋₁
     ///   - peeled layer i: as non-redundant, all images having one view
+    ///   - non-redundant by visibility: `earlier` is conventional images of the views before
     void render(const DrawableScene& scene, DepthImage& target,
-                std::span<const DepthImage* const> earlier = {});
+                std::span<const DepthImage* const> earlier = {},
+                Redundancy redundancy = Redundancy::Pixel);
 
   private:
     /// What the pass for an image is made for; the rest is uniforms.
     struct Variant {
         int earlierCount = 0;
+        Redundancy redundancy = Redundancy::Pixel;
         bool hasTextures = false;
         bool isAlphaTested = false;
         bool hasFlatParts = false;

@@ -70,6 +70,10 @@ std::optional<glm::ivec2> pixelOf(const View& view, const glm::vec3& pointWorld)
     return glm::ivec2(*position);
 }
 
+float footprintPerDepth(const View& view) {
+    return 2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x));
+}
+
 glm::vec3 rayThrough(const View& view, const glm::vec2& positionPx) {
     return glm::normalize(unproject(view, positionPx, 1.0F) - view.eyeWorld);
 }

@@ -40,6 +40,9 @@ std::optional<glm::vec2> project(const View& view, const glm::vec3& pointWorld);
 /// The pixel whose square holds the projection; nothing when that is outside of the image.
 std::optional<glm::ivec2> pixelOf(const View& view, const glm::vec3& pointWorld);
 
+/// The width of a pixel at a distance of 1 along the view axis.
+float footprintPerDepth(const View& view);
+
 /// The unit direction from the eye through a position in pixel coordinates.
 glm::vec3 rayThrough(const View& view, const glm::vec2& positionPx);
 

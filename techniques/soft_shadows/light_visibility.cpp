@@ -13,11 +13,6 @@ void setDepthState() {
     glDisable(GL_SCISSOR_TEST);
 }
 
-/// Width of a shadow-map texel at a distance of one along the view's axis.
-float texelWidth(const kit::View& view) {
-    return 2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x));
-}
-
 }  // namespace
 
 glm::vec3 forwardOf(const kit::View& view) {
@@ -104,7 +99,7 @@ void LightVisibility::drawShadowMap(const kit::View& lightView,
 }
 
 float LightVisibility::biasPerDistance(const kit::View& lightView) const {
-    return settings_.biasTexels * texelWidth(lightView);
+    return settings_.biasTexels * kit::footprintPerDepth(lightView);
 }
 
 void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& receivers,
@@ -115,7 +110,7 @@ void LightVisibility::test(VisibilityMask& mask, int sample, const Receivers& re
     const glm::mat4 axes = glm::transpose(lightView.viewFromWorld);
     test_.set("lightRight", glm::vec3(axes[0]));
     test_.set("lightUp", glm::vec3(axes[1]));
-    test_.set("texelPerDistance", texelWidth(lightView));
+    test_.set("texelPerDistance", kit::footprintPerDepth(lightView));
     test_.set("nearM", lightView.nearM);
     test_.set("farM", lightView.farM);
     test_.set("bit", 1U << (sample % 32));

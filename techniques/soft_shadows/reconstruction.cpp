@@ -88,8 +88,7 @@ void Reconstructor::setGeometry(const gl::Program& program, const kit::View& vie
     program.setIfActive("rayOrigin", glm::vec3(rays[2]));
     program.setIfActive("rayStepX", glm::vec3(rays[0]));
     program.setIfActive("rayStepY", glm::vec3(rays[1]));
-    program.setIfActive("footprintPerDepth",
-                        2.0F / (view.clipFromView[0].x * static_cast<float>(view.sizePx.x)));
+    program.setIfActive("footprintPerDepth", kit::footprintPerDepth(view));
     program.setIfActive("grazingLimitPx", settings_.grazingLimitPx);
     program.setIfActive("discontinuityPx", settings_.discontinuityPx);
     program.setIfActive("runsPerRow", runsPerRow_);

@@ -119,6 +119,8 @@ void SoftShadows::makeReferenceTargets() {
     for (const glm::vec3& point : referencePoints()) {
         const kit::View view = lightView(light_, point, params_.referenceSizePx);
         images_.push_back(renderer_->makeImage(view));
+        if (params_.redundancy == kit::Redundancy::Visibility)
+            seen_.push_back(renderer_->makeImage(view));
         if (!isHybrid) continue;
         offsetImages_.push_back(renderer_->makeImage(kit::withOffset(view, glm::vec2(-0.5F))));
     }
@@ -164,20 +166,24 @@ void SoftShadows::render(technique::FrameContext& context) {
 
 // [xie2017] Algorithm 5, step 1
 void SoftShadows::renderReferenceImages() {
+    for (kit::DepthImage& image : seen_) renderer_->render(*drawable_, image);
     for (std::size_t i = 0; i < images_.size(); ++i) {
-        const bool isConventional = params_.method == Method::Conventional;
-        renderer_->render(*drawable_, images_[i], firstOf(images_, isConventional ? 0 : i));
+        renderer_->render(*drawable_, images_[i], earlierOf(i), params_.redundancy);
     }
+}
+
+std::vector<const kit::DepthImage*> SoftShadows::earlierOf(std::size_t i) const {
+    if (params_.method == Method::Conventional) return {};
+    return firstOf(params_.redundancy == kit::Redundancy::Visibility ? seen_ : images_, i);
 }
 
 // H of Algorithm 4. H drops what Iⱼ have, j < i. A peeled layer of H drops what the layers of H
 // before it have: in Iⱼ its samples would land on corners of pixels, and rounding would decide.
 void SoftShadows::renderOffsetImages() {
     for (std::size_t i = 0; i < offsetImages_.size(); ++i) {
-        std::vector<const kit::DepthImage*> earlier;
-        if (params_.method == Method::NonRedundant) earlier = firstOf(images_, i);
-        if (params_.method == Method::DepthPeeling) earlier = firstOf(offsetImages_, i);
-        renderer_->render(*drawable_, offsetImages_[i], earlier);
+        const bool isPeeling = params_.method == Method::DepthPeeling;
+        renderer_->render(*drawable_, offsetImages_[i],
+                          isPeeling ? firstOf(offsetImages_, i) : earlierOf(i), params_.redundancy);
     }
 }
 

@@ -36,6 +36,7 @@ enum class Measured {
 
 struct SoftShadowsParams {
     Method method = Method::NonRedundant;
+    kit::Redundancy redundancy = kit::Redundancy::Pixel;  // of non-redundant images
     int referenceImages = 4;
     int referenceSizePx = 1024;
     ReconstructionSettings reconstruction;
@@ -78,6 +79,8 @@ class SoftShadows final : public technique::Technique {
     std::vector<glm::vec3> referencePoints() const;
     void makeReferenceTargets();
     void renderReferenceImages();
+    /// What images i and its H are tested against.
+    std::vector<const kit::DepthImage*> earlierOf(std::size_t i) const;
     void renderOffsetImages();
     std::vector<ReconstructedMesh> reconstructMeshes();
     std::unique_ptr<ShadowCaster> makeCaster(std::vector<ReconstructedMesh> meshes,
@@ -112,6 +115,7 @@ class SoftShadows final : public technique::Technique {
     std::optional<kit::DepthImageRenderer> renderer_;
     std::optional<Reconstructor> reconstructor_;
     std::vector<kit::DepthImage> images_;        // I of Algorithm 4
+    std::vector<kit::DepthImage> seen_;          // conventional ones, for redundancy by visibility
     std::vector<kit::DepthImage> offsetImages_;  // H, hybrid only
     std::unique_ptr<ShadowCaster> caster_;       // what casts in this method
     std::vector<MeshCounts> meshCounts_;

@@ -1,4 +1,3 @@
-
 #include <glm/trigonometric.hpp>
 
 #include "techniques/soft_shadows/soft_shadows.h"
@@ -21,6 +20,12 @@ constexpr config::Choice<Reconstruction> kReconstructions[] = {
     {Reconstruction::Classic, "classic", "triangles between neighbouring samples"},
 };
 
+constexpr config::Choice<kit::Redundancy> kRedundancies[] = {
+    {kit::Redundancy::Pixel, "pixel",
+     "an earlier image holds the triangle where the sample lands (algorithm 3)"},
+    {kit::Redundancy::Visibility, "visibility",
+     "an earlier view sees the sample (algorithm 2), by a shadow map's test"},
+};
 constexpr config::Choice<Measured> kMeasured[] = {
     {Measured::SoftShadow, "soft_shadow", "the light's visibility"},
     {Measured::DepthAndPass, "depth_and_pass",
@@ -69,6 +74,8 @@ ReconstructionSettings readReconstruction(config::Params& params) {
 
 SoftShadowsParams::SoftShadowsParams(config::Params& params)
     : method(params.getEnum("method", Method::NonRedundant, kMethods, {"where shadows come from"})),
+      redundancy(params.getEnum("redundancy", kit::Redundancy::Pixel, kRedundancies,
+                                {"which samples non-redundant images leave out"})),
       referenceImages(params.getInt("reference_images", 4,
                                     {"depth images, or layers of depth_peeling", "images", 1, 16})),
       referenceSizePx(
@@ -112,6 +119,9 @@ SoftShadowsParams::SoftShadowsParams(config::Params& params)
              "grazing_limit", "merge_rows", "simplify_to", "simplification_error", "export_mesh"},
             "a method that takes depth images: non_redundant, conventional or "
             "depth_peeling");
+    }
+    if (method != Method::NonRedundant) {
+        params.refuseGiven({"redundancy"}, "'method: non_redundant'");
     }
     if (reconstruction.method == Reconstruction::Classic) {
         params.refuseGiven({"grazing_limit", "merge_rows"}, "'reconstruction: hybrid'");

@@ -30,14 +30,31 @@ uniform sampler2D baseColor;
 uniform float alphaCutoff;  // 0: opaque
 #endif
 #if EARLIER_COUNT > 0
-uniform usampler2D earlierIds[EARLIER_COUNT];
 uniform mat4 earlierFromHere[EARLIER_COUNT];
 uniform vec2 earlierSizePx[EARLIER_COUNT];
+#if VISIBILITY_TEST
+uniform sampler2D earlierDepths[EARLIER_COUNT];
+uniform float earlierFootprintPerDepth[EARLIER_COUNT];
+#else
+uniform usampler2D earlierIds[EARLIER_COUNT];
+#endif
 #endif
 
 layout(location = kShadingTarget) out vec4 shading;
 layout(location = kDepthTarget) out float depth;
 layout(location = kTriangleIdTarget) out uint triangleId;
+
+#if EARLIER_COUNT > 0
+bool isRedundant(int j, vec3 sampleHere) {
+#if VISIBILITY_TEST
+    return isVisibleThere(earlierDepths[j], earlierSizePx[j], earlierFromHere[j], sampleHere,
+                          earlierFootprintPerDepth[j]);
+#else
+    return isPixelRedundant(earlierIds[j], earlierSizePx[j], earlierFromHere[j], sampleHere,
+                            triangleId);
+#endif
+}
+#endif
 
 vec3 facingNormal() {
     // Towards the eye also where a double-sided triangle is seen from behind.
@@ -71,10 +88,7 @@ void main() {
 #if EARLIER_COUNT > 0
     vec3 sampleHere = vec3(gl_FragCoord.xy, depth);
     for (int j = 0; j < EARLIER_COUNT; ++j) {
-        if (isPixelRedundant(earlierIds[j], earlierSizePx[j], earlierFromHere[j], sampleHere,
-                             triangleId)) {
-            discard;
-        }
+        if (isRedundant(j, sampleHere)) discard;
     }
 #endif
 }

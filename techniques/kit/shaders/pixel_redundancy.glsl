@@ -21,3 +21,15 @@ bool isPixelRedundant(usampler2D triangleIds, vec2 sizePx, mat4 thereFromHere, v
     ivec2 pixel = isInside ? ivec2(there.xy) : ivec2(0);
     return isInside && texelFetch(triangleIds, pixel, 0).r == triangleId;
 }
+
+// Visibility redundancy ([xie2017] Algorithm 2) by the depths of the other view's conventional image:
+// whether nothing there lies before the sample by more than two footprints of its pixel.
+bool isVisibleThere(sampler2D depths, vec2 sizePx, mat4 thereFromHere, vec3 sampleHere,
+                    float footprintPerDepth) {
+    vec3 there = reproject(thereFromHere, sampleHere);
+    bool isInside = there.z > 0.0 && all(greaterThanEqual(there.xy, vec2(0.0))) &&
+                    all(lessThan(there.xy, sizePx));
+    ivec2 pixel = isInside ? ivec2(there.xy) : ivec2(0);
+    float nearest = texelFetch(depths, pixel, 0).r;  // 0: nothing
+    return isInside && (nearest == 0.0 || there.z <= nearest + 2.0 * footprintPerDepth * there.z);
+}
