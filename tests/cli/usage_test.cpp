@@ -176,14 +176,17 @@ TEST(Usage, EveryTableOfThePapersNeedsNoRealModel) {
 TEST(Usage, CalibrationsCannotReadWhatComparesMethods) {
     const TemporaryFolder folder;
     const auto errorOf = [&](const std::string& target) {
-        const std::string config = folder.write(
-            "c.yaml",
-            "sweep_of: c\ntitle: T\nextends: [presets/depth-sampling-calibration.yaml]\n"
-            "scene: outdoor/bird_nest\nlayout: {rows: scene}\nfit:\n  " +
-                target + "\n");
+        const std::string preset =
+            target.starts_with("intensity") ? "soft-shadows" : "depth-sampling";
+        const std::string config =
+            folder.write("c.yaml", "sweep_of: c\ntitle: T\nextends: [presets/" + preset +
+                                       "-calibration.yaml]\n"
+                                       "scene: outdoor/bird_nest\nlayout: {rows: scene}\nfit:\n  " +
+                                       target + "\n");
         return refusal({"check", config}, folder);
     };
     const std::string scene = "scene: outdoor/bird_nest}, column: ";
+    const std::string lit = "scene: outdoor/bird_nest, light_ratio: 1}, column: intensity_mean_";
     const std::string refused = "the cases of 'conventional'; a fit sees what compares no methods";
     for (const char* method : {"non_redundant", "depth_peeling"}) {
         const std::string name = method;
@@ -193,7 +196,8 @@ TEST(Usage, CalibrationsCannotReadWhatComparesMethods) {
               "pixel_avg: {table: xie2017/table-4.yaml, row: {" + scene + name + "_avg}",
               "visibility_image_2: {table: xie2017/table-5.yaml, row: {measure: " + name +
                   "_useful, " + scene + "image_2}",
-              "visibility_min: {table: xie2017/table-6.yaml, row: {" + scene + name + "_min}"}) {
+              "visibility_min: {table: xie2017/table-6.yaml, row: {" + scene + name + "_min}",
+              "intensity_one: {table: xie2017/table-10.yaml, row: {" + lit + name + "}"}) {
             const std::string error = errorOf(target);
             EXPECT_NE(error.find("the printed cell is of method '" + name + "', " + refused),
                       std::string::npos)

@@ -13,9 +13,13 @@ namespace {
 
 const std::filesystem::path kSource = GFXREPRO_SOURCE_DIR;
 
-/// The values of results/calibration/SCENE.csv: scene.NAME and view_NAME.
-std::map<std::string, double> fitted(const std::string& scene) {
-    std::istringstream csv(readFile(kSource / "results/calibration" / (scene + ".csv")));
+config::Node yaml(const std::filesystem::path& file) {
+    return config::parseYaml(readFile(kSource / "configs" / file), file.string());
+}
+
+/// The values of results/calibration/NAME.csv: scene.NAME, view_NAME and light_NAME.
+std::map<std::string, double> fitted(const std::string& calibration) {
+    std::istringstream csv(readFile(kSource / "results/calibration" / (calibration + ".csv")));
     std::string header, row;
     std::getline(csv, header);
     std::getline(csv, row);
@@ -23,24 +27,35 @@ std::map<std::string, double> fitted(const std::string& scene) {
     std::map<std::string, double> found;
     std::string name, value;
     while (std::getline(names, name, ',') && std::getline(values, value, ',')) {
-        const bool isFree = name.starts_with("scene.") || name.starts_with("view_");
+        const bool isFree =
+            name.starts_with("scene.") || name.starts_with("view_") || name.starts_with("light_");
         if (isFree) found[name] = std::stod(value);
     }
     return found;
 }
 
-class Calibration : public testing::TestWithParam<const char*> {};
+/// The numbers are of shipped tables, the cases of conventional images.
+void expectConventional(const config::Node& calibration, const config::Node& preset) {
+    EXPECT_FALSE(calibration.find("params")) << "the preset says which method";
+    EXPECT_EQ(preset.find("params")->find("method")->text(), "conventional");
+    // A table beside the calibration is found, too: a copy may mark other cells as fitted.
+    for (const auto& [column, target] : calibration.find("fit")->entries()) {
+        const std::string table = target.find("table")->text();
+        EXPECT_TRUE(table.starts_with("xie2017/table-")) << column;
+        EXPECT_TRUE(std::filesystem::exists(kSource / "configs" / table)) << column;
+        EXPECT_FALSE(std::filesystem::exists(kSource / "configs/calibration" / table)) << column;
+    }
+}
+
+class Calibration : public testing::TestWithParam<std::string> {};
 
 TEST_P(Calibration, CatalogueAndPresetHoldWhatWasFitted) {
-    const std::string scene = GetParam();
-    const std::map<std::string, double> values = fitted(scene);
+    const std::map<std::string, double> values = fitted(GetParam());
     ASSERT_GE(values.size(), 3U);
-    const auto entry = kSource / "configs/scenes/outdoor" / (scene + ".yaml");
-    const auto preset = kSource / "configs/presets/depth-sampling.yaml";
-    const config::Node catalogue = config::parseYaml(readFile(entry), entry.string());
-    const config::Node shared = config::parseYaml(readFile(preset), preset.string());
+    const config::Node catalogue = yaml("scenes/outdoor/" + GetParam() + ".yaml");
+    const config::Node preset = yaml("presets/depth-sampling.yaml");
     const config::Node& params = *catalogue.find("sources")->items().at(0).find("params");
-    const config::Node& views = *shared.find("params_by_scene")->find("outdoor/" + scene);
+    const config::Node& views = *preset.find("params_by_scene")->find("outdoor/" + GetParam());
     for (const auto& [name, value] : values) {
         const bool isOfScene = name.starts_with("scene.");
         const config::Node* node = isOfScene ? params.find(name.substr(6)) : views.find(name);
@@ -49,20 +64,22 @@ TEST_P(Calibration, CatalogueAndPresetHoldWhatWasFitted) {
     }
 }
 
-TEST_P(Calibration, NumbersAreThoseOfShippedTablesAndOfConventionalImages) {
-    const auto config = kSource / "configs/calibration" / (std::string(GetParam()) + ".yaml");
-    const config::Node scene = config::parseYaml(readFile(config), config.string());
-    EXPECT_FALSE(scene.find("params")) << "the preset says which method";
-    const auto preset = kSource / "configs/presets/depth-sampling-calibration.yaml";
-    const config::Node shared = config::parseYaml(readFile(preset), preset.string());
-    EXPECT_EQ(shared.find("params")->find("method")->text(), "conventional");
-    // A table beside the calibration is found, too: a copy may mark other cells as fitted.
-    for (const auto& [column, target] : scene.find("fit")->entries()) {
-        const std::string table = target.find("table")->text();
-        EXPECT_TRUE(table.starts_with("xie2017/table-")) << column;
-        EXPECT_TRUE(std::filesystem::exists(kSource / "configs" / table)) << column;
-        EXPECT_FALSE(std::filesystem::exists(config.parent_path() / table)) << column;
+TEST_P(Calibration, PresetHoldsTheLightThatWasFitted) {
+    const config::Node preset = yaml("presets/soft-shadows.yaml");
+    const config::Node& light = *preset.find("params_by_scene")->find("outdoor/" + GetParam());
+    const std::map<std::string, double> values = fitted(GetParam() + "-light");
+    ASSERT_EQ(values.size(), 2U);
+    for (const auto& [name, value] : values) {
+        ASSERT_TRUE(light.find(name)) << name;
+        EXPECT_EQ(std::stod(light.find(name)->text()), value) << name;
     }
+}
+
+TEST_P(Calibration, NumbersAreThoseOfShippedTablesAndOfConventionalImages) {
+    expectConventional(yaml("calibration/" + GetParam() + ".yaml"),
+                       yaml("presets/depth-sampling-calibration.yaml"));
+    expectConventional(yaml("calibration/" + GetParam() + "-light.yaml"),
+                       yaml("presets/soft-shadows-calibration.yaml"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Calibration,
