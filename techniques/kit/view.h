@@ -55,7 +55,7 @@ glm::mat4 worldFromPixels(const View& view);
 
 /// Takes a sample of `from` to `to`: (x·d, y·d, d, 1) becomes (x'·d', y'·d', d', 1), (x, y) being
 /// pixel coordinates and d the distance along the view axis. Worked out in double precision:
-/// between equal views it is the identity. For reproject() of kit/pixel_redundancy.glsl.
+/// between equal views it is the identity. For reproject() of kit/redundancy_tests.glsl.
 glm::mat4 reprojection(const View& from, const View& to);
 
 }  // namespace gfxrepro::kit

@@ -10,7 +10,7 @@
 // that one matrix, multiplied out in double precision (kit::reprojection), does for both.
 // The renderer's fragments are tested by the same function on the same numbers.
 
-#include "kit/pixel_redundancy.glsl"
+#include "kit/redundancy_tests.glsl"
 
 uniform usampler2D sampleTriangleIds;
 

@@ -1,10 +1,11 @@
 #version 450 core
-// Depth images, fragments: [xie2017] Algorithm 1 with the test of Algorithm 3. A fragment that gets
-// here has passed the depth test; it is discarded when an earlier image holds its triangle where it
-// lands there. So the nearest fragment that is not redundant stays: a discarded one leaves the depth
-// buffer as it was. Writes shading, distance along the view axis, and triangle id.
+// Depth images, fragments: [xie2017] Algorithm 1 with the test of Algorithm 3, or of 2. A fragment
+// that gets here has passed the depth test; it is discarded when an earlier image holds its triangle
+// where it lands, or by 2 when the earlier view sees it. So the nearest fragment that is not redundant
+// stays: a discarded one leaves the depth buffer as it was. Writes shading, distance along the view
+// axis, and triangle id.
 
-#include "kit/pixel_redundancy.glsl"
+#include "kit/redundancy_tests.glsl"
 
 in VertexData {
     vec3 normalView;

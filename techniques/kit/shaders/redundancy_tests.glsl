@@ -1,4 +1,4 @@
-// Pixel redundancy of a sample with an image ([xie2017] Algorithm 3).
+// Whether a sample is redundant with another view ([xie2017] Algorithms 2 and 3).
 
 // A sample of one view as another view sees it: xy its pixel coordinates there, z its distance along
 // the other view's axis (0 or less: on or behind the eye's plane). `sampleHere` is the same of this
@@ -10,26 +10,28 @@ vec3 reproject(mat4 thereFromHere, vec3 sampleHere) {
     return vec3(there.xy / there.z, there.z);
 }
 
-// Whether the pixel in which the sample lands holds the sample's own triangle. No depth is compared:
-// the ids alone decide. A sample outside of the image is not redundant.
+bool isInside(vec3 there, vec2 sizePx) {
+    return there.z > 0.0 && all(greaterThanEqual(there.xy, vec2(0.0))) &&
+           all(lessThan(there.xy, sizePx));
+}
+
+// Algorithm 3: whether the pixel in which the sample lands holds the sample's own triangle. No depth
+// is compared: the ids alone decide. A sample outside of the image is not redundant.
 bool isPixelRedundant(usampler2D triangleIds, vec2 sizePx, mat4 thereFromHere, vec3 sampleHere,
                       uint triangleId) {
     vec3 there = reproject(thereFromHere, sampleHere);
-    bool isInside = there.z > 0.0 && all(greaterThanEqual(there.xy, vec2(0.0))) &&
-                    all(lessThan(there.xy, sizePx));
     // The fetch itself must stay inside of the image, too.
-    ivec2 pixel = isInside ? ivec2(there.xy) : ivec2(0);
-    return isInside && texelFetch(triangleIds, pixel, 0).r == triangleId;
+    ivec2 pixel = isInside(there, sizePx) ? ivec2(there.xy) : ivec2(0);
+    return isInside(there, sizePx) && texelFetch(triangleIds, pixel, 0).r == triangleId;
 }
 
-// Visibility redundancy ([xie2017] Algorithm 2) by the depths of the other view's conventional image:
-// whether nothing there lies before the sample by more than two footprints of its pixel.
+// Algorithm 2 by the depths of the other view's conventional image (0: nothing) in place of a ray:
+// whether nothing lies before the sample by more than two footprints of its pixel.
 bool isVisibleThere(sampler2D depths, vec2 sizePx, mat4 thereFromHere, vec3 sampleHere,
                     float footprintPerDepth) {
     vec3 there = reproject(thereFromHere, sampleHere);
-    bool isInside = there.z > 0.0 && all(greaterThanEqual(there.xy, vec2(0.0))) &&
-                    all(lessThan(there.xy, sizePx));
-    ivec2 pixel = isInside ? ivec2(there.xy) : ivec2(0);
-    float nearest = texelFetch(depths, pixel, 0).r;  // 0: nothing
-    return isInside && (nearest == 0.0 || there.z <= nearest + 2.0 * footprintPerDepth * there.z);
+    ivec2 pixel = isInside(there, sizePx) ? ivec2(there.xy) : ivec2(0);
+    float nearest = texelFetch(depths, pixel, 0).r;
+    bool isHidden = nearest > 0.0 && nearest < there.z * (1.0 - 2.0 * footprintPerDepth);
+    return isInside(there, sizePx) && !isHidden;
 }

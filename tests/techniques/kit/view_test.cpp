@@ -102,7 +102,7 @@ TEST(ViewTest, ReprojectsAsUnprojectingAndProjecting) {
 }
 
 constexpr const char* kReprojectShader = R"(#version 450 core
-#include "kit/pixel_redundancy.glsl"
+#include "kit/redundancy_tests.glsl"
 layout(local_size_x = 1) in;
 layout(std430, binding = 0) readonly buffer Samples { vec4 samples[]; };
 layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
@@ -127,8 +127,8 @@ TEST_F(ViewShaderTest, ReprojectsAsTheHostDoes) {
     }
 
     // The library takes one folder: the shader under test goes next to a copy of the included one.
-    folder.write("kit/pixel_redundancy.glsl",
-                 readFile(shaders.folder() / "kit/pixel_redundancy.glsl"));
+    folder.write("kit/redundancy_tests.glsl",
+                 readFile(shaders.folder() / "kit/redundancy_tests.glsl"));
     const gl::Program compute = program({{"reproject.comp.glsl", kReprojectShader}});
     const gl::Buffer sampleBuffer = gl::Buffer::of(samples);
     gl::Buffer resultBuffer(samples.size() * sizeof(glm::vec4));
