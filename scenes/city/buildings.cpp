@@ -51,8 +51,8 @@ void addRoofStructures(Builders& builders, const Solid& tier, bool hasTank, Rand
         const glm::vec2 middle(
             free.min.x + size.x * ((quarter & 1U) != 0 ? 0.75F : 0.25F),
             free.min.z + size.z * ((quarter == 1 || quarter == 2) ? 0.75F : 0.25F));
-        const glm::vec2 half(size.x * random.uniform(0.10F, 0.20F),
-                             size.z * random.uniform(0.10F, 0.20F));
+        const float halfZ = size.z * random.uniform(0.10F, 0.20F);
+        const glm::vec2 half(size.x * random.uniform(0.10F, 0.20F), halfZ);
         if (k == 0 && hasTank) {
             addWaterTank(builders, {middle.x, y, middle.y}, random);
             continue;
@@ -72,7 +72,8 @@ void addHouse(Builders& builders, const Lot& lot, float detail, Random& random) 
 
     FacadeStyle style = styleOf(oneOf(kHouseColors, random), detail, random);
     style.bayM = 4.2F / detail;
-    const glm::vec2 margin(random.uniform(1.5F, 3.0F), random.uniform(1.5F, 3.0F));
+    const float marginZ = random.uniform(1.5F, 3.0F);
+    const glm::vec2 margin(random.uniform(1.5F, 3.0F), marginZ);
     const float eaves = 0.55F * lot.heightM + 0.2F;
     const Solid body{{lot.min.x + margin.x, 0.2F, lot.min.y + margin.y},
                      {lot.max.x - margin.x, eaves, lot.max.y - margin.y}};
@@ -218,8 +219,9 @@ void addPark(Builders& builders, const Lot& lot, std::uint64_t seed) {
     constexpr int kTreesAcross = 4;
     for (int j = 0; j < kTreesAcross; ++j) {
         for (int i = 0; i < kTreesAcross; ++i) {
-            const glm::vec2 cell((static_cast<float>(i) + random.uniform(0.25F, 0.75F)) * 0.25F,
-                                 (static_cast<float>(j) + random.uniform(0.2F, 0.8F)) * 0.25F);
+            const float row = static_cast<float>(j) + random.uniform(0.2F, 0.8F);
+            const float column = static_cast<float>(i) + random.uniform(0.25F, 0.75F);
+            const glm::vec2 cell(column * 0.25F, row * 0.25F);
             const glm::vec2 at = lot.min + size * cell;
             if (std::abs(at.y - middle.y) < 2.5F) continue;
             addTree(builders, {at.x, 0.35F, at.y}, random.uniform(6.5F, 12.0F), random);

@@ -107,8 +107,9 @@ void addTree(Builders& builders, const glm::vec3& base, float heightM, Random& r
     builders.plants.addTube(trunk, 4, false);
     const float light = random.uniform(0.7F, 1.3F);
     builders.plants.setColor(light * glm::vec3(0.09F, 0.24F, 0.05F));
+    const float alongZ = random.uniform(0.8F, 1.1F);
     const glm::vec3 radii = glm::vec3(0.34F, 0.36F, 0.34F) * heightM *
-                            glm::vec3(random.uniform(0.8F, 1.1F), 1.0F, random.uniform(0.8F, 1.1F));
+                            glm::vec3(random.uniform(0.8F, 1.1F), 1.0F, alongZ);
     addFoliage(builders.plants, base + kUp * (0.68F * heightM), radii, random);
 }
 

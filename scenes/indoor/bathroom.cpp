@@ -759,8 +759,9 @@ void addBathMat(MeshBuilder& builder, Random& random) {
     builder.addBox(kCentre + glm::vec3(0.0F, 0.005F, 0.0F), {kHalf.x, 0.005F, kHalf.y});
     for (int j = 0; j < kRows; ++j) {
         for (int i = 0; i < kColumns; ++i) {
-            const glm::vec2 cell((static_cast<float>(i) + random.uniform(0.25F, 0.75F)) / kColumns,
-                                 (static_cast<float>(j) + random.uniform(0.25F, 0.75F)) / kRows);
+            const float row = static_cast<float>(j) + random.uniform(0.25F, 0.75F);
+            const float column = static_cast<float>(i) + random.uniform(0.25F, 0.75F);
+            const glm::vec2 cell(column / kColumns, row / kRows);
             const glm::vec2 xz = (2.0F * cell - 1.0F) * (kHalf - 0.01F);
             const glm::vec3 base = kCentre + glm::vec3(xz.x, 0.009F, xz.y);
             const float turn = random.uniform();

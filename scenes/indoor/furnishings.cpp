@@ -119,12 +119,13 @@ void addBooks(MeshBuilder& builder, float lengthM, float highestM, int spineCell
     while (x < lengthM - 0.05F) {
         // A set of volumes of one edition, or a single book.
         const auto volumes = random.index(4) == 0 ? 3 + random.index(4) : 1;
-        const glm::vec3 color =
-            kBookColors[random.index(kBookColors.size())] * random.uniform(0.8F, 1.2F);
+        const float light = random.uniform(0.8F, 1.2F);
+        const glm::vec3 color = kBookColors[random.index(kBookColors.size())] * light;
         const glm::vec3 label =
             random.index(2) == 0 ? glm::vec3(0.58F, 0.46F, 0.20F) : 0.5F * color;
-        const glm::vec3 size(random.uniform(0.018F, 0.045F), highestM * random.uniform(0.70F, 1.0F),
-                             random.uniform(0.15F, 0.19F));
+        const float depthM = random.uniform(0.15F, 0.19F);
+        const float heightM = highestM * random.uniform(0.70F, 1.0F);
+        const glm::vec3 size(random.uniform(0.018F, 0.045F), heightM, depthM);
         for (unsigned k = 0; k < volumes && x < lengthM - size.x; ++k) {
             const glm::mat4 place = frame * placed({x, 0, -random.uniform(0.0F, 0.008F)});
             addBook(builder, size, spineCells, glm::min(color, 0.75F), label, place);
@@ -149,8 +150,8 @@ void addPalm(MeshBuilder& builder, float heightM, int fronds, int leafCells, Ran
             return out * (reach * t * (0.35F + 0.65F * t) + 0.02F) +
                    glm::vec3(0, rise * t * (1.45F - 0.55F * t * t), 0);
         };
-        const glm::vec3 green(0.07F + 0.05F * random.uniform(), 0.22F + 0.10F * random.uniform(),
-                              0.045F);
+        const float purity = 0.22F + 0.10F * random.uniform();
+        const glm::vec3 green(0.07F + 0.05F * random.uniform(), purity, 0.045F);
         builder.setColor(green * glm::vec3(1.2F, 0.9F, 0.7F));
         std::vector<MeshBuilder::Station> stem;
         for (int k = 0; k <= 2 * leafCells; ++k) {

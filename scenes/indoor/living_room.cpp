@@ -680,7 +680,8 @@ void addRug(Builders& b, const image::Image8& pattern, int blades, Random& rando
         const auto y = static_cast<int>(v * static_cast<float>(pattern.height()));
         const glm::vec3 wool(linear(pattern.at(x, y, 0)), linear(pattern.at(x, y, 1)),
                              linear(pattern.at(x, y, 2)));
-        const glm::vec2 lean(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F));
+        const float leanZ = random.uniform(-1.0F, 1.0F);
+        const glm::vec2 lean(random.uniform(-1.0F, 1.0F), leanZ);
         const glm::vec3 across =
             0.5F * width * glm::normalize(glm::vec3(lean.y, 0, -lean.x) + glm::vec3(1e-3F, 0, 0));
         const glm::vec3 tip = p + glm::vec3(0.9F * width * lean.x, random.uniform(0.008F, 0.016F),

@@ -241,11 +241,14 @@ image::Image8 paintingTexture(int style, std::uint64_t seed) {
         glm::vec3 color(0.88F, 0.84F, 0.76F);
         Random random(seed, 17);
         for (int k = 0; k < 9; ++k) {
-            const glm::vec2 centre(random.uniform(0.15F, 0.85F), random.uniform(0.15F, 0.85F));
-            const glm::vec2 half(random.uniform(0.05F, 0.25F), random.uniform(0.04F, 0.2F));
+            const float centreV = random.uniform(0.15F, 0.85F);
+            const glm::vec2 centre(random.uniform(0.15F, 0.85F), centreV);
+            const float halfV = random.uniform(0.04F, 0.2F);
+            const glm::vec2 half(random.uniform(0.05F, 0.25F), halfV);
             const bool isRound = random.index(3) == 0;
-            const glm::vec3 paint(random.uniform(0.1F, 0.85F), random.uniform(0.15F, 0.6F),
-                                  random.uniform(0.1F, 0.6F));
+            const float blue = random.uniform(0.1F, 0.6F);
+            const float green = random.uniform(0.15F, 0.6F);
+            const glm::vec3 paint(random.uniform(0.1F, 0.85F), green, blue);
             const glm::vec2 d = glm::abs(glm::vec2(u, v) - centre) / half;
             const float reach = isRound ? glm::length(d) : std::max(d.x, d.y);
             color = glm::mix(paint, color, smoothStep(0.97F, 1.0F, reach));

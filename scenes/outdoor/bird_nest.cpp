@@ -92,7 +92,8 @@ Twig makeTwig(Random& random, float thickness) {
         twig.shell * kBowlRadii *
         glm::vec3(across * sdf::cosine(azimuthRad), height, across * sdf::sine(azimuthRad));
     twig.shellSlope = isLining ? 0.0F : 0.16F * bell(random);
-    twig.headingRad = (random.uniform() < 0.3F ? 1.4F : 0.7F) * bell(random);
+    const float turnRad = random.uniform() < 0.3F ? 1.4F : 0.7F;
+    twig.headingRad = turnRad * bell(random);
     twig.lengthM = random.uniform(0.55F, 1.75F);
     // A few have sprung out of the weave.
     const bool isLoose = depth > 0.2F && random.uniform() < 0.16F;

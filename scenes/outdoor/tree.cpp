@@ -80,8 +80,8 @@ class Grower {
         const float stepM = lengthM / static_cast<float>(level.segments);
         for (int i = 1; i <= level.segments; ++i) {
             const float t = static_cast<float>(i) / static_cast<float>(level.segments);
-            direction = turned(direction, level.wanderRad * random_.uniform(),
-                               random_.uniform(0.0F, 2.0F * kPi));
+            const float roundRad = random_.uniform(0.0F, 2.0F * kPi);
+            direction = turned(direction, level.wanderRad * random_.uniform(), roundRad);
             direction = glm::normalize(direction + kUp * (level.liftPerM * stepM));
             const float taper = levelIndex == 0 ? 1.0F - 0.88F * t : 1.0F - 0.75F * t;
             stations.push_back({stations.back().position + direction * stepM, radiusM * taper});
@@ -216,9 +216,11 @@ void addLeaves(MeshBuilder& builder, const std::vector<Twig>& twigs, std::size_t
         const glm::vec3& a = twig.points[segment];
         const glm::vec3& b = twig.points[segment + 1];
         const glm::vec3 base = glm::mix(a, b, t - static_cast<float>(segment));
-        const glm::vec3 direction = turned(glm::normalize(b - a), random.uniform(0.5F, 1.5F),
-                                           random.uniform(0.0F, 2 * kPi));
-        builder.setColor(kGreens[random.index(4)] * random.uniform(0.8F, 1.2F));
+        const float roundRad = random.uniform(0.0F, 2 * kPi);
+        const glm::vec3 direction =
+            turned(glm::normalize(b - a), random.uniform(0.5F, 1.5F), roundRad);
+        const float light = random.uniform(0.8F, 1.2F);
+        builder.setColor(kGreens[random.index(4)] * light);
         const float ownLengthM = lengthM * random.uniform(0.7F, 1.2F);
         const LeafShape leaf(base, direction, ownLengthM, random.uniform(0.0F, 2.0F * kPi));
         leaf.add(builder, static_cast<int>(triangles * (i + 1) / count - triangles * i / count));

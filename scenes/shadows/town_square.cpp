@@ -113,8 +113,9 @@ void addLeafyTree(Square& square, const glm::vec3& base, int leaves, Random& ran
     square.city.plants.addTube(trunk, 8, true);
     const auto inBall = [&] {
         for (;;) {
-            const glm::vec3 p(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
-                              random.uniform(-1.0F, 1.0F));
+            const float z = random.uniform(-1.0F, 1.0F);
+            const float y = random.uniform(-1.0F, 1.0F);
+            const glm::vec3 p(random.uniform(-1.0F, 1.0F), y, z);
             if (glm::dot(p, p) <= 1.0F && glm::dot(p, p) > 0.01F) return p;
         }
     };
@@ -152,7 +153,8 @@ void addFurniture(Square& square, Random& random) {
     for (int i = 0; i < 7; ++i) {
         square.city.roofs.setColor(random.uniform(0.8F, 1.2F) * glm::vec3(0.42F, 0.28F, 0.14F));
         const float half = random.uniform(0.25F, 0.45F);
-        const glm::vec3 at(random.uniform(7.0F, 12.0F), 0.02F + half, random.uniform(-3.0F, 6.0F));
+        const float z = random.uniform(-3.0F, 6.0F);
+        const glm::vec3 at(random.uniform(7.0F, 12.0F), 0.02F + half, z);
         square.city.roofs.addBox(at, glm::vec3(half));
     }
 }

@@ -139,10 +139,10 @@ class Polygonizer {
             const std::uint32_t quad[4] = {cut(0, 2), cut(0, 3), cut(1, 3), cut(1, 2)};
             mesh_.triangles.emplace_back(quad[0], quad[1], quad[2]);
             mesh_.triangles.emplace_back(quad[0], quad[2], quad[3]);
-        } else if (count == 1) {
-            mesh_.triangles.emplace_back(cut(0, 1), cut(0, 2), cut(0, 3));
-        } else {  // three inside: kInsideFirst puts the outside corner first here
-            mesh_.triangles.emplace_back(cut(0, 1), cut(0, 3), cut(0, 2));
+        } else {  // of three inside, kInsideFirst puts the outside corner first
+            const std::size_t second = count == 1 ? 2 : 3, third = 5 - second;
+            const std::uint32_t triangle[3] = {cut(0, third), cut(0, second), cut(0, 1)};
+            mesh_.triangles.emplace_back(triangle[2], triangle[1], triangle[0]);
         }
     }
 

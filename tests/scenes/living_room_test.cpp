@@ -206,6 +206,11 @@ TEST(LivingRoom, SameSeedSameBytesAndOtherSeedsOthers) {
     EXPECT_NE(digestOf(room(small, 1)), digestOf(room(small, 2)));
 }
 
+TEST(LivingRoom, SameBytesOnEveryMachine) {
+    EXPECT_EQ(digestOf(theRoom()),
+              "3f18cec2a9e562f524de854e3ac06bfa126bdf2dd0d8001db5a08f44af6883d8");
+}
+
 TEST(LivingRoom, BadParametersAreLocated) {
     EXPECT_EQ(test::errorText([] { room("{diffuse_triangles: 39999}"); }),
               "t.yaml:1:21: generator 'living_room': diffuse_triangles is 39999; allowed: 40000 … "

@@ -16,7 +16,9 @@ class TerrainCracksTest : public TerrainTest {
 
     /// From 8 to 80 m above the ground or beside the map, in any direction but upwards.
     kit::View randomView(std::mt19937& random) const {
-        glm::vec3 eye(anywhere(random, -60, 316), 0.0F, anywhere(random, -60, 316));
+        glm::vec3 eye(0.0F);
+        eye.z = anywhere(random, -60, 316);
+        eye.x = anywhere(random, -60, 316);
         float ground = 0.0F;
         for (int i = -8; i <= 8; ++i) {
             for (int j = -8; j <= 8; ++j) {
