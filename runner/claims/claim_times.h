@@ -4,7 +4,7 @@
 // neighbour, falls out of a ratio of two times of that round. The interval is over rounds, by
 // Wilcoxon's signed ranks (metrics::centreInterval) on the scale on which they scatter evenly: a
 // ratio of two equally noisy times is as likely 1.1 as 1 / 1.1. It holds the truth in 95 % from
-// six rounds on, which tests/unit/report/coverage_test.cpp shows.
+// six rounds on, which tests/unit/claims/coverage_test.cpp shows.
 //
 // Extreme values (the smallest of many gaps or steps, the spread) move with the number of rows and
 // the noise; times are judged without them, each comparison by its own interval. That all must

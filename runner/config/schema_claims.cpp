@@ -58,8 +58,8 @@ SchemaSection common() {
               choice(kTimeKinds)},
              {"because", "known | [known]", "none",
               "where it is known not to hold, and why, one for each device, profile and kind of "
-              "scenes, what is of more behind what is of less; any other verdict than the known is "
-              "news",
+              "scenes, what is of more behind what is of less; another verdict than the known is "
+              "news, but for ambiguous; where ambiguous is known, failing is",
               oneOrMore(refTo("because"))}},
             false};
 }

@@ -56,7 +56,7 @@ class FrameTimes {
     /// where some look found the error small enough, rounds go on to the last number of them at
     /// which the interval ends as far from the ends of the sorted values (14, 16, 19: there it is
     /// sure by 97.9 to 98.7 %), with two new values in it. Of those that so would end with 8 or 11
-    /// rounds, 91 % hold the truth. tests/unit/report/coverage_test.cpp has what this comes to.
+    /// rounds, 91 % hold the truth. tests/unit/claims/coverage_test.cpp has what this comes to.
     bool isKnownTo(double relativeError, int asked) const;
     /// By how much two equal cases of the table would differ, as a share: the half width of the
     /// 95 % interval (centreInterval) of the log ratio of two neighbouring cases, measured in pairs
