@@ -223,9 +223,11 @@ inline constexpr std::string_view kSceneAxisPrefix = "scene.";
 inline constexpr const char* kOutputAssumption = "output";
 inline constexpr const char* kSceneAssumption = "scene";
 inline constexpr const char* kSceneSeedAssumption = "scene_seed";
+inline constexpr const char* kFramesAssumption = "measure.frames";
 
 /// `assumptions:` — what the paper left open. One that names a parameter of the technique,
-/// `output`, `scene` or `scene_seed` is bound to it: value and unit are those of the cases.
+/// `output`, `scene`, `scene_seed` or `measure.frames` is bound to it: value and unit are those of
+/// the cases.
 struct Assumption {
     std::string name;
     Node value;  // bound: filled in when the cases are resolved

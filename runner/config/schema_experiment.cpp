@@ -108,7 +108,8 @@ SchemaSection content() {
           "best row is shown",
           mapOf(refTo("fit"))},
          {"assumptions", "{NAME: assumption}", "{}",
-          "what the paper left open: a parameter, `output`, `scene`, `scene_seed`, or free text",
+          "what the paper left open: a parameter, `output`, `scene`, `scene_seed`, "
+          "`measure.frames`, or free text",
           mapOf(refTo("assumption_part"))}}};
 }
 

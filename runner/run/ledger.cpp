@@ -39,7 +39,7 @@ const config::ParamInfo* findInfo(const std::vector<config::ParamInfo>& declared
 
 bool isOfCases(const std::string& name) {
     return name == config::kOutputAssumption || name == config::kSceneAssumption ||
-           name == config::kSceneSeedAssumption;
+           name == config::kSceneSeedAssumption || name == config::kFramesAssumption;
 }
 
 std::string valueIn(const Case& item, const std::string& name, const scene::Catalog& catalog) {
@@ -54,6 +54,7 @@ std::string valueIn(const Case& item, const std::string& name, const scene::Cata
         const scene::SceneSource source = catalog.resolve(item.scene);
         return source.isSeeded() ? std::to_string(source.seed) : "";
     }
+    if (name == config::kFramesAssumption) return std::to_string(item.measure.frames);
     const Node* value = item.params.find(name);
     return value ? tables::canonicalText(*value) : "";
 }
@@ -76,6 +77,7 @@ std::string valuesOf(const std::string& name, const std::vector<Case>& cases,
 
 std::string unitOf(const std::string& name, const config::ParamInfo* info) {
     if (name == config::kOutputAssumption) return "pixels";
+    if (name == config::kFramesAssumption) return "frames";
     return info && info->unit != "1" ? info->unit : "";
 }
 
@@ -88,7 +90,7 @@ bool isNumber(const Node& node) {
 void requireFreeText(const Assumption& assumption, const config::Experiment& experiment,
                      const std::vector<config::ParamInfo>& declared) {
     std::vector<std::string> names = {config::kOutputAssumption, config::kSceneAssumption,
-                                      config::kSceneSeedAssumption};
+                                      config::kSceneSeedAssumption, config::kFramesAssumption};
     for (const config::ParamInfo& info : declared) names.push_back(info.name);
     const std::string near = suggestion(assumption.name, names);
     const auto refuse = [&](const SourceLocation& where, const std::string& what) {
@@ -274,13 +276,16 @@ void requireMeasuredWithin(const Assumption& assumption, const std::vector<Case>
         low = std::min(low, *number);
         high = std::max(high, *number);
     }
+    const bool isOfFrames = assumption.name == config::kFramesAssumption;
     for (const Case& item : cases) {
-        const Node* value = item.params.find(assumption.name);
-        if (!value || !value->isScalar() || item.axes.find(assumption.name)) continue;
-        const auto number = parseDouble(value->text());
+        const Node* param = item.params.find(assumption.name);
+        const bool isParam = param && param->isScalar() && !item.axes.find(assumption.name);
+        if (!isOfFrames && !isParam) continue;
+        const std::string text = isOfFrames ? std::to_string(item.measure.frames) : param->text();
+        const auto number = parseDouble(text);
         if (!number || (*number >= low && *number <= high)) continue;
         refuseRange(assumption, assumption.range,
-                    fmt::format("one that holds what is measured, {}", value->text()));
+                    fmt::format("one that holds what is measured, {}", text));
     }
 }
 
@@ -313,7 +318,7 @@ void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& ca
 void requireRanges(const config::Experiment& experiment, const std::vector<Case>& cases,
                    const scene::Catalog& catalog,
                    std::span<const technique::TechniqueInfo> techniques) {
-    constexpr long long kMaxOutputPx = 16384, kMaxSeed = 1'000'000'000;
+    constexpr long long kMaxOutputPx = 16384, kMaxSeed = 1'000'000'000, kMaxFrames = 1'000'000;
     if (!config::isMeasuredHere(experiment)) return;
     const std::vector<config::ParamInfo> declared = declaredBy(experiment, techniques);
     for (const Assumption& assumption : experiment.assumptions) {
@@ -322,6 +327,9 @@ void requireRanges(const config::Experiment& experiment, const std::vector<Case>
             requireWhole(assumption, 1, kMaxOutputPx);
         } else if (assumption.name == config::kSceneSeedAssumption) {
             requireWhole(assumption, 0, kMaxSeed);
+        } else if (assumption.name == config::kFramesAssumption) {
+            requireWhole(assumption, 1, kMaxFrames);
+            requireMeasuredWithin(assumption, cases);
         } else if (assumption.name == config::kSceneAssumption) {
             requireScenes(experiment, assumption, catalog);
         } else {

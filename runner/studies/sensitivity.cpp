@@ -47,7 +47,9 @@ std::vector<double> pointsOf(double low, double high, int points, bool isInteger
 std::vector<std::string> setsOf(const std::string& name, const std::string& value) {
     if (name == config::kOutputAssumption)
         return {"output.width=" + value, "output.height=" + value};
-    if (name == config::kSceneSeedAssumption) return {"scene_seed=" + value};
+    if (name == config::kSceneSeedAssumption || name == config::kFramesAssumption) {
+        return {name + "=" + value};
+    }
     return {"params_instead." + name + "=" + value};
 }
 

@@ -33,9 +33,10 @@ constexpr Suffix kSuffixes[] = {{"_ms", "ms", "time"},
                                 {"_fps", "fps", "frame rate"},
                                 {"_deg", "°", "angle"},
                                 {"_m", "m", ""}};
-/// The axes that the runner itself has.
+/// What the runner itself gives a case.
 constexpr Suffix kOwn[] = {{"output.width", "px", "width of the image"},
-                           {"output.height", "px", "height of the image"}};
+                           {"output.height", "px", "height of the image"},
+                           {"measure.frames", "", "frames"}};
 
 bool isWordCharacter(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '-';

@@ -304,7 +304,9 @@ PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
     cases_ = gatherCases(paper, cases, {});
     layout_ = std::move(paper.layout);
     printed_ = std::move(paper.printed);
-    for (const config::Assumption& assumption : paper.assumptions) open_.insert(assumption.name);
+    for (const config::Assumption& assumption : paper.assumptions) {
+        open_.insert(settingNameOf(assumption.name));
+    }
     for (const auto& [name, value] : printed_.at) open_.erase(settingNameOf(name));
 }
 

@@ -116,6 +116,32 @@ TEST(Ledger, TakesValueAndUnitFromTheCases) {
     EXPECT_FALSE(experiment.assumptions.back().isBound);
 }
 
+TEST(Ledger, TakesFramesFromWhatIsMeasured) {
+    const Ledger ledger;
+    const config::Experiment experiment = ledger.bound(
+        "measure: {frames: 7}\nassumptions:\n  measure.frames: {range: [5, 9], why: open}\n");
+    const config::Assumption& frames = experiment.assumptions.front();
+    EXPECT_TRUE(frames.isBound);
+    EXPECT_EQ(frames.value.text(), "7");
+    EXPECT_EQ(frames.unit, "frames");
+    const auto errorOf = [&](const std::string& entry) {
+        return ledger.errorOf("measure: {frames: 7}\nassumptions:\n  " + entry);
+    };
+    EXPECT_EQ(errorOf("measure.frames: {range: [5, 9], why: open}\n"), "no error");
+    EXPECT_EQ(errorOf("measure.frames: {value: 7, why: open}\n"),
+              "DIR/t.yaml:6:27: assumption 'measure.frames': 'value' is filled in from the cases; "
+              "allowed: range, why");
+    EXPECT_EQ(errorOf("measure.frames: {range: [8, 9], why: open}\n"),
+              "DIR/t.yaml:6:27: assumption 'measure.frames': range is [8, 9]; allowed: one that "
+              "holds what is measured, 7");
+    EXPECT_EQ(errorOf("measure.frames: {range: [0, 9], why: open}\n"),
+              "DIR/t.yaml:6:28: assumption 'measure.frames': range is 0; allowed: whole numbers, 1 "
+              "… 1000000");
+    EXPECT_EQ(errorOf("measure.frame: {why: open}\n"),
+              "DIR/t.yaml:6:3: assumption 'measure.frame' needs 'value': it is no parameter of "
+              "technique 'still'; did you mean 'measure.frames'?");
+}
+
 TEST(Ledger, RefusesWhatIsNotTheParameters) {
     const Ledger ledger;
     EXPECT_EQ(

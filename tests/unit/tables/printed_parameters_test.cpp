@@ -104,6 +104,7 @@ TEST(PrintedParameters, WhatIsOpenIsNotSaidToBePrinted) {
         lineAt("", frames),
         "Measured at output 8×8 (printed 512×512), light grid 4 (16), frames 3 (paper profile "
         "50).");
+    EXPECT_EQ(lineAt("", "measure.frames: {why: not said}"), lineAt("", frames));
     EXPECT_EQ(lineAt("measure.frames: 60", frames),
               "Measured at output 8×8 (printed 512×512), light grid 4 (16), frames 3 (60).");
     EXPECT_EQ(lineAt("", "output: {range: [8, 512], why: not said}"),
