@@ -53,6 +53,9 @@ struct Study {
 
     const config::Experiment& experiment() const { return plan.experiments.front(); }
     std::size_t left() const { return variations.runs.size() - outcomes.size(); }
+    std::vector<studies::Outcome> withLeft() const {
+        return studies::withLeft(outcomes, variations, left());
+    }
     const studies::Variation& next() const { return variations.runs[outcomes.size()]; }
 };
 
@@ -104,7 +107,7 @@ studies::Outcome measureNext(Study& study, const Selection& selection) {
 void write(const Study& study, const std::string& keep) {
     const std::string markdown = studies::sensitivityMarkdown(study.experiment(), study.outcomes,
                                                               study.variations, study.left());
-    const std::string csv = studies::sensitivityCsv(study.outcomes, study.basis);
+    const std::string csv = studies::sensitivityCsv(study.withLeft(), study.basis);
     writeFileAtomic(study.folder / "sensitivity.md", markdown);
     writeFileAtomic(study.folder / "sensitivity.csv", csv);
     if (keep.empty()) return;
@@ -199,7 +202,7 @@ void print(const Study& study) {
     if (!base.error.empty()) say("{}: {}\n", study.experiment().id, base.error);
     for (std::size_t i = 0; i < base.claims.size(); ++i) {
         say("{} {}: {}; rests on: {}\n", study.experiment().id, base.claims[i].id,
-            studies::dependence(study.outcomes, i), studies::restsOn(study.outcomes, i));
+            studies::dependence(study.outcomes, i), studies::restsOn(study.withLeft(), i));
     }
     say("{}\n", (study.folder / "sensitivity.md").string());
 }
@@ -224,6 +227,8 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
     for (Study& study : studies) {
         if (!options.keep.empty()) takeKept(options.keep, study);
         made += study.outcomes.size();
+        // In today's words, and with what is left, also where no time is left to measure more.
+        if (!study.outcomes.empty()) write(study, options.keep);
     }
     if (!options.from.empty()) {
         const run::StoredRun run = run::readRun(options.from);

@@ -198,6 +198,15 @@ Variations variationsOf(const config::Experiment& experiment, const std::vector<
     return result;
 }
 
+std::vector<Outcome> withLeft(std::vector<Outcome> outcomes, const Variations& variations,
+                              std::size_t left) {
+    const auto& runs = variations.runs;
+    for (std::size_t i = runs.size() - std::min(left, runs.size()); i < runs.size(); ++i) {
+        outcomes.push_back({runs[i], {}, "not made"});
+    }
+    return outcomes;
+}
+
 std::string dependence(const std::vector<Outcome>& all, std::size_t claim) {
     const std::vector<Outcome> outcomes = judged(all, claim);
     if (outcomes.empty()) return "not judged as configured";
@@ -231,10 +240,13 @@ std::string dependence(const std::vector<Outcome>& all, std::size_t claim) {
 
 std::string restsOn(const std::vector<Outcome>& all, std::size_t claim) {
     const std::vector<Outcome> outcomes = judged(all, claim);
-    std::vector<std::string> tried, deciding;
+    std::vector<std::string> known, tried, deciding;
     const auto note = [](std::vector<std::string>& names, const std::string& name) {
         if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     };
+    for (const Outcome& outcome : all) {
+        if (!outcome.variation.assumption.empty()) note(known, outcome.variation.assumption);
+    }
     for (const Outcome& outcome : outcomes) {
         const std::string& name = outcome.variation.assumption;
         if (name.empty()) continue;
@@ -244,6 +256,10 @@ std::string restsOn(const std::vector<Outcome>& all, std::size_t claim) {
         if (isOther) note(deciding, name);
     }
     if (tried.empty()) return "not tried";
+    if (tried.size() < known.size()) {
+        return fmt::format("{} ({} of {} tried)", deciding.empty() ? "none" : joined(deciding),
+                           tried.size(), known.size());
+    }
     if (deciding.empty()) return fmt::format("none of the {} tried", tried.size());
     return fmt::format("{} (of {} tried)", joined(deciding), tried.size());
 }

@@ -44,6 +44,10 @@ struct Outcome {
     std::string error = {};
 };
 
+/// The outcomes, and behind them the last `left` variations, as what was not made.
+std::vector<Outcome> withLeft(std::vector<Outcome> outcomes, const Variations& variations,
+                              std::size_t left);
+
 /// "holds under all 7", "holds under none of 7", or "holds unless …" (where it holds as configured)
 /// or "holds only if …" with the values of each assumption that decides, and between which the
 /// verdict flips (by the margins, linearly). Runs without a verdict are not counted.
@@ -51,7 +55,8 @@ struct Outcome {
 std::string dependence(const std::vector<Outcome>& outcomes, std::size_t claim);
 
 /// Of the assumptions tried those with which the verdict becomes another: "bias, scene_seed (of 5
-/// tried)", "none of the 5 tried"; "not tried" without any.
+/// tried)", "none of the 5 tried"; where some were not, "bias (2 of 5 tried)", "none (1 of 5
+/// tried)"; "not tried" without any.
 std::string restsOn(const std::vector<Outcome>& outcomes, std::size_t claim);
 
 /// A table of claims with their dependence, one of all runs, and what was not varied; `left` are

@@ -59,6 +59,7 @@ std::string sensitivityMarkdown(const config::Experiment& experiment,
                                 const std::vector<Outcome>& outcomes, const Variations& variations,
                                 std::size_t left) {
     const std::vector<ClaimResult>& claims = outcomes.front().claims;
+    const std::vector<Outcome> all = withLeft(outcomes, variations, left);
     std::string text = fmt::format(
         "# Sensitivity of {}\n\n{}\n\nEach assumption alone takes the values of its range; {} "
         "runs{}.\n\n| claim | says | as configured | rests on | under the assumptions |\n| --- | "
@@ -66,10 +67,10 @@ std::string sensitivityMarkdown(const config::Experiment& experiment,
         escapeMarkdown(experiment.id), escapeMarkdown(experiment.title), outcomes.size(),
         left == 0 ? "" : fmt::format(", {} more were not made", left));
     for (std::size_t i = 0; i < claims.size(); ++i) {
-        text += fmt::format("| {} | {} | {} | {} | {} |\n", escapeMarkdown(claims[i].id),
-                            escapeMarkdown(claims[i].text), claims::verdictName(claims[i].verdict),
-                            escapeMarkdown(restsOn(outcomes, i)),
-                            escapeMarkdown(dependence(outcomes, i)));
+        text +=
+            fmt::format("| {} | {} | {} | {} | {} |\n", escapeMarkdown(claims[i].id),
+                        escapeMarkdown(claims[i].text), claims::verdictName(claims[i].verdict),
+                        escapeMarkdown(restsOn(all, i)), escapeMarkdown(dependence(outcomes, i)));
     }
     text += runsMarkdown(outcomes);
     if (variations.fixed.empty()) return text;

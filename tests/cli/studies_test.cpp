@@ -111,6 +111,11 @@ TEST(Sensitivity, GoesOnWhereKeptResultsEnd) {
     };
     const std::string wider = std::string(kClaim) + "  pause_ms: {range: [0, 1], why: left open}\n";
     ASSERT_EQ(run(kClaim, "a", {}).exitCode, 0);
+    // No time is left to try the second assumption: what is kept says so.
+    const ProcessResult none = run(wider, "none", {"--budget", "0.001s"});
+    EXPECT_THAT(none.out, HasSubstr("; rests on: number (1 of 2 tried)\n"));
+    EXPECT_THAT(kept(), HasSubstr(",pause_ms,1,,,,,,not made\n"));
+    EXPECT_THAT(readFile(keep + "/README.md"), HasSubstr("| any | small: number (1 of 2 tried) |"));
     const ProcessResult more = run(wider, "b", {});
     EXPECT_THAT(more.err, HasSubstr("[5/5] sweep/mock pause_ms = 1\n"));
     EXPECT_THAT(more.err, Not(HasSubstr("number = "))) << "these are kept";

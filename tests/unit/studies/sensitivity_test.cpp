@@ -136,7 +136,7 @@ TEST(Sensitivity, LeavesOutWhatCouldNotBeMeasured) {
                                         outcome("kind", "b", Verdict::Holds),
                                         outcome("kind", "c", Verdict::Unmeasured)};
     EXPECT_EQ(dependence(outcomes, 0), "holds under all 2");
-    EXPECT_EQ(restsOn(outcomes, 0), "none of the 1 tried");
+    EXPECT_EQ(restsOn(outcomes, 0), "none (1 of 2 tried)");
     EXPECT_EQ(dependence({outcome("", "", Verdict::NotApplicable)}, 0), "not judged as configured");
 }
 
@@ -149,6 +149,25 @@ TEST(Sensitivity, SaysWhatAVerdictRestsOn) {
              outcome("scene_seed", "2", Verdict::Ambiguous), outcome("kind", "c", Verdict::Holds)},
             0),
         "kind, scene_seed (of 3 tried)");
+}
+
+TEST(Sensitivity, SaysOfHowManyAssumptionsSomeWereTried) {
+    Variations variations;
+    for (const char* name : {"", "kind", "bias", "kind"})
+        variations.runs.push_back({name, "", std::nullopt, {}});
+    const std::vector<Outcome> made{outcome("", "", Verdict::Fails),
+                                    outcome("kind", "b", Verdict::Holds)};
+    EXPECT_EQ(restsOn(made, 0), "kind (of 1 tried)");
+    const std::vector<Outcome> all = withLeft(made, variations, 2);
+    ASSERT_EQ(all.size(), 4U);
+    EXPECT_EQ(restsOn(all, 0), "kind (1 of 2 tried)");
+    EXPECT_EQ(dependence(all, 0), dependence(made, 0));
+    EXPECT_EQ(restsOn(withLeft({made[0], outcome("kind", "b", Verdict::Fails)}, variations, 2), 0),
+              "none (1 of 2 tried)");
+    EXPECT_EQ(restsOn(withLeft({made[0]}, variations, 3), 0), "not tried");
+    const test::TemporaryFolder folder;
+    const auto file = folder.write("p-1.csv", sensitivityCsv(all, "abc"));
+    EXPECT_EQ(restsOn(readSensitivity(file, "abc"), 0), "kind (1 of 2 tried)");
 }
 
 TEST(Sensitivity, WritesTablesAndReadsThemAgain) {
@@ -167,7 +186,7 @@ TEST(Sensitivity, WritesTablesAndReadsThemAgain) {
         sensitivityMarkdown(experiment, outcomes, {{}, {{"view", "it has no range"}}}, 2);
     for (const char* line :
          {"runs, 2 more were not made.",
-          "| C | a \\< b | holds | kind (of 1 tried) | holds unless kind is b |\n",
+          "| C | a \\< b | holds | kind (1 of 2 tried) | holds unless kind is b |\n",
           "| kind = b | fails:  |\n", "| bias = 5 | exit code 2: bias is 5 |\n",
           "- view: it has no range\n"}) {
         EXPECT_NE(text.find(line), std::string::npos) << line << '\n' << text;
@@ -178,7 +197,7 @@ TEST(Sensitivity, WritesTablesAndReadsThemAgain) {
     const std::vector<Outcome> read = readSensitivity(file, "abc");
     ASSERT_EQ(read.size(), 3U);
     EXPECT_EQ(sensitivityCsv(read, "abc"), csv);
-    EXPECT_EQ(restsOn(read, 0), "kind (of 1 tried)");
+    EXPECT_EQ(restsOn(read, 0), "kind (1 of 2 tried)");
     EXPECT_TRUE(readSensitivity(file, "of another config").empty());
     folder.write("p-1.csv", csv + "abc,kind,c,C,perhaps,,,,\n");
     EXPECT_EQ(test::errorText([&] { readSensitivity(file, "abc"); }, folder.path()),
