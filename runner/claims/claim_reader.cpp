@@ -132,6 +132,10 @@ bool ClaimReader::readsShare() const {
     });
 }
 
+bool ClaimReader::readsPrinted() const {
+    return readsSome([](const tables::Cell& cell) { return cell.printed.has_value(); });
+}
+
 bool ClaimReader::readsOnly(const std::string& metric) const {
     const auto isColumn = [&](const Operand& operand) {
         const std::string& text = operand.text();

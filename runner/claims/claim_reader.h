@@ -52,6 +52,8 @@ class ClaimReader {
     /// Whether some cell that it may read is, perhaps scaled, a recorded percentage, which has an
     /// interval where it is a share of a count.
     bool readsShare() const;
+    /// Whether a value was printed for some cell that it may read.
+    bool readsPrinted() const;
     /// Whether its operands are columns alone, no arithmetic, and show that metric as recorded.
     bool readsOnly(const std::string& metric) const;
     /// How many rows it reads.

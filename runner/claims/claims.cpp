@@ -353,6 +353,10 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
             const std::string why = whyNotTestable(experiment, claim, reader);
             if (!why.empty()) complain(why);
         }
+        if (claim.boundFrom == ClaimSpec::BoundSource::Print && !reader.readsPrinted()) {
+            complain(
+                "has its bound from print, and reads no cell with a printed value: text | ours");
+        }
         for (const ClaimSpec::Known& known : claim.because) {
             if (known.verdict != verdictName(Verdict::Ambiguous) || reader.readsTime()) continue;
             if (reader.readsShare() || seedsAtMost(experiment, known.profile) > 1) continue;

@@ -118,8 +118,9 @@ std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& e
 std::string whatIsAbsent(const config::ClaimSpec& claim, const tables::Table& table);
 
 /// Throws Error where a claim of the experiment reads a time and has no kind, or has one and reads
-/// none, where a document's table does not say whose the claim or its bound is, where a claim of a
-/// calibrated input reads cells that are not marked so, a reason is for a device or profile that
+/// none, where a document's table does not say whose the claim or its bound is, where a claim whose
+/// bound is from print reads no printed cell, or one of a calibrated input cells that are not
+/// marked so, a reason is for a device or profile that
 /// the claim is not judged on, or what has no interval is known as ambiguous. `table` may have been
 /// built from no records.
 void requireProvenance(const config::Experiment& experiment, const tables::Table& table);

@@ -338,6 +338,31 @@ TEST(Claims, ADocumentsClaimsSayWhoseTheyAre) {
         "no error");
 }
 
+TEST(Claims, ABoundFromPrintReadsWhatIsPrinted) {
+    const auto errorOf = [](const std::string& claim) {
+        const config::Experiment experiment = tables::experimentFrom(
+            "sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: {a: {metric: bytes}, b: "
+            "{metric: count}}}\nprinted: {values: \"scene,a\\ns,4\\nt,\"}\nclaims:\n  C: {says: "
+            "s, origin: document, bound_from: print, " +
+            claim + "}\n");
+        try {
+            requireProvenance(experiment, tables::buildTable(experiment, {}));
+            return std::string("no error");
+        } catch (const Error& error) {
+            const std::string text = error.what();
+            return text.substr(text.find("claim"));
+        }
+    };
+    const std::string readsNone =
+        "claim 'C' has its bound from print, and reads no cell with a printed value: "
+        "text | ours";
+    EXPECT_EQ(errorOf("bound: a, below: 4"), "no error");
+    EXPECT_EQ(errorOf("ratio: b / a, at_most: 4"), "no error") << "one that is printed will do";
+    EXPECT_EQ(errorOf("bound: b, below: 4"), readsNone);
+    EXPECT_EQ(errorOf("bound: a, below: 4, at: {scene: t}"), readsNone) << "what is lost";
+    EXPECT_EQ(errorOf("across: scene, ratio: s / t, at_most: 4, at: {column: a}"), "no error");
+}
+
 /// What has no interval is never told from its bound.
 TEST(Claims, OnlyWhatHasAnIntervalIsKnownAsAmbiguous) {
     const auto errorOf = [](const std::string& measure, const std::string& claim) {
