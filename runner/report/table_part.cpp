@@ -19,10 +19,10 @@ using tables::TableRow;
 
 namespace {
 
-/// "×1.2" of the printed number, where both are of the same parameters; a rate of what was, not a
-/// comparison of machines.
+/// "×1.2" of the printed number, where both are of the same parameters, all of them given, and
+/// nothing was fitted to it; a rate of what was, not a comparison of machines.
 std::string ratioHtml(const Cell& cell) {
-    if (!cell.isAtPrintedParameters) return "";
+    if (!cell.isAtPrintedParameters || !cell.openParameters.empty() || cell.isCalibrated) return "";
     if (cell.values.empty() || cell.printedValues.empty() || !cell.printedValues[0]) return "";
     const double printed = *cell.printedValues[0];
     if (std::isinf(cell.values[0].value)) return "";

@@ -174,6 +174,7 @@ TEST(Report, MarksTimesThatAreNotOfOneClock) {
 TEST(Report, NoRatioAtOtherParameters) {
     const test::TemporaryFolder folder;
     ReportRun run = runIn(folder.path());
+    const config::Node printed = run.experiments[0].paperCases[0].params;
     run.experiments[0].paperCases[0].params.set("light_grid", config::Node::number(16));
     judge(run, records());
     writeReport(folder.path() / "report.html", {&run, 1});
@@ -186,6 +187,20 @@ TEST(Report, NoRatioAtOtherParameters) {
         html,
         HasSubstr("Of 2 printed numbers 2 were measured again: 2 at other parameters, which each "
                   "table names.</p>"));
+
+    run.experiments[0].paperCases[0].params = printed;
+    judge(run, records());
+    const auto page = [&] {
+        writeReport(folder.path() / "report.html", {&run, 1});
+        return readFile(folder.path() / "report.html");
+    };
+    EXPECT_THAT(page(), HasSubstr("class=\"ratio\""));
+    tables::Cell& cell = run.tables[0].rows[0].cells[0];
+    cell.openParameters = {"light_grid"};
+    EXPECT_THAT(page(), Not(HasSubstr("class=\"ratio\""))) << "of what is not given";
+    cell.openParameters.clear();
+    cell.isCalibrated = true;
+    EXPECT_THAT(page(), Not(HasSubstr("class=\"ratio\""))) << "of an input that was fitted to it";
 
     run.experiments[0].paperCases.clear();  // of a plan of before they were kept
     judge(run, records());
