@@ -122,8 +122,8 @@ class LatexWriter {
             text_ += fmt::format(
                 "%   {}  as measured\n"
                 "%   likewise {}/low and /high, the ends of its bounds,\n"
-                "%   and /bounds, what they are: 95 % interval, or the range of too few "
-                "processes;\n"
+                "%   and /bounds, what they are: 95 % interval (of times that of this "
+                "sitting), or the range of too few processes;\n"
                 "%   and, of several statistics in a cell, each below the cell's key\n",
                 cite(example), example);
         }

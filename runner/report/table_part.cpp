@@ -152,7 +152,8 @@ std::string constantsHtml(const Page& page) {
 
 /// What stands under the numbers of this table.
 std::string smallPrintHtml(const Page& page) {
-    bool hasIntervals = false, hasRanges = false, hasShares = false, hasRatios = false;
+    bool hasIntervals = false, hasTimes = false, hasRanges = false, hasShares = false,
+         hasRatios = false;
     for (const RunPart& part : page.parts) {
         if (!part.experiment || part.table.isOnlyPrinted) continue;
         for (const TableRow& row : part.table.rows) {
@@ -162,7 +163,8 @@ std::string smallPrintHtml(const Page& page) {
                 const bool isInterval = cell.bounds() == tables::Bounds::Interval;
                 hasIntervals |= isInterval;
                 hasRanges |= !isInterval;
-                hasShares |= isInterval && cell.unit == "%";
+                hasTimes |= isInterval && cell.isTime;
+                hasShares |= isInterval && !cell.isTime && cell.unit == "%";
             }
         }
     }
@@ -171,12 +173,12 @@ std::string smallPrintHtml(const Page& page) {
         says += fmt::format("{}{}", says.empty() ? "" : " · ", text);
     };
     if (hasIntervals) add("95 % interval a–b");
+    if (hasTimes) add("of a time that of this sitting: another run's may differ by more");
     if (hasShares)
         add("of a share that was counted once by its count alone: other scenes may differ by more");
     if (hasRanges) add("range a … b, of too few processes for an interval");
     if (hasRatios) {
-        add("× measured ÷ printed, where it was measured at the printed parameters, as far as they "
-            "are given");
+        add("× measured ÷ printed, where it was measured at the printed parameters");
     }
     if (!says.empty()) says = "Small print under a number: " + says + ". ";
     return fmt::format(

@@ -124,21 +124,25 @@ std::string markdownCell(const tables::Cell& cell, bool isOnlyPrinted) {
     return text;
 }
 
-bool hasCountedShares(const tables::Table& table) {
-    return std::ranges::any_of(table.rows, [](const tables::TableRow& row) {
-        return std::ranges::any_of(row.cells, [](const tables::Cell& cell) {
+bool hasIntervals(const tables::Table& table, bool (*areSuch)(const tables::Cell&)) {
+    return std::ranges::any_of(table.rows, [&](const tables::TableRow& row) {
+        return std::ranges::any_of(row.cells, [&](const tables::Cell& cell) {
             return cell.hasShownBounds() && cell.bounds() == tables::Bounds::Interval &&
-                   cell.unit == "%";
+                   areSuch(cell);
         });
     });
 }
 
 /// What the bounds beside the numbers are.
 std::string boundsLegend(const tables::Table& table) {
-    const char* interval = hasCountedShares(table)
-                               ? " [95 % interval; of a share that was counted once, by its count "
-                                 "alone: other scenes may differ by more]"
-                               : " [95 % interval]";
+    const bool hasTimes = hasIntervals(table, [](const tables::Cell& cell) { return cell.isTime; });
+    const bool hasShares = hasIntervals(
+        table, [](const tables::Cell& cell) { return !cell.isTime && cell.unit == "%"; });
+    const std::string interval =
+        fmt::format(" [95 % interval{}{}]", hasTimes ? ", of times that of this sitting" : "",
+                    hasShares ? "; of a share that was counted once, by its count alone: other "
+                                "scenes may differ by more"
+                              : "");
     const bool hasPrinted = std::ranges::any_of(table.rows, [](const tables::TableRow& row) {
         return std::ranges::any_of(
             row.cells, [](const tables::Cell& cell) { return cell.printed.has_value(); });

@@ -96,6 +96,26 @@ TEST(Writers, TableFiles) {
     EXPECT_THAT(latex, HasSubstr("\\textless{}b\\textgreater{}\\&\\textbar{}\\_\\%"));
 }
 
+/// Rounds share what lasts as long as a run.
+TEST(Writers, IntervalsOfTimesAreOfOneSitting) {
+    const Written run;
+    std::vector<tables::Table> built = tables::buildTables({experiment()}, records());
+    tables::Cell& draw = built[0].rows[0].cells[1];
+    ASSERT_TRUE(draw.isTime);
+    draw.low = "7.0";
+    const auto legend = [&] {
+        writeTables(run.folder.path(), built);
+        const std::string text = run.read("tables/zju2005-9.9.md");
+        return text.substr(text.find("Printed"), text.find("\n\nMeasured") - text.find("Printed"));
+    };
+    EXPECT_THAT(legend(), HasSubstr(" [95 % interval, of times that of this sitting] (range"));
+    draw.unit = "%";
+    EXPECT_THAT(legend(), HasSubstr(" [95 % interval, of times that of this sitting] (range"))
+        << "a share of a time is of no count";
+    draw.isTime = false;
+    EXPECT_THAT(legend(), HasSubstr(" [95 % interval; of a share that was counted once, by its"));
+}
+
 TEST(Writers, CalibratedCellsAreMarked) {
     const Written run;
     tables::RecordMaker maker;
