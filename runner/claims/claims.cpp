@@ -224,12 +224,13 @@ ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const config::Experiment
 }
 
 /// Kept results tell nothing of a verdict that they do not start from.
-std::string restsOn(const ClaimResult& result, const KeptSensitivity& tried) {
+std::string restsOn(const ClaimResult& result, const ReportContext& context) {
     if (result.verdict == Verdict::NotApplicable || result.verdict == Verdict::Unmeasured) {
         return "";
     }
-    const auto found = tried.find({result.table, result.id});
-    if (found == tried.end()) return "not tried";
+    if (!context.knowsTried) return kRestsOnUnknown;
+    const auto found = context.tried.find({result.table, result.id});
+    if (found == context.tried.end()) return "not tried";
     if (found->second.verdict == result.verdict) return found->second.restsOn;
     return fmt::format("not tried: {} then", verdictName(found->second.verdict));
 }
@@ -269,7 +270,7 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
     std::vector<ClaimResult> results;
     for (const ClaimSpec& claim : experiment.claims) {
         results.push_back(evaluateWhatIsThere(claim, experiment, table, context));
-        results.back().restsOn = restsOn(results.back(), context.tried);
+        results.back().restsOn = restsOn(results.back(), context);
         const SourceLocation file{experiment.file.string(), 0, 0};  // of a plan: JSON has no lines
         results.back().where = claim.location.file == file.file ? claim.location : file;
     }

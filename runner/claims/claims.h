@@ -27,6 +27,8 @@ struct TriedClaim {
     Verdict verdict = Verdict::Unmeasured;  // as configured, when it was tried
     std::string restsOn;                    // "bias, scene_seed (of 5 tried)"
 };
+/// What a verdict rests on where no folder of such results was found.
+inline constexpr const char* kRestsOnUnknown = "not known";
 /// By table and claim.
 using KeptSensitivity = std::map<std::pair<std::string, std::string>, TriedClaim>;
 
@@ -45,6 +47,7 @@ struct ReportContext {
     std::string command;      // of the whole run, for people
     std::optional<double> fragmentShare = {};  // of hardware: gl::DeviceBalance::fragmentShare()
     KeptSensitivity tried = {};
+    bool knowsTried = true;  // false: there was nowhere to look
     tables::TableNotes tableNotes = {};
     SceneFiles sceneFiles = {};
     /// The command line left rows out or gave values of its own: verdicts are not known of that.
@@ -87,7 +90,7 @@ struct ClaimResult {
     SourceLocation where{};  // its config, with the line where that is known; not in claims.csv
 
     /// Which assumptions the verdict rests on: "bias (of 5 tried)", "none of the 5 tried", "not
-    /// tried"; empty where there is no verdict.
+    /// tried"; kRestsOnUnknown; empty where there is no verdict.
     std::string restsOn = {};
 };
 

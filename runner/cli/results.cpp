@@ -118,6 +118,16 @@ void sayVerdicts(const std::vector<claims::ClaimResult>& claims) {
     }
 }
 
+/// Once a command, where verdicts stand without it.
+void sayWhatIsNotKnown(const std::vector<claims::ClaimResult>& claims) {
+    const auto isUnknown = [](const claims::ClaimResult& claim) {
+        return claim.restsOn == claims::kRestsOnUnknown;
+    };
+    if (std::ranges::none_of(claims, isUnknown)) return;
+    say("on which assumptions verdicts rest is not known: there is no {}\n",
+        (dataFolder("configs").parent_path() / "results/sensitivity").string());
+}
+
 /// The verdicts; the exit code when all cases were measured.
 int sayClaims(const std::vector<claims::ClaimResult>& claims) {
     for (const claims::ClaimResult& claim : claims) {
@@ -128,6 +138,7 @@ int sayClaims(const std::vector<claims::ClaimResult>& claims) {
             why.empty() ? "" : fmt::format("; {}", why));
     }
     say("{}\n", claims::originSummaryLine(claims));
+    sayWhatIsNotKnown(claims);
     annotate(claims);
     const bool anyFails = std::any_of(claims.begin(), claims.end(), [](const auto& claim) {
         return claim.verdict == claims::Verdict::Fails;
@@ -162,7 +173,10 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     for (tables::Table& table : tables) {
         table.notes.insert(table.notes.begin(), notes.begin(), notes.end());
     }
-    const claims::ReportContext context = results::reportContext(run.manifest);
+    claims::ReportContext context = results::reportContext(run.manifest);
+    run::Plan judged = run.plan;
+    judged.experiments = experiments;
+    results::takeKeptSensitivity(judged, context);
     std::vector<claims::ClaimResult> claims = claims::evaluateClaims(experiments, tables, context);
     for (claims::ClaimResult& claim : claims) {
         claim.reason = mark + (claim.reason.empty() ? "" : "; " + claim.reason);
@@ -256,6 +270,7 @@ int conclude(const fs::path& runDir) {
     sayNotes(run.manifest);
     const std::size_t failing = sayFailing(conclusion.claims);
     sayVerdicts(conclusion.claims);
+    sayWhatIsNotKnown(conclusion.claims);
     annotate(conclusion.claims);
     sayPrintedCells(conclusion.printedCells);
     if (!std::ranges::all_of(conclusion.tables, isEmpty)) {

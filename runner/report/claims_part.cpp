@@ -83,7 +83,8 @@ std::string requiredText(const ClaimResult& claim, const tables::Table& table) {
 
 /// That nothing was tried is said once, below the meanings of the verdicts.
 std::string restsOnText(const ClaimResult& claim) {
-    return claim.restsOn == "not tried" ? "" : claim.restsOn;
+    const bool isNone = claim.restsOn == "not tried" || claim.restsOn == claims::kRestsOnUnknown;
+    return isNone ? "" : claim.restsOn;
 }
 
 /// What was found in one run, below the claim's words.
@@ -156,7 +157,7 @@ std::string legendHtml() {
     return html +
            "</dl>\n<p class=\"soft small\">“Rests on” names the assumptions that turn a verdict "
            "round; of a claim without it none was tried (<code>gfxrepro sensitivity</code> tries "
-           "them).</p>\n";
+           "them), or no folder of kept results was there to look in.</p>\n";
 }
 
 std::string claimsHtml(const Page& page, const Model& model, ClaimDetail detail) {

@@ -1,5 +1,6 @@
 #include "runner/results/results.h"
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <utility>
@@ -38,9 +39,17 @@ claims::ReportContext reportContext(const run::Json& manifest) {
     return context;
 }
 
+void takeKeptSensitivity(const run::Plan& plan, claims::ReportContext& context) {
+    const auto kept = studies::keptSensitivity(plan);
+    const bool areOfDocuments =
+        std::ranges::any_of(plan.experiments, &config::Experiment::isPublished);
+    context.knowsTried = kept || !areOfDocuments;
+    context.tried = kept.value_or(claims::KeptSensitivity{});
+}
+
 claims::ReportContext reportContext(const run::StoredRun& run) {
     claims::ReportContext context = reportContext(run.manifest);
-    context.tried = studies::keptSensitivity(run.plan);
+    takeKeptSensitivity(run.plan, context);
     const run::Request& request = run.plan.request;
     context.isAltered = !request.only.empty() || !request.sets.empty() || !request.sweeps.empty();
     context.tableNotes =

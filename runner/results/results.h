@@ -17,6 +17,10 @@ claims::ReportContext reportContext(const run::Json& manifest);
 /// Of its manifest, with what kept results of `gfxrepro sensitivity` say of its claims.
 claims::ReportContext reportContext(const run::StoredRun& run);
 
+/// What the kept results say of the claims of a plan; that there is nowhere to look where it has
+/// tables of a document.
+void takeKeptSensitivity(const run::Plan& plan, claims::ReportContext& context);
+
 struct Results {
     claims::ReportContext context;
     std::vector<tables::Table> tables;        // beside the experiments of the run's plan

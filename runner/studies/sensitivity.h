@@ -88,7 +88,8 @@ std::string sensitivityIndex(const std::filesystem::path& folder, const std::str
 /// What kept results say of a plan's claims, beside the verdict under which they were tried. Stale
 /// ones are left out.
 claims::KeptSensitivity keptSensitivity(const run::Plan& plan, const std::filesystem::path& folder);
-/// Of the results that are kept in the source tree; empty where there are none.
-claims::KeptSensitivity keptSensitivity(const run::Plan& plan);
+/// Of the results that are kept beside the configs, in results/sensitivity; nothing where there is
+/// no such folder, as beside a program that was installed.
+std::optional<claims::KeptSensitivity> keptSensitivity(const run::Plan& plan);
 
 }  // namespace gfxrepro::studies

@@ -241,9 +241,10 @@ claims::KeptSensitivity keptSensitivity(const run::Plan& plan, const fs::path& f
     return kept;
 }
 
-claims::KeptSensitivity keptSensitivity(const run::Plan& plan) {
+std::optional<claims::KeptSensitivity> keptSensitivity(const run::Plan& plan) {
     const fs::path folder = dataFolder("configs").parent_path() / "results" / "sensitivity";
-    return fs::is_directory(folder) ? keptSensitivity(plan, folder) : claims::KeptSensitivity{};
+    if (!fs::is_directory(folder)) return std::nullopt;
+    return keptSensitivity(plan, folder);
 }
 
 }  // namespace gfxrepro::studies

@@ -182,6 +182,38 @@ TEST(Sensitivity, ReportsShowWhatIsKept) {
     EXPECT_THAT(claims({"--set", "number=4"}), HasSubstr("one sample,,not tried\n"));
 }
 
+TEST(Sensitivity, WhereNothingCouldBeKeptIsSaidOnce) {
+    const TemporaryFolder folder;
+    folder.write("configs/scenes/readme", "");
+    const std::string config = folder.write(
+        "t.yaml",
+        "table: demo2026/1\ntitle: t\ntechnique: mock\nsweep: {number: [1, 2]}\n"
+        "layout:\n  rows: number\n  columns:\n    n: {metric: number}\n"
+        "claims:\n  A: {says: a, origin: ours, bound_from: ours, bound: n, above: -1}\n"
+        "  B: {says: b, origin: ours, bound_from: ours, bound: n, above: -2}\n");
+    const std::string run = folder.path() / "run", kept = folder.path() / "results/sensitivity";
+    const auto out = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), GFXREPRO_MOCK_PROGRAM);
+        const ProcessResult result =
+            runProgram(arguments, {"GFXREPRO_DATA=" + folder.path().string()});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return result.out;
+    };
+    const std::string line =
+        "on which assumptions verdicts rest is not known: there is no " + kept + "\n";
+    const auto timesSaid = [&](const std::string& text) {
+        return (text.find(line) != text.npos) + (text.find(line) != text.rfind(line) ? 1 : 0);
+    };
+    EXPECT_EQ(timesSaid(out({"reproduce", config, "--device", "software", "--out", run})), 1);
+    EXPECT_THAT(readFile(run + "/claims.csv"), HasSubstr(",not known\n"));
+    EXPECT_EQ(timesSaid(out({"claims", run, "--config", config})), 1);
+    fs::create_directories(kept);
+    EXPECT_EQ(timesSaid(out({"claims", run})), 0);
+    EXPECT_THAT(readFile(run + "/claims.csv"), HasSubstr(",not tried\n"));
+    EXPECT_EQ(timesSaid(out({"claims", run, "--config", config})), 0);
+    EXPECT_THAT(readFile(run + "/judged-afterwards/claims.csv"), HasSubstr(",not tried\n"));
+}
+
 TEST(Budget, TablesThatDoNotFitAreLeftOutAndNamed) {
     const TemporaryFolder folder;
     const std::string body =
