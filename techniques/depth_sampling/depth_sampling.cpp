@@ -31,9 +31,9 @@ std::vector<kit::View> viewsOf(const std::vector<scene::Camera>& cameras, glm::i
     return views;
 }
 
-/// As many independent samples as would leave the mean of the frames' shares (0 … 1) as uncertain as
-/// the frames leave it (Kish 1965, "Survey Sampling", the design effect); at most all `samples`, as
-/// those of a frame go together.
+/// As many independent samples as would leave the mean of the frames' shares (0 … 1) as uncertain
+/// as the frames leave it (Kish 1965, "Survey Sampling", the design effect); at most all `samples`,
+/// as those of a frame go together.
 double effectiveSamples(const std::vector<double>& shares, double mean, double samples) {
     double squares = 0.0;
     for (const double share : shares) squares += (share - mean) * (share - mean);

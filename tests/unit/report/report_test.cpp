@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "runner/claims/claims.h"
@@ -195,11 +196,15 @@ TEST(Report, NoRatioAtOtherParameters) {
         return readFile(folder.path() / "report.html");
     };
     EXPECT_THAT(page(), HasSubstr("class=\"ratio\""));
-    tables::Cell& cell = run.tables[0].rows[0].cells[0];
-    cell.openParameters = {"light_grid"};
+    const auto forAllCells = [&](const auto& change) {
+        for (tables::TableRow& row : run.tables[0].rows) std::ranges::for_each(row.cells, change);
+    };
+    forAllCells([](tables::Cell& cell) { cell.openParameters = {"light_grid"}; });
     EXPECT_THAT(page(), Not(HasSubstr("class=\"ratio\""))) << "of what is not given";
-    cell.openParameters.clear();
-    cell.isCalibrated = true;
+    forAllCells([](tables::Cell& cell) {
+        cell.openParameters.clear();
+        cell.isCalibrated = true;
+    });
     EXPECT_THAT(page(), Not(HasSubstr("class=\"ratio\""))) << "of an input that was fitted to it";
 
     run.experiments[0].paperCases.clear();  // of a plan of before they were kept
