@@ -10,8 +10,6 @@ namespace gfxrepro::run {
 
 namespace {
 
-using Lane = config::Measure::Lane;
-
 /// Of each case, the processes of which all rows have values; and of each experiment one past the
 /// last process that has rows.
 struct Recorded {
@@ -56,10 +54,11 @@ bool mayFollow(const config::Measure& measure) {
     return measure.mayContinue() || measure.certainRounds() < measure.processes;
 }
 
-/// Round `process` of these cases, all of which take part in it.
+bool isTimed(const Case& item) { return item.measure.lane == config::Measure::Lane::Timing; }
+
+/// Round `process` of these cases of one experiment, all of which take part in it.
 void addRound(std::vector<const Case*> cases, int process, std::vector<Unit>& units) {
-    const bool isBackwards =
-        process % 2 == 1 && !cases.empty() && cases.front()->measure.lane == Lane::Timing;
+    const bool isBackwards = process % 2 == 1 && !cases.empty() && isTimed(*cases.front());
     if (isBackwards) std::ranges::reverse(cases);
     for (const Case* item : cases) units.push_back({item, process, {}});
 }
@@ -88,16 +87,16 @@ std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& 
             addRound(std::move(cases), process, units);
         }
     }
-    std::stable_partition(units.begin(), units.end(), [](const Unit& unit) {
-        return unit.item->measure.lane == Lane::Quality;
-    });
+    const auto timed = std::stable_partition(
+        units.begin(), units.end(), [](const Unit& unit) { return !isTimed(*unit.item); });
+    std::ranges::stable_sort(timed, units.end(), {}, &Unit::process);
     return units;
 }
 
 Rounds::Rounds(const Plan& plan, const std::vector<records::Record>& records,
                const std::vector<Json>& log) {
     for (const Case& item : plan.cases) {
-        if (item.measure.lane != Lane::Timing || !plan.measures(item)) continue;
+        if (!isTimed(item) || !plan.measures(item)) continue;
         const auto [table, isNew] = tables_.try_emplace(item.experiment);
         if (isNew) {
             order_.push_back(item.experiment);
@@ -120,8 +119,16 @@ Rounds::Rounds(const Plan& plan, const std::vector<records::Record>& records,
 }
 
 void Rounds::begin(const std::string& experiment, TimePoint now) {
+    end(experiment, now);
     const auto table = tables_.find(experiment);
-    if (table != tables_.end() && !table->second.begin) table->second.begin = now;
+    if (table != tables_.end()) table->second.runsSince = now;
+}
+
+void Rounds::end(const std::string& experiment, TimePoint now) {
+    const auto table = tables_.find(experiment);
+    if (table == tables_.end() || !table->second.runsSince) return;
+    table->second.spent += now - *table->second.runsSince;
+    table->second.runsSince.reset();
 }
 
 void Rounds::add(const std::vector<records::Record>& rows) {
@@ -131,7 +138,7 @@ void Rounds::add(const std::vector<records::Record>& rows) {
     }
 }
 
-std::vector<Unit> Rounds::next(const std::string& experiment, TimePoint now) {
+std::vector<Unit> Rounds::next(const std::string& experiment) {
     const auto found = tables_.find(experiment);
     if (found == tables_.end() || !found->second.ending.is_null()) return {};
     Table& table = found->second;
@@ -139,15 +146,14 @@ std::vector<Unit> Rounds::next(const std::string& experiment, TimePoint now) {
     const std::size_t rounds = table.times.roundCount();
     const auto process = static_cast<int>(rounds);
     const std::optional<double> error = table.times.relativeError();
-    const std::chrono::duration<double> spent =
-        table.begin ? now - *table.begin : std::chrono::duration<double>(0.0);
     std::vector<const Case*> cases;
     for (const Case* item : table.cases) {
         if (table.times.hasRounds(item->id, process)) cases.push_back(item);
     }
     // A round takes as long as those before it did.
     const int measured = std::max(table.roundsBegun, measure.certainRounds());
-    const bool isAffordable = spent.count() * (measured + 1) / measured <= measure.timeBudgetS;
+    const bool isAffordable = 
+        table.spent.count() * (measured + 1) / measured <= measure.timeBudgetS;
     const bool isAsked = process < measure.processes;
     const bool isUnknown = measure.mayContinue() && process < measure.processesAtMost &&
                            !table.times.isKnownTo(measure.relativeError, measure.processes);
@@ -162,7 +168,7 @@ std::vector<Unit> Rounds::next(const std::string& experiment, TimePoint now) {
                     {"rounds", rounds},
                     {"ended_by", tables::endOfRounds(measure, table.times)},
                     {"relative_error", error ? Json(*error) : Json(nullptr)},
-                    {"seconds", spent.count()}};
+                    {"seconds", table.spent.count()}};
     return {};
 }
 

@@ -16,9 +16,10 @@
 namespace gfxrepro::run {
 
 /// The units of a plan, or of its shard, in the order in which they run: the quality lane, side by
-/// side, then the timing lane; experiment by experiment, round by round. In the timing lane every
-/// other round goes backwards (ABBA), so that what drifts evenly reaches all cases of a table
-/// alike.
+/// side, experiment by experiment; then the timing lane, round by round, each of all experiments.
+/// So the rounds of a table are spread over the run, and what changes within minutes is in its
+/// intervals; its cases still follow each other within a round, every other one backwards (ABBA),
+/// so that what drifts evenly reaches all of them alike.
 ///
 /// With the `records` of a run, of rounds beyond the first `processes` those that were begun, too:
 /// in these a case takes part that was measured in all rounds before.
@@ -36,13 +37,14 @@ class Rounds {
     Rounds(const Plan& plan, const std::vector<records::Record>& records,
            const std::vector<Json>& log);
 
-    /// A unit is about to run; the first one of an experiment starts its budget, which counts what
-    /// is spent by this start of the program.
+    /// A unit of an experiment runs, until end() or the begin() of its second try. Budgets count
+    /// this alone, and of this start of the program.
     void begin(const std::string& experiment, TimePoint now);
+    void end(const std::string& experiment, TimePoint now);
     void add(const std::vector<records::Record>& rows);
     /// The units of the next round of an experiment whose rounds so far are complete; empty when
     /// there is none, which is then decided and said by ending().
-    std::vector<Unit> next(const std::string& experiment, TimePoint now);
+    std::vector<Unit> next(const std::string& experiment);
     bool isUndecided(const std::string& experiment) const;
     /// Experiments that are still to be decided, in the plan's order.
     std::vector<std::string> undecided() const;
@@ -59,7 +61,8 @@ class Rounds {
     struct Table {
         std::vector<const Case*> cases;  // those that this run measures
         tables::FrameTimes times;
-        std::optional<TimePoint> begin = {};
+        std::optional<TimePoint> runsSince = {};
+        std::chrono::duration<double> spent{0.0};
         int roundsBegun = 0;
         Json ending;
     };

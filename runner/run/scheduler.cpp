@@ -124,33 +124,26 @@ class Scheduler {
             std::ranges::count_if(workers_, [](auto& w) { return w->isBusy(); }));
     }
 
-    /// Whether a unit waits that may run now. When a table of times is through, another round of it
-    /// may come first; when nothing waits at all, one of a table that was left undecided.
+    /// Whether a unit waits. When none does and none runs, another round of each table of times
+    /// that still needs one.
     bool hasNext() {
-        const bool isThrough = waiting_.empty() || waiting_.front().item->experiment != table_;
-        if (isThrough && rounds_.isUndecided(table_)) {
-            if (busyCount() > 0) return false;  // its last unit is running
-            if (addRound(table_)) return true;
+        if (waiting_.empty() && busyCount() == 0) {
+            for (const std::string& table : rounds_.undecided()) addRound(table);
         }
-        while (waiting_.empty() && busyCount() == 0 && !rounds_.undecided().empty()) {
-            addRound(rounds_.undecided().front());
-        }
-        if (!waiting_.empty()) table_ = waiting_.front().item->experiment;
         return !waiting_.empty();
     }
 
-    /// Puts the next round of a table first; or says in the log why there is none.
-    bool addRound(const std::string& table) {
-        const std::vector<Unit> more = rounds_.next(table, Clock::now());
+    /// Puts the next round of a table last; or says in the log why there is none.
+    void addRound(const std::string& table) {
+        const std::vector<Unit> more = rounds_.next(table);
         if (more.empty()) {
             Json event = {{"event", "rounds"}};
             event.update(rounds_.ending(table));
             directory_.log(event);
-            return false;
+            return;
         }
-        waiting_.insert(waiting_.begin(), more.begin(), more.end());
+        waiting_.insert(waiting_.end(), more.begin(), more.end());
         observer_.unitsAdded(more);
-        return true;
     }
 
     /// Gives out units in order, as far as the lanes allow.
@@ -288,6 +281,7 @@ class Scheduler {
 
     void finish(const Unit& unit, const CaseResult& result, const std::string& output,
                 const char* event = "case") {
+        rounds_.end(unit.item->experiment, Clock::now());
         record(unit, result, output, event);
         for (const Case* twin : unit.twins) {
             record({twin, unit.process, {}, {}, unit.item}, result, "", event);
@@ -341,7 +335,6 @@ class Scheduler {
     std::deque<Unit> waiting_;
     std::map<const Case*, std::string> workKeys_;  // of cases in the quality lane that have twins
     Rounds& rounds_;
-    std::string table_;  // of the unit that ran last, or is next
     const RunDirectory& directory_;
     const SchedulerOptions& options_;
     PhaseClock& phases_;
