@@ -54,7 +54,9 @@ bool mayFollow(const config::Measure& measure) {
     return measure.mayContinue() || measure.certainRounds() < measure.processes;
 }
 
-bool isTimed(const Case& item) { return item.measure.lane == config::Measure::Lane::Timing; }
+bool isTimed(const Case& item) {
+    return item.measure.lane == config::Measure::Lane::Timing;
+}
 
 /// Round `process` of these cases of one experiment, all of which take part in it.
 void addRound(std::vector<const Case*> cases, int process, std::vector<Unit>& units) {
@@ -87,8 +89,8 @@ std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& 
             addRound(std::move(cases), process, units);
         }
     }
-    const auto timed = std::stable_partition(
-        units.begin(), units.end(), [](const Unit& unit) { return !isTimed(*unit.item); });
+    const auto timed = std::stable_partition(units.begin(), units.end(),
+                                             [](const Unit& unit) { return !isTimed(*unit.item); });
     std::ranges::stable_sort(timed, units.end(), {}, &Unit::process);
     return units;
 }
@@ -152,7 +154,7 @@ std::vector<Unit> Rounds::next(const std::string& experiment) {
     }
     // A round takes as long as those before it did.
     const int measured = std::max(table.roundsBegun, measure.certainRounds());
-    const bool isAffordable = 
+    const bool isAffordable =
         table.spent.count() * (measured + 1) / measured <= measure.timeBudgetS;
     const bool isAsked = process < measure.processes;
     const bool isUnknown = measure.mayContinue() && process < measure.processesAtMost &&

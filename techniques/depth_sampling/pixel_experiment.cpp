@@ -84,15 +84,22 @@ Measures PixelExperiment::measure(const MeasureSettings& settings) {
     Measures result;
     const std::vector<const DepthImage*> images = first(images_, images_.size());
     const bool needsFrames = settings.usefulness || settings.availability;
-    for (std::size_t f = 0; needsFrames && f < views_.frames.size(); ++f) {
-        drawFrame(f);
-        const DepthImage* const frame[] = {&*outputFrame_};
-        for (std::size_t i = 0; settings.usefulness && i < images_.size(); ++i) {
-            measures_.mark(images_[i], marks_[i], frame, true, kOccluded, kUseful);
+    const std::size_t frameCount = needsFrames ? views_.frames.size() : 0;
+    std::vector<DepthImage> frames;  // samples are tested with as many at once as a test takes
+    frames.reserve(PixelMeasures::kMaxImages);
+    for (std::size_t f = 0; f < frameCount; ++f) {
+        frames.push_back(renderer_.makeImage(views_.frames[f]));
+        renderer_.render(scene_, frames.back());
+        if (settings.availability) {
+            measures_.beginAvailability(frames.back(), images);
+            result.frames.push_back(measures_.finishAvailability());
         }
-        if (!settings.availability) continue;
-        measures_.beginAvailability(*outputFrame_, images);
-        result.frames.push_back(measures_.finishAvailability());
+        if (frames.size() < PixelMeasures::kMaxImages && f + 1 < frameCount) continue;
+        for (std::size_t i = 0; settings.usefulness && i < images_.size(); ++i) {
+            measures_.mark(images_[i], marks_[i], first(frames, frames.size()), true, kOccluded,
+                           kUseful);
+        }
+        frames.clear();
     }
     for (const gl::Texture& marks : marks_) {
         result.images.push_back({.samples = measures_.count(marks, kSample),

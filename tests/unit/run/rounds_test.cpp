@@ -128,11 +128,9 @@ TEST(Rounds, GoOnToTheLastOfEqualDepth) {
 TEST(Rounds, GoOnWhileTheErrorIsLarge) {
     const run::Plan plan = timedPlan();
     run::Rounds rounds(plan, rows(plan, 6, 0.5), {});
-    EXPECT_THAT(namesOf(rounds.next("t/1")),
-                ElementsAre("t/1 a 1 #6", "t/1 b 1 #6", "t/1 c 1 #6"));
+    EXPECT_THAT(namesOf(rounds.next("t/1")), ElementsAre("t/1 a 1 #6", "t/1 b 1 #6", "t/1 c 1 #6"));
     for (std::size_t i = 2; i < 5; ++i) rounds.add({timeRow(plan.cases[i], 15.0, 6)});
-    EXPECT_THAT(namesOf(rounds.next("t/1")),
-                ElementsAre("t/1 c 1 #7", "t/1 b 1 #7", "t/1 a 1 #7"));
+    EXPECT_THAT(namesOf(rounds.next("t/1")), ElementsAre("t/1 c 1 #7", "t/1 b 1 #7", "t/1 a 1 #7"));
     for (std::size_t i = 2; i < 5; ++i) rounds.add({timeRow(plan.cases[i], 15.0, 7)});
     EXPECT_THAT(rounds.next("t/1"), IsEmpty());
     EXPECT_EQ(rounds.ending("t/1")["ended_by"], "processes_at_most");
