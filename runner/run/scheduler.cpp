@@ -8,7 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <iterator>
 #include <memory>
+#include <set>
+#include <sstream>
 #include <string_view>
 
 #include "runner/run/twins.h"
@@ -114,7 +117,8 @@ class Scheduler {
         workers_.clear();
         images_.requireOurs();
         records_.requireOurs();
-        outcome_.warnings = rounds_.warnings();
+        outcome_.warnings.assign(warnings_.begin(), warnings_.end());
+        std::ranges::copy(rounds_.warnings(), std::back_inserter(outcome_.warnings));
         return std::move(outcome_);
     }
 
@@ -263,6 +267,15 @@ class Scheduler {
                !(isExpected(unit.item) && std::ranges::all_of(unit.twins, isExpected));
     }
 
+    /// What a technique, a loader or a driver warned of while the unit ran.
+    void noteWarnings(const std::string& output) {
+        constexpr std::string_view kMark = "warning: ";
+        std::istringstream lines(output);
+        for (std::string line; std::getline(lines, line);) {
+            if (line.starts_with(kMark)) warnings_.insert(line.substr(kMark.size()));
+        }
+    }
+
     void logCase(const char* name, const Unit& unit, const CaseResult& result,
                  const std::string& output) const {
         Json event = {{"event", name},
@@ -282,6 +295,7 @@ class Scheduler {
     void finish(const Unit& unit, const CaseResult& result, const std::string& output,
                 const char* event = "case") {
         rounds_.end(unit.item->experiment, Clock::now());
+        noteWarnings(output);
         record(unit, result, output, event);
         for (const Case* twin : unit.twins) {
             record({twin, unit.process, {}, {}, unit.item}, result, "", event);
@@ -343,7 +357,8 @@ class Scheduler {
     records::ImageWriter images_;
     records::RecordWriter records_;
     std::vector<std::unique_ptr<WorkerHandle>> workers_;
-    int lostInARow_ = 0;  // units that ended device-lost
+    int lostInARow_ = 0;              // units that ended device-lost
+    std::set<std::string> warnings_;  // of units, each once
     RunOutcome outcome_;
 };
 

@@ -50,7 +50,7 @@ struct RunOutcome {
     int voided = 0;    // likewise, but their times are void: blank pictures or unequal work
     int failed = 0;    // others, but for those that were expected
     int expected = 0;  // that failed or were skipped as a list of expectations says
-    std::vector<std::string> warnings;  // about times
+    std::vector<std::string> warnings;  // of units, each once; then about times
     bool isInterrupted = false;         // by SIGINT, SIGTERM or SIGHUP
     std::string stopReason;             // of a stop before the end that nobody asked for then
     std::vector<SceneUse> scenes;

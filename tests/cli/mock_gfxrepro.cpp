@@ -76,6 +76,9 @@ class Mock : public technique::Technique {
     void setup(technique::SetupContext&) override {
         memory_.assign(static_cast<std::size_t>(allocateMib_) << 20, 'x');
         image_ = gl::Texture::make2D(GL_R32F, {8, 8});
+        if (const char* warning = std::getenv("GFXREPRO_MOCK_WARNING")) {
+            std::fprintf(stderr, "warning: %s\n", warning);
+        }
     }
 
     void render(technique::FrameContext&) override {

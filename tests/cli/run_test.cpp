@@ -174,6 +174,20 @@ TEST(Run, PrintedParametersHaveToBeParameters) {
                              "'pause_ms'?\n");
 }
 
+/// Of three cases alike: told at the end, once.
+TEST(Run, WhatCasesWarnOfIsTold) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2, 3]}\n");
+    const ProcessResult run = runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device",
+                                          "software", "--out", folder.path() / "run"},
+                                         {"GFXREPRO_MOCK_WARNING=a frame shows no reflector"});
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    const std::string warning = "warning: a frame shows no reflector\n";
+    const std::size_t at = run.err.find(warning);
+    ASSERT_NE(at, std::string::npos) << run.err;
+    EXPECT_EQ(run.err.find(warning, at + 1), std::string::npos) << run.err;
+}
+
 TEST(Run, SecondRunIntoOneFolderIsRefused) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "params: {pause_ms: 4000}\n");
