@@ -182,7 +182,7 @@ void requireSameRequest(const RunOptions& options, const run::Request& request,
 void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device, Prepared& run) {
     const std::string machine = run::machineName(run::newManifest(run.plan, device));
     const std::vector<std::string> again =
-        run::replaceForeignTimes(run.plan, run.directory, run.manifest, machine);
+        run::replaceForeignTimes(run.plan, run.directory, run.log, run.manifest, machine);
     const std::vector<std::string> machines = run::machinesOf(run.manifest);
     run::beginInvocation(run.manifest, commandLine);
     run::breakSeal(run.manifest);

@@ -58,11 +58,26 @@ bool isTimed(const Case& item) {
     return item.measure.lane == config::Measure::Lane::Timing;
 }
 
-/// Round `process` of these cases of one experiment, all of which take part in it.
-void addRound(std::vector<const Case*> cases, int process, std::vector<Unit>& units) {
-    const bool isBackwards = process % 2 == 1 && !cases.empty() && isTimed(*cases.front());
-    if (isBackwards) std::ranges::reverse(cases);
-    for (const Case* item : cases) units.push_back({item, process, {}});
+/// Round `process` of `count` of an experiment, and the cases that take part in it.
+struct Round {
+    int experiment = 0;  // which one of those in its lane
+    int process = 0;
+    int count = 0;
+    std::vector<const Case*> cases;
+};
+
+void append(Round round, std::vector<Unit>& units) {
+    const bool isBackwards =
+        round.process % 2 == 1 && !round.cases.empty() && isTimed(*round.cases.front());
+    if (isBackwards) std::ranges::reverse(round.cases);
+    for (const Case* item : round.cases) units.push_back({item, round.process, {}});
+}
+
+/// Every experiment's rounds evenly over the whole, and those of several in turn.
+void spread(std::vector<Round>& rounds, int experiments) {
+    std::ranges::stable_sort(rounds, {}, [&](const Round& round) {
+        return (round.process + (round.experiment + 0.5) / experiments) / round.count;
+    });
 }
 
 }  // namespace
@@ -70,28 +85,34 @@ void addRound(std::vector<const Case*> cases, int process, std::vector<Unit>& un
 std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& records) {
     const Recorded recorded = recordedOf(records);
     std::vector<Unit> units;
+    std::vector<Round> timed;
+    int timedExperiments = 0;
     for (std::size_t first = 0; first < plan.cases.size();) {
         const std::vector<const Case*> all = casesFrom(plan, first);
         first += all.size();
         const auto begun = recorded.rounds.find(all.front()->experiment);
-        int rounds = begun == recorded.rounds.end() ? 0 : begun->second;
-        for (const Case* item : all) rounds = std::max(rounds, item->measure.certainRounds());
-        for (int process = 0; process < rounds; ++process) {
-            std::vector<const Case*> cases;
+        int count = begun == recorded.rounds.end() ? 0 : begun->second;
+        for (const Case* item : all) count = std::max(count, item->measure.certainRounds());
+        for (int process = 0; process < count; ++process) {
+            Round round{timedExperiments, process, count, {}};
             for (const Case* item : all) {
                 const auto complete = recorded.complete.find(item->id);
                 const bool isFurther = mayFollow(item->measure) &&
                                        complete != recorded.complete.end() &&
                                        hasAllBefore(complete->second, process);
                 const bool isCertain = process < item->measure.certainRounds();
-                if (plan.measures(*item) && (isCertain || isFurther)) cases.push_back(item);
+                if (plan.measures(*item) && (isCertain || isFurther)) round.cases.push_back(item);
             }
-            addRound(std::move(cases), process, units);
+            if (isTimed(*all.front())) {
+                timed.push_back(std::move(round));
+            } else {
+                append(std::move(round), units);
+            }
         }
+        timedExperiments += isTimed(*all.front()) ? 1 : 0;
     }
-    const auto timed = std::stable_partition(units.begin(), units.end(),
-                                             [](const Unit& unit) { return !isTimed(*unit.item); });
-    std::ranges::stable_sort(timed, units.end(), {}, &Unit::process);
+    spread(timed, timedExperiments);
+    for (Round& round : timed) append(std::move(round), units);
     return units;
 }
 
@@ -163,7 +184,7 @@ std::vector<Unit> Rounds::next(const std::string& experiment) {
     if (isWanted && isAffordable && !cases.empty()) {
         table.roundsBegun = measured + 1;
         std::vector<Unit> units;
-        addRound(std::move(cases), process, units);
+        append({.process = process, .cases = std::move(cases)}, units);
         return units;
     }
     table.ending = {{"table", experiment},
@@ -177,6 +198,10 @@ std::vector<Unit> Rounds::next(const std::string& experiment) {
 bool Rounds::isUndecided(const std::string& experiment) const {
     const auto table = tables_.find(experiment);
     return table != tables_.end() && table->second.ending.is_null();
+}
+
+bool Rounds::mayFollow(const std::string& experiment) const {
+    return isUndecided(experiment) && run::mayFollow(tables_.at(experiment).cases.front()->measure);
 }
 
 std::vector<std::string> Rounds::undecided() const {

@@ -16,10 +16,10 @@
 namespace gfxrepro::run {
 
 /// The units of a plan, or of its shard, in the order in which they run: the quality lane, side by
-/// side, experiment by experiment; then the timing lane, round by round, each of all experiments.
-/// So the rounds of a table are spread over the run, and what changes within minutes is in its
-/// intervals; its cases still follow each other within a round, every other one backwards (ABBA),
-/// so that what drifts evenly reaches all of them alike.
+/// side, experiment by experiment; then the timing lane, in which the rounds of each experiment are
+/// spread evenly, so that what changes within minutes is in its intervals. The cases of a round
+/// follow each other, in every other one backwards (ABBA), so that what drifts evenly reaches all
+/// of them alike.
 ///
 /// With the `records` of a run, of rounds beyond the first `processes` those that were begun, too:
 /// in these a case takes part that was measured in all rounds before.
@@ -46,6 +46,8 @@ class Rounds {
     /// there is none, which is then decided and said by ending().
     std::vector<Unit> next(const std::string& experiment);
     bool isUndecided(const std::string& experiment) const;
+    /// Whether rounds may follow those that are measured whatever they take.
+    bool mayFollow(const std::string& experiment) const;
     /// Experiments that are still to be decided, in the plan's order.
     std::vector<std::string> undecided() const;
 

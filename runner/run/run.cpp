@@ -69,14 +69,22 @@ Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vect
 }
 
 std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
-                                             Json& manifest, const std::string& machine) {
+                                             const std::vector<Json>& log, Json& manifest,
+                                             const std::string& machine) {
     if (!fs::exists(directory.recordsFile())) records::RecordWriter{directory.recordsFile()};
     std::set<std::string> unfinished;
     for (const Unit& unit : remainingUnits(plan, directory)) {
         if (unit.item->measure.lane != config::Measure::Lane::Timing) continue;
-        const std::string& experiment = unit.item->experiment;
-        if (timingMachine(manifest, experiment) != machine) unfinished.insert(experiment);
+        unfinished.insert(unit.item->experiment);
     }
+    // Between two rounds no unit is left of a table that goes on.
+    const Rounds rounds = roundsOf(plan, directory, log);
+    for (const std::string& experiment : rounds.undecided()) {
+        if (rounds.mayFollow(experiment)) unfinished.insert(experiment);
+    }
+    std::erase_if(unfinished, [&](const std::string& experiment) {
+        return timingMachine(manifest, experiment) == machine;
+    });
     if (unfinished.empty()) return {};
     std::vector<records::Record> kept, replaced;
     std::set<std::string> experiments;

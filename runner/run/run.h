@@ -28,7 +28,8 @@ Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vect
 /// records.csv to `records-replaced.csv`. Notes the machine in the manifest and gives the
 /// experiments. Does nothing on the machine on which the run began.
 std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
-                                             Json& manifest, const std::string& machine);
+                                             const std::vector<Json>& log, Json& manifest,
+                                             const std::string& machine);
 
 /// What a run directory holds, for tables, claims and report.
 struct StoredRun {

@@ -189,12 +189,12 @@ TEST(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
     shard.run.plan.shard.reset();
     const TemporaryFolder folder;
     const run::RunDirectory directory = directoryWith(folder, shard);
-    EXPECT_THAT(run::replaceForeignTimes(plan, directory, shard.run.manifest,
+    EXPECT_THAT(run::replaceForeignTimes(plan, directory, {}, shard.run.manifest,
                                          run::machineName(shard.run.manifest)),
                 IsEmpty());
     EXPECT_EQ(records::readRecords(directory.recordsFile()).size(), 3U);
 
-    EXPECT_THAT(run::replaceForeignTimes(plan, directory, shard.run.manifest, "another node"),
+    EXPECT_THAT(run::replaceForeignTimes(plan, directory, {}, shard.run.manifest, "another node"),
                 ElementsAre("t/1"));
     EXPECT_EQ(run::timingMachine(shard.run.manifest, "t/1"), "another node");
     const std::vector<records::Record> kept = records::readRecords(directory.recordsFile());
@@ -208,12 +208,30 @@ TEST(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
     EXPECT_EQ(run::remainingUnits(plan, directory).size(), 4U);
 }
 
+TEST(ForeignTimes, TablesBetweenTwoRoundsAreMeasuredAgain) {
+    run::Plan plan = makePlan();
+    for (run::Case& item : plan.cases) {
+        if (item.measure.lane == config::Measure::Lane::Quality) continue;
+        item.measure.timeBudgetS = 60.0;
+        item.measure.processes = 2;
+        item.measure.processesAtLeast = 1;
+    }
+    cluster::ShardRun shard = makeShard(plan, 1, 1, {0, 4, 5}, "GPU A");
+    const TemporaryFolder folder;
+    const run::RunDirectory directory = directoryWith(folder, shard);
+    const run::Json ended = {{"event", "rounds"}, {"table", "t/1"}, {"rounds", 1}};
+    EXPECT_THAT(run::replaceForeignTimes(plan, directory, {ended}, shard.run.manifest, "another"),
+                IsEmpty());
+    EXPECT_THAT(run::replaceForeignTimes(plan, directory, {}, shard.run.manifest, "another"),
+                ElementsAre("t/1"));
+}
+
 TEST(ForeignTimes, FinishedTablesStay) {
     const run::Plan plan = makePlan();
     cluster::ShardRun shard = makeShard(plan, 1, 1, {0, 4, 5}, "GPU A");
     const TemporaryFolder folder;
     const run::RunDirectory directory = directoryWith(folder, shard);
-    EXPECT_THAT(run::replaceForeignTimes(plan, directory, shard.run.manifest, "another node"),
+    EXPECT_THAT(run::replaceForeignTimes(plan, directory, {}, shard.run.manifest, "another node"),
                 IsEmpty());
     EXPECT_EQ(run::timingMachine(shard.run.manifest, "t/1"), "CPU, 2 cores, GPU A, 4.5");
     EXPECT_EQ(records::readRecords(directory.recordsFile()).size(), 3U);
