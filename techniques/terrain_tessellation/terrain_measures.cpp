@@ -8,17 +8,35 @@
 namespace gfxrepro::terrain_tessellation {
 namespace {
 
-/// Whether the pixel and its eight neighbours are covered; those outside of the image count as the
-/// pixel does.
-bool isInside(const DepthMap& map, glm::ivec2 pixel) {
-    for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-            const glm::ivec2 neighbour =
-                glm::clamp(pixel + glm::ivec2(dx, dy), glm::ivec2(0), map.view.sizePx - 1);
-            if (!map.isCovered(neighbour)) return false;
+/// Whether a pixel up to `reachPx` away, across, up or askew, meets the condition.
+template <class Condition>
+bool anyNear(const DepthMap& map, glm::ivec2 pixel, int reachPx, const Condition& condition) {
+    for (int dy = -reachPx; dy <= reachPx; ++dy) {
+        for (int dx = -reachPx; dx <= reachPx; ++dx) {
+            const glm::ivec2 at = pixel + glm::ivec2(dx, dy);
+            if (map.contains(at) && condition(at)) return true;
         }
     }
-    return true;
+    return false;
+}
+
+/// Marks background of `drawn` that is none of a hole: the truth has background there, too, or
+/// beside it, the image ends, or no terrain is drawn above.
+std::vector<std::uint8_t> soundBackground(const DepthMap& drawn, const DepthMap& truth) {
+    const glm::ivec2 last = drawn.view.sizePx - 1;
+    std::vector<std::uint8_t> marks(drawn.depthM.size());
+    for (int x = 0; x <= last.x; ++x) {
+        bool isBelowTerrain = false;
+        for (int y = last.y; y >= 0; --y) {
+            isBelowTerrain = isBelowTerrain || drawn.isCovered({x, y});
+            if (drawn.isCovered({x, y})) continue;
+            const bool isOnRim = x == 0 || y == 0 || x == last.x || y == last.y;
+            marks[drawn.indexOf({x, y})] =
+                isOnRim || !isBelowTerrain ||
+                anyNear(truth, {x, y}, 1, [&](glm::ivec2 at) { return !truth.isCovered(at); });
+        }
+    }
+    return marks;
 }
 
 }  // namespace
@@ -54,15 +72,15 @@ HeightErrors heightErrors(const DepthMap& drawn,
 
 std::vector<std::uint8_t> crackMarks(const DepthMap& drawn, const DepthMap& truth) {
     GFXREPRO_ASSERT(drawn.view.sizePx == truth.view.sizePx);
-    std::vector<std::uint8_t> marks(drawn.depthM.size());
-    for (int x = 0; x < drawn.view.sizePx.x; ++x) {
-        bool isBelowTerrain = false;
-        for (int y = drawn.view.sizePx.y - 1; y >= 0; --y) {
-            if (drawn.isCovered({x, y})) {
-                isBelowTerrain = true;
-            } else if (isBelowTerrain && isInside(truth, {x, y})) {
-                marks[drawn.indexOf({x, y})] = 1;
-            }
+    // Coarser ground has another outline: it opens bays of up to three pixels beside the truth's.
+    constexpr int kReachPx = 2;
+    const std::vector<std::uint8_t> sound = soundBackground(drawn, truth);
+    const auto isSound = [&](glm::ivec2 at) { return sound[drawn.indexOf(at)] != 0; };
+    std::vector<std::uint8_t> marks;
+    marks.reserve(sound.size());
+    for (int y = 0; y < drawn.view.sizePx.y; ++y) {
+        for (int x = 0; x < drawn.view.sizePx.x; ++x) {
+            marks.push_back(!drawn.isCovered({x, y}) && !anyNear(drawn, {x, y}, kReachPx, isSound));
         }
     }
     return marks;

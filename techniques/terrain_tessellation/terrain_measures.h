@@ -21,6 +21,9 @@ struct DepthMap {
         return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(view.sizePx.x) +
                static_cast<std::size_t>(pixel.x);
     }
+    bool contains(glm::ivec2 pixel) const {
+        return glm::clamp(pixel, glm::ivec2(0), view.sizePx - 1) == pixel;
+    }
     bool isCovered(glm::ivec2 pixel) const { return depthM[indexOf(pixel)] > 0.0F; }
 };
 
@@ -37,9 +40,10 @@ HeightErrors heightErrors(
     const DepthMap& drawn, const std::function<float(float x, float z)>& heightAt,
     const std::function<void()>& afterRow = [] {});
 
-/// Marks pixels through which the background shows although the terrain is whole
-/// there: the truth covers the pixel and its eight neighbours, and `drawn` covers one above it in
-/// its column, so that no horizon drawn too low counts. A byte a pixel, rows from the bottom.
+/// Marks pixels through which the background shows although the terrain is whole there: below
+/// drawn terrain, and further from what the truth, too, shows of the background, and from the
+/// image's rim, beside which it may, than an outline drawn too low or too narrow leaves bare. A
+/// byte a pixel, rows from the bottom.
 std::vector<std::uint8_t> crackMarks(const DepthMap& drawn, const DepthMap& truth);
 std::size_t markedCount(const std::vector<std::uint8_t>& marks);
 

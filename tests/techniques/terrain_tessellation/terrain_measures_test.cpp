@@ -72,6 +72,32 @@ TEST(TerrainMeasuresTest, ALowerHorizonIsNoCrack) {
     EXPECT_EQ(markedCount(crackMarks(drawn, truth)), 0u);
 }
 
+/// `truth` with background in the rectangle.
+DepthMap withoutTerrain(DepthMap map, glm::ivec2 low, glm::ivec2 high) {
+    for (int y = low.y; y <= high.y; ++y) {
+        for (int x = low.x; x <= high.x; ++x) map.depthM[map.indexOf({x, y})] = 0.0F;
+    }
+    return map;
+}
+
+TEST(TerrainMeasuresTest, AnOutlineDrawnTooNarrowIsNoCrackButWhatGoesOnFromItIs) {
+    // Background right of column 11, below terrain.
+    const DepthMap truth = withoutTerrain(fromAbove(0.0F), {12, 0}, {15, 9});
+    EXPECT_EQ(markedCount(crackMarks(withoutTerrain(truth, {9, 4}, {11, 5}), truth)), 0u);
+    EXPECT_EQ(markedCount(crackMarks(withoutTerrain(truth, {5, 4}, {11, 5}), truth)), 4u * 2u);
+    // Behind a spike, a pixel wide.
+    EXPECT_EQ(markedCount(crackMarks(withoutTerrain(truth, {10, 4}, {10, 5}), truth)), 0u);
+    EXPECT_EQ(markedCount(crackMarks(withoutTerrain(truth, {9, 4}, {9, 5}), truth)), 2u);
+}
+
+TEST(TerrainMeasuresTest, AnOutlineBesideTheImageIsNoCrackButAHoleThatReachesInIs) {
+    const DepthMap truth = fromAbove(0.0F);
+    EXPECT_EQ(markedCount(crackMarks(withoutTerrain(truth, {0, 4}, {0, 5}), truth)), 0u);
+    EXPECT_EQ(markedCount(crackMarks(withoutTerrain(truth, {13, 0}, {15, 5}), truth)), 0u);
+    EXPECT_EQ(markedCount(crackMarks(withoutTerrain(truth, {6, 3}, {15, 5}), truth)), 7u * 3u);
+    EXPECT_EQ(markedCount(crackMarks(withoutTerrain(truth, {3, 0}, {12, 7}), truth)), 10u * 5u);
+}
+
 TEST(TerrainMeasuresTest, TheTruthsOwnBackgroundIsNoCrack) {
     DepthMap truth = fromAbove(0.0F);
     for (int x = 0; x < 16; ++x) truth.depthM[truth.indexOf({x, 3})] = 0.0F;
