@@ -197,6 +197,10 @@ TEST(Program, DeclaresWhatItSays) {
         errorOf("command: t\nmetrics: {fps: {unit: 1/s}}"),
         "c.yaml:2:23: program: metric 'fps' has the unit '1/s'; what is per second has a name "
         "that ends in _per_second, by which claims know that it varies");
+    for (const char* unit : {"fps", "Hz", "1/ms", "ray/second", "seconds", "milliseconds"}) {
+        EXPECT_THAT(errorOf(std::string("command: t\nmetrics: {speed: ") + unit + "}"),
+                    testing::HasSubstr(std::string("'speed' has the unit '") + unit + "'; "));
+    }
     EXPECT_EQ(errorOf("command: t\nmetrics: {a: {doc: x}}"),
               "c.yaml:2:11: program: metric 'a' needs 'unit'; \"1\" for none");
     EXPECT_EQ(
