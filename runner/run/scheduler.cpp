@@ -88,18 +88,9 @@ class Scheduler {
           expectations_(options.expectations),
           images_(directory.path()),
           records_(directory.recordsFile()) {
-        for (const Unit& unit : units) {
-            if (std::string key = workKey(*unit.item); !key.empty()) {
-                workKeys_.try_emplace(unit.item, std::move(key));
-            }
-        }
-        std::map<std::string_view, int> cases;
-        for (const auto& [item, key] : workKeys_) ++cases[key];
-        std::set<const Case*> alone;
-        for (const auto& [item, key] : workKeys_) {
-            if (cases[key] == 1) alone.insert(item);
-        }
-        std::erase_if(workKeys_, [&](const auto& entry) { return alone.contains(entry.first); });
+        std::set<const Case*> cases;
+        for (const Unit& unit : units) cases.insert(unit.item);
+        workKeys_ = keysOfTwins(cases);
     }
 
     RunOutcome run() {

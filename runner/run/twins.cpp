@@ -2,6 +2,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "runner/core/error.h"
 #include "runner/core/hash.h"
@@ -65,6 +66,19 @@ std::string workKey(const Case& item) {
     spellNumbersAlike(content);
     content["seed"] = std::to_string(item.seed);
     return sha256(content.dump());
+}
+
+std::map<const Case*, std::string> keysOfTwins(const std::set<const Case*>& cases) {
+    std::map<const Case*, std::string> keys;
+    std::map<std::string, int> counts;
+    for (const Case* item : cases) {
+        std::string key = workKey(*item);
+        if (key.empty()) continue;
+        ++counts[key];
+        keys.emplace(item, std::move(key));
+    }
+    std::erase_if(keys, [&](const auto& entry) { return counts[entry.second] == 1; });
+    return keys;
 }
 
 bool savesPictures(const Case& item) {

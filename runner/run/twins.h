@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +23,9 @@ namespace gfxrepro::run {
 /// lane: there the rounds of a table belong together, and its times to the machine as it was then,
 /// so nothing is shared.
 std::string workKey(const Case& item);
+
+/// Of those of the cases that have a twin among them, the workKey().
+std::map<const Case*, std::string> keysOfTwins(const std::set<const Case*>& cases);
 
 /// Whether the case's parameter `pictures` asks for them. Of twins one that has it so is measured.
 bool savesPictures(const Case& item);
