@@ -165,6 +165,10 @@ class ClaimParser {
             const std::string operand(trimmed(text));
             if (operand.empty()) throwNotAllowed(node, what_, "an expression over columns");
             requireOperand(operand, node, names_, what_);
+            if (std::ranges::find(claim_.operands, operand) != claim_.operands.end()) {
+                throw Error(node.location(),
+                            fmt::format("{} compares '{}' with itself", what_, operand));
+            }
             claim_.operands.push_back(operand);
         }
     }

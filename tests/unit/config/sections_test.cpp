@@ -237,6 +237,8 @@ TEST_F(ExperimentTest, BadClaims) {
                   "device, profile, origin, bound_from, kind, because, order");
     EXPECT_EQ(claimError("{says: s, order: aa}"),
               head + "23: claim 'C': order is aa; allowed: a < b < …");
+    EXPECT_EQ(claimError("{says: s, order: aa < bb < aa}"),
+              head + "23: claim 'C' compares 'aa' with itself");
     EXPECT_EQ(claimError("{says: s, order: aa < }"),
               head + "23: claim 'C' is aa <; allowed: an expression over columns");
     EXPECT_EQ(claimError("{says: s, order: aa < bc}"),
