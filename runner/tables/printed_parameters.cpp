@@ -273,9 +273,7 @@ std::string line(const Table& table, std::span<const TableRow> rows) {
 std::string openText(const std::vector<std::string>& parameters, const Words& words) {
     std::vector<std::string> said;
     for (const std::string& name : parameters) said.push_back(quantityOf(name, words).words);
-    if (said.size() <= kSaidValues + 1) return joined(said);
-    said.resize(kSaidValues);
-    return fmt::format("{} and {} more", joined(said), parameters.size() - kSaidValues);
+    return joined(said);
 }
 
 std::string departuresText(const std::vector<Departure>& departures, const Words& words) {

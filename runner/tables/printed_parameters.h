@@ -62,7 +62,7 @@ std::string printedCellsLine(const PrintedCells& count);
 /// "output 128×128 (printed 512×512), light grid 4 (16), frames 3 (paper profile 50)".
 std::string departuresText(const std::vector<Departure>& departures, const Words& words = {});
 
-/// "output, view spread, view distance, frame size and 3 more": Cell::openParameters.
+/// "output, view spread, view distance, frame size": Cell::openParameters.
 std::string openText(const std::vector<std::string>& parameters, const Words& words = {});
 
 /// At which parameters the table was measured, and which of them differ from the printed ones:

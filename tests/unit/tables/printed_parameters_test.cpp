@@ -242,7 +242,7 @@ TEST(PrintedParameters, LinesNameOnlyWhatDiffers) {
     EXPECT_EQ(lineOf({{{"n", {"1", "2", "3", "4", "5"}, {}}}}),
               "Measured at n 1 / 2 / … / 5 (printed none).");
     EXPECT_EQ(openText({"a", "b", "c", "d", "e"}), "a, b, c, d, e");
-    EXPECT_EQ(openText({"a", "b", "c", "d", "e", "f"}), "a, b, c, d and 2 more");
+    EXPECT_EQ(openText({"a", "b", "c", "d", "e", "f"}), "a, b, c, d, e, f");
     const Departure open{"frames", {"3"}, {"50"}, true}, view{"view", {"a"}, {"b"}, true};
     EXPECT_EQ(lineOf({{open}}), "Measured at frames 3 (paper profile 50).");
     EXPECT_EQ(lineOf({{output, grid, view, open}}),
