@@ -86,20 +86,21 @@ Measures PixelExperiment::measure(const MeasureSettings& settings) {
     const bool needsFrames = settings.usefulness || settings.availability;
     const std::size_t frameCount = needsFrames ? views_.frames.size() : 0;
     std::vector<DepthImage> frames;  // samples are tested with as many at once as a test takes
-    frames.reserve(PixelMeasures::kMaxImages);
     for (std::size_t f = 0; f < frameCount; ++f) {
-        frames.push_back(renderer_.makeImage(views_.frames[f]));
-        renderer_.render(scene_, frames.back());
+        const View& view = views_.frames[f];
+        const std::size_t slot = f % PixelMeasures::kMaxImages;
+        if (slot == frames.size()) frames.push_back(renderer_.makeImage(view));
+        frames[slot].view = view;  // all frames are of one size
+        renderer_.render(scene_, frames[slot]);
         if (settings.availability) {
-            measures_.beginAvailability(frames.back(), images);
+            measures_.beginAvailability(frames[slot], images);
             result.frames.push_back(measures_.finishAvailability());
         }
-        if (frames.size() < PixelMeasures::kMaxImages && f + 1 < frameCount) continue;
+        if (slot + 1 < PixelMeasures::kMaxImages && f + 1 < frameCount) continue;
         for (std::size_t i = 0; settings.usefulness && i < images_.size(); ++i) {
-            measures_.mark(images_[i], marks_[i], first(frames, frames.size()), true, kOccluded,
+            measures_.mark(images_[i], marks_[i], first(frames, slot + 1), true, kOccluded,
                            kUseful);
         }
-        frames.clear();
     }
     for (const gl::Texture& marks : marks_) {
         result.images.push_back({.samples = measures_.count(marks, kSample),
