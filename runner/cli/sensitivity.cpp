@@ -116,6 +116,17 @@ void write(const Study& study, const std::string& keep) {
     writeFileAtomic(kept / (study.experiment().slug() + ".csv"), csv);
 }
 
+/// Whether it was measured where times are none, and the study asks for them.
+bool lacksTimes(const studies::Outcome& outcome, const Study& study) {
+    if (!study.sets.empty()) return false;  // it asks for none
+    return std::ranges::any_of(outcome.claims, [&](const claims::ClaimResult& claim) {
+        const auto& claims = study.experiment().claims;
+        const auto spec = std::ranges::find(claims, claim.id, &config::ClaimSpec::id);
+        return spec != claims.end() && spec->timeKind &&
+               claim.verdict == claims::Verdict::Unmeasured;
+    });
+}
+
 /// What `keep` has of the same cases and claims: the runs that are left come after it.
 void takeKept(const std::string& keep, Study& study) {
     const fs::path file =
@@ -128,6 +139,7 @@ void takeKept(const std::string& keep, Study& study) {
             return one.title() == kept.variation.title();
         });
         if (run == study.variations.runs.end() || kept.claims.empty()) continue;
+        if (lacksTimes(kept, study)) continue;
         std::rotate(left, run, run + 1);
         kept.variation = *left;
         for (claims::ClaimResult& claim : kept.claims) {
@@ -156,6 +168,14 @@ void takeBase(const run::StoredRun& run, Study& study) {
     }
 }
 
+/// A page that says why, unless its times were tried before.
+void writeUntried(const fs::path& kept, const config::Experiment& experiment,
+                  const std::string& basis) {
+    const fs::path tried = kept / (experiment.slug() + ".csv");
+    if (fs::is_regular_file(tried) && !studies::readSensitivity(tried, basis).empty()) return;
+    writeFileAtomic(kept / (experiment.slug() + ".md"), studies::untriedMarkdown(experiment));
+}
+
 std::optional<Study> studyOf(const Context& context, const std::string& file,
                              const SensitivityOptions& options, const std::string& deviceClass,
                              const fs::path& folder) {
@@ -174,9 +194,8 @@ std::optional<Study> studyOf(const Context& context, const std::string& file,
         tell("{}: left out, {}\n", experiment.id,
              experiment.claims.empty() ? "it has no claims" : "all its claims are of times");
         if (!experiment.claims.empty() && !options.keep.empty()) {
-            const fs::path kept = studies::keptFolder(options.keep, study.plan);
-            writeFileAtomic(kept / (experiment.slug() + ".md"),
-                            studies::untriedMarkdown(experiment));
+            writeUntried(studies::keptFolder(options.keep, study.plan), experiment,
+                         studies::basisOf(study.plan, experiment));
         }
         return std::nullopt;
     }

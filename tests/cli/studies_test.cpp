@@ -148,6 +148,35 @@ TEST(Sensitivity, TablesOfTimesAreNamed) {
         HasSubstr("\nNot tried, each says why: [sweep-mock](software/full/sweep-mock.md).\n"));
 }
 
+TEST(Sensitivity, TriesTimesWhereTheyAreAskedForAndKeepsThem) {
+    const TemporaryFolder folder;
+    const std::string keep = folder.path() / "keep";
+    const std::string fast =
+        "sweep: {behaviour: [ok]}\nmeasure: {lane: timing, processes: 6}\n"
+        "layout: {rows: behaviour, columns: {ms: {metric: wall_time_ms}, n: {metric: number}}}\n"
+        "claims:\n  fast: {says: fast, order: ms < 1000 * ms, kind: algorithmic}\n";
+    const std::string few = "  few: {says: few, bound: n, below: 6}\n";
+    const std::string open = "assumptions: {number: {range: [1, 10], why: left open}}\n";
+    const auto run = [&](const std::string& claims, const std::vector<std::string>& more) {
+        std::vector<std::string> command =
+            sensitivityCommand(writeMockConfig(folder, claims + open), folder.path() / "out");
+        command.insert(command.end(), {"--keep", keep});
+        command.insert(command.end(), more.begin(), more.end());
+        fs::remove_all(folder.path() / "out");
+        return mockGfxrepro(command);
+    };
+    const auto page = [&] { return readFile(keep + "/software/full/sweep-mock.md"); };
+    // Of a table with other claims, too, these alone are tried first, then all.
+    EXPECT_THAT(run(fast + few, {}).out, HasSubstr("sweep/mock fast: no verdict"));
+    const ProcessResult all = run(fast + few, {"--times"});
+    EXPECT_THAT(all.err, HasSubstr("sweep/mock as configured\n"));
+    EXPECT_THAT(all.out, HasSubstr("sweep/mock fast: holds under all"));
+    // What was tried stays where another study asks for no times.
+    EXPECT_THAT(run(fast, {"--times"}).out, HasSubstr("sweep/mock fast: holds under all"));
+    EXPECT_THAT(run(fast, {}).err, HasSubstr("left out, all its claims are of times\n"));
+    EXPECT_THAT(page(), HasSubstr("| fast | fast | holds | none"));
+}
+
 TEST(Sensitivity, ReportsShowWhatIsKept) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, kClaim);
