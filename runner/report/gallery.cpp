@@ -183,7 +183,7 @@ class Gallery {
         const auto values = map.values();
         shot.flipMean =
             std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-        const fs::path made = place_.madeDir / besides(entry.png, "images", "-flip");
+        const fs::path made = place_.madeDir / besides(entry.png, "thumbnails", "-flip");
         const image::Image8 shown = metrics::flipPicture(map);
         if (!isCurrent(made, runDir_ / entry.png)) {
             makeFolderOf(made);
@@ -191,7 +191,7 @@ class Gallery {
         }
         // Beside the page the viewer opens what is shown: a map as large as its pictures.
         const bool isReduced = place_.embedding == Embedding::Reduced;
-        const fs::path reduced = besides(entry.png, "thumbnails", "-flip");
+        const fs::path reduced = besides(entry.png, "thumbnails", "-flip-reduced");
         shot.flip = addressOf(isReduced ? shownFile(made, shown, reduced) : made, place_);
     }
 

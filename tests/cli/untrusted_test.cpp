@@ -480,7 +480,8 @@ TEST_F(Untrusted, WhatIsWrittenElsewhereLeavesTheRunAsItIs) {
     const std::string config = folder.path() / "mock.yaml";
     written({"claims", dir, "--config", config}, out + "/judged-afterwards/claims.csv");
     written({"export", dir}, out + "/report.html");
-    const std::string flip = "/images/sweep-mock/" + rowsOf(dir, "number")[0].caseId + "-flat-flip";
+    const std::string flip =
+        "/thumbnails/sweep-mock/" + rowsOf(dir, "number")[0].caseId + "-flat-flip";
     written({"report", dir}, out + "-files/A" + flip + ".png");
     written({"report", dir, dir}, out + "-files/B" + flip + ".png");
     const std::string file = folder.write("file", "words");

@@ -242,7 +242,7 @@ TEST(Report, ImagesWithATruthGetAFlipMap) {
     EXPECT_THAT(html, HasSubstr("class=\"error\" data-of=\"A-zju2005-9.9-0\"><img src=\"data:"));
     EXPECT_THAT(html, testing::ContainsRegex("FLIP 0\\.[0-9]+ to truth"));
     EXPECT_THAT(html, Not(HasSubstr("FLIP 0.0000")));
-    const image::Image8 map = image::readPng8(folder.path() / "images/x/result-flip.png");
+    const image::Image8 map = image::readPng8(folder.path() / "thumbnails/x/result-flip.png");
     EXPECT_EQ(map.width(), 8);
     EXPECT_GT(int{map.at(0, 0, 0)}, 40) << "the pixel that differs";
     EXPECT_LT(int{map.at(7, 7, 0)}, int{map.at(0, 0, 0)});
