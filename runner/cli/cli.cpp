@@ -52,13 +52,8 @@ void addAssets(CLI::App* app, std::string& assets) {
     app->add_option("--assets", assets, "folder of real models")->option_text("DIR");
 }
 
-void addProfile(CLI::App* app, std::string& profile) {
-    app->add_option("--profile", profile, "how many cases, frames and repeats")
-        ->check(CLI::IsMember({"quick", "full", "paper"}));
-}
-
 void addDevice(CLI::App* app, std::string& device) {
-    app->add_option("--device", device, "auto, gpu, software; N or UUID as doctor has them")
+    app->add_option("--device", device, "auto, gpu, software, or N or UUID from doctor")
         ->option_text("DEVICE");
 }
 
@@ -83,18 +78,18 @@ void addEach(CLI::App* app, const char* name, std::vector<std::string>& values, 
 
 void addSelection(CLI::App* app, Selection& selection) {
     addProfile(app, selection.profile);
-    addEach(app, "--set", selection.sets, "laid over every config", "KEY=VALUE");
-    addEach(app, "--sweep", selection.sweeps, "replaces or adds an axis", "AXIS=A,B");
+    addEach(app, "--set", selection.sets, "override a key of every config", "KEY=VALUE");
+    addEach(app, "--sweep", selection.sweeps, "replace or add an axis", "AXIS=A,B");
     addDevice(app, selection.device);
     addAssets(app, selection.assets);
 }
 
 void addOnly(CLI::App* app, std::vector<std::string>& only) {
-    addEach(app, "--only", only, "only these cases; * and ? match; repeat for more", "KEY=VALUE");
+    addEach(app, "--only", only, "only these cases; * and ? match; repeatable", "KEY=VALUE");
 }
 
 void addFrom(CLI::App* app, std::vector<std::string>& from) {
-    addEach(app, "--from", from, "predicts times from it (default: newest in runs/)", "RUN");
+    addEach(app, "--from", from, "predict times from it (default: newest in runs/)", "RUN");
 }
 
 void addRunOptions(CLI::App* app, RunOptions& options) {
@@ -102,25 +97,25 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     addOnly(app, options.selection.only);
     app->add_option("--out", options.out, "run directory (default runs/<time>-<name>)")
         ->option_text("DIR");
-    app->add_option("--resume", options.resume, "go on with this run; with configs, begin it")
+    app->add_option("--resume", options.resume, "continue this run; with configs, start it if new")
         ->option_text("RUN");
-    app->add_option("--shard", options.shard, "the Kth of N parts; give each the same --from")
+    app->add_option("--shard", options.shard, "part K of N; give all parts the same --from")
         ->option_text("K/N");
     addFrom(app, options.from);
-    app->add_option("--budget", options.budget, "only tables that decide most claims in TIME")
+    app->add_option("--budget", options.budget, "only the tables that decide most claims in TIME")
         ->option_text("TIME");
-    app->add_option("--jobs", options.jobs, "cases at once, where no times are taken")
+    app->add_option("--jobs", options.jobs, "cases to run at once where no times are taken")
         ->check(CLI::Range(1, 256))
         ->option_text("N");
-    app->add_option("--max-failures", options.failuresAtMost, "stop after so many failed cases")
+    app->add_option("--max-failures", options.failuresAtMost, "stop after this many failed cases")
         ->check(CLI::Range(1, 1'000'000'000))
         ->option_text("N");
-    app->add_flag("--retry", options.triesAgain, "resume with what crashed or took too long, too");
+    app->add_flag("--retry", options.triesAgain, "on resuming, retry crashes and timeouts, too");
     app->add_flag("--quiet", options.isQuiet, "print failures only");
 }
 
 void addQueries(CLI::App& app, const Context& context, Options& o) {
-    CLI::App* doctorApp = app.add_subcommand("doctor", "what this machine has, and what it lacks");
+    CLI::App* doctorApp = app.add_subcommand("doctor", "what this machine has and what it lacks");
     addAssets(doctorApp, o.selection.assets);
     doctorApp->add_flag("--json", o.asJson, "machine-readable");
     doctorApp->callback(
@@ -136,13 +131,14 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
     CLI::App* describeApp = app.add_subcommand(
         "describe", "a technique, scene, generator, table or config; the schema");
     describeApp
-        ->add_option("name", o.describe.name, "what to describe; 'config' is the keys of configs")
+        ->add_option("name", o.describe.name, "what to describe; 'config': the keys of configs")
         ->option_text("NAME");
     describeApp->add_flag("--json-schema", o.describe.asJsonSchema,
-                          "schema for editors, of NAME: experiment (the default), preset, scene, "
+                          "schema of NAME for editors: experiment (default), preset, scene, "
                           "expectations, documents");
-    describeApp->add_flag("--markdown", o.describe.asMarkdown, "the keys of all files as tables");
-    describeApp->add_flag("--json", o.describe.asJson, "what is described, for programs");
+    describeApp->add_flag("--markdown", o.describe.asMarkdown,
+                          "the keys of all kinds of files, as tables");
+    describeApp->add_flag("--json", o.describe.asJson, "machine-readable");
     addAssets(describeApp, o.describe.assets);
     describeApp->callback([&] { o.command = [&] { return describe(context, o.describe); }; });
 
@@ -153,7 +149,7 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
     checkApp->callback([&] { o.command = [&] { return check(context, o.selection); }; });
 
     CLI::App* planApp =
-        app.add_subcommand("plan", "list the cases of configs with their time and memory");
+        app.add_subcommand("plan", "list the cases of configs, with expected time and memory");
     addTables(planApp, o.selection.names)->required();
     addSelection(planApp, o.selection);
     addOnly(planApp, o.selection.only);
@@ -167,22 +163,22 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     CLI::App* runApp = app.add_subcommand("run", "measure the cases of configs into records.csv");
     addTables(runApp, o.run.selection.names);
     addRunOptions(runApp, o.run);
-    runApp->add_option("--plan", o.run.plan, "what was submitted, instead of configs")
+    runApp->add_option("--plan", o.run.plan, "measure this submitted plan, not configs")
         ->option_text("FILE");
     runApp->callback([&] { o.command = [&] { return run(context, o.run); }; });
 
     CLI::App* reproduceApp =
-        app.add_subcommand("reproduce", "measure papers or tables and write their report");
+        app.add_subcommand("reproduce", "measure papers or tables and write a report");
     addTables(reproduceApp, o.run.selection.names)
         ->description("PAPER, PAPER/TABLE or config files; none: all papers");
     addRunOptions(reproduceApp, o.run);
     reproduceApp->callback([&] { o.command = [&] { return reproduce(context, o.run); }; });
 
     const auto addOut = [&](CLI::App* result) {
-        result->add_option("--out", o.out, "folder (default RUN); the run is left as it is")
+        result->add_option("--out", o.out, "write here, and leave RUN as it is (default: RUN)")
             ->option_text("DIR");
     };
-    CLI::App* tableApp = app.add_subcommand("table", "make a run's tables again from its records");
+    CLI::App* tableApp = app.add_subcommand("table", "rebuild a run's tables from its records");
     addRunDirectory(tableApp, o.name);
     addOut(tableApp);
     tableApp->callback([&o] { o.command = [&o] { return table(o.name, o.out); }; });
@@ -191,23 +187,24 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     addOut(claimsApp);
     claimsApp
         ->add_option("--config", o.configs,
-                     "by these instead of those that it was measured with; into judged-afterwards/")
+                     "judge by this config, not the run's own; written to judged-afterwards/")
         ->option_text("CONFIG");
     claimsApp->callback([&o] { o.command = [&o] { return claims(o.name, o.configs, o.out); }; });
     CLI::App* reportApp =
-        app.add_subcommand("report", "make a run's report.html again, or one of several runs");
+        app.add_subcommand("report", "rebuild a run's report.html, or make one of several runs");
     reportApp->add_option("runs", o.shards, "run directories, or kept results")
         ->required()
         ->option_text("RUN");
-    reportApp->add_option("--out", o.out, "default RUN/report.html; of several: report.html")
+    reportApp->add_option("--out", o.out, "default: RUN/report.html; of several: report.html")
         ->option_text("FILE");
-    reportApp->add_flag("--embed", o.embeds, "one file to send: every picture inside of it");
+    reportApp->add_flag("--embed", o.embeds, "one file to send, with every picture inside");
     reportApp->callback([&] { o.command = [&] { return report(o.shards, o.out, o.embeds); }; });
 }
 
 void addCluster(CLI::App& app, const Context& context, Options& o) {
-    CLI::App* mergeApp = app.add_subcommand("merge", "shards into one run; names what is missing");
-    mergeApp->add_option("shards", o.shards, "their run directories")
+    CLI::App* mergeApp =
+        app.add_subcommand("merge", "join shards into one run; tells what is missing");
+    mergeApp->add_option("shards", o.shards, "run directories of the shards")
         ->required()
         ->option_text("RUN");
     mergeApp->add_option("--out", o.out, "folder of the whole run")->required()->option_text("DIR");
@@ -215,27 +212,28 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
 
     SubmitOptions& s = o.submit;
     CLI::App* submitApp =
-        app.add_subcommand("submit", "shards on other machines: a Slurm array, or commands");
+        app.add_subcommand("submit", "measure in shards elsewhere: a Slurm array, or commands");
     addTables(submitApp, s.selection.names);
     addSelection(submitApp, s.selection);
     addOnly(submitApp, s.selection.only);
-    submitApp->add_option("--out", s.out, "folder of the shards and of the merged run")
+    submitApp->add_option("--out", s.out, "folder for the shards and the merged run")
         ->option_text("DIR");
-    submitApp->add_option("--engine", s.engine, "who starts the shards")
+    submitApp->add_option("--engine", s.engine, "what starts the shards")
         ->check(CLI::IsMember({"slurm", "commands"}));
-    submitApp->add_option("--shards", s.shardCount, "default: one for each predicted half hour")
+    submitApp->add_option("--shards", s.shardCount, "default: one per predicted half hour")
         ->check(CLI::Range(1, 10000))
         ->option_text("N");
     addFrom(submitApp, s.from);
-    submitApp->add_option("--jobs", s.jobs, "cases at once in a shard, where no times are taken")
+    submitApp->add_option("--jobs", s.jobs, "cases at once in a shard where no times are taken")
         ->check(CLI::Range(1, 256))
         ->option_text("N");
     submitApp->add_option("--partition", s.partition, "as for sbatch")->option_text("PARTITION");
     submitApp->add_option("--gres", s.gres, "as for sbatch: gpu:1")->option_text("LIST");
-    addEach(submitApp, "--sbatch", s.sbatchFlags, "any other: --sbatch=--account=x", "FLAG");
-    submitApp->add_flag("--force", s.isForced, "even where squeue does not answer");
+    addEach(submitApp, "--sbatch", s.sbatchFlags,
+            "any other option of sbatch: --sbatch=--account=x", "FLAG");
+    submitApp->add_flag("--force", s.isForced, "submit even if squeue does not answer");
     submitApp->add_flag("--dry-run", s.isDryRun, "print scripts and commands only");
-    submitApp->add_flag("--status", s.isStatus, "of the submission in this folder");
+    submitApp->add_flag("--status", s.isStatus, "how far the submission in this folder is");
     submitApp->callback([&] { o.command = [&] { return submit(context, o.submit); }; });
 }
 
@@ -246,17 +244,19 @@ void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& co
         ->required()
         ->option_text("RUN");
     compareApp->add_flag("--binaries", options.areBinaries,
-                         "OLD and NEW are programs; they measure the configs alternately");
+                         "OLD and NEW are programs, which take turns to measure the configs");
     compareApp
         ->add_option("--rounds", options.rounds,
-                     "of each program, up to five times while undecided (default 20)")
+                     "rounds of each program (default 20); up to five times as many while "
+                     "undecided")
         ->check(CLI::Range(2, 1000))
         ->option_text("N");
     addProfile(compareApp, options.profile);
     addDevice(compareApp, options.device);
     compareApp->add_option("--out", options.out, "folder (default runs/<time>-compare)")
         ->option_text("DIR");
-    compareApp->add_option("--history", options.history, "append to this CSV; say its steps")
+    compareApp
+        ->add_option("--history", options.history, "append to this CSV, and report steps in it")
         ->option_text("FILE");
     addAssets(compareApp, options.assets);
     compareApp->callback([&] { command = [&] { return compare(options); }; });
@@ -265,21 +265,22 @@ void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& co
 void addSensitivity(CLI::App& app, const Context& context, Options& o) {
     SensitivityOptions& s = o.sensitivity;
     CLI::App* sensitivityApp =
-        app.add_subcommand("sensitivity", "how claims depend on what the paper left open");
+        app.add_subcommand("sensitivity", "how claims depend on what the paper leaves open");
     sensitivityApp->add_option("names", s.selection.names, "PAPER, PAPER/TABLE or config files")
         ->required()
         ->option_text("TABLE");
-    addSelection(sensitivityApp, s.selection);
     s.selection.profile = "quick";
-    sensitivityApp->add_option("--points", s.points, "values of a range of numbers (default 3)")
+    addSelection(sensitivityApp, s.selection);
+    sensitivityApp
+        ->add_option("--points", s.points, "values to try of a range of numbers (default 3)")
         ->check(CLI::Range(2, 100))
         ->option_text("N");
-    sensitivityApp->add_option("--budget", s.budget, "begin no run after this time (15m)")
+    sensitivityApp->add_option("--budget", s.budget, "start no run after this time, such as 15m")
         ->option_text("TIME");
-    sensitivityApp->add_flag("--times", s.hasTimes, "claims about times, too (slow)");
-    sensitivityApp->add_option("--from", s.from, "run that has the tables as configured")
+    sensitivityApp->add_flag("--times", s.hasTimes, "include claims about times (slow)");
+    sensitivityApp->add_option("--from", s.from, "a run that measured the tables as configured")
         ->option_text("RUN");
-    sensitivityApp->add_option("--keep", s.keep, "summaries to go on from (results/sensitivity)")
+    sensitivityApp->add_option("--keep", s.keep, "summaries to continue: results/sensitivity")
         ->option_text("DIR");
     sensitivityApp->add_option("--out", s.out, "folder (default runs/<time>-sensitivity)")
         ->option_text("DIR");
@@ -290,15 +291,16 @@ void addSensitivity(CLI::App& app, const Context& context, Options& o) {
 void addTools(CLI::App& app, const Context& context, Options& o) {
     addImageCommands(app, o.image, o.command);
 
-    CLI::App* sceneApp = app.add_subcommand("scene", "look at a scene, or export it");
+    CLI::App* sceneApp = app.add_subcommand("scene", "look at a scene or export it");
     sceneApp->add_option("name", o.scene.name, "catalogue name or file")
         ->required()
         ->option_text("SCENE");
-    sceneApp->add_option("--export", o.scene.exportFile, "write .glb or .ply")->option_text("FILE");
+    sceneApp->add_option("--export", o.scene.exportFile, "write it as .glb or .ply")
+        ->option_text("FILE");
     sceneApp
         ->add_option("--render", o.scene.renderFile, "write f.png (rasterized) and f-raytraced.png")
         ->option_text("FILE");
-    sceneApp->add_option("--size", o.scene.sizePx, "pixels along each side of the render")
+    sceneApp->add_option("--size", o.scene.sizePx, "pixels per side of the render")
         ->check(CLI::Range(16, 8192))
         ->option_text("N");
     addDevice(sceneApp, o.scene.device);
@@ -327,7 +329,7 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
 /// What a shell wants to know: the commands as they are defined above.
 void addShell(CLI::App& app, Options& o) {
     CLI::App* completionApp =
-        app.add_subcommand("completion", "a script that teaches a shell to complete");
+        app.add_subcommand("completion", "print a script that lets a shell complete commands");
     completionApp->add_option("shell", o.name, "which shell")
         ->required()
         ->check(CLI::IsMember({"bash", "zsh", "fish"}));

@@ -161,6 +161,7 @@ void arrangeHelp(CLI::App& app) {
         if (place == std::size(kPlaces)) continue;
         command->group(std::string(kPlaces[place].group));
         command->footer(std::string(kPlaces[place].example));
+        for (CLI::App* part : command->get_subcommands({})) part->group(command->get_name());
     }
     setFormatter(app, std::make_shared<ScreenFormatter>());  // CLI11 wants it shared
 }

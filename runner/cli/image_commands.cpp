@@ -27,19 +27,20 @@ CLI::Option* addChoice(CLI::App* app, const char* name, std::string& value, cons
 }
 
 void addDiff(CLI::App& image, ImageDiffOptions& o, std::function<int()>& command) {
-    CLI::App* app = image.add_subcommand("diff", "errors of an image, and their map");
+    CLI::App* app = image.add_subcommand("diff", "errors of an image, and a map of them");
     addFile(app, "reference", o.reference, "the reference: EXR (linear) or PNG (sRGB)");
-    addFile(app, "test", o.test, "the image that is compared with it, of the same kind");
-    app->add_option("--metric", o.metrics, "one or more, by commas (default: all that apply)")
+    addFile(app, "test", o.test, "the image to compare with it, of the same kind");
+    app->add_option("--metric", o.metrics,
+                    "one or more, separated by commas (default: all that apply)")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"mse", "psnr", "ssim", "flip", "max"}))
         ->option_text("mse|psnr|ssim|flip|max");
     addChoice(app, "--flip", o.flip, "auto|ldr|hdr", "auto: hdr for EXR with values above 1");
-    app->add_option("--out", o.out, "write the error map: .png to look at, .exr its numbers")
+    app->add_option("--out", o.out, "write the error map: .png to look at, .exr for numbers")
         ->option_text("FILE");
     addChoice(app, "--map", o.map, "abs|signed|flip", "signed: red where the test is too dark");
-    app->add_option("--gain", o.gain, "of the abs and signed maps")
+    app->add_option("--gain", o.gain, "factor of the abs and signed maps")
         ->check(CLI::Range(1e-6, 1e6))
         ->option_text("K");
     app->add_flag("--json", o.asJson, "machine-readable");
@@ -57,17 +58,17 @@ void addConvert(CLI::App& image, ImageConvertOptions& o, std::function<int()>& c
     app->add_option("--channels", o.channels,
                     "Z: in false colours; N.X,N.Y,N.Z: as 0.5 + 0.5 n; R,G,B")
         ->option_text("A,B,C");
-    app->add_option("--range", o.range, "of one channel (default: all of it)")
+    app->add_option("--range", o.range, "values shown of one channel (default: all)")
         ->option_text("LOW,HIGH");
     addChoice(app, "--colours", o.colours, "auto|magma|grey|cool_warm",
-              "of one channel; auto: cool_warm for values of both signs, else magma");
+              "for one channel; auto: cool_warm for values of both signs, else magma");
     app->callback([&] { command = [&] { return imageConvert(o); }; });
 }
 
 void addCrop(CLI::App& image, ImageCropOptions& o, std::function<int()>& command) {
     CLI::App* app = image.add_subcommand("crop", "a part of an image, its pixels magnified");
     addFile(app, "in", o.in, "EXR (all channels stay) or PNG");
-    addOut(app, o.out, "of the same kind");
+    addOut(app, o.out, "a file of the same kind");
     const auto addNumber = [&](const char* name, int& number, const char* doc, const char* text) {
         app->add_option(name, number, doc)->required()->option_text(text);
     };
@@ -75,7 +76,7 @@ void addCrop(CLI::App& image, ImageCropOptions& o, std::function<int()>& command
     addNumber("y", o.top, "first row from the top", "Y");
     addNumber("width", o.width, "pixels", "WIDTH");
     addNumber("height", o.height, "pixels", "HEIGHT");
-    app->add_option("--scale", o.scale, "makes N x N pixels of each")->option_text("N");
+    app->add_option("--scale", o.scale, "show each pixel as N x N")->option_text("N");
     app->callback([&] { command = [&] { return imageCrop(o); }; });
 }
 
@@ -86,7 +87,7 @@ void addSheet(CLI::App& image, ImageSheetOptions& o, std::function<int()>& comma
     app->add_option("--columns", o.columns, "images side by side")
         ->check(CLI::Range(1, 100))
         ->option_text("N");
-    app->add_option("--width", o.widthPx, "pixels of an image")
+    app->add_option("--width", o.widthPx, "width of each image in pixels")
         ->check(CLI::Range(1, 8192))
         ->option_text("PX");
     app->callback([&] { command = [&] { return imageSheet(o); }; });
@@ -107,7 +108,7 @@ void requireNoInput(const std::string& out, std::span<const std::string> inputs,
 
 void addImageCommands(CLI::App& app, ImageCommandOptions& options, std::function<int()>& command) {
     CLI::App* image =
-        app.add_subcommand("image", "diff, convert, crop, contact-sheet, info of EXR and PNG");
+        app.add_subcommand("image", "diff, convert, crop, contact-sheet, info for EXR and PNG");
     image->require_subcommand(1);
     addDiff(*image, options.diff, command);
     addConvert(*image, options.convert, command);

@@ -10,6 +10,7 @@
 
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
+#include "runner/config/schema.h"
 #include "runner/core/error.h"
 #include "runner/core/text.h"
 #include "runner/gl/device_name.h"
@@ -124,6 +125,12 @@ std::vector<const char*> spelledOut(int argc, const char* const* argv) {
 }
 
 }  // namespace
+
+void addProfile(CLI::App* app, std::string& profile, const std::string& doc) {
+    app->add_option("--profile", profile, doc + " (default " + profile + ")")
+        ->check(CLI::IsMember(
+            std::vector<std::string>(config::kProfiles.begin(), config::kProfiles.end())));
+}
 
 void parse(CLI::App& app, int argc, const char* const* argv) {
     takeLatest(app);

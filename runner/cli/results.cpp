@@ -236,12 +236,12 @@ void saySentReport(const fs::path& file) {
         file.string(), report::kSentBytes / 1'000'000);
 }
 
-/// Says now and then how far the pictures of a large run are.
 /// Of cases that recorded nothing: no file is written.
 bool isEmpty(const tables::Table& table) {
     return table.columns.empty();
 }
 
+/// Says now and then how far the pictures of a large run are.
 void sayPictures(std::size_t done, std::size_t all) {
     constexpr std::size_t kEvery = 250;
     if (done % kEvery == 0 && done < all) tell("report: {} of {} pictures\n", done, all);

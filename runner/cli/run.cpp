@@ -377,7 +377,8 @@ int run(const Context& context, const RunOptions& options) {
         return runSubmitted(context, options);
     }
     if (options.resume.empty() && files.empty()) {
-        throw UsageError("run: give config files, or --resume DIR");
+        throw UsageError(
+            "run: give PAPER, PAPER/TABLE or config files, --plan FILE or --resume RUN");
     }
     requireUsable(options);
     return execute(context, options, requestOf(options.selection, configsOf(files)), false);

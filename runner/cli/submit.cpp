@@ -367,7 +367,8 @@ int submit(const Context& context, const SubmitOptions& options) {
         return printStatus(fs::absolute(options.selection.names.front()).lexically_normal());
     }
     if (options.selection.names.empty() || options.out.empty()) {
-        throw UsageError("submit: give config files and --out DIR, or --status DIR");
+        throw UsageError(
+            "submit: give PAPER, PAPER/TABLE or config files and --out DIR, or --status DIR");
     }
     for (fs::path at = fs::absolute(options.out); at.has_relative_path(); at = at.parent_path()) {
         if (!fs::exists(at) || fs::is_directory(at)) continue;

@@ -109,7 +109,7 @@ std::string_view sourceName(Prediction::Source source) {
 
 std::vector<PastCase> readPastCases(const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
-        throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
+        throw Error(runDir.string() + ": is not a run directory (it has no plan.json)");
     }
     run::requireModestFiles(runDir);
     const std::map<std::string, std::vector<run::Cost>> costs = loggedCosts(runDir);

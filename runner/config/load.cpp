@@ -348,8 +348,9 @@ Override parseOverride(const std::string& text) {
 Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options,
                           const fs::path& configsFolder) {
     const std::string& profile = options.profile;
-    if (profile != "quick" && profile != "full" && profile != "paper") {
-        throw UsageError("profile '" + profile + "'; allowed: quick, full, paper");
+    if (std::ranges::find(kProfiles, profile) == kProfiles.end()) {
+        throw UsageError("profile '" + profile +
+                         "'; allowed: " + joined(Names(kProfiles.begin(), kProfiles.end())));
     }
     auto [document, overlays] = Reader(configsFolder).read(file);
     Node::Sequence declared;

@@ -29,8 +29,7 @@ class Previewer {
         up_ = glm::cross(right_, forward_) * slope;
         right_ *= slope * static_cast<float>(width) / static_cast<float>(height);
         for (const scene::Instance& instance : scene.instances) {
-            normalMatrices_.push_back(
-                glm::transpose(glm::inverse(glm::mat3(instance.worldFromMesh))));
+            normalMatrices_.push_back(scene::normalMatrix(glm::mat3(instance.worldFromMesh)));
         }
     }
 

@@ -38,7 +38,7 @@ Json toJson(const config::Measure& measure) {
 
 void requireMap(const config::Node& node, const char* what) {
     if (node.isMap()) return;
-    throw Error(node.location(), std::string(what) + " is no map but " + node.kindName());
+    throw Error(node.location(), std::string(what) + " is not a map but " + node.kindName());
 }
 
 const config::Node& required(const config::Node& map, const char* key) {

@@ -122,7 +122,7 @@ void requirePlanned(const fs::path& file, const Plan& plan,
 
 StoredRun readRun(const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
-        throw Error(runDir.string() + ": is no run directory (it has no plan.json)");
+        throw Error(runDir.string() + ": is not a run directory (it has no plan.json)");
     }
     requirePlainFiles(runDir);
     requireModestFiles(runDir);

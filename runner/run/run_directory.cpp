@@ -176,7 +176,7 @@ RunDirectory RunDirectory::create(const fs::path& path) {
 
 RunDirectory RunDirectory::open(const fs::path& path) {
     if (!fs::exists(path / "plan.json")) {
-        throw Error(path.string() + ": is no run directory (it has no plan.json)");
+        throw Error(path.string() + ": is not a run directory (it has no plan.json)");
     }
     requirePlainFiles(path);
     RunDirectory directory(path);

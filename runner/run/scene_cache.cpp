@@ -17,6 +17,7 @@ std::size_t sizeBytesOf(const scene::Scene& scene) {
     sizeBytes += (points.positions.size() + points.normals.size() + points.colors.size()) *
                      sizeof(glm::vec3) +
                  points.radii.size() * sizeof(float);
+    if (scene.heights) sizeBytes += scene.heights->heightsM.size() * sizeof(float);
     return sizeBytes;
 }
 

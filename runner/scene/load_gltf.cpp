@@ -322,11 +322,11 @@ class SceneBuilder {
         for (const glm::vec3& position : cloud.positions) {
             points.positions.emplace_back(worldFromCloud * glm::vec4(position, 1.0F));
         }
-        const glm::mat3 normalMatrix = glm::transpose(glm::inverse(glm::mat3(worldFromCloud)));
+        const glm::mat3 toWorld = normalMatrix(glm::mat3(worldFromCloud));
         if (!normals) points.normals.clear();
         if (!colors) points.colors.clear();
         for (std::size_t i = 0; normals && i < cloud.normals.size(); ++i) {
-            points.normals.push_back(unitNormal(normalMatrix * cloud.normals[i]));
+            points.normals.push_back(unitNormal(toWorld * cloud.normals[i]));
         }
         if (colors) {
             points.colors.insert(points.colors.end(), cloud.colors.begin(), cloud.colors.end());

@@ -48,7 +48,7 @@ struct Figure {
 /// Values that are not ok, and on logarithmic axes those that are not positive, are left out and
 /// counted in the notes. Printed values stand over the printed x where there is one, and beside the
 /// curves of this run also those that were not measured. Throws Error at the plot's place for
-/// columns that the table has not.
+/// columns that the table does not have.
 Figure makeFigure(const config::PlotSpec& plot, const Table& table);
 
 /// The column that the plot names and the table does not have, as one whose profile or override

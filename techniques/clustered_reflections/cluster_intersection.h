@@ -8,7 +8,7 @@ namespace gfxrepro::clustered_reflections {
 
 /// How a ray goes through a depth image (march.glsl).
 enum class March {
-    Linear,        // Algorithm 7: a texel a step along the longer axis
+    Linear,        // Algorithm 7: a texel per step along the longer axis
     Hierarchical,  // the same samples, but those in tiles that are nearer than all that the tile
                    // holds are stepped over, by a pyramid of nearest depths: the same hits
 };

@@ -14,7 +14,7 @@ config::Outputs outputs() {
             {"channel_error_r", "level", "channel_error of red alone", Better::Lower, kIsDetail},
             {"channel_error_g", "level", "channel_error of green alone", Better::Lower, kIsDetail},
             {"channel_error_b", "level", "channel_error of blue alone", Better::Lower, kIsDetail},
-            {"channel_error_converged", "level", "channel_error to a truth of many rays a sample",
+            {"channel_error_converged", "level", "channel_error to a truth of many rays per sample",
              Better::Lower},
             {"channel_error_image", "level", "channel_error over all pixels", Better::Lower,
              kIsDetail},

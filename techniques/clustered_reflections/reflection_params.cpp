@@ -26,7 +26,7 @@ constexpr config::Choice<ImageDrawing> kDrawings[] = {
      "nothing is drawn, clusters and their occlusion errors are counted"},
 };
 constexpr config::Choice<March> kMarches[] = {
-    {March::Linear, "linear", "a texel a step (algorithm 7)"},
+    {March::Linear, "linear", "a texel per step (algorithm 7)"},
     {March::Hierarchical, "hierarchical", "over a pyramid of nearest depths"},
 };
 constexpr config::Choice<OwnReflector> kOwnReflectors[] = {

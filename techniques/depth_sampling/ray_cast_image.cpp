@@ -40,11 +40,9 @@ SurfaceShading::SurfaceShading(const scene::Scene& scene) {
     for (const scene::Instance& instance : scene.instances) {
         const scene::Mesh& part = scene.meshes[static_cast<std::size_t>(instance.mesh)];
         const scene::Material material = materialOf(scene, part);
-        const glm::mat3 normalMatrix =
-            glm::transpose(glm::inverse(glm::mat3(instance.worldFromMesh)));
+        const glm::mat3 toWorld = scene::normalMatrix(glm::mat3(instance.worldFromMesh));
         for (std::size_t v = 0; v < part.positions.size(); ++v) {
-            normals_.push_back(part.normals.empty() ? glm::vec3(0.0F)
-                                                    : normalMatrix * part.normals[v]);
+            normals_.push_back(part.normals.empty() ? glm::vec3(0.0F) : toWorld * part.normals[v]);
             colors_.push_back(glm::vec3(material.baseColor) *
                               (part.colors.empty() ? glm::vec3(1.0F) : part.colors[v]));
         }

@@ -1,5 +1,5 @@
-// Points drawn by compute shaders, one pixel a point: the modern yardstick (Schütz, Kerbl, Wimmer:
-// "Rendering Point Clouds with Compute Shaders and Vertex Order Optimization", 2021).
+// Points drawn by compute shaders, one pixel per point: the modern yardstick (Schütz, Kerbl,
+// Wimmer: "Rendering Point Clouds with Compute Shaders and Vertex Order Optimization", 2021).
 #pragma once
 
 #include <span>
@@ -18,7 +18,7 @@ struct ComputeSplatSettings {
     glm::vec3 lightDirectionView{0.3F, 0.5F, 0.8F};
 };
 
-/// Departure from Schütz et al.: depth and point are not packed into 64 bits, whose atomics OpenGL
+/// Departure, Schütz et al. 2021: depth and point are not packed into 64 bits, whose atomics OpenGL
 /// 4.5 lacks, so that the points are traversed twice; their "high-quality" variant does so, too.
 class ComputeSplatter {
   public:

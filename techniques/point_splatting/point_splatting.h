@@ -18,13 +18,13 @@
 namespace gfxrepro::point_splatting {
 
 enum class Method {
-    Adaptive,  // the thesis's: a filter a patch
+    Adaptive,  // the thesis's: a filter per patch
     FullEwa,
     Reconstruction,
     LowPass,
     Sprites,   // opaque squares, as QSplat
-    Compute,   // one pixel a point, by compute shaders
-    GlPoints,  // one pixel a point, by a plain draw
+    Compute,   // one pixel per point, by compute shaders
+    GlPoints,  // one pixel per point, by a plain draw
 };
 
 /// From where a model is seen: on a turntable, from as far as frames it.

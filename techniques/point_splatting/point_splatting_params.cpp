@@ -10,17 +10,18 @@ namespace gfxrepro::point_splatting {
 namespace {
 
 constexpr config::Choice<Method> kMethods[] = {
-    {Method::Adaptive, "adaptive", "a filter a patch, by its points' size on the screen (Eq. 13)"},
+    {Method::Adaptive, "adaptive",
+     "a filter per patch, by its points' size on the screen (Eq. 13)"},
     {Method::FullEwa, "full_ewa", "H = J V^r Jᵀ + V^h everywhere (Eq. 3)"},
     {Method::Reconstruction, "reconstruction", "the reconstruction filter alone everywhere"},
     {Method::LowPass, "low_pass", "the low-pass filter alone everywhere"},
     {Method::Sprites, "sprites", "opaque squares, as QSplat"},
-    {Method::Compute, "compute", "one pixel a point, by compute shaders"},
-    {Method::GlPoints, "gl_points", "one white pixel a point, by a plain draw of positions"},
+    {Method::Compute, "compute", "one pixel per point, by compute shaders"},
+    {Method::GlPoints, "gl_points", "one white pixel per point, by a plain draw of positions"},
 };
 constexpr config::Choice<PointStorage> kStorages[] = {
-    {PointStorage::Compressed, "compressed", "8 bytes a point (table 3.1)"},
-    {PointStorage::Uncompressed, "uncompressed", "60 bytes a point"},
+    {PointStorage::Compressed, "compressed", "8 bytes per point (table 3.1)"},
+    {PointStorage::Uncompressed, "uncompressed", "60 bytes per point"},
 };
 enum class LevelChoice { BySize, All };
 constexpr config::Choice<LevelChoice> kLevels[] = {
@@ -149,7 +150,7 @@ PointSplattingParams::PointSplattingParams(config::Params& params)
           params.getBool("errors", false,
                          {"compares with a supersampled image, full EWA and uncompressed points"})),
       measuresCompression(params.getBool("compression_errors", false,
-                                         {"what 8 bytes a point lose, over all points"})),
+                                         {"what 8 bytes per point lose, over all points"})),
       measuresSpeed(params.getBool("points_per_second", false, {"draws five more frames"})),
       showsPictures(
           params.getBool("pictures", false, {"the image, and what it is compared with"})) {

@@ -289,7 +289,7 @@ void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPict
         fullEwa.method = SplatMethod::FullEwa;
         compareDrawn(params_.splats, fullEwa, "full_ewa");
     }
-    // The same levels and filters of 60 bytes a point.
+    // The same levels and filters of 60 bytes per point.
     SplatSettings splats = params_.splats;
     splats.storage = PointStorage::Uncompressed;
     if (params_.splats.storage == PointStorage::Compressed && params_.method != Method::Compute &&

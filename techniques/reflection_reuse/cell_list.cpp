@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "techniques/kit/draws.h"
 #include "techniques/reflection_reuse/pixel_matcher.h"
 
 namespace gfxrepro::reflection_reuse {
@@ -34,10 +35,6 @@ std::size_t product(glm::ivec2 size) {
     return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
 }
 
-int ceilDivided(int count, int size) {
-    return (count + size - 1) / size;
-}
-
 }  // namespace
 
 CellList::CellList(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx, bool splitsDraws)
@@ -67,13 +64,13 @@ void CellList::list(const gl::Texture& samples, Validity validity, bool onlyPoin
     commands_.clear();
     list_.set("holdsOffsets", validity == Validity::Offset ? 1 : 0);
     list_.set("onlyPoints", onlyPoints ? 1 : 0);
-    const int tiles = ceilDivided(sizePx_.x, kTileWidth) * ceilDivided(sizePx_.y, kTileHeight);
-    list_.dispatch({static_cast<GLuint>(ceilDivided(tiles, kGroupSize)), 1, 1},
-                   {{"cells", cells_},
-                    {"samples", samples},
-                    {"Triangles", triangles_},
-                    {"Points", points_},
-                    {"Commands", commands_}});
+    const GLuint tiles =
+        kit::groupsFor(sizePx_.x, kTileWidth) * kit::groupsFor(sizePx_.y, kTileHeight);
+    list_.dispatch({kit::groupsFor(tiles, kGroupSize), 1, 1}, {{"cells", cells_},
+                                                               {"samples", samples},
+                                                               {"Triangles", triangles_},
+                                                               {"Points", points_},
+                                                               {"Commands", commands_}});
     triangles_.awaitPasses(GL_ELEMENT_ARRAY_BARRIER_BIT);
     points_.awaitPasses(GL_ELEMENT_ARRAY_BARRIER_BIT);
     commands_.awaitPasses(GL_COMMAND_BARRIER_BIT);

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 #include "techniques/reflection_reuse/matching_constants.h"
 
 namespace gfxrepro::reflection_reuse {
@@ -28,10 +29,6 @@ gl::Defines matchingDefines(const MatchingSettings& settings) {
 gl::Defines countsDefines() {
     return {
         {"GROUP_SIZE", kGroupSize}, {"ROW_LENGTH", kRowLength}, {"INVALID_OFFSET", kInvalidOffset}};
-}
-
-GLuint groupsFor(int invocations) {
-    return static_cast<GLuint>((invocations + kGroupSize - 1) / kGroupSize);
 }
 
 }  // namespace
@@ -69,7 +66,7 @@ void PixelMatcher::match(const ReflectionDepthImage& key, const glm::vec3& eyeWo
     pass_.set("widestRingPx", settings_.widestRingPx);
     // Without previous offsets the distances stand in.
     const gl::Texture& distance = key.reflection.distance;
-    pass_.dispatch({groupsFor(sizePx.x), groupsFor(sizePx.y), 1},
+    pass_.dispatch({kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kGroupSize), 1},
                    gl::Resources{{"travelDistances", distance},
                                  {"previousOffsets", previous ? previous->offset : distance},
                                  {"offsets", result.offset},
@@ -80,8 +77,9 @@ void PixelMatcher::match(const ReflectionDepthImage& key, const glm::vec3& eyeWo
 MatchingCounts PixelMatcher::counts(const ReflectionDepthImage& key, const Offsets& offsets) const {
     const glm::ivec2 sizePx = key.gbuffer.view.sizePx;
     const gl::Buffer sums = gl::Buffer::of(std::span<const MatchingCounts>({MatchingCounts{}}));
+    const GLuint rowPieces = kit::groupsFor(sizePx.x, kRowLength);
     countsPass_.dispatch(
-        {groupsFor((sizePx.x + kRowLength - 1) / kRowLength), groupsFor(sizePx.y), 1},
+        {kit::groupsFor(rowPieces, kGroupSize), kit::groupsFor(sizePx.y, kGroupSize), 1},
         gl::Resources{{"offsets", offsets.offset}, {"stepCounts", offsets.steps}, {"Counts", sums}}
             .with(key.gbuffer.resourcesFor(countsPass_)));
     return sums.read<MatchingCounts>(1).front();

@@ -25,7 +25,7 @@ constexpr config::Choice<Matching> kMatchings[] = {
 };
 constexpr config::Choice<Forward> kForwards[] = {
     {Forward::Grid, "grid", "a mesh over the image"},
-    {Forward::Splats, "splats", "a point a pixel"},
+    {Forward::Splats, "splats", "a point per pixel"},
 };
 
 constexpr config::Choice<Resampling> kResamplings[] = {

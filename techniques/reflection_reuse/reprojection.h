@@ -12,7 +12,7 @@ namespace gfxrepro::reflection_reuse {
 
 enum class Forward {
     Grid,    // a mesh over the image, a vertex a pixel centre: no holes
-    Splats,  // a point a pixel, as Fig. 38 shows: holes that wrong surfaces fill
+    Splats,  // a point per pixel, as Fig. 38 shows: holes that wrong surfaces fill
 };
 
 enum class Resampling {

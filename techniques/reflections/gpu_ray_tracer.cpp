@@ -1,6 +1,7 @@
 #include "techniques/reflections/gpu_ray_tracer.h"
 
 #include "runner/core/error.h"
+#include "techniques/kit/draws.h"
 #include "techniques/reflections/embree_tracer.h"
 
 namespace gfxrepro::reflections {
@@ -26,10 +27,6 @@ gl::Defines passDefines(const ReflectiveScene& scene) {
                               {"TRACE_GROUP_SIZE", kTraceGroupSize},
                               {"MAX_GROUPS", kMaxGroups}});
     return defines;
-}
-
-int ceilDivided(int count, int size) {
-    return (count + size - 1) / size;
 }
 
 }  // namespace
@@ -69,8 +66,8 @@ void GpuRayTracer::listSamples(const GBuffer& gbuffer, const gl::Texture* wanted
     if (samples_.sizeBytes() != bytes) samples_ = gl::Buffer(bytes);
     arguments_.clear();  // on the device: a write would wait for the last frame's trace
     list_.set("isChosen", wanted ? 1 : 0);
-    const int tiles = ceilDivided(size.x, kTileWidth) * ceilDivided(size.y, kTileHeight);
-    list_.dispatch({static_cast<GLuint>(ceilDivided(tiles, kListGroupSize)), 1, 1},
+    const GLuint tiles = kit::groupsFor(size.x, kTileWidth) * kit::groupsFor(size.y, kTileHeight);
+    list_.dispatch({kit::groupsFor(tiles, kListGroupSize), 1, 1},
                    gl::Resources{{"Samples", samples_},
                                  {"Arguments", arguments_},
                                  {"wanted", wanted ? *wanted : gbuffer.surface}}

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <glm/gtc/packing.hpp>
 
+#include "techniques/kit/draws.h"
 #include "techniques/reflections/kept_colour.h"
 
 namespace gfxrepro::reflections {
@@ -11,7 +12,7 @@ namespace {
 
 constexpr std::size_t kGroupSize = 64;
 /// Work groups along one axis that every device takes; beyond, invocations take several samples.
-constexpr std::size_t kMostGroups = 65535;
+constexpr GLuint kMostGroups = 65535;
 
 /// As shaders/wanted_samples.comp.glsl has it.
 struct ListedSample {
@@ -28,8 +29,7 @@ gl::Pass pass(const gl::ShaderLibrary& shaders, const char* file) {
 
 void dispatch(const gl::Pass& pass, std::size_t count, const gl::Resources& resources) {
     pass.set("count", static_cast<std::uint32_t>(count));
-    const std::size_t groups = std::min((count + kGroupSize - 1) / kGroupSize, kMostGroups);
-    pass.dispatch({groups, 1, 1}, resources);
+    pass.dispatch({std::min(kit::groupsFor(count, kGroupSize), kMostGroups), 1, 1}, resources);
 }
 
 /// The places whose mask is not 0 and their four neighbours, each once.

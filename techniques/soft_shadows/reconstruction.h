@@ -13,7 +13,7 @@
 namespace gfxrepro::soft_shadows {
 
 enum class Reconstruction {
-    Hybrid,   // a quad a sample, corners from the offset image H or from the sample's plane
+    Hybrid,   // a quad per sample, corners from the offset image H or from the sample's plane
     Classic,  // two triangles between four neighbouring samples, none across a discontinuity
 };
 

@@ -16,7 +16,7 @@ constexpr config::Choice<Method> kMethods[] = {
     {Method::Variance, "variance", "variance soft shadows from the light's centre"},
 };
 constexpr config::Choice<Reconstruction> kReconstructions[] = {
-    {Reconstruction::Hybrid, "hybrid", "a quad a sample (algorithm 4)"},
+    {Reconstruction::Hybrid, "hybrid", "a quad per sample (algorithm 4)"},
     {Reconstruction::Classic, "classic", "triangles between neighbouring samples"},
 };
 

@@ -250,11 +250,11 @@ std::vector<CapturedVertex> TerrainRenderer::capture(std::span<const Tile> tiles
         const std::size_t count = 3 * primitives_.result();
         if (count == 0) return;
         const gl::Buffer captured(count * sizeof(CapturedVertex));
-        glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, captured.id());
+        glTransformFeedbackBufferBase(0, 0, captured.id());
         glBeginTransformFeedback(GL_TRIANGLES);
         drawPatches(some, view, Parts::Surface);
         glEndTransformFeedback();
-        glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+        glTransformFeedbackBufferBase(0, 0, 0);
         const auto first = static_cast<int>(some.data() - tiles.data());
         for (CapturedVertex vertex : captured.read<CapturedVertex>(count)) {
             vertex.patch += side * side * first;

@@ -126,8 +126,9 @@ TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
         "yardstick", false,
         {"draws the frame's patches untessellated, too: what the window alone costs"});
     showsPictures = params.getBool("pictures", false, {"the picture, and what is wrong in it"});
-    supersampling = params.getInt(
-        "supersampling", 1, {"samples a pixel along each axis of errors and pictures", "1", 1, 8});
+    supersampling =
+        params.getInt("supersampling", 1,
+                      {"samples per pixel along each axis of errors and pictures", "1", 1, 8});
     params.finish();
 
     requireShape(metadata.blockSegments, tile, params);

@@ -6,7 +6,7 @@ namespace gfxrepro::voxelization {
 namespace {
 
 /// Image atomics straight into the grid, no directional sheets: the modern comparator in one pass,
-/// or, as [zju2005] Sec. 2.5.3 has it, the whole mesh drawn once a slice, N times in all.
+/// or, as [zju2005] Sec. 2.5.3 has it, the whole mesh drawn once per slice, N times in all.
 /// Departure [zju2005] Sec. 2.5.3: triangles outside the slice are culled, not clipped, and a
 /// fragment's depth decides; clipping would move the edges, and each triangle keeps its own axis,
 /// so that the result is the same grid.

@@ -19,8 +19,8 @@ enum class Rule {
 
 /// How synthesis reads the sheets of x and y; the grids are equal bit by bit.
 enum class Merging {
-    PerVoxel,    // a fetch a voxel. [zju2005] Sec. 2.3.2 (3)
-    Transposed,  // tiles of C³ voxels, a fetch a texel
+    PerVoxel,    // a fetch per voxel. [zju2005] Sec. 2.3.2 (3)
+    Transposed,  // tiles of C³ voxels, a fetch per texel
     Sparse,      // as Transposed, and only tiles that hold fragments; surfaces only
 };
 

@@ -18,7 +18,7 @@ constexpr config::Choice<DrawMode> kModes[] = {
 
 constexpr config::Choice<Framing> kFramings[] = {
     {Framing::Model, "model", "the model, as large as it fits"},
-    {Framing::Grid, "grid", "the whole grid: the same pixels a plane for every model"},
+    {Framing::Grid, "grid", "the whole grid: the same pixels per plane for every model"},
 };
 
 std::optional<scene::Box> readCut(config::Params& params) {

@@ -188,8 +188,4 @@ void VolumeRenderer::setView(const gl::Program& program) const {
     program.setIfActive("cutHigh", glm::ivec3(glm::round(settings_.cut->max * n)));
 }
 
-std::vector<std::uint32_t> VolumeRenderer::readHits() const {
-    return hits_.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
-}
-
 }  // namespace gfxrepro::voxelization

@@ -1,7 +1,6 @@
 // Draws a worksheet by proxy planes. [zju2005] Sec. 2.2.2, 2.3.3, 2.4.2; figures 2.6 to 2.10.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
 #include "runner/gl/pass.h"
@@ -61,9 +60,9 @@ class VolumeRenderer {
     const PlaneView& view() const { return view_; }
     /// Linear RGB; waits for the device.
     image::ImageF readImage() const { return color_.readImage(3); }
-    /// Opaque only: a word a pixel, rows from the bottom. 0: nothing hit; else
+    /// Opaque only: a word per pixel, rows from the bottom. 0: nothing hit; else
     /// x | y << 10 | z << 20 of the voxel | (axis of the face entered + 1) << 30.
-    std::vector<std::uint32_t> readHits() const;
+    const gl::Texture& hits() const { return hits_; }
 
   private:
     void drawPlanes(const gl::Resources& volumes) const;

@@ -18,7 +18,7 @@ constexpr config::Choice<InputKind> kInputs[] = {
 constexpr config::Choice<Method> kMethods[] = {
     {Method::Worksheet, "worksheet", "rasterization, texelization and synthesis of worksheets"},
     {Method::Direct, "direct", "one pass with image atomics into the grid"},
-    {Method::Slices, "slices", "the mesh is drawn once a slice (section 2.5.3)"},
+    {Method::Slices, "slices", "the mesh is drawn once per slice (section 2.5.3)"},
     {Method::DepthOnly, "depth_only", "no grid: a depth-only draw, the yardstick of speed"},
 };
 constexpr config::Choice<Rule> kRules[] = {
@@ -49,8 +49,8 @@ constexpr config::Choice<OpenMesh> kOpenMeshes[] = {
     {OpenMesh::Report, "report", "filled by the majority of three axes, and counted"},
 };
 constexpr config::Choice<Merging> kMergings[] = {
-    {Merging::PerVoxel, "per_voxel", "a fetch a voxel, as the thesis"},
-    {Merging::Transposed, "transposed", "tiles of voxels, a fetch a texel"},
+    {Merging::PerVoxel, "per_voxel", "a fetch per voxel, as the thesis"},
+    {Merging::Transposed, "transposed", "tiles of voxels, a fetch per texel"},
     {Merging::Sparse, "sparse",
      "as transposed, and only tiles that hold fragments; not for solids"},
 };

@@ -84,7 +84,7 @@ TEST(Plan, PredictsFromEarlierRuns) {
         mockGfxrepro({"plan", config, "--device", "software", "--from", folder.path() / "none"});
     EXPECT_EQ(none.exitCode, 2);
     EXPECT_EQ(none.err, "gfxrepro: " + (folder.path() / "none").string() +
-                            ": is no run directory (it has no plan.json)\n");
+                            ": is not a run directory (it has no plan.json)\n");
 }
 
 TEST(Plan, NewestRunsTellAndBrokenOnesDoNotStop) {
@@ -578,7 +578,8 @@ TEST(Submit, ARefusedMergeAndAnAnswerWithoutANumber) {
 
 TEST(Submit, SaysWhatItNeeds) {
     EXPECT_EQ(mockGfxrepro({"submit"}).err,
-              "gfxrepro: submit: give config files and --out DIR, or --status DIR\n");
+              "gfxrepro: submit: give PAPER, PAPER/TABLE or config files and --out DIR, or "
+              "--status DIR\n");
     const TemporaryFolder folder;
     EXPECT_EQ(mockGfxrepro({"submit", "--status", folder.path()}).err,
               "gfxrepro: " + folder.path().string() + ": holds no submission\n");

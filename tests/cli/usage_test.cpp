@@ -149,9 +149,11 @@ TEST(Usage, UnknownPaperAndKind) {
 
 TEST(Usage, RunWantsConfigsOrARun) {
     const TemporaryFolder folder;
-    EXPECT_EQ(refusal({"run"}, folder), "gfxrepro: run: give config files, or --resume DIR\n");
+    EXPECT_EQ(refusal({"run"}, folder),
+              "gfxrepro: run: give PAPER, PAPER/TABLE or config files, --plan FILE or --resume "
+              "RUN\n");
     EXPECT_EQ(refusal({"table", folder.path()}, folder),
-              "gfxrepro: DIR: is no run directory (it has no plan.json)\n");
+              "gfxrepro: DIR: is not a run directory (it has no plan.json)\n");
 }
 
 // What `reproduce` is for on a machine that has nobody's scans.

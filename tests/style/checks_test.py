@@ -68,8 +68,12 @@ for says in ("… too", '"and so on"', "nor this", '"and, unlike it, that"'):
            f"{TABLE}:1: a claim is read alone: say of what it goes on")
 expect("check_style", {TABLE: 'printed: {remark: "text. full_ewa_ms is ours"}\n'},
        f"{TABLE}:1: 'full_ewa_ms' in a remark, which people read: say it in words")
+expect("check_style", {TABLE: "printed:\n  remark: >-\n    text.\n\n    ray_traced is theirs\n  values: a_b\n"},
+       f"{TABLE}:5: 'ray_traced' in a remark, which people read: say it in words\n")
+expect("check_style", {TABLE: "title: What c_min decides\n"}, f"{TABLE}:1: 'c_min' in a title, which")
+expect("check_style", {TABLE: "  A: {says: full_ewa is fast, ratio: a_b / c_d}\n"}, f"{TABLE}:1: 'full_ewa' in a says, which")
 code, output = run("check_style", {**GOOD, "configs/README.md": "", "configs/x/README.md": "", TABLE:
-    "  A: {says: soft shadows do}\n  remark: see sweeps/soft_shadows-light.yaml, a D3DFMT_32F\n"})
+    "  A: {says: soft shadows do, ratio: a_b / c_d}\n  remark: see sweeps/soft_shadows-light.yaml, a D3DFMT_32F\n"})
 if code != 0:
     sys.exit(f"check_style found something in good words:\n{output}")
 expect("check_style", {"runner/core/a.h": "int x;\n"}, "runner/core/a.h: no #pragma once")

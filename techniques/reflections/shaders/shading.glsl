@@ -59,9 +59,9 @@ uint surfaceOf(Object object, vec2 texcoord, float footprint) {
 // The normal that the object's normal texture gives: unit, turned to the viewer. `normal` is the
 // interpolated one, unit, on the mesh's outside, toViewer of unit length. The frame is the
 // triangle's, of two edges and their texture coordinates: gradients of u and v across the normal
-// (Schüler 2013, "Followup: Normal Mapping Without Precomputed Tangents"). Departure from glTF 2.0
-// Sec. 3.9.3: no MikkTSpace tangents, so that rays, which know a triangle, and fragments, which know
-// derivatives, have the same frame.
+// (Schüler 2013, "Followup: Normal Mapping Without Precomputed Tangents").
+// Departure, glTF 2.0 Sec. 3.9.3: no MikkTSpace tangents, so that rays, which know a triangle, and
+// fragments, which know derivatives, have the same frame.
 vec3 texturedNormal(Object object, vec2 texcoord, float footprint, vec3 normal, vec3 toViewer,
                     vec3 first, vec3 second, vec2 uvFirst, vec2 uvSecond) {
     vec3 place = vec3(texcoord, object.layers.y);

@@ -1,6 +1,6 @@
 #version 450 core
 // Boolean operations on two worksheets of one layout, all voxels of a texel at once.
-// [zju2005] Sec. 2.4.1 (3). Departure: instructions instead of blending modes, which reach only the
+// Departure [zju2005] Sec. 2.4.1 (3): instructions instead of blending modes, which reach only the
 // sum of 8-bit channels and would carry between voxels.
 // Reads `left` and `right`, writes every texel of `result`, which may be one of them.
 

@@ -31,7 +31,7 @@ struct Quad {
     std::array<Corner, 4> corners;  // counter-clockwise from the lower left
 };
 
-/// [xie2017] Algorithm 4: a quad a sample, in row order.
+/// [xie2017] Algorithm 4: a quad per sample, in row order.
 std::vector<Quad> hybridQuads(const kit::HostDepthImage& image, const kit::HostDepthImage& offset,
                               std::span<const glm::vec3> normals,
                               const ReconstructionSettings& settings);

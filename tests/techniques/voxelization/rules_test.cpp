@@ -168,7 +168,7 @@ TEST_F(RulesTest, WorksheetDirectAndSlicesAgree) {
     }
 }
 
-// [zju2005] Sec. 2.3.2: a fetch a voxel or a texel, by instructions or look-ups: the same words.
+// [zju2005] Sec. 2.3.2: a fetch per voxel or a texel, by instructions or look-ups: the same words.
 TEST_F(RulesTest, EverySynthesisMakesTheSameGrid) {
     const scene::Mesh mesh = shapes::joined(shapes::torus(glm::vec3(0.0F), 0.7F, 0.3F, 200, 100),
                                             shapes::randomTriangles(50, 9));

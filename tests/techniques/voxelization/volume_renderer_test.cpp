@@ -21,6 +21,10 @@ gl::Texture uploaded(const DenseGrid& grid) {
     return sheets;
 }
 
+std::vector<std::uint32_t> hitsOf(const VolumeRenderer& renderer) {
+    return renderer.hits().read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+}
+
 /// A ray in voxels.
 struct Ray {
     glm::dvec3 origin, direction;
@@ -138,7 +142,7 @@ TEST_P(VolumeRendering, OpaqueShowsTheVoxelsThatARayMeetsFirst) {
             orbitCamera(kBox, GetParam().azimuthDeg, GetParam().elevationDeg, 1.5F);
         VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, {});
         renderer.draw(uploaded(grid), nullptr, nullptr);
-        const std::vector<std::uint32_t> hits = renderer.readHits();
+        const std::vector<std::uint32_t> hits = hitsOf(renderer);
         int different = 0;
         int full = 0;
         for (int y = 0; y < kSizePx.y; ++y) {
@@ -199,7 +203,7 @@ TEST_F(GlTest, CutVoxelsAreNotDrawn) {
     VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, settings);
     renderer.draw(uploaded(grid), nullptr, nullptr);
     const std::uint32_t centre =
-        renderer.readHits()[static_cast<std::size_t>(kSizePx.y / 2 * kSizePx.x + kSizePx.x / 2)];
+        hitsOf(renderer)[static_cast<std::size_t>(kSizePx.y / 2 * kSizePx.x + kSizePx.x / 2)];
     EXPECT_EQ(centre >> 20 & 1023U, 15U);  // the first layer behind the cut
     EXPECT_EQ(centre >> 30, 3U);           // entered across z
 }

@@ -108,7 +108,7 @@ TEST(Predictions, RefuseWhatIsNeitherRunNorFile) {
     const auto text = [&](const std::filesystem::path& path) {
         return errorText([&] { Predictor::from({path}); }, folder.path());
     };
-    EXPECT_EQ(text(folder.path()), "DIR: is no run directory (it has no plan.json)");
+    EXPECT_EQ(text(folder.path()), "DIR: is not a run directory (it has no plan.json)");
     EXPECT_EQ(text(folder.write("a.csv", "a,b\n")),
               "DIR/a.csv: neither a run directory nor a file of predictions");
     EXPECT_EQ(text(folder.write("b.csv", "title,time_s,memory_bytes,source\nx,y,1,file\n")),

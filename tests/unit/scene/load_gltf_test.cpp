@@ -137,6 +137,13 @@ TEST_F(LoadGltf, ReadsPointsAndRefusesLinesAlone) {
               "DIR/a.gltf: no triangles or points in the scene");
 }
 
+TEST_F(LoadGltf, KeepsNormalsOfPointsInAFlattenedNode) {
+    Document document = square();
+    document["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0,"NORMAL":0},"mode":0}]}])";
+    document["nodes"] = R"([{"mesh":0,"scale":[0,1,1]}])";
+    EXPECT_EQ(load(document).points.normals.at(1), glm::vec3(1, 0, 0));
+}
+
 TEST_F(LoadGltf, AppliesTheNodeTree) {
     const Scene scene = loadWith("nodes",
                                  R"([{"children":[1],"translation":[1,0,0]},
