@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <set>
 
 #include "runner/claims/claim_parts.h"
 #include "runner/claims/claim_reader.h"
@@ -124,12 +123,13 @@ tables::Table tableFor(const ClaimSpec& claim, const tables::Table& table) {
 }
 
 /// What the config knows of the claim on this device, in this profile and of such scenes.
-void takeKnown(const ClaimSpec& claim, const config::Experiment& experiment,
-               const ReportContext& context, ClaimResult& result) {
+void takeKnown(const ClaimSpec& claim, const ReportContext& context, ClaimResult& result) {
+    const auto loaded = context.sceneClasses.find(result.table);
+    const std::string scenes = loaded == context.sceneClasses.end() ? "" : loaded->second;
     for (const ClaimSpec::Known& known : claim.because) {
         if (known.device.value_or(context.deviceClass) != context.deviceClass) continue;
         if (known.profile.value_or(context.profile) != context.profile) continue;
-        if (known.scenes && *known.scenes != sceneClass(experiment, context.sceneFiles)) continue;
+        if (known.scenes && *known.scenes != scenes) continue;
         result.known = verdictFromName(known.verdict);
         result.because = known.reason;
         result.shownBy = known.shownBy;
@@ -138,8 +138,8 @@ void takeKnown(const ClaimSpec& claim, const config::Experiment& experiment,
 }
 
 /// The claim with what its config says of it, not judged yet.
-ClaimResult unjudged(const ClaimSpec& claim, const config::Experiment& experiment,
-                     const tables::Table& table, const ReportContext& context) {
+ClaimResult unjudged(const ClaimSpec& claim, const tables::Table& table,
+                     const ReportContext& context) {
     ClaimResult result;
     result.id = claim.id;
     result.table = table.id;
@@ -147,7 +147,7 @@ ClaimResult unjudged(const ClaimSpec& claim, const config::Experiment& experimen
     result.origin = claim.origin.value_or(ClaimSpec::Origin::Ours);
     result.boundFrom = claim.boundFrom;
     result.timeKind = claim.timeKind;
-    takeKnown(claim, experiment, context, result);
+    takeKnown(claim, context, result);
     if (context.isAltered) result.known.reset();
     std::vector<std::string> required;
     for (const ClaimPart& part : partsOf(claim)) required.push_back(part.requirement.text);
@@ -170,9 +170,9 @@ std::string balanceNote(const ClaimSpec& claim, const ReportContext& context) {
         1.0 / *context.fragmentShare);
 }
 
-ClaimResult evaluate(const ClaimSpec& claim, const config::Experiment& experiment,
-                     const tables::Table& table, const ReportContext& context) {
-    ClaimResult result = unjudged(claim, experiment, table, context);
+ClaimResult evaluate(const ClaimSpec& claim, const tables::Table& table,
+                     const ReportContext& context) {
+    ClaimResult result = unjudged(claim, table, context);
     if (result.verdict == Verdict::NotApplicable) return result;
     ClaimReader reader(claim, table);
     if (claim.type == ClaimSpec::Type::SameMean && !reader.readsOnly(kSameMeanMetric)) {
@@ -211,13 +211,13 @@ ClaimResult evaluate(const ClaimSpec& claim, const config::Experiment& experimen
 }
 
 /// The same of a table that may lack what the claim reads.
-ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const config::Experiment& experiment,
-                                const tables::Table& table, const ReportContext& context) {
+ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const tables::Table& table,
+                                const ReportContext& context) {
     const tables::Table own = tableFor(claim, table);
     try {
-        return evaluate(claim, experiment, own, context);
+        return evaluate(claim, own, context);
     } catch (const AbsentColumnError& error) {
-        ClaimResult result = unjudged(claim, experiment, own, context);
+        ClaimResult result = unjudged(claim, own, context);
         result.reason = "not among what was measured: " + error.text();
         return result;
     }
@@ -237,11 +237,7 @@ std::string restsOn(const ClaimResult& result, const ReportContext& context) {
 
 }  // namespace
 
-std::string sceneClass(const config::Experiment& experiment, const SceneFiles& files) {
-    std::set<std::string> scenes;
-    for (const config::CaseSpec& item : config::expandCases(experiment)) {
-        if (!item.scene.isNull()) scenes.insert(item.scene.text());
-    }
+std::string sceneClass(const std::set<std::string>& scenes, const SceneFiles& files) {
     std::size_t ofFiles = 0;
     for (const std::string& scene : scenes) {
         const auto found = files.find(scene);
@@ -269,7 +265,7 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
                                         const tables::Table& table, const ReportContext& context) {
     std::vector<ClaimResult> results;
     for (const ClaimSpec& claim : experiment.claims) {
-        results.push_back(evaluateWhatIsThere(claim, experiment, table, context));
+        results.push_back(evaluateWhatIsThere(claim, table, context));
         results.back().restsOn = restsOn(results.back(), context);
         const SourceLocation file{experiment.file.string(), 0, 0};  // of a plan: JSON has no lines
         results.back().where = claim.location.file == file.file ? claim.location : file;

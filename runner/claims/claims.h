@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,9 +35,9 @@ using KeptSensitivity = std::map<std::pair<std::string, std::string>, TriedClaim
 
 /// Of each scene of a run, whether a file was read for it; none was for a generated one.
 using SceneFiles = std::map<std::string, bool>;
-/// "files" where every scene of the experiment's cases was made of a file, "generated" where none
-/// was; empty where some were, where it has no scene, and where one is not known.
-std::string sceneClass(const config::Experiment& experiment, const SceneFiles& files);
+/// "files" where every one of the scenes was made of a file, "generated" where none was; empty
+/// where some were, where there is no scene, and where one is not known.
+std::string sceneClass(const std::set<std::string>& scenes, const SceneFiles& files);
 
 /// Where the run took place, as far as claims ask, and what is known of them.
 struct ReportContext {
@@ -49,7 +50,7 @@ struct ReportContext {
     KeptSensitivity tried = {};
     bool knowsTried = true;  // false: there was nowhere to look
     tables::TableNotes tableNotes = {};
-    SceneFiles sceneFiles = {};
+    std::map<std::string, std::string> sceneClasses = {};  // by table, of what its cases loaded
     /// The command line left rows out or gave values of its own: verdicts are not known of that.
     bool isAltered = false;
 };

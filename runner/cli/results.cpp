@@ -160,33 +160,28 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
         if (measured != run.plan.experiments.end()) {
             experiment.paperDocument = measured->paperDocument;
             experiment.paperCases = measured->paperCases;
+            experiment.outputs = measured->outputs;
             continue;
         }
         throw Error(fmt::format("{}: {} is not among what {} measured", experiment.file.string(),
                                 experiment.id, runDir.string()));
     }
-    std::vector<tables::Table> tables =
-        tables::buildTables(experiments, run::plannedCases(run.plan.cases), run.records);
+    results::Results judged = results::resultsOf(run, experiments);
     const std::string mark = "judged after the run, by a config that it did not know";
     std::vector<std::string> notes = run::notesOf(run.manifest);
     notes.insert(notes.begin(), mark);
-    for (tables::Table& table : tables) {
+    for (tables::Table& table : judged.tables) {
         table.notes.insert(table.notes.begin(), notes.begin(), notes.end());
     }
-    claims::ReportContext context = results::reportContext(run.manifest);
-    run::Plan judged = run.plan;
-    judged.experiments = experiments;
-    results::takeKeptSensitivity(judged, context);
-    std::vector<claims::ClaimResult> claims = claims::evaluateClaims(experiments, tables, context);
-    for (claims::ClaimResult& claim : claims) {
+    for (claims::ClaimResult& claim : judged.claims) {
         claim.reason = mark + (claim.reason.empty() ? "" : "; " + claim.reason);
     }
     results::takeFolder(out, runDir, run.manifest);
     const fs::path folder = out / "judged-afterwards";
     fs::remove_all(folder);
-    report::writeTables(folder, tables, notes);
-    report::writeClaims(folder, run::caseResults(run), claims, context);
-    const int verdict = sayClaims(claims);
+    report::writeTables(folder, judged.tables, notes);
+    report::writeClaims(folder, run::caseResults(run), judged.claims, judged.context);
+    const int verdict = sayClaims(judged.claims);
     sayNotes(run.manifest);
     say("judged after the run: {}\n", (folder / "claims.csv").string());
     const int code = completenessCode(run);

@@ -19,7 +19,6 @@
 #include "runner/run/run.h"
 #include "runner/studies/budget.h"
 #include "runner/studies/sensitivity.h"
-#include "runner/tables/table.h"
 
 namespace gfxrepro::cli {
 
@@ -159,11 +158,7 @@ void takeBase(const run::StoredRun& run, Study& study) {
             studies::basisOf(run.plan, experiment) != study.basis) {
             continue;
         }
-        const std::vector<tables::Table> tables =
-            tables::buildTables({experiment}, run::plannedCases(run.plan.cases), run.records);
-        study.outcomes.push_back(
-            {study.next(), claims::evaluateClaims(experiment, tables.front(),
-                                                  results::reportContext(run.manifest))});
+        study.outcomes.push_back({study.next(), results::resultsOf(run, {experiment}).claims});
         write(study, "");
     }
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -30,38 +32,55 @@ claims::ReportContext reportContext(const run::Json& manifest) {
     context.commit = manifest.at("commit").get<std::string>();
     context.command = manifest.at("invocations").at(0).at("command").get<std::string>();
     if (const auto info = manifest.at("gl"); info.contains("balance")) {
-        context.fragmentShare = run::balanceFromJson(info["balance"]).fragmentShare();
-    }
-    const run::Json scenes = manifest.value("scenes", run::Json::object());
-    for (const auto& [scene, from] : scenes.items()) {
-        context.sceneFiles[scene] = !from.value("sha256", "").empty();
-    }
-    return context;
-}
-
-void takeKeptSensitivity(const run::Plan& plan, claims::ReportContext& context) {
-    const auto kept = studies::keptSensitivity(plan);
-    const bool areOfDocuments =
-        std::ranges::any_of(plan.experiments, &config::Experiment::isPublished);
-    context.knowsTried = kept || !areOfDocuments;
-    context.tried = kept.value_or(claims::KeptSensitivity{});
-}
-
-claims::ReportContext reportContext(const run::StoredRun& run) {
-    claims::ReportContext context = reportContext(run.manifest);
-    takeKeptSensitivity(run.plan, context);
-    const run::Request& request = run.plan.request;
-    context.isAltered = !request.only.empty() || !request.sets.empty() || !request.sweeps.empty();
-    context.tableNotes =
-        tables::keptCalibrations(dataFolder("configs").parent_path() / "results/calibration");
-    for (const config::Experiment& experiment : run.plan.experiments) {
-        const std::string note = run::machineStateNote(run.manifest, experiment.id);
-        if (!note.empty()) context.tableNotes[experiment.id].push_back(note);
+        context.fragmentShare =
+            run::balanceFromJson(info["balance"], {"manifest.json", 0, 0}).fragmentShare();
     }
     return context;
 }
 
 namespace {
+
+using Experiments = std::vector<config::Experiment>;
+
+/// What the kept results say of the claims; that there is nowhere to look where some are of
+/// documents.
+void takeKeptSensitivity(const run::Plan& plan, const Experiments& experiments,
+                         claims::ReportContext& context) {
+    const auto kept = studies::keptSensitivity(plan, experiments);
+    const bool areOfDocuments = std::ranges::any_of(experiments, &config::Experiment::isPublished);
+    context.knowsTried = kept || !areOfDocuments;
+    context.tried = kept.value_or(claims::KeptSensitivity{});
+}
+
+/// Of each table, of what the scenes were made that its cases loaded.
+std::map<std::string, std::string> sceneClasses(const run::StoredRun& run) {
+    claims::SceneFiles files;
+    for (const auto& [scene, from] : run.manifest.at("scenes").items()) {
+        files[scene] = !from.at("sha256").get<std::string>().empty();
+    }
+    std::map<std::string, std::set<std::string>> loaded;
+    for (const run::Case& item : run.plan.cases) {
+        if (!item.scene.isNull()) loaded[item.experiment].insert(item.scene.text());
+    }
+    std::map<std::string, std::string> classes;
+    for (const auto& [table, scenes] : loaded) classes[table] = claims::sceneClass(scenes, files);
+    return classes;
+}
+
+claims::ReportContext contextOf(const run::StoredRun& run, const Experiments& experiments) {
+    claims::ReportContext context = reportContext(run.manifest);
+    context.sceneClasses = sceneClasses(run);
+    takeKeptSensitivity(run.plan, experiments, context);
+    const run::Request& request = run.plan.request;
+    context.isAltered = !request.only.empty() || !request.sets.empty() || !request.sweeps.empty();
+    context.tableNotes =
+        tables::keptCalibrations(dataFolder("configs").parent_path() / "results/calibration");
+    for (const config::Experiment& experiment : experiments) {
+        const std::string note = run::machineStateNote(run.manifest, experiment.id);
+        if (!note.empty()) context.tableNotes[experiment.id].push_back(note);
+    }
+    return context;
+}
 
 /// Behind what the run itself must say: that its files were changed, that machines differ.
 std::vector<tables::Table> withNotes(std::vector<tables::Table> tables,
@@ -75,22 +94,26 @@ std::vector<tables::Table> withNotes(std::vector<tables::Table> tables,
 }  // namespace
 
 Results resultsOf(const run::StoredRun& run) {
+    return resultsOf(run, run.plan.experiments);
+}
+
+Results resultsOf(const run::StoredRun& run, const Experiments& experiments) {
     Results results;
-    results.context = reportContext(run);
+    results.context = contextOf(run, experiments);
     results.tables =
-        tables::buildTables(run.plan.experiments, run::plannedCases(run.plan.cases), run.records);
+        tables::buildTables(experiments, run::plannedCases(run.plan.cases), run.records);
     tables::addNotes(results.context.tableNotes, results.tables);
     const tables::MovedClocks clocks = run::movedClocks(run.manifest);
     for (tables::Table& table : results.tables) tables::markMovedClocks(clocks, table);
-    results.claims = claims::evaluateClaims(run.plan.experiments, results.tables, results.context);
-    results.printedCells = tables::countPrintedCells(run.plan.experiments, results.tables);
+    results.claims = claims::evaluateClaims(experiments, results.tables, results.context);
+    results.printedCells = tables::countPrintedCells(experiments, results.tables);
     return results;
 }
 
 Results writeResults(const fs::path& runDir, const run::StoredRun& run, const ResultFiles& which) {
     const fs::path out = which.out.empty() ? runDir : which.out;
     if (!which.out.empty()) takeFolder(out, runDir, run.manifest);
-    const std::vector<config::Experiment>& experiments = run.plan.experiments;
+    const Experiments& experiments = run.plan.experiments;
     Results results = resultsOf(run);
     if (which.tables) {
         const std::vector<std::string> notes = run::notesOf(run.manifest);

@@ -14,20 +14,16 @@ namespace gfxrepro::results {
 
 /// What claims and the report ask of a run.
 claims::ReportContext reportContext(const run::Json& manifest);
-/// Of its manifest, with what kept results of `gfxrepro sensitivity` say of its claims.
-claims::ReportContext reportContext(const run::StoredRun& run);
-
-/// What the kept results say of the claims of a plan; that there is nowhere to look where it has
-/// tables of a document.
-void takeKeptSensitivity(const run::Plan& plan, claims::ReportContext& context);
 
 struct Results {
     claims::ReportContext context;
-    std::vector<tables::Table> tables;        // beside the experiments of the run's plan
+    std::vector<tables::Table> tables;        // beside the experiments
     std::vector<claims::ClaimResult> claims;  // of all of them, in order
     tables::PrintedCells printedCells;
 };
 Results resultsOf(const run::StoredRun& run);
+/// By these experiments in the place of those of its plan: some of them, or what judges afterwards.
+Results resultsOf(const run::StoredRun& run, const std::vector<config::Experiment>& experiments);
 
 /// Which files writeResults() makes.
 struct ResultFiles {

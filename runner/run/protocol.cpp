@@ -64,8 +64,9 @@ Json toJson(const gl::DeviceBalance& balance) {
             {"copy_gbytes_per_s", balance.copyGbytesPerS}};
 }
 
-gl::DeviceBalance balanceFromJson(const Json& json) {
-    config::requireMembers(json, kBalance, kAnswer);
+gl::DeviceBalance balanceFromJson(const Json& json, const SourceLocation& where,
+                                  const std::string& prefix) {
+    config::requireMembers(json, kBalance, where, prefix);
     gl::DeviceBalance balance;
     json.at("fragment_gflops").get_to(balance.fragmentGflops);
     json.at("compute_gflops").get_to(balance.computeGflops);
@@ -103,7 +104,8 @@ gl::DeviceInfo deviceInfoFromJson(const Json& json) {
     json.at("node").get_to(info.node);
     json.at("is_software").get_to(info.isSoftware);
     json.at("timer_resolution_ns").get_to(info.timerResolutionNs);
-    if (json.contains("balance")) info.balance = balanceFromJson(json["balance"]);
+    if (json.contains("balance"))
+        info.balance = balanceFromJson(json["balance"], kAnswer, "/balance");
     return info;
 }
 

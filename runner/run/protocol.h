@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "runner/core/error.h"
 #include "runner/gl/device.h"
 #include "runner/records/images.h"
 #include "runner/records/records.h"
@@ -76,7 +77,9 @@ struct CaseResult {
 
 Json toJson(const gl::DeviceInfo& info);
 gl::DeviceInfo deviceInfoFromJson(const Json& json);
-gl::DeviceBalance balanceFromJson(const Json& json);
+/// Throws Error(where, …), `prefix` before the places, for what has another shape.
+gl::DeviceBalance balanceFromJson(const Json& json, const SourceLocation& where,
+                                  const std::string& prefix = "");
 Json toJson(const Cost& cost);
 Cost costFromJson(const Json& json);
 Json toJson(const CaseResult& result);

@@ -41,6 +41,7 @@ constexpr JsonMember kManifest[] = {{"/commit", JsonKind::Line},
                                     {"/gl/vendor", JsonKind::Line},
                                     {"/gl/renderer", JsonKind::Line},
                                     {"/gl/version", JsonKind::Line},
+                                    {"/gl/balance", JsonKind::Object, false},
                                     {"/invocations", JsonKind::List},
                                     {"/invocations", JsonKind::Objects},
                                     {"/scenes", JsonKind::Objects},
@@ -102,6 +103,9 @@ Json readManifest(const fs::path& file) {
     const SourceLocation where{file.string(), 0, 0};
     Json manifest = config::parseJsonObject(MappedFile(file).text(), where);
     requireMembers(manifest, kManifest, where);
+    if (const auto& gl = manifest["gl"]; gl.contains("balance")) {
+        balanceFromJson(gl["balance"], where, "/gl/balance");
+    }
     requireEach(manifest, "/invocations", kInvocation, where);
     requireEach(manifest, "/scenes", kScene, where);
     requireEach(manifest, "/programs", kProgram, where);

@@ -85,11 +85,14 @@ std::filesystem::path keptFolder(const std::filesystem::path& folder, const run:
 /// tables of which nothing was tried; `command` made the last of them.
 std::string sensitivityIndex(const std::filesystem::path& folder, const std::string& command);
 
-/// What kept results say of a plan's claims, beside the verdict under which they were tried. Stale
-/// ones are left out.
-claims::KeptSensitivity keptSensitivity(const run::Plan& plan, const std::filesystem::path& folder);
+/// What kept results say of the claims of a plan's experiments, as the plan or another config has
+/// them, beside the verdict under which they were tried. Stale ones are left out.
+claims::KeptSensitivity keptSensitivity(const run::Plan& plan,
+                                        const std::vector<config::Experiment>& experiments,
+                                        const std::filesystem::path& folder);
 /// Of the results that are kept beside the configs, in results/sensitivity; nothing where there is
 /// no such folder, as beside a program that was installed.
-std::optional<claims::KeptSensitivity> keptSensitivity(const run::Plan& plan);
+std::optional<claims::KeptSensitivity> keptSensitivity(
+    const run::Plan& plan, const std::vector<config::Experiment>& experiments);
 
 }  // namespace gfxrepro::studies

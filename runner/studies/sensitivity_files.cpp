@@ -226,9 +226,11 @@ std::string sensitivityIndex(const fs::path& folder, const std::string& command)
     return text;
 }
 
-claims::KeptSensitivity keptSensitivity(const run::Plan& plan, const fs::path& folder) {
+claims::KeptSensitivity keptSensitivity(const run::Plan& plan,
+                                        const std::vector<config::Experiment>& experiments,
+                                        const fs::path& folder) {
     claims::KeptSensitivity kept;
-    for (const config::Experiment& experiment : plan.experiments) {
+    for (const config::Experiment& experiment : experiments) {
         const fs::path file = keptFolder(folder, plan) / (experiment.slug() + ".csv");
         if (!fs::is_regular_file(file)) continue;
         const std::vector<Outcome> outcomes = readSensitivity(file, basisOf(plan, experiment));
@@ -241,10 +243,11 @@ claims::KeptSensitivity keptSensitivity(const run::Plan& plan, const fs::path& f
     return kept;
 }
 
-std::optional<claims::KeptSensitivity> keptSensitivity(const run::Plan& plan) {
+std::optional<claims::KeptSensitivity> keptSensitivity(
+    const run::Plan& plan, const std::vector<config::Experiment>& experiments) {
     const fs::path folder = dataFolder("configs").parent_path() / "results" / "sensitivity";
     if (!fs::is_directory(folder)) return std::nullopt;
-    return keptSensitivity(plan, folder);
+    return keptSensitivity(plan, experiments, folder);
 }
 
 }  // namespace gfxrepro::studies

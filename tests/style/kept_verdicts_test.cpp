@@ -6,10 +6,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
 #include "runner/config/experiment.h"
+#include "runner/config/scene_reference.h"
 
 namespace gfxrepro::test {
 namespace {
@@ -41,7 +43,7 @@ std::map<std::pair<std::string, std::string>, std::vector<Kept>> keptVerdicts(
         const auto manifest = nlohmann::json::parse(file);
         claims::SceneFiles scenes;
         for (const auto& [scene, from] : manifest.at("scenes").items()) {
-            scenes[scene] = from.at("sha256") != "";
+            scenes[config::sceneName(scene)] = from.at("sha256") != "";
         }
         for (const claims::ClaimResult& claim : claims::readClaims(entry.path())) {
             kept[{claim.table, claim.id}].push_back(
@@ -53,8 +55,19 @@ std::map<std::pair<std::string, std::string>, std::vector<Kept>> keptVerdicts(
     return kept;
 }
 
+/// By name alone: kept results have no plan that knows with which seeds they were loaded.
+std::set<std::string> scenesOf(const config::Experiment& experiment) {
+    std::set<std::string> scenes;
+    for (const config::CaseSpec& item : config::expandCases(experiment)) {
+        if (!item.scene.isNull()) scenes.insert(config::sceneName(item.scene.text()));
+    }
+    return scenes;
+}
+
 bool isOf(const Known& known, const config::Experiment& experiment, const Kept& kept) {
-    if (known.scenes && *known.scenes != claims::sceneClass(experiment, kept.scenes)) return false;
+    if (known.scenes && *known.scenes != claims::sceneClass(scenesOf(experiment), kept.scenes)) {
+        return false;
+    }
     return known.device.value_or(kept.deviceClass) == kept.deviceClass &&
            known.profile.value_or(kept.profile) == kept.profile;
 }

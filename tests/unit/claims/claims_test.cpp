@@ -222,29 +222,26 @@ TEST(Claims, NothingIsKnownOfAnAlteredRun) {
 /// What is known of real models alone is no news where generated ones stand for them, and hold.
 TEST(Claims, AReasonMayBeOfScenesOfFilesOrOfGeneratedOnesAlone) {
     const auto records = powers([](double n) { return n; });
-    const auto judged = [&](const std::string& scene, const SceneFiles& files) {
+    const auto judged = [&](const std::map<std::string, std::string>& sceneClasses) {
         ReportContext context = kSoftware;
-        context.sceneFiles = files;
-        return judgeOne(scene + powersBody("bound: a, below: 8, because: {verdict: fails, scenes: "
-                                           "files, reason: r}"),
+        context.sceneClasses = sceneClasses;
+        return judgeOne(powersBody("bound: a, below: 8, because: {verdict: fails, scenes: "
+                                   "files, reason: r}"),
                         records, context);
     };
-    const std::string scene = "\nscene: s";
-    EXPECT_EQ(judged(scene, {{"s", true}}).known, Verdict::Fails);
-    EXPECT_TRUE(judged(scene, {{"s", true}}).isNews());
-    EXPECT_EQ(judged(scene, {{"s", false}}).known, Verdict::Holds);
-    EXPECT_EQ(judged(scene, {{"other", true}}).known, Verdict::Holds) << "not known";
-    EXPECT_EQ(judged("", {{"s", true}}).known, Verdict::Holds) << "no scene";
+    EXPECT_EQ(judged({{"zju2005/9.9", "files"}}).known, Verdict::Fails);
+    EXPECT_TRUE(judged({{"zju2005/9.9", "files"}}).isNews());
+    EXPECT_EQ(judged({{"zju2005/9.9", "generated"}}).known, Verdict::Holds);
+    EXPECT_EQ(judged({{"zju2005/9.8", "files"}}).known, Verdict::Holds) << "of another table";
 }
 
-TEST(Claims, TheScenesOfAnExperimentAreOfFilesOrGeneratedOrSome) {
-    const auto classOf = [](const SceneFiles& files) {
-        return sceneClass(tables::experimentFrom("\nsweep: {scene: [a, b]}\n"), files);
-    };
+TEST(Claims, ScenesAreOfFilesOrGeneratedOrSome) {
+    const auto classOf = [](const SceneFiles& files) { return sceneClass({"a", "b"}, files); };
     EXPECT_EQ(classOf({{"a", true}, {"b", true}, {"c", false}}), "files");
     EXPECT_EQ(classOf({{"a", false}, {"b", false}}), "generated");
     EXPECT_EQ(classOf({{"a", false}, {"b", true}}), "");
     EXPECT_EQ(classOf({{"a", true}}), "");
+    EXPECT_EQ(sceneClass({}, {{"a", true}}), "") << "no scene";
 }
 
 std::string provenanceError(const std::string& claim, bool isSweep = false, int processes = 6) {

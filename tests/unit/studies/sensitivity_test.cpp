@@ -225,18 +225,19 @@ TEST(Sensitivity, KeptResultsOfAnotherCaseOrClaimAreStale) {
     folder.write("software/quick/p-1.csv", sensitivityCsv({outcome("", "", Verdict::Holds),
                                                            outcome("bias", "5", Verdict::Fails)},
                                                           basisOf(plan, plan.experiments.front())));
-    const claims::KeptSensitivity kept = keptSensitivity(plan, folder.path());
-    ASSERT_EQ(kept.size(), 1U);
-    EXPECT_EQ(kept.at({"p/1", "C"}).restsOn, "bias (of 1 tried)");
-    EXPECT_EQ(kept.at({"p/1", "C"}).verdict, Verdict::Holds);
+    const auto kept = [&](const run::Plan& of) {
+        return keptSensitivity(of, of.experiments, folder.path());
+    };
+    const claims::KeptSensitivity own = kept(plan);
+    ASSERT_EQ(own.size(), 1U);
+    EXPECT_EQ(own.at({"p/1", "C"}).restsOn, "bias (of 1 tried)");
+    EXPECT_EQ(own.at({"p/1", "C"}).verdict, Verdict::Holds);
     // What is said of a claim does not matter.
     const run::Plan reworded =
         planWith("{says: b, bound: n, above: 1, because: {verdict: fails}}", 3);
-    EXPECT_EQ(keptSensitivity(reworded, folder.path()).size(), 1U);
-    EXPECT_TRUE(
-        keptSensitivity(planWith("{says: a, bound: n, above: 2}", 3), folder.path()).empty());
-    EXPECT_TRUE(
-        keptSensitivity(planWith("{says: a, bound: n, above: 1}", 4), folder.path()).empty());
+    EXPECT_EQ(kept(reworded).size(), 1U);
+    EXPECT_TRUE(kept(planWith("{says: a, bound: n, above: 2}", 3)).empty());
+    EXPECT_TRUE(kept(planWith("{says: a, bound: n, above: 1}", 4)).empty());
 }
 
 }  // namespace
