@@ -167,7 +167,7 @@ TEST(Sensitivity, TriesTimesWhereTheyAreAskedForAndKeepsThem) {
     };
     const auto page = [&] { return readFile(keep + "/software/full/sweep-mock.md"); };
     // Of a table with other claims, too, these alone are tried first, then all.
-    EXPECT_THAT(run(fast + few, {}).out, HasSubstr("sweep/mock fast: no verdict"));
+    EXPECT_THAT(run(fast + few, {}).out, HasSubstr("sweep/mock fast: not judged as configured"));
     const ProcessResult all = run(fast + few, {"--times"});
     EXPECT_THAT(all.err, HasSubstr("sweep/mock as configured\n"));
     EXPECT_THAT(all.out, HasSubstr("sweep/mock fast: holds under all"));
