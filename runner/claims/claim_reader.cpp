@@ -137,14 +137,10 @@ bool ClaimReader::readsPrinted() const {
 }
 
 bool ClaimReader::readsOnly(const std::string& metric) const {
-    const auto isColumn = [&](const Operand& operand) {
-        const std::string& text = operand.text();
-        return operand.columns().size() == 1 &&
-               (text == table_.columns[operand.columns()[0]].label || text.starts_with('\''));
+    const auto isOther = [&](const tables::Cell& cell) {
+        return cell.isPlanned && cell.metric != metric;
     };
-    return std::ranges::all_of(operands_, isColumn) && !readsSome([&](const tables::Cell& cell) {
-               return cell.isPlanned && cell.metric != metric;
-           });
+    return std::ranges::all_of(operands_, &Operand::isColumn) && !readsSome(isOther);
 }
 
 bool ClaimReader::readsCalibrated() const {

@@ -2,44 +2,13 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cctype>
 
+#include "runner/config/claim_operands.h"
 #include "runner/core/text.h"
 
 namespace gfxrepro::claims {
 
 namespace {
-
-bool isNameStart(char c) {
-    return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
-}
-bool isNamePart(char c) {
-    return isNameStart(c) || std::isdigit(static_cast<unsigned char>(c)) || c == '.';
-}
-
-/// The column whose label stands at the head of `text`, the longest of several.
-std::optional<std::size_t> columnAt(std::string_view text, const tables::Table& table) {
-    std::optional<std::size_t> best;
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        const std::string& label = table.columns[i].label;
-        const bool isWhole = text.starts_with(label) &&
-                             (text.size() == label.size() || !isNamePart(text[label.size()]));
-        const bool isNumber = parseDouble(label).has_value();
-        if (!isWhole || label.empty() || isNumber) continue;
-        if (!best || label.size() > table.columns[*best].label.size()) best = i;
-    }
-    return best;
-}
-
-/// The column whose label stands in quotes at the head of `text`.
-std::optional<std::size_t> quotedColumnAt(std::string_view text, const tables::Table& table) {
-    if (text.empty() || (text[0] != '\'' && text[0] != '"')) return std::nullopt;
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        const std::string& label = table.columns[i].label;
-        if (text.substr(1).starts_with(label + text[0])) return i;
-    }
-    return std::nullopt;
-}
 
 std::vector<std::string> labelsOf(const tables::Table& table) {
     std::vector<std::string> labels;
@@ -72,57 +41,15 @@ std::string Operand::variableOf(std::size_t column) {
     return fmt::format("v{}", index);
 }
 
-std::string Operand::translatedWord(std::string_view rest, std::size_t length,
-                                    const tables::Table& table, const SourceLocation& where,
-                                    const std::string& owner) const {
-    const std::string word(rest.substr(0, length));
-    const bool isNumber = parseDouble(word).has_value();
-    const bool isWhole = word.size() == text_.size();
-    const bool isCall = trimmed(rest.substr(length)).starts_with('(');
-    const bool isName = isNameStart(word[0]) && !isCall;
-    const std::vector<std::string> labels = labelsOf(table);
-    if (isNumber && !isWhole && std::ranges::find(labels, word) != labels.end()) {
-        throw AbsentColumnError(
-            where, owner,
-            fmt::format("'{0}' may be the column or the number (quoted it is the column; written "
-                        "otherwise, as {0}.0, the number)",
-                        word));
-    }
-    const bool areNumbers = std::ranges::any_of(
-        labels, [](const std::string& label) { return parseDouble(label).has_value(); });
-    if (isName || (isNumber && isWhole && areNumbers)) {
-        throw AbsentColumnError(where, owner,
-                                "'" + word + "' is no column" +
-                                    (isNumber ? "" : suggestion(word, labels)) +
-                                    " (columns: " + joined(labels) + ")");
-    }
-    return word;
-}
-
 std::string Operand::translated(const tables::Table& table, const SourceLocation& where,
                                 const std::string& owner) {
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        if (table.columns[i].label == text_) return variableOf(i);
-    }
     std::string expression;
-    for (std::size_t i = 0; i < text_.size();) {
-        const std::string_view rest = std::string_view(text_).substr(i);
-        if (const auto column = quotedColumnAt(rest, table)) {
-            expression += variableOf(*column);
-            i += table.columns[*column].label.size() + 2;
-            continue;
-        }
-        if (const auto column = columnAt(rest, table)) {
-            expression += variableOf(*column);
-            i += table.columns[*column].label.size();
-            continue;
-        }
-        std::size_t length = 1;
-        if (isNamePart(text_[i])) {
-            while (i + length < text_.size() && isNamePart(text_[i + length])) ++length;
-        }
-        expression += translatedWord(rest, length, table, where, owner);
-        i += length;
+    const std::vector<std::string> labels = labelsOf(table);
+    const std::vector<config::OperandPiece> pieces = config::operandPieces(text_, labels);
+    isColumn_ = pieces.size() == 1 && pieces[0].column.has_value();
+    for (const config::OperandPiece& piece : pieces) {
+        if (!piece.problem.empty()) throw AbsentColumnError(where, owner, piece.problem);
+        expression += piece.column ? variableOf(*piece.column) : std::string(piece.text);
     }
     return expression;
 }

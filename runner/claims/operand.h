@@ -46,17 +46,16 @@ class AbsentColumnError : public Error {
 
 class Operand {
   public:
-    /// Columns are written by their labels, whatever characters these have, also in quotes. In a
-    /// table with columns that are numbers ("8"), a number that is the whole expression means a
-    /// column, and one within an expression that is a label, too, could mean either: the column is
-    /// written '8', the number 8.0. Throws Error at `where`, its message begun with `owner`, for
-    /// bad syntax, and AbsentColumnError for a name that is no column, or may be one.
+    /// Columns are written as config::operandPieces() reads them. Throws Error at `where`, its
+    /// message begun with `owner`, for bad syntax, and AbsentColumnError for a name that is no
+    /// column, or may be one.
     Operand(const std::string& text, const tables::Table& table, const SourceLocation& where,
             const std::string& owner);
     Operand(Operand&&) = default;
     Operand& operator=(Operand&&) = delete;
 
-    const std::string& text() const { return text_; }
+    /// Whether it is a column as it stands, without arithmetic.
+    bool isColumn() const { return isColumn_; }
     /// The table's columns that are read.
     const std::vector<std::size_t>& columns() const { return columns_; }
     /// `values` lies beside columns().
@@ -70,13 +69,10 @@ class Operand {
   private:
     std::string translated(const tables::Table& table, const SourceLocation& where,
                            const std::string& owner);
-    /// The head of `rest`, a number or a name, as it stands in the expression.
-    std::string translatedWord(std::string_view rest, std::size_t length,
-                               const tables::Table& table, const SourceLocation& where,
-                               const std::string& owner) const;
     std::string variableOf(std::size_t column);
 
     std::string text_;
+    bool isColumn_ = false;
     std::vector<std::size_t> columns_;
     std::vector<double> slots_;  // the parser points at them
     mu::Parser parser_;

@@ -1,88 +1,114 @@
-// What the expressions of claims may name: the columns of their table.
-#include <algorithm>
-#include <cctype>
+#include "runner/config/claim_operands.h"
 
 #include <fmt/format.h>
 
-#include "runner/config/sections.h"
+#include <algorithm>
+#include <cctype>
+
 #include "runner/core/text.h"
 
 namespace gfxrepro::config {
 
 namespace {
 
-bool isColumn(const TableNames& names, const std::string& name) {
-    return std::find(names.columns.begin(), names.columns.end(), name) != names.columns.end();
+using Labels = std::span<const std::string>;
+
+bool isNameStart(char c) {
+    return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
+}
+bool isNamePart(char c) {
+    return isNameStart(c) || std::isdigit(static_cast<unsigned char>(c)) || c == '.';
+}
+bool isNumber(const std::string& text) {
+    return parseDouble(text).has_value();
 }
 
-/// In a table whose columns are numbers, one alone is a column, and one in an expression that
-/// is a column's name could be either.
-void requireClearNumber(const std::string& word, const std::string& operand, const Node& node,
-                        const TableNames& names, const std::string& what) {
-    if (!parseDouble(word)) return;
-    const bool areNumbers = std::ranges::any_of(
-        names.columns, [](const std::string& name) { return parseDouble(name).has_value(); });
-    if (word == operand && areNumbers) {
-        throw Error(node.location(), what + ": unknown column '" + word +
-                                         "'; allowed: " + joined(names.columns) +
-                                         ", or a number within an expression");
-    }
-    if (word != operand && isColumn(names, word)) {
-        throw Error(node.location(),
-                    fmt::format("{}: '{}' may be the column or the number; allowed: '{}' in "
-                                "quotes for the column, {}.0 for the number",
-                                what, word, word, word));
-    }
+std::string noColumn(const std::string& name, Labels labels) {
+    return fmt::format("'{}' is no column{} (columns: {})", name,
+                       isNumber(name) ? "" : suggestion(name, labels), joined(labels));
 }
 
-/// The end of what is quoted at `begin`: a column.
-std::size_t endOfQuoted(const std::string& operand, std::size_t begin, const Node& node,
-                        const TableNames& names, const std::string& what) {
-    const std::size_t end = operand.find(operand[begin], begin + 1);
-    const std::string name = operand.substr(begin + 1, end - begin - 1);
-    if (end == std::string::npos || !isColumn(names, name)) {
-        throw Error(node.location(),
-                    what + ": unknown column '" + name + "'; allowed: " + joined(names.columns));
+/// The column in quotes at the head of `rest`; those without an end are of all of it.
+OperandPiece quoted(std::string_view rest, Labels labels) {
+    const std::size_t end = rest.find(rest[0], 1);
+    if (end == rest.npos) return {rest, {}, fmt::format("quotes without an end: {}", rest)};
+    const std::string name(rest.substr(1, end - 1));
+    const auto found = std::ranges::find(labels, name);
+    if (found == labels.end()) return {rest.substr(0, end + 1), {}, noColumn(name, labels)};
+    return {rest.substr(0, end + 1), static_cast<std::size_t>(found - labels.begin())};
+}
+
+/// The column whose label, not a number's, stands at the head of `rest`, the longest of several.
+std::optional<std::size_t> columnAt(std::string_view rest, Labels labels) {
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        const std::string& label = labels[i];
+        const bool isWhole = !label.empty() && rest.starts_with(label) &&
+                             (rest.size() == label.size() || !isNamePart(rest[label.size()]));
+        if (!isWhole || isNumber(label)) continue;
+        if (!best || label.size() > labels[*best].size()) best = i;
     }
-    return end + 1;
+    return best;
+}
+
+/// The number, name or character at the head of `rest`, a part of the expression.
+OperandPiece wordAt(std::string_view rest, std::string_view expression, Labels labels) {
+    std::size_t length = 1;
+    while (isNamePart(rest[0]) && length < rest.size() && isNamePart(rest[length])) ++length;
+    OperandPiece piece{rest.substr(0, length)};
+    const std::string word(piece.text);
+    const bool isWhole = length == expression.size();
+    const bool isCalled = trimmed(rest.substr(length)).starts_with('(');
+    if (isNumber(word) && !isWhole && std::ranges::find(labels, word) != labels.end()) {
+        piece.problem = fmt::format(
+            "'{0}' may be the column or the number (quoted it is the column; written otherwise, "
+            "as {0}.0, the number)",
+            word);
+    }
+    const bool meansColumn = isNumber(word) ? isWhole && std::ranges::any_of(labels, isNumber)
+                                            : isNameStart(word[0]) && !isCalled;
+    if (meansColumn) piece.problem = noColumn(word, labels);
+    return piece;
 }
 
 }  // namespace
 
-void requireOperand(const std::string& operand, const Node& node, const TableNames& names,
-                    const std::string& what) {
-    if (!names.hasAllColumns || isColumn(names, operand)) return;
-    const auto isStart = [](char c) {
-        return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
-    };
-    const auto isPart = [&](char c) { return isStart(c) || (c >= '0' && c <= '9'); };
-    for (std::size_t i = 0; i < operand.size();) {
-        if (operand[i] == '\'' || operand[i] == '"') {
-            i = endOfQuoted(operand, i, node, names, what);
-            continue;
-        }
-        if (!isPart(operand[i])) {
-            ++i;
-            continue;
-        }
-        std::size_t end = i;
-        const bool isNumber = !isStart(operand[i]);
-        while (end < operand.size() &&
-               (isPart(operand[end]) || (isNumber && operand[end] == '.'))) {
-            ++end;
-        }
-        const std::string name = operand.substr(i, end - i);
-        const std::size_t next = operand.find_first_not_of(' ', end);
-        const bool isCall = next != std::string::npos && operand[next] == '(';
-        requireClearNumber(name, operand, node, names, what);
-        if (isStart(name[0]) && !isCall && !isColumn(names, name)) {
-            const std::string near = suggestion(name, names.columns);
-            throw Error(node.location(),
-                        what + ": unknown column '" + name + "'" +
-                            (near.empty() ? "; allowed: " + joined(names.columns) : near));
-        }
-        i = end;
+std::vector<OperandPiece> operandPieces(std::string_view expression, Labels labels) {
+    const auto whole = std::ranges::find(labels, expression);
+    if (whole != labels.end()) {
+        return {{expression, static_cast<std::size_t>(whole - labels.begin())}};
     }
+    std::vector<OperandPiece> pieces;
+    for (std::string_view rest = expression; !rest.empty();
+         rest.remove_prefix(pieces.back().text.size())) {
+        if (rest[0] == '\'' || rest[0] == '"') {
+            pieces.push_back(quoted(rest, labels));
+        } else if (const auto column = columnAt(rest, labels)) {
+            pieces.push_back({rest.substr(0, labels[*column].size()), column});
+        } else {
+            pieces.push_back(wordAt(rest, expression, labels));
+        }
+    }
+    return pieces;
+}
+
+std::vector<std::string> sidesOf(std::string_view text, std::string_view separator, Labels labels) {
+    std::vector<std::string> sides;
+    std::size_t begin = 0, end = 0;  // of the side; `end` is where the next piece stands
+    const auto close = [&] { sides.emplace_back(trimmed(text.substr(begin, end - begin))); };
+    int depth = 0;
+    for (const OperandPiece& piece : operandPieces(text, labels)) {
+        depth += piece.text == "(" ? 1 : piece.text == ")" ? -1 : 0;
+        const bool isSeparator =
+            !piece.column && depth == 0 && end >= begin && text.substr(end).starts_with(separator);
+        if (isSeparator) {
+            close();
+            begin = end + separator.size();
+        }
+        end += piece.text.size();
+    }
+    close();
+    return sides;
 }
 
 }  // namespace gfxrepro::config

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runner/config/checks.h"
+#include "runner/config/claim_operands.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/core/text.h"
@@ -124,11 +125,14 @@ class ClaimParser {
     void readOne(const Node& node) { addOperands(node, {lineOf(node, what_)}); }
 
     void readOrdered(const Node& node) {
-        addOperands(node, split(lineOf(node, what_ + ": order"), '<'));
+        addOperands(node, sidesOf(lineOf(node, what_ + ": order"), "<", names_.columns));
         if (claim_.operands.size() < 2) throwNotAllowed(node, what_ + ": order", "a < b < …");
     }
 
-    void readSides(const Node& node) { addOperands(node, splitRatio(node)); }
+    void readSides(const Node& node) {
+        addOperands(node, sidesOf(lineOf(node, what_ + ": ratio"), " / ", names_.columns));
+        if (claim_.operands.size() != 2) throwNotAllowed(node, what_ + ": ratio", "a / b");
+    }
 
     void readList(const Node& node) {
         for (const Node& item : node.isSequence() ? node.items() : Node::Sequence{node}) {
@@ -142,34 +146,23 @@ class ClaimParser {
         if (claim_.operands.size() != 2) throwNotAllowed(node, what_ + ": crossover", "[a, b]");
     }
 
-    /// The two sides of the one " / " outside of parentheses.
-    Names splitRatio(const Node& node) const {
-        const std::string& text = lineOf(node, what_ + ": ratio");
-        int depth = 0;
-        Names sides = {""};
-        for (std::size_t i = 0; i < text.size(); ++i) {
-            depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
-            if (depth == 0 && text.compare(i, 3, " / ") == 0) {
-                sides.emplace_back();
-                i += 2;
-            } else {
-                sides.back() += text[i];
-            }
-        }
-        if (sides.size() != 2) throwNotAllowed(node, what_ + ": ratio", "a / b");
-        return sides;
-    }
-
     void addOperands(const Node& node, const Names& texts) {
-        for (const std::string& text : texts) {
-            const std::string operand(trimmed(text));
+        for (const std::string& operand : texts) {
             if (operand.empty()) throwNotAllowed(node, what_, "an expression over columns");
-            requireOperand(operand, node, names_, what_);
+            requireColumns(operand, node);
             if (std::ranges::find(claim_.operands, operand) != claim_.operands.end()) {
                 throw Error(node.location(),
                             fmt::format("{} compares '{}' with itself", what_, operand));
             }
             claim_.operands.push_back(operand);
+        }
+    }
+
+    /// The columns that the operand names are there, as far as they are known.
+    void requireColumns(const std::string& operand, const Node& node) const {
+        if (!names_.hasAllColumns) return;
+        for (const OperandPiece& piece : operandPieces(operand, names_.columns)) {
+            if (!piece.problem.empty()) throw Error(node.location(), what_ + ": " + piece.problem);
         }
     }
 

@@ -43,11 +43,6 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
 
 std::vector<ClaimSpec> readClaims(const Node& node, const TableNames& names, bool hasPrinted);
 
-/// Every name in an operand of a claim is a column, unless it is called: "max(a, b)"; what of it is
-/// a number is clearly one. `what` begins the messages.
-void requireOperand(const std::string& operand, const Node& node, const TableNames& names,
-                    const std::string& what);
-
 /// origin, bound_from, kind and because of a claim; `what` begins the messages.
 void readProvenance(const Node& node, const std::string& what, ClaimSpec& claim);
 

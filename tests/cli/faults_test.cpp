@@ -399,8 +399,8 @@ TEST(Overrides, ANumberThatWasAColumnIsNoConstant) {
                         "  cell: \"{median:.0f}\"\n"
                         "claims:\n  rises: {says: it does, across: number, order: 2 * 1 < 2}\n");
     EXPECT_THAT(mockGfxrepro({"check", unclear}).err,
-                HasSubstr("claim 'rises': '2' may be the column or the number; allowed: '2' in "
-                          "quotes for the column, 2.0 for the number\n"));
+                HasSubstr("claim 'rises': '2' may be the column or the number (quoted it is the "
+                          "column; written otherwise, as 2.0, the number)\n"));
 }
 
 TEST(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {

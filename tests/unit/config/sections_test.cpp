@@ -242,7 +242,7 @@ TEST_F(ExperimentTest, BadClaims) {
     EXPECT_EQ(claimError("{says: s, order: aa < }"),
               head + "23: claim 'C' is aa <; allowed: an expression over columns");
     EXPECT_EQ(claimError("{says: s, order: aa < bc}"),
-              head + "23: claim 'C': unknown column 'bc'; did you mean 'bb'?");
+              head + "23: claim 'C': 'bc' is no column; did you mean 'bb'? (columns: aa, bb)");
     EXPECT_EQ(claimError("{says: s, ratio: aa, at_least: 1}"),
               head + "23: claim 'C': ratio is aa; allowed: a / b");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb}"),
@@ -420,7 +420,7 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
     EXPECT_EQ(error("across: f, order: p < q}"),
               head + "24: claim 'C': across is f; allowed: e | scene");
     EXPECT_EQ(error("across: e, order: aa < bb}"),
-              head + "34: claim 'C': unknown column 'aa'; allowed: p, q");
+              head + "34: claim 'C': 'aa' is no column (columns: p, q)");
     EXPECT_EQ(error("across: e, order: p < q, at: {e: p}}"),
               head + "46: claim 'C': at: unknown key 'e'; allowed: scene, column");
     EXPECT_EQ(error("across: e, order: p < q, at: {column: p}}"),

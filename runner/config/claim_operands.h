@@ -1,0 +1,34 @@
+// How the expressions of claims are read: "'a / b' + max(c, a_0.5) * 2" over the columns of a
+// table.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gfxrepro::config {
+
+/// A column, or what stands between columns: a number, the name of a function, or one character.
+struct OperandPiece {
+    std::string_view text;  // of the expression, quotes included; the pieces are all of it
+    std::optional<std::size_t> column = std::nullopt;  // among the labels
+    /// Why it cannot be read: "'y' is no column (columns: a, b)"; or empty.
+    std::string problem = {};
+};
+
+/// A column is written by its label, whatever characters this has, also in quotes; of several that
+/// begin at a place the longest is meant. Every other name is called, as `max(a, b)`, or a problem.
+/// Where labels are numbers ("8"), a number that is the whole expression means a column, and one
+/// within an expression that is a label, too, could mean either, a problem: the column is written
+/// '8', the number 8.0. The pieces point into `expression`.
+std::vector<OperandPiece> operandPieces(std::string_view expression,
+                                        std::span<const std::string> labels);
+
+/// The parts of the text between the separators that are outside of parentheses and of columns,
+/// trimmed.
+std::vector<std::string> sidesOf(std::string_view text, std::string_view separator,
+                                 std::span<const std::string> labels);
+
+}  // namespace gfxrepro::config
