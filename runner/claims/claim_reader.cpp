@@ -12,6 +12,17 @@ namespace gfxrepro::claims {
 
 using config::ClaimSpec;
 
+tables::Table tableFor(const config::ClaimSpec& claim, const tables::Table& table) {
+    if (!claim.across) return table;
+    const auto found = std::find(table.rowAxes.begin(), table.rowAxes.end(), *claim.across);
+    if (found == table.rowAxes.end()) {
+        throw Error(claim.location, "claim '" + claim.id + "': across: '" + *claim.across +
+                                        "' is no row axis (row axes: " + joined(table.rowAxes) +
+                                        ")");
+    }
+    return tables::transposed(table, static_cast<std::size_t>(found - table.rowAxes.begin()));
+}
+
 ClaimReader::ClaimReader(const ClaimSpec& claim, const tables::Table& table)
     : claim_(claim), table_(table), statistic_(claim.statistic.value_or("")) {
     const std::string owner = "claim '" + claim.id + "'";

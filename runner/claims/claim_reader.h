@@ -15,11 +15,15 @@ namespace gfxrepro::claims {
 
 using Rows = std::vector<std::size_t>;
 
+/// The table as the claim reads it: with `across`, rows for columns. Throws Error at the claim's
+/// place for an axis that it does not have.
+tables::Table tableFor(const config::ClaimSpec& claim, const tables::Table& table);
+
 /// A claim made ready to be read off a table.
 class ClaimReader {
   public:
-    /// Throws Error with the claim's place for operands and axes that the table does not have. The
-    /// claim and the table must outlive the reader.
+    /// `table` is that of tableFor(). Throws Error with the claim's place for operands and axes
+    /// that it does not have. The claim and the table must outlive the reader.
     ClaimReader(const config::ClaimSpec& claim, const tables::Table& table);
 
     /// The rows that `at` leaves, parted into the groups that the claim is judged in.

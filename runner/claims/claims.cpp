@@ -110,18 +110,6 @@ std::string chooseClock(const ClaimSpec& claim, const ReportContext& context, Cl
                                   : "by the clock: no CPU time was recorded of these";
 }
 
-/// The table as the claim reads it: with `across`, rows for columns.
-tables::Table tableFor(const ClaimSpec& claim, const tables::Table& table) {
-    if (!claim.across) return table;
-    const auto found = std::find(table.rowAxes.begin(), table.rowAxes.end(), *claim.across);
-    if (found == table.rowAxes.end()) {
-        throw Error(claim.location, "claim '" + claim.id + "': across: '" + *claim.across +
-                                        "' is no row axis (row axes: " + joined(table.rowAxes) +
-                                        ")");
-    }
-    return tables::transposed(table, static_cast<std::size_t>(found - table.rowAxes.begin()));
-}
-
 /// What the config knows of the claim on this device, in this profile and of such scenes.
 void takeKnown(const ClaimSpec& claim, const ReportContext& context, ClaimResult& result) {
     const auto loaded = context.sceneClasses.find(result.table);
@@ -271,109 +259,6 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
         results.back().where = claim.location.file == file.file ? claim.location : file;
     }
     return results;
-}
-
-namespace {
-
-/// Labels that only a measurement knows (of a parameter left to its default) are not in a table
-/// without records.
-bool isReadable(const ClaimSpec& claim, const tables::Table& table) {
-    try {
-        const ClaimReader reader(claim, table);
-        return true;
-    } catch (const Error&) {
-        return false;
-    }
-}
-
-/// Fewer than an interval takes decide no time on any device.
-int processesOfPaper(const config::Experiment& experiment) {
-    if (experiment.paperDocument.isNull()) return config::kFewestRounds;
-    return config::experimentFromDocument(experiment.paperDocument, experiment.file)
-        .measure.processes;
-}
-
-/// Why a claim's kind of time is not that of what it reads; empty if it is.
-std::string whyWrongKind(const ClaimSpec& claim, ClaimReader& reader) {
-    if (reader.readsTime() && !claim.timeKind) {
-        return "reads a time and needs 'kind': algorithmic | architectural | absolute";
-    }
-    if (!reader.readsTime() && claim.timeKind) return "has a 'kind' and reads no time";
-    if (claim.timeKind && *claim.timeKind != ClaimSpec::TimeKind::Absolute &&
-        reader.asksForATimeAsSuch()) {
-        return "holds a time against a number, which neither a count of work nor another machine "
-               "decides; its 'kind' is absolute";
-    }
-    return "";
-}
-
-/// Scenes that a verdict in the profile, or in any, is taken over.
-int seedsAtMost(const config::Experiment& experiment, const std::optional<std::string>& profile) {
-    int seeds = experiment.measure.sceneSeeds;
-    if (profile.value_or("paper") != "paper" || experiment.paperDocument.isNull()) return seeds;
-    return std::max(seeds, config::experimentFromDocument(experiment.paperDocument, experiment.file)
-                               .measure.sceneSeeds);
-}
-
-}  // namespace
-
-void requireProvenance(const config::Experiment& experiment, const tables::Table& table) {
-    const bool isOfDocument = experiment.kind != config::Experiment::Kind::Sweep;
-    const int paperProcesses = processesOfPaper(experiment);
-    tables::Table read;  // outlives its reader
-    for (const ClaimSpec& claim : experiment.claims) {
-        const auto complain = [&](const std::string& what) {
-            throw Error(claim.location, fmt::format("claim '{}' {}", claim.id, what));
-        };
-        if (isOfDocument && !claim.origin) {
-            complain("needs 'origin': document | derived | ours | definition | calibrated");
-        }
-        if (isOfDocument && claim.hasBound() && !claim.boundFrom) {
-            complain("requires a number and needs 'bound_from': print | text | ours");
-        }
-        if (claim.boundFrom == ClaimSpec::BoundSource::Print && experiment.printed.rows.empty()) {
-            complain("has its bound from print, and the table has no printed values: text | ours");
-        }
-        for (const ClaimSpec::Known& known : claim.because) {
-            if (claim.device == ClaimSpec::Device::Gpu && known.device == "software") {
-                complain("has a reason for software ('because'), and a GPU alone judges it");
-            }
-            if (claim.profile && known.profile && known.profile != claim.profile) {
-                complain(fmt::format("has a reason in the profile {}, and is judged in {} alone",
-                                     *known.profile, *claim.profile));
-            }
-        }
-        if (!isReadable(claim, read = tableFor(claim, table))) continue;
-        ClaimReader reader(claim, read);
-        if (!reader.readsAny()) continue;  // its rows are not of this profile
-        if (claim.type == ClaimSpec::Type::SameMean) {
-            const std::string why = whyNotTestable(experiment, claim, reader);
-            if (!why.empty()) complain(why);
-        }
-        if (claim.boundFrom == ClaimSpec::BoundSource::Print && !reader.readsPrinted()) {
-            complain(
-                "has its bound from print, and reads no cell with a printed value: text | ours");
-        }
-        for (const ClaimSpec::Known& known : claim.because) {
-            if (known.verdict != verdictName(Verdict::Ambiguous) || reader.readsTime()) continue;
-            if (reader.readsShare() || seedsAtMost(experiment, known.profile) > 1) continue;
-            complain(
-                "is known as ambiguous, and reads neither a time nor a share, of one scene: a "
-                "number without an interval holds or fails");
-        }
-        if (table.isPublished && claim.origin == ClaimSpec::Origin::Calibrated &&
-            !reader.readsCalibrated()) {
-            complain(
-                "is of a calibrated input, and reads cells that 'printed.calibrated' does not "
-                "mark");
-        }
-        if (const std::string why = whyWrongKind(claim, reader); !why.empty()) complain(why);
-        if (isOfDocument && claim.timeKind && paperProcesses < config::kFewestRounds) {
-            complain(
-                fmt::format("is of a time: the paper profile needs processes: {} or more, has {}",
-                            config::kFewestRounds, paperProcesses));
-        }
-    }
 }
 
 std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {

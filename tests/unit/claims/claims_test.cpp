@@ -360,6 +360,35 @@ TEST(Claims, ABoundFromPrintReadsWhatIsPrinted) {
     EXPECT_EQ(errorOf("across: scene, ratio: s / t, at_most: 4, at: {column: a}"), "no error");
 }
 
+TEST(Claims, WhatIsPrintedMeetsABoundFromPrint) {
+    const auto errorOf = [](const std::string& claim, const std::string& origin = "document") {
+        const config::Experiment experiment = tables::experimentFrom(
+            "sweep: {number: [1, 2]}\nlayout: {rows: number, columns: {a: {metric: bytes}, t: "
+            "{metric: gpu_time_ms}}}\nprinted: {values: "
+            "\"number,a,t\\n1,4,10\\n2,8,20\\n4,16,80\"}\n"
+            "profiles: {paper: {measure: {processes: 6}}}\nclaims:\n  C: {says: s, origin: " +
+            origin + ", bound_from: print, " + claim + "}\n");
+        try {
+            requireProvenance(experiment, tables::buildTable(experiment, {}));
+            return std::string("no error");
+        } catch (const Error& error) {
+            const std::string text = error.what();
+            return text.substr(text.find("claim"));
+        }
+    };
+    const std::string isNotMet =
+        "claim 'C' has its bound from print, and what is printed does not meet it: ";
+    EXPECT_EQ(errorOf("bound: a, below: 16"), "no error");
+    EXPECT_EQ(errorOf("bound: a, below: 8"), isNotMet + "16") << "of a row that is not measured";
+    EXPECT_EQ(errorOf("bound: a, below: 8", "ours"), "no error") << "ours may better it";
+    EXPECT_EQ(errorOf("across: number, ratio: 2 / 1, at_most: 1.5, at: {column: a}"),
+              isNotMet + "2");
+    EXPECT_EQ(errorOf("trend: t, over: number, exponent: [1, 2], kind: algorithmic"), "no error")
+        << "a printed time is a number";
+    EXPECT_EQ(errorOf("trend: t, over: number, exponent: [2, 3], kind: algorithmic"),
+              isNotMet + "exponent 1.5");
+}
+
 /// What has no interval is never told from its bound.
 TEST(Claims, OnlyWhatHasAnIntervalIsKnownAsAmbiguous) {
     const auto errorOf = [](const std::string& measure, const std::string& claim) {
