@@ -1,25 +1,18 @@
 #include "techniques/clustered_reflections/clustered_reflections.h"
+#include "techniques/reflections/frame.h"
 
 namespace gfxrepro::clustered_reflections {
 
 config::Outputs outputs() {
     using config::Better;
     constexpr bool kIsDetail = true;
-    return {
+    return reflections::withFrameOutputs({
         {
-            {"channel_error", "level",
-             "mean absolute difference of a colour channel (0 … 255) to the truth, over reflective "
-             "pixels",
-             Better::Lower},
             {"channel_error_r", "level", "channel_error of red alone", Better::Lower, kIsDetail},
             {"channel_error_g", "level", "channel_error of green alone", Better::Lower, kIsDetail},
             {"channel_error_b", "level", "channel_error of blue alone", Better::Lower, kIsDetail},
             {"channel_error_converged", "level", "channel_error to a truth of many rays per sample",
              Better::Lower},
-            {"channel_error_image", "level", "channel_error over all pixels", Better::Lower,
-             kIsDetail},
-            {"psnr_db", "dB", "peak signal-to-noise ratio of the whole picture", Better::Higher},
-            {"flip_mean", "1", "mean FLIP error of the whole picture", Better::Lower},
             {"clusters", "cluster", "clusters of reflective samples"},
             {"environment_pct", "%",
              "share of the clustered samples that fell back to the environment map", Better::Lower},
@@ -37,7 +30,6 @@ config::Outputs outputs() {
              kIsDetail},
             {"occlusion_error_planar_pct", "%", "occlusion_error_pct of planar reflectors",
              Better::Lower, kIsDetail},
-            {"reflective_pct", "%", "share of all samples that reflect"},
             {"planar_pct", "%", "share of the reflective samples that lie on planes",
              Better::Neither, kIsDetail},
             {"visible_reflectors", "reflector", "reflecting objects that are seen"},
@@ -54,7 +46,6 @@ config::Outputs outputs() {
              Better::Neither, kIsDetail},
             {"texels_per_sample", "texel", "texels of the depth images for each reflective sample",
              Better::Lower},
-            {"memory_bytes", "byte", "memory on the device", Better::Lower},
             {"frame_buffer_bytes", "byte",
              "memory of colours and depths, of the screen and of the clusters", Better::Lower,
              kIsDetail},
@@ -65,17 +56,8 @@ config::Outputs outputs() {
              "drawing what the eye sees, and clustering its reflective samples"},
             {"cluster_cameras", "placing a camera for each cluster"},
             {"depth_images", "drawing the depth images of the clusters"},
-            {"bvh_build", "building the ray tracer's bounding volume hierarchy"},
-            {"bvh_codes", "of that: places along a curve"},
-            {"bvh_sort", "of that: sorting"},
-            {"bvh_hierarchy", "of that: nodes"},
-            {"bvh_boxes", "of that: boxes"},
-            {"ray_list", "listing the samples that need rays"},
-            {"transfer", "copying between device and host"},
-            {"intersection", "tracing reflected rays to where they meet the scene"},
-            {"environment_map", "drawing the scene around the room's centre"},
-            {"composite", "joining diffuse and reflected light to the picture"},
-        }};
+        },
+    });
 }
 
 }  // namespace gfxrepro::clustered_reflections

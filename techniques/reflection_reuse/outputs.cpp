@@ -1,11 +1,12 @@
 #include "techniques/reflection_reuse/reflection_reuse.h"
+#include "techniques/reflections/frame.h"
 
 namespace gfxrepro::reflection_reuse {
 
 config::Outputs outputs() {
     using config::Better;
     constexpr bool kIsDetail = true;
-    return {
+    return reflections::withFrameOutputs({
         {
             {"recomputed_pct", "%",
              "share of the reflective samples that were traced, in frames between key frames",
@@ -13,19 +14,10 @@ config::Outputs outputs() {
             {"saved_pct", "%",
              "share of the reflective samples that were not traced, over all frames",
              Better::Higher},
-            {"channel_error", "level",
-             "mean absolute difference of a colour channel (0 … 255) to the truth, over reflective "
-             "pixels",
-             Better::Lower},
-            {"channel_error_image", "level", "channel_error over all pixels", Better::Lower,
-             kIsDetail},
-            {"psnr_db", "dB", "peak signal-to-noise ratio of the whole picture", Better::Higher},
-            {"flip_mean", "1", "mean FLIP error of the whole picture", Better::Lower},
             {"undetected_pct", "%",
              "share of the reflective samples that were reused although they are off by more than "
              "16 levels",
              Better::Lower},
-            {"reflective_pct", "%", "share of all samples that reflect"},
             {"recomputed_samples", "sample", "samples that were traced", Better::Neither,
              kIsDetail},
             {"is_key_frame", "1", "1 where all of the frame was traced", Better::Neither,
@@ -47,7 +39,6 @@ config::Outputs outputs() {
              Better::Lower, kIsDetail},
             {"recompute_fit_fixed_ms", "ms", "time of tracing without any sample, by such a line",
              Better::Lower, kIsDetail},
-            {"memory_bytes", "byte", "memory on the device", Better::Lower},
         },
         {
             {"diffuse", "drawing what the eye sees"},
@@ -55,17 +46,8 @@ config::Outputs outputs() {
             {"reflection_shift", "moving the key frame's reflections to their new places"},
             {"reflection_warp", "moving them by a grid instead"},
             {"pixel_matching", "searching where the new view shows a reflected point"},
-            {"bvh_build", "building the ray tracer's bounding volume hierarchy"},
-            {"bvh_codes", "of that: places along a curve"},
-            {"bvh_sort", "of that: sorting"},
-            {"bvh_hierarchy", "of that: nodes"},
-            {"bvh_boxes", "of that: boxes"},
-            {"ray_list", "listing the samples that need rays"},
-            {"transfer", "copying between device and host"},
-            {"intersection", "tracing reflected rays to where they meet the scene"},
-            {"environment_map", "drawing the scene around the room's centre"},
-            {"composite", "joining diffuse and reflected light to the picture"},
-        }};
+        },
+    });
 }
 
 }  // namespace gfxrepro::reflection_reuse

@@ -38,6 +38,9 @@ struct FrameSettings {
     void requireScene(const scene::Scene& scene) const;
 };
 
+/// What a technique of these declares, and beside it what all of them record and time.
+config::Outputs withFrameOutputs(config::Outputs own);
+
 /// Made in setup(), with the environment map drawn; all members live as long as it.
 struct Frame {
     Frame(technique::SetupContext& context, const FrameSettings& settings);
