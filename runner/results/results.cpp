@@ -13,6 +13,7 @@
 #include "runner/report/writers.h"
 #include "runner/results/made_from.h"
 #include "runner/results/report_runs.h"
+#include "runner/results/tidy.h"
 #include "runner/run/machine_state.h"
 #include "runner/run/manifest.h"
 #include "runner/run/plan.h"
@@ -116,6 +117,7 @@ Results writeResults(const fs::path& runDir, const run::StoredRun& run, const Re
     const Experiments& experiments = run.plan.experiments;
     Results results = resultsOf(run);
     if (which.tables) {
+        records::writeFrameCsv(out / "cases.csv", caseFrame(run.plan.cases));
         const std::vector<std::string> notes = run::notesOf(run.manifest);
         report::writeTables(out, withNotes(results.tables, notes), notes);
         tables::writeFits(out, experiments, results.tables);

@@ -98,8 +98,8 @@ bool isBegun(const fs::path& folder) {
 std::string foreignFile(const fs::path& folder) {
     if (isBegun(folder)) return "";
     for (const char* name :
-         {"manifest.json", "records.csv", "claims.csv", "junit.xml", "report.html", "log.jsonl",
-          "images", "tables", "plots", "thumbnails", "artifacts", kScratchFolder}) {
+         {"manifest.json", "records.csv", "cases.csv", "claims.csv", "junit.xml", "report.html",
+          "log.jsonl", "images", "tables", "plots", "thumbnails", "artifacts", kScratchFolder}) {
         if (fs::exists(fs::symlink_status(folder / name))) return name;
     }
     return "";

@@ -250,6 +250,15 @@ TEST_F(Data, BadImportsAreOneErrorEach) {
         "to 16384\n");
 }
 
+TEST_F(Data, ARunHasItsCasesAsATable) {
+    ASSERT_EQ(run(kLines).exitCode, 4);
+    const ProcessResult tidy = mockGfxrepro({"export", dir("run"), "--tidy", "--out", dir("t")});
+    EXPECT_EQ(tidy.exitCode, 0) << tidy.err;
+    EXPECT_THAT(readFile(dir("run") + "/cases.csv"),
+                testing::StartsWith("case_id,experiment,technique,"));
+    EXPECT_EQ(readFile(dir("run") + "/cases.csv"), readFile(dir("t") + "/cases.csv"));
+}
+
 TEST_F(Data, ColumnsThatDifferByCaseAloneAreExported) {
     const std::string csv =
         folder_.write("a.csv", "scene,Scene,N,n,metric,value\ns,1,2,3,mse,5\ns,2,2,4,mse,6\n");
