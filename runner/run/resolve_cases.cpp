@@ -170,6 +170,18 @@ void requireModestTitle(const config::Experiment& experiment, const Case& item) 
                                    what, longest, size, kMostBytes));
 }
 
+/// Throws Error, at the place of `measure.frames`, for more of them than the technique has.
+void requireFrames(const technique::Technique& technique, const config::Experiment& experiment) {
+    try {
+        technique.requireFrames(experiment.measure.frames);
+    } catch (const Error& error) {
+        const config::Node* measure = experiment.document.find("measure");
+        const config::Node* frames = measure ? measure->find("frames") : nullptr;
+        const SourceLocation file{experiment.file.string(), 0, 0};
+        throw Error(frames ? frames->location() : file, error.what());
+    }
+}
+
 /// What a technique needs beside a swept parameter, with how a sweep says so.
 [[noreturn]] void throwWithWhen(const Error& error, const config::CaseSpec& spec) {
     const std::string text = error.what();
@@ -223,7 +235,9 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         try {
             if (experiment.hasDefaultLayout()) offerPictures(info, item);
             if (!item.offered.isNull()) params.offer(item.offered);
-            need = technique::makeTechnique(info, item.program, params)->sceneNeed();
+            const auto technique = technique::makeTechnique(info, item.program, params);
+            need = technique->sceneNeed();
+            requireFrames(*technique, experiment);
         } catch (const Error& error) {
             throwWithWhen(error, spec);
         }

@@ -123,6 +123,8 @@ class Technique {
     /// Throws Error for a scene that it cannot take: the case's, or one that a parameter names
     /// (config::isSceneKey). Known without a device.
     virtual void requireScene(const scene::Scene& /*scene*/) const {}
+    /// Throws Error for more frames than it has. Known without a device.
+    virtual void requireFrames(int /*frameCount*/) const {}
     /// Of one that does not work in this process: recorded instead of what this one took.
     virtual std::optional<ProcessUsage> usageElsewhere() const { return std::nullopt; }
 };

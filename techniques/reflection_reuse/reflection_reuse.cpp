@@ -50,15 +50,17 @@ std::unique_ptr<reflections::ReflectionTracer> ReflectionReuse::makeTracer(
         shaders, frame_->scene, frame_->objects, frame_->map, settings, frame_->samplesPx());
 }
 
+void ReflectionReuse::requireFrames(int frameCount) const {
+    const int last = params_.firstFrame + frameCount - 1;
+    if (last < params_.pathFrames) return;
+    throw Error(
+        fmt::format("frames {} … {} do not lie on a path of {} ('first_frame', 'path_frames')",
+                    params_.firstFrame, last, params_.pathFrames));
+}
+
 /// Camera and objects as they are in a frame.
 void ReflectionReuse::place(const technique::FrameContext& context) {
-    const int last = params_.firstFrame + context.frameCount - 1;
-    if (last >= params_.pathFrames) {
-        throw Error(
-            fmt::format("frames {} … {} do not lie on a path of {} ('first_frame', "
-                        "'path_frames')",
-                        params_.firstFrame, last, params_.pathFrames));
-    }
+    requireFrames(context.frameCount);
     const double time = static_cast<double>(params_.firstFrame + context.frame) /
                         static_cast<double>(params_.pathFrames);
     view_ = frame_->viewAt(time);

@@ -21,6 +21,7 @@ class ReflectionReuse final : public technique::Technique {
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
     void requireScene(const scene::Scene& scene) const override { params_.requireScene(scene); }
+    void requireFrames(int frameCount) const override;
     /// Frames are consecutive. One that is rendered again starts from what was there before it.
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;

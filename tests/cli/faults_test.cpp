@@ -403,6 +403,18 @@ TEST(Overrides, ANumberThatWasAColumnIsNoConstant) {
                           "column; written otherwise, as 2.0, the number)\n"));
 }
 
+TEST(Faults, FramesThatATechniqueDoesNotHaveAreRefusedBeforeTheRun) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "measure: {frames: 501}\n");
+    for (const char* command : {"check", "plan", "run"}) {
+        const ProcessResult result = mockGfxrepro({command, config});
+        EXPECT_EQ(result.exitCode, 2);
+        EXPECT_THAT(result.err, HasSubstr(":19: the mock has 500 frames\n"));
+    }
+    const std::string all = writeMockConfig(folder, "measure: {frames: 500}\n");
+    EXPECT_EQ(mockGfxrepro({"check", all}).exitCode, 0);
+}
+
 TEST(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "sweep: {behaviour: [ok, throw]}\n");

@@ -73,6 +73,10 @@ class Mock : public technique::Technique {
         params.finish();
     }
 
+    void requireFrames(int frameCount) const override {
+        if (frameCount > 500) throw Error("the mock has 500 frames");
+    }
+
     void setup(technique::SetupContext&) override {
         memory_.assign(static_cast<std::size_t>(allocateMib_) << 20, 'x');
         image_ = gl::Texture::make2D(GL_R32F, {8, 8});
