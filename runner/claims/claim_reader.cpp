@@ -154,16 +154,20 @@ bool ClaimReader::readsOnly(const std::string& metric) const {
     return std::ranges::all_of(operands_, &Operand::isColumn) && !readsSome(isOther);
 }
 
+bool ClaimReader::readsSomeCalibrated() const {
+    return readsSome([](const tables::Cell& cell) { return cell.isPlanned && cell.isCalibrated; });
+}
+
 bool ClaimReader::readsCalibrated() const {
     const Rows read = rows();
-    return std::ranges::all_of(operands_, [&](const Operand& operand) {
-        return std::ranges::all_of(operand.columns(), [&](std::size_t column) {
-            return std::ranges::all_of(read, [&](std::size_t row) {
-                const tables::Cell& cell = table_.rows[row].cells[column];
-                return cell.isCalibrated || !cell.isPlanned;
-            });
-        });
-    });
+    return readsSomeCalibrated() && std::ranges::all_of(operands_, [&](const Operand& operand) {
+               return std::ranges::all_of(operand.columns(), [&](std::size_t column) {
+                   return std::ranges::all_of(read, [&](std::size_t row) {
+                       const tables::Cell& cell = table_.rows[row].cells[column];
+                       return cell.isCalibrated || !cell.isPlanned;
+                   });
+               });
+           });
 }
 
 /// By which factor the operand grows as all times double, where its cells are `base` and above; a

@@ -62,8 +62,9 @@ class ClaimReader {
     bool readsOnly(const std::string& metric) const;
     /// How many rows it reads.
     std::size_t rowCount() const { return rows().size(); }
-    /// Whether all cells that it may read are marked as calibrated.
+    /// Whether all cells that it may read are marked as calibrated, or some.
     bool readsCalibrated() const;
+    bool readsSomeCalibrated() const;
     /// Whether what it asks could come out otherwise on a machine on which every time is twice as
     /// long: a time held against a number, or compared with what is no time.
     bool asksForATimeAsSuch();

@@ -158,6 +158,13 @@ std::string balanceNote(const ClaimSpec& claim, const ReportContext& context) {
         1.0 / *context.fragmentShare);
 }
 
+/// That an input was fitted to what a claim reads that is not of that input; else empty.
+std::string calibratedNote(const ClaimSpec& claim, const ClaimReader& reader) {
+    if (claim.origin == ClaimSpec::Origin::Calibrated || !reader.readsSomeCalibrated()) return "";
+    return reader.readsCalibrated() ? "what it reads is calibrated"
+                                    : "some of what it reads is calibrated";
+}
+
 ClaimResult evaluate(const ClaimSpec& claim, const tables::Table& table,
                      const ReportContext& context) {
     ClaimResult result = unjudged(claim, table, context);
@@ -192,7 +199,8 @@ ClaimResult evaluate(const ClaimSpec& claim, const tables::Table& table,
     result.measured = joined(measured, "; ");
     result.verdict = worst->judgement.verdict;
     result.reason = worst->reason;
-    for (const std::string& note : {clock, balanceNote(claim, context)}) {
+    for (const std::string& note :
+         {clock, balanceNote(claim, context), calibratedNote(claim, reader)}) {
         if (!note.empty()) result.reason += (result.reason.empty() ? "" : "; ") + note;
     }
     return result;

@@ -297,10 +297,9 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
             measure.mayContinue()
                 ? fmt::format(" (asked for: {})", percentText(measure.relativeError))
                 : "";
-        notes.push_back(
-            fmt::format("Times of {} alternating rounds, {}; {} is known to ±{} or better{}.",
-                        rounds, endInWords(endOfRounds(measure, times)), judgedName(times),
-                        percentText(*error), target));
+        notes.push_back(fmt::format("Times of {} rounds, {}; {} is known to ±{} or better{}.",
+                                    rounds, endInWords(endOfRounds(measure, times)),
+                                    judgedName(times), percentText(*error), target));
     }
     if (measure.mayRepeat()) notes.push_back(repeatsNote(times, measure));
     if (const auto noise = times.noise(Clock::Wall)) {

@@ -338,7 +338,9 @@ void PrintedCells::add(const config::Experiment& experiment, const Table& table)
             for (const Cell& cell : row.cells) {
                 if (!cell.printed) continue;
                 ++printed;
-                if (!cell.values.empty()) ++measured;
+                if (cell.values.empty()) continue;
+                ++measured;
+                if (!table.knowsPrintedParameters) ++unknown;
                 if (cell.isAtPrintedParameters) {
                     ++(cell.openParameters.empty() ? atPrinted : asGiven);
                 }
@@ -363,8 +365,9 @@ std::string printedCellsLine(const PrintedCells& count) {
     };
     add(count.atPrinted, "at the printed parameters");
     add(count.asGiven, "at the parameters that the document gives, which leaves some open");
-    add(count.measured - count.atPrinted - count.asGiven,
+    add(count.measured - count.atPrinted - count.asGiven - count.unknown,
         "at other parameters, which each table names");
+    add(count.unknown, "at parameters of which it is not known");
     const std::string how = parts.empty() ? "" : ": " + joined(parts, "; ");
     return fmt::format("Of {} printed number{} {} {} measured again{}.", count.printed,
                        count.printed == 1 ? "" : "s",

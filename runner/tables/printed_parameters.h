@@ -49,6 +49,7 @@ struct PrintedCells {
     int measured = 0;   // those beside a measurement
     int atPrinted = 0;  // those of them that were measured at the printed parameters
     int asGiven = 0;    // likewise, as far as these are given
+    int unknown = 0;    // those of tables that do not know the printed parameters
 
     void add(const config::Experiment& experiment, const Table& table);
 };

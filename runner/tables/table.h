@@ -27,8 +27,8 @@ int timePower(std::string_view metric);
 /// Beside each calibrated cell, and what it says below the table.
 inline constexpr const char* kCalibratedMark = "‡";
 inline constexpr const char* kCalibratedLegend =
-    "calibrated: an input of ours was fitted so that this comes out, which tells nothing of the "
-    "method";
+    "calibrated: an input of ours, at the value that its config gives, was fitted so that this "
+    "comes out, which tells nothing of the method";
 
 /// Whether a metric is a time or a number per time: what claims of a `kind` are about.
 bool isTimeMetric(std::string_view metric);

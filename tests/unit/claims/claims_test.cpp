@@ -389,6 +389,25 @@ TEST(Claims, WhatIsPrintedMeetsABoundFromPrint) {
               isNotMet + "exponent 1.5");
 }
 
+TEST(Claims, WhatReadsCalibratedCellsSaysSo) {
+    tables::RecordMaker maker;
+    maker.beginCase("s", R"({"number":1})").add("bytes", {4.0}).add("count", {5.0});
+    const auto reasonOf = [&](const std::string& origin, const std::string& order) {
+        const config::Experiment experiment = tables::experimentFrom(
+            "sweep: {number: [1]}\nlayout: {rows: number, columns: {a: {metric: bytes}, b: "
+            "{metric: count}}}\nprinted: {calibrated: [{column: a}], values: "
+            "\"number,a,b\\n1,4,5\"}"
+            "\nclaims:\n  C: {says: s, origin: " +
+            origin + ", order: " + order + "}\n");
+        const tables::Table table = tables::buildTable(experiment, maker.records());
+        return evaluateClaims(experiment, table, kSoftware)[0].reason;
+    };
+    EXPECT_EQ(reasonOf("document", "a < b"), "one sample; some of what it reads is calibrated");
+    EXPECT_EQ(reasonOf("document", "a < 2 * a"), "one sample; what it reads is calibrated");
+    EXPECT_EQ(reasonOf("document", "b < 2 * b"), "one sample");
+    EXPECT_EQ(reasonOf("calibrated", "a < 2 * a"), "one sample");
+}
+
 /// What has no interval is never told from its bound.
 TEST(Claims, OnlyWhatHasAnIntervalIsKnownAsAmbiguous) {
     const auto errorOf = [](const std::string& measure, const std::string& claim) {

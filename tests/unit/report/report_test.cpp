@@ -136,7 +136,7 @@ TEST(Report, IsOneSafeFile) {
 TEST(Report, MarksWhatIsCalibrated) {
     const test::TemporaryFolder folder;
     ReportRun run = runIn(folder.path());
-    const std::string legend = "‡ calibrated: an input of ours was fitted";
+    const std::string legend = "‡ calibrated: an input of ours, at the value that its config gives";
     writeReport(folder.path() / "report.html", {&run, 1});
     EXPECT_THAT(readFile(folder.path() / "report.html"), Not(HasSubstr(legend)));
     run.experiments[0] = tables::withPaperCases(tables::experimentFrom(R"(

@@ -133,8 +133,8 @@ printed: {calibrated: [{scene: models/duck, column: error}], values: "scene,erro
     EXPECT_THAT(csv, HasSubstr("models/duck,2,2,2,2,,ok,,yes,1,"));
     EXPECT_THAT(csv, HasSubstr("models/bunny,,3,3,3,,ok,,no,,"));
     const std::string legend =
-        "calibrated: an input of ours was fitted so that this comes out, which tells nothing of "
-        "the method.";
+        "calibrated: an input of ours, at the value that its config gives, was fitted so that this "
+        "comes out, which tells nothing of the method.";
     const std::string markdown = run.read("tables/zju2005-9.9.md");
     EXPECT_THAT(markdown, HasSubstr("| duck | 2 → 2‡ | 1 → 2 |\n| bunny | 3 | 3 |\n"));
     EXPECT_THAT(markdown, HasSubstr("\n\n‡ " + legend + "\n"));

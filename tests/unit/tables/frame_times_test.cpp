@@ -189,12 +189,11 @@ TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
               "Times of 2 processes: bounds are a range, no interval (which takes 6), and no claim "
               "about a time is decided. All rounds together have 60 s; `--set "
               "measure.time_budget_s=…` allows more.");
-    EXPECT_EQ(
-        first({9, 10, 10, 10, 10, 11}, measureOf(6)),
-        "Times of 6 alternating rounds, as many as asked for; the CPU time of a frame is known to "
-        "±10 % or better.");
+    EXPECT_EQ(first({9, 10, 10, 10, 10, 11}, measureOf(6)),
+              "Times of 6 rounds, as many as asked for; the CPU time of a frame is known to "
+              "±10 % or better.");
     EXPECT_EQ(first({9, 9, 9, 10, 10, 10, 10, 10, 10, 10, 10, 11, 11, 11}, measureOf(6, 0.2)),
-              "Times of 14 alternating rounds, until the times were known; the CPU time of a frame "
+              "Times of 14 rounds, until the times were known; the CPU time of a frame "
               "is known "
               "to ±10 % or better (asked for: 20 %).");
     config::Measure most = measureOf(6, 0.05);
