@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "runner/config/scene_reference.h"
@@ -133,9 +134,10 @@ bool areSameCases(std::vector<Settings> a, std::vector<Settings> b) {
     return isSameSet(std::move(a), std::move(b));
 }
 
+/// `isOpen` tells of a parameter whether the document leaves it open.
 std::vector<Departure> departuresOf(const std::vector<Settings>& measured,
                                     const std::vector<Settings>& printed,
-                                    const std::set<std::string>& open) {
+                                    const std::function<bool(const std::string&)>& isOpen) {
     std::vector<std::string> names;
     for (const auto* cases : {&printed, &measured}) {
         for (const Settings& settings : *cases) {
@@ -144,8 +146,7 @@ std::vector<Departure> departuresOf(const std::vector<Settings>& measured,
     }
     std::vector<Departure> departures;
     for (const std::string& name : names) {
-        Departure departure{name, valuesOf(name, measured), valuesOf(name, printed),
-                            open.contains(name)};
+        Departure departure{name, valuesOf(name, measured), valuesOf(name, printed), isOpen(name)};
         if (!isSameSet(departure.measured, departure.printed)) {
             departures.push_back(std::move(departure));
         }
@@ -154,7 +155,7 @@ std::vector<Departure> departuresOf(const std::vector<Settings>& measured,
         departures.push_back({"cases",
                               {std::to_string(measured.size())},
                               {std::to_string(printed.size())},
-                              !open.empty()});
+                              std::ranges::any_of(names, isOpen)});
     }
     return departures;
 }
@@ -232,7 +233,8 @@ std::string valuesText(const std::vector<std::string>& values, const Words& word
     return fmt::format("{} / {} / … / {}", said[0], said[1], said.back());
 }
 
-std::string sentence(const Tally& tally, const Words& words) {
+/// `printed` are the words for the parameters that measured ones are held against.
+std::string sentence(const Tally& tally, const std::string& printed, const Words& words) {
     if (tally.alone == tally.count()) {
         return "Measured where the profile paper has no case";
     }
@@ -242,10 +244,10 @@ std::string sentence(const Tally& tally, const Words& words) {
         text += at;
         if (cells < tally.count()) text += fmt::format(" in {} of {} cells", cells, tally.count());
     };
-    add(tally.same, "the printed parameters");
+    add(tally.same, printed);
     if (tally.same > 0 && tally.asGiven > 0) text += ", ";
-    add(tally.asGiven, fmt::format("the printed parameters as far as they are given (not: {})",
-                                   openText(tally.open, words)));
+    add(tally.asGiven,
+        fmt::format("{} as far as they are given (not: {})", printed, openText(tally.open, words)));
     if (tally.different > 0) {
         text += (tally.same + tally.asGiven > 0 ? ", in the others at " : "") +
                 departuresText(tally.departures, words);
@@ -265,7 +267,13 @@ std::string line(const Table& table, std::span<const TableRow> rows) {
         return "Whether it was measured at the printed parameters is not known: the run's plan "
                "does not have them";
     }
-    return sentence(tally, table.words);
+    const bool isPrinted = std::ranges::any_of(table.rows, [](const TableRow& row) {
+        return std::ranges::any_of(row.cells,
+                                   [](const Cell& cell) { return cell.printed.has_value(); });
+    });
+    return sentence(tally,
+                    isPrinted ? "the printed parameters" : "the parameters of the profile paper",
+                    table.words);
 }
 
 }  // namespace
@@ -306,6 +314,15 @@ PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
         open_.insert(settingNameOf(assumption.name));
     }
     for (const auto& [name, value] : printed_.at) open_.erase(settingNameOf(name));
+    if (printed_.rows.empty()) return;
+    for (const char* name : {"scene", "output", "measure.frames"})
+        given_.insert(settingNameOf(name));
+    for (const config::CaseSpec& spec : config::expandCases(paper)) {
+        for (const auto& [name, value] : spec.params.entries()) given_.insert(settingNameOf(name));
+        for (const auto& [name, value] : spec.sceneParams.entries()) {
+            given_.insert(std::string(config::kSceneAxisPrefix) + name);
+        }
+    }
 }
 
 void PrintedParameters::compare(const config::Layout& layout, const Key& row, const Key& column,
@@ -321,7 +338,9 @@ void PrintedParameters::compare(const config::Layout& layout, const Key& row, co
     if (printed.empty()) return;
     cell.isAtPrintedParameters = areSameCases(measured, printed);
     if (!cell.isAtPrintedParameters) {
-        cell.departures = departuresOf(measured, printed, open_);
+        cell.departures = departuresOf(measured, printed, [&](const std::string& name) {
+            return open_.contains(name) || !given_.contains(name);
+        });
         return;
     }
     for (const Settings& settings : printed) {
@@ -369,7 +388,7 @@ std::string printedCellsLine(const PrintedCells& count) {
         "at other parameters, which each table names");
     add(count.unknown, "at parameters of which it is not known");
     const std::string how = parts.empty() ? "" : ": " + joined(parts, "; ");
-    return fmt::format("Of {} printed number{} {} {} measured again{}.", count.printed,
+    return fmt::format("Of {} printed cell{} of tables {} {} measured again{}.", count.printed,
                        count.printed == 1 ? "" : "s",
                        count.measured == 0 ? "none" : std::to_string(count.measured),
                        count.measured < 2 ? "was" : "were", how);

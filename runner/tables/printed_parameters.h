@@ -6,8 +6,9 @@
 // often and where a case runs, and the parameter `pictures`, by which techniques save pictures
 // beside their numbers. What an assumption names and `printed.at` does not say is open in the
 // document: a departure from the profile's value is said to be just that, and a cell without one is
-// at the printed parameters as far as they are given. A stand-in in place of a real model is no
-// other scene: it goes by its name, and Table marks its source, as that of a generated one.
+// at the printed parameters as far as they are given. So is a departure from a default, and any of
+// a table without printed numbers. A stand-in in place of a real model is no other scene: it goes
+// by its name, and Table marks its source, as that of a generated one.
 #pragma once
 
 #include <set>
@@ -39,6 +40,8 @@ class PrintedParameters {
     config::Layout layout_;
     config::Printed printed_;
     std::set<std::string> open_;
+    std::set<std::string>
+        given_;  // in its config, not left to a default; none where nothing is printed
     LayoutCases cases_;
 };
 
@@ -55,9 +58,9 @@ struct PrintedCells {
 };
 PrintedCells countPrintedCells(std::span<const config::Experiment> experiments,
                                std::span<const Table> tables);
-/// "Of 897 printed numbers 691 were measured again: 120 at the printed parameters; 300 at the
-/// parameters that the document gives, which leaves some open; 271 at other parameters, which each
-/// table names."; empty when nothing is printed.
+/// "Of 897 printed cells of tables 691 were measured again: 120 at the printed parameters; 300 at
+/// the parameters that the document gives, which leaves some open; 271 at other parameters, which
+/// each table names."; empty when nothing is printed.
 std::string printedCellsLine(const PrintedCells& count);
 
 /// "output 128×128 (printed 512×512), light grid 4 (16), frames 3 (paper profile 50)".

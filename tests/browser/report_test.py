@@ -213,7 +213,7 @@ class Report(unittest.TestCase):
         self.open()
         text = "return document.querySelector(arguments[0]).textContent"
         self.assertEqual(self.browser.script(text, "#overview .parameters"),
-                         "Of 4 printed numbers 4 were measured again: 2 at the printed parameters; 2 at other parameters, which each table names.")
+                         "Of 4 printed cells of tables 4 were measured again: 2 at the printed parameters; 2 at other parameters, which each table names.")
         for slug, line, ratios in (("demo2026-1", "Measured at the printed parameters.", 2),
                                    ("demo2026-2", "Measured at pause 1 ms (printed 0).", 0)):
             self.open("#" + slug)

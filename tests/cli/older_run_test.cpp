@@ -28,8 +28,8 @@ TEST_F(OlderRun, HasTheTableAndTheClaimThatItHad) {
     EXPECT_EQ(readFile(dir + "/tables/demo2026-1.csv"),
               "number,shown_printed,shown_measured,shown_low,shown_high,shown_bounds,shown_status,"
               "shown_at_printed,parameters\n"
-              "1,,1,1,1,,ok,yes,Measured at the printed parameters\n"
-              "2,,2,2,2,,ok,yes,Measured at the printed parameters\n");
+              "1,,1,1,1,,ok,yes,Measured at the parameters of the profile paper\n"
+              "2,,2,2,2,,ok,yes,Measured at the parameters of the profile paper\n");
     const ProcessResult claims = mockGfxrepro({"claims", dir});
     EXPECT_EQ(claims.exitCode, 0) << claims.err;
     EXPECT_THAT(claims.out, HasSubstr("demo2026/1 holds: the number grows (grows); one sample\n"));

@@ -125,7 +125,7 @@ TEST(Run, TablesSayAtWhichParametersTheyWereMeasured) {
     EXPECT_EQ(parametersOf(config, whole, {}), "Measured at the printed parameters.");
     EXPECT_EQ(gfxrepro({"table", whole}).out,
               "demo2026/2: tables/demo2026-2.csv .md .tex\n"
-              "Of 2 printed numbers 2 were measured again: 2 at the printed parameters.\n");
+              "Of 2 printed cells of tables 2 were measured again: 2 at the printed parameters.\n");
     EXPECT_EQ(parametersOf(config, folder.path() / "quick", {"--profile", "quick"}),
               "Measured at output 4×8 (printed 8×8), pause 1 ms (2).");
     EXPECT_EQ(parametersOf(config, folder.path() / "set", {"--set", "pause_ms=3"}),
@@ -152,13 +152,13 @@ TEST(Run, OlderPlansDoNotKnowThePrintedParameters) {
     ASSERT_EQ(plan.erase("frozen_hash"), 1U);
     EXPECT_FALSE(plan["cases"][0].contains("paper")) << "what workers are told";
     writeFileAtomic(dir + "/plan.json", plan.dump());
-    EXPECT_EQ(
-        gfxrepro({"table", dir}).out,
-        "demo2026/2: tables/demo2026-2.csv .md .tex\n"
-        "Of 2 printed numbers 2 were measured again: 2 at parameters of which it is not known.\n"
-        "warning: plan.json has no frozen_hash, as those of older versions have none: that "
-        "its assumptions and published parameters are those that were planned cannot be "
-        "verified\n");
+    EXPECT_EQ(gfxrepro({"table", dir}).out,
+              "demo2026/2: tables/demo2026-2.csv .md .tex\n"
+              "Of 2 printed cells of tables 2 were measured again: 2 at parameters of which it is "
+              "not known.\n"
+              "warning: plan.json has no frozen_hash, as those of older versions have none: that "
+              "its assumptions and published parameters are those that were planned cannot be "
+              "verified\n");
     EXPECT_NE(readFile(dir + "/tables/demo2026-2.md")
                   .find("Whether it was measured at the printed parameters is not known"),
               std::string::npos);

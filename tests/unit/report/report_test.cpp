@@ -120,7 +120,8 @@ TEST(Report, IsOneSafeFile) {
              "gfxrepro reproduce zju2005/9.9 --profile quick",
              "<pre class=\"command\">gfxrepro run &#39;a&lt;b&#39;</pre>\n<pre class=\"log\">ok",
              "<span class=\"ratio\" title=\"measured ÷ printed\">×0.5</span>",
-             "<p class=\"parameters\">Of 2 printed numbers 2 were measured again: 2 at the printed "
+             "<p class=\"parameters\">Of 2 printed cells of tables 2 were measured again: 2 at the "
+             "printed "
              "parameters.</p>",
              "<p class=\"parameters\">Measured at the printed parameters.</p>\n<div",
          }) {
@@ -181,13 +182,14 @@ TEST(Report, NoRatioAtOtherParameters) {
     writeReport(folder.path() / "report.html", {&run, 1});
     std::string html = readFile(folder.path() / "report.html");
     EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
-    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light grid none (printed "
-                                "16).</p>\n<div"));
-    EXPECT_THAT(html, HasSubstr(" title=\"at light grid none (printed 16)\">8.0"));
+    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light grid none (paper "
+                                "profile 16).</p>\n<div"));
+    EXPECT_THAT(html, HasSubstr(" title=\"at light grid none (paper profile 16)\">8.0"));
     EXPECT_THAT(
         html,
-        HasSubstr("Of 2 printed numbers 2 were measured again: 2 at other parameters, which each "
-                  "table names.</p>"));
+        HasSubstr(
+            "Of 2 printed cells of tables 2 were measured again: 2 at other parameters, which each "
+            "table names.</p>"));
 
     run.experiments[0].paperCases[0].params = printed;
     judge(run, records());
@@ -525,12 +527,14 @@ TEST(Report, RunsStandSideBySide) {
                 HasSubstr("<li class=\"claim uncounted differs\" data-verdict=\"holds fails\""))
         << "claim A, 8 against 12";
     for (const char* part : {
-             "<p class=\"parameters\"><b>A</b> Of 2 printed numbers 2 were measured again: 2 at "
+             "<p class=\"parameters\"><b>A</b> Of 2 printed cells of tables 2 were measured again: "
+             "2 at "
              "the printed parameters.</p>",
-             "<p class=\"parameters\"><b>B</b> Of 2 printed numbers 2 were measured again: 2 at "
+             "<p class=\"parameters\"><b>B</b> Of 2 printed cells of tables 2 were measured again: "
+             "2 at "
              "other parameters, which each table names.</p>",
              "<p class=\"parameters\"><b>A</b> Measured at the printed parameters.</p>\n"
-             "<p class=\"parameters\"><b>B</b> Measured at light grid none (printed 16).</p>",
+             "<p class=\"parameters\"><b>B</b> Measured at light grid none (paper profile 16).</p>",
              "×0.5</span>",  // 8 of 16
              "<span class=\"soft\">B: </span>Noise of this one.</p>",
          }) {

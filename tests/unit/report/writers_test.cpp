@@ -76,7 +76,7 @@ TEST(Writers, TableFiles) {
         csv,
         HasSubstr(",ok,yes,9.0,8,8,8,95 % interval,ok,yes,Measured at the printed parameters\n"));
     EXPECT_THAT(csv, HasSubstr("0.3333333333333333,"));
-    EXPECT_THAT(csv, HasSubstr(",ok,no,Measured at light grid 4 (printed 16)\n"));
+    EXPECT_THAT(csv, HasSubstr(",ok,no,Measured at light grid 4 (paper profile 16)\n"));
     EXPECT_THAT(csv, HasSubstr("models/lost,,,,,,,,,,,crash,,,,,,,crash,,\n"));
     const std::string markdown = run.read("tables/zju2005-9.9.md");
     EXPECT_THAT(markdown, HasSubstr("# Table 9.9. A table\n"));

@@ -13,6 +13,7 @@ using testing::IsEmpty;
 
 constexpr const char* kDuck = R"(
 scene: models/duck
+params: {light_grid: 16, bias: 1, cut: 5, view: a, n: 1}
 layout: {rows: scene, columns: {ms: {metric: gpu_time_ms}}, cell: "{median:.1f}"}
 printed: {values: "scene,ms\nmodels/duck,16.0"}
 )";
@@ -114,6 +115,27 @@ TEST(PrintedParameters, WhatIsOpenIsNotSaidToBePrinted) {
               "Measured at output 8×8 (printed 512×512), light grid 4 (16), frames 3 (50).");
 }
 
+TEST(PrintedParameters, DefaultsAreNotSaidToBePrinted) {
+    EXPECT_THAT(
+        cellAt(R"({"yaw": 40, "bias": 2})", R"({"yaw": 0, "bias": 1})").departures,
+        ElementsAre(Departure{"yaw", {"40"}, {"0"}, true}, Departure{"bias", {"2"}, {"1"}, false}));
+}
+
+/// A picture alone, and what is said of it in words.
+TEST(PrintedParameters, NoneAreThoseOfATableWithoutPrintedNumbers) {
+    const auto lineAt = [](const char* params) {
+        RecordMaker maker;
+        maker.beginCase("models/duck", params).add("gpu_time_ms", {8.0});
+        std::string body = kDuck;
+        body.resize(body.find("printed:"));
+        return parametersLine(buildTable(
+            withPaperCases(experimentFrom(body), {{"models/duck", kPrinted}}), maker.records()));
+    };
+    EXPECT_EQ(lineAt(kPrinted), "Measured at the parameters of the profile paper.");
+    EXPECT_EQ(lineAt(R"({"light_grid": 4, "output": {"width": 512, "height": 512}})"),
+              "Measured at light grid 4 (paper profile 16).");
+}
+
 TEST(PrintedParameters, AreNamedInTheConfigsWords) {
     const std::string words = "labels: {light_grid: light samples a side, bias: the bias}\n";
     const auto lineAt = [&](const char* params, const std::string& more) {
@@ -148,10 +170,11 @@ TEST(PrintedParameters, AreThePrintedOnesAsFarAsTheyAreGiven) {
     const Table table = buildTable(experiment, maker.records());
     EXPECT_EQ(parametersLine(table),
               "Measured at the printed parameters as far as they are given (not: output, bias).");
-    EXPECT_EQ(printedCellsLine(countPrintedCells({{experiment}}, {{table}})),
-              "Of 1 printed number 1 was measured again: 1 at the parameters that the document "
-              "gives, which "
-              "leaves some open.");
+    EXPECT_EQ(
+        printedCellsLine(countPrintedCells({{experiment}}, {{table}})),
+        "Of 1 printed cell of tables 1 was measured again: 1 at the parameters that the document "
+        "gives, which "
+        "leaves some open.");
 }
 
 constexpr const char* kGrid = R"(
@@ -184,9 +207,10 @@ TEST(PrintedParameters, RowsAreComparedWithTheSameRow) {
     EXPECT_EQ(parametersLine(table, table.rows[1]), "Measured at the printed parameters");
     PrintedCells count;
     count.add(experimentFrom(kGrid), table);
-    EXPECT_EQ(printedCellsLine(count),
-              "Of 3 printed numbers 2 were measured again: 1 at the printed parameters; 1 at "
-              "other parameters, which each table names.");
+    EXPECT_EQ(
+        printedCellsLine(count),
+        "Of 3 printed cells of tables 2 were measured again: 1 at the printed parameters; 1 at "
+        "other parameters, which each table names.");
 }
 
 /// A table of one row of measured cells beside printed values, which depart so.
@@ -213,6 +237,7 @@ TEST(PrintedParameters, LinesCountWhatIsGiven) {
         cell.values.resize(1);
         cell.isAtPrintedParameters = true;
         cell.openParameters = open;
+        cell.printed = "1";
     };
     add({});
     add({"bias"});
@@ -221,6 +246,7 @@ TEST(PrintedParameters, LinesCountWhatIsGiven) {
               "Measured at the printed parameters in 1 of 3 cells, the printed parameters as far "
               "as they are given (not: bias, view) in 2 of 3 cells.");
     table.rows[0].cells.emplace_back().values.resize(1);
+    table.rows[0].cells.back().printed = "1";
     table.rows[0].cells.back().departures = {{"n", {"1"}, {"2"}}};
     EXPECT_EQ(parametersLine(table),
               "Measured at the printed parameters in 1 of 4 cells, the printed parameters as far "
@@ -326,7 +352,7 @@ profiles:
                                                    {"models/duck", R"({"light_grid": 16})"}}),
                                    maker.records());
     EXPECT_THAT(table.rows.at(0).cells.at(0).departures,
-                ElementsAre(Departure{"light_grid", {"4"}, {"16"}}));
+                ElementsAre(Departure{"light_grid", {"4"}, {"16"}, true}));
     EXPECT_FALSE(table.rows[0].cells.at(1).isAtPrintedParameters);
     EXPECT_THAT(table.rows[0].cells[1].departures, IsEmpty()) << "the paper has no such column";
 }
@@ -343,9 +369,9 @@ TEST(PrintedParameters, AreNotKnownOfOlderRuns) {
               "not have them.");
     PrintedCells count;
     count.add(experiment, table);
-    EXPECT_EQ(
-        printedCellsLine(count),
-        "Of 1 printed number 1 was measured again: 1 at parameters of which it is not known.");
+    EXPECT_EQ(printedCellsLine(count),
+              "Of 1 printed cell of tables 1 was measured again: 1 at parameters of which it is "
+              "not known.");
 }
 
 TEST(PrintedParameters, NothingIsSaidOfWhatIsNotPublished) {
@@ -368,7 +394,7 @@ TEST(PrintedParameters, CellsOfTablesAreCounted) {
     const Table table = buildTable(experiment, maker.records());
     PrintedCells count = countPrintedCells({{experiment, experiment}}, {{table, table}});
     EXPECT_EQ(printedCellsLine(count),
-              "Of 2 printed numbers 2 were measured again: 2 at the printed parameters.");
+              "Of 2 printed cells of tables 2 were measured again: 2 at the printed parameters.");
     experiment.kind = config::Experiment::Kind::Figure;
     count.add(experiment, table);
     EXPECT_EQ(count.printed, 2) << "a figure's";
@@ -380,7 +406,7 @@ TEST(PrintedParameters, CellsOfTablesAreCounted) {
     alone.printed.rows = {{"x", "1", ""}, {"y", "2", "3"}};
     count = {};
     count.add(alone, buildTable(alone, {}));
-    EXPECT_EQ(printedCellsLine(count), "Of 3 printed numbers none was measured again.");
+    EXPECT_EQ(printedCellsLine(count), "Of 3 printed cells of tables none was measured again.");
 }
 
 }  // namespace
