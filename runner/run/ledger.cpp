@@ -276,6 +276,7 @@ void requireMeasuredWithin(const Assumption& assumption, const std::vector<Case>
         low = std::min(low, *number);
         high = std::max(high, *number);
     }
+    if (low == high) refuseRange(assumption, assumption.range, "one of more than one value");
     const bool isOfFrames = assumption.name == config::kFramesAssumption;
     for (const Case& item : cases) {
         const Node* param = item.params.find(assumption.name);

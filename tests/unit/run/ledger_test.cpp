@@ -175,6 +175,10 @@ TEST(Ledger, RefusesRangesWithoutWhatIsMeasured) {
               "DIR/t.yaml:6:17: assumption 'bias': range is [0.5, 1]; allowed: one that holds what "
               "is measured, 0.25");
     EXPECT_EQ(ledger.errorOf("params: {bias: 0.75}\n" + range), "no error");
+    EXPECT_EQ(
+        ledger.errorOf("params: {bias: 1}\nassumptions:\n  bias: {range: [1, 1], why: open}\n"),
+        "DIR/t.yaml:6:17: assumption 'bias': range is [1, 1]; allowed: one of more than one "
+        "value");
     EXPECT_EQ(ledger.errorOf("sweep: {bias: [0.25, 1]}\n" + range), "no error");
 }
 
