@@ -1,5 +1,6 @@
 // Embree 3 and 4 under one set of names; all that knows the difference. For this module's sources
-// and for who asks for Embree's version.
+// and for who asks for Embree's version. Preset sanitize-threads puts a header of its own before
+// Embree's (tests/threads).
 #pragma once
 
 #if GFXREPRO_EMBREE_MAJOR == 3

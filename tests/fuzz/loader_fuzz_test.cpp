@@ -129,7 +129,8 @@ std::string mutated(std::string content, Random& random) {
             for (int i = 0; i < 4; ++i) content[place()] = static_cast<char>(random.next());
             break;
         case 2: {
-            const std::string chunk = content.substr(place(), 1 + random.index(64));
+            const std::size_t from = place();
+            const std::string chunk = content.substr(from, 1 + random.index(64));
             content.insert(place(), chunk);
             break;
         }

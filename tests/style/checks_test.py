@@ -101,6 +101,20 @@ GLSL = "for (int i = 0, j = 1; i <= j; ++i) a = b == c;\nvec2 low = a, high = b;
 code, output = run("check_style", {"techniques/README.md": "", "techniques/a/README.md": "", "techniques/a/a.glsl": GLSL})
 if code != 0:
     sys.exit(f"check_style found something in good GLSL:\n{output}")
+for drawn in ("glm::vec2 a(random.uniform(), random.uniform());", "f(g(random_.index(3)), {random_.next(), 1});",
+              "f({g(random.index(2), random.index(3))});", "f([&] { g(random.uniform(0, 1), -random.uniform()); });"):
+    expect("check_style", {"runner/core/a.cpp": "int a;\n" + drawn + "\n"},
+           "runner/core/a.cpp:2: two arguments draw: compilers differ in their order; braces have one\n")
+DRAWS = """const glm::vec2 a{random.uniform(0, 1), random.uniform()};
+f({random.uniform(), random.index(3)}, 1);
+// f(random.uniform(), random.uniform());
+for (int i = random.index(2); i < 9; i += random.index(3))
+  g(i, random.index(4));
+f([&] { return random.uniform(); }, [&]() { return random.uniform(); });
+"""
+code, output = run("check_style", {"runner/README.md": "", "runner/core/README.md": "", "runner/core/a.cpp": DRAWS})
+if code != 0:
+    sys.exit(f"check_style found something in draws in their order:\n{output}")
 expect("check_style", {"runner/core/a.cpp": ""}, "runner/core: no README.md")
 # One version of clang-format decides; another is not asked, and that is said.
 for version, wanted in {"14.0.6": (1, "runner/a.h:1:1: error: code should be clang-formatted\n"),

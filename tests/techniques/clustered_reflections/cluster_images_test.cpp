@@ -46,9 +46,9 @@ class ClusterImagesTest : public TracerTest {
         std::vector<ClusterCamera> cameras;
         for (int i = 0; i < count; ++i) {
             const auto number = [&] { return random.uniform(-1.0F, 1.0F); };
-            const glm::vec3 eye(number(), number(), number());
-            const glm::ivec2 sizePx(1 + static_cast<int>(random.index(most)),
-                                    1 + static_cast<int>(random.index(most)));
+            const glm::vec3 eye{number(), number(), number()};
+            const glm::ivec2 sizePx{1 + static_cast<int>(random.index(most)),
+                                    1 + static_cast<int>(random.index(most))};
             cameras.push_back(cameraLooking(eye, {number(), number(), number()}, sizePx));
         }
         return cameras;
@@ -76,7 +76,7 @@ TEST_F(ClusterImagesTest, NoObjectThatReachesIntoTheFrustumIsCulled) {
                 const std::uint32_t triangle =
                     object.firstTriangle + random.index(object.triangleCount);
                 const glm::uvec3 corners = scene.geometry().triangles[triangle];
-                glm::vec2 b(random.uniform(), random.uniform());
+                glm::vec2 b{random.uniform(), random.uniform()};
                 if (b.x + b.y > 1.0F) b = 1.0F - b;
                 const auto& positions = scene.geometry().positions;
                 const glm::vec3 p = positions[corners.x] * (1.0F - b.x - b.y) +

@@ -72,8 +72,8 @@ class ClusteringTest : public ClusterTest {
                 surface = static_cast<std::uint32_t>(random.uniform(0.0F, 4.999F)) | 0xFF0000U;
                 if ((surface & 0xFFFFU) == 0) surface = 0;
             }
-            glm::vec3 normal(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
-                             random.uniform(-1.0F, 1.0F));
+            glm::vec3 normal{random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
+                             random.uniform(-1.0F, 1.0F)};
             if (i % 5 == 0) normal = glm::round(normal);
             if (normal == glm::vec3(0.0F)) normal.y = 1.0F;
             normals.push_back(octahedral(normal));
@@ -282,8 +282,8 @@ TEST(BinTables, ThetaRunsFromXTowardsZAndPhiFromY) {
 
     Random random(4);
     for (int i = 0; i < 20000; ++i) {
-        const glm::vec3 n(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
-                          random.uniform(-1.0F, 1.0F));
+        const glm::vec3 n{random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
+                          random.uniform(-1.0F, 1.0F)};
         const glm::ivec2 bins(1 + i % 16, 1 + i / 16 % 16);
         const glm::dvec3 d = glm::normalize(glm::dvec3(n));
         double theta = std::atan2(d.z, d.x) / (2.0 * std::numbers::pi);

@@ -66,13 +66,14 @@ Image randomImage(Random& random, glm::ivec2 sizePx) {
     image.sizePx = sizePx;
     image.nearM = random.uniform(0.2F, 2.0F);
     const float farM = image.nearM + 10.0F;
-    const glm::mat4 clip = glm::frustum(
-        -image.nearM * random.uniform(0.2F, 1.2F), image.nearM * random.uniform(0.3F, 1.0F),
-        -image.nearM * random.uniform(0.1F, 1.0F), image.nearM * random.uniform(0.2F, 1.1F),
-        image.nearM, farM);
+    const float left = -image.nearM * random.uniform(0.2F, 1.2F);
+    const float right = image.nearM * random.uniform(0.3F, 1.0F);
+    const float bottom = -image.nearM * random.uniform(0.1F, 1.0F);
+    const float top = image.nearM * random.uniform(0.2F, 1.1F);
+    const glm::mat4 clip = glm::frustum(left, right, bottom, top, image.nearM, farM);
     const auto number = [&] { return random.uniform(-3.0F, 3.0F); };
-    const glm::vec3 eye(number(), number(), number());
-    image.clipFromWorld = clip * glm::lookAt(eye, glm::vec3(number(), number(), number() + 7.0F),
+    const glm::vec3 eye{number(), number(), number()};
+    image.clipFromWorld = clip * glm::lookAt(eye, glm::vec3{number(), number(), number() + 7.0F},
                                              glm::vec3(0.0F, 1.0F, 0.0F));
     image.worldFromClip = glm::mat4(glm::inverse(glm::dmat4(image.clipFromWorld)));
     const auto width = static_cast<std::size_t>(sizePx.x);
@@ -103,8 +104,8 @@ std::vector<Ray> randomRays(const Image& image, Random& random, int count) {
         glm::inverse(glm::dmat4(image.clipFromWorld)) * glm::dvec4(0.0, 0.0, -1.0, 0.0) /
         (glm::inverse(glm::dmat4(image.clipFromWorld)) * glm::dvec4(0.0, 0.0, -1.0, 0.0)).w);
     const auto place = [&](float margin) {
-        return glm::vec2(random.uniform(-margin, size.x + margin),
-                         random.uniform(-margin, size.y + margin));
+        return glm::vec2{random.uniform(-margin, size.x + margin),
+                         random.uniform(-margin, size.y + margin)};
     };
     const auto depth = [&] { return random.uniform(image.nearM, farM); };
     std::vector<Ray> rays;
@@ -115,9 +116,11 @@ std::vector<Ray> randomRays(const Image& image, Random& random, int count) {
             case 0:
                 rays.push_back({begin, image.at(place(0.0F), farM)});
                 break;
-            case 1:
-                rays.push_back({image.at(place(80.0F), depth()), image.at(place(80.0F), farM)});
+            case 1: {
+                const glm::vec2 from = place(80.0F);
+                rays.push_back({image.at(from, depth()), image.at(place(80.0F), farM)});
                 break;
+            }
             case 2:
                 rays.push_back({image.at(p, farM), eye});
                 break;  // to the eye
@@ -278,7 +281,7 @@ TEST_F(MarchTest, AWallIsMetWhereTheRayCrossesIt) {
     std::vector<Ray> rays;
     for (int i = 0; i < 500; ++i) {
         const auto place = [&] {
-            return glm::vec2(random.uniform(1.0F, 199.0F), random.uniform(1.0F, 149.0F));
+            return glm::vec2{random.uniform(1.0F, 199.0F), random.uniform(1.0F, 149.0F)};
         };
         rays.push_back(
             {image.at(place(), image.nearM * 1.001F), image.at(place(), image.nearM + 9.9F)});
@@ -305,7 +308,7 @@ TEST_F(MarchTest, RaysOfAPlanarReflectorEndAtOnce) {
     const Image image = randomImage(random, {200, 150});
     std::vector<Ray> rays;
     for (int i = 0; i < 1000; ++i) {
-        const glm::vec2 place(random.uniform(0.0F, 200.0F), random.uniform(0.0F, 150.0F));
+        const glm::vec2 place{random.uniform(0.0F, 200.0F), random.uniform(0.0F, 150.0F)};
         rays.push_back(
             {image.at(place, image.nearM * 1.0001F), image.at(place, image.nearM + 9.9F)});
     }

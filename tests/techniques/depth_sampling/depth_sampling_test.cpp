@@ -74,9 +74,9 @@ scene::Scene clutter() {
     builder.addBox({0, -1.1F, 0}, {3, 0.1F, 3});
     Random random(7);
     for (int i = 0; i < 90; ++i) {
-        const glm::vec3 centre(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-        const glm::vec3 half(random.uniform(0.02F, 0.2F), random.uniform(0.02F, 0.2F),
-                             random.uniform(0.02F, 0.2F));
+        const glm::vec3 centre{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        const glm::vec3 half{random.uniform(0.02F, 0.2F), random.uniform(0.02F, 0.2F),
+                             random.uniform(0.02F, 0.2F)};
         builder.addBox(centre, half);
     }
     scene::Scene scene = scene::sceneOf(builder.take("clutter", -1));

@@ -122,7 +122,7 @@ TEST_F(ViewShaderTest, ReprojectsAsTheHostDoes) {
     Random random(5);
     std::vector<glm::vec4> samples;
     for (int i = 0; i < 4096; ++i) {
-        const glm::ivec2 pixel(random.index(1024), random.index(1024));
+        const glm::ivec2 pixel{random.index(1024), random.index(1024)};
         samples.emplace_back(glm::vec2(pixel) + 0.5F, random.uniform(3.0F, 7.0F), 0.0F);
     }
 

@@ -28,7 +28,7 @@ TEST(CompressedPoint, ErrorsStayWithinTheGridsBounds) {
     glm::vec3 worst(0.0F);
     float worstAngle = 0.0F;
     for (int trial = 0; trial < 20000; ++trial) {
-        const glm::vec3 share(random.uniform(), random.uniform(), random.uniform());
+        const glm::vec3 share{random.uniform(), random.uniform(), random.uniform()};
         const glm::vec3 position = kBox.min + share * kBox.size(), normal = randomUnit(random);
         const DecodedPoint point =
             decoded(compressed(position, normal, 0.19F, kBox, table), kBox, table);
@@ -146,7 +146,10 @@ TEST(RadiusTable, FewRadiiAreAllKept) {
 TEST(RadiusTable, ClustersManyRadiiBetterThanEqualSteps) {
     Random random(9);
     std::vector<float> radii(20000);
-    for (float& radius : radii) radius = std::exp(random.uniform(-4.0F, 1.0F) * random.uniform());
+    for (float& radius : radii) {
+        const float exponent = random.uniform(-4.0F, 1.0F);
+        radius = std::exp(exponent * random.uniform());
+    }
     const std::vector<float> table = clusteredRadii(radii);
     ASSERT_EQ(table.size(), 256U);
     EXPECT_TRUE(std::is_sorted(table.begin(), table.end()));

@@ -16,15 +16,15 @@ scene::PointCloud pointsInPixels(const PatchView& view) {
     Random random(17);
     scene::PointCloud points;
     for (int i = 0; i < 6000; ++i) {
-        const glm::vec2 pixel(random.index(static_cast<std::uint32_t>(kSize.x)) + 0.5F,
-                              random.index(static_cast<std::uint32_t>(kSize.y)) + 0.5F);
+        const glm::vec2 pixel{random.index(static_cast<std::uint32_t>(kSize.x)) + 0.5F,
+                              random.index(static_cast<std::uint32_t>(kSize.y)) + 0.5F};
         const glm::vec2 at = pixel + glm::vec2(random.uniform(-0.4F, 0.4F));
-        const float depth =
-            3.0F + 0.5F * static_cast<float>(random.index(4)) + random.uniform(0.0F, 0.02F);
+        const float layer = 3.0F + 0.5F * static_cast<float>(random.index(4));
+        const float depth = layer + random.uniform(0.0F, 0.02F);
         const glm::vec2 slope = (at - 0.5F * glm::vec2(kSize)) / view.focalPx;
         points.positions.emplace_back(slope * depth, kDistance - depth);
         points.normals.push_back(
-            glm::normalize(glm::vec3(random.uniform(-1, 1), random.uniform(-1, 1), 2.0F)));
+            glm::normalize(glm::vec3{random.uniform(-1, 1), random.uniform(-1, 1), 2.0F}));
         points.radii.push_back(0.01F);
         const std::uint32_t step = random.index(3);
         points.colors.emplace_back(step == 0 ? 1.0F : 0.0F, step == 1 ? 1.0F : 0.0F, 0.5F);

@@ -17,7 +17,7 @@ scene::PointCloud cloud() {
     Random random(8);
     scene::PointCloud points;
     for (int i = 0; i < 3000; ++i) {
-        points.positions.emplace_back(random.uniform(), random.uniform(), random.uniform());
+        points.positions.push_back({random.uniform(), random.uniform(), random.uniform()});
         points.normals.emplace_back(0, 1, 0);
         points.radii.push_back(random.uniform(0.01F, 0.02F));
         points.colors.emplace_back(1.0F, 0.5F, 0.0F);

@@ -72,10 +72,9 @@ TEST(PatchSelection, CullsNothingThatIsSeen) {
     std::uint32_t outside = 0, turnedAway = 0;
     for (int trial = 0; trial < 60; ++trial) {
         const auto coordinate = [&] { return random.uniform(-3.0F, 3.0F); };
-        const PatchView view =
-            patchViewOf(cameraAt({coordinate(), coordinate(), coordinate()},
-                                 {coordinate() / 3, coordinate() / 3, coordinate() / 3}),
-                        {320, 200});
+        const glm::vec3 eye{coordinate(), coordinate(), coordinate()};
+        const glm::vec3 target{coordinate() / 3, coordinate() / 3, coordinate() / 3};
+        const PatchView view = patchViewOf(cameraAt(eye, target), {320, 200});
         const SelectionCounts counts = selectPatches(model.patches, model.levels, view, {}, drawn);
         outside += counts.outside;
         turnedAway += counts.turnedAway;

@@ -16,8 +16,8 @@ EyeSplat randomSplat(Random& random) {
     splat.centre.z = random.uniform(1.0F, 5.0F);
     splat.centre.x = random.uniform(-0.4F, 0.4F) * splat.centre.z;  // within 45°
     splat.centre.y = random.uniform(-0.4F, 0.4F) * splat.centre.z;
-    const glm::dvec3 a(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const glm::dvec3 b(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const glm::dvec3 a{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    const glm::dvec3 b{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
     splat.tangent = glm::normalize(a);
     splat.bitangent = glm::normalize(glm::cross(splat.tangent, b));
     splat.radius = random.uniform(0.01F, 0.1F);

@@ -18,8 +18,8 @@ class SplatShaderTest : public SplatTest {
 
 glm::vec3 randomDirection(Random& random) {
     for (;;) {
-        const glm::vec3 v(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
-                          random.uniform(-1.0F, 1.0F));
+        const glm::vec3 v{random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
+                          random.uniform(-1.0F, 1.0F)};
         if (glm::length(v) > 0.1F && glm::length(v) < 1.0F) return glm::normalize(v);
     }
 }
@@ -34,8 +34,9 @@ TEST_F(SplatShaderTest, DecodesAsTheHostDoes) {
     for (int i = 0; i < 256; ++i) table.push_back(0.01F * static_cast<float>(i + 1));
     std::vector<CompressedPoint> points;
     for (int i = 0; i < kCount; ++i) {
-        const glm::vec3 share(random.uniform(), random.uniform(), random.uniform());
-        points.push_back(compressed(glm::mix(box.min, box.max, share), randomDirection(random),
+        const glm::vec3 share{random.uniform(), random.uniform(), random.uniform()};
+        const glm::vec3 direction = randomDirection(random);
+        points.push_back(compressed(glm::mix(box.min, box.max, share), direction,
                                     random.uniform(0.01F, 2.56F), box, table));
     }
     const gl::Pass decode = pass({{"decode.comp.glsl", R"(#version 450 core

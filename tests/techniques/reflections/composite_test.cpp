@@ -30,10 +30,13 @@ class CompositeTest : public ReflectionsTest {
             reflected.emplace_back(reflects ? randomIn(random, 0, 2)
                                             : glm::vec3(std::numeric_limits<float>::quiet_NaN()),
                                    1);
-            surface.push_back(reflects ? (1 + random.index(5)) | random.index(256) << 16 |
-                                             random.index(256) << 24
-                                       : 0U);
-            normal.emplace_back(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F));
+            surface.push_back(0);
+            if (reflects) {
+                const std::uint32_t reflector = 1 + random.index(5);
+                const std::uint32_t reflectivity = random.index(256);
+                surface.back() = reflector | reflectivity << 16 | random.index(256) << 24;
+            }
+            normal.push_back({random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F)});
             depth.push_back(random.uniform(0.5F, 5.0F));
         }
         gbuffer->diffuse.upload(GL_RGBA, GL_FLOAT, diffuse.data());
@@ -112,7 +115,7 @@ TEST_F(CompositeTest, FresnelReflectsMoreAtGrazingViews) {
     Random random(21);
     for (std::size_t i = 0; i < surface.size(); ++i) {
         depth.push_back(random.uniform(0.5F, 4.0F));
-        normal.emplace_back(random.uniform(-0.5F, 0.5F), random.uniform(-0.5F, 0.5F));
+        normal.push_back({random.uniform(-0.5F, 0.5F), random.uniform(-0.5F, 0.5F)});
     }
     const auto width = static_cast<std::size_t>(kOutputSize.x);
     normal[1] = {1.0F, 0.0F};  // +x: across the view axis

@@ -90,7 +90,8 @@ TEST_F(EnvironmentMapTest, ShowsTheWallsInTheirDirections) {
     }
     Random random(2);
     for (int i = 0; i < 1000; ++i) {
-        const glm::vec3 direction = randomUnit(random) * random.uniform(0.1F, 10.0F);
+        const glm::vec3 unit = randomUnit(random);
+        const glm::vec3 direction = unit * random.uniform(0.1F, 10.0F);
         directions.emplace_back(direction, 0);
         const Meeting meeting = meetingOf(direction);
         // Within a texel of an edge either wall may be seen.

@@ -298,7 +298,7 @@ TEST_F(GpuBvhTest, LeavesNoGapBetweenTriangles) {
     const auto step = [&] { return 0.5F * static_cast<float>(random_.index(9)) - 0.5F; };
     for (int i = 0; i < 20'000; ++i) {
         // From above towards points of the faces' half-grid: corners, edges, diagonals.
-        const glm::vec3 target(step(), 0.5F, step());
+        const glm::vec3 target{step(), 0.5F, step()};
         const bool isInside =
             target.x > -0.5F && target.x < 3.5F && target.z > -0.5F && target.z < 3.5F;
         if (!isInside) continue;

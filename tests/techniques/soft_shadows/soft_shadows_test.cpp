@@ -58,9 +58,9 @@ scene::Scene clutter() {
     builder.addBox({0, -1.1F, 0}, {1.5F, 0.1F, 1.5F});
     Random random(7);
     for (int i = 0; i < 60; ++i) {
-        const glm::vec3 centre(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-        const glm::vec3 half(random.uniform(0.05F, 0.25F), random.uniform(0.02F, 0.04F),
-                             random.uniform(0.05F, 0.25F));
+        const glm::vec3 centre{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        const glm::vec3 half{random.uniform(0.05F, 0.25F), random.uniform(0.02F, 0.04F),
+                             random.uniform(0.05F, 0.25F)};
         builder.addBox(centre, half);
     }
     return sceneFrom(builder);

@@ -27,6 +27,9 @@ class TerrainMemoryTest : public test::TechniqueTest {
 #ifdef __SANITIZE_ADDRESS__
         GTEST_SKIP() << "AddressSanitizer keeps memory that was freed";
 #endif
+#ifdef __SANITIZE_THREAD__
+        GTEST_SKIP() << "ThreadSanitizer keeps a shadow of what is resident";
+#endif
         TechniqueTest::SetUp();
         std::ofstream file(path_, std::ios::binary);
         std::vector<std::int16_t> row(kSide);

@@ -94,8 +94,9 @@ TEST_F(TerrainTest, CullingChangesNoPixelAndDropsPatches) {
     const auto anywhere = [&] { return static_cast<float>(random() % 256U); };
     int culled = 0;
     for (int i = 0; i < 6; ++i) {
-        const kit::View view =
-            viewAt({anywhere(), 70.0F, anywhere()}, {anywhere(), 10.0F, anywhere()}, kSize);
+        const glm::vec3 eye{anywhere(), 70.0F, anywhere()};
+        const glm::vec3 target{anywhere(), 10.0F, anywhere()};
+        const kit::View view = viewAt(eye, target, kSize);
         DrawCounts fewer, all;
         const auto a = picture(kSize, [&](const gl::Framebuffer& target) {
             culling.drawTessellated(tilesOf(0), view, target);
@@ -134,9 +135,9 @@ TEST_F(TerrainTest, SkirtsHideTheCracksBetweenTilesOfDifferentLevels) {
             const auto about = [&](float low, float high) {
                 return low + (high - low) * static_cast<float>(random() % 1000U) / 1000.0F;
             };
-            const glm::vec3 eye(about(40, 216), about(70, 110), about(40, 216));
+            const glm::vec3 eye{about(40, 216), about(70, 110), about(40, 216)};
             const kit::View view =
-                viewAt(eye, eye + glm::vec3(about(-30, 30), -about(60, 90), 20.0F), kSize);
+                viewAt(eye, eye + glm::vec3{about(-30, 30), -about(60, 90), 20.0F}, kSize);
             holes += holesBelowSilhouette(picture(kSize,
                                                   [&](const gl::Framebuffer& target) {
                                                       renderer.drawTessellated(tiles, view, target);

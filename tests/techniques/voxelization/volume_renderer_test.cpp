@@ -117,7 +117,7 @@ DenseGrid shell(const WorksheetLayout& layout) {
     Random random(3);
     for (int i = 0; i < n; ++i) {
         const auto side = static_cast<std::uint32_t>(n);
-        grid.set(glm::ivec3(random.index(side), random.index(side), random.index(side)), 1);
+        grid.set(glm::ivec3{random.index(side), random.index(side), random.index(side)}, 1);
     }
     return grid;
 }

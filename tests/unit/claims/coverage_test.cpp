@@ -32,7 +32,8 @@ double normal(Random& random) {
 
 /// One process of a case whose true time is `truth`.
 double processTime(double truth, Random& random) {
-    return truth * std::exp(kBetween * normal(random) + kWithin * normal(random));
+    const double between = kBetween * normal(random);
+    return truth * std::exp(between + kWithin * normal(random));
 }
 
 bool holds(const metrics::Interval& interval, double truth) {

@@ -29,8 +29,8 @@ double uniform(Random& random) {
 }
 
 double normal(Random& random) {
-    return std::sqrt(-2.0 * std::log(uniform(random))) *
-           std::cos(2.0 * std::numbers::pi * uniform(random));
+    const double radius = std::sqrt(-2.0 * std::log(uniform(random)));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform(random));
 }
 
 double gaussian(Random& random) {
@@ -175,9 +175,8 @@ TEST(MeanTest, FindsABiasOfATile) {
 TEST(MeanTest, SaysWhichBiasItSees) {
     constexpr int kTrials = 100;
     Random random(7);
-    const double seen =
-        testMeans(pictures(kSeeds, gaussian, 4, random), pictures(kSeeds, gaussian, 4, random))
-            .seen;
+    const auto first = pictures(kSeeds, gaussian, 4, random);
+    const double seen = testMeans(first, pictures(kSeeds, gaussian, 4, random)).seen;
     EXPECT_GE(countOf("gaussian", kTrials, 0.01, gaussian, 4, 4, seen).alarms, kTrials / 2);
     EXPECT_LE(countOf("gaussian", kTrials, 0.01, gaussian, 4, 4, 0.4 * seen).alarms, kTrials / 2);
 }

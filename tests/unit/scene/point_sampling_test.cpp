@@ -139,7 +139,7 @@ TEST(Eigensystem, SolvesASymmetricMatrix) {
     for (int trial = 0; trial < 50; ++trial) {
         glm::dmat3 a(0.0);
         for (int k = 0; k < 4; ++k) {
-            const glm::dvec3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+            const glm::dvec3 v{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
             a += glm::outerProduct(v, v);
         }
         const Eigensystem system = eigensystem(a);

@@ -17,16 +17,16 @@ using test::TemporaryFolder;
 Mesh randomMesh(std::uint64_t seed) {
     Random random(seed);
     const auto vec3 = [&random] {
-        return glm::vec3(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9));
+        return glm::vec3{random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)};
     };
     Mesh mesh;
     mesh.name = "mesh" + std::to_string(seed);
     for (int i = 0; i < 100; ++i) {
         mesh.positions.push_back(vec3());
         mesh.normals.push_back(glm::normalize(vec3()));
-        mesh.texcoords.emplace_back(random.uniform(-1, 2), random.uniform());
+        mesh.texcoords.push_back({random.uniform(-1, 2), random.uniform()});
         mesh.colors.push_back(glm::abs(vec3()));
-        mesh.triangles.emplace_back(random.index(100), random.index(100), random.index(100));
+        mesh.triangles.push_back({random.index(100), random.index(100), random.index(100)});
     }
     return mesh;
 }
