@@ -120,17 +120,24 @@ TestedTime testTime(const SeriesKey& key, const Series& allBefore, const Series&
     return time;
 }
 
-/// Whether the chances are too small for none, all together [Holm 1979].
-std::vector<bool> rejections(const std::vector<TestedTime*>& times, double level) {
+/// Whether the chances are too small for none, all together: by turns by steps down [Holm 1979],
+/// with `level` the chance of one false alarm. Apart by steps up [Benjamini and Hochberg 1995]: the
+/// chance where nothing changed, else the share of false ones; the processes of two runs that are
+/// there reach no smaller one.
+std::vector<bool> rejections(const std::vector<TestedTime*>& times, Pairing pairing, double level) {
     std::vector<std::size_t> order(times.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, {}, [&](std::size_t i) { return times[i]->test.chance; });
-    std::vector<bool> isRejected(times.size(), false);
+    const auto count = static_cast<double>(order.size());
+    std::size_t rejected = 0;
     for (std::size_t i = 0; i < order.size(); ++i) {
-        const double own = level / static_cast<double>(order.size() - i);
-        if (times[order[i]]->test.chance > own) break;
-        isRejected[order[i]] = true;
+        const double chance = times[order[i]]->test.chance, step = static_cast<double>(i);
+        if (pairing == Pairing::Apart && chance <= level * (step + 1.0) / count) rejected = i + 1;
+        if (pairing == Pairing::ByTurns && chance > level / (count - step)) break;
+        if (pairing == Pairing::ByTurns) rejected = i + 1;
     }
+    std::vector<bool> isRejected(times.size(), false);
+    for (std::size_t i = 0; i < rejected; ++i) isRejected[order[i]] = true;
     return isRejected;
 }
 
@@ -138,15 +145,14 @@ std::string whyUndecided(const TestedTime& time, std::size_t seriesCount, Pairin
                          double level) {
     const std::string among =
         seriesCount == 1 ? "one series" : fmt::format("{} series", seriesCount);
-    const bool isTooFew = time.test.attainable > level / static_cast<double>(seriesCount);
     if (pairing == Pairing::Apart) {
-        if (isTooFew) {
-            return fmt::format("{} and {} processes cannot decide among {}", time.rounds[0],
-                               time.rounds[1], among);
+        if (time.test.attainable > level) {
+            return fmt::format("{} and {} processes cannot decide", time.rounds[0], time.rounds[1]);
         }
         return fmt::format("measured apart: a machine may drift by {:.0f} %",
                            100.0 * time.difference.floor);
     }
+    const bool isTooFew = time.test.attainable > level / static_cast<double>(seriesCount);
     if (isTooFew) return fmt::format("{} rounds cannot decide among {}", time.rounds[0], among);
     return "the interval is too wide";
 }
@@ -168,13 +174,19 @@ void judgeTime(TestedTime& time, bool isRejected, std::size_t seriesCount, Pairi
 }
 
 void judgeTimes(std::vector<TestedTime>& times, Pairing pairing, const Rules& rules) {
-    std::vector<TestedTime*> tested;
-    for (TestedTime& time : times) {
-        if (time.difference.reason.empty()) tested.push_back(&time);
-    }
     const std::size_t looks = pairing == Pairing::Apart ? 1 : rules.looks;
     const double level = rules.familyError / static_cast<double>(looks);
-    const std::vector<bool> isRejected = rejections(tested, level);
+    std::vector<TestedTime*> tested;
+    for (TestedTime& time : times) {
+        if (!time.difference.reason.empty()) continue;
+        // What no outcome could decide shares in no chance [Tarone 1990].
+        if (pairing == Pairing::Apart && time.test.attainable > level) {
+            time.difference.reason = whyUndecided(time, 1, pairing, level);
+            continue;
+        }
+        tested.push_back(&time);
+    }
+    const std::vector<bool> isRejected = rejections(tested, pairing, level);
     for (std::size_t i = 0; i < tested.size(); ++i) {
         judgeTime(*tested[i], isRejected[i], tested.size(), pairing, level, rules);
     }

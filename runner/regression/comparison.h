@@ -80,8 +80,9 @@ double detectableChange(const Series& values, const Rules& rules);
 /// Every series of both sides, after matchParams and chooseTimes, in the order of their keys.
 /// Times: the exact chance of such a difference without a change (signed ranks of the log ratios of
 /// alternate rounds, rank sums apart) is held against familyError / looks over all series [Holm
-/// 1979]; slower and faster, when the ratio lies beyond the floor too. Otherwise same, where the
-/// interval says so, or cannot tell.
+/// 1979], apart over those that so many processes could decide [Benjamini and Hochberg 1995];
+/// slower and faster, when the ratio lies beyond the floor too. Otherwise same, where the interval
+/// says so, or cannot tell.
 std::vector<Difference> compare(const SeriesMap& before, const SeriesMap& after, Pairing pairing,
                                 const Rules& rules = {});
 

@@ -62,9 +62,8 @@ TEST_F(Compare, RunsOfOneProcessCannotTellTimes) {
     }
     const ProcessResult result = mockGfxrepro({"compare", a, b, "--out", out});
     EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
-    EXPECT_NE(
-        readFile(out + "/comparison.md").find("1 and 1 processes cannot decide among one series"),
-        std::string::npos);
+    EXPECT_NE(readFile(out + "/comparison.md").find("1 and 1 processes cannot decide"),
+              std::string::npos);
 }
 
 TEST_F(Compare, ABuildThatCrashesIsAnAlarm) {
