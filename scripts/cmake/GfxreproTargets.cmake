@@ -90,6 +90,11 @@ function(gfxrepro_test name)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
     target_link_libraries(${name} PRIVATE gfxrepro_test_support ${arg_LINK} GTest::gmock GTest::gtest_main)
     include(GoogleTest)
-    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${arg_LABEL}" TIMEOUT 300
+    # Under ThreadSanitizer simulations of a minute take ten.
+    set(limit_s 300)
+    if(GFXREPRO_SANITIZE_THREADS)
+        set(limit_s 1800)
+    endif()
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${arg_LABEL}" TIMEOUT ${limit_s}
                          RUN_SERIAL ${arg_SERIAL})
 endfunction()
