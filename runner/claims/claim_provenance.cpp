@@ -106,6 +106,9 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
         if (claim.boundFrom == ClaimSpec::BoundSource::Print && experiment.printed.rows.empty()) {
             complain("has its bound from print, and the table has no printed values: text | ours");
         }
+        if (claim.type == ClaimSpec::Type::Tolerance && *claim.high >= 1.0) {
+            complain("is within 100 % of what is printed or more, so that nothing is too little");
+        }
         for (const ClaimSpec::Known& known : claim.because) {
             if (claim.device == ClaimSpec::Device::Gpu && known.device == "software") {
                 complain("has a reason for software ('because'), and a GPU alone judges it");

@@ -126,7 +126,8 @@ std::string whatIsAbsent(const config::ClaimSpec& claim, const tables::Table& ta
 /// bound is from print reads no printed cell, or is not met by what was printed (an aim of ours may
 /// better that), where one of a calibrated input reads cells that are not marked so, a reason is
 /// for a device or profile that the claim is not judged on, or what has no interval is known as
-/// ambiguous. `table` may have been built from no records.
+/// ambiguous, or where a tolerance is as large as the printed number. `table` may have been built
+/// from no records.
 void requireProvenance(const config::Experiment& experiment, const tables::Table& table);
 
 /// "12 hold, 1 fails, 2 unmeasured": only those that occur; "no claims" for none.

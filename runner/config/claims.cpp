@@ -192,13 +192,9 @@ class ClaimParser {
         requireSome("above, more_than, below or less_than");
     }
 
-    /// By as much as the printed number itself, nothing is a number too small.
     void readTolerance() {
         requirePrinted();
         readWithin();
-        if (*claim_.high >= 1.0) {
-            throwNotAllowed(require("within"), what_ + ": within", "less than 100 %");
-        }
     }
 
     void readCrossing() {

@@ -408,6 +408,22 @@ TEST(Claims, WhatReadsCalibratedCellsSaysSo) {
     EXPECT_EQ(reasonOf("calibrated", "a < 2 * a"), "one sample");
 }
 
+TEST(Claims, AToleranceIsLessThanThePrintedNumberItself) {
+    const auto errorOf = [](const std::string& within) {
+        const config::Experiment experiment = tables::experimentFrom(
+            "sweep: {number: [1]}\nlayout: {rows: number, columns: {a: {metric: bytes}}}\n"
+            "printed: {values: \"number,a\\n1,4\"}\nclaims:\n  C: {says: s, origin: document, "
+            "bound_from: ours, tolerance: a, within: " +
+            within + "}\n");
+        return errorText(
+            [&] { requireProvenance(experiment, tables::buildTable(experiment, {})); });
+    };
+    EXPECT_EQ(errorOf("99%"), "no error");
+    EXPECT_THAT(errorOf("100%"),
+                testing::EndsWith("claim 'C' is within 100 % of what is printed or more, so that "
+                                  "nothing is too little"));
+}
+
 /// What has no interval is never told from its bound.
 TEST(Claims, OnlyWhatHasAnIntervalIsKnownAsAmbiguous) {
     const auto errorOf = [](const std::string& measure, const std::string& claim) {

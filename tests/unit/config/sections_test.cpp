@@ -407,18 +407,6 @@ TEST_F(ExperimentTest, ProvenanceOfAClaim) {
     EXPECT_EQ(claim.because[0].device, std::nullopt);
 }
 
-TEST_F(ExperimentTest, AToleranceIsLessThanThePrintedNumberItself) {
-    const auto error = [&](const std::string& within) {
-        return errorWith(
-            "sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: {aa: m}}\nprinted: {values: "
-            "\"scene,aa\\ns,1\"}\nclaims:\n  C: {says: s, tolerance: aa, within: " +
-            within + "}\n");
-    };
-    EXPECT_EQ(error("99%"), "no error");
-    EXPECT_EQ(error("100%"),
-              "DIR/zju/a.yaml:8:39: claim 'C': within is 100%; allowed: less than 100 %");
-}
-
 TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
     const auto error = [&](const std::string& claim) {
         return errorWith(
