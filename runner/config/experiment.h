@@ -79,8 +79,11 @@ struct PictureTolerance {
     double difference = 0.1;  // of any value; white is 1
 };
 
-/// What a share is of: another metric, or another pass, of the same cases.
-struct Whole {
+/// Another metric, or another pass, of the same cases: what a cell is a share of, or what is taken
+/// away from it.
+struct Against {
+    enum class As { Whole, Part };  // share_of, minus
+    As as = As::Whole;
     std::string metric;
     std::string pass;  // empty: the whole case
 };
@@ -92,9 +95,9 @@ struct Selection {
     std::optional<std::string> pass;
     std::optional<std::string>
         format;                    // "{median:.2f}", "{mean:.2f}/{max:.0f}": statistics in braces
-    std::optional<double> scale;   // multiplies every value
-    std::optional<Whole> shareOf;  // shows the statistic ÷ the same of that, in %
-    Node::Map where;               // axis = value
+    std::optional<double> scale;     // multiplies every value
+    std::optional<Against> against;  // shows the statistic ÷ the same of that, in %, or less it
+    Node::Map where;                 // axis = value
     SourceLocation location;
 };
 

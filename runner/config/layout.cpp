@@ -20,13 +20,26 @@ Names referableAxes(const Vocabulary& vocabulary) {
     return names;
 }
 
-Whole readWhole(const Node& node) {
-    if (node.isScalar()) return {lineOf(node, "share_of"), ""};
-    requireKeys(node, "share_of", keysOf("share"));
+Against readAgainst(Against::As as, const Node& node, const std::string& key) {
+    if (node.isScalar()) return {as, lineOf(node, key), ""};
+    requireKeys(node, key, keysOf("against"));
     const Node* metric = node.find("metric");
-    if (!metric) throwNotAllowed(node, "share_of", "a metric, or {metric: …, pass: …}");
+    if (!metric) throwNotAllowed(node, key, "a metric, or {metric: …, pass: …}");
     const Node* pass = node.find("pass");
-    return {lineOf(*metric, "metric"), pass ? lineOf(*pass, "pass") : ""};
+    return {as, lineOf(*metric, "metric"), pass ? lineOf(*pass, "pass") : ""};
+}
+
+/// `share_of` or `minus`.
+std::optional<Against> againstOf(const Node& selection) {
+    const Node* whole = selection.find("share_of");
+    const Node* part = selection.find("minus");
+    if (whole && part) {
+        throw Error(selection.keyLocation("minus"),
+                    "a cell's selection: share_of and minus exclude each other");
+    }
+    if (whole) return readAgainst(Against::As::Whole, *whole, "share_of");
+    if (part) return readAgainst(Against::As::Part, *part, "minus");
+    return std::nullopt;
 }
 
 Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
@@ -44,7 +57,7 @@ Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
         selection.format = format->text();
     }
     if (const Node* scale = node.find("scale")) selection.scale = scale->asDouble();
-    if (const Node* whole = node.find("share_of")) selection.shareOf = readWhole(*whole);
+    selection.against = againstOf(node);
     if (const Node* where = node.find("where")) {
         requireKeys(*where, "where", referableAxes(vocabulary));
         selection.where.assign(where->entries().begin(), where->entries().end());

@@ -183,17 +183,20 @@ SchemaSection selection() {
              {"format", "text", "none", "median mean min max sum count rate in braces: {mean:.2f}",
               text()},
              {"scale", "number", "1", "multiplies every value", number()},
-             {"share_of", "metric | share", "none",
+             {"share_of", "metric | against", "none",
               "shows the statistic ÷ the same statistic of that metric in the same cases, in %",
-              anyOf({text(), refTo("share")})},
+              anyOf({text(), refTo("against")})},
+             {"minus", "metric | against", "none",
+              "shows the statistic less the same statistic of that metric in the same cases",
+              anyOf({text(), refTo("against")})},
              {"where", "{axis: value}", "{}", "only these cases", pairs()}}};
 }
 
-SchemaSection share() {
-    return {"share",
-            "share_of.",
-            "Per process, as its interval; frames without the part count in the whole alone.",
-            {{"metric", "name", "required", "what is the whole", text()},
+SchemaSection against() {
+    return {"against",
+            "share_of., minus.",
+            "Per process, as its interval; frames without a part count in the whole alone.",
+            {{"metric", "name", "required", "what is the whole, or taken away", text()},
              {"pass", "name", "whole case", "step of the algorithm", text()}},
             false};
 }
@@ -324,7 +327,7 @@ SchemaFile experimentSchema() {
     };
     add(programSections());
     add({output(), sweep(), axis(), measure(), until(), pictureTolerance(), profiles(), layout(),
-         selection(), share(), printed(), fit(), plot(), assumption()});
+         selection(), against(), printed(), fit(), plot(), assumption()});
     add(claimSections());
     return file;
 }

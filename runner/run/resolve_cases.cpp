@@ -89,10 +89,10 @@ void requireOutputs(const config::Experiment& experiment,
             outputs.requirePass(*selection.pass, owner, where);
             if (selection.metric) requireOfPasses(*selection.metric, where);
         }
-        if (!selection.shareOf) return;
-        outputs.requireMetric(selection.shareOf->metric, owner, where);
-        if (!selection.shareOf->pass.empty()) {
-            outputs.requirePass(selection.shareOf->pass, owner, where);
+        if (!selection.against) return;
+        outputs.requireMetric(selection.against->metric, owner, where);
+        if (!selection.against->pass.empty()) {
+            outputs.requirePass(selection.against->pass, owner, where);
         }
     };
     require(experiment.layout.cell);

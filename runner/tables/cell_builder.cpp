@@ -20,7 +20,7 @@ void layOver(const config::Selection& part, config::Selection& selection, Where&
     if (part.pass) selection.pass = part.pass;
     if (part.format) selection.format = part.format;
     if (part.scale) selection.scale = part.scale;
-    if (part.shareOf) selection.shareOf = part.shareOf;
+    if (part.against) selection.against = part.against;
     if (part.location.line > 0) selection.location = part.location;
     for (const auto& [axis, value] : part.where) {
         std::vector<std::string> allowed = {canonicalText(value)};
@@ -76,27 +76,39 @@ std::optional<CellQuery> byProcessTime(const CellQuery& query) {
     if (!isRate && !isFrameTime(query.metric)) return std::nullopt;
     CellQuery other = query;
     other.metric = "process_time_ms";
-    if (other.shareOf) {
-        if (isRate || !isFrameTime(other.shareOf->metric)) return std::nullopt;
-        other.shareOf->metric = "process_time_ms";
+    if (other.against) {
+        if (isRate || !isFrameTime(other.against->metric)) return std::nullopt;
+        other.against->metric = "process_time_ms";
     }
     other.isRateOfTime = isRate;
     return other;
 }
 
-/// What a share is of.
-std::optional<CellQuery> wholeOf(const CellQuery& query) {
-    if (!query.shareOf) return std::nullopt;
-    CellQuery whole = query;
-    whole.metric = query.shareOf->metric;
-    whole.pass = query.shareOf->pass;
-    whole.shareOf.reset();
-    return whole;
+/// What a share is of, or what is taken away.
+std::optional<CellQuery> otherOf(const CellQuery& query) {
+    if (!query.against) return std::nullopt;
+    CellQuery other = query;
+    other.metric = query.against->metric;
+    other.pass = query.against->pass;
+    other.against.reset();
+    return other;
+}
+
+bool isShare(const CellQuery& query) {
+    return query.against && query.against->as == config::Against::As::Whole;
+}
+
+double sharePct(double part, double whole) {
+    return 100.0 * part / whole;
+}
+
+double difference(double whole, double part) {
+    return whole - part;
 }
 
 struct Gathered {  // what the records of a cell came to
     Samples samples;
-    std::optional<Samples> whole;  // of a share
+    std::optional<Samples> other;  // of `against`
     records::Status worst = records::Status::Ok;
     std::string message;
     bool isUntimed = false;  // ambiguous for being a time of the quality lane
@@ -193,17 +205,23 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
         std::map<int, int> unitOfFrame;
         takeCase(*run, query, unitOfFrame, unitCount, gathered);
     }
-    if (const std::optional<CellQuery> whole = wholeOf(query)) {
-        Gathered all = gather(*whole, cases);
-        if (gathered.worst < all.worst) gathered.isUntimed = all.isUntimed;
-        gathered.note(all.worst, all.message);
-        if (all.samples.processes.empty()) {
-            if (!gathered.samples.processes.empty()) {
-                gathered.note(records::Status::Missing, whyNothing(*whole, cases));
-            }
-            gathered.samples = {};
+    if (const std::optional<CellQuery> other = otherOf(query)) {
+        Gathered beside = gather(*other, cases);
+        if (gathered.worst < beside.worst) gathered.isUntimed = beside.isUntimed;
+        gathered.note(beside.worst, beside.message);
+        const bool areBoth =
+            !gathered.samples.processes.empty() && !beside.samples.processes.empty();
+        if (beside.samples.processes.empty() && !gathered.samples.processes.empty()) {
+            gathered.note(records::Status::Missing, whyNothing(*other, cases));
         }
-        gathered.whole = std::move(all.samples);
+        const bool isOfOneUnit = isShare(query) || gathered.units == beside.units;
+        if (areBoth && !isOfOneUnit) {
+            gathered.note(records::Status::Error, "'" + other->metric +
+                                                      "' is of another unit than '" + query.metric +
+                                                      "' and cannot be taken away from it");
+        }
+        if (beside.samples.processes.empty() || !isOfOneUnit) gathered.samples = {};
+        gathered.other = std::move(beside.samples);
     }
     return gathered;
 }
@@ -212,8 +230,9 @@ std::vector<Measured> measuredOf(const CellQuery& query, const Gathered& gathere
     std::vector<Measured> values;
     for (const auto& placeholder : query.format.placeholders()) {
         Summary summary = summarize(gathered.samples, placeholder.statistic);
-        if (gathered.whole) {
-            summary = shareOf(summary, summarize(*gathered.whole, placeholder.statistic));
+        if (gathered.other) {
+            summary = together(summary, summarize(*gathered.other, placeholder.statistic),
+                               isShare(query) ? sharePct : difference);
         }
         Measured& measured = values.emplace_back();
         static_cast<Summary&>(measured) = std::move(summary);
@@ -228,7 +247,7 @@ void boundShare(const CellQuery& query, const Gathered& gathered, Measured& meas
     const bool isCountedOnce = gathered.shareCounts.size() == 1 && processes.size() == 1 &&
                                processes.begin()->second.size() == 1 &&
                                processes.begin()->second.begin()->second.size() == 1;
-    if (!isCountedOnce || query.shareOf) return;
+    if (!isCountedOnce || query.against) return;
     boundByDraws(measured, query.scale, gathered.shareCounts[0],
                  gathered.caseIds[0] + query.metric + query.pass);
 }
@@ -298,7 +317,7 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
             CellFormat(selection.format.value_or(std::string(kDefaultFormat)), selection.location),
             selection.scale.value_or(1.0),
             selection.scale.has_value(),
-            selection.shareOf,
+            selection.against,
             false,
             std::move(where)};
 }
@@ -306,9 +325,9 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
 Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     Cell cell;
     cell.isTime =
-        isTimeMetric(query.metric) || (query.shareOf && isTimeMetric(query.shareOf->metric));
+        isTimeMetric(query.metric) || (query.against && isTimeMetric(query.against->metric));
     cell.timePower =
-        timePower(query.metric) - (query.shareOf ? timePower(query.shareOf->metric) : 0);
+        timePower(query.metric) - (isShare(query) ? timePower(query.against->metric) : 0);
     Gathered gathered = gather(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
     const std::size_t notRun = gathered.notRun, planned = gathered.caseIds.size() + notRun;
@@ -327,7 +346,7 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     cell.status = gathered.worst;
     cell.message = gathered.message;
     cell.caseIds = gathered.caseIds;
-    if (query.shareOf) {
+    if (isShare(query)) {
         cell.unit = "%";
     } else if (!query.isScaled) {
         cell.metric = query.metric;

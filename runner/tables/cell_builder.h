@@ -21,7 +21,7 @@ struct CellQuery {
     CellFormat format;
     double scale = 1.0;
     bool isScaled = false;
-    std::optional<config::Whole> shareOf;
+    std::optional<config::Against> against;
     bool isRateOfTime = false;  // the records are ms, the cell shows how many a second
     Where where;
 };

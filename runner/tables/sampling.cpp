@@ -98,19 +98,19 @@ Summary summarize(const Samples& samples, Statistic statistic) {
     return summary;
 }
 
-Summary shareOf(const Summary& part, const Summary& whole) {
-    Summary share;
+Summary together(const Summary& a, const Summary& b, double (*of)(double, double)) {
+    Summary both;
     std::vector<double> values;
-    for (const auto& [process, value] : part.rounds) {
-        const auto all = whole.rounds.find(process);
-        if (all == whole.rounds.end()) continue;
-        values.push_back(100.0 * value / all->second);
-        share.rounds[process] = values.back();
+    for (const auto& [process, value] : a.rounds) {
+        const auto other = b.rounds.find(process);
+        if (other == b.rounds.end()) continue;
+        values.push_back(of(value, other->second));
+        both.rounds[process] = values.back();
     }
-    share.value = 100.0 * part.value / whole.value;
-    share.interval = {share.value, share.value};
-    if (!values.empty()) fillFromRounds(values, share);
-    return share;
+    both.value = of(a.value, b.value);
+    both.interval = {both.value, both.value};
+    if (!values.empty()) fillFromRounds(values, both);
+    return both;
 }
 
 }  // namespace gfxrepro::tables

@@ -41,8 +41,8 @@ struct Summary {
 /// each repeat alone would give. Frames are given, not drawn: a camera path is what it is.
 Summary summarize(const Samples& samples, metrics::Statistic statistic);
 
-/// part ÷ whole in %: in each process that has both, with bounds of these shares. Without such a
+/// `of(a, b)`: in each process that has both, with bounds of what these come to. Without such a
 /// process, or with one alone, no bounds: repeats of the two do not go together.
-Summary shareOf(const Summary& part, const Summary& whole);
+Summary together(const Summary& a, const Summary& b, double (*of)(double, double));
 
 }  // namespace gfxrepro::tables

@@ -306,7 +306,7 @@ TEST_F(BadValues, EveryKeyOfTheSchemaIsRead) {
         {"axis", head + "sweep:\n  a:\n", "    ", {}},
         {"layout", table + "layout:\n", "  ", {{"rows", "scene"}, {"columns", "{aa: m}"}}},
         {"selection", table + "layout:\n  columns:\n    aa:\n", "      ", {{"metric", "m"}}},
-        {"share",
+        {"against",
          table + "layout:\n  columns:\n    aa:\n      metric: m\n      share_of:\n",
          "        ",
          {{"metric", "m"}}},

@@ -69,6 +69,10 @@ TEST_F(ExperimentTest, BadLayouts) {
               head + "58: share_of is {pass: x}; allowed: a metric, or {metric: …, pass: …}");
     EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, share_of: [x]}}}"),
               head + "58: share_of is [x]; allowed: a map of metric, pass");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, minus: {pass: x}}}}"),
+              head + "55: minus is {pass: x}; allowed: a metric, or {metric: …, pass: …}");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, minus: x, share_of: y}}}"),
+              head + "48: a cell's selection: share_of and minus exclude each other");
     EXPECT_EQ(layoutError("{rows: scene, columns: {}}"),
               head + "32: labels is {}; allowed: a map {label: selection}");
     EXPECT_EQ(layoutError("{row: scene}"),

@@ -399,6 +399,8 @@ layout:
     ms: {}
     pct: {share_of: wall_time_ms, format: "{mean:.1f}"}
     of_draw_pct: {share_of: {metric: gpu_time_ms, pass: draw}, format: "{median:.0f}/{max:.0f}"}
+    without_draw_ms: {minus: {metric: gpu_time_ms, pass: draw}}
+    without_voxels_ms: {minus: voxels}
   cell: {format: "{mean:.1f}"}
 )";
 
@@ -411,12 +413,12 @@ Table sharesOf(int processes) {
         for (int frame = 0; frame < 3; ++frame) {
             maker.frame(frame).add("wall_time_ms", {10.0 + 2.0 * process});
         }
-        maker.add("gpu_time_ms", {3.0}, "draw");
+        maker.add("gpu_time_ms", {3.0}, "draw").add("voxels", {5.0}, "", "voxel");
     }
     return buildTable(experimentFrom(kShares), maker.records());
 }
 
-TEST(Table, SharesAreOfTheSameStatisticInEachProcess) {
+TEST(Table, SharesAndRestsAreOfTheSameStatisticInEachProcess) {
     const Table six = sharesOf(6);
     const Cell& draw = six.rows[0].cells[1];
     // 2 ms of 10, 12, … 20 ms.
@@ -432,6 +434,19 @@ TEST(Table, SharesAreOfTheSameStatisticInEachProcess) {
     EXPECT_EQ(six.rows[1].cells[1].measured, "100.0");
     EXPECT_EQ(six.rows[0].cells[0].unit, "ms") << "other columns are no shares";
     EXPECT_EQ(six.rows[0].cells[2].measured, "100/100");
+
+    const Cell& rest = six.rows[1].cells[3];
+    EXPECT_DOUBLE_EQ(rest.values[0].rounds.at(0), 8.0);
+    EXPECT_DOUBLE_EQ(rest.values[0].rounds.at(5), 18.0);
+    EXPECT_EQ(rest.measured, "13.0");
+    EXPECT_EQ(rest.low, "8.0");
+    EXPECT_EQ(rest.high, "18.0");
+    EXPECT_EQ(rest.unit, "ms");
+    EXPECT_EQ(rest.timePower, 1);
+    EXPECT_EQ(six.rows[1].cells[4].status, records::Status::Error);
+    EXPECT_EQ(six.rows[1].cells[4].message,
+              "'voxels' is of another unit than 'wall_time_ms' and cannot be taken away from it");
+    EXPECT_TRUE(six.rows[1].cells[4].values.empty());
 
     EXPECT_EQ(sharesOf(5).rows[0].cells[1].bounds(), Bounds::Range);
     EXPECT_EQ(sharesOf(1).rows[0].cells[1].measured, "20.0");
