@@ -111,13 +111,17 @@ ShadowErrors compareMasks(const HostVisibilityMask& measured, const HostVisibili
         const double visibility = scale * (tooBright + tooDark);
         const double intensity = scale * (tooBright - tooDark);
         errors.visibilityMean += visibility;
+        errors.wronglyLitMean += scale * tooBright;
+        errors.wronglyDarkMean += scale * tooDark;
         errors.intensityMean += std::abs(intensity);
         errors.visibilityMax = std::max(errors.visibilityMax, visibility);
         errors.intensityMax = std::max(errors.intensityMax, std::abs(intensity));
         errors.signedIntensity[pixel] = static_cast<float>(intensity);
     }
-    errors.visibilityMean /= static_cast<double>(pixels);
-    errors.intensityMean /= static_cast<double>(pixels);
+    for (double* mean : {&errors.visibilityMean, &errors.intensityMean, &errors.wronglyLitMean,
+                         &errors.wronglyDarkMean}) {
+        *mean /= static_cast<double>(pixels);
+    }
     return errors;
 }
 

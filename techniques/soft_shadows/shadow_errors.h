@@ -45,7 +45,8 @@ HostVisibilityMask traceVisibility(const raycast::RayTracer& tracer, const HostR
 struct ShadowErrors {
     double visibilityMean = 0.0, visibilityMax = 0.0;  // wrong samples
     double intensityMean = 0.0, intensityMax = 0.0;    // |wrongly lit − wrongly dark|
-    std::vector<float> signedIntensity;                // a pixel: wrongly lit − wrongly dark
+    double wronglyLitMean = 0.0, wronglyDarkMean = 0.0;
+    std::vector<float> signedIntensity;  // a pixel: wrongly lit − wrongly dark
 };
 ShadowErrors compareMasks(const HostVisibilityMask& measured, const HostVisibilityMask& truth);
 

@@ -151,6 +151,8 @@ void SoftShadows::recordErrors(technique::Recorder& recorder, const char* truthN
     if (!params_.isFiltered()) {
         recorder.metric("visibility_error_mean", errors.visibilityMean, "light sample", truthName);
         recorder.metric("visibility_error_max", errors.visibilityMax, "light sample", truthName);
+        recorder.metric("wrongly_lit_mean", errors.wronglyLitMean, "light sample", truthName);
+        recorder.metric("wrongly_dark_mean", errors.wronglyDarkMean, "light sample", truthName);
     }
     if (params_.showsPictures) {
         recorder.image(fmt::format("error_{}", truthName),

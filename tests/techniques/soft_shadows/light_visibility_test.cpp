@@ -189,6 +189,8 @@ TEST(ShadowErrors, CountWrongSamplesAndTheirAlgebraicSum) {
     const ShadowErrors errors = compareMasks(measured, truth);
     EXPECT_DOUBLE_EQ(errors.visibilityMax, 16.0);  // 4 of 64, as of 256
     EXPECT_DOUBLE_EQ(errors.visibilityMean, 8.0);
+    EXPECT_DOUBLE_EQ(errors.wronglyLitMean, 6.0);
+    EXPECT_DOUBLE_EQ(errors.wronglyDarkMean, 2.0);
     EXPECT_DOUBLE_EQ(errors.intensityMax, 8.0);
     EXPECT_DOUBLE_EQ(errors.intensityMean, 4.0);
     EXPECT_EQ(errors.signedIntensity, (std::vector<float>{8.0F, 0.0F}));
