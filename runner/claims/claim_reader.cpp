@@ -154,6 +154,22 @@ bool ClaimReader::readsOnly(const std::string& metric) const {
     return std::ranges::all_of(operands_, &Operand::isColumn) && !readsSome(isOther);
 }
 
+std::optional<std::string> ClaimReader::wordAlongOver() const {
+    if (!overAxis_ || claim_.type == config::ClaimSpec::Type::Independent) return std::nullopt;
+    for (const std::size_t row : rows()) {
+        const std::string& label = table_.rows[row].labels[*overAxis_];
+        if (!parseDouble(label)) return label;
+    }
+    return std::nullopt;
+}
+
+bool ClaimReader::isOverItself() const {
+    return !overColumn_.empty() && std::ranges::any_of(operands_, [&](const Operand& operand) {
+        return operand.isColumn() && overColumn_[0].isColumn() &&
+               operand.columns() == overColumn_[0].columns();
+    });
+}
+
 bool ClaimReader::readsSomeCalibrated() const {
     return readsSome([](const tables::Cell& cell) { return cell.isPlanned && cell.isCalibrated; });
 }

@@ -62,6 +62,10 @@ class ClaimReader {
     bool readsOnly(const std::string& metric) const;
     /// How many rows it reads.
     std::size_t rowCount() const { return rows().size(); }
+    /// A label along `over` that is no number, where a trend or a crossing needs numbers.
+    std::optional<std::string> wordAlongOver() const;
+    /// Whether what it reads is a column, and `over` or `of` is the same.
+    bool isOverItself() const;
     /// Whether all cells that it may read are marked as calibrated, or some.
     bool readsCalibrated() const;
     bool readsSomeCalibrated() const;

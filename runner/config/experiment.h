@@ -94,7 +94,7 @@ struct Selection {
     std::optional<std::string> metric;
     std::optional<std::string> pass;
     std::optional<std::string>
-        format;                    // "{median:.2f}", "{mean:.2f}/{max:.0f}": statistics in braces
+        format;                      // "{median:.2f}", "{mean:.2f}/{max:.0f}": statistics in braces
     std::optional<double> scale;     // multiplies every value
     std::optional<Against> against;  // shows the statistic ÷ the same of that, in %, or less it
     Node::Map where;                 // axis = value

@@ -126,7 +126,13 @@ const Node::Sequence& listOf(const Assumption& assumption) {
 }
 
 void requireWhole(const Assumption& assumption, long long low, long long high) {
-    for (const Node& value : listOf(assumption)) {
+    const Node::Sequence& values = listOf(assumption);
+    if (values.size() > 1 && std::ranges::all_of(values, [&](const Node& value) {
+            return value.toFlowText() == values[0].toFlowText();
+        })) {
+        refuseRange(assumption, assumption.range, "one of more than one value");
+    }
+    for (const Node& value : values) {
         const auto number = value.tryInteger();
         if (number && *number >= low && *number <= high) continue;
         refuseRange(assumption, value, fmt::format("whole numbers, {} … {}", low, high));

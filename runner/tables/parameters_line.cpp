@@ -89,6 +89,9 @@ std::string sentence(const Tally& tally, const std::string& printed, const Words
     if (tally.different > 0) {
         text += (tally.same + tally.asGiven > 0 ? ", in the others at " : "") +
                 departuresText(tally.departures, words);
+        if (tally.asGiven == 0 && !tally.open.empty()) {
+            text += fmt::format("; not given: {}", openText(tally.open, words));
+        }
     }
     if (tally.alone > 0) {
         text += fmt::format("; {} cell{} where the profile paper has no case", tally.alone,

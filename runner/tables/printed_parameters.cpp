@@ -194,7 +194,10 @@ PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
     for (const config::Assumption& assumption : paper.assumptions) {
         open_.insert(settingNameOf(assumption.name));
     }
-    for (const auto& [name, value] : printed_.at) open_.erase(settingNameOf(name));
+    for (const auto& [name, value] : printed_.at) {
+        open_.erase(settingNameOf(name));
+        given_.insert(settingNameOf(name));
+    }
     if (printed_.rows.empty()) return;
     for (const char* name : {"scene", "output", "measure.frames"})
         given_.insert(settingNameOf(name));
@@ -222,11 +225,13 @@ void PrintedParameters::compare(const config::Layout& layout, const Key& row, co
         cell.departures = departuresOf(measured, printed, [&](const std::string& name) {
             return open_.contains(name) || !given_.contains(name);
         });
-        return;
     }
     for (const Settings& settings : printed) {
         for (const auto& [name, value] : settings) {
-            if (name != "scene" && open_.contains(name)) addOnce(name, cell.openParameters);
+            const bool isSaid = std::ranges::find(cell.departures, name, &Departure::parameter) !=
+                                cell.departures.end();
+            if (name == "scene" || isSaid || !open_.contains(name)) continue;
+            addOnce(name, cell.openParameters);
         }
     }
 }

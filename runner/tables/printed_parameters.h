@@ -7,8 +7,9 @@
 // beside their numbers. What an assumption names and `printed.at` does not say is open in the
 // document: a departure from the profile's value is said to be just that, and a cell without one is
 // at the printed parameters as far as they are given. So is a departure from a default, and any of
-// a table without printed numbers. A stand-in in place of a real model is no other scene: it goes
-// by its name, and Table marks its source, as that of a generated one.
+// a table without printed numbers but of what `printed.at` says. A stand-in in place of a real
+// model is no other scene: it goes by its name, and Table marks its source, as that of a generated
+// one.
 #pragma once
 
 #include <set>
@@ -41,7 +42,7 @@ class PrintedParameters {
     config::Printed printed_;
     std::set<std::string> open_;
     std::set<std::string>
-        given_;  // in its config, not left to a default; none where nothing is printed
+        given_;  // in its config, not left to a default; where nothing is printed, in `printed.at`
     LayoutCases cases_;
 };
 

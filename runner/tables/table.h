@@ -76,8 +76,9 @@ struct Cell {
     /// It was measured at what the paper measured at (printed_parameters.h). Never without a
     /// measurement, nor in a run whose plan does not know the printed parameters.
     bool isAtPrintedParameters = false;
-    /// Of what it was measured at, then: what the document does not give, by the name of its
-    /// parameter; the profile `paper` has a value of ours for it. Its scene is told by its source.
+    /// Of what it was measured at, beside departures: what the document does not give, by the name
+    /// of its parameter; the profile `paper` has a value of ours for it. Its scene is told by its
+    /// source.
     std::vector<std::string> openParameters;
     /// Why it was not; empty also for a cell that has no counterpart in the profile `paper`.
     std::vector<Departure> departures;

@@ -376,10 +376,42 @@ TEST(Claims, WhatIsPrintedMeetsABoundFromPrint) {
     EXPECT_EQ(errorOf("bound: a, below: 8", "ours"), "no error") << "ours may better it";
     EXPECT_EQ(errorOf("across: number, ratio: 2 / 1, at_most: 1.5, at: {column: a}"),
               isNotMet + "2");
-    EXPECT_EQ(errorOf("trend: t, over: number, exponent: [1, 2], kind: algorithmic"), "no error")
-        << "a printed time is a number";
+    EXPECT_EQ(errorOf("trend: t, over: number, exponent: [0.75, 3], kind: algorithmic"), "no error")
+        << "a printed time is a number, and lies evenly between these";
     EXPECT_EQ(errorOf("trend: t, over: number, exponent: [2, 3], kind: algorithmic"),
               isNotMet + "exponent 1.5");
+    const std::string isAnother =
+        "claim 'C' has its bound from print, and what is printed is another number: ";
+    EXPECT_EQ(errorOf("trend: t, over: number, exponent: [1, 2], kind: algorithmic"),
+              isAnother + "exponent 1.5");
+    EXPECT_EQ(errorOf("bound: a, above: -5, below: 1000"), isAnother + "4");
+    EXPECT_EQ(errorOf("bound: a, above: 4, below: 1000"), "no error");
+    EXPECT_EQ(errorOf("tolerance: a, within: 50%"), "no error");
+}
+
+TEST(Claims, WhatCannotBeJudgedIsRefused) {
+    const auto errorOf = [](const std::string& claim) {
+        return refusalOf(tables::experimentFrom(
+            "sweep: {scene: [s, t], number: [1, 2]}\nlayout: {rows: [scene, number], columns: {a: "
+            "{metric: bytes}, b: {metric: count}}}\nprinted: {calibrated: [{column: a}], values: "
+            "\"scene,number,a\\ns,1,5\"}\nclaims:\n  C: {says: s, origin: document, " +
+            claim + "}\n"));
+    };
+    EXPECT_EQ(errorOf("trend: b, over: scene, direction: increasing"),
+              "claim 'C' needs numbers along 'scene', which holds 's'");
+    EXPECT_EQ(errorOf("crossover: [a, b], over: scene, between: [1, 2], bound_from: ours"),
+              "claim 'C' needs numbers along 'scene', which holds 's'");
+    EXPECT_EQ(errorOf("trend: b, over: number, direction: increasing"), "no error");
+    EXPECT_EQ(errorOf("independent: b, of: scene, within: 5%, bound_from: ours"), "no error");
+    EXPECT_EQ(errorOf("trend: b, over: b, direction: increasing"),
+              "claim 'C' holds 'b' against itself");
+    EXPECT_EQ(errorOf("trend: b, over: a, direction: increasing"), "no error");
+    EXPECT_EQ(errorOf("order: b < 2 * b, at: {scene: []}"),
+              "claim 'C' has an empty list of 'scene' in 'at'");
+    EXPECT_EQ(errorOf("order: a < 2 * a"),
+              "claim 'C' reads nothing but cells that an input of ours was fitted to "
+              "('printed.calibrated'): its origin is calibrated");
+    EXPECT_EQ(errorOf("order: a < b"), "no error");
 }
 
 TEST(Claims, WhatReadsCalibratedCellsSaysSo) {

@@ -123,17 +123,20 @@ TEST(PrintedParameters, DefaultsAreNotSaidToBePrinted) {
 
 /// A picture alone, and what is said of it in words.
 TEST(PrintedParameters, NoneAreThoseOfATableWithoutPrintedNumbers) {
-    const auto lineAt = [](const char* params) {
+    const auto lineAt = [](const char* params, const std::string& more) {
         RecordMaker maker;
         maker.beginCase("models/duck", params).add("gpu_time_ms", {8.0});
         std::string body = kDuck;
         body.resize(body.find("printed:"));
-        return parametersLine(buildTable(
-            withPaperCases(experimentFrom(body), {{"models/duck", kPrinted}}), maker.records()));
+        return parametersLine(
+            buildTable(withPaperCases(experimentFrom(body + more), {{"models/duck", kPrinted}}),
+                       maker.records()));
     };
-    EXPECT_EQ(lineAt(kPrinted), "Measured at the parameters of the profile paper.");
-    EXPECT_EQ(lineAt(R"({"light_grid": 4, "output": {"width": 512, "height": 512}})"),
-              "Measured at light grid 4 (paper profile 16).");
+    constexpr const char* kFewer = R"({"light_grid": 4, "output": {"width": 512, "height": 512}})";
+    EXPECT_EQ(lineAt(kPrinted, ""), "Measured at the parameters of the profile paper.");
+    EXPECT_EQ(lineAt(kFewer, ""), "Measured at light grid 4 (paper profile 16).");
+    EXPECT_EQ(lineAt(kFewer, "printed: {at: {light_grid: 32}}\n"),
+              "Measured at light grid 4 (printed 32).");
 }
 
 TEST(PrintedParameters, AreNamedInTheConfigsWords) {
@@ -170,6 +173,11 @@ TEST(PrintedParameters, AreThePrintedOnesAsFarAsTheyAreGiven) {
     const Table table = buildTable(experiment, maker.records());
     EXPECT_EQ(parametersLine(table),
               "Measured at the printed parameters as far as they are given (not: output, bias).");
+    maker = RecordMaker();
+    maker.beginCase("models/duck", R"({"bias": 1, "n": 1, "output": {"width": 8, "height": 8}})");
+    maker.add("gpu_time_ms", {8.0});
+    EXPECT_EQ(parametersLine(buildTable(experiment, maker.records())),
+              "Measured at n 1 (printed 2); not given: output, bias.");
     EXPECT_EQ(
         printedCellsLine(countPrintedCells({{experiment}}, {{table}})),
         "Of 1 printed cell of tables 1 was measured again: 1 at the parameters that the document "
