@@ -12,6 +12,7 @@
 #include "runner/claims/kept_claims.h"
 #include "runner/config/experiment.h"
 #include "runner/config/scene_reference.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::test {
 namespace {
@@ -133,6 +134,35 @@ TEST(KeptVerdicts, EveryFailingClaimHasAReasonAndNoHoldingOneAStaleOne) {
     visitConfigs([&](const config::Experiment& experiment) {
         EXPECT_THAT(complaints(experiment, all), testing::IsEmpty());
     });
+}
+
+/// scripts/update_verdicts takes from it what claims ask today, and whose they are.
+TEST(KeptVerdicts, TheFullestQuickRunAsksWhatTheConfigsAsk) {
+    std::vector<claims::ClaimResult> fullest;
+    for (const auto& device : fs::directory_iterator(kSource / "results" / "reference")) {
+        const fs::path file = device.path() / "quick" / "claims.csv";
+        if (!fs::exists(file)) continue;
+        std::vector<claims::ClaimResult> kept = claims::readClaims(file);
+        if (kept.size() > fullest.size()) fullest = std::move(kept);
+    }
+    ASSERT_GT(fullest.size(), 300u);
+    std::map<std::pair<std::string, std::string>, const claims::ClaimResult*> kept;
+    for (const claims::ClaimResult& claim : fullest) kept[{claim.table, claim.id}] = &claim;
+    std::size_t count = 0;
+    visitConfigs([&](const config::Experiment& experiment) {
+        if (experiment.kind == config::Experiment::Kind::Sweep) return;
+        claims::ReportContext context;
+        for (const claims::ClaimResult& claim :
+             claims::evaluateClaims(experiment, tables::buildTable(experiment, {}, {}), context)) {
+            SCOPED_TRACE(claim.table + " " + claim.id);
+            ++count;
+            ASSERT_TRUE(kept.contains({claim.table, claim.id}));
+            const claims::ClaimResult& judged = *kept.at({claim.table, claim.id});
+            EXPECT_EQ(judged.origin, claim.origin);
+            EXPECT_EQ(judged.required, claim.required);
+        }
+    });
+    EXPECT_EQ(count, fullest.size());
 }
 
 TEST(KeptVerdicts, ReasonsAreOneOrTwoSentences) {

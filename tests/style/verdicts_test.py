@@ -33,15 +33,25 @@ with tempfile.TemporaryDirectory() as folder:
     (root / "results" / "README.md").write_text(MARKERS)
     with open(kept / "claims.csv", "w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
-        rows.writerow(["claim", "table", "profile", "origin", "verdict", "reason", "because", "says"])
+        rows.writerow(["claim", "table", "profile", "origin", "verdict", "reason", "because", "says", "required"])
         for claim, verdict, reason, because, _ in CLAIMS:
-            rows.writerow([claim, "p/1", "quick", "document", verdict, reason, because, "it is so"])
+            rows.writerow([claim, "p/1", "quick", "document", verdict, reason, because, "it is so", "x < 1"])
+    old = root / "results" / "reference" / "old"
+    old.mkdir()
+    (old / "claims.csv").write_text("claim,table,profile,origin,verdict,reason,because,says,required\n"
+                                    "A,p/1,quick,document,holds,,,it is so,x < 2\n"  # asks something else today
+                                    "B,p/1,quick,ours,holds,,,it is so,x < 1\n"  # is the document's today
+                                    "C,p/1,quick,document,holds,,,it is so,x < 1\n"
+                                    "Z,p/1,quick,ours,holds,,,it is so,x < 1\n")
     subprocess.run([sys.executable, SCRIPT, root], check=True)
     lines = (root / "results" / "reference" / "machine" / "quick.md").read_text(encoding="utf-8").splitlines()
     for claim, verdict, _, _, why in CLAIMS:
         line = next((line for line in lines if f"({claim})" in line), "")
         if not line.endswith(f"**{verdict}** it is so ({claim}){why}"):
             sys.exit(f"of {claim} the page should have said {why!r}: {line!r}")
+    counted = next(line for line in (root / "results" / "README.md").read_text(encoding="utf-8").splitlines() if "| old |" in line)
+    if not counted.endswith("| 1 holds (and 1 not counted, 2 by earlier forms of them) |"):
+        sys.exit(f"claims that ask something else today, or are another's, should not count: {counted}")
     (kept / "manifest.json").write_text("{}")
     said = subprocess.run([sys.executable, SCRIPT, root], stdout=subprocess.PIPE, text=True)
     if said.returncode != 1 or said.stdout != "results/reference/machine/run has no row in results/README.md\n":
