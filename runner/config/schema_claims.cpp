@@ -49,8 +49,9 @@ SchemaSection common() {
               "or of an input fitted to it. A document's table needs it",
               choice(kOrigins)},
              {"bound_from", "print | text | ours", "none",
-              "where the number that it requires comes from; print: the table's printed values, "
-              "which meet it, unless it is an aim of ours. A document's table needs it",
+              "where the number that it requires comes from; print: it is a printed value, or two "
+              "numbers evenly about one, and met by all, unless it is an aim of ours. A document's "
+              "table needs it",
               choice(kBoundSources)},
              {"kind", "algorithmic | architectural | absolute", "none",
               "of a claim about time: counts of work decide; a GPU's units do; or times as such, "
