@@ -76,8 +76,8 @@ ClaimResult judgedOnPrint(ClaimSpec claim, const tables::Table& table) {
     return evaluateClaims(alone, asPrinted(table), context)[0];
 }
 
-/// Whether what was printed is a bound itself, but for rounding, or lies evenly between the two, as
-/// "within a factor of two" has it.
+/// Whether what was printed is the bound itself, but for rounding, both of two, or lies evenly
+/// between the two, as "within a factor of two" has it, the largest that there may be.
 bool isAtBound(const ClaimSpec& claim, const tables::Table& table) {
     constexpr double kRounding = 0.02;
     const auto fails = [&](std::optional<double> low, std::optional<double> high) {
@@ -92,9 +92,13 @@ bool isAtBound(const ClaimSpec& claim, const tables::Table& table) {
     const auto lowered = [](std::optional<double> bound) {
         return bound ? std::optional(*bound - kRounding * std::abs(*bound)) : bound;
     };
-    if (claim.low && fails(raised(claim.low), claim.high)) return true;
-    if (claim.high && fails(claim.low, lowered(claim.high))) return true;
-    if (!claim.low || !claim.high || *claim.low * *claim.high <= 0.0) return false;
+    const bool isLow = claim.low && fails(raised(claim.low), claim.high);
+    const bool isHigh = claim.high && fails(claim.low, lowered(claim.high));
+    if (!claim.low || !claim.high) return isLow || isHigh;
+    if (isLow && isHigh) return true;
+    constexpr double kFactor = 2.0 * (1.0 + kRounding);
+    const double ratio = *claim.high / *claim.low;
+    if (ratio <= 0.0 || std::max(ratio, 1.0 / ratio) > kFactor * kFactor) return false;
     const double middle = std::copysign(std::sqrt(*claim.low * *claim.high), *claim.low);
     return !fails(lowered(middle), raised(middle));
 }
@@ -103,13 +107,15 @@ bool isAtBound(const ClaimSpec& claim, const tables::Table& table) {
 /// for an aim of ours to better it: what the claim comes to there if not; empty if it is, and where
 /// not all that it reads is there.
 std::string whyNotOfPrint(const ClaimSpec& claim, const tables::Table& table) {
-    if (claim.statistic || claim.origin == ClaimSpec::Origin::Ours) return "";
+    if (claim.origin == ClaimSpec::Origin::Ours) return "";
+    if (claim.type == ClaimSpec::Type::Tolerance)
+        return "how far from it a tolerance may be is not";
+    if (claim.statistic) return "which of the printed statistics it is cannot be told";
     const ClaimResult result = judgedOnPrint(claim, table);
     if (result.verdict == Verdict::Fails) {
         return "what is printed does not meet it: " + result.measured;
     }
-    const bool isGiven = claim.type == ClaimSpec::Type::Tolerance ||
-                         result.verdict != Verdict::Holds || isAtBound(claim, table);
+    const bool isGiven = result.verdict != Verdict::Holds || isAtBound(claim, table);
     return isGiven ? "" : "what is printed is another number: " + result.measured;
 }
 
@@ -123,7 +129,28 @@ int seedsAtMost(const config::Experiment& experiment, const std::optional<std::s
 
 }  // namespace
 
+void requireJudgeable(const config::Experiment& experiment, const tables::Table& table) {
+    tables::Table read;  // outlives its reader
+    for (const ClaimSpec& claim : experiment.claims) {
+        const auto complain = [&](const std::string& what) {
+            throw Error(claim.location, fmt::format("claim '{}' {}", claim.id, what));
+        };
+        for (const auto& [axis, wanted] : claim.at) {
+            if (wanted.empty()) complain(fmt::format("has an empty list of '{}' in 'at'", axis));
+        }
+        if (!isReadable(claim, read = tableFor(claim, table))) continue;
+        const ClaimReader reader(claim, read);
+        if (const std::optional<std::string> word = reader.wordAlongOver()) {
+            complain(fmt::format("needs numbers along '{}', which holds '{}'", *claim.over, *word));
+        }
+        if (reader.isOverItself()) {
+            complain(fmt::format("holds '{}' against itself", *claim.over));
+        }
+    }
+}
+
 void requireProvenance(const config::Experiment& experiment, const tables::Table& table) {
+    requireJudgeable(experiment, table);
     const bool isOfDocument = experiment.kind != config::Experiment::Kind::Sweep;
     const int paperProcesses = processesOfPaper(experiment);
     tables::Table read;  // outlives its reader
@@ -152,18 +179,9 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
                                      *known.profile, *claim.profile));
             }
         }
-        for (const auto& [axis, wanted] : claim.at) {
-            if (wanted.empty()) complain(fmt::format("has an empty list of '{}' in 'at'", axis));
-        }
         if (!isReadable(claim, read = tableFor(claim, table))) continue;
         ClaimReader reader(claim, read);
         if (!reader.readsAny()) continue;  // its rows are not of this profile
-        if (const std::optional<std::string> word = reader.wordAlongOver()) {
-            complain(fmt::format("needs numbers along '{}', which holds '{}'", *claim.over, *word));
-        }
-        if (reader.isOverItself()) {
-            complain(fmt::format("holds '{}' against itself", *claim.over));
-        }
         if (claim.type == ClaimSpec::Type::SameMean) {
             const std::string why = whyNotTestable(experiment, claim, reader);
             if (!why.empty()) complain(why);

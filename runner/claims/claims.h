@@ -121,13 +121,17 @@ std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& e
 /// been built from no records.
 std::string whatIsAbsent(const config::ClaimSpec& claim, const tables::Table& table);
 
+/// Throws Error for a claim that no measurement could judge: a trend or a crossing along words, a
+/// column over itself, `at` with an empty list. `table` may have been built from no records.
+void requireJudgeable(const config::Experiment& experiment, const tables::Table& table);
+
 /// Throws Error where a claim of the experiment reads a time and has no kind, or has one and reads
 /// none, where a document's table does not say whose the claim or its bound is, where a claim whose
-/// bound is from print reads no printed cell, or is not met by what was printed (an aim of ours may
-/// better that), where one of a calibrated input reads cells that are not marked so, a reason is
-/// for a device or profile that the claim is not judged on, or what has no interval is known as
-/// ambiguous, or where a tolerance is as large as the printed number. `table` may have been built
-/// from no records.
+/// bound is from print reads no printed cell, is not met by what was printed or is another number
+/// (an aim of ours may better that), where one of a calibrated input reads cells that are not
+/// marked so, a reason is for a device or profile that the claim is not judged on, or what has no
+/// interval is known as ambiguous, where a tolerance is as large as the printed number, or where a
+/// document's claim reads calibrated cells alone. `table` may have been built from no records.
 void requireProvenance(const config::Experiment& experiment, const tables::Table& table);
 
 /// "12 hold, 1 fails, 2 unmeasured": only those that occur; "no claims" for none.

@@ -6,6 +6,7 @@
 #include <array>
 #include <set>
 
+#include "runner/claims/claims.h"
 #include "runner/cli/console.h"
 #include "runner/config/imported.h"
 #include "runner/core/files.h"
@@ -197,6 +198,10 @@ run::Plan planFor(const Context& context, const run::Request& request, const std
                                    profile, needsNone ? "software" : deviceClass, kSeed);
     plan.request = request;
     run::keepOnly(plan, request.only);
+    const std::vector<tables::PlannedCase> cases = run::plannedCases(plan.cases);
+    for (const config::Experiment& experiment : plan.experiments) {
+        claims::requireJudgeable(experiment, tables::buildTable(experiment, cases, {}));
+    }
     return plan;
 }
 

@@ -94,6 +94,12 @@ void requireOutputs(const config::Experiment& experiment,
         if (!selection.against->pass.empty()) {
             outputs.requirePass(selection.against->pass, owner, where);
         }
+        if (selection.metric && selection.against->as == config::Against::As::Part &&
+            outputs.find(*selection.metric)->unit !=
+                outputs.find(selection.against->metric)->unit) {
+            throw Error(where, fmt::format("minus: '{}' is of another unit than '{}'",
+                                           selection.against->metric, *selection.metric));
+        }
     };
     require(experiment.layout.cell);
     for (const auto* axes : {&experiment.layout.rows, &experiment.layout.columns}) {

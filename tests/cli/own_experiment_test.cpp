@@ -414,6 +414,24 @@ TEST(OwnExperiment, CheckKnowsMetricsAndPasses) {
         "that are: gpu_time_ms, cpu_time_ms, process_time_ms, and metrics of the technique\n");
     EXPECT_THAT(laidOut("{metric: voxels, share_of: voxel}"), HasSubstr("did you mean 'voxels'?"));
     EXPECT_THAT(laidOut("{metric: voxels, minus: voxel}"), HasSubstr("did you mean 'voxels'?"));
+    EXPECT_THAT(laidOut("{metric: voxels, minus: wall_time_ms}"),
+                HasSubstr("minus: 'wall_time_ms' is of another unit than 'voxels'"));
+}
+
+TEST(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {
+    const TemporaryFolder folder;
+    const std::string file = folder.write(
+        "mine.yaml",
+        "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: shapes/torus\n"
+        "sweep: {fill: [surface, solid]}\nlayout: {rows: fill, columns: {a: voxels}}\nclaims:\n"
+        "  C: {says: it grows, trend: a, over: fill, direction: increasing}\n");
+    for (const char* command : {"check", "run"}) {
+        const ProcessResult result = gfxrepro({command, file});
+        EXPECT_EQ(result.exitCode, 2) << command;
+        EXPECT_THAT(result.err,
+                    HasSubstr("mine.yaml:8:3: claim 'C' needs numbers along 'fill', which holds "
+                              "'surface'"));
+    }
 }
 
 }  // namespace

@@ -385,8 +385,16 @@ TEST(Claims, WhatIsPrintedMeetsABoundFromPrint) {
     EXPECT_EQ(errorOf("trend: t, over: number, exponent: [1, 2], kind: algorithmic"),
               isAnother + "exponent 1.5");
     EXPECT_EQ(errorOf("bound: a, above: -5, below: 1000"), isAnother + "4");
-    EXPECT_EQ(errorOf("bound: a, above: 4, below: 1000"), "no error");
-    EXPECT_EQ(errorOf("tolerance: a, within: 50%"), "no error");
+    EXPECT_EQ(errorOf("bound: a, above: 4, below: 1000"), isAnother + "4") << "both are asked";
+    EXPECT_EQ(errorOf("bound: a, above: 4, below: 16"), "no error");
+    EXPECT_EQ(errorOf("trend: t, over: number, exponent: [0.01, 225], kind: algorithmic"),
+              isAnother + "exponent 1.5")
+        << "evenly, but by any factor";
+    EXPECT_EQ(errorOf("tolerance: a, within: 50%"),
+              "claim 'C' has its bound from print, and how far from it a tolerance may be is not");
+    EXPECT_EQ(errorOf("bound: a, below: 16, statistic: median"),
+              "claim 'C' has its bound from print, and which of the printed statistics it is "
+              "cannot be told");
 }
 
 TEST(Claims, WhatCannotBeJudgedIsRefused) {
