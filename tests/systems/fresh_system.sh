@@ -38,8 +38,8 @@ bare() {
         ! grep -qE 'Could not (resolve|connect)|Failed to fetch|Unable to connect' "$systems/$suite.log" || skip "the packages of $suite cannot be reached"
         exit 1
     fi
-    # An installed system knows its own name; a Slurm asks for it (tests/slurm).
-    echo "127.0.1.1 $(hostname -s)" >>"$1/etc/hosts"
+    # An installed system knows itself and its name; a Slurm asks for that (tests/slurm), a test of downloads for the former.
+    printf '%s\n' "127.0.0.1 localhost" "127.0.1.1 $(hostname -s)" >>"$1/etc/hosts"
 }
 
 # with_source FOLDER: a bare system with a clone of the last commit.
