@@ -26,6 +26,24 @@ bool isReadable(const ClaimSpec& claim, const tables::Table& table) {
     }
 }
 
+/// Why no measurement could judge the claim; empty where one could, and where it does not fit the
+/// table, of which an override or a profile may have taken a part.
+std::string whyNeverJudged(const ClaimSpec& claim, const tables::Table& table) {
+    for (const auto& [axis, wanted] : claim.at) {
+        if (wanted.empty()) return fmt::format("has an empty list of '{}' in 'at'", axis);
+    }
+    try {
+        const tables::Table read = tableFor(claim, table);
+        const ClaimReader reader(claim, read);
+        if (const std::optional<std::string> word = reader.wordAlongOver()) {
+            return fmt::format("needs numbers along '{}', which holds '{}'", *claim.over, *word);
+        }
+        return reader.isOverItself() ? fmt::format("holds '{}' against itself", *claim.over) : "";
+    } catch (const Error&) {
+        return "";
+    }
+}
+
 /// Fewer than an interval takes decide no time on any device.
 int processesOfPaper(const config::Experiment& experiment) {
     if (experiment.paperDocument.isNull()) return config::kFewestRounds;
@@ -130,21 +148,10 @@ int seedsAtMost(const config::Experiment& experiment, const std::optional<std::s
 }  // namespace
 
 void requireJudgeable(const config::Experiment& experiment, const tables::Table& table) {
-    tables::Table read;  // outlives its reader
     for (const ClaimSpec& claim : experiment.claims) {
-        const auto complain = [&](const std::string& what) {
-            throw Error(claim.location, fmt::format("claim '{}' {}", claim.id, what));
-        };
-        for (const auto& [axis, wanted] : claim.at) {
-            if (wanted.empty()) complain(fmt::format("has an empty list of '{}' in 'at'", axis));
-        }
-        if (!isReadable(claim, read = tableFor(claim, table))) continue;
-        const ClaimReader reader(claim, read);
-        if (const std::optional<std::string> word = reader.wordAlongOver()) {
-            complain(fmt::format("needs numbers along '{}', which holds '{}'", *claim.over, *word));
-        }
-        if (reader.isOverItself()) {
-            complain(fmt::format("holds '{}' against itself", *claim.over));
+        const std::string why = whyNeverJudged(claim, table);
+        if (!why.empty()) {
+            throw Error(claim.location, fmt::format("claim '{}' {}", claim.id, why));
         }
     }
 }
