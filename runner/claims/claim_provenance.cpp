@@ -97,21 +97,21 @@ ClaimResult judgedOnPrint(ClaimSpec claim, const tables::Table& table) {
 /// Whether what was printed is the bound itself, but for rounding, both of two, or lies evenly
 /// between the two, as "within a factor of two" has it, the largest that there may be.
 bool isAtBound(const ClaimSpec& claim, const tables::Table& table) {
-    constexpr double kRounding = 0.02;
+    static constexpr double kRounding = 0.02, kLeast = 1e-9;  // the latter of a bound of 0
     const auto fails = [&](std::optional<double> low, std::optional<double> high) {
         ClaimSpec tighter = claim;
         tighter.low = low;
         tighter.high = high;
         return judgedOnPrint(std::move(tighter), table).verdict == Verdict::Fails;
     };
-    const auto raised = [](std::optional<double> bound) {
-        return bound ? std::optional(*bound + kRounding * std::abs(*bound)) : bound;
+    const auto raised = [](double bound) {
+        return bound + std::max(kRounding * std::abs(bound), kLeast);
     };
-    const auto lowered = [](std::optional<double> bound) {
-        return bound ? std::optional(*bound - kRounding * std::abs(*bound)) : bound;
+    const auto lowered = [](double bound) {
+        return bound - std::max(kRounding * std::abs(bound), kLeast);
     };
-    const bool isLow = claim.low && fails(raised(claim.low), claim.high);
-    const bool isHigh = claim.high && fails(claim.low, lowered(claim.high));
+    const bool isLow = claim.low && fails(raised(*claim.low), claim.high);
+    const bool isHigh = claim.high && fails(claim.low, lowered(*claim.high));
     if (!claim.low || !claim.high) return isLow || isHigh;
     if (isLow && isHigh) return true;
     constexpr double kFactor = 2.0 * (1.0 + kRounding);

@@ -279,8 +279,8 @@ std::string ClaimReader::problemOf(const Operand& operand, std::size_t row) cons
                    (cell.message.empty() ? "" : " (" + cell.message + ")");
         }
         if (!cell.find(statistic_)) {
-            fail("statistic '" + statistic_ + "' is not in the format of column '" +
-                 table_.columns[column].label + "'");
+            return "statistic '" + statistic_ + "' is not in the format of column '" +
+                   table_.columns[column].label + "'";
         }
     }
     return "";

@@ -50,7 +50,8 @@ SchemaSection common() {
               choice(kOrigins)},
              {"bound_from", "print | text | ours", "none",
               "where the number that it requires comes from; print: it is a printed value, or two "
-              "numbers evenly about one, and met by all, unless it is an aim of ours. A document's "
+              "numbers about one, at most its half and its double, and met by all, unless it is an "
+              "aim of ours. A document's "
               "table needs it",
               choice(kBoundSources)},
              {"kind", "algorithmic | architectural | absolute", "none",
