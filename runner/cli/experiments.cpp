@@ -61,6 +61,18 @@ bool isConfig(const fs::path& file) {
     return file.extension() == ".yaml" && !file.stem().string().starts_with("expect-");
 }
 
+/// Before anything is measured, for which it would be too late.
+void requireJudgeable(const run::Plan& plan) {
+    // A large plan's cases are much to copy.
+    const auto hasClaims = [](const config::Experiment& one) { return !one.claims.empty(); };
+    if (std::ranges::none_of(plan.experiments, hasClaims)) return;
+    const std::vector<tables::PlannedCase> cases = run::plannedCases(plan.cases);
+    for (const config::Experiment& experiment : plan.experiments) {
+        if (!hasClaims(experiment)) continue;
+        claims::requireJudgeable(experiment, tables::buildTable(experiment, cases, {}));
+    }
+}
+
 }  // namespace
 
 std::vector<fs::path> runFolders() {
@@ -198,10 +210,7 @@ run::Plan planFor(const Context& context, const run::Request& request, const std
                                    profile, needsNone ? "software" : deviceClass, kSeed);
     plan.request = request;
     run::keepOnly(plan, request.only);
-    const std::vector<tables::PlannedCase> cases = run::plannedCases(plan.cases);
-    for (const config::Experiment& experiment : plan.experiments) {
-        claims::requireJudgeable(experiment, tables::buildTable(experiment, cases, {}));
-    }
+    requireJudgeable(plan);
     return plan;
 }
 
