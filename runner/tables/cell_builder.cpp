@@ -209,18 +209,15 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
         Gathered beside = gather(*other, cases);
         if (gathered.worst < beside.worst) gathered.isUntimed = beside.isUntimed;
         gathered.note(beside.worst, beside.message);
-        const bool areBoth =
-            !gathered.samples.processes.empty() && !beside.samples.processes.empty();
-        if (beside.samples.processes.empty() && !gathered.samples.processes.empty()) {
-            gathered.note(records::Status::Missing, whyNothing(*other, cases));
+        const bool isThere = !beside.samples.processes.empty();
+        const bool doesFit = isThere && (isShare(query) || gathered.units == beside.units);
+        if (!gathered.samples.processes.empty() && !doesFit) {
+            gathered.note(isThere ? records::Status::Error : records::Status::Missing,
+                          isThere ? "'" + other->metric + "' is of another unit than '" +
+                                        query.metric + "' and cannot be taken away from it"
+                                  : whyNothing(*other, cases));
         }
-        const bool isOfOneUnit = isShare(query) || gathered.units == beside.units;
-        if (areBoth && !isOfOneUnit) {
-            gathered.note(records::Status::Error, "'" + other->metric +
-                                                      "' is of another unit than '" + query.metric +
-                                                      "' and cannot be taken away from it");
-        }
-        if (beside.samples.processes.empty() || !isOfOneUnit) gathered.samples = {};
+        if (!doesFit) gathered.samples = {};
         gathered.other = std::move(beside.samples);
     }
     return gathered;
