@@ -1,10 +1,13 @@
 #include "runner/tables/fit.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <set>
 
 #include "runner/core/files.h"
@@ -16,6 +19,10 @@ namespace gfxrepro::tables {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// Of a kept fit, behind the row axes.
+constexpr std::array kFitColumns{"column",   "table", "printed", "measured",
+                                 "residual", "rms",   "edges"};
 
 const Cell* cellOf(const TableRow& row, const Table& table, const std::string& column) {
     const auto at = std::ranges::find(table.columns, column, &TableColumn::label);
@@ -31,10 +38,27 @@ std::string unitOf(const Fit& fit, const Table& table) {
     return unit == "%" ? " percentage points" : unit.empty() ? "" : " " + unit;
 }
 
+std::vector<std::string> edgesOf(const Fit& fit, const Table& table) {
+    std::vector<std::string> edges;
+    for (std::size_t axis = 0; axis < table.rowAxes.size(); ++axis) {
+        const auto numberOf = [&](const FitRow& row) {
+            return parseDouble(table.rows[row.row].labels[axis]);
+        };
+        const auto best = numberOf(fit.rows.front());
+        const auto [least, greatest] =
+            std::ranges::minmax(fit.rows | std::views::transform(numberOf));
+        // Of words none is the last; of a single number nothing was fitted.
+        if (!least || *least == *greatest || (best != least && best != greatest)) continue;
+        edges.push_back(
+            fmt::format("{} {:g} of {:g} to {:g}", table.rowAxes[axis], *best, *least, *greatest));
+    }
+    return edges;
+}
+
 }  // namespace
 
 Fit fitOf(const config::Experiment& experiment, const Table& table) {
-    Fit fit{.targets = config::fitTargets(experiment), .rows = {}};
+    Fit fit{.targets = config::fitTargets(experiment), .rows = {}, .edges = {}};
     if (fit.targets.empty()) return fit;
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
         FitRow row{.row = i, .residuals = {}};
@@ -53,6 +77,7 @@ Fit fitOf(const config::Experiment& experiment, const Table& table) {
         fit.rows.push_back(std::move(row));
     }
     std::ranges::stable_sort(fit.rows, {}, &FitRow::rms);
+    if (!fit.rows.empty()) fit.edges = edgesOf(fit, table);
     return fit;
 }
 
@@ -75,6 +100,10 @@ std::vector<std::string> fitNotes(const Fit& fit, const Table& table) {
         "Fitted to {} printed cells, none of which compares methods: {}. Root mean square of the "
         "residuals {:.2f}{}; printed → measured: {}",
         fit.targets.size(), table.rowName(best.row), best.rms, unitOf(fit, table), joined(cells)));
+    if (!fit.edges.empty()) {
+        notes.push_back(
+            fmt::format("The best row lies at the edge of what was tried: {}", joined(fit.edges)));
+    }
     if (fit.rows.size() > 1) {
         notes.push_back(fmt::format("Second best of {} rows: {}, {:.2f}{}", fit.rows.size(),
                                     table.rowName(fit.rows[1].row), fit.rows[1].rms,
@@ -89,9 +118,7 @@ std::string fitCsv(const Fit& fit, const Table& table) {
     std::string text;
     records::CsvRow header(text);
     for (const std::string& axis : table.rowAxes) header.text(axis);
-    for (const char* name : {"column", "table", "printed", "measured", "residual", "rms"}) {
-        header.text(name);
-    }
+    for (const char* name : kFitColumns) header.text(name);
     header.end();
     for (std::size_t i = 0; i < fit.targets.size(); ++i) {
         const config::FitTarget& target = fit.targets[i];
@@ -99,7 +126,7 @@ std::string fitCsv(const Fit& fit, const Table& table) {
         for (const std::string& label : table.rows[best.row].labels) line.text(label);
         line.text(target.column).text(target.table).number(target.printed);
         line.number(target.printed + best.residuals[i]).number(best.residuals[i]);
-        line.number(best.rms).end();
+        line.number(best.rms).text(joined(fit.edges)).end();
     }
     return text;
 }
@@ -122,14 +149,14 @@ void addCalibration(const fs::path& file, TableNotes& kept) {
     std::vector<std::string> header, row, fitted;
     reader.next(header);
     const auto first = std::ranges::find(header, "column");
-    if (header.end() - first != 6) {
-        throw Error(reader.location(),
-                    "is no fit, whose columns end in column, table, printed, measured, residual, "
-                    "rms");
+    if (!std::ranges::equal(std::ranges::subrange(first, header.end()), kFitColumns)) {
+        throw Error(reader.location(), fmt::format("is no fit, whose columns end in {}",
+                                                   fmt::join(kFitColumns, ", ")));
     }
     std::map<std::string, std::vector<std::string>> cells;  // by table
     std::size_t count = 0;
     double rms = 0.0;
+    std::string edges;
     for (; reader.next(row); ++count) {
         if (row.size() != header.size()) {
             throw Error(reader.location(),
@@ -142,6 +169,7 @@ void addCalibration(const fs::path& file, TableNotes& kept) {
                                                    numberOf(line, "measured", reader.location())));
         rms = numberOf(line, "rms", reader.location());
         if (count > 0) continue;
+        if (!line["edges"].empty()) edges = "; at the edge of what was tried: " + line["edges"];
         for (auto name = header.begin(); name != first; ++name) {
             fitted.push_back(*name + " " + line[*name]);
         }
@@ -149,8 +177,8 @@ void addCalibration(const fs::path& file, TableNotes& kept) {
     for (const auto& [table, ofTable] : cells) {
         kept[table].push_back(fmt::format(
             "Calibrated blind, {}: {} fitted to {} printed cells that compare no methods; of this "
-            "table {} (root mean square of all residuals {:.2f})",
-            file.stem().string(), joined(fitted), count, joined(ofTable), rms));
+            "table {} (root mean square of all residuals {:.2f}{})",
+            file.stem().string(), joined(fitted), count, joined(ofTable), rms, edges));
     }
 }
 

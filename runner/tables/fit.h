@@ -20,23 +20,27 @@ struct FitRow {
 
 struct Fit {
     std::vector<config::FitTarget> targets;
-    std::vector<FitRow> rows;    // of those whose cells are all measured; best first
+    std::vector<FitRow> rows;  // of those whose cells are all measured; best first
+    /// "view_distance 0.55 of 0.55 to 1": axes of which the best row has the least or the greatest
+    /// number that was measured, so that a better one may lie beyond.
+    std::vector<std::string> edges;
     std::size_t unmeasured = 0;  // rows without one of the cells
 };
 
 /// Of the table of `experiment`; without targets where it has no `fit`.
 Fit fitOf(const config::Experiment& experiment, const Table& table);
 
-/// What a page says of it: the best row, printed beside measured, and the second best.
+/// What a page says of it: the best row, printed beside measured, whether it lies at the edge of
+/// the grid, and the second best.
 std::vector<std::string> fitNotes(const Fit& fit, const Table& table);
 
-/// The best row, a line a target: row axes, column, table, printed, measured, residual, rms.
+/// The best row, a line a target: row axes, column, table, printed, measured, residual, rms, edges.
 /// Empty without a best row.
 std::string fitCsv(const Fit& fit, const Table& table);
 
 /// What kept calibrations (`folder`/<scene>.csv, as `fitCsv` writes them) say on the page of each
-/// table whose printed cells they read: what was fitted, and printed beside measured. Empty where
-/// there is no folder. Throws Error for a file of another kind.
+/// table whose printed cells they read: what was fitted, printed beside measured, and the grid's
+/// edges. Empty where there is no folder. Throws Error for a file of another kind.
 TableNotes keptCalibrations(const std::filesystem::path& folder);
 /// Puts notes below the tables that they are about.
 void addNotes(const TableNotes& about, std::vector<Table>& tables);

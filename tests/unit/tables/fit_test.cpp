@@ -9,7 +9,9 @@
 namespace gfxrepro::tables {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// A grid of `spread` with one measured value a column; none where it is negative.
@@ -54,8 +56,21 @@ TEST(Fit, TakesTheRowWithTheLeastSquares) {
                     "p/1 70 → 73.00 (+3.00), b of p/2 50 → 46.00 (-4.00)",
                     "Second best of 3 rows: spread=4, 7.00 percentage points"));
     EXPECT_EQ(fitCsv(fit, table),
-              "spread,column,table,printed,measured,residual,rms\n"
-              "2,a,p/1,70,73,3,3.5355339059327378\n2,b,p/2,50,46,-4,3.5355339059327378\n");
+              "spread,column,table,printed,measured,residual,rms,edges\n"
+              "2,a,p/1,70,73,3,3.5355339059327378,\n2,b,p/2,50,46,-4,3.5355339059327378,\n");
+}
+
+TEST(Fit, TellsThatABetterRowMayLieBeyondTheGrid) {
+    Table table = tableOf({{73, 46}, {60, 50}, {-1, 50}});
+    table.rowAxes.insert(table.rowAxes.end(), {"leaves", "shape"});
+    for (TableRow& row : table.rows) row.labels.insert(row.labels.end(), {"8000", "flat"});
+    const Fit fit = fitOf(experimentOf(), table);
+    // Of rows that are not measured nothing is known, of one number or words nothing lies beyond.
+    EXPECT_THAT(fit.edges, ElementsAre("spread 1 of 1 to 2"));
+    EXPECT_THAT(fitNotes(fit, table),
+                Contains("The best row lies at the edge of what was tried: spread 1 of 1 to 2"));
+    EXPECT_THAT(fitCsv(fit, table), HasSubstr("1,8000,flat,a,p/1,70,73,3,3.5355339059327378,"
+                                              "spread 1 of 1 to 2\n"));
 }
 
 TEST(Fit, SaysNothingWithoutOne) {
@@ -77,10 +92,11 @@ TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
     tables[0].id = "p/1";
     tables[1].id = "p/3";
     addNotes(keptCalibrations(folder.path()), tables);
-    EXPECT_THAT(tables[0].notes,
-                ElementsAre("Calibrated blind, nest: spread 2 fitted to 2 printed cells that "
-                            "compare no methods; of this table a 70 → 73.00 (root mean square of "
-                            "all residuals 3.54)"));
+    EXPECT_THAT(
+        tables[0].notes,
+        ElementsAre("Calibrated blind, nest: spread 2 fitted to 2 printed cells that "
+                    "compare no methods; of this table a 70 → 73.00 (root mean square of "
+                    "all residuals 3.54; at the edge of what was tried: spread 2 of 1 to 2)"));
     EXPECT_THAT(tables[1].notes, IsEmpty());
     EXPECT_THAT(keptCalibrations(folder.path() / "none"), IsEmpty());
 }
@@ -93,10 +109,10 @@ TEST(Fit, RefusesKeptFilesOfAnotherKind) {
     };
     EXPECT_EQ(errorOf("spread,column\n1,a\n"),
               "DIR/nest.csv:1: is no fit, whose columns end in column, table, printed, measured, "
-              "residual, rms");
-    const std::string head = "spread,column,table,printed,measured,residual,rms\n";
-    EXPECT_EQ(errorOf(head + "1,a,p/1,70\n"), "DIR/nest.csv:2: 4 fields; the head has 7");
-    EXPECT_EQ(errorOf(head + "1,a,p/1,many,73,3,3\n"),
+              "residual, rms, edges");
+    const std::string head = "spread,column,table,printed,measured,residual,rms,edges\n";
+    EXPECT_EQ(errorOf(head + "1,a,p/1,70\n"), "DIR/nest.csv:2: 4 fields; the head has 8");
+    EXPECT_EQ(errorOf(head + "1,a,p/1,many,73,3,3,\n"),
               "DIR/nest.csv:2: printed 'many' is no number");
 }
 
