@@ -1,4 +1,8 @@
-// What the passes of the atlas share.
+// What the passes of the atlas share. A pass whose invocations read what others of it write defines
+// ATLAS_ACCESS as coherent.
+#ifndef ATLAS_ACCESS
+#define ATLAS_ACCESS
+#endif
 #include "clustered_reflections/cluster_camera.glsl"
 
 layout(std430) readonly buffer Cameras {
@@ -7,10 +11,10 @@ layout(std430) readonly buffer Cameras {
 layout(std430) readonly buffer Counts {
     uint clusterCount;
 };
-layout(std430) buffer Places {
+layout(std430) ATLAS_ACCESS buffer Places {
     ivec4 places[];  // x, y, width, height; width 0: no image
 };
-layout(std430) buffer Order {
+layout(std430) ATLAS_ACCESS buffer Order {
     float atlasScale;  // by which all images were scaled to fit
     uint instanceCount, instancesLeftOut, trianglesDrawn;
     uint clusterGroups[3], orderPadding;

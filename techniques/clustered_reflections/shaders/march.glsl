@@ -71,7 +71,8 @@ bool project(MarchImage image, vec3 beginWorld, vec3 endWorld, out ProjectedRay 
     ray.deltaPx = (to.xy / to.w * 0.5 + 0.5) * size - ray.beginPx;
     ray.k1 = image.nearM / from.w;
     ray.k2 = image.nearM / to.w - ray.k1;
-    float longest = max(abs(ray.deltaPx.x), abs(ray.deltaPx.y));
+    // Clipped, it crosses the image once; the bound ends the march should rounding say otherwise.
+    float longest = min(max(abs(ray.deltaPx.x), abs(ray.deltaPx.y)), 2.0 * max(size.x, size.y));
     ray.steps = max(int(ceil(longest)), 1);
     return true;
 }

@@ -3,6 +3,7 @@
 // high as its first image. When they do not fit, all are scaled down: every invocation walks the
 // shelves with a scale of its own, and the largest that fits is taken. One workgroup; the walk is
 // over a list of images, some hundreds, in shared memory.
+#define ATLAS_ACCESS coherent
 #include "clustered_reflections/atlas.glsl"
 
 const uint kThreads = 256u;

@@ -46,7 +46,8 @@ bool march(vec3 originWorld, vec3 direction, float endM, out ScreenHit hit) {
     vec2 deltaPx = end.xy / end.z - beginPx;
     float k1 = 1.0 / origin.z;
     float k2 = 1.0 / end.z - k1;  // 1 / d = k1 + k2·u, u in [0, 1] along the ray's image
-    float steps = ceil(max(abs(deltaPx.x), abs(deltaPx.y)));
+    // Clipped, it crosses the picture once; the bound ends the loop should rounding say otherwise.
+    float steps = min(ceil(max(abs(deltaPx.x), abs(deltaPx.y))), 2.0 * max(size.x, size.y));
     float perStep = 1.0 / max(steps, 1.0);
     for (float i = 1.0; i <= steps; ++i) {
         float u = i * perStep;

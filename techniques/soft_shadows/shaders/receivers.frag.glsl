@@ -14,9 +14,10 @@ layout(location = 1) out vec4 normal;
 layout(location = 2) out vec4 shading;
 
 void main() {
+    // Before anything is discarded: derivatives take the pixels beside this one.
+    vec3 n = normalize(cross(dFdx(surfacePositionWorld), dFdy(surfacePositionWorld)));
     vec4 texel = texture(baseColor, surfaceTexcoord);
     if (texel.a < alphaCutoff) discard;
-    vec3 n = normalize(cross(dFdx(surfacePositionWorld), dFdy(surfacePositionWorld)));
     position = vec4(surfacePositionWorld, 1.0);
     normal = vec4(dot(n, eyeWorld - surfacePositionWorld) < 0.0 ? -n : n, 0.0);
     shading = vec4(surfaceColor * texel.rgb, 1.0);

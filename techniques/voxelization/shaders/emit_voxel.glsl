@@ -20,7 +20,11 @@ uint encodedValue(vec3 meaning) {
 
 #ifdef EMIT_INTO_GRID
 #include "voxelization/accumulate.glsl"
-void emitVoxel(ivec3 local, uint value) { accumulate(volumeFromLocal(axis, local), value); }
+void emitVoxel(ivec3 local, uint value) {
+    // Image atomics give a helper invocation any value: a loop on one might never end.
+    if (gl_HelperInvocation) return;
+    accumulate(volumeFromLocal(axis, local), value);
+}
 #else
 // The list of fragments between rasterization and texelization, one list an axis. A record is one
 // word, local (u, v, w) in 10, 10 and 12 bits, and with VALUE other than occupancy a second, the

@@ -11,6 +11,8 @@ flat in ivec3 voxel;
 flat in uint value;
 
 void main() {
+    // Image atomics give a helper invocation any value: a loop on one might never end.
+    if (gl_HelperInvocation) return;
     ivec3 texel = worksheetTexel(voxel);
 #if VOXEL_BITS == 32
     imageAtomicMax(sheets, texel, value);
