@@ -79,15 +79,16 @@ void Buffer::clear(std::uint32_t value) {
 }
 
 // Bound again and again within frames, so the device is asked only beyond what every one has (16
-// MiB of storage, 16 KiB of uniforms): a driver that has threads would wait for them.
+// MiB of storage, 16 KiB of uniforms), and once: a driver that has threads would wait for them.
 constexpr std::size_t kStorageBytesOfAll = std::size_t{1} << 24;
 constexpr std::size_t kUniformBytesOfAll = std::size_t{1} << 14;
 
 void Buffer::bindStorage(GLuint binding) const {
-    if (sizeBytes_ > kStorageBytesOfAll) {
+    if (sizeBytes_ > kStorageBytesOfAll && !fitsStorage_) {
         checkLimit("a storage buffer", static_cast<long long>(sizeBytes_), "bytes",
                    getInteger64(GL_MAX_SHADER_STORAGE_BLOCK_SIZE),
                    "GL_MAX_SHADER_STORAGE_BLOCK_SIZE");
+        fitsStorage_ = true;
     }
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id());
 }

@@ -93,6 +93,7 @@ class Buffer {
 
     detail::Name<detail::deleteBuffer> name_;
     std::size_t sizeBytes_ = 0;
+    mutable bool fitsStorage_ = false;  // the device was asked
     mutable ShaderAccesses accesses_;
 };
 

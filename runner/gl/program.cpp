@@ -76,9 +76,9 @@ Shader compile(const std::string& file, const ShaderSource& source) {
 
 Program::Program(const ShaderLibrary& library, const std::vector<std::string>& files,
                  const Defines& defines, const std::map<std::string, std::string>& snippets)
-    : name_(glCreateProgram()) {
+    : name_(glCreateProgram()), files_(joined(files, " + ")) {
     // For whoever looks at it from outside; 255 characters are what every device takes.
-    glObjectLabel(GL_PROGRAM, id(), -1, joined(files, " + ").substr(0, 255).c_str());
+    glObjectLabel(GL_PROGRAM, id(), -1, files_.substr(0, 255).c_str());
     std::vector<ShaderSource> sources;
     for (const std::string& file : files) {
         sources.push_back(library.assemble(file, defines, snippets));
@@ -96,8 +96,7 @@ Program::Program(const ShaderLibrary& library, const std::vector<std::string>& f
     GLsizei writtenBytes = 0;
     glGetProgramInfoLog(id(), logBytes, &writtenBytes, log.data());
     log.resize(static_cast<std::size_t>(writtenBytes));
-    throw Error(fmt::format("cannot link {}:\n{}", joined(files, " + "),
-                            translateLinkLog(log, files, sources)));
+    throw Error(fmt::format("cannot link {}:\n{}", files_, translateLinkLog(log, files, sources)));
 }
 
 void Program::use() const {
@@ -119,8 +118,7 @@ bool Program::isActive(const char* name) const {
 GLint Program::location(const char* name) const {
     const GLint location = findLocation(name);
     if (location < 0) {
-        const std::string program = fmt::format("uniform {}, program {}", name, id());
-        gfxrepro::detail::assertionFailed("uniform is active", program, __FILE__, __LINE__);
+        throw Error(fmt::format("{} uses no uniform '{}' that it is given", files_, name));
     }
     return location;
 }

@@ -61,8 +61,8 @@ class Program {
     GLuint id() const { return name_.get(); }
     void use() const;
 
-    // Setters by name. A name that is not an active uniform asserts; setIfActive() where a define
-    // can leave it unused.
+    // Setters by name. Throw Error that names the files for a name that is no active uniform;
+    // setIfActive() where a define can leave it unused.
     void set(const char* name, int value) const;
     void set(const char* name, unsigned value) const;
     void set(const char* name, float value) const;
@@ -85,6 +85,7 @@ class Program {
     GLint findLocation(const char* name) const;
     GLint location(const char* name) const;
     detail::Name<detail::deleteProgram> name_;
+    std::string files_;  // "a.vert.glsl + a.frag.glsl"
     mutable std::map<std::string, GLint, std::less<>> locations_;
 };
 

@@ -19,8 +19,9 @@ class FlushedDraws {
   public:
     static constexpr std::uint32_t kPrimitivesPerFlush = 1U << 16;
 
-    explicit FlushedDraws(bool splits = gl::isSoftwareContext())
-        : mostPrimitives_(splits ? kPrimitivesPerFlush : kMostOfADraw) {}
+    explicit FlushedDraws(bool splits = gl::isSoftwareContext(),
+                          std::uint32_t perFlush = kPrimitivesPerFlush)
+        : mostPrimitives_(splits ? perFlush : kMostOfADraw) {}
 
     /// As many primitives a caller may put into one draw that it cuts itself.
     std::uint32_t mostPrimitives() const { return mostPrimitives_; }

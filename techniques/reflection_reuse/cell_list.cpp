@@ -1,6 +1,5 @@
 #include "techniques/reflection_reuse/cell_list.h"
 
-#include <algorithm>
 #include <array>
 
 #include "techniques/kit/draws.h"
@@ -10,8 +9,6 @@ namespace gfxrepro::reflection_reuse {
 
 namespace {
 
-/// Of draws that are split: a multiple of the indices of a cell.
-constexpr std::uint32_t kIndicesPerDraw = 3U << 16;
 constexpr int kTileWidth = 8, kTileHeight = 4;  // of list_cells.comp.glsl
 constexpr int kGroupSize = 64;
 
@@ -95,12 +92,11 @@ void CellList::draw(const gl::VertexArray& vertices, GLenum mode, std::size_t co
         glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
         return;
     }
-    for (std::uint32_t first = 0; first < count; first += kIndicesPerDraw) {
-        glDrawElements(mode, static_cast<GLsizei>(std::min(kIndicesPerDraw, count - first)),
-                       GL_UNSIGNED_INT,
-                       reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));
-        glFlush();
-    }
+    const std::uint32_t indices = mode == GL_POINTS ? 1 : 3;  // of a primitive
+    kit::FlushedDraws(true).draw(0, count / indices, [&](std::uint32_t first, std::uint32_t some) {
+        glDrawElements(mode, static_cast<GLsizei>(indices * some), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(indices * first * sizeof(std::uint32_t)));
+    });
 }
 
 CellList::Counts CellList::counts() const {

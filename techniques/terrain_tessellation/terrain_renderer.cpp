@@ -161,15 +161,12 @@ int TerrainRenderer::drawBatches(const PatchBatches& patches) const {
     array.setIndices(indices);
     array.bind();
     std::size_t first = 0;
-    double pending = 0.0;
+    kit::FlushedDraws draws(true, static_cast<std::uint32_t>(settings_.batches->triangles));
     for (const PatchBatch& batch : patches.batches) {
         glDrawElements(GL_PATCHES, static_cast<GLsizei>(4 * batch.count), GL_UNSIGNED_INT,
                        reinterpret_cast<const void*>(4 * sizeof(std::uint32_t) * first));
         first += batch.count;
-        pending += batch.triangles;
-        if (pending < settings_.batches->triangles) continue;
-        glFlush();
-        pending = 0.0;
+        draws.drawn(static_cast<std::uint32_t>(batch.triangles));
     }
     noAttributes_.bind();
     return static_cast<int>(patches.batches.size());
@@ -269,13 +266,14 @@ int TerrainRenderer::drawGridTile(const gl::Pass& pass, int tile) const {
     pass.set("tileIndex", tile);
     const int side =
         settings_.factors.tile.blocksPerTile() * terrain_->metadata().settings().blockSegments;
-    const auto most = static_cast<int>(kit::FlushedDraws::kPrimitivesPerFlush);
-    const int step = settings_.batches ? std::max(1, most / (2 * side)) : side;
+    kit::FlushedDraws flushed(settings_.batches.has_value());
+    const std::uint32_t rows = flushed.mostPrimitives() / (2U * static_cast<std::uint32_t>(side));
+    const int step = std::clamp(static_cast<int>(rows), 1, side);
     int draws = 0;
     for (int first = 0; first < side; first += step, ++draws) {
         pass.set("firstRow", first);
         glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (side + 1), std::min(step, side - first));
-        if (settings_.batches) glFlush();
+        flushed.drawn(static_cast<std::uint32_t>(2 * side * std::min(step, side - first)));
     }
     return draws;
 }

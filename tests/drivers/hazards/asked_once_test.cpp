@@ -67,6 +67,7 @@ TEST_F(AskedOnce, LimitsOfBuffersOnlyOfLargeOnes) {
     uniforms.bindUniform(0);
     EXPECT_EQ(askedForLimits, 0);
     large.bindStorage(0);
+    large.bindStorage(1);
     EXPECT_EQ(askedForLimits, 1);
 }
 
