@@ -19,6 +19,14 @@ constexpr double kMaxTimerStepNs = 1000.0;
 constexpr int kMinTextureSizePx = 16384;
 constexpr int kMin3dTextureSizePx = 2048;
 constexpr long long kMinStorageBlockBytes = 128LL << 20;
+// Graphics cards have about 1; a chip made for computing 0.03.
+constexpr double kMinFragmentShare = 0.5;
+// What the programs use at most, of one stage (tests/drivers counts them).
+constexpr gl::DeviceLimits::StorageBlocks kUsedStorageBlocks{.vertex = 4,
+                                                             .tessellationControl = 4,
+                                                             .tessellationEvaluation = 1,
+                                                             .fragment = 8,
+                                                             .compute = 13};
 // Another task on every fifth core already shows in the intervals.
 constexpr double kMaxLoadPerCore = 0.2;
 constexpr double kMaxStolenFraction = 0.01;
@@ -57,9 +65,9 @@ void addDeviceFindings(const MachineFacts& facts, Findings& findings) {
                             "the software device."});
         return;
     }
-    const bool anyGpu =
-        std::any_of(facts.devices.begin(), facts.devices.end(),
-                    [](const DeviceFacts& d) { return d.problem.empty() && !d.isSoftware; });
+    const bool anyGpu = std::any_of(
+        facts.devices.begin(), facts.devices.end(),
+        [](const DeviceFacts& d) { return d.problem.empty() ? !d.isSoftware : d.isGpu; });
     for (const std::string& gpu : facts.unusedGpus) {
         findings.push_back(
             {"gpu_does_not_serve", Severity::Result,
@@ -102,6 +110,35 @@ void addLimitFindings(const DeviceFacts& device, Findings& findings) {
                          device.index, small),
              "Measure those on another device; --set and --sweep make them "
              "smaller."});
+    }
+    if (device.balance && device.balance->fragmentShare() < kMinFragmentShare) {
+        findings.push_back(
+            {"draws_slowly", Severity::Result,
+             fmt::format("Device {} does {:.0f} GFLOP/s when it draws and {:.0f} when it computes: "
+                         "claims that compare drawing with ray tracing come out otherwise than on "
+                         "a graphics card.",
+                         device.index, device.balance->fragmentGflops,
+                         device.balance->computeGflops),
+             "Measure those on a graphics card, too."});
+    }
+    std::string few;
+    const auto use = [&](int most, int used, const char* stage) {
+        if (most >= used) return;
+        few += fmt::format("{}{} {} of {}", few.empty() ? "" : ", ", stage, most, used);
+    };
+    const gl::DeviceLimits::StorageBlocks& blocks = device.maxStorageBlocks;
+    use(blocks.vertex, kUsedStorageBlocks.vertex, "vertex");
+    use(blocks.tessellationControl, kUsedStorageBlocks.tessellationControl, "tessellation control");
+    use(blocks.tessellationEvaluation, kUsedStorageBlocks.tessellationEvaluation,
+        "tessellation evaluation");
+    use(blocks.fragment, kUsedStorageBlocks.fragment, "fragment");
+    use(blocks.compute, kUsedStorageBlocks.compute, "compute");
+    if (!few.empty()) {
+        findings.push_back({"few_storage_blocks", Severity::Result,
+                            fmt::format("Device {} gives its shaders fewer storage blocks than "
+                                        "some programs use ({}): their cases will fail.",
+                                        device.index, few),
+                            "Measure those on another device."});
     }
 }
 

@@ -2,8 +2,11 @@
 // `gfxrepro doctor` gathers them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "runner/gl/device.h"
 
 namespace gfxrepro::cli {
 
@@ -12,10 +15,13 @@ struct DeviceFacts {
     std::string renderer;
     std::string problem;  // why it does not serve; empty: it does
     bool isSoftware = false;
+    bool isGpu = false;  // as far as EGL tells, of one that does not serve
     double timerResolutionNs = 0.0;
     int maxTextureSizePx = 0;
     int max3dTextureSizePx = 0;
     long long maxStorageBlockBytes = 0;
+    gl::DeviceLimits::StorageBlocks maxStorageBlocks;
+    std::optional<gl::DeviceBalance> balance;  // of hardware
 };
 
 /// What `doctor` looked at. The defaults are a machine without a fault.

@@ -18,6 +18,7 @@
 #include "runner/core/files.h"
 #include "runner/core/processors.h"
 #include "runner/core/text.h"
+#include "runner/gl/balance.h"
 #include "runner/gl/device.h"
 #include "runner/gl/gpu_nodes.h"
 #include "runner/gl/vendor_libraries.h"
@@ -40,13 +41,20 @@ Json devicesJson(const std::vector<gl::DeviceReport>& reports) {
         Json device = run::toJson(report.info);
         device["problem"] = report.problem;
         const gl::DeviceLimits& limits = report.limits;
-        device["limits"] = {{"max_texture_size_px", limits.maxTextureSizePx},
-                            {"max_3d_texture_size_px", limits.max3dTextureSizePx},
-                            {"max_array_layers", limits.maxArrayLayers},
-                            {"max_storage_block_bytes", limits.maxStorageBlockBytes},
-                            {"max_tessellation_level", limits.maxTessellationLevel},
-                            {"max_compute_invocations", limits.maxComputeInvocations},
-                            {"max_image_units", limits.maxImageUnits}};
+        device["limits"] = {
+            {"max_texture_size_px", limits.maxTextureSizePx},
+            {"max_3d_texture_size_px", limits.max3dTextureSizePx},
+            {"max_array_layers", limits.maxArrayLayers},
+            {"max_storage_block_bytes", limits.maxStorageBlockBytes},
+            {"max_tessellation_level", limits.maxTessellationLevel},
+            {"max_compute_invocations", limits.maxComputeInvocations},
+            {"max_image_units", limits.maxImageUnits},
+            {"max_storage_blocks",
+             {{"vertex", limits.maxStorageBlocks.vertex},
+              {"tessellation_control", limits.maxStorageBlocks.tessellationControl},
+              {"tessellation_evaluation", limits.maxStorageBlocks.tessellationEvaluation},
+              {"fragment", limits.maxStorageBlocks.fragment},
+              {"compute", limits.maxStorageBlocks.compute}}}};
         devices.push_back(std::move(device));
     }
     return devices;
@@ -75,9 +83,10 @@ std::vector<DeviceFacts> deviceFacts(const std::vector<gl::DeviceReport>& report
     std::vector<DeviceFacts> devices;
     for (const gl::DeviceReport& report : reports) {
         devices.push_back({report.info.index, report.info.renderer, report.problem,
-                           report.info.isSoftware, report.info.timerResolutionNs,
+                           report.info.isSoftware, report.isGpu, report.info.timerResolutionNs,
                            report.limits.maxTextureSizePx, report.limits.max3dTextureSizePx,
-                           report.limits.maxStorageBlockBytes});
+                           report.limits.maxStorageBlockBytes, report.limits.maxStorageBlocks,
+                           report.info.balance});
     }
     return devices;
 }
@@ -218,9 +227,16 @@ void print(const Json& found) {
     say("disk       {:.1f} GiB free here\n", found["free_disk_bytes"].get<double>() / kBytesPerGib);
 }
 
+/// With the balance of those that are hardware: a second or two each.
 std::vector<gl::DeviceReport> askDrivers() {
     const DriverLimit limit;
-    return gl::listDevices();
+    std::vector<gl::DeviceReport> reports = gl::listDevices();
+    for (gl::DeviceReport& report : reports) {
+        if (!report.problem.empty() || report.info.isSoftware) continue;
+        const gl::Device device = gl::Device::open({std::to_string(report.info.index)});
+        report.info.balance = gl::measureBalance(gl::ShaderLibrary(dataFolder("shaders")));
+    }
+    return reports;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <new>
 #include <set>
@@ -118,6 +119,12 @@ DeviceLimits readLimits() {
     limits.maxTessellationLevel = getInteger(GL_MAX_TESS_GEN_LEVEL);
     limits.maxComputeInvocations = getInteger(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
     limits.maxImageUnits = getInteger(GL_MAX_IMAGE_UNITS);
+    limits.maxStorageBlocks = {
+        .vertex = getInteger(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS),
+        .tessellationControl = getInteger(GL_MAX_TESS_CONTROL_SHADER_STORAGE_BLOCKS),
+        .tessellationEvaluation = getInteger(GL_MAX_TESS_EVALUATION_SHADER_STORAGE_BLOCKS),
+        .fragment = getInteger(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS),
+        .compute = getInteger(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS)};
     return limits;
 }
 
@@ -248,6 +255,7 @@ Device Device::openCandidate(const egl::Candidate& candidate, DebugOutput debug)
     impl->info = readInfo(candidate);
     impl->limits = readLimits();
     impl->extensions = readExtensions();
+    impl->info.countsWork = impl->extensions.contains("GL_ARB_pipeline_statistics_query");
     setDebugOutput(debug, impl->fatalMessage);
     return Device(std::move(impl));
 }
@@ -349,12 +357,12 @@ void Device::finish(const char* what) {
 }
 
 bool isSoftwareContext() {
+    // Of a virtual machine's device the host's is in brackets: "virgl (LLVMPIPE …)".
+    const std::string renderer = getString(GL_RENDERER);
     return std::ranges::any_of(
-        std::array{"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer", "SwiftShader",
-                   "Basic Render Driver"},
-        [renderer = getString(GL_RENDERER)](const char* name) {
-            return renderer.find(name) != std::string::npos;
-        });
+        std::array{"llvmpipe", "lavapipe", "softpipe", "swrast", "SWR", "Software Rasterizer",
+                   "SwiftShader", "Basic Render Driver"},
+        [&](const char* name) { return ::strcasestr(renderer.c_str(), name) != nullptr; });
 }
 
 std::vector<DeviceReport> listDevices() {
@@ -365,6 +373,7 @@ std::vector<DeviceReport> listDevices() {
         DeviceReport report;
         report.info.index = candidate.index;
         report.info.platform = candidate.platform;
+        report.isGpu = candidate.isGpu;
         try {
             const egl::Context context(candidate, false);
             context.makeCurrent();

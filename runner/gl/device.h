@@ -25,16 +25,19 @@ struct DeviceBalance {
 
 /// What a device says of itself; goes into the manifest.
 struct DeviceInfo {
-    int index = 0;                   // as `doctor` lists it and --device takes it
-    std::string platform;            // "device" | "surfaceless"
-    std::string vendor;              // GL_VENDOR
-    std::string renderer;            // GL_RENDERER
-    std::string uuid;                // "6d657361-…", of GL_EXT_memory_object; empty: not told
-    std::string node;                // "/dev/dri/renderD128", the kernel's; empty: not told
-    std::string version;             // GL_VERSION
-    std::string mesaVersion;         // "22.3.6"; empty elsewhere
-    bool isSoftware = false;         // the processor's cores draw: llvmpipe and its like
-    double timerResolutionNs = 0.0;  // smallest step between GL_TIMESTAMP stamps in a row
+    int index = 0;            // as `doctor` lists it and --device takes it
+    std::string platform;     // "device" | "surfaceless"
+    std::string vendor;       // GL_VENDOR
+    std::string renderer;     // GL_RENDERER
+    std::string uuid;         // "6d657361-…", of GL_EXT_memory_object; empty: not told
+    std::string node;         // "/dev/dri/renderD128", the kernel's; empty: not told
+    std::string version;      // GL_VERSION
+    std::string mesaVersion;  // "22.3.6"; empty elsewhere
+    bool isSoftware = false;  // the processor's cores draw: llvmpipe and its like
+    /// GL_ARB_pipeline_statistics_query: whether repeats did the same is told by counts, else by
+    /// their pictures alone.
+    bool countsWork = false;
+    double timerResolutionNs = 0.0;        // smallest step between GL_TIMESTAMP stamps in a row
     std::optional<DeviceBalance> balance;  // of hardware, once a run has asked for it
 };
 
@@ -47,6 +50,11 @@ struct DeviceLimits {
     int maxTessellationLevel = 0;
     int maxComputeInvocations = 0;
     int maxImageUnits = 0;
+    /// Of one stage; OpenGL 4.5 promises 8 to fragment and compute shaders, none to the others.
+    struct StorageBlocks {
+        int vertex = 0, tessellationControl = 0, tessellationEvaluation = 0, fragment = 0,
+            compute = 0;
+    } maxStorageBlocks;
 };
 
 enum class DebugOutput {
@@ -106,6 +114,7 @@ struct DeviceReport {
     DeviceInfo info;
     DeviceLimits limits;
     std::string problem;  // empty: serves
+    bool isGpu = false;   // as far as EGL tells, whether it serves or not
 };
 std::vector<DeviceReport> listDevices();
 

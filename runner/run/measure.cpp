@@ -100,8 +100,7 @@ bool isTimeOfFrame(const std::string& metric) {
 class WorkGuard {
   public:
     WorkGuard(const gl::Device& device, bool isTiming)
-        : isTiming_(isTiming),
-          query_(isTiming && device.hasExtension("GL_ARB_pipeline_statistics_query")) {}
+        : isTiming_(isTiming), query_(isTiming && device.info().countsWork) {}
 
     void beginFrame() { repeats_.clear(); }
     void beginRepeat() const { query_.begin(); }

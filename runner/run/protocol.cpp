@@ -12,12 +12,17 @@ namespace {
 using config::JsonKind;
 using config::JsonMember;
 
-constexpr JsonMember kDevice[] = {
-    {"/index", JsonKind::Int},           {"/platform", JsonKind::Text},
-    {"/vendor", JsonKind::Text},         {"/renderer", JsonKind::Text},
-    {"/version", JsonKind::Text},        {"/mesa_version", JsonKind::Text},
-    {"/uuid", JsonKind::Text},           {"/node", JsonKind::Text},
-    {"/is_software", JsonKind::Boolean}, {"/timer_resolution_ns", JsonKind::Number}};
+constexpr JsonMember kDevice[] = {{"/index", JsonKind::Int},
+                                  {"/platform", JsonKind::Text},
+                                  {"/vendor", JsonKind::Text},
+                                  {"/renderer", JsonKind::Text},
+                                  {"/version", JsonKind::Text},
+                                  {"/mesa_version", JsonKind::Text},
+                                  {"/uuid", JsonKind::Text},
+                                  {"/node", JsonKind::Text},
+                                  {"/is_software", JsonKind::Boolean},
+                                  {"/counts_work", JsonKind::Boolean},
+                                  {"/timer_resolution_ns", JsonKind::Number}};
 constexpr JsonMember kBalance[] = {{"/fragment_gflops", JsonKind::Number},
                                    {"/compute_gflops", JsonKind::Number},
                                    {"/fill_gpixels_per_s", JsonKind::Number},
@@ -86,6 +91,7 @@ Json toJson(const gl::DeviceInfo& info) {
                  {"uuid", info.uuid},
                  {"node", info.node},
                  {"is_software", info.isSoftware},
+                 {"counts_work", info.countsWork},
                  {"timer_resolution_ns", info.timerResolutionNs}};
     if (info.balance) json["balance"] = toJson(*info.balance);
     return json;
@@ -103,6 +109,7 @@ gl::DeviceInfo deviceInfoFromJson(const Json& json) {
     json.at("uuid").get_to(info.uuid);
     json.at("node").get_to(info.node);
     json.at("is_software").get_to(info.isSoftware);
+    json.at("counts_work").get_to(info.countsWork);
     json.at("timer_resolution_ns").get_to(info.timerResolutionNs);
     if (json.contains("balance"))
         info.balance = balanceFromJson(json["balance"], kAnswer, "/balance");

@@ -20,6 +20,7 @@ DeviceFacts gpu() {
     device.maxTextureSizePx = 16384;
     device.max3dTextureSizePx = 2048;
     device.maxStorageBlockBytes = 128LL << 20;
+    device.maxStorageBlocks = {16, 16, 16, 16, 16};
     return device;
 }
 
@@ -43,6 +44,38 @@ std::string linesOf(const MachineFacts& facts) {
 
 TEST(Doctor, SaysNothingOfAGoodMachine) {
     EXPECT_EQ(linesOf(goodMachine()), "");
+}
+
+TEST(Doctor, AGpuThatDoesNotServeIsOne) {
+    MachineFacts facts = goodMachine();
+    facts.devices = {gpu(), gpu()};
+    facts.devices[0].problem = "device 0 (device): cannot initialize its display";
+    facts.devices[0].isGpu = true;
+    facts.devices[1].isSoftware = true;
+    EXPECT_EQ(linesOf(facts),
+              "results device_does_not_serve: A device does not serve: device 0 (device): cannot "
+              "initialize its display. → OpenGL 4.5 is needed: update this device's driver, or "
+              "take another device with --device.\n");
+}
+
+TEST(Doctor, DrawsSlowly) {
+    MachineFacts facts = goodMachine();
+    facts.devices[0].balance = {.fragmentGflops = 20000, .computeGflops = 21000};
+    EXPECT_EQ(linesOf(facts), "");
+    facts.devices[0].balance = {.fragmentGflops = 1850, .computeGflops = 58900};
+    EXPECT_EQ(linesOf(facts),
+              "results draws_slowly: Device 0 does 1850 GFLOP/s when it draws and 58900 when it "
+              "computes: claims that compare drawing with ray tracing come out otherwise than on a "
+              "graphics card. → Measure those on a graphics card, too.\n");
+}
+
+TEST(Doctor, FewStorageBlocks) {
+    MachineFacts facts = goodMachine();
+    facts.devices[0].maxStorageBlocks = {0, 16, 16, 16, 8};
+    EXPECT_EQ(linesOf(facts),
+              "results few_storage_blocks: Device 0 gives its shaders fewer storage blocks than "
+              "some programs use (vertex 0 of 4, compute 8 of 13): their cases will fail. → "
+              "Measure those on another device.\n");
 }
 
 TEST(Doctor, NoEgl) {

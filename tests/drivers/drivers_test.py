@@ -39,6 +39,7 @@ READ_IN_FRAMES = {"clustered_reflections/concavity.comp.glsl": "sizes of cluster
                   "kit/prefix_sum.comp.glsl": "the size of soft shadows' mesh, whose buffers are made then"}
 # What a driver may take or count otherwise.
 UNITS_OF_TIME = re.compile("ms|.*/s")
+STORAGE_BLOCK = re.compile(r"\s*layout\(std430[^)]*\)[\w ]* buffer \w+")
 OWN_COUNTS = re.compile("(.*_)?memory_bytes|work_.*|draw_calls")
 
 
@@ -93,6 +94,24 @@ def compare(name, without=(), tolerance=0.0):
     assert expected and not differing
 
 
+def find_hazards(file):
+    lines = set(file.read_text().splitlines())
+    hazards = sorted(line for line in lines if line.startswith("hazard: ") and
+                     not ("reads back within a frame" in line and line.endswith(tuple(READ_IN_FRAMES))))
+    print(*hazards, sep="\n")
+    print(f"{len(lines) - len(hazards)} programs drew or were dispatched, {len(hazards)} hazards")
+    assert len(lines) > len(hazards) and not hazards
+
+
+def storage_blocks(texts):
+    """How many blocks the doctor asks of each stage, and how many a shader of it has at most."""
+    asked = re.search(r"kUsedStorageBlocks\{(.*?)\}", (SOURCE / "runner/cli/advice.cpp").read_text(), re.DOTALL)[1]
+    stages = {"vertex": "vert", "tessellationControl": "tesc", "tessellationEvaluation": "tese", "fragment": "frag", "compute": "comp"}
+    asked = {stages[stage]: int(count) for stage, count in re.findall(r"\.(\w+) = (\d+)", asked)}
+    has = {stage: max(sum(bool(STORAGE_BLOCK.match(line)) for line in text) for text in texts[stage]) for stage in asked}
+    return asked, has
+
+
 def compile_strictly():
     validator = shutil.which("glslangValidator") or skip("glslangValidator is not here (scripts/setup --tests installs it)")
     programs = {}
@@ -111,6 +130,9 @@ def compile_strictly():
             texts.setdefault(file.suffix[1:], []).append(set(file.read_text().splitlines()))
     stage_files = sorted(file for folder in ("techniques", "runner") for stage in texts
                          for file in (SOURCE / folder).rglob(f"*.{stage}.glsl"))
+    asked, has = storage_blocks(texts)
+    print(f"storage blocks of a stage: {has}")
+    assert asked == has, f"doctor asks for {asked}"
     unseen = [file for file in stage_files if not any(lines_of(file) <= text for text in texts[file.suffixes[-2][1:]])]
     print(f"{len(programs)} programs, {failed} refused; {len(stage_files)} files of stages, {len(unseen)} in none:")
     print(*unseen, sep="\n")
@@ -144,15 +166,13 @@ elif WHAT == "zink":
     # A last bit of a picture's values is the compiler's: means of them moved by up to 1e-6.
     compare("zink", without, tolerance=1e-5)
 elif WHAT == "hazards":
-    lines = set(HAZARDS.read_text().splitlines())
-    hazards = sorted(line for line in lines if line.startswith("hazard: ") and
-                     not ("reads back within a frame" in line and line.endswith(tuple(READ_IN_FRAMES))))
-    print(*hazards, sep="\n")
-    print(f"{len(lines) - len(hazards)} programs drew or were dispatched, {len(hazards)} hazards")
-    assert len(lines) > len(hazards) and not hazards
+    find_hazards(HAZARDS)
 elif WHAT == "gpu":
-    device = measure("gpu", "gpu", {"LD_PRELOAD": LIBRARY[0]})
+    hazards = FOLDER / "hazards-gpu.txt"
+    hazards.unlink(missing_ok=True)
+    device = measure("gpu", "gpu", {"LD_PRELOAD": ":".join(LIBRARY), "HAZARDS": str(hazards)})
     assert "Pretended GPU" in device, device
+    find_hazards(hazards)
     compare("gpu")
 else:
     compile_strictly()
