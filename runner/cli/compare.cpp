@@ -11,6 +11,7 @@
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
+#include "runner/cli/experiments.h"
 #include "runner/core/files.h"
 #include "runner/regression/comparison.h"
 #include "runner/regression/history.h"
@@ -294,6 +295,7 @@ int compare(const CompareOptions& options) {
     regression::Comparison comparison;
     Measured newer;
     if (options.areBinaries) {
+        tellDevice(options.device.empty() ? "auto" : options.device);
         Turns turns(options, folder);
         comparison.differences = turns.compare();
         newer = turns.newer();

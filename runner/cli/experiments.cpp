@@ -176,6 +176,21 @@ run::Request requestOf(const Selection& selection, const std::vector<std::string
     return request;
 }
 
+void tellDevice(const gl::DeviceInfo& device) {
+    tell("device {}: {} ({}), OpenGL {}{}\n", device.index, device.renderer,
+         device.isSoftware ? "software" : "gpu", device.version,
+         device.uuid.empty() ? "" : ", UUID " + device.uuid);
+}
+
+void tellDevice(const std::string& asked) {
+    try {
+        run::PhaseClock phases;
+        tellDevice(run::probeDevice({asked, assetsFolder(""), 1, {}}, phases));
+    } catch (const NoDeviceError&) {
+        // What is measured will say why, if it needs one.
+    }
+}
+
 std::string deviceClassFor(const Selection& selection) {
     if (selection.device == "software" || selection.device == "gpu") return selection.device;
     try {

@@ -38,6 +38,11 @@ std::vector<config::Experiment> loadExperiments(const run::Request& request,
 /// What a selection asks for; its files as absolute paths.
 run::Request requestOf(const Selection& selection, const std::vector<std::string>& files);
 
+/// A line that names it: the first of whatever measures.
+void tellDevice(const gl::DeviceInfo& device);
+/// The same of the one that is asked for; nothing where none opens.
+void tellDevice(const std::string& asked);
+
 /// "software" | "gpu". A case's identity holds it; a machine without a device plans for software.
 std::string deviceClassFor(const Selection& selection);
 

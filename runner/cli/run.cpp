@@ -65,8 +65,7 @@ gl::DeviceInfo settleDevice(run::SchedulerOptions& scheduler, run::PhaseClock& p
     const gl::DeviceInfo device = run::probeDevice(scheduler, phases, true);
     if (device.platform == "none") return device;
     scheduler.device = std::to_string(device.index);
-    tell("device {}: {} ({}), OpenGL {}{}\n", device.index, device.renderer, deviceClassOf(device),
-         device.version, device.uuid.empty() ? "" : ", UUID " + device.uuid);
+    tellDevice(device);
     return device;
 }
 

@@ -229,6 +229,7 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
                                                   : studies::parseBudgetS(options.budget);
     const fs::path folder =
         options.out.empty() ? run::defaultRunPath("sensitivity") : fs::path(options.out);
+    tellDevice(options.selection.device);
     const std::string deviceClass = deviceClassFor(options.selection);
     std::vector<Study> studies;
     std::size_t total = 0, made = 0;
