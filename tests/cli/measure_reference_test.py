@@ -1,12 +1,18 @@
 """scripts/measure-reference keeps what is complete, goes on with what is not, and takes what decides most first."""
 
 import csv
+import importlib.machinery
+import importlib.util
 import json
 import os
 import pathlib
+import re
+import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 SOURCE, PROGRAM = (pathlib.Path(argument) for argument in sys.argv[1:3])
 
@@ -32,11 +38,45 @@ def table(root, number, pause_ms, origins):
     return file
 
 
-def measure(root, *arguments):
+def started(root, *arguments):
     environment = {**os.environ, "GFXREPRO_ROOT": str(root), "GFXREPRO_DATA": str(root)}
-    result = subprocess.run([SOURCE / "scripts/measure-reference", "--program", PROGRAM, "--name", "mock", *arguments],
-                            env=environment, capture_output=True, text=True, timeout=120)
-    return result.returncode, result.stdout, result.stderr
+    return subprocess.Popen([SOURCE / "scripts/measure-reference", *arguments], env=environment, text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def measure(root, *arguments, program=PROGRAM):
+    process = started(root, "--program", program, "--name", "mock", *arguments)
+    out, err = process.communicate(timeout=120)
+    return process.returncode, out, err
+
+
+def script():
+    """The script as a module."""
+    sys.dont_write_bytecode = True
+    loader = importlib.machinery.SourceFileLoader("measure_reference", str(SOURCE / "scripts/measure-reference"))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("measure_reference", loader))
+    loader.exec_module(module)
+    return module
+
+
+def processes_of(text):
+    """Those that live and have the text in their command line."""
+    return [file for file in pathlib.Path("/proc").glob("[0-9]*/cmdline") if text in read_if_there(file)]
+
+
+def read_if_there(file):
+    try:
+        return file.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
+
+
+def wait_until(is_so, what):
+    for _ in range(400):
+        if is_so():
+            return
+        time.sleep(0.05)
+    raise AssertionError(what)
 
 
 def lines_of(out):
@@ -90,3 +130,86 @@ with tempfile.TemporaryDirectory() as folder:
         assert code == 2 and message in err, (code, err)
     code, out, err = measure(root, "--device", "17", "paper/1")
     assert code in (2, 3) and "17" in err, (code, out, err)
+
+    # SIGTERM ends what was started, too; the run is gone on with.
+    table(root, 3, 200, ["document", "ours"])
+    runs = root / "runs/reference"
+    process = started(root, "--program", PROGRAM, "--name", "mock", "--profile", "full", "paper/3")
+    wait_until(lambda: any('"start"' in read_if_there(log) for log in runs.glob("*/full/paper-table-3/log.jsonl")), "no case began")
+    process.send_signal(signal.SIGTERM)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130 and "Traceback" not in err, (process.returncode, out, err)
+    wait_until(lambda: not processes_of(folder), "what was started goes on")
+
+    # A run is in the folder of its device, however that was asked for.
+    run, = runs.glob("*/full/paper-table-3")
+    module = script()
+    assert run.parent.parent.name == module.device_name(module.json_of(run / "manifest.json"), module.clock_ghz()), run
+    began = module.json_of(run / "manifest.json")["started"]
+    code, out, err = measure(root, "--profile", "full", "--budget", "0.01s", "--device", "software", "paper/3")
+    assert code == 4 and list(runs.glob("*/full/paper-table-3*")) == [run], (code, out, err)
+
+    # By another build or of another device it is set aside, and the table begins anew.
+    shutil.copytree(next(folder / "shaders" for folder in PROGRAM.parents if (folder / "shaders").is_dir()), root / "shaders")
+    (root / "shaders/another.glsl").touch()
+    code, out, err = measure(root, "--profile", "full", "paper/1", "paper/3")
+    assert code == 0 and "set aside as paper-table-3.1" in out, (code, out, err)
+    assert "paper-table-3: begun anew: the run that is there is by another build, " in out, out
+    kept = root / "results/reference/mock/full"
+    before, after = (module.json_of(file / "manifest.json") for file in (run.with_name("paper-table-3.1"), kept / "paper-table-3"))
+    assert before["started"] == began and before["build_id"] != after["build_id"], (before, after)
+
+    # What is kept is not measured again by any build, unless that is asked for; then from the start.
+    shutil.rmtree(root / "shaders")
+    code, out, err = measure(root, "--profile", "full", "paper/1", "paper/3")
+    assert code == 0 and lines_of(out)[0] == "kept already: paper/table-3 paper/table-1; --again measures them anew", (code, out, err)
+    assert not run.with_name("paper-table-1.1").exists()
+    for _ in range(2):  # by the other build, then by the same
+        code, out, err = measure(root, "--profile", "full", "--again", "paper/1")
+        assert code == 0 and "paper-table-1: begun anew: " in out and "paper-table-1: kept in " in out, (code, out, err)
+    assert "begun anew: the run that is there is kept; set aside as paper-table-1.2" in out, out
+
+    # That of another device by the same name is none of this one.
+    for file in (kept / "paper-table-1/manifest.json", run.with_name("paper-table-1") / "manifest.json"):
+        manifest = module.json_of(file)
+        manifest["cpu"] = "Another Processor"
+        file.write_text(json.dumps(manifest), encoding="utf-8")
+    code, out, err = measure(root, "--profile", "full", "paper/1")
+    assert code == 0 and "begun anew: the run that is there is of another device, llvmpipe" in out, (code, out, err)
+    assert module.json_of(kept / "paper-table-1/manifest.json")["cpu"] != "Another Processor"
+
+    # Where it cannot be built, and where there is no such program.
+    build = root / "scripts/reproduce-paper-tables"
+    build.write_text("#!/bin/sh\necho 'setup: apt-get is not here' >&2\nexit 2\n", encoding="utf-8")
+    build.chmod(0o755)
+    process = started(root, "paper/1")
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 2, (process.returncode, err)
+    assert err == ("setup: apt-get is not here\n"
+                   "measure-reference: gfxrepro was not built; --program FILE names one that is built already\n"), err
+    code, out, err = measure(root, "paper/1", program=root / "nowhere")
+    assert code == 2 and f"'{root}/nowhere' is no program that can be run" in err, (code, err)
+
+# Names of devices: two chips have two, and those of kept results stay what they are.
+for renderer, name in (
+        ("NVIDIA H100 80GB HBM3/PCIe/SSE2", "nvidia-h100-80gb-hbm3"),
+        ("NVIDIA TITAN V/PCIe/SSE2", "nvidia-titan-v"),
+        ("Mesa Intel(R) Arc(tm) A770 Graphics (DG2)", "mesa-intel-arc-a770-graphics"),
+        ("Mesa Intel(R) UHD Graphics 620 (KBL GT2)", "mesa-intel-uhd-graphics-620"),
+        ("Mesa Intel(R) Graphics (RPL-P)", "mesa-intel-graphics-rpl-p"),
+        ("Mesa Intel(R) Iris(R) Xe Graphics (TGL GT2)", "mesa-intel-iris-xe-graphics-tgl-gt2"),
+        ("AMD Radeon Graphics (radeonsi, renoir, LLVM 15.0.6, DRM 3.49, 6.1.0-13-amd64)", "amd-radeon-graphics-renoir"),
+        ("AMD Radeon Graphics (radeonsi, raphael_mendocino, ACO, DRM 3.57, 6.8.0)", "amd-radeon-graphics-raphael-mendocino"),
+        ("AMD Radeon(TM) Graphics (renoir, LLVM 15.0.7, DRM 3.49, 6.1.0)", "amd-radeon-graphics-renoir"),
+        ("AMD RENOIR (DRM 3.40.0, 5.10.0-28-amd64, LLVM 11.0.1)", "amd-renoir"),
+        ("AMD Radeon RX 6800 XT (radeonsi, navi21, LLVM 15.0.7, DRM 3.49, 6.1.0)", "amd-radeon-rx-6800-xt"),
+        ("zink Vulkan 1.3(AMD Radeon Graphics (RADV RENOIR))", "zink-amd-radeon-graphics-radv-renoir"),
+        ("D3D12 (NVIDIA GeForce RTX 3080)", "d3d12-nvidia-geforce-rtx-3080")):
+    manifest = {"device_class": "gpu", "gl": {"renderer": renderer}}
+    assert script().device_name(manifest, 2.6) == name, (renderer, script().device_name(manifest, 2.6))
+kept = list((SOURCE / "results/reference").glob("*/**/manifest.json"))
+assert kept
+for file in kept:
+    name = file.relative_to(SOURCE / "results/reference").parts[0]
+    ghz = re.search(r"-([\d.]+)ghz-", name)
+    assert script().device_name(script().json_of(file), float(ghz[1]) if ghz else 2.6) == name, file
