@@ -1,4 +1,5 @@
-"""containers_test.py SOURCE: what the Containerfile runs, the Apptainer definition runs, stage by stage."""
+"""containers_test.py SOURCE: what the Containerfile runs, the Apptainer definition runs, stage by stage; what .containerignore keeps
+out of the former, the latter, whose %files reads no such list, takes away again."""
 import pathlib
 import sys
 
@@ -29,8 +30,10 @@ def apptainer_stages(text):
     return stages
 
 
+ignored = (pathlib.Path(sys.argv[1]) / ".containerignore").read_text().split()
 folder = pathlib.Path(sys.argv[1]) / "containers"
 container = container_stages((folder / "Containerfile").read_text())
 apptainer = apptainer_stages((folder / "gfxrepro.def").read_text())
 assert [len(stage) for stage in container] == [1, 2], container
+assert apptainer[0].pop(0) == "rm -rf " + " ".join(ignored), apptainer
 assert container == apptainer, f"Containerfile: {container}\ngfxrepro.def: {apptainer}"

@@ -45,7 +45,9 @@ bare() {
 # with_source FOLDER: a bare system with a clone of the last commit.
 with_source() {
     bare "$1"
-    git -c safe.directory="$source" clone --quiet --no-hardlinks "$source" "$1/src"
+    # A checkout may be another user's; git takes that from a file alone.
+    printf '[safe]\n\tdirectory = *\n' >"$systems/gitconfig"
+    GIT_CONFIG_GLOBAL=$systems/gitconfig git clone --quiet --no-hardlinks "$source" "$1/src"
 }
 
 # inside FOLDER COMMAND: in the system, with the clone as the current folder. A mount of its own: a test makes namespaces in it.
