@@ -152,7 +152,10 @@ void ReflectiveScene::addLights() {
         warn(fmt::format("{} lights; the first {} are taken", lights_.size(), kMaxLights));
         lights_.resize(kMaxLights);
     }
-    if (lights_.empty()) lights_.push_back(madeUpLight(boundsWorld_));
+    if (lights_.empty()) {
+        warn("it has no light; one is hung below the top of its box (what shines lights nothing)");
+        lights_.push_back(madeUpLight(boundsWorld_));
+    }
 }
 
 void ReflectiveScene::warn(const std::string& what) {

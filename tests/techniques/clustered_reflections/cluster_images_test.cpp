@@ -320,6 +320,29 @@ TEST_F(ClusterImagesTest, WhatLiesBeyondTheFarPlaneIsNotDrawn) {
     EXPECT_LT(near, 40 * 30 - 40);
 }
 
+TEST_F(ClusterImagesTest, NorInTheAtlasNorInImagesOfTriangles) {
+    const ReflectiveScene scene(rooms::room());
+    const GpuObjects objects(scene);
+    ClusterCamera camera = cameraLooking({0.1F, 0.2F, 0.3F}, {0.6F, 0.0F, -0.8F}, {40, 30});
+    camera.planeNormal.w = 2.6F;
+    const gl::Buffer cameras = cameraBuffer({camera});
+    const Clusters clusters = clustersOf(1);
+    ClusterImages whole(shaders(), glm::ivec2(64), false);
+    AtlasPainter(shaders(), scene, objects, {}).draw(objects, cameras, clusters, whole);
+    ClusterImages triangles(shaders(), glm::ivec2(64), false, TexelContent::Triangles);
+    VisiblePainter(shaders(), scene, objects, {}, 0.0F).draw(objects, cameras, clusters, triangles);
+    for (const ClusterImages* images : {&whole, &triangles}) {
+        int drawn = 0;
+        for (const float depth : images->depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1)) {
+            if (depth <= 0.0F) continue;
+            ++drawn;
+            EXPECT_LE(0.25F / depth, camera.planeNormal.w + 1e-3F);
+        }
+        EXPECT_GT(drawn, 40);
+        EXPECT_LT(drawn, 40 * 30 - 40);
+    }
+}
+
 /// What a texel of images of triangles shows: its depth and its object.
 struct ShownTexels {
     std::vector<float> depths;

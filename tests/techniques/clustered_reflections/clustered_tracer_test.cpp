@@ -532,7 +532,7 @@ TEST_F(ClusteredTracerTest, AFrameChangesNoTextureParameter) {
     }
 }
 
-// [xie2017] Sec. 4.7.2: 512² output, 2 × 2 samples a pixel.
+// [xie2017] Sec. 4.7.1: 512² output, 2 × 2 samples a pixel.
 TEST_F(ClusteredTracerTest, AFrameHoldsNoMoreThanPrinted) {
     const ReflectiveScene scene(fullRoom());
     for (const March march : {March::Linear, March::Hierarchical}) {

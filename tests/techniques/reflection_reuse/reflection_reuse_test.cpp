@@ -387,6 +387,7 @@ TEST_F(ReflectionReuseTest, FramesLieOnThePathWhereAsked) {
 }
 
 TEST_F(ReflectionReuseTest, ViewsWithoutReflectorsRecordNothingReflected) {
+    room_.lights = {{}};
     for (const char* method : {"reuse", "direct", "ray_traced"}) {
         SCOPED_TRACE(method);
         testing::internal::CaptureStderr();

@@ -106,6 +106,7 @@ TEST(PlanarTest, IsOnePlaneWithOneNormal) {
 
 TEST(ReflectiveSceneTest, LeavesOutWhatLetsLightThrough) {
     scene::Scene scene;
+    scene.lights = {{}};
     addPart(scene, squareMesh(), {.roughness = 0.0F});
     addPart(scene, squareMesh(), {.transmission = 0.6F});
     addPart(scene, squareMesh(), {.roughness = 0.0F, .transmission = 0.5F},
@@ -203,6 +204,9 @@ TEST(ReflectiveSceneTest, HangsALightWhereThereIsNone) {
     ASSERT_EQ(without.lights().size(), 1U);
     EXPECT_EQ(without.lights()[0].position, glm::vec3(0.0F, 0.9F, 0.0F));
     EXPECT_FLOAT_EQ(without.lights()[0].radiusM, std::sqrt(2.0F));
+    EXPECT_EQ(without.warnings(), std::vector<std::string>{
+                                      "scene 'test': it has no light; one is hung below the top of "
+                                      "its box (what shines lights nothing)"});
     for (int i = 0; i < kMaxLights; ++i) {
         scene.lights.push_back({.radiusM = 1.0F + static_cast<float>(i)});
     }
@@ -220,6 +224,7 @@ TEST(ReflectiveSceneTest, HangsALightWhereThereIsNone) {
 scene::Scene texturedScene(const image::Image8& texture) {
     scene::Scene scene = sceneOf(squareMesh(), {.baseColorTexture = 0});
     scene.textures = {texture};
+    scene.lights = {{}};
     return scene;
 }
 
@@ -250,6 +255,7 @@ TEST(ReflectiveSceneTest, KeepsTheSizeOfTexturesUpToALimit) {
 
 TEST(ReflectiveSceneTest, PassesOnWhatTheLoaderLeftOut) {
     scene::Scene scene = sceneOf(squareMesh(), {});
+    scene.lights = {{}};
     scene.warnings = {"something is left out"};
     EXPECT_EQ(ReflectiveScene(scene).warnings(),
               std::vector<std::string>{"scene 'test': something is left out"});
