@@ -44,7 +44,7 @@ struct ClusteredSettings {
 };
 
 /// The texture of the images: 34 MB, so that a frame of 1024² samples holds less than the 87 MB of
-/// [xie2017] Sec. 4.7.2, G-buffer and target included.
+/// [xie2017] Sec. 4.7.1, G-buffer and target included.
 constexpr glm::ivec2 kImagesSizePx(2048);
 
 /// Passes, named as Table 14: `first_pass_and_clustering` (the caller draws the G-buffer under the
