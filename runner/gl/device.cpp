@@ -106,6 +106,7 @@ DeviceInfo readInfo(const egl::Candidate& candidate) {
     info.uuid = readUuid();
     info.mesaVersion = mesaVersionIn(info.version);
     info.isSoftware = isSoftwareContext();
+    info.countsWork = readExtensions().contains("GL_ARB_pipeline_statistics_query");
     info.timerResolutionNs = measureTimerResolutionNs();
     return info;
 }
@@ -255,7 +256,6 @@ Device Device::openCandidate(const egl::Candidate& candidate, DebugOutput debug)
     impl->info = readInfo(candidate);
     impl->limits = readLimits();
     impl->extensions = readExtensions();
-    impl->info.countsWork = impl->extensions.contains("GL_ARB_pipeline_statistics_query");
     setDebugOutput(debug, impl->fatalMessage);
     return Device(std::move(impl));
 }

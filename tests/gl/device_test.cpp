@@ -32,6 +32,11 @@ TEST(DeviceTest, OpensSoftwareByNameAndByIndex) {
     EXPECT_FALSE(byName.info().mesaVersion.empty());
     EXPECT_GT(byName.info().timerResolutionNs, 0.0);
     EXPECT_LT(byName.info().timerResolutionNs, 1e6);
+    EXPECT_EQ(byName.info().countsWork, byName.hasExtension("GL_ARB_pipeline_statistics_query"));
+    for (const gl::DeviceReport& report : gl::listDevices()) {
+        if (report.info.index != byName.info().index) continue;
+        EXPECT_EQ(report.info.countsWork, byName.info().countsWork);
+    }
 
     const std::string index = std::to_string(byName.info().index);
     const gl::Device byIndex = gl::Device::open({index, gl::DebugOutput::Off});
