@@ -57,6 +57,8 @@ std::vector<std::string> unusedGpus(const fs::path& devices, const fs::path& dri
         // Those of NVIDIA were named above.
         if (driver != "nvidia" && !isVirtualDisplay(driver)) add(file, driver);
     }
+    // The Windows host's, of a Linux that runs in it.
+    if (std::error_code none; fs::exists(devices / "dxg", none)) add(devices / "dxg", "");
     return sentences;
 }
 

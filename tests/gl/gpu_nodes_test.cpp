@@ -15,7 +15,7 @@ TEST(UnusedGpus, AreNamedWithWhatIsWrong) {
     EXPECT_THAT(gl::unusedGpus(devices, drivers), testing::IsEmpty());
     for (const char* name :
          {"nvidia0", "nvidiactl", "nvidia-uvm", "nvidia-caps/nvidia-cap1", "null", "dri/card0",
-          "dri/renderD128", "dri/renderD129", "dri/renderD130", "dri/renderD131"}) {
+          "dri/renderD128", "dri/renderD129", "dri/renderD130", "dri/renderD131", "dxg"}) {
         folder.write(std::string("dev/") + name, "");
     }
     const auto bind = [&](const std::string& node, const std::string& driver) {
@@ -30,7 +30,8 @@ TEST(UnusedGpus, AreNamedWithWhatIsWrong) {
                 testing::ElementsAre(
                     at + "/nvidia0: no driver gives an OpenGL device for it",
                     at + "/dri/renderD128 (amdgpu): no driver gives an OpenGL device for it",
-                    at + "/dri/renderD131: no driver gives an OpenGL device for it"));
+                    at + "/dri/renderD131: no driver gives an OpenGL device for it",
+                    at + "/dxg: no driver gives an OpenGL device for it"));
     fs::remove(devices / "nvidia0");
     fs::create_symlink("/none", devices / "nvidia0");  // root, too, cannot open it
     EXPECT_EQ(gl::unusedGpus(devices, drivers).front(), at + "/nvidia0: No such file or directory");
