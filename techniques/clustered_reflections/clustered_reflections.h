@@ -41,12 +41,15 @@ class ClusteredReflections final : public technique::Technique {
     /// Traced once for frames that are the same.
     const Truth& truthOf(const reflections::HostGBuffer& gbuffer);
 
-    void recordShares(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer) const;
+    void recordShares(technique::Recorder& recorder,
+                      const std::vector<std::uint32_t>& surfaces) const;
     void recordMemory(technique::Recorder& recorder) const;
     void recordErrors(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
                       const image::ImageF& picture);
-    void recordClusters(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
-                        const image::ImageF& picture);
+    void recordClusters(technique::Recorder& recorder);
+    std::vector<std::uint16_t> readClusters() const;
+    void recordClusterErrors(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
+                             const image::ImageF& picture);
     void recordOcclusion(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
                          const image::ImageF& picture, std::vector<std::uint16_t> clusterOfSample);
     std::vector<std::uint8_t> reflectorsOf(const std::string& name) const;

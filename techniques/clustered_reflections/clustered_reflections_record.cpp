@@ -55,15 +55,17 @@ bool isSameView(const kit::View& a, const kit::View& b) {
 }  // namespace
 
 void ClusteredReflections::record(technique::Recorder& recorder) {
-    const HostGBuffer gbuffer = reflections::readGBuffer(*gbuffer_);
+    const std::vector<std::uint32_t> surfaces = reflections::readSurfaces(*gbuffer_);
     // A view that reflects nothing has no errors: claims on them are left unmeasured.
-    const auto isReflective = [&](std::uint32_t surface) { return (surface & 0xFFFFU) != 0; };
-    hasReflections_ = std::ranges::any_of(gbuffer.surface, isReflective);
+    hasReflections_ = std::ranges::any_of(
+        surfaces, [](std::uint32_t surface) { return reflections::reflectorOf(surface) != 0; });
     if (!hasReflections_) frame_->scene.printEmptyView();
-    recordShares(recorder, gbuffer);
+    recordShares(recorder, surfaces);
     recordMemory(recorder);
-    if (!params_.measuresErrors && !params_.showsPictures && !clusteredTracer_) return;
+    if (clusteredTracer_) recordClusters(recorder);
+    if (!params_.measuresErrors && !params_.showsPictures) return;
 
+    const HostGBuffer gbuffer = reflections::readGBuffer(*gbuffer_);
     const image::ImageF picture = frame_->composite.read();
     if (params_.showsPictures) {
         kit::ImageLayers layers = reflections::surfaceLayers(gbuffer, params_.supersampling);
@@ -78,11 +80,11 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
     if (params_.measuresErrors && hasReflections_ && params_.drawsReflections()) {
         recordErrors(recorder, gbuffer, picture);
     }
-    if (clusteredTracer_) recordClusters(recorder, gbuffer, picture);
+    if (clusteredTracer_) recordClusterErrors(recorder, gbuffer, picture);
 }
 
 void ClusteredReflections::recordShares(technique::Recorder& recorder,
-                                        const HostGBuffer& gbuffer) const {
+                                        const std::vector<std::uint32_t>& surfaces) const {
     std::vector<std::uint8_t> isPlanar(static_cast<std::size_t>(frame_->scene.reflectorCount()) +
                                        1);
     std::vector<std::size_t> wholes(isPlanar.size());  // by reflector: the object it is a part of
@@ -94,8 +96,8 @@ void ClusteredReflections::recordShares(technique::Recorder& recorder,
         (object.reflector == 0 ? diffuseTriangles : reflectiveTriangles) += object.triangleCount;
     }
     std::vector<std::size_t> samples(isPlanar.size());
-    for (std::size_t i = 0; i < gbuffer.surface.size(); ++i) {
-        ++samples[static_cast<std::size_t>(gbuffer.reflector(i))];
+    for (const std::uint32_t surface : surfaces) {
+        ++samples[static_cast<std::size_t>(reflections::reflectorOf(surface))];
     }
     std::size_t reflective = 0, planar = 0;
     std::set<std::size_t> visible, visibleParts;
@@ -106,7 +108,7 @@ void ClusteredReflections::recordShares(technique::Recorder& recorder,
         visible.insert(wholes[reflector]);
         visibleParts.insert(reflector);
     }
-    recorder.metric("reflective_pct", kit::percent(reflective, gbuffer.surface.size()), "%");
+    recorder.metric("reflective_pct", kit::percent(reflective, surfaces.size()), "%");
     if (reflective > 0) recorder.metric("planar_pct", kit::percent(planar, reflective), "%");
     // Objects, as the thesis counts them; parts are what the clusters are made of.
     recorder.metric("visible_reflectors", static_cast<double>(visible.size()), "reflector");
@@ -136,6 +138,10 @@ const ClusteredReflections::Truth& ClusteredReflections::truthOf(const HostGBuff
     truth_->view = gbuffer.view;
     truth_->poses.assign(poses.begin(), poses.end());
     frame_->truth->update(frame_->objects, *frame_->untimed);
+    if (!params_.drawsReflections() && !params_.showsPictures) {
+        truth_->samples = frame_->truth->traceMirrorRays(gbuffer);
+        return *truth_;
+    }
     truth_->samples = frame_->truth->trace(gbuffer);
     truth_->picture = frame_->pictureOf(*gbuffer_, truth_->samples);
     if (convergedTracer_) {
@@ -168,19 +174,15 @@ void ClusteredReflections::recordErrors(technique::Recorder& recorder, const Hos
     recorder.image("error_50", kit::errorPicture(picture, truth, 50), seenFrom(gbuffer.view));
 }
 
-void ClusteredReflections::recordClusters(technique::Recorder& recorder, const HostGBuffer& gbuffer,
-                                          const image::ImageF& picture) {
-    const auto clusterOfSample = clusteredTracer_->clusters().clusterOfSample.read<std::uint16_t>(
-        GL_RED_INTEGER, GL_UNSIGNED_SHORT, 1);
+void ClusteredReflections::recordClusters(technique::Recorder& recorder) {
+    recorder.metric("clusters", clusteredTracer_->clusterCount(), "cluster");
+    if (!params_.drawsReflections()) return;
+    const std::vector<std::uint16_t> clusterOfSample = readClusters();
     const auto clustered = static_cast<std::size_t>(
         std::ranges::count_if(clusterOfSample, [](std::uint16_t c) { return c != 0; }));
     const std::vector<std::uint8_t> environment = clusteredTracer_->environmentSamples();
     const auto fallen = static_cast<std::size_t>(
         std::ranges::count_if(environment, [](std::uint8_t mark) { return mark != 0; }));
-    recorder.metric("clusters", clusteredTracer_->clusterCount(), "cluster");
-    if (params_.measuresErrors && hasReflections_)
-        recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
-    if (!params_.drawsReflections()) return;
     if (clustered > 0) recorder.metric("environment_pct", kit::percent(fallen, clustered), "%");
     const ClusteredTracer::Drawn drawn = clusteredTracer_->drawn();
     recorder.metric("drawn_triangles", static_cast<double>(drawn.triangles), "triangle");
@@ -190,11 +192,24 @@ void ClusteredReflections::recordClusters(technique::Recorder& recorder, const H
                         static_cast<double>(drawn.texels) / static_cast<double>(clustered),
                         "texel");
     }
-    if (params_.showsPictures) {
-        recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling),
-                       seenFrom(gbuffer.view));
-        frame_->recordMarks(recorder, "environment", gbuffer, picture, environment);
-    }
+}
+
+std::vector<std::uint16_t> ClusteredReflections::readClusters() const {
+    return clusteredTracer_->clusters().clusterOfSample.read<std::uint16_t>(GL_RED_INTEGER,
+                                                                            GL_UNSIGNED_SHORT, 1);
+}
+
+void ClusteredReflections::recordClusterErrors(technique::Recorder& recorder,
+                                               const HostGBuffer& gbuffer,
+                                               const image::ImageF& picture) {
+    const std::vector<std::uint16_t> clusterOfSample = readClusters();
+    if (params_.measuresErrors && hasReflections_)
+        recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
+    if (!params_.showsPictures || !params_.drawsReflections()) return;
+    recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling),
+                   seenFrom(gbuffer.view));
+    frame_->recordMarks(recorder, "environment", gbuffer, picture,
+                        clusteredTracer_->environmentSamples());
 }
 
 /// By reflector id, 1 where its mesh has this name. Throws Error where none has.

@@ -43,10 +43,10 @@ class ReflectionReuse final : public technique::Technique {
     const reflections::GBuffer& gbuffer() const;
     const reflections::ReflectionTarget& reflection() const;
 
-    void recordReuse(technique::Recorder& recorder);
+    void recordReuse(technique::Recorder& recorder, const ReuseCounts& counts);
     void keepLeastRecomputeTime();
     void recordRecomputeFit(technique::Recorder& recorder, const ReuseCounts& counts);
-    void recordMatches(technique::Recorder& recorder);
+    void recordMatches(technique::Recorder& recorder, const ReuseCounts& counts);
     image::ImageF truthOf(const reflections::HostGBuffer& gbuffer);
     void recordErrors(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
                       const image::ImageF& picture, const image::ImageF& truth);

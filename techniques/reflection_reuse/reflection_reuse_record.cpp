@@ -21,6 +21,10 @@ using reflections::HostGBuffer;
 
 namespace {
 
+bool isReflective(std::uint32_t surface) {
+    return reflections::reflectorOf(surface) != 0;
+}
+
 std::vector<glm::vec2> readOffsets(const Offsets& offsets) {
     const std::vector<float> values = offsets.offset.read<float>(GL_RG, GL_FLOAT, 2);
     std::vector<glm::vec2> pairs;
@@ -114,11 +118,9 @@ image::ImageF shiftedPicture(const HostGBuffer& key, const std::vector<glm::vec4
 }  // namespace
 
 void ReflectionReuse::record(technique::Recorder& recorder) {
-    const HostGBuffer host = reflections::readGBuffer(gbuffer());
-    std::size_t reflective = 0;
-    for (std::size_t i = 0; i < host.surface.size(); ++i)
-        reflective += host.isReflective(i) ? 1 : 0;
-    recorder.metric("reflective_pct", kit::percent(reflective, host.surface.size()), "%");
+    const std::vector<std::uint32_t> surfaces = reflections::readSurfaces(gbuffer());
+    const auto reflective = static_cast<std::size_t>(std::ranges::count_if(surfaces, isReflective));
+    recorder.metric("reflective_pct", kit::percent(reflective, surfaces.size()), "%");
     if (reflective == 0) frame_->scene.printEmptyView();
     const std::size_t frameBytes =
         renderer_ ? renderer_->sizeBytes()
@@ -127,21 +129,22 @@ void ReflectionReuse::record(technique::Recorder& recorder) {
         "memory_bytes",
         static_cast<double>(frameBytes + frame_->composite.sizeBytes() + tracer_->sizeBytes()),
         "byte");
-    if (renderer_) recordReuse(recorder);
+    const ReuseCounts counts = renderer_ ? renderer_->counts() : ReuseCounts{};
+    if (renderer_) recordReuse(recorder, counts);
     // A key frame is traced, and has nothing to be judged by; the next frame shows it
     // (`key_frame`).
-    const bool isKeyFrame = renderer_ && renderer_->counts().isKeyFrame;
-    const bool isJudged = params_.measuresErrors && !isKeyFrame && reflective > 0;
-    const bool isShown = params_.showsPictures && !(isKeyFrame && frameIndex_ + 1 < frameCount_);
+    const bool isJudged = params_.measuresErrors && !counts.isKeyFrame && reflective > 0;
+    const bool isShown =
+        params_.showsPictures && !(counts.isKeyFrame && frameIndex_ + 1 < frameCount_);
     if (!isJudged && !isShown) return;
+    const HostGBuffer host = reflections::readGBuffer(gbuffer());
     const image::ImageF picture = frame_->composite.read();
     const image::ImageF truth = params_.measuresErrors ? truthOf(host) : image::ImageF();
     if (isJudged) recordErrors(recorder, host, picture, truth);
     if (isShown) recordPictures(recorder, host, picture, truth);
 }
 
-void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
-    const ReuseCounts counts = renderer_->counts();
+void ReflectionReuse::recordReuse(technique::Recorder& recorder, const ReuseCounts& counts) {
     const double recomputedPct = kit::percent(counts.recomputedSamples, counts.reflectiveSamples);
     recorder.metric("is_key_frame", counts.isKeyFrame ? 1.0 : 0.0, "1");
     recorder.metric("recomputed_samples", counts.recomputedSamples, "sample");
@@ -155,7 +158,7 @@ void ReflectionReuse::recordReuse(technique::Recorder& recorder) {
         return;
     }
     if (counts.reflectiveSamples > 0) recorder.metric("recomputed_pct", recomputedPct, "%");
-    if (params_.method == Method::Reuse) recordMatches(recorder);
+    if (params_.method == Method::Reuse) recordMatches(recorder, counts);
 }
 
 /// Whether the time follows the number of samples, over all frames that have been rendered, in the
@@ -173,29 +176,30 @@ void ReflectionReuse::recordRecomputeFit(technique::Recorder& recorder, const Re
     recorder.metric("recompute_fit_fixed_ms", fit->intercept, "ms");
 }
 
-void ReflectionReuse::recordMatches(technique::Recorder& recorder) {
-    const HostReflectionDepthImage key = readReflectionDepthImage(renderer_->keyFrame());
+void ReflectionReuse::recordMatches(technique::Recorder& recorder, const ReuseCounts& counts) {
+    const ReflectionDepthImage& key = renderer_->keyFrame();
+    const std::vector<std::uint32_t> surfaces = reflections::readSurfaces(key.gbuffer);
     const std::vector<glm::vec2> offsets = readOffsets(renderer_->offsets());
     std::size_t reflective = 0, unmatched = 0;
     for (std::size_t i = 0; i < offsets.size(); ++i) {
-        if (!key.gbuffer.isReflective(i)) continue;
+        if (!isReflective(surfaces[i])) continue;
         ++reflective;
         unmatched += isValid(offsets[i]) ? 0 : 1;
     }
     if (reflective == 0) return;
-    recorder.metric("matching_steps", renderer_->counts().matchingSteps, "step");
+    recorder.metric("matching_steps", counts.matchingSteps, "step");
     recorder.metric("unmatched_pct", kit::percent(unmatched, reflective), "%");
     if (renderer_->shifted()) {
         const std::vector<glm::vec4> shifted = readRadiance(renderer_->shifted()->radiance);
         std::size_t unshifted = 0;
         for (std::size_t i = 0; i < shifted.size(); ++i) {
-            unshifted += key.gbuffer.isReflective(i) && shifted[i].a <= 0.5F ? 1 : 0;
+            unshifted += isReflective(surfaces[i]) && shifted[i].a <= 0.5F ? 1 : 0;
         }
         recorder.metric("unshifted_pct", kit::percent(unshifted, reflective), "%");
     }
     if (params_.exhaustiveSamples == 0) return;
-    const MatchCheck check = checkMatches(key, offsets, view_.eyeWorld, params_.reuse.matching,
-                                          params_.exhaustiveSamples);
+    const MatchCheck check = checkMatches(readReflectionDepthImage(key), offsets, view_.eyeWorld,
+                                          params_.reuse.matching, params_.exhaustiveSamples);
     recorder.metric("wrong_minimum_pct", kit::percent(check.wrong, check.checked), "%");
 }
 

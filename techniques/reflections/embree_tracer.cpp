@@ -110,8 +110,11 @@ void EmbreeTracer::traceWanted(const GBuffer& gbuffer, const gl::Texture& wanted
     wantedSamples_.write(found, target);
 }
 
-std::vector<TracedSample> EmbreeTracer::trace(const HostGBuffer& gbuffer,
-                                              const std::vector<std::uint8_t>* wanted) const {
+/// What `trace` gives for the pixels of reflective samples, of all or of those that are wanted.
+template <class Trace>
+std::vector<TracedSample> EmbreeTracer::samplesOf(const HostGBuffer& gbuffer,
+                                                  const std::vector<std::uint8_t>* wanted,
+                                                  const Trace& trace) const {
     GFXREPRO_ASSERT(rays_.has_value());
     const glm::ivec2 sizePx = gbuffer.view.sizePx;
     std::vector<TracedSample> samples(gbuffer.depthM.size());
@@ -122,11 +125,26 @@ std::vector<TracedSample> EmbreeTracer::trace(const HostGBuffer& gbuffer,
                 const std::size_t index = gbuffer.indexOf({x, y});
                 if (!gbuffer.isReflective(index)) continue;
                 if (wanted != nullptr && (*wanted)[index] == 0) continue;
-                samples[index] = traceSample(gbuffer, {x, y});
+                samples[index] = trace(glm::ivec2(x, y));
             }
         }
     });
     return samples;
+}
+
+std::vector<TracedSample> EmbreeTracer::trace(const HostGBuffer& gbuffer,
+                                              const std::vector<std::uint8_t>* wanted) const {
+    return samplesOf(gbuffer, wanted,
+                     [&](glm::ivec2 pixel) { return traceSample(gbuffer, pixel); });
+}
+
+std::vector<TracedSample> EmbreeTracer::traceMirrorRays(const HostGBuffer& gbuffer) const {
+    return samplesOf(gbuffer, nullptr, [&](glm::ivec2 pixel) {
+        TracedSample sample;
+        const auto hit = closestHit(gbuffer.positionWorld(pixel), gbuffer.mirrorDirection(pixel));
+        if (hit) sample = {glm::vec3(0.0F), hit->distance, 1 + hit->instance};
+        return sample;
+    });
 }
 
 // [xie2017] Sec. 4.6: the lobe, its fading towards the far plane; the diffuse colour stands in for
@@ -137,14 +155,11 @@ TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pi
     const float diagonalM = scene_.diagonalM();
     const glm::vec3 origin = gbuffer.positionWorld(pixel);
     const glm::vec3 mirrorDirection = gbuffer.mirrorDirection(pixel);
-    const auto closestHit = [&](const glm::vec3& direction) {
-        return rays_->closestHit(origin, direction, kStart * diagonalM);
-    };
 
     const glm::vec3 beam =
         scene_.textureFilter() == TextureFilter::Footprint ? gbuffer.beam(pixel) : glm::vec3(0.0F);
     TracedSample sample;
-    const std::optional<raycast::Hit> mirrorHit = closestHit(mirrorDirection);
+    const std::optional<raycast::Hit> mirrorHit = closestHit(origin, mirrorDirection);
     if (mirrorHit) {
         sample.distanceM = mirrorHit->distance;
         sample.object = 1 + mirrorHit->instance;
@@ -160,7 +175,7 @@ TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pi
     float weights = 0.0F;
     for (int i = 0; i < count; ++i) {
         const glm::vec3 direction = lobeDirection(lobe_, mirrorDirection, glossiness, i, count);
-        const std::optional<raycast::Hit> hit = closestHit(direction);
+        const std::optional<raycast::Hit> hit = closestHit(origin, direction);
         if (!hit) continue;
         const float weight = fadeOf(lobe_, glossiness, hit->distance, diagonalM);
         if (weight > 0.0F) {

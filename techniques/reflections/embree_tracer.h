@@ -41,6 +41,8 @@ class EmbreeTracer final : public ReflectionTracer {
     /// update() before.
     std::vector<TracedSample> trace(const HostGBuffer& gbuffer,
                                     const std::vector<std::uint8_t>* wanted = nullptr) const;
+    /// Likewise, without radiance: for what asks only where mirror rays end.
+    std::vector<TracedSample> traceMirrorRays(const HostGBuffer& gbuffer) const;
     /// Of the last update().
     const raycast::RayTracer& rays() const { return *rays_; }
 
@@ -48,6 +50,14 @@ class EmbreeTracer final : public ReflectionTracer {
     void readEnvironment();
     void traceWanted(const GBuffer& gbuffer, const gl::Texture& wanted, ReflectionTarget& target,
                      gl::Profiler& profiler);
+    template <class Trace>
+    std::vector<TracedSample> samplesOf(const HostGBuffer& gbuffer,
+                                        const std::vector<std::uint8_t>* wanted,
+                                        const Trace& trace) const;
+    std::optional<raycast::Hit> closestHit(const glm::vec3& origin,
+                                           const glm::vec3& direction) const {
+        return rays_->closestHit(origin, direction, kStart * scene_.diagonalM());
+    }
     TracedSample traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel) const;
     glm::vec3 radianceAt(const raycast::Hit& hit, const glm::vec3& direction, float beamArea) const;
 

@@ -1,5 +1,7 @@
 #include "techniques/reflections/gbuffer.h"
 
+#include <tbb/parallel_for.h>
+
 #include <array>
 #include <cmath>
 #include <limits>
@@ -136,15 +138,21 @@ HostGBuffer readGBuffer(const GBuffer& gbuffer) {
     const std::vector<float> diffuse = gbuffer.diffuse.read<float>(GL_RGB, GL_FLOAT, 3);
     const std::vector<float> normals = gbuffer.normal.read<float>(GL_RG, GL_FLOAT, 2);
     host.depthM = gbuffer.depth.read<float>(GL_RED, GL_FLOAT, 1);
-    host.surface = gbuffer.surface.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
-    for (std::size_t i = 0; i < host.depthM.size(); ++i) {
-        host.diffuse.push_back(
-            linearColour({diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]}));
-        host.normalOctahedral.emplace_back(normals[2 * i], normals[2 * i + 1]);
-        host.normalWorld.push_back(
-            glm::normalize(directionFromOctahedral(host.normalOctahedral.back())));
-    }
+    host.surface = readSurfaces(gbuffer);
+    const std::size_t samples = host.depthM.size();
+    host.diffuse.resize(samples);
+    host.normalOctahedral.resize(samples);
+    host.normalWorld.resize(samples);
+    tbb::parallel_for(std::size_t{0}, samples, [&](std::size_t i) {
+        host.diffuse[i] = linearColour({diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]});
+        host.normalOctahedral[i] = {normals[2 * i], normals[2 * i + 1]};
+        host.normalWorld[i] = glm::normalize(directionFromOctahedral(host.normalOctahedral[i]));
+    });
     return host;
+}
+
+std::vector<std::uint32_t> readSurfaces(const GBuffer& gbuffer) {
+    return gbuffer.surface.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
 }
 
 float HostGBuffer::glossiness(std::size_t index) const {

@@ -33,6 +33,11 @@ struct GBuffer {
     std::size_t sizeBytes() const;
 };
 
+/// Of a sample of `surface`; 0: none.
+inline int reflectorOf(std::uint32_t surface) {
+    return static_cast<int>(surface & 0xFFFFU);
+}
+
 class GBufferRenderer {
   public:
     GBufferRenderer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene);
@@ -59,7 +64,7 @@ struct HostGBuffer {
                static_cast<std::size_t>(pixel.x);
     }
     bool isReflective(std::size_t index) const { return reflector(index) != 0; }
-    int reflector(std::size_t index) const { return static_cast<int>(surface[index] & 0xFFFFU); }
+    int reflector(std::size_t index) const { return reflectorOf(surface[index]); }
     float glossiness(std::size_t index) const;
     glm::vec3 positionWorld(glm::ivec2 pixel) const;
     /// The mirror direction at a sample: unit.
@@ -75,5 +80,7 @@ glm::vec3 directionFromOctahedral(const glm::vec2& e);
 
 /// Reads back; waits for the device.
 HostGBuffer readGBuffer(const GBuffer& gbuffer);
+/// Likewise, `surface` alone: a sixth of the bytes, and nothing to unpack.
+std::vector<std::uint32_t> readSurfaces(const GBuffer& gbuffer);
 
 }  // namespace gfxrepro::reflections
