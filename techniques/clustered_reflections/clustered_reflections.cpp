@@ -64,6 +64,7 @@ void ClusteredReflections::render(technique::FrameContext& context) {
     // Steps 2 and 3, or what stands for them.
     tracer_->update(frame_->objects, profiler);
     tracer_->trace(*gbuffer_, nullptr, *target_, profiler);
+    if (!params_.drawsReflections()) return;
     const gl::GpuScope scope(profiler, "composite");  // step 3.c.iii
     frame_->composite.render(*gbuffer_, *target_);
 }

@@ -24,7 +24,7 @@ class ClusteredReflections final : public technique::Technique {
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
     const gl::Texture* frameImage() const override {
-        return frame_ ? &frame_->composite.output() : nullptr;
+        return frame_ && params_.drawsReflections() ? &frame_->composite.output() : nullptr;
     }
 
   private:

@@ -66,7 +66,8 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
     if (!params_.measuresErrors && !params_.showsPictures) return;
 
     const HostGBuffer gbuffer = reflections::readGBuffer(*gbuffer_);
-    const image::ImageF picture = frame_->composite.read();
+    const image::ImageF picture =
+        params_.drawsReflections() ? frame_->composite.read() : image::ImageF();
     if (params_.showsPictures) {
         kit::ImageLayers layers = reflections::surfaceLayers(gbuffer, params_.supersampling);
         if (params_.measuresErrors) layers.errors(picture, truthOf(gbuffer).picture);
@@ -138,7 +139,7 @@ const ClusteredReflections::Truth& ClusteredReflections::truthOf(const HostGBuff
     truth_->view = gbuffer.view;
     truth_->poses.assign(poses.begin(), poses.end());
     frame_->truth->update(frame_->objects, *frame_->untimed);
-    if (!params_.drawsReflections() && !params_.showsPictures) {
+    if (!params_.drawsReflections()) {
         truth_->samples = frame_->truth->traceMirrorRays(gbuffer);
         return *truth_;
     }
@@ -205,7 +206,7 @@ void ClusteredReflections::recordClusterErrors(technique::Recorder& recorder,
     const std::vector<std::uint16_t> clusterOfSample = readClusters();
     if (params_.measuresErrors && hasReflections_)
         recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
-    if (!params_.showsPictures || !params_.drawsReflections()) return;
+    if (!params_.showsPictures) return;
     recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling),
                    seenFrom(gbuffer.view));
     frame_->recordMarks(recorder, "environment", gbuffer, picture,
