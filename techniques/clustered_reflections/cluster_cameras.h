@@ -42,10 +42,10 @@ struct CameraSettings {
     /// Beyond the paper: images of more texels for each of their cluster's samples are scaled down
     /// to as many. 0: as many as the paper's w × h are.
     float texelsPerSample = 0.0F;
-    /// The steepest ray, as the tangent of its angle to n_c, that the image is made wide enough
-    /// for; 8: 83°. A steeper one, or one that points away from the far plane, leaves the image at
-    /// its side and takes the environment map from there on. Images for the steepest 7° would be as
-    /// wide as for all others together.
+    /// Departure [xie2017] Sec. 4.4, step 4: the steepest ray, as the tangent of its angle to n_c,
+    /// that the image is made wide enough for; 8: 83°. A steeper one, or one that points away from
+    /// the far plane, leaves the image at its side and takes the environment map from there on.
+    /// Images for the steepest 7° would be as wide as for all others together.
     float maxSlope = 8.0F;
     /// Beyond the paper: the near plane goes through the sample farthest behind the fitting plane,
     /// so that nothing before any sample is cut away.
@@ -59,7 +59,8 @@ constexpr float kLeastHeight = 1e-4F;
 /// Least room between fitting plane and far plane, in scene diagonals: with less, nothing
 /// (kNoRoom).
 constexpr float kLeastRoom = 1e-3F;
-/// f of concave clusters is at most this (Eq. (6) has no bound where their rays meet in a point).
+/// Departure [xie2017] Eq. (6): f of concave clusters is at most this; it has no bound where their
+/// rays meet in a point.
 constexpr int kMaxShift = 16;
 
 /// Cameras of all clusters by reductions on the device, in passes over the sorted samples:

@@ -72,9 +72,11 @@ glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settin
 std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene& scene);
 
 /// Whether two parts of one object bend to different sides, as in- and outside of a bowl do: they
-/// lie back to back, and what leaves the one does not meet the other. Images of the one leave out
-/// the other, which lies as near behind them as a wall is thin, and curved surfaces rise before a
-/// near plane. shaders/cull_objects.comp.glsl has the same.
+/// lie back to back, and what leaves the one does not meet the other.
+/// shaders/cull_objects.comp.glsl has the same.
+///
+/// Departure [xie2017] Algorithm 6, step 3.b: images of the one leave out the other, which lies as
+/// near behind them as a wall is thin, and curved surfaces rise before a near plane.
 constexpr bool areBackToBack(std::uint32_t family, std::uint32_t other) {
     return family >> 2 == other >> 2 && family != other && (family & 3U) + (other & 3U) == 3U;
 }

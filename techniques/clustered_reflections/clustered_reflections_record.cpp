@@ -1,13 +1,9 @@
 // What is recorded of a frame: shares, memory, errors, pictures.
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "runner/core/error.h"
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "techniques/clustered_reflections/reflection_errors.h"
 #include "techniques/kit/displayed_errors.h"
@@ -56,13 +52,14 @@ bool isSameView(const kit::View& a, const kit::View& b) {
 
 void ClusteredReflections::record(technique::Recorder& recorder) {
     const std::vector<std::uint32_t> surfaces = reflections::readSurfaces(*gbuffer_);
-    // A view that reflects nothing has no errors: claims on them are left unmeasured.
+    // A view that reflects nothing has no errors and no clusters: claims on them are left
+    // unmeasured.
     hasReflections_ = std::ranges::any_of(
         surfaces, [](std::uint32_t surface) { return reflections::reflectorOf(surface) != 0; });
     if (!hasReflections_) frame_->scene.printEmptyView();
     recordShares(recorder, surfaces);
     recordMemory(recorder);
-    if (clusteredTracer_) recordClusters(recorder);
+    if (clusteredTracer_ && hasReflections_) recordClusters(recorder);
     if (!params_.measuresErrors && !params_.showsPictures) return;
 
     const HostGBuffer gbuffer = reflections::readGBuffer(*gbuffer_);
@@ -213,21 +210,15 @@ void ClusteredReflections::recordClusterErrors(technique::Recorder& recorder,
                         clusteredTracer_->environmentSamples());
 }
 
-/// By reflector id, 1 where its mesh has this name. Throws Error where none has.
+/// By reflector id, 1 where its mesh has this name.
 std::vector<std::uint8_t> ClusteredReflections::reflectorsOf(const std::string& name) const {
     std::vector<std::uint8_t> isNamed(static_cast<std::size_t>(frame_->scene.reflectorCount()) + 1);
-    std::set<std::string> names;
     for (std::size_t i = 0; i < frame_->scene.objects().size(); ++i) {
         const int reflector = frame_->scene.objects()[i].reflector;
         if (reflector == 0) continue;
         const auto mesh = static_cast<std::size_t>(frame_->scene.scene().instances[i].mesh);
-        const std::string& meshName = frame_->scene.scene().meshes[mesh].name;
-        names.insert(meshName);
-        isNamed[static_cast<std::size_t>(reflector)] = meshName == name ? 1 : 0;
-    }
-    if (!names.contains(name)) {
-        throw Error(fmt::format("the scene has no reflector '{}' ('errors_of'); reflectors: {}",
-                                name, fmt::join(names, ", ")));
+        isNamed[static_cast<std::size_t>(reflector)] =
+            frame_->scene.scene().meshes[mesh].name == name ? 1 : 0;
     }
     return isNamed;
 }

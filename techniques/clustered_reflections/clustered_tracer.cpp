@@ -20,9 +20,11 @@ TexelContent contentOf(ImageDrawing drawing) {
 }
 
 /// Which clusters' images show their own reflector ([xie2017] Sec. 4.7.4). The second way: the
-/// concave ones. The thesis looks whether samples lie before the near plane. Here the normals
-/// decide: the sum of (P_i − P_c) · n_i over a cluster's samples is negative where they point
-/// together. The first way: all that are not planar.
+/// concave ones. The first way: all that are not planar.
+///
+/// Departure [xie2017] Sec. 4.7.4: the thesis looks whether samples lie before the near plane, but
+/// a mean plane always has some. Here the normals decide: the sum of (P_i − P_c) · n_i over a
+/// cluster's samples is negative where they point together.
 class ConcavityPass {
   public:
     ConcavityPass(const gl::ShaderLibrary& shaders, bool marksConvex, bool showsBack) {
@@ -99,7 +101,9 @@ struct ClusteredTracer::Impl {
     }
 
     /// Step 3 of Algorithm 6 as the thesis has it: "one cluster's images are freed before the
-    /// next". The table of cameras is read back once a frame, for sizes and culling.
+    /// next". For sizes and culling, which are the host's there (Sec. 4.7.3), the number of
+    /// clusters, their cameras and ranges are read back once a frame: three reads, of which the
+    /// first waits for the device. Images side by side need none.
     void drawOneByOne(const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
                       gl::Profiler& profiler) {
         std::vector<ClusterCamera> table;

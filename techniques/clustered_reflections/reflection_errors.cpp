@@ -62,9 +62,10 @@ bool isClear(const ClusterCamera& camera, const glm::vec3& target, float toleran
         if (!hit) return true;
         const auto reflector =
             static_cast<std::uint32_t>(input.scene.objects()[hit->instance].reflector);
-        const bool isBack =
-            reflector == camera.reflector && !isFacing(*hit, direction, input.scene);
-        if (!leavesOut(camera, reflector, input) && !isBack) return false;
+        const bool isBackLeftOut = reflector == camera.reflector &&
+                                   (camera.flags & kShowsOwnBack) == 0 &&
+                                   !isFacing(*hit, direction, input.scene);
+        if (!leavesOut(camera, reflector, input) && !isBackLeftOut) return false;
         // On behind what is not drawn; at least to the next number, so that
         // this ends.
         start = std::max(hit->distance * (1.0F + 1e-6F), std::nextafter(hit->distance, end));

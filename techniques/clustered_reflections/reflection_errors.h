@@ -46,9 +46,9 @@ struct OcclusionInput {
 /// A hit Q of a sample's mirror ray counts as seen by its cluster's camera when the image has the
 /// object that it lies on, it lies in the camera's frustum, and nothing lies before it on the line
 /// from e_c, but what is before the near plane, and the cluster's own reflector where the image
-/// leaves it out (kShowsOwn is not set) or it faces away. Rays, not images, decide, so that the
-/// measure does not depend on the resolution. Samples whose mirror ray leaves the scene, or ends
-/// before Q (glossy samples' far plane), miss nothing.
+/// leaves it out (kShowsOwn is not set, or it faces away and kShowsOwnBack is not set). Rays, not
+/// images, decide, so that the measure does not depend on the resolution. Samples whose mirror ray
+/// leaves the scene, or ends before Q (glossy samples' far plane), miss nothing.
 ///
 /// Tolerance: kOcclusionTolerance of the scene's diagonal, twice what the truth's own rays pass
 /// over before their surface. The line from e_c to Q of a planar cluster is the mirror ray itself

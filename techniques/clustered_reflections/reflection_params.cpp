@@ -1,6 +1,14 @@
 #include "techniques/clustered_reflections/reflection_params.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <glm/trigonometric.hpp>
+#include <set>
+#include <string>
+
+#include "runner/core/error.h"
+#include "techniques/reflections/reflector_rule.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {
@@ -107,6 +115,15 @@ ClusteredSettings readClustered(config::Params& params) {
 }
 
 }  // namespace
+
+void ReflectionParams::requireScene(const scene::Scene& scene) const {
+    FrameSettings::requireScene(scene);
+    if (errorsOf.empty()) return;
+    const std::set<std::string> names = reflections::reflectorNames(scene, reflectors);
+    if (names.contains(errorsOf)) return;
+    throw Error(fmt::format("the scene has no reflector '{}' ('errors_of'); reflectors: {}",
+                            errorsOf, fmt::join(names, ", ")));
+}
 
 ReflectionParams::ReflectionParams(config::Params& params)
     : method(

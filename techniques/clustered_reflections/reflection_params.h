@@ -29,6 +29,8 @@ struct ReflectionParams : reflections::FrameSettings {
         return method != Method::Clustered || clustered.drawing != ImageDrawing::None;
     }
 
+    /// Throws Error for scenes without reflectors, and without the one that `errorsOf` names.
+    void requireScene(const scene::Scene& scene) const;
     /// Declares the parameters. Throws Error for combinations that mean nothing.
     explicit ReflectionParams(config::Params& params);
 };

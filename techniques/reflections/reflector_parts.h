@@ -1,4 +1,5 @@
-// Reflectors of [xie2017] Sec. 4.3, step 1: the smooth connected parts of objects.
+// Reflectors of [xie2017] Sec. 4.3, step 1. Departure [xie2017] Sec. 4.3: smooth connected parts of
+// objects, where the thesis has whole ones, so that samples far apart share no cluster.
 #pragma once
 
 #include <cstdint>

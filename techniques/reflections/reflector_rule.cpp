@@ -51,7 +51,7 @@ bool reflectsByTexture(const scene::Mesh& mesh, const scene::Material& material,
     return false;
 }
 
-/// What ReflectorRule says.
+/// What ReflectorRule says, of meshes that are not left out.
 bool isReflector(const scene::Scene& scene, const scene::Mesh& mesh, float maxRoughness) {
     if (!isSmooth(scene, mesh, maxRoughness)) return false;
     const scene::Material material = materialOf(scene, mesh);
@@ -89,6 +89,16 @@ bool isSmooth(const scene::Scene& scene, const scene::Mesh& mesh, float maxRough
     }
     const auto texture = static_cast<std::size_t>(material.metallicRoughnessTexture);
     return reflectsByTexture(mesh, material, scene.textures[texture], maxRoughness);
+}
+
+std::set<std::string> reflectorNames(const scene::Scene& scene, const ReflectorRule& rule) {
+    std::set<std::string> names;
+    for (const scene::Instance& instance : scene.instances) {
+        const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+        if (isTransmissive(materialOf(scene, mesh)) || mesh.triangles.empty()) continue;
+        if (isReflector(scene, mesh, rule.maxRoughness)) names.insert(mesh.name);
+    }
+    return names;
 }
 
 void requireReflectors(const scene::Scene& scene, const ReflectorRule& rule) {

@@ -1,6 +1,9 @@
 // Which objects of a scene are reflectors.
 #pragma once
 
+#include <set>
+#include <string>
+
 #include "runner/scene/scene.h"
 
 namespace gfxrepro::reflections {
@@ -22,6 +25,9 @@ struct ReflectorRule {
 /// Throws Error for a scene without triangles, and for one without a reflector: for methods that
 /// measure reflectors only.
 void requireReflectors(const scene::Scene& scene, const ReflectorRule& rule);
+
+/// Names of the meshes of the scene's reflectors.
+std::set<std::string> reflectorNames(const scene::Scene& scene, const ReflectorRule& rule);
 
 /// Whether objects of the material let light through: they are left out, for nothing here refracts.
 bool isTransmissive(const scene::Material& material);

@@ -67,6 +67,7 @@ Reflection reflectionAt(ivec2 pixel, uint cluster) {
             result.radiance += mix(diffuse, colour, fadeOf(glossiness, distance));
             if (i == 0) result.distance = distance;
         } else if (glossiness > 0.0) {
+            // Departure [xie2017] Algorithm 6: not the environment map, but what glossy rays fade to.
             result.radiance += diffuse;
         } else {
             result.radiance += radianceFrom(direction);

@@ -5,8 +5,9 @@
 // the image, as 1 / (k1 + k2·u) is the ray's z, so that both are compared without a division, and
 // "behind" is "smaller". Texels are numbered in the whole texture; the image begins at originPx.
 //
-// SEES_OWN is 1 where the image may show the cluster's own reflector. It counts once the ray has
-// been in front of something by kLeaving: before, it has not left the surface that it starts from.
+// SEES_OWN is 1 where the image may show the cluster's own reflector. Departure [xie2017] Sec. 4.7.4:
+// that counts once the ray has been in front of something by kLeaving: before, it has not left the
+// surface that it starts from.
 
 struct MarchImage {
     mat4 clipFromWorld;  // clip w: z; clip z from −w to w

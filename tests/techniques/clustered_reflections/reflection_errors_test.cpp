@@ -66,6 +66,8 @@ TEST_F(OcclusionTest, TheOwnReflectorIsSeenOnlyWhereTheImageShowsIt) {
     EXPECT_EQ(sight({-1.2F, 0, 0.5F}, 1), Sight::Seen);
     EXPECT_EQ(sight({-4.8F, 1, 5}), Sight::Hidden);  // through the flap, which is drawn now
     EXPECT_EQ(sight({-4.8F, -1, 5}), Sight::Seen);   // but for its back
+    camera_.flags = kShowsOwn | kShowsOwnBack;
+    EXPECT_EQ(sight({-4.8F, -1, 5}), Sight::Hidden);
 }
 
 TEST_F(OcclusionTest, WhatLiesBackToBackIsLeftOut) {

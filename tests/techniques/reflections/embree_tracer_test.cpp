@@ -324,6 +324,26 @@ TEST_F(EmbreeTracerTest, MissesTakeTheMapAsItWasDrawnLast) {
     EXPECT_GT(glowingCount, 5);
 }
 
+TEST_F(EmbreeTracerTest, MirrorRaysEndWhereTheyDoWithRadiance) {
+    const scene::Scene source = mirrorFloorRoom();
+    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
+    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
+    tracer.update(prepared.objects, profiler);
+    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
+    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+    const std::vector<TracedSample> ends = tracer.traceMirrorRays(gbuffer);
+    ASSERT_EQ(ends.size(), samples.size());
+    std::size_t met = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        EXPECT_EQ(ends[i].distanceM, samples[i].distanceM);
+        EXPECT_EQ(ends[i].object, samples[i].object);
+        EXPECT_EQ(ends[i].radiance, glm::vec3(0.0F));
+        met += ends[i].object != 0 ? 1 : 0;
+    }
+    EXPECT_GT(met, samples.size() / 10);
+    EXPECT_EQ(readSurfaces(prepared.gbuffer), gbuffer.surface);
+}
+
 TEST_F(EmbreeTracerTest, WritesWantedSamplesOnly) {
     const scene::Scene source = mirrorFloorRoom();
     Prepared prepared(shaders, source, aboveFloor(), kSizePx);
