@@ -60,7 +60,8 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
     recordShares(recorder, surfaces);
     recordMemory(recorder);
     if (clusteredTracer_ && hasReflections_) recordClusters(recorder);
-    if (!params_.measuresErrors && !params_.showsPictures) return;
+    const bool hasErrors = params_.measuresErrors && hasReflections_;
+    if (!hasErrors && !params_.showsPictures) return;
 
     const HostGBuffer gbuffer = reflections::readGBuffer(*gbuffer_);
     const image::ImageF picture =
@@ -75,9 +76,7 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
         frame_->composite.render(*gbuffer_, *target_, true);
         recorder.image("reflection", frame_->composite.read(), seenFrom(gbuffer.view));
     }
-    if (params_.measuresErrors && hasReflections_ && params_.drawsReflections()) {
-        recordErrors(recorder, gbuffer, picture);
-    }
+    if (hasErrors && params_.drawsReflections()) recordErrors(recorder, gbuffer, picture);
     if (clusteredTracer_) recordClusterErrors(recorder, gbuffer, picture);
 }
 

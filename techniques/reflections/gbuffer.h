@@ -80,7 +80,7 @@ glm::vec3 directionFromOctahedral(const glm::vec2& e);
 
 /// Reads back; waits for the device.
 HostGBuffer readGBuffer(const GBuffer& gbuffer);
-/// Likewise, `surface` alone: a sixth of the bytes, and nothing to unpack.
+/// Likewise, `surface` alone: a fifth of the bytes, and nothing to unpack.
 std::vector<std::uint32_t> readSurfaces(const GBuffer& gbuffer);
 
 }  // namespace gfxrepro::reflections
