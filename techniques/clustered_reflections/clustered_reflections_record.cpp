@@ -54,8 +54,7 @@ void ClusteredReflections::record(technique::Recorder& recorder) {
     const std::vector<std::uint32_t> surfaces = reflections::readSurfaces(*gbuffer_);
     // A view that reflects nothing has no errors and no clusters: claims on them are left
     // unmeasured.
-    hasReflections_ = std::ranges::any_of(
-        surfaces, [](std::uint32_t surface) { return reflections::reflectorOf(surface) != 0; });
+    hasReflections_ = std::ranges::any_of(surfaces, reflections::isReflective);
     if (!hasReflections_) frame_->scene.printEmptyView();
     recordShares(recorder, surfaces);
     recordMemory(recorder);

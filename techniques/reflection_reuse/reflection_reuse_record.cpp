@@ -18,12 +18,9 @@ namespace gfxrepro::reflection_reuse {
 
 using kit::seenFrom;
 using reflections::HostGBuffer;
+using reflections::isReflective;
 
 namespace {
-
-bool isReflective(std::uint32_t surface) {
-    return reflections::reflectorOf(surface) != 0;
-}
 
 std::vector<glm::vec2> readOffsets(const Offsets& offsets) {
     const std::vector<float> values = offsets.offset.read<float>(GL_RG, GL_FLOAT, 2);

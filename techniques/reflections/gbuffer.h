@@ -37,6 +37,9 @@ struct GBuffer {
 inline int reflectorOf(std::uint32_t surface) {
     return static_cast<int>(surface & 0xFFFFU);
 }
+inline bool isReflective(std::uint32_t surface) {
+    return reflectorOf(surface) != 0;
+}
 
 class GBufferRenderer {
   public:
@@ -63,7 +66,7 @@ struct HostGBuffer {
         return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(view.sizePx.x) +
                static_cast<std::size_t>(pixel.x);
     }
-    bool isReflective(std::size_t index) const { return reflector(index) != 0; }
+    bool isReflective(std::size_t index) const { return reflections::isReflective(surface[index]); }
     int reflector(std::size_t index) const { return reflectorOf(surface[index]); }
     float glossiness(std::size_t index) const;
     glm::vec3 positionWorld(glm::ivec2 pixel) const;
