@@ -11,7 +11,6 @@ namespace gfxrepro::claims {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 double relativeDifference(double left, double right) {

@@ -12,6 +12,8 @@
 
 namespace gfxrepro::claims {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// What a claim reads of a group of rows: each operand on each row, the abscissa, what is expected.
 template <class Value>
 struct GroupOf {
@@ -23,8 +25,8 @@ using GroupPoint = GroupOf<double>;
 
 /// The range that the quantity must lie in.
 struct Requirement {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
+    double low = -kInfinity;
+    double high = kInfinity;
     bool isLowExcluded = false;
     bool isHighExcluded = false;
     bool isInfinityAbsence = false;  // crossover alone: what is infinite is not there, and fails

@@ -10,8 +10,6 @@ namespace gfxrepro::claims {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// To the nearest bound, as the share by which a time would differ.
 double ratioToBound(double value, const Requirement& requirement) {
     double nearest = kInfinity;

@@ -11,7 +11,6 @@ namespace {
 using Severity = Finding::Severity;
 using Findings = std::vector<Finding>;
 
-constexpr double kBytesPerGib = 1024.0 * 1024.0 * 1024.0;
 constexpr double kMinFreeDiskBytes = kBytesPerGib;  // a full run of a paper writes images
 // A pass of the shipped tables takes 10 µs or more: a coarser step shows in its last digit.
 constexpr double kMaxTimerStepNs = 1000.0;

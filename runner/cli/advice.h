@@ -10,6 +10,8 @@
 
 namespace gfxrepro::cli {
 
+inline constexpr double kBytesPerGib = 1024.0 * 1024.0 * 1024.0;
+
 struct DeviceFacts {
     int index = 0;
     std::string renderer;

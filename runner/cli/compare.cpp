@@ -69,7 +69,8 @@ regression::CaseTexts unexpectedFailures(const run::StoredRun& run,
 Measured readMeasured(const fs::path& runDir) {
     const run::StoredRun run = run::readRun(runDir);
     regression::CaseParams params;
-    for (const run::Case& item : run.plan.cases) params[item.id] = item.recordedParams().dump();
+    for (const run::Case& item : run.plan.cases)
+        params[item.id] = item.recordedParams().toJson().dump();
     Measured measured{regression::seriesOf(run.records, params),
                       regression::failuresOf(run.records, params),
                       regression::voidTimesOf(run.records, params),
@@ -226,8 +227,8 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
 }
 
 /// `configs` by table, as far as they are known.
-void annotate(const regression::Comparison& comparison,
-              const std::map<std::string, std::string>& configs) {
+void annotateChanges(const regression::Comparison& comparison,
+                     const std::map<std::string, std::string>& configs) {
     const auto fileOf = [&](const std::string& table) {
         const auto found = configs.find(table);
         return SourceLocation{found == configs.end() ? "" : found->second, 0, 0};
@@ -324,7 +325,7 @@ int compare(const CompareOptions& options) {
     writeFileAtomic(folder / "benchmark.json",
                     regression::smallerIsBetterJson(comparison.differences));
     sayAll(comparison, folder);
-    annotate(comparison, newer.configs);
+    annotateChanges(comparison, newer.configs);
     return exitCodeOf(comparison, newer.unexpected);
 }
 

@@ -33,8 +33,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kBytesPerGib = 1024.0 * 1024.0 * 1024.0;
-
 Json devicesJson(const std::vector<gl::DeviceReport>& reports) {
     Json devices = Json::array();
     for (const gl::DeviceReport& report : reports) {

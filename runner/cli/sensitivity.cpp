@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::chrono::hours kRunLimit{24};  // its cases have limits of their own
+constexpr std::chrono::hours kSensitivityRunLimit{24};  // its cases have limits of their own
 
 /// Of a table of times its other claims alone: in the quality lane a time is none.
 const std::vector<std::string> kOnceForQuality = {"measure.lane=quality", "measure.warmup=0",
@@ -88,7 +88,7 @@ studies::Outcome measureNext(Study& study, const Selection& selection) {
     sets.insert(sets.end(), study.sets.begin(), study.sets.end());
     sets.insert(sets.end(), variation.sets.begin(), variation.sets.end());
     for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
-    const run::ProgramEnd end = run::runToEnd(arguments, kRunLimit);
+    const run::ProgramEnd end = run::runToEnd(arguments, kSensitivityRunLimit);
     const bool isAnswer = end.exitCode == kExitOk || end.exitCode == kExitUsage;
     if (!isAnswer) study.isIncomplete = true;
     if (end.exitCode != kExitOk && end.exitCode != kExitIncomplete) {

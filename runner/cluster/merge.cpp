@@ -1,6 +1,7 @@
 #include "runner/cluster/merge.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <map>

@@ -172,7 +172,7 @@ long long sceneSeed(const Node& node) {
 }
 
 /// A map, empty where the section is not there.
-Node mapOf(const Node& document, std::string_view key) {
+Node mapAt(const Node& document, std::string_view key) {
     const Node* node = document.find(key);
     if (!node || node->isNull()) return Node::map({}, document.location());
     if (!node->isMap()) throwNotAllowed(*node, key, "a map");
@@ -180,7 +180,7 @@ Node mapOf(const Node& document, std::string_view key) {
 }
 
 Node paramsByScene(const Node& document) {
-    Node scenes = mapOf(document, "params_by_scene");
+    Node scenes = mapAt(document, "params_by_scene");
     for (const auto& [scene, params] : scenes.entries()) {
         if (!params.isMap()) {
             throwNotAllowed(params, "params_by_scene: '" + scene + "'", "a map {name: value}");
@@ -225,14 +225,14 @@ void readMeasurement(const Node& document, Experiment& experiment) {
         return node ? *node : Node();
     };
     experiment.technique = lineOf(*document.find("technique"), "technique");
-    experiment.params = mapOf(document, "params");
+    experiment.params = mapAt(document, "params");
     experiment.paramsByScene = paramsByScene(document);
-    experiment.paramsInstead = mapOf(document, "params_instead");
+    experiment.paramsInstead = mapAt(document, "params_instead");
     for (const auto& [name, value] : experiment.paramsInstead.entries()) {
         if (Node* given = experiment.params.find(name)) *given = value;
     }
     experiment.scene = section("scene");
-    experiment.sceneParams = mapOf(document, "scene_params");
+    experiment.sceneParams = mapAt(document, "scene_params");
     if (const Node* seed = document.find("scene_seed")) experiment.sceneSeed = sceneSeed(*seed);
     experiment.sceneInstead = section("scene_instead");
     if (!experiment.sceneInstead.isNull() && !experiment.sceneInstead.isMap()) {
@@ -284,7 +284,7 @@ void requireColumns(const Node& fit, const TableNames& names) {
 
 std::map<std::string, std::string> labelsOf(const Node& document) {
     std::map<std::string, std::string> labels;
-    const Node given = mapOf(document, "labels");
+    const Node given = mapAt(document, "labels");
     for (const auto& [name, words] : given.entries()) {
         labels[name] = lineOf(words, "labels: '" + name + "'");
     }

@@ -41,9 +41,9 @@ std::size_t mostValues(std::size_t textBytes) {
 
 /// Builds the tree while the parser walks the text: a tree of the parser's own would be as large as
 /// the plan once more, and search each object for every key that it adds.
-class Builder : public nlohmann::json_sax<Json> {
+class JsonBuilder : public nlohmann::json_sax<Json> {
   public:
-    Builder(SourceLocation where, std::size_t most) : where_(std::move(where)), most_(most) {}
+    JsonBuilder(SourceLocation where, std::size_t most) : where_(std::move(where)), most_(most) {}
 
     int* line() { return &where_.line; }
     Node takeRoot() { return std::move(root_); }
@@ -142,7 +142,7 @@ SourceLocation placeOf(std::string_view text, std::size_t byte, const std::strin
 }  // namespace
 
 Node parseJson(std::string_view text, const std::string& fileName) {
-    Builder builder({fileName, 1, 0}, mostValues(text.size()));
+    JsonBuilder builder({fileName, 1, 0}, mostValues(text.size()));
     const Reader begin{text.data(), builder.line()};
     const Reader end{text.data() + text.size(), builder.line()};
     if (!Json::sax_parse(begin, end, &builder)) {

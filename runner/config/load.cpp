@@ -46,9 +46,9 @@ void refuseTornTexts(const Node& whole) {
     }
 }
 
-class Reader {
+class FileReader {
   public:
-    explicit Reader(fs::path configsFolder) : configsFolder_(std::move(configsFolder)) {}
+    explicit FileReader(fs::path configsFolder) : configsFolder_(std::move(configsFolder)) {}
 
     /// Throws Error beyond: 30 files that extend the next one twice would be read for an hour.
     static constexpr int kMostFiles = 1000;
@@ -352,7 +352,7 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
         throw UsageError("profile '" + profile +
                          "'; allowed: " + joined(Names(kProfiles.begin(), kProfiles.end())));
     }
-    auto [document, overlays] = Reader(configsFolder).read(file);
+    auto [document, overlays] = FileReader(configsFolder).read(file);
     Node::Sequence declared;
     for (const char* name : {"quick", "paper"}) {
         const bool isDeclared = std::any_of(overlays.begin(), overlays.end(),

@@ -17,9 +17,9 @@ namespace gfxrepro::config {
 namespace {
 
 using Names = std::vector<std::string>;
-using Type = ProgramParam::Type;
+using ParamType = ProgramParam::Type;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 bool isSnakeCase(std::string_view name) {
     return !name.empty() && std::islower(static_cast<unsigned char>(name.front())) &&
@@ -33,13 +33,13 @@ double optionalNumber(const Node& map, const char* key, double fallback) {
     return node ? node->asDouble() : fallback;
 }
 
-constexpr std::pair<std::string_view, Type> kTypes[] = {{"integer", Type::Integer},
-                                                        {"number", Type::Number},
-                                                        {"boolean", Type::Boolean},
-                                                        {"text", Type::Text}};
+constexpr std::pair<std::string_view, ParamType> kTypes[] = {{"integer", ParamType::Integer},
+                                                             {"number", ParamType::Number},
+                                                             {"boolean", ParamType::Boolean},
+                                                             {"text", ParamType::Text}};
 
 /// As it is said, else as the default looks.
-Type typeOf(const Node& map, const Node& fallback, const std::string& what) {
+ParamType typeOf(const Node& map, const Node& fallback, const std::string& what) {
     const Node* choices = map.find("choices");
     const Node* type = map.find("type");
     if (type) {
@@ -49,10 +49,10 @@ Type typeOf(const Node& map, const Node& fallback, const std::string& what) {
         throwNotAllowed(*type, what + ": type",
                         choices ? "none beside 'choices'" : "integer, number, boolean, text");
     }
-    if (choices) return Type::Choice;
-    if (fallback.tryBool()) return Type::Boolean;
-    if (fallback.tryInteger()) return Type::Integer;
-    return fallback.tryDouble() ? Type::Number : Type::Text;
+    if (choices) return ParamType::Choice;
+    if (fallback.tryBool()) return ParamType::Boolean;
+    if (fallback.tryInteger()) return ParamType::Integer;
+    return fallback.tryDouble() ? ParamType::Number : ParamType::Text;
 }
 
 /// One of a list that is known only now.
@@ -112,9 +112,9 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
     param.doc = optionalLine(map, "doc", what);
     param.unit = optionalLine(map, "unit", what);
     param.type = typeOf(map, *fallback, what);
-    param.min = optionalNumber(map, "min", -kInfinity);
-    param.max = optionalNumber(map, "max", kInfinity);
-    const bool isNumber = param.type == Type::Integer || param.type == Type::Number;
+    param.min = optionalNumber(map, "min", -kNoLimit);
+    param.max = optionalNumber(map, "max", kNoLimit);
+    const bool isNumber = param.type == ParamType::Integer || param.type == ParamType::Number;
     for (const char* key : {"min", "max"}) {
         if (map.find(key) && !isNumber) {
             throw Error(map.keyLocation(key), what + ": '" + key + "' is of numbers alone");
@@ -128,15 +128,15 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
     }
     const auto value = fallback->tryDouble();
     const auto whole = fallback->tryInteger();
-    if (param.type == Type::Integer && whole && !std::in_range<int>(*whole)) {
+    if (param.type == ParamType::Integer && whole && !std::in_range<int>(*whole)) {
         throwNotAllowed(*fallback, what + ": default",
                         "a whole number of 32 bits, or 'type: number' beside it");
     }
-    const bool isWhole = param.type != Type::Integer || whole;
+    const bool isWhole = param.type != ParamType::Integer || whole;
     const bool isLegal =
         isNumber ? value && isWhole && *value >= param.min && *value <= param.max
-        : param.type == Type::Boolean ? fallback->tryBool().has_value()
-        : param.type == Type::Choice
+        : param.type == ParamType::Boolean ? fallback->tryBool().has_value()
+        : param.type == ParamType::Choice
             ? std::ranges::find(param.choices, fallback->text()) != param.choices.end()
             : true;
     if (!isLegal) throwNotAllowed(*fallback, what + ": default", "one of the values it may have");

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostUnwrittenBytes = std::size_t{1} << 20;
 
-[[noreturn]] void fail(const char* what, const fs::path& path) {
+[[noreturn]] void failToWrite(const char* what, const fs::path& path) {
     throw Error(std::string("cannot ") + what + ' ' + path.string() + ": " + std::strerror(errno));
 }
 
@@ -44,7 +44,7 @@ AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
     temporary_ += ".tmp" + std::to_string(::getpid());
     constexpr int kSafe = O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // no link, no pipe's reader
     file_ = Descriptor(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | kSafe, 0644));
-    if (file_.get() < 0) fail("write", temporary_);
+    if (file_.get() < 0) failToWrite("write", temporary_);
 }
 
 AtomicFile::~AtomicFile() {
@@ -65,7 +65,7 @@ void AtomicFile::put(std::string_view text) {
     while (!text.empty()) {
         const ssize_t written = ::write(file_.get(), text.data(), text.size());
         if (written < 0 && errno == EINTR) continue;
-        if (written < 0) fail("write", path_);
+        if (written < 0) failToWrite("write", path_);
         text.remove_prefix(static_cast<std::size_t>(written));
     }
 }
@@ -73,8 +73,8 @@ void AtomicFile::put(std::string_view text) {
 void AtomicFile::commit() {
     put(unwritten_);
     unwritten_.clear();
-    if (::fsync(file_.get()) != 0) fail("flush", temporary_);
-    if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename to", path_);
+    if (::fsync(file_.get()) != 0) failToWrite("flush", temporary_);
+    if (::rename(temporary_.c_str(), path_.c_str()) != 0) failToWrite("rename to", path_);
     temporary_.clear();
 }
 

@@ -2,7 +2,6 @@
 // assertion.
 #pragma once
 
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -68,12 +67,11 @@ namespace detail {
         if (!(condition)) ::gfxrepro::detail::assertionFailed(#condition, "", __FILE__, __LINE__); \
     } while (false)
 
-#define GFXREPRO_ASSERT_EQ(a, b)                                                              \
-    do {                                                                                      \
-        if (!((a) == (b))) {                                                                  \
-            std::ostringstream gfxreproValues;                                                \
-            gfxreproValues << (a) << " vs " << (b);                                           \
-            ::gfxrepro::detail::assertionFailed(#a " == " #b, gfxreproValues.str(), __FILE__, \
-                                                __LINE__);                                    \
-        }                                                                                     \
+/// Of two integers: says both.
+#define GFXREPRO_ASSERT_EQ(a, b)                                                                   \
+    do {                                                                                           \
+        if (!((a) == (b))) {                                                                       \
+            ::gfxrepro::detail::assertionFailed(                                                   \
+                #a " == " #b, std::to_string(a) + " vs " + std::to_string(b), __FILE__, __LINE__); \
+        }                                                                                          \
     } while (false)

@@ -11,7 +11,7 @@ namespace gfxrepro::gl {
 namespace {
 
 // What is used of nvml.h, whose binary interface is stable: functions by their versioned names.
-using Device = void*;
+using NvmlDevice = void*;
 using Count = unsigned int;
 constexpr int kSuccess = 0;
 constexpr int kTooSmall = 7;  // NVML_ERROR_INSUFFICIENT_SIZE
@@ -68,12 +68,12 @@ class Nvml {
         return unit * value;
     }
 
-    std::vector<Device> devices() const {
+    std::vector<NvmlDevice> devices() const {
         Count count = 0;
         if (call("nvmlDeviceGetCount_v2", &count) != kSuccess) return {};
-        std::vector<Device> devices;
+        std::vector<NvmlDevice> devices;
         for (Count i = 0; i < count; ++i) {
-            Device device = nullptr;
+            NvmlDevice device = nullptr;
             if (call("nvmlDeviceGetHandleByIndex_v2", i, &device) == kSuccess) {
                 devices.push_back(device);
             }
@@ -82,7 +82,7 @@ class Nvml {
     }
 
     /// "GPU-00112233-…" without its beginning, in lower case.
-    std::string uuid(Device device) const {
+    std::string uuid(NvmlDevice device) const {
         std::array<char, 96> text{};
         const int status =
             call("nvmlDeviceGetUUID", device, text.data(), static_cast<Count>(text.size()));
@@ -92,7 +92,7 @@ class Nvml {
         return uuid;
     }
 
-    void addProcesses(const char* name, Device device, std::vector<int>& ids) const {
+    void addProcesses(const char* name, NvmlDevice device, std::vector<int>& ids) const {
         Count count = 0;
         if (call(name, device, &count, static_cast<Process*>(nullptr)) != kTooSmall) return;
         std::vector<Process> processes(count + 8);  // some may have begun since
@@ -117,12 +117,12 @@ const Nvml& nvml() {
 
 std::vector<std::string> nvidiaGpus() {
     std::vector<std::string> uuids;
-    for (Device device : nvml().devices()) uuids.push_back(nvml().uuid(device));
+    for (NvmlDevice device : nvml().devices()) uuids.push_back(nvml().uuid(device));
     return uuids;
 }
 
 std::optional<GpuReading> readGpu(const std::string& uuid) {
-    for (Device device : nvml().devices()) {
+    for (NvmlDevice device : nvml().devices()) {
         if (nvml().uuid(device) != uuid) continue;
         const Nvml& library = nvml();
         GpuReading reading;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runner/core/error.h"
+#include "runner/image/limits.h"
 #include "runner/image/resample.h"
 #include "runner/image/text.h"
 
@@ -15,7 +16,6 @@ namespace gfxrepro::image {
 
 namespace {
 
-constexpr int kMaxSidePx = 32768;
 constexpr std::uint8_t kGround = 96, kInk = 255;
 constexpr int kBelowCaptionPx = 3;
 

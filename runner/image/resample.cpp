@@ -7,13 +7,12 @@
 #include <cmath>
 
 #include "runner/core/error.h"
+#include "runner/image/limits.h"
 #include "runner/image/srgb.h"
 
 namespace gfxrepro::image {
 
 namespace {
-
-constexpr int kMaxSidePx = 32768;
 
 void check(int width, int height, const Rectangle& part, int scale) {
     const std::string found =

@@ -45,9 +45,9 @@ bool advance(Deal& deal, std::size_t count) {
 }
 
 /// Welch's t of every tile for any deal, of sums that are made once.
-class Statistic {
+class WelchStatistic {
   public:
-    explicit Statistic(Samples samples) : samples_(std::move(samples)) {
+    explicit WelchStatistic(Samples samples) : samples_(std::move(samples)) {
         const std::size_t tiles = samples_.front().size();
         sums_.assign(tiles, 0.0);
         squares_.assign(tiles, 0.0);
@@ -152,11 +152,11 @@ class Statistic {
 };
 
 /// Of every deal, or of so many; that of the pictures as they are first.
-std::vector<Statistic::Outcome> outcomesOf(const Statistic& statistic, std::size_t count,
-                                           std::size_t chosen) {
+std::vector<WelchStatistic::Outcome> outcomesOf(const WelchStatistic& statistic, std::size_t count,
+                                                std::size_t chosen) {
     Deal deal(chosen);
     std::iota(deal.begin(), deal.end(), std::size_t{0});
-    std::vector<Statistic::Outcome> values = {statistic.of(deal)};
+    std::vector<WelchStatistic::Outcome> values = {statistic.of(deal)};
     if (waysOf(count, chosen) <= static_cast<double>(kMostDeals)) {
         while (advance(deal, count)) values.push_back(statistic.of(deal));
         return values;
@@ -182,10 +182,10 @@ double medianOf(std::vector<double> values) {
 }
 
 /// The least t that comes to a p of kSeenAtP or less; +∞ where none does.
-double criticalOf(const std::vector<Statistic::Outcome>& outcomes, std::size_t tileCount,
+double criticalOf(const std::vector<WelchStatistic::Outcome>& outcomes, std::size_t tileCount,
                   int freedom) {
     std::vector<double> all;
-    for (const Statistic::Outcome& outcome : outcomes) all.push_back(outcome.largest);
+    for (const WelchStatistic::Outcome& outcome : outcomes) all.push_back(outcome.largest);
     std::ranges::sort(all, std::greater<>());
     const auto allowed = static_cast<std::size_t>(kSeenAtP * static_cast<double>(all.size()));
     if (allowed == 0) return kInfinity;
@@ -244,13 +244,13 @@ MeanTest testMeans(std::span<const std::vector<double>> a, std::span<const std::
         total += std::accumulate(sample.begin(), sample.end(), 0.0);
     }
     const auto values = static_cast<double>(samples.size() * samples.front().size());
-    const Statistic statistic(std::move(samples));
-    const std::vector<Statistic::Outcome> all = outcomesOf(statistic, 2 * count, count);
-    const auto asLarge = std::ranges::count_if(all, [&](const Statistic::Outcome& one) {
+    const WelchStatistic statistic(std::move(samples));
+    const std::vector<WelchStatistic::Outcome> all = outcomesOf(statistic, 2 * count, count);
+    const auto asLarge = std::ranges::count_if(all, [&](const WelchStatistic::Outcome& one) {
         return one.largest >= all.front().largest * (1.0 - kRounding);
     });
     const double logNoise = std::abs(all.front().logNoise);
-    const auto asUnlike = std::ranges::count_if(all, [&](const Statistic::Outcome& one) {
+    const auto asUnlike = std::ranges::count_if(all, [&](const WelchStatistic::Outcome& one) {
         return std::abs(one.logNoise) >= logNoise * (1.0 - kRounding);
     });
     Deal asTheyAre(count);

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kHeader = "case,table,frame,name,png,exr,title,truth_of";
+constexpr std::string_view kImagesHeader = "case,table,frame,name,png,exr,title,truth_of";
 /// Of runs before truths were named.
 constexpr std::string_view kOldHeader = "case,table,frame,name,png,exr,title";
 
@@ -26,8 +26,9 @@ fs::path indexOf(const fs::path& runDir) {
 /// How many columns the rows under a header have.
 std::size_t columnCount(const SourceLocation& where, const std::vector<std::string>& header) {
     const std::string found = joined(header, ",");
-    if (found != kHeader && found != kOldHeader) {
-        throw Error(where, "expected the columns " + std::string(kHeader) + ", found " + found);
+    if (found != kImagesHeader && found != kOldHeader) {
+        throw Error(where,
+                    "expected the columns " + std::string(kImagesHeader) + ", found " + found);
     }
     return header.size();
 }
@@ -79,7 +80,7 @@ ImageWriter::ImageWriter(const fs::path& runDir) : index_(indexOf(runDir)) {
 }
 
 void ImageWriter::writeHeader() {
-    file_->append(std::string(kHeader) + '\n');
+    file_->append(std::string(kImagesHeader) + '\n');
 }
 
 void ImageWriter::append(const std::vector<ImageEntry>& images) {

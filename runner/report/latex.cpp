@@ -29,7 +29,7 @@ constexpr const char* kMark = "\\textsuperscript{\\ddag}";
 /// Of times that are not of one clock.
 constexpr const char* kClockMark = "\\textsuperscript{\\S}";
 
-std::string oneLine(std::string text) {
+std::string inOneLine(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
     return text;
@@ -117,7 +117,7 @@ class LatexWriter {
             "table.\n"
             "% Each number is a macro, for the text below the \\input; keys are "
             "table/row/column:\n",
-            oneLine(fmt::format("{}. {}", table_.label, table_.title)));
+            inOneLine(fmt::format("{}. {}", table_.label, table_.title)));
         if (!table_.isOnlyPrinted) {
             text_ += fmt::format(
                 "%   {}  as measured\n"

@@ -1,6 +1,7 @@
 #include "runner/results/import_run.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cctype>

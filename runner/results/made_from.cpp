@@ -1,6 +1,7 @@
 #include "runner/results/made_from.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "runner/core/error.h"
 #include "runner/core/files.h"

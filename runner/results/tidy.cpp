@@ -1,6 +1,7 @@
 #include "runner/results/tidy.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
@@ -52,7 +53,7 @@ std::string columnOf(const std::string& param) {
 std::pair<Fields, std::vector<std::string>> paramsOf(const run::Case& item) {
     Fields fields;
     std::vector<std::string> columns;
-    const run::Json params = item.recordedParams();
+    const run::Json params = item.recordedParams().toJson();
     for (const auto& [name, value] : params.items()) {
         addParts(columnOf(name), value, fields, columns);
     }

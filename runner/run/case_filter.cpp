@@ -17,7 +17,7 @@ constexpr const char* kCaseKey = "case";
 constexpr std::size_t kShownValues = 12;
 
 /// What the case has under a key; empty where it has nothing of that name.
-std::optional<std::string> valueOf(const Case& item, const std::string& key) {
+std::optional<std::string> valueOfKey(const Case& item, const std::string& key) {
     if (item.axes.isMap()) {
         if (const config::Node* value = item.axes.find(key)) return tables::canonicalText(*value);
     }
@@ -41,7 +41,7 @@ config::Node::Sequence alternativesOf(const config::Node& wanted) {
 }
 
 bool has(const Case& item, const config::Override& wanted) {
-    const auto value = valueOf(item, wanted.key);
+    const auto value = valueOfKey(item, wanted.key);
     if (!value) return false;
     // A vector is a list itself.
     if (value == tables::canonicalText(wanted.value)) return true;
@@ -57,7 +57,7 @@ std::optional<std::vector<std::string>> valuesOf(const Case& item,
                                                  const std::vector<std::string>& keys) {
     std::vector<std::string> values;
     for (const std::string& key : keys) {
-        std::optional<std::string> value = valueOf(item, key);
+        std::optional<std::string> value = valueOfKey(item, key);
         if (!value) return std::nullopt;
         values.push_back(std::move(*value));
     }
@@ -68,7 +68,7 @@ std::optional<std::vector<std::string>> valuesOf(const Case& item,
                               const std::vector<Case>& cases) {
     std::set<std::string> values, keys;
     for (const Case& item : cases) {
-        if (const auto value = valueOf(item, wanted.key)) values.insert(*value);
+        if (const auto value = valueOfKey(item, wanted.key)) values.insert(*value);
         if (!item.axes.isMap()) continue;
         for (const auto& [key, value] : item.axes.entries()) keys.insert(key);
     }

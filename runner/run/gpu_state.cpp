@@ -1,6 +1,7 @@
 #include "runner/run/gpu_state.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
+#include <nlohmann/json.hpp>
 
 #include "runner/run/manifest.h"
 
@@ -55,7 +56,7 @@ void describeImage(image::ExrImage& exr, const Case& item, int frame, const std:
     if (const std::string method = item.method(); !method.empty()) {
         exr.attributes["method"] = method;
     }
-    Json params = item.recordedParams();
+    Json params = item.recordedParams().toJson();
     if (!item.scene.isNull()) params["scene"] = item.scene.toJson();
     exr.attributes["params"] = params.dump();
     exr.attributes["frame"] = std::to_string(frame);

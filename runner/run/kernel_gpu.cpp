@@ -30,12 +30,12 @@ Value firstOf(const std::vector<fs::path>& files) {
 }
 
 /// Lines "1: 2105Mhz *" of pp_dpm_sclk: the star is at the one that is set.
-struct Clock {
+struct ClockFile {
     double hertz = 0.0;
     bool isSet = false;
 };
-std::vector<Clock> clocksIn(const fs::path& file) {
-    std::vector<Clock> clocks;
+std::vector<ClockFile> clocksIn(const fs::path& file) {
+    std::vector<ClockFile> clocks;
     for (const std::string& line : linesOf(file)) {
         const std::size_t colon = line.find(':'), unit = line.find("Mhz");
         if (colon == std::string::npos || unit == std::string::npos || unit < colon) continue;
@@ -80,7 +80,7 @@ Value KernelGpu::Counter::rate(const Value& count, double nowS) {
 }
 
 void KernelGpu::readAmd(gl::GpuReading& reading) const {
-    for (const Clock& clock : clocksIn(device_ / "pp_dpm_sclk")) {
+    for (const ClockFile& clock : clocksIn(device_ / "pp_dpm_sclk")) {
         reading.maxClockHz = std::max(reading.maxClockHz.value_or(0.0), clock.hertz);
         if (clock.isSet) reading.clockHz = clock.hertz;
     }

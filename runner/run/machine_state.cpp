@@ -1,6 +1,7 @@
 #include "runner/run/machine_state.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -35,7 +36,7 @@ std::optional<Value> between(const std::optional<Value>& before,
 }
 
 template <class Value>
-std::optional<Value> valueOf(const Json& json, const char* key) {
+std::optional<Value> readValue(const Json& json, const char* key) {
     const auto found = json.find(key);
     if (found == json.end() || !found->is_number()) return std::nullopt;
     return found->get<Value>();
@@ -129,20 +130,20 @@ Json MachineState::json() const {
 
 MachineState MachineState::fromJson(const Json& json) {
     MachineState state;
-    state.processorCount_ = valueOf<int>(json, "processors").value_or(0);
-    state.processorS_ = valueOf<double>(json, "processor_s").value_or(0.0);
-    state.busyS_ = valueOf<double>(json, "busy_s").value_or(0.0);
-    state.ownS_ = valueOf<double>(json, "own_s").value_or(0.0);
-    state.stolenS_ = valueOf<double>(json, "stolen_s").value_or(0.0);
-    state.waitedS_ = valueOf<double>(json, "waited_s");
-    state.load_ = valueOf<double>(json, "load_before");
-    state.throttleCount_ = valueOf<long long>(json, "throttle_count");
-    state.limitedS_ = valueOf<double>(json, "limited_s");
-    const auto hottest = valueOf<double>(json, "hottest_c");
-    const auto limit = valueOf<double>(json, "hot_from_c");
+    state.processorCount_ = readValue<int>(json, "processors").value_or(0);
+    state.processorS_ = readValue<double>(json, "processor_s").value_or(0.0);
+    state.busyS_ = readValue<double>(json, "busy_s").value_or(0.0);
+    state.ownS_ = readValue<double>(json, "own_s").value_or(0.0);
+    state.stolenS_ = readValue<double>(json, "stolen_s").value_or(0.0);
+    state.waitedS_ = readValue<double>(json, "waited_s");
+    state.load_ = readValue<double>(json, "load_before");
+    state.throttleCount_ = readValue<long long>(json, "throttle_count");
+    state.limitedS_ = readValue<double>(json, "limited_s");
+    const auto hottest = readValue<double>(json, "hottest_c");
+    const auto limit = readValue<double>(json, "hot_from_c");
     if (hottest && limit) state.heat_ = Heat{*hottest, *limit};
-    state.lowestHz_ = valueOf<double>(json, "lowest_clock_hz");
-    state.highestHz_ = valueOf<double>(json, "highest_clock_hz");
+    state.lowestHz_ = readValue<double>(json, "lowest_clock_hz");
+    state.highestHz_ = readValue<double>(json, "highest_clock_hz");
     if (const auto gpu = json.find("gpu"); gpu != json.end() && gpu->is_object()) {
         state.gpu_ = GpuState::fromJson(*gpu);
     }

@@ -1,6 +1,7 @@
 #include "runner/run/not_survived.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <set>
 #include <utility>

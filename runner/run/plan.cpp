@@ -95,11 +95,13 @@ std::string Case::recordedScene() const {
     return shown.isNull() ? "" : shown.text();
 }
 
-Json Case::recordedParams() const {
-    Json json = params.toJson();
-    json["output"] = {{"width", outputWidthPx}, {"height", outputHeightPx}};
-    addSceneTo(json);
-    return json;
+config::Node Case::recordedParams() const {
+    config::Node recorded = params;
+    recorded.set("output", config::Node::map({{"width", config::Node::number(outputWidthPx)},
+                                              {"height", config::Node::number(outputHeightPx)}}));
+    if (!standsFor.isNull()) recorded.set(tables::kStandsFor, standsFor);
+    if (sceneSample) recorded.set(tables::kSceneSample, config::Node::number(*sceneSample));
+    return recorded;
 }
 
 std::string Shard::name() const {

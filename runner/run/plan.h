@@ -48,7 +48,7 @@ struct Case {
     /// path in `scene`. Empty for none.
     std::string recordedScene() const;
     /// `params` with the size of the output and which scene it is: what images say.
-    nlohmann::ordered_json recordedParams() const;
+    config::Node recordedParams() const;
     nlohmann::ordered_json toJson() const;
     void addSceneTo(nlohmann::ordered_json& json) const;
     static Case fromJson(const config::Node& node);

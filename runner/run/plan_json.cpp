@@ -20,7 +20,7 @@ namespace {
 constexpr int kPlanSchema = 1;
 constexpr const char* kFrozenHash = "frozen_hash";
 
-Json toJson(const config::Measure& measure) {
+Json measureJson(const config::Measure& measure) {
     Json json = {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"},
                  {"warmup", measure.warmup},
                  {"repeats", measure.repeats},
@@ -235,7 +235,7 @@ Json Case::toJson() const {
                  {"params", params.toJson()},
                  {"axes", axes.toJson()},
                  {"output", {outputWidthPx, outputHeightPx}},
-                 {"measure", run::toJson(measure)},
+                 {"measure", measureJson(measure)},
                  {"seed", std::to_string(seed)}};
     if (!offered.isNull()) json["offered"] = offered.toJson();
     if (!program.isNull()) {

@@ -1,6 +1,7 @@
 #include "runner/run/run_files.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -22,10 +23,11 @@ using config::requireMembers;
 namespace {
 
 constexpr std::uintmax_t kMiB = std::uintmax_t{1} << 20;
-constexpr std::pair<const char*, std::uintmax_t> kMostBytes[] = {{"plan.json", 512 * kMiB},
-                                                                 {"manifest.json", 64 * kMiB},
-                                                                 {"records.csv", 1024 * kMiB},
-                                                                 {"images/index.csv", 256 * kMiB}};
+constexpr std::pair<const char*, std::uintmax_t> kMostFileBytes[] = {
+    {"plan.json", 512 * kMiB},
+    {"manifest.json", 64 * kMiB},
+    {"records.csv", 1024 * kMiB},
+    {"images/index.csv", 256 * kMiB}};
 constexpr std::string_view kLeftOutInShort[] = {"as", "command", "message", "output", "title"};
 constexpr std::size_t kMostLineBytes = kMiB;  // RunDirectory::log writes no longer ones
 constexpr std::size_t kMostEvents = 4'000'000;
@@ -62,9 +64,9 @@ constexpr JsonMember kManifest[] = {{"/commit", JsonKind::Line},
 constexpr JsonMember kInvocation[] = {{"/command", JsonKind::Text},
                                       {"/started", JsonKind::Line, false},
                                       {"/machine", JsonKind::Line, false}};
-constexpr JsonMember kScene[] = {
+constexpr JsonMember kSceneMembers[] = {
     {"/kind", JsonKind::Text}, {"/description", JsonKind::Text}, {"/sha256", JsonKind::Text}};
-constexpr JsonMember kProgram[] = {
+constexpr JsonMember kProgramMembers[] = {
     {"/file", JsonKind::Text}, {"/sha256", JsonKind::Text}, {"/version", JsonKind::Text}};
 constexpr JsonMember kMerged[] = {{"/machine", JsonKind::Line},
                                   {"/invocations", JsonKind::List},
@@ -92,7 +94,7 @@ void requireModest(const fs::path& file, std::uintmax_t mostBytes) {
 }  // namespace
 
 void requireModestFiles(const fs::path& runDir) {
-    for (const auto& [name, mostBytes] : kMostBytes) requireModest(runDir / name, mostBytes);
+    for (const auto& [name, mostBytes] : kMostFileBytes) requireModest(runDir / name, mostBytes);
 }
 
 void requireModestLog(const fs::path& file) {
@@ -107,8 +109,8 @@ Json readManifest(const fs::path& file) {
         balanceFromJson(gl["balance"], where, "/gl/balance");
     }
     requireEach(manifest, "/invocations", kInvocation, where);
-    requireEach(manifest, "/scenes", kScene, where);
-    requireEach(manifest, "/programs", kProgram, where);
+    requireEach(manifest, "/scenes", kSceneMembers, where);
+    requireEach(manifest, "/programs", kProgramMembers, where);
     requireEach(manifest, "/merged", kMerged, where);
     if (manifest["invocations"].empty()) throw Error(where, "'/invocations' is empty");
     return manifest;

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <cerrno>
 #include <cstring>
@@ -35,7 +36,7 @@ void send(const Json& message) {
     }
 }
 
-CaseResult failure(records::Status status, const std::string& message) {
+CaseResult failedWith(records::Status status, const std::string& message) {
     CaseResult result;
     result.status = status;
     result.message = message;
@@ -51,15 +52,15 @@ CaseResult resultOf(const Case& item, MeasureContext& context) {
     try {
         return measureCase(item, context);
     } catch (const UnsupportedError& error) {
-        return failure(records::Status::Unsupported, error.what());
+        return failedWith(records::Status::Unsupported, error.what());
     } catch (const technique::CrashError& error) {
-        return failure(records::Status::Crash, error.what());
+        return failedWith(records::Status::Crash, error.what());
     } catch (const DeviceLostError& error) {
-        return failure(records::Status::DeviceLost, error.what());
+        return failedWith(records::Status::DeviceLost, error.what());
     } catch (const std::bad_alloc&) {
-        return failure(records::Status::Oom, "out of memory");
+        return failedWith(records::Status::Oom, "out of memory");
     } catch (const std::exception& error) {
-        return failure(records::Status::Error, error.what());
+        return failedWith(records::Status::Error, error.what());
     }
 }
 

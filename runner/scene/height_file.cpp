@@ -30,7 +30,7 @@ constexpr int kCoarsestSide = 64;
 /// The heights begin at a page of memory.
 constexpr std::size_t kHeaderBytes = 4096;
 
-struct Header {
+struct FileHeader {
     std::array<char, 8> magic = kMagic;
     std::uint32_t version = kVersion;
     glm::ivec2 sizeSamples{0};
@@ -159,7 +159,7 @@ class Writer {
   private:
     OpenFile file_;
     glm::ivec2 size_;
-    Header header_;
+    FileHeader header_;
     std::vector<float> thinned_;
 };
 
@@ -186,7 +186,7 @@ bool isThere(const fs::path& path, glm::ivec2 sizeSamples) {
         return false;
     }
     const MappedFile file(path);
-    Header header;
+    FileHeader header;
     std::memcpy(&header, file.bytes().data(), sizeof header);
     return header.magic == kMagic && header.version == kVersion &&
            header.sizeSamples == sizeSamples;
@@ -220,7 +220,7 @@ HeightFile::HeightFile(const fs::path& path, std::string key, glm::ivec2 sizeSam
         levels_.push_back(reinterpret_cast<const float*>(file_.bytes().data() + offset));
         offset += levelBytes(sizeSamples, level);
     }
-    Header header;
+    FileHeader header;
     std::memcpy(&header, file_.bytes().data(), sizeof header);
     lowestM_ = header.lowestM;
     highestM_ = header.highestM;

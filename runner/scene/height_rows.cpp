@@ -203,23 +203,23 @@ std::unique_ptr<HeightRows> openPngRows(const fs::path& path) {
     return std::make_unique<PngHeightRows>(path);
 }
 
-struct Format {
+struct HeightFormat {
     std::string_view extension;
     std::unique_ptr<HeightRows> (*open)(const fs::path& path);
 };
 
-constexpr Format kFormats[] = {
+constexpr HeightFormat kHeightFormats[] = {
     {".bin", &openRawRows},   {".hgt", &openSrtmRows}, {".png", &openPngRows},
     {".r16", &openRawRows},   {".raw", &openRawRows},  {".tif", &openTiffRows},
     {".tiff", &openTiffRows},
 };
 
-const Format* formatOf(const fs::path& path) {
+const HeightFormat* heightFormatOf(const fs::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension) {
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     }
-    for (const Format& format : kFormats) {
+    for (const HeightFormat& format : kHeightFormats) {
         if (format.extension == extension) return &format;
     }
     return nullptr;
@@ -228,11 +228,11 @@ const Format* formatOf(const fs::path& path) {
 }  // namespace
 
 bool isHeightMapFile(const fs::path& path) {
-    return formatOf(path) != nullptr;
+    return heightFormatOf(path) != nullptr;
 }
 
 std::unique_ptr<HeightRows> openHeightRows(const fs::path& path) {
-    if (const Format* format = formatOf(path)) return format->open(path);
+    if (const HeightFormat* format = heightFormatOf(path)) return format->open(path);
     throw Error(
         fmt::format("{}: unknown kind of height map; allowed: .png .tif .tiff .hgt "
                     ".raw .r16 .bin",

@@ -53,7 +53,7 @@ class LineReader {
         if (text.empty()) return std::nullopt;
         const auto value = parsedNumber<float>(text);
         if (!value || !std::isfinite(*value)) {
-            fail(fmt::format("{} is not a finite number", quoted(text)));
+            fail(fmt::format("{} is not a finite number", inQuotes(text)));
         }
         return value;
     }

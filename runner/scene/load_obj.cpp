@@ -147,7 +147,7 @@ class ObjParser {
 
     [[noreturn]] void failCorner(std::string_view whole) const {
         lines_.fail(fmt::format("{} is not a corner; v, v/vt, v//vn and v/vt/vn are allowed",
-                                quoted(whole)));
+                                inQuotes(whole)));
     }
 
     /// Indices count from 1; negative ones from the end of what has been read.

@@ -28,7 +28,7 @@ using ply::Type;
 using ply::visitType;
 
 /// What a vertex row may hold for us.
-enum Slot { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kU, kV, kRadius, kSlotCount, kNone };
+enum Slot { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kU, kV, kRadius, kSlotCount, kNoSlot };
 
 Slot slotOf(const Property& property) {
     struct Named {
@@ -51,11 +51,11 @@ Slot slotOf(const Property& property) {
                                             {"texture_u", kU},
                                             {"texture_v", kV},
                                             {"radius", kRadius}}};
-    if (property.isList()) return kNone;
+    if (property.isList()) return kNoSlot;
     for (const Named& each : kNamed) {
         if (property.name == each.name) return each.slot;
     }
-    return kNone;
+    return kNoSlot;
 }
 
 /// Bytes are sRGB; wider integers and floats are linear, integers as parts of their maximum.
@@ -106,7 +106,7 @@ class VertexParser {
         : reader_(reader), element_(element) {
         for (const Property& property : element.properties) {
             slots_.push_back(slotOf(property));
-            if (slots_.back() != kNone) has_[slots_.back()] = true;
+            if (slots_.back() != kNoSlot) has_[slots_.back()] = true;
         }
         if (!hasAll({kX, kY, kZ})) {
             throw Error({file, element.line, 0}, "element 'vertex' lacks x, y or z");
@@ -149,7 +149,7 @@ class VertexParser {
             const Property& property = element_.properties[i];
             if (property.isList()) {
                 skipList(reader_, property);
-            } else if (slots_[i] == kNone) {
+            } else if (slots_[i] == kNoSlot) {
                 reader_.skip(property.type, 1);
             } else {
                 row_[slots_[i]] = read(property, slots_[i]);

@@ -66,7 +66,7 @@ class HeaderParser {
                 fail(fmt::format(
                     "{} is unknown; comment, obj_info, element, property and end_header are "
                     "allowed",
-                    quoted(line[0])));
+                    inQuotes(line[0])));
             }
         }
         header_.bodyAt = at_;
@@ -115,10 +115,10 @@ class HeaderParser {
         const char* end = line[2].data() + line[2].size();
         const auto [stop, error] = std::from_chars(line[2].data(), end, element.count);
         if (error != std::errc() || stop != end) {
-            fail(fmt::format("{} is not a count of elements", quoted(line[2])));
+            fail(fmt::format("{} is not a count of elements", inQuotes(line[2])));
         }
         if (!names_.insert(line[1]).second) {
-            fail(fmt::format("element {} is declared twice", quoted(element.name)));
+            fail(fmt::format("element {} is declared twice", inQuotes(element.name)));
         }
         header_.elements.push_back(std::move(element));
     }
@@ -147,7 +147,7 @@ class HeaderParser {
         }
         fail(fmt::format(
             "{} is not a type; char, uchar, short, ushort, int, uint, float and double are",
-            quoted(word)));
+            inQuotes(word)));
     }
 
     std::string_view text_;

@@ -72,7 +72,7 @@ class AsciiReader {
             using Parsed = std::conditional_t<std::is_integral_v<T>, std::int64_t, T>;
             const auto value = parsedNumber<Parsed>(word);
             if (!value) {
-                fail(fmt::format("{} is not a number of type {}", quoted(word), nameOf(type)));
+                fail(fmt::format("{} is not a number of type {}", inQuotes(word), nameOf(type)));
             }
             if constexpr (std::is_integral_v<T>) {
                 using Limits = std::numeric_limits<T>;

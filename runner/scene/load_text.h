@@ -31,7 +31,7 @@ std::optional<T> parsedNumber(std::string_view word) {
 
 /// A word of a file as messages show it: in a file of zeros one has gigabytes, and a message ends
 /// at the first of them.
-inline std::string quoted(std::string_view word) {
+inline std::string inQuotes(std::string_view word) {
     constexpr std::size_t kMostBytes = 100;
     std::string text(word.substr(0, kMostBytes));
     std::ranges::replace(text, '\0', '?');

@@ -11,6 +11,7 @@
 
 #include "runner/core/error.h"
 #include "runner/scene/covariance.h"
+#include "runner/scene/load_text.h"
 #include "runner/scene/point_sampling.h"
 
 namespace gfxrepro::scene {
@@ -19,10 +20,6 @@ namespace {
 
 constexpr std::size_t kNormalNeighbours = 16;
 constexpr std::size_t kRadiusNeighbours = 6;
-
-bool isFinite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 template <class T>
 void keep(std::vector<T>& values, const std::vector<std::size_t>& indices) {

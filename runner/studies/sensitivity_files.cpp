@@ -149,7 +149,7 @@ std::string basisOf(const run::Plan& plan, const config::Experiment& experiment)
         const auto scene =
             item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
         content["cases"].push_back({{"scene", scene == plan.sceneKeys.end() ? "" : scene->second},
-                                    {"params", item.recordedParams()},
+                                    {"params", item.recordedParams().toJson()},
                                     {"axes", item.axes.toJson()},
                                     {"frames", item.measure.frames},
                                     {"lane", static_cast<int>(item.measure.lane)}});

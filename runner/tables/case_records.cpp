@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <unordered_map>
 
@@ -13,29 +14,27 @@ namespace gfxrepro::tables {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-std::string jsonText(const Json& value) {
+std::string textOf(const config::Node& node) {
+    const nlohmann::ordered_json value = node.toJson();
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number()) return records::shortestText(value.get<double>());
     return value.dump();
 }
 
 /// "output.width": an entry of that name, or of the map within the map.
-const Json* findPath(const Json& map, std::string_view path) {
-    if (!map.is_object()) return nullptr;
-    const std::string name(path);
-    if (const auto found = map.find(name); found != map.end()) return &*found;
+const config::Node* findPath(const config::Node& map, std::string_view path) {
+    if (!map.isMap()) return nullptr;
+    if (const config::Node* found = map.find(path)) return found;
     const std::size_t dot = path.find('.');
     if (dot == std::string_view::npos) return nullptr;
-    const auto inner = map.find(name.substr(0, dot));
-    return inner == map.end() ? nullptr : findPath(*inner, path.substr(dot + 1));
+    const config::Node* inner = map.find(path.substr(0, dot));
+    return inner ? findPath(*inner, path.substr(dot + 1)) : nullptr;
 }
 
-std::optional<std::string> valueIn(const Json& params, const std::string& axis) {
-    const Json* value = findPath(params, axis);
-    if (!value || value->is_null()) return std::nullopt;
-    return jsonText(*value);
+std::optional<std::string> valueIn(const config::Node& params, const std::string& axis) {
+    const config::Node* value = findPath(params, axis);
+    if (!value || value->isNull()) return std::nullopt;
+    return textOf(*value);
 }
 
 std::optional<std::string> valueOf(const PlannedCase& item, const std::string& axis) {
@@ -77,16 +76,16 @@ AxisValues axesOf(const PlannedCase& item, const std::vector<std::string>& axes,
 }
 
 std::optional<int> sampleOf(const PlannedCase& item) {
-    const Json* sample = findPath(item.params, kSceneSample);
-    return sample ? std::optional(sample->get<int>()) : std::nullopt;
+    const config::Node* sample = findPath(item.params, kSceneSample);
+    return sample ? std::optional(static_cast<int>(sample->asInteger())) : std::nullopt;
 }
 
 /// What of a case's identity stays when its scene is taken at another seed.
 std::string familyOf(const PlannedCase& item) {
-    Json params = item.params;
+    config::Node params = item.params;
     params.erase(kSceneSample);
     params.erase(kStandsFor);
-    return valueIn(item.params, kStandsFor).value_or(item.scene) + params.dump();
+    return valueIn(item.params, kStandsFor).value_or(item.scene) + params.toJson().dump();
 }
 
 bool isOfSetup(const records::Record* record) {
@@ -96,7 +95,7 @@ bool isOfSetup(const records::Record* record) {
 }  // namespace
 
 std::string canonicalText(const config::Node& value) {
-    return value.isMap() ? value.toFlowText() : jsonText(value.toJson());
+    return value.isMap() ? value.toFlowText() : textOf(value);
 }
 
 std::vector<const records::Record*> CaseRecords::Attempt::values(std::string_view metric,

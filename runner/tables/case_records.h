@@ -3,7 +3,6 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,7 +32,7 @@ struct PlannedCase {
     std::string id;
     std::string table;              // "zju2005/2.1"
     std::string scene;              // as its records say it; empty for none
-    nlohmann::ordered_json params;  // a map, with `output` and the names above
+    config::Node params;            // a map, with `output` and the names above
     std::vector<std::string> axes;  // names of those that are swept
 };
 
@@ -63,7 +62,7 @@ struct CaseRecords {
     AxisValues axes;
     std::map<int, Attempt> processes;
     std::string scene;  // as PlannedCase has them
-    nlohmann::ordered_json params;
+    config::Node params;
 };
 
 /// The cases of `table` in the order of the plan, with their records, which must outlive the

@@ -75,7 +75,7 @@ std::string sceneNameOf(const CaseRecords& item, const Json& params) {
 }
 
 Settings settingsOf(const CaseRecords& item, int frameCount, const config::Printed& printed) {
-    Json params = item.params;
+    Json params = item.params.toJson();
     std::string scene = sceneNameOf(item, params);
     Json frames = frameCount;
     layOver(printed, scene, params, frames);
@@ -186,7 +186,7 @@ PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
         config::experimentFromDocument(experiment.paperDocument, experiment.file);
     std::vector<PlannedCase> cases;
     for (const config::PaperCase& item : experiment.paperCases) {
-        cases.push_back({"", paper.id, item.scene, item.params.toJson(), {}});
+        cases.push_back({"", paper.id, item.scene, item.params, {}});
     }
     cases_ = gatherCases(paper, cases, {});
     layout_ = std::move(paper.layout);

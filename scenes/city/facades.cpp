@@ -8,8 +8,6 @@ namespace gfxrepro::scene::city_parts {
 
 namespace {
 
-constexpr glm::vec3 kUp(0.0F, 1.0F, 0.0F);
-
 /// How many parts of about `partM` fit.
 int divided(float lengthM, float partM) {
     return std::max(1, static_cast<int>(std::floor(lengthM / partM + 0.5F)));

@@ -8,6 +8,8 @@
 
 namespace gfxrepro::scene::city_parts {
 
+inline constexpr glm::vec3 kUp(0.0F, 1.0F, 0.0F);
+
 /// One builder a material.
 struct Builders {
     MeshBuilder ground, walls, glass, roofs, metal, plants;

@@ -7,8 +7,6 @@ namespace gfxrepro::scene::city_parts {
 
 namespace {
 
-constexpr glm::vec3 kUp(0.0F, 1.0F, 0.0F);
-
 /// The octahedron with each edge halved and pushed out: 32 triangles, smooth normals.
 void addFoliage(MeshBuilder& builder, const glm::vec3& centre, const glm::vec3& radii,
                 Random& random) {

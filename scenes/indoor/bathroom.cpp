@@ -25,8 +25,6 @@ namespace {
 using namespace indoor;
 using Station = MeshBuilder::Station;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 // --- where things stand ---
 
 constexpr glm::vec3 kRoom(3.4F, 2.6F, 4.0F);
@@ -1142,7 +1140,7 @@ Camera lookingAt(const glm::vec3& position, const glm::vec3& target, float fovRa
     return camera;
 }
 
-void addCameras(Scene& scene) {
+void addBathroomCameras(Scene& scene) {
     scene.cameras.push_back(lookingAt({3.02F, 1.62F, 3.75F}, {1.42F, 0.8F, 1.2F}, 1.12F));
     scene.cameras.back().name = "overview";
     constexpr float kFov = 1.0F;
@@ -1184,7 +1182,7 @@ Scene bathroom(config::Params& params, std::uint64_t seed) {
         if (scene.materials[i].emissive == glm::vec3(0.0F)) darken(scene.meshes[i], kOccluders);
     }
     addLights(scene);
-    addCameras(scene);
+    addBathroomCameras(scene);
     const glm::vec3 swing(0.07F, 0.0F, 0.03F), up(0.0F, 1.0F, 0.0F);
     constexpr float kTwoPi = 2.0F * std::numbers::pi_v<float>;
     scene.motions = {{moving.pendant, kPendant, up, 0.0F, swing, 6.0F},

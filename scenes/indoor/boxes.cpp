@@ -1,16 +1,9 @@
 #include <array>
-#include <numbers>
 
 #include "scenes/indoor/parts.h"
 #include "scenes/shared/sdf.h"
 
 namespace gfxrepro::scene::indoor {
-
-namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
-
-}  // namespace
 
 namespace {
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "scenes/indoor/parts.h"
 #include "scenes/shared/sdf.h"
@@ -9,8 +8,6 @@
 namespace gfxrepro::scene::indoor {
 
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 glm::vec3 onFrame(const glm::mat4& frame, const glm::vec3& p) {
     return glm::vec3(frame * glm::vec4(p, 1.0F));

@@ -25,8 +25,6 @@ namespace {
 
 using namespace indoor;
 
-constexpr float kPi = 3.14159265F;
-
 // --- where things stand ---
 
 constexpr glm::vec3 kHalfRoom(3.6F, 0.0F, 2.9F);

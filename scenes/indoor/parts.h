@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "scenes/shared/mesh_builder.h"
 
 namespace gfxrepro::scene::indoor {
+
+inline constexpr float kPi = std::numbers::pi_v<float>;
 
 /// Columns of a frame that is turned about y by an angle and put at a place.
 glm::mat4 placed(const glm::vec3& position, float turnRad = 0.0F);

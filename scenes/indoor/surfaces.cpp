@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "runner/core/error.h"
 #include "runner/scene/refine.h"
@@ -10,8 +9,6 @@
 namespace gfxrepro::scene::indoor {
 
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 template <class T>
 T catmullRom(const T& p0, const T& p1, const T& p2, const T& p3, float u) {

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "runner/core/error.h"
 #include "runner/core/random.h"
@@ -13,8 +12,6 @@
 namespace gfxrepro::scene {
 
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 // Streams of random numbers: parts do not change with each other's counts.
 constexpr std::uint64_t kBladeStream = 1;

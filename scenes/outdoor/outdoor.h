@@ -5,11 +5,14 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 
 #include "runner/config/params.h"
 #include "runner/scene/scene.h"
 
 namespace gfxrepro::scene {
+
+inline constexpr float kPi = std::numbers::pi_v<float>;
 
 /// Twigs woven into a bowl, eggs in it, a forked branch below. Exactly `triangles`; where `twigs`
 /// says nothing their number follows from it, the bowl stays, and the twigs get thinner so that the

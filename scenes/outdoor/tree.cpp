@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "runner/core/error.h"
 #include "runner/core/random.h"
@@ -14,7 +13,6 @@ namespace gfxrepro::scene {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr glm::vec3 kUp(0.0F, 1.0F, 0.0F);
 constexpr float kDefaultTriangles = 113'000.0F;
 constexpr int kLevels = 4;  // trunk, limbs, branches, twigs
@@ -33,7 +31,7 @@ struct Level {
     float spreadRad;    // of a child against this branch
 };
 
-struct Twig {
+struct TreeTwig {
     std::array<glm::vec3, 3> points;
 };
 
@@ -69,7 +67,7 @@ class Grower {
     void growTree(float heightM) { grow(0, {0, 0, 0}, kUp, heightM, 0.036F * heightM); }
 
     MeshBuilder& bark() { return bark_; }
-    const std::vector<Twig>& twigs() const { return twigs_; }
+    const std::vector<TreeTwig>& twigs() const { return twigs_; }
 
   private:
     void grow(int levelIndex, const glm::vec3& base, glm::vec3 direction, float lengthM,
@@ -140,7 +138,7 @@ class Grower {
     float finer_;  // on the radius of branches and twigs: more of them are thinner
     Random random_;
     MeshBuilder bark_;
-    std::vector<Twig> twigs_;
+    std::vector<TreeTwig> twigs_;
 };
 
 /// The front of a leaf: `triangles` of them, two at least. Both halves run between the midrib,
@@ -204,13 +202,13 @@ class LeafShape {
 };
 
 /// `count` leaves, dealt out evenly to the twigs, and `triangles` to them; their fronts.
-void addLeaves(MeshBuilder& builder, const std::vector<Twig>& twigs, std::size_t count,
+void addLeaves(MeshBuilder& builder, const std::vector<TreeTwig>& twigs, std::size_t count,
                std::size_t triangles, float lengthM, std::uint64_t seed) {
     constexpr glm::vec3 kGreens[] = {
         {0.10F, 0.26F, 0.04F}, {0.15F, 0.33F, 0.05F}, {0.07F, 0.20F, 0.04F}, {0.22F, 0.36F, 0.07F}};
     Random random(seed, 1);
     for (std::size_t i = 0; i < count; ++i) {
-        const Twig& twig = twigs[i * twigs.size() / count];
+        const TreeTwig& twig = twigs[i * twigs.size() / count];
         const float t = 2.0F * std::sqrt(random.uniform());  // denser towards the end
         const std::size_t segment = t < 1.0F ? 0 : 1;
         const glm::vec3& a = twig.points[segment];

@@ -10,7 +10,6 @@ namespace {
 
 using namespace city_parts;
 
-constexpr glm::vec3 kUp(0.0F, 1.0F, 0.0F);
 constexpr float kHalfSquareM = 16.0F;  // the paved part
 constexpr float kDepthM = 10.0F;       // of the houses around it
 

@@ -16,14 +16,19 @@ if(GFXREPRO_SANITIZE_THREADS)
     target_link_options(gfxrepro_options INTERFACE -fsanitize=thread)
 endif()
 
+# Where sources compile one by one: as one unit they shadow names of each other.
 add_library(gfxrepro_warnings INTERFACE)
-target_compile_options(gfxrepro_warnings INTERFACE
-    -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion $<$<BOOL:${GFXREPRO_WERROR}>:-Werror>)
+if(CMAKE_UNITY_BUILD)
+    target_compile_options(gfxrepro_warnings INTERFACE -Wno-subobject-linkage)
+else()
+    target_compile_options(gfxrepro_warnings INTERFACE
+        -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion $<$<BOOL:${GFXREPRO_WERROR}>:-Werror>)
+endif()
 
 set(CMAKE_CXX_EXTENSIONS OFF)
 
 # gfxrepro_verify_headers(TARGET [targets …]): every header beside the target's sources compiles alone, with the
-# targets that those have.
+# targets that those have. One with a source of its name does so there: sources begin with their header (check_style).
 function(gfxrepro_verify_headers target)
     if(NOT GFXREPRO_VERIFY_HEADERS)
         return()
@@ -32,31 +37,43 @@ function(gfxrepro_verify_headers target)
     set(units)
     foreach(header IN LISTS headers)
         file(RELATIVE_PATH path "${CMAKE_SOURCE_DIR}" "${header}")
+        string(REGEX REPLACE "h$" "cpp" source "${header}")
+        if(EXISTS "${source}" AND NOT CMAKE_UNITY_BUILD)
+            continue()
+        endif()
         set(unit "${CMAKE_CURRENT_BINARY_DIR}/headers/${path}.cpp")
         file(CONFIGURE OUTPUT "${unit}" CONTENT "#include \"${path}\"\n")
         list(APPEND units "${unit}")
     endforeach()
     if(units)
         add_library(${target}_headers OBJECT ${units})
+        set_target_properties(${target}_headers PROPERTIES UNITY_BUILD OFF)
         target_link_libraries(${target}_headers PRIVATE ${target} gfxrepro_warnings ${ARGN})
     endif()
 endfunction()
 
-# gfxrepro_module(NAME SOURCES … [PUBLIC targets …] [PRIVATE targets …]) → library gfxrepro_NAME
+# gfxrepro_module(NAME [COLD] SOURCES … [PUBLIC targets …] [PRIVATE targets …]) → library gfxrepro_NAME
+# COLD: touches no pixel, ray or triangle, and so is optimized less, which builds faster.
 function(gfxrepro_module name)
-    cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    cmake_parse_arguments(arg "COLD" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
     add_library(gfxrepro_${name} STATIC ${arg_SOURCES})
+    if(arg_COLD)
+        target_compile_options(gfxrepro_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    endif()
     target_link_libraries(gfxrepro_${name}
         PUBLIC gfxrepro_options ${arg_PUBLIC}
         PRIVATE gfxrepro_warnings ${arg_PRIVATE})
     gfxrepro_verify_headers(gfxrepro_${name} ${arg_PRIVATE})
 endfunction()
 
-# add_technique(NAME SOURCES … SHADERS … [PRIVATE targets …]) → library technique_NAME; its shaders are
+# add_technique(NAME [COLD] SOURCES … SHADERS … [PRIVATE targets …]) → library technique_NAME; its shaders are
 # copied to <build>/shaders/NAME and installed beside the program. Every technique has techniques/kit.
 function(add_technique name)
-    cmake_parse_arguments(arg "" "" "SOURCES;SHADERS;PRIVATE" ${ARGN})
+    cmake_parse_arguments(arg "COLD" "" "SOURCES;SHADERS;PRIVATE" ${ARGN})
     add_library(technique_${name} STATIC ${arg_SOURCES})
+    if(arg_COLD)
+        target_compile_options(technique_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    endif()
     target_link_libraries(technique_${name}
         PUBLIC gfxrepro_technique techniques_kit
         PRIVATE gfxrepro_warnings gfxrepro_raycast gfxrepro_metrics gfxrepro_gpu_scene ${arg_PRIVATE})
@@ -83,11 +100,15 @@ function(gfxrepro_shaders target folder)
 endfunction()
 
 # gfxrepro_test(NAME [SERIAL] LABEL label SOURCES … LINK targets …) → one GoogleTest program, one ctest entry a case;
-# SERIAL: beside no other test. Tests take longer to compile than to run: they are optimized less than what they test.
+# SERIAL: beside no other test. Tests take longer to compile than to run: they are optimized less than what they test,
+# and share a precompiled header. Each source has helpers of its own in names that others have, too: no unity.
 function(gfxrepro_test name)
     cmake_parse_arguments(arg "SERIAL" "LABEL" "SOURCES;LINK" ${ARGN})
     add_executable(${name} ${arg_SOURCES})
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+    # ccache wants to see which precompiled header a source takes.
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+    target_precompile_headers(${name} REUSE_FROM gfxrepro_test_support)
     target_link_libraries(${name} PRIVATE gfxrepro_test_support ${arg_LINK} GTest::gmock GTest::gtest_main)
     include(GoogleTest)
     # Under ThreadSanitizer simulations of a minute take ten.

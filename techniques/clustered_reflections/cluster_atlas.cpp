@@ -16,7 +16,7 @@ constexpr std::uint32_t kMostObjects = 1U << 20;
 static_assert(kMaxClusters <= 1 << 12);
 
 /// As glMultiDrawElementsIndirect reads it.
-struct DrawCommand {
+struct ElementsCommand {
     std::uint32_t count = 0, instanceCount = 0, firstIndex = 0, baseVertex = 0, baseInstance = 0;
 };
 
@@ -36,7 +36,7 @@ AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
                      defines);
 
     const std::uint32_t most = objects.mostTrianglesPerDraw();
-    std::vector<DrawCommand> commands;
+    std::vector<ElementsCommand> commands;
     std::vector<glm::uvec2> pieces;  // an object's first command and how many
     for (const reflections::Object& object : scene.objects()) {
         const auto first = static_cast<std::uint32_t>(commands.size());
@@ -68,7 +68,7 @@ void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer
     const gl::Resources drawn = resources(cameras).with(objects.resources());
     drawInPlaces(target, draw_, drawn, vertexArray_, commands_, [&] {
         glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, commandCount_,
-                                    sizeof(DrawCommand));
+                                    sizeof(ElementsCommand));
     });
 }
 

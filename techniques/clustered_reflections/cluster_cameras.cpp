@@ -7,8 +7,8 @@ namespace {
 
 /// Samples that one invocation goes through: 32 thousand invocations in a megapixel.
 constexpr int kChunkLength = 32;
-constexpr int kGroupSize = 64;
-constexpr int kScanGroupSize = 256;
+constexpr int kCameraGroupSize = 64;
+constexpr int kChunkGroupSize = 256;
 constexpr std::size_t kPartials = 3;               // vec4 a chunk
 constexpr std::size_t kFrameBytes = 5 * 16;        // ClusterFrame of cluster_chunks.glsl
 constexpr std::size_t kClustersArguments = 3 * 4;  // behind those of the passes over chunks
@@ -16,7 +16,7 @@ constexpr std::size_t kClustersArguments = 3 * 4;  // behind those of the passes
 gl::Pass pass(const gl::ShaderLibrary& shaders, const char* name, int groupSize,
               bool isWholeImage = false) {
     const gl::Defines defines{
-        {"CHUNK_LENGTH", kChunkLength},    {"CHUNK_GROUP_SIZE", kGroupSize},
+        {"CHUNK_LENGTH", kChunkLength},    {"CHUNK_GROUP_SIZE", kCameraGroupSize},
         {"GROUP_SIZE", groupSize},         {"MAX_SHIFT", kMaxShift},
         {"MAX_SIZE_PX", kMaxCameraSizePx}, {"WHOLE_IMAGE", isWholeImage ? 1 : 0}};
     return {shaders, {fmt::format("clustered_reflections/{}.comp.glsl", name)}, defines};
@@ -26,13 +26,13 @@ gl::Pass pass(const gl::ShaderLibrary& shaders, const char* name, int groupSize,
 
 ClusterCameras::ClusterCameras(const gl::ShaderLibrary& shaders, const CameraSettings& settings)
     : settings_(settings),
-      chunksPass_(pass(shaders, "cluster_chunks", kScanGroupSize)),
-      sums_(pass(shaders, "cluster_sums", kGroupSize)),
-      centres_(pass(shaders, "cluster_centres", kGroupSize)),
-      boxes_(pass(shaders, "cluster_boxes", kGroupSize)),
-      eyes_(pass(shaders, "cluster_eyes", kGroupSize)),
-      wholeBoxes_(pass(shaders, "cluster_boxes", kGroupSize, true)),
-      camerasPass_(pass(shaders, "cluster_cameras", kGroupSize)),
+      chunksPass_(pass(shaders, "cluster_chunks", kChunkGroupSize)),
+      sums_(pass(shaders, "cluster_sums", kCameraGroupSize)),
+      centres_(pass(shaders, "cluster_centres", kCameraGroupSize)),
+      boxes_(pass(shaders, "cluster_boxes", kCameraGroupSize)),
+      eyes_(pass(shaders, "cluster_eyes", kCameraGroupSize)),
+      wholeBoxes_(pass(shaders, "cluster_boxes", kCameraGroupSize, true)),
+      camerasPass_(pass(shaders, "cluster_cameras", kCameraGroupSize)),
       chunks_((kMaxClusters + 2) * sizeof(std::uint32_t)),
       arguments_(6 * sizeof(std::uint32_t)),
       frames_(kMaxClusters * kFrameBytes),

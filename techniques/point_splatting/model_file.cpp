@@ -21,7 +21,7 @@ constexpr std::uint32_t kVersion = 1;
 constexpr const char* kMagic = "gfxpoint";
 constexpr std::size_t kAlignment = 64;
 
-enum Section { kPatches, kLevels, kCompressed, kPositions, kNormals, kRadii, kColors, kTable };
+enum Section { kPatches, kLevelList, kCompressed, kPositions, kNormals, kRadii, kColors, kTable };
 constexpr std::size_t kSections = 8;
 
 struct Header {
@@ -142,7 +142,7 @@ bool isConsistent(const Content& content) {
         })) {
         return false;
     }
-    const auto levels = content.template section<Level>(kLevels);
+    const auto levels = content.template section<Level>(kLevelList);
     std::uint64_t next = 0;  // patches lie one behind the other
     for (const Patch& patch : content.template section<Patch>(kPatches)) {
         if (patch.firstPoint != next || patch.levelCount == 0 || patch.levelCount > levels.size() ||
@@ -220,7 +220,7 @@ std::span<const Patch> ModelFile::patches() const {
     return content_->section<Patch>(kPatches);
 }
 std::span<const Level> ModelFile::levels() const {
-    return content_->section<Level>(kLevels);
+    return content_->section<Level>(kLevelList);
 }
 std::span<const CompressedPoint> ModelFile::compressed() const {
     return content_->section<CompressedPoint>(kCompressed);

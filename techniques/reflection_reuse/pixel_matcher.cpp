@@ -10,13 +10,13 @@ namespace gfxrepro::reflection_reuse {
 
 namespace {
 
-constexpr int kGroupSize = 8;
+constexpr int kMatchGroupSize = 8;
 constexpr int kRowLength = 16;  // samples that one invocation counts
 
 static_assert(sizeof(MatchingCounts) == 12, "as matching_counts.comp.glsl has it");
 
 gl::Defines matchingDefines(const MatchingSettings& settings) {
-    return {{"GROUP_SIZE", kGroupSize},
+    return {{"GROUP_SIZE", kMatchGroupSize},
             {"INVALID_OFFSET", kInvalidOffset},
             {"IS_SECOND_ORDER", settings.matching == Matching::SecondOrder ? 1 : 0},
             {"MAX_NEWTON_STEPS", kMaxNewtonSteps},
@@ -27,8 +27,9 @@ gl::Defines matchingDefines(const MatchingSettings& settings) {
 }
 
 gl::Defines countsDefines() {
-    return {
-        {"GROUP_SIZE", kGroupSize}, {"ROW_LENGTH", kRowLength}, {"INVALID_OFFSET", kInvalidOffset}};
+    return {{"GROUP_SIZE", kMatchGroupSize},
+            {"ROW_LENGTH", kRowLength},
+            {"INVALID_OFFSET", kInvalidOffset}};
 }
 
 }  // namespace
@@ -66,12 +67,13 @@ void PixelMatcher::match(const ReflectionDepthImage& key, const glm::vec3& eyeWo
     pass_.set("widestRingPx", settings_.widestRingPx);
     // Without previous offsets the distances stand in.
     const gl::Texture& distance = key.reflection.distance;
-    pass_.dispatch({kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kGroupSize), 1},
-                   gl::Resources{{"travelDistances", distance},
-                                 {"previousOffsets", previous ? previous->offset : distance},
-                                 {"offsets", result.offset},
-                                 {"stepCounts", result.steps}}
-                       .with(key.gbuffer.resourcesFor(pass_)));
+    pass_.dispatch(
+        {kit::groupsFor(sizePx.x, kMatchGroupSize), kit::groupsFor(sizePx.y, kMatchGroupSize), 1},
+        gl::Resources{{"travelDistances", distance},
+                      {"previousOffsets", previous ? previous->offset : distance},
+                      {"offsets", result.offset},
+                      {"stepCounts", result.steps}}
+            .with(key.gbuffer.resourcesFor(pass_)));
 }
 
 MatchingCounts PixelMatcher::counts(const ReflectionDepthImage& key, const Offsets& offsets) const {
@@ -79,7 +81,7 @@ MatchingCounts PixelMatcher::counts(const ReflectionDepthImage& key, const Offse
     const gl::Buffer sums = gl::Buffer::of(std::span<const MatchingCounts>({MatchingCounts{}}));
     const GLuint rowPieces = kit::groupsFor(sizePx.x, kRowLength);
     countsPass_.dispatch(
-        {kit::groupsFor(rowPieces, kGroupSize), kit::groupsFor(sizePx.y, kGroupSize), 1},
+        {kit::groupsFor(rowPieces, kMatchGroupSize), kit::groupsFor(sizePx.y, kMatchGroupSize), 1},
         gl::Resources{{"offsets", offsets.offset}, {"stepCounts", offsets.steps}, {"Counts", sums}}
             .with(key.gbuffer.resourcesFor(countsPass_)));
     return sums.read<MatchingCounts>(1).front();

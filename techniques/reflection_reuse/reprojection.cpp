@@ -13,7 +13,7 @@ enum Target { kRadianceTarget = 0, kWantedTarget = 1 };
 /// shares would let what is farther show through.
 constexpr float kPointBias = 0.01F;
 
-gl::Defines passDefines() {
+gl::Defines reprojectionDefines() {
     return {{"kRadianceTarget", static_cast<int>(kRadianceTarget)},
             {"kWantedTarget", static_cast<int>(kWantedTarget)}};
 }
@@ -51,14 +51,14 @@ Reprojection::Reprojection(const gl::ShaderLibrary& shaders, const ReprojectionS
     : settings_(settings),
       cells_(shaders, sizePx, settings.splitsDraws),
       shift_(shaders, {"reflection_reuse/shift.vert.glsl", "reflection_reuse/shift.frag.glsl"},
-             passDefines()),
+             reprojectionDefines()),
       warp_(shaders, {"reflection_reuse/warp.vert.glsl", "reflection_reuse/warp.frag.glsl"},
-            passDefines()),
+            reprojectionDefines()),
       project_(shaders,
                {"reflection_reuse/project.vert.glsl", "reflection_reuse/project.frag.glsl"},
-               passDefines()),
+               reprojectionDefines()),
       wantAll_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/want_all.frag.glsl"},
-               passDefines()),
+               reprojectionDefines()),
       depthBuffer_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
       noDoubts_(gl::Texture::make2D(GL_R8UI, glm::ivec2(1))) {
     noDoubts_.clearToZero();

@@ -8,12 +8,12 @@ namespace gfxrepro::reflections {
 
 namespace {
 
-constexpr std::uint32_t kGroupSize = 256;
+constexpr std::uint32_t kBvhGroupSize = 256;
 constexpr std::uint32_t kAxisBits = 10;
 
-gl::Pass pass(const gl::ShaderLibrary& shaders, const char* file) {
+gl::Pass bvhPass(const gl::ShaderLibrary& shaders, const char* file) {
     gl::Defines defines = objectDefines();
-    defines["GROUP_SIZE"] = kGroupSize;
+    defines["GROUP_SIZE"] = kBvhGroupSize;
     return {shaders, {file}, defines};
 }
 
@@ -21,9 +21,9 @@ gl::Pass pass(const gl::ShaderLibrary& shaders, const char* file) {
 
 GpuBvh::GpuBvh(const gl::ShaderLibrary& shaders, const GpuObjects& objects)
     : objects_(objects),
-      codes_(pass(shaders, "reflections/bvh_codes.comp.glsl")),
-      hierarchy_(pass(shaders, "reflections/bvh_hierarchy.comp.glsl")),
-      boxes_(pass(shaders, "reflections/bvh_boxes.comp.glsl")),
+      codes_(bvhPass(shaders, "reflections/bvh_codes.comp.glsl")),
+      hierarchy_(bvhPass(shaders, "reflections/bvh_hierarchy.comp.glsl")),
+      boxes_(bvhPass(shaders, "reflections/bvh_boxes.comp.glsl")),
       sort_(shaders, objects.triangleCount()),
       pairs_(objects.triangleCount() * sizeof(glm::uvec2)),
       nodes_(nodeCount() * sizeof(Node)),
@@ -54,7 +54,7 @@ void GpuBvh::build(gl::Profiler& profiler) {
 }
 
 void GpuBvh::dispatch(const gl::Pass& pass, std::uint32_t count) const {
-    pass.dispatch({kit::groupsFor(count, kGroupSize), 1, 1},
+    pass.dispatch({kit::groupsFor(count, kBvhGroupSize), 1, 1},
                   gl::Resources{}.with({{"Objects", objects_.records()},
                                         {"Positions", objects_.positions()},
                                         {"Indices", objects_.indices()},

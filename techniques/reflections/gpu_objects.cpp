@@ -81,7 +81,7 @@ scene::Box transformed(const scene::Box& box, const glm::mat4& matrix) {
     return result;
 }
 
-std::uint32_t in255ths(float value) {
+std::uint32_t packed255ths(float value) {
     return static_cast<std::uint32_t>(std::lround(255.0F * value));
 }
 
@@ -104,7 +104,8 @@ ObjectRecord recordOf(const Object& object, const glm::mat4& pose, const scene::
                          object.maxRoughness};
     if (object.reflector != 0) {
         record.surface = static_cast<std::uint32_t>(object.reflector) |
-                         in255ths(object.reflectivity) << 16 | in255ths(object.glossiness) << 24;
+                         packed255ths(object.reflectivity) << 16 |
+                         packed255ths(object.glossiness) << 24;
     }
     return record;
 }

@@ -10,7 +10,7 @@ namespace gfxrepro::reflections {
 
 namespace {
 
-constexpr std::size_t kGroupSize = 64;
+constexpr std::size_t kSamplesGroupSize = 64;
 /// Work groups along one axis that every device takes; beyond, invocations take several samples.
 constexpr GLuint kMostGroups = 65535;
 
@@ -23,13 +23,14 @@ struct ListedSample {
 };
 static_assert(sizeof(ListedSample) == 28);
 
-gl::Pass pass(const gl::ShaderLibrary& shaders, const char* file) {
-    return {shaders, {file}, {{"GROUP_SIZE", static_cast<unsigned>(kGroupSize)}}};
+gl::Pass samplesPass(const gl::ShaderLibrary& shaders, const char* file) {
+    return {shaders, {file}, {{"GROUP_SIZE", static_cast<unsigned>(kSamplesGroupSize)}}};
 }
 
 void dispatch(const gl::Pass& pass, std::size_t count, const gl::Resources& resources) {
     pass.set("count", static_cast<std::uint32_t>(count));
-    pass.dispatch({std::min(kit::groupsFor(count, kGroupSize), kMostGroups), 1, 1}, resources);
+    pass.dispatch({std::min(kit::groupsFor(count, kSamplesGroupSize), kMostGroups), 1, 1},
+                  resources);
 }
 
 /// The places whose mask is not 0 and their four neighbours, each once.
@@ -57,8 +58,8 @@ std::vector<std::uint32_t> withNeighbours(const std::vector<std::uint8_t>& mask,
 }  // namespace
 
 WantedSamples::WantedSamples(const gl::ShaderLibrary& shaders)
-    : read_(pass(shaders, "reflections/wanted_samples.comp.glsl")),
-      write_(pass(shaders, "reflections/found_samples.comp.glsl")) {}
+    : read_(samplesPass(shaders, "reflections/wanted_samples.comp.glsl")),
+      write_(samplesPass(shaders, "reflections/found_samples.comp.glsl")) {}
 
 std::vector<std::uint32_t> WantedSamples::read(const GBuffer& gbuffer, const gl::Texture& wanted,
                                                HostGBuffer& host) const {

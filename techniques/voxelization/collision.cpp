@@ -5,7 +5,7 @@
 namespace gfxrepro::voxelization {
 
 namespace {
-constexpr int kGroupSize = 8;
+constexpr int kCollisionGroupSize = 8;
 
 // The block Extent of collision.comp.glsl (std430).
 using Words = std::array<std::uint32_t, 7>;
@@ -29,7 +29,7 @@ ExtentPass::ExtentPass(const gl::ShaderLibrary& shaders, const WorksheetLayout& 
 void ExtentPass::run(const gl::Texture& sheets) {
     GFXREPRO_ASSERT(sheets.size() == glm::ivec3(layout_.sheetSizePx(), layout_.layers()));
     extent_.write(std::span<const std::uint32_t>(kNothing));
-    const auto groups = static_cast<GLuint>(layout_.resolution() / kGroupSize);
+    const auto groups = static_cast<GLuint>(layout_.resolution() / kCollisionGroupSize);
     pass_.dispatch({groups, groups, layout_.slabCount()},
                    {{"sheets", sheets}, {"Extent", extent_}});
 }

@@ -5,7 +5,7 @@
 namespace gfxrepro::voxelization {
 
 namespace {
-constexpr int kGroupSize = 8;
+constexpr int kCsgGroupSize = 8;
 }  // namespace
 
 CsgPass::CsgPass(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout,
@@ -22,7 +22,7 @@ void CsgPass::run(const gl::Texture& left, const gl::Texture& right,
                   const gl::Texture& result) const {
     const glm::ivec3 size(layout_.sheetSizePx(), layout_.layers());
     GFXREPRO_ASSERT(left.size() == size && right.size() == size && result.size() == size);
-    pass_.dispatch({size.x / kGroupSize, size.y / kGroupSize, size.z},
+    pass_.dispatch({size.x / kCsgGroupSize, size.y / kCsgGroupSize, size.z},
                    {{"left", left}, {"right", right}, {"result", result}});
 }
 

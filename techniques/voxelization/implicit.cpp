@@ -4,7 +4,7 @@ namespace gfxrepro::voxelization {
 
 namespace {
 
-constexpr int kGroupSize = 8;
+constexpr int kImplicitGroupSize = 8;
 
 // [zju2005] Sec. 2.4.1. It reaches to ±2.27.
 constexpr std::string_view kQuartic = "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8";
@@ -50,7 +50,7 @@ void ImplicitSource::render(gl::Profiler& profiler) {
     pass_.set("boxMin", grid_.box.min);
     pass_.set("voxelSize", grid_.voxelSize());
     pass_.set("insideSign", isNegativeInside_ ? 1.0F : -1.0F);
-    const auto groups = static_cast<GLuint>(grid_.layout.resolution() / kGroupSize);
+    const auto groups = static_cast<GLuint>(grid_.layout.resolution() / kImplicitGroupSize);
     pass_.dispatch({groups, groups, grid_.layout.slabCount()}, {{"sheets", grid_.sheets}});
 }
 

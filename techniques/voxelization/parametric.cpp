@@ -11,7 +11,7 @@ namespace gfxrepro::voxelization {
 
 namespace {
 
-constexpr int kGroupSize = 64;
+constexpr int kParametricGroupSize = 64;
 constexpr int kMaxSamples = 4096;  // a direction
 
 constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
@@ -127,7 +127,7 @@ std::vector<glm::vec3> ParametricSource::samplePoints(const gl::ShaderLibrary& s
         static_cast<std::size_t>(sampleCounts_.x) * static_cast<std::size_t>(sampleCounts_.y);
     const gl::Buffer points(count * sizeof(glm::vec3));
     pass.set("domain", domain_);
-    pass.dispatch({kit::groupsFor(count, kGroupSize), 1, 1}, {{"Points", points}});
+    pass.dispatch({kit::groupsFor(count, kParametricGroupSize), 1, 1}, {{"Points", points}});
     return points.read<glm::vec3>(count);
 }
 

@@ -82,6 +82,8 @@ for includes in ('#include <map>\n#include "runner/core/a.h"\n',
                  '#include "runner/core/a.h"\n#include "runner/core/b.h"\n#include <map>\n'):
     expect("check_style", {"runner/core/a.cpp": includes},
            "runner/core/a.cpp: includes are in another order than the own header, <…>, ours")
+expect("check_style", {"runner/core/a.h": "#pragma once\n", "runner/core/a.cpp": '#include <map>\n'},
+       "runner/core/a.cpp: includes are in another order than the own header, <…>, ours")
 expect("check_style", {"runner/core/CMakeLists.txt": "a(b\n    SOURCES b.cpp a.cpp\n    PUBLIC c)\n"},
        "runner/core/CMakeLists.txt: a.cpp stands behind b.cpp: sort the sources")
 expect("check_style", {"techniques/a/README.md": "\n" * 71}, "techniques/a/README.md: 71 lines, at most 70")

@@ -28,14 +28,13 @@ namespace {
 
 /// Whether the recorded case lies at that point of the sweep: what both name is the same.
 bool isAt(const PlannedCase& recorded, const PlannedCase& point) {
-    const auto standsFor = recorded.params.find(kStandsFor);
-    const std::string scene =
-        standsFor == recorded.params.end() ? recorded.scene : standsFor->get<std::string>();
+    const config::Node* standsFor = recorded.params.find(kStandsFor);
+    const std::string scene = standsFor ? standsFor->text() : recorded.scene;
     if (recorded.table != point.table) return false;
     if (!point.scene.empty() && scene != point.scene) return false;
-    for (const auto& [name, value] : point.params.items()) {
-        const auto own = recorded.params.find(name);
-        if (own != recorded.params.end() && *own != value) return false;
+    for (const auto& [name, value] : point.params.entries()) {
+        const config::Node* own = recorded.params.find(name);
+        if (own && !own->sameContent(value)) return false;
     }
     return true;
 }
@@ -46,12 +45,10 @@ std::vector<PlannedCase> planOf(const config::Experiment& experiment, const Reco
     std::vector<PlannedCase> planned;
     std::set<std::string> placed;
     for (const config::CaseSpec& spec : config::expandCases(experiment)) {
-        PlannedCase point{"",
-                          experiment.id,
-                          spec.scene.isNull() ? "" : spec.scene.text(),
-                          spec.params.toJson(),
-                          {}};
-        point.params["output"] = {{"width", spec.outputWidthPx}, {"height", spec.outputHeightPx}};
+        PlannedCase point{
+            "", experiment.id, spec.scene.isNull() ? "" : spec.scene.text(), spec.params, {}};
+        point.params.setPath("output.width", config::Node::number(spec.outputWidthPx));
+        point.params.setPath("output.height", config::Node::number(spec.outputHeightPx));
         for (const auto& [axis, value] : spec.axes) point.axes.push_back(axis);
         bool isRecorded = false;
         for (const PlannedCase& item : records.cases) {
@@ -91,7 +88,7 @@ RecordMaker& RecordMaker::beginCase(const std::string& scene, const std::string&
     if (json.contains("method")) current_.method = json["method"].get<std::string>();
     current_.scene = scene;
     records_.cases.push_back(
-        {current_.caseId, current_.table, scene, nlohmann::json::parse(params), {}});
+        {current_.caseId, current_.table, scene, config::parseJson(params, "params"), {}});
     current_.lane = "timing";
     return *this;
 }
