@@ -1,5 +1,6 @@
 // The cases of an experiment, every parameter resolved by the technique that declares it.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <functional>
