@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <map>
 #include <set>
@@ -16,7 +15,6 @@
 #include "runner/cli/experiments.h"
 #include "runner/core/files.h"
 #include "runner/core/text.h"
-#include "runner/report/gnuplot.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
 #include "runner/results/made_from.h"
@@ -341,10 +339,9 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
         if (!embeds) results::requireMadeFrom(made, from);
         requireReport(file);
     }
-    std::chrono::milliseconds patience = report::kGnuplotPatience;
     for (std::size_t i = 0; i < runs.size(); ++i) {
         const fs::path drawn = embeds ? fs::path() : report::madeFolder(runs[i].folder, i, file);
-        runs[i].curves = report::drawCurves(drawn, runs[i].tables, runs[i].experiments, patience);
+        runs[i].curves = report::drawCurves(drawn, runs[i].tables, runs[i].experiments);
     }
     report::writeReport(file, runs, results::reportOptions(embeds, sayPictures));
     if (!embeds && fs::exists(made)) results::noteMadeFrom(made, from);

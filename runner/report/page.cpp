@@ -6,8 +6,6 @@
 
 namespace gfxrepro::report {
 
-namespace fs = std::filesystem;
-
 namespace {
 
 std::string paragraph(const char* cssClass, const char* label, const std::string& text) {
@@ -38,29 +36,16 @@ std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions,
     return html + "</tbody></table></div>\n";
 }
 
-/// A file as the page at `page` names it.
-std::string shownFrom(const fs::path& page, const fs::path& file) {
-    return file.empty() ? ""
-                        : fs::relative(fs::absolute(file), fs::absolute(page).parent_path())
-                              .generic_string();
-}
-
 std::string curvesHtml(const Page& page, const Model& model) {
     std::string html;
     for (std::size_t run = 0; run < page.parts.size(); ++run) {
         for (const Curve* curve : page.parts[run].curves) {
-            const std::string script = shownFrom(model.places[run].page, curve->script);
-            const std::string caption = fmt::format(
-                "{}{} <span class=\"soft\">{}{}</span>",
+            html += fmt::format(
+                "<figure class=\"curve\">{}<figcaption>{}{}{}</figcaption></figure>\n", curve->svg,
                 model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(curve->title),
-                escapeXml(script), curve->problem.empty() ? "" : ": " + escapeXml(curve->problem));
-            std::string svg = curve->svg;
-            if (const std::size_t at = svg.find("<svg"); at != svg.npos) {
-                svg.insert(at + 4,
-                           fmt::format(" role=\"img\" aria-label=\"{}\"", escapeXml(curve->title)));
-            }
-            html += fmt::format("<figure class=\"curve\">{}<figcaption>{}</figcaption></figure>\n",
-                                svg, caption);
+                curve->problem.empty()
+                    ? ""
+                    : fmt::format(" <span class=\"soft\">({})</span>", escapeXml(curve->problem)));
         }
     }
     return html.empty() ? "" : "<h3>Curves</h3>\n<div class=\"curves\">\n" + html + "</div>\n";

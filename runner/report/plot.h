@@ -1,7 +1,6 @@
-// The curves of a run's tables as files: scripts for gnuplot, and the SVGs that it makes of them.
+// The curves of a run's tables.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,24 +10,20 @@
 
 namespace gfxrepro::report {
 
-/// One figure of a table. Paths are relative to the run's folder.
-struct PlotFile {
+/// A figure of a table, as a page has it.
+struct Curve {
     std::string table;    // "zju2005/2.1"
     std::string title;    // its caption: the plot's own, else the experiment's
-    std::string script;   // "plots/zju2005-2.1.gp"; "-2" and so on follow the slug of further ones
-    std::string svg;      // "plots/zju2005-2.1.svg"; empty when it was not drawn
-    std::string problem;  // why not: nothing measured, a column that is not there, no gnuplot
-    std::vector<std::string> notes;  // which values are left out; they stand in the SVG, too
+    std::string svg;      // for wide pages and for narrow ones (svg.h); empty when there is none
+    std::string problem;  // why not: nothing measured, a column that is not there
 };
 
-/// Writes the plots of all experiments, in order; `tables` lies beside `experiments`. The SVGs may
-/// stand in one page: ids are unique, nothing is fetched, text takes the colour of the page's. A
-/// run without gnuplot gets its scripts only; a plot of a column that a profile or an override took
-/// away has its problem alone. What gnuplot takes beyond kGnuplotLimit a plot is taken off
-/// `patience`. Throws Error for files.
-std::vector<PlotFile> writePlots(const std::filesystem::path& runDir,
-                                 const std::vector<tables::Table>& tables,
-                                 const std::vector<config::Experiment>& experiments,
-                                 std::chrono::milliseconds& patience);
+/// The plots of all experiments, in order; `tables` lies beside `experiments`. Below `folder`,
+/// where one is given, each is a file too: plots/zju2005-2.1.svg; "-2" and so on follow the slug of
+/// further ones. A plot of a column that a profile or an override took away has its problem alone.
+/// Throws Error for files.
+std::vector<Curve> drawCurves(const std::filesystem::path& folder,
+                              const std::vector<tables::Table>& tables,
+                              const std::vector<config::Experiment>& experiments);
 
 }  // namespace gfxrepro::report

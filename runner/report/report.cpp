@@ -10,7 +10,6 @@
 #include "runner/core/files.h"
 #include "runner/report/markup.h"
 #include "runner/report/parts.h"
-#include "runner/report/plot.h"
 
 namespace gfxrepro::report {
 
@@ -69,21 +68,6 @@ class ScratchFolder {
 
 std::string caseAnchor(std::size_t run, const std::string& caseId) {
     return fmt::format("{}-{}", Model::letter(run), caseId);
-}
-
-std::vector<Curve> drawCurves(const fs::path& folder, const std::vector<tables::Table>& tables,
-                              const std::vector<config::Experiment>& experiments,
-                              std::chrono::milliseconds& patience) {
-    std::optional<ScratchFolder> scratch;
-    if (folder.empty()) scratch.emplace();
-    const fs::path& drawn = scratch ? scratch->path() : folder;
-    std::vector<Curve> curves;
-    for (const PlotFile& plot : writePlots(drawn, tables, experiments, patience)) {
-        curves.push_back({plot.table, plot.title,
-                          plot.svg.empty() ? "" : readFile(drawn / plot.svg), plot.problem});
-        if (!scratch && !plot.script.empty()) curves.back().script = drawn / plot.script;
-    }
-    return curves;
 }
 
 void writeReport(const fs::path& file, std::span<const ReportRun> runs,

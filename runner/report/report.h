@@ -1,7 +1,6 @@
 // report.html: what a person looks at after a run, or to lay several runs side by side.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "runner/config/experiment.h"
 #include "runner/records/records.h"
 #include "runner/report/gallery.h"
+#include "runner/report/plot.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::report {
@@ -25,15 +25,6 @@ struct ReportCase {
     std::string title;    // "zju2005/2.1 scene=models/duck"
     std::string command;  // for a shell
     std::vector<std::string> log;
-};
-
-/// A figure of a table, as a page has it.
-struct Curve {
-    std::string table;  // "zju2005/2.1"
-    std::string title;
-    std::string svg;                    // its text; empty when it could not be drawn
-    std::string problem;                // why not
-    std::filesystem::path script = {};  // for gnuplot; empty where it is not kept
 };
 
 /// A finished run: all that its pages show. Of the manifest are shown, where there: commit, build,
@@ -76,12 +67,5 @@ void writeReport(const std::filesystem::path& file, std::span<const ReportRun> r
 /// the run as it is: "all.html" → all-files/A.
 std::filesystem::path madeFolder(const std::filesystem::path& runDir, std::size_t index,
                                  const std::filesystem::path& file);
-
-/// Draws the curves of all experiments below `folder` (writePlots()), or of an empty one nowhere
-/// that stays; `tables` lies beside `experiments`.
-std::vector<Curve> drawCurves(const std::filesystem::path& folder,
-                              const std::vector<tables::Table>& tables,
-                              const std::vector<config::Experiment>& experiments,
-                              std::chrono::milliseconds& patience);
 
 }  // namespace gfxrepro::report

@@ -1,7 +1,6 @@
 #include "runner/results/results.h"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -9,7 +8,6 @@
 #include <utility>
 
 #include "runner/core/files.h"
-#include "runner/report/gnuplot.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
 #include "runner/results/made_from.h"
@@ -127,10 +125,9 @@ Results writeResults(const fs::path& runDir, const run::StoredRun& run, const Re
         report::writeClaims(out, run::caseResults(run), results.claims, results.context);
     }
     if (!which.tables && !which.report) return results;
-    std::chrono::milliseconds patience = report::kGnuplotPatience;
     const bool isKept = which.tables || !which.embeds;
     std::vector<report::Curve> curves =
-        report::drawCurves(isKept ? out : fs::path(), results.tables, experiments, patience);
+        report::drawCurves(isKept ? out : fs::path(), results.tables, experiments);
     if (which.report) {
         report::ReportRun shown = reportRun(runDir, run, results);
         shown.curves = std::move(curves);

@@ -30,6 +30,7 @@ layout:
   rows: number
   columns: {{ok: {{where: {{behaviour: ok}}}}, throw: {{where: {{behaviour: throw}}}}}}
   cell: {{metric: number, format: "{{median:.1f}}"}}
+plots: [{{x: number, y: ok}}]
 printed:
   hardware: "a <machine>"
   values: |
@@ -392,8 +393,10 @@ class Report(unittest.TestCase):
         for fragment in ("", "#demo2026-1"):
             self.open(fragment)
             self.assertLessEqual(self.browser.script("return document.documentElement.scrollWidth - innerWidth"), 0)
+        self.assertEqual((self.shown(".current .narrow"), self.shown(".current .wide")), (1, 0), "of the curve")
         self.browser.screenshot(OUT / "narrow.png")
         self.browser.resize(1300, 900)
+        self.assertEqual((self.shown(".current .narrow"), self.shown(".current .wide")), (0, 1), "of the curve")
         luminance = ("const c = getComputedStyle(document.body)[arguments[0]].match(/\\d+/g).map(Number);"
                      "return (c[0] + c[1] + c[2]) / 3")
         for scheme, is_dark in (("dark", True), ("light", False)):
@@ -445,6 +448,9 @@ class Report(unittest.TestCase):
         self.assertEqual(self.browser.script(
             "return [...document.querySelectorAll('#demo2026-1 .results thead .sub')].map(h => h.textContent)"),
             ["printed", "A", "B", "A", "B"])
+        self.assertEqual(self.shown(".current .curve svg"), 2)
+        self.assertEqual(self.browser.script("const ids = [...document.querySelectorAll('[id]')].map(e => e.id);"
+                                             "return ids.length - new Set(ids).size"), 0, "ids that stand twice")
         self.browser.screenshot(OUT / "both.png")
 
 

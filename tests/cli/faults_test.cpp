@@ -369,8 +369,8 @@ TEST(Overrides, WhatTheyTakeFromPlotsIsLeftOutAndSaidBefore) {
                                             "software", "--quiet", "--out", dir});
     EXPECT_EQ(run.exitCode, 0) << run.err;
     EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
-    EXPECT_TRUE(std::filesystem::exists(dir + "/plots/sweep-mock.gp"));
-    EXPECT_FALSE(std::filesystem::exists(dir + "/plots/sweep-mock-2.gp"));
+    EXPECT_TRUE(std::filesystem::exists(dir + "/plots/sweep-mock.svg"));
+    EXPECT_FALSE(std::filesystem::exists(dir + "/plots/sweep-mock-2.svg"));
     EXPECT_THAT(readFile(dir + "/report.html"),
                 HasSubstr("not among what was measured: &#39;y&#39; is no column (columns: x)"));
 }

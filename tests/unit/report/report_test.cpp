@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
 #include "runner/core/files.h"
 #include "runner/image/png_io.h"
 #include "runner/records/images.h"
-#include "runner/report/gnuplot.h"
 #include "runner/tables/labels.h"
 #include "runner/tables/moved_clocks.h"
 #include "tests/support/support.h"
@@ -68,8 +68,7 @@ void judge(ReportRun& run, const tables::Recorded& recorded) {
     run.records = recorded;
     run.tables = tables::buildTables(run.experiments, recorded);
     run.claims = claims::evaluateClaims(run.experiments, run.tables, run.context);
-    std::chrono::milliseconds patience = kGnuplotPatience;
-    run.curves = drawCurves(run.folder, run.tables, run.experiments, patience);
+    run.curves = drawCurves(run.folder, run.tables, run.experiments);
 }
 
 ReportRun runIn(const std::filesystem::path& folder, double drawMs = 8.0) {
@@ -545,6 +544,33 @@ TEST(Report, RunsStandSideBySide) {
     EXPECT_LT(html.find("<section class=\"page\" id=\"zju2005-9.9\">"),
               html.find("<section class=\"page\" id=\"overview\">"))
         << "runs of one table open on its numbers";
+}
+
+TEST(Report, IdsAreUniqueAlsoWithCurvesOfSeveralRuns) {
+    const test::TemporaryFolder a, b, out;
+    std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
+    config::PlotSpec plot;
+    plot.x = "error";
+    plot.y = {"draw_ms"};
+    for (ReportRun& run : runs) {
+        run.experiments[0].plots = {plot, plot};
+        run.curves = drawCurves("", run.tables, run.experiments);
+    }
+    writeReport(out.path() / "both.html", runs);
+    const std::string html = readFile(out.path() / "both.html");
+    std::set<std::string> ids;
+    std::size_t curves = 0;
+    for (std::size_t at = 0; (at = html.find(" id=\"", at)) != html.npos;) {
+        at += 5;
+        const std::string id = html.substr(at, html.find('"', at) - at);
+        EXPECT_TRUE(ids.insert(id).second) << id << " twice";
+    }
+    for (std::size_t at = 0; (at = html.find("<figure class=\"curve\"><svg", at)) != html.npos;
+         ++at) {
+        ++curves;
+    }
+    EXPECT_EQ(curves, 4U);
+    EXPECT_THAT(html, HasSubstr("<figcaption>B: A table</figcaption>"));
 }
 
 TEST(Report, KeptVerdictsStandBesideARun) {

@@ -1,0 +1,287 @@
+#include "runner/report/figure_svg.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <set>
+
+#include "runner/core/text.h"
+#include "runner/report/markup.h"
+#include "runner/report/svg.h"
+#include "runner/tables/reference_line.h"
+
+namespace gfxrepro::report {
+
+namespace {
+
+using Lines = std::vector<std::string>;
+
+/// A colour and a shape a curve. The first colours are after Okabe and Ito, the others were found
+/// by a search: all have a contrast of 3 to white and to near-black, and a distance of 18 in CIELAB
+/// to each other for readers with any kind of colour blindness (as simulated by Machado et al.
+/// 2009).
+struct CurveStyle {
+    std::string_view colour;
+    int corners;  // 0: a circle
+    int turn;     // of the first corner, in degrees from the right, clockwise
+};
+constexpr std::array<CurveStyle, 7> kCurveStyles = {{{"#1f77c9", 0, 0},
+                                                     {"#d55e00", 4, 45},
+                                                     {"#009e73", 3, -90},
+                                                     {"#666688", 4, 0},
+                                                     {"#ee0044", 3, 90},
+                                                     {"#aa00ee", 5, -90},
+                                                     {"#ee44ee", 0, 0}}};
+
+constexpr double kEdge = 14.0;  // right of a plot
+constexpr double kGap = 18.0;   // between entries, panels
+constexpr double kSample = 30.0;
+constexpr double kMeasured = 3.2, kPrinted = 5.0;  // sizes of markers
+constexpr std::string_view kReference = "stroke-dasharray=\"6 4\" stroke-width=\"1.2\"";
+constexpr std::string_view kHollow = "fill=\"none\" stroke-width=\"1.4\"";
+
+const CurveStyle& styleOf(std::size_t curve) {
+    return kCurveStyles[curve % kCurveStyles.size()];
+}
+
+std::string group(std::string_view colour, const std::string& content) {
+    return content.empty()
+               ? ""
+               : fmt::format("<g fill=\"{0}\" stroke=\"{0}\">\n{1}</g>\n", colour, content);
+}
+
+std::string marker(const CurveStyle& style, double x, double y, double size,
+                   std::string_view attributes = "", const std::string& title = "") {
+    const std::string shownTitle =
+        title.empty() ? "" : fmt::format("<title>{}</title>", escapeXml(title));
+    if (style.corners == 0) {
+        return fmt::format("<circle cx=\"{:.5g}\" cy=\"{:.5g}\" r=\"{}\" {}>{}</circle>\n", x, y,
+                           size, attributes, shownTitle);
+    }
+    std::string path;
+    for (int i = 0; i < style.corners; ++i) {
+        const double angle = (style.turn + 360.0 * i / style.corners) * std::numbers::pi / 180.0;
+        constexpr double kLarger = 1.2;  // than a circle, so that it looks alike
+        path +=
+            fmt::format("{}{:.5g} {:.5g}", i == 0 ? 'M' : 'L', x + kLarger * size * std::cos(angle),
+                        y + kLarger * size * std::sin(angle));
+    }
+    return fmt::format("<path d=\"{}Z\" {}>{}</path>\n", path, attributes, shownTitle);
+}
+
+std::string intervalBar(double x, double low, double high) {
+    constexpr double kHalf = 4.5;
+    constexpr std::string_view kStyle = "stroke-width=\"1.2\"";
+    return svgLine(x, low, x, high, kStyle) + svgLine(x - kHalf, low, x + kHalf, low, kStyle) +
+           svgLine(x - kHalf, high, x + kHalf, high, kStyle);
+}
+
+/// All values of a panel that its axes have to hold.
+void gatherValues(const tables::FigurePanel& panel, std::vector<double>& x,
+                  std::vector<double>& y) {
+    for (const tables::FigureCurve& curve : panel.curves) {
+        for (const auto* points : {&curve.points, &curve.printed, &curve.reference}) {
+            for (const tables::FigurePoint& point : *points) {
+                x.push_back(point.x);
+                if (point.y) y.push_back(*point.y);
+                if (point.bounds == tables::Bounds::None) continue;
+                y.push_back(point.interval.low);
+                y.push_back(point.interval.high);
+            }
+        }
+    }
+}
+
+/// Draws one figure from the top to the bottom.
+class FigureDrawing {
+  public:
+    FigureDrawing(const tables::Figure& figure, double width) : figure_(figure), width_(width) {}
+
+    std::string draw(const std::string& title) {
+        drawLegend();
+        if (!figure_.panels.empty()) drawPanels();
+        constexpr std::string_view kSmall = "font-size=\"11\"";
+        for (const std::string& note : figure_.notes) {
+            addLines(wrapped(note, width_), kSmall);
+        }
+        return svgElement(width_, end_ + 4.0, title, svg_);
+    }
+
+  private:
+    struct Entry {
+        std::string sample;  // around 0, 0
+        std::string text;
+    };
+
+    void addLines(const Lines& lines, std::string_view style = "") {
+        svg_ += svgLines(0.0, end_ + kFontPx, "start", lines, style);
+        end_ += kLinePx * static_cast<double>(lines.size());
+    }
+
+    /// A curve alone needs no name: its axis has it.
+    std::vector<Entry> entries() const {
+        std::vector<Entry> entries;
+        const bool areSeveral = figure_.curveNames.size() > 1;
+        for (std::size_t i = 0; areSeveral && i < figure_.curveNames.size(); ++i) {
+            const CurveStyle& style = styleOf(i);
+            entries.push_back(
+                {group(style.colour, svgLine(-11.0, 0.0, 11.0, 0.0, "stroke-width=\"1.8\"") +
+                                         marker(style, 0.0, 0.0, kMeasured)),
+                 figure_.curveNames[i]});
+        }
+        bool hasPrinted = false;
+        std::set<tables::Bounds> bounds;
+        for (const tables::FigurePanel& panel : figure_.panels) {
+            for (const tables::FigureCurve& curve : panel.curves) {
+                hasPrinted = hasPrinted || !curve.printed.empty();
+                for (const auto& point : curve.points) bounds.insert(point.bounds);
+            }
+        }
+        bounds.erase(tables::Bounds::None);
+        const std::string_view colour = areSeveral ? "currentColor" : styleOf(0).colour;
+        const auto add = [&](const std::string& sample, const std::string& text) {
+            entries.push_back({group(colour, sample), text});
+        };
+        if (hasPrinted) {
+            add(marker(styleOf(0), 0.0, 0.0, kMeasured), "measured");
+            add(marker(styleOf(0), 0.0, 0.0, kPrinted, kHollow), "printed");
+        }
+        if (!bounds.empty()) {
+            Lines names;
+            for (const tables::Bounds one : bounds) names.emplace_back(tables::boundsName(one));
+            add(intervalBar(0.0, -6.0, 6.0), joined(names, " or "));
+        }
+        if (figure_.slope) {
+            add(svgLine(-11.0, 0.0, 11.0, 0.0, kReference), tables::slopeName(*figure_.slope));
+        }
+        return entries;
+    }
+
+    void drawLegend() {
+        double x = 0.0;
+        std::size_t most = 0;  // lines of an entry of this row
+        const auto endRow = [&] {
+            end_ += kLinePx * static_cast<double>(most) + (most > 0 ? 3.0 : 0.0);
+            x = 0.0;
+            most = 0;
+        };
+        for (const Entry& entry : entries()) {
+            const Lines lines = wrapped(entry.text, width_ - kSample);
+            double room = kSample;
+            for (const auto& line : lines) room = std::max(room, kSample + textWidth(line));
+            if (x + room > width_) endRow();
+            svg_ += fmt::format("<g transform=\"translate({:.5g} {:.5g})\">\n{}</g>\n",
+                                x + 0.5 * kSample - 3.0, end_ + kFontPx - 4.0, entry.sample);
+            svg_ += svgLines(x + kSample, end_ + kFontPx, "start", lines);
+            most = std::max(most, lines.size());
+            x += room + kGap;
+        }
+        endRow();
+        if (end_ > 0.0) end_ += 6.0;
+    }
+
+    void drawPanels() {
+        struct Panel {
+            Plane plane;
+            std::vector<double> x;
+            std::vector<Tick> yTicks;
+            Lines head;
+        };
+        const std::size_t count = figure_.panels.size();
+        const std::size_t columns = count > 1 && width_ >= kWidePx ? 2 : 1;
+        const double slot =
+            (width_ - kGap * static_cast<double>(columns - 1)) / static_cast<double>(columns);
+        const std::string& label = figure_.panels[0].yLabel;
+        const bool hasOneLabel = std::ranges::all_of(
+            figure_.panels, [&](const auto& panel) { return panel.yLabel == label; });
+        if (hasOneLabel) addLines(wrapped(label, width_));
+        std::vector<Panel> panels(count);
+        double left = 0.0, head = 0.0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const tables::FigurePanel& shown = figure_.panels[i];
+            Panel& panel = panels[i];
+            std::vector<double> y;
+            gatherValues(shown, panel.x, y);
+            panel.plane.x = axisOf(panel.x, figure_.isLogX, false);
+            panel.plane.y = axisOf(y, figure_.isLogY, true);
+            panel.plane.height = count > 1 ? 150.0 : width_ < kWidePx ? 220.0 : 270.0;
+            panel.yTicks = ticksOf(panel.plane.y, panel.plane.height, Along::Y);
+            panel.head = wrapped(shown.title, slot);
+            if (!hasOneLabel)
+                std::ranges::copy(wrapped(shown.yLabel, slot), std::back_inserter(panel.head));
+            left = std::max(left, roomOf(panel.yTicks));
+            head = std::max(head, kLinePx * static_cast<double>(panel.head.size()));
+        }
+        const Lines xLabel = wrapped(figure_.xLabel, slot - left);
+        double next = end_;  // row
+        for (std::size_t i = 0; i < count; ++i) {
+            if (i % columns == 0) end_ = next;
+            const Panel& panel = panels[i];
+            const double start = static_cast<double>(i % columns) * (slot + kGap);
+            Plane plane = panel.plane;
+            plane.left = start + left;
+            plane.width = slot - left - kEdge;
+            plane.top = end_ + head + 8.0;
+            svg_ += svgLines(
+                start, end_ + head - 4.0 - kLinePx * (static_cast<double>(panel.head.size()) - 1.0),
+                "start", panel.head);
+            svg_ += axesSvg(plane, ticksAt(panel.x, plane.x, plane.width), panel.yTicks);
+            for (std::size_t n = 0; n < figure_.panels[i].curves.size(); ++n) {
+                drawCurve(figure_.panels[i].curves[n], styleOf(n), plane);
+            }
+            next = plane.top + plane.height + 30.0;
+            if (i + columns < count) continue;
+            svg_ += svgLines(plane.left + 0.5 * plane.width, next + 4.0, "middle", xLabel);
+        }
+        end_ = next - 6.0 + kLinePx * static_cast<double>(xLabel.size());
+    }
+
+    void drawCurve(const tables::FigureCurve& curve, const CurveStyle& style, const Plane& plane) {
+        const auto path = [&](const std::vector<tables::FigurePoint>& points,
+                              std::string_view attributes) {
+            std::vector<std::pair<double, std::optional<double>>> places;
+            for (const tables::FigurePoint& point : points) places.emplace_back(point.x, point.y);
+            return pathSvg(plane, places, attributes);
+        };
+        const std::string_view colour =
+            figure_.curveNames.size() > 1 ? style.colour : "currentColor";
+        svg_ += group(colour, path(curve.reference, kReference));
+        std::string bars, markers;
+        const auto addPoint = [&](const tables::FigurePoint& point, double size,
+                                  std::string_view attributes, std::string_view what) {
+            if (!point.y || !plane.x.shows(point.x) || !plane.y.shows(*point.y)) return;
+            std::string title =
+                fmt::format("{}{}: {:.6g}, {:.6g}", curve.name, what, point.x, *point.y);
+            const double x = plane.xOf(point.x);
+            if (point.bounds != tables::Bounds::None && !std::isnan(point.interval.low) &&
+                !std::isnan(point.interval.high)) {
+                const auto at = [&](double end) {
+                    return plane.yOf(std::clamp(end, plane.y.low, plane.y.high));
+                };
+                bars += intervalBar(x, at(point.interval.low), at(point.interval.high));
+                title += fmt::format(" ({} {:.6g} – {:.6g})", tables::boundsName(point.bounds),
+                                     point.interval.low, point.interval.high);
+            }
+            markers += marker(style, x, plane.yOf(*point.y), size, attributes, title);
+        };
+        for (const auto& point : curve.points) addPoint(point, kMeasured, "stroke=\"none\"", "");
+        for (const auto& point : curve.printed) addPoint(point, kPrinted, kHollow, ", printed");
+        svg_ += group(style.colour, path(curve.points, "stroke-width=\"1.8\"") + bars + markers);
+    }
+
+    const tables::Figure& figure_;
+    double width_;
+    double end_ = 0.0;  // of what was drawn
+    std::string svg_;
+};
+
+}  // namespace
+
+std::string figureSvg(const tables::Figure& figure, const std::string& title, double width) {
+    return FigureDrawing(figure, width).draw(title);
+}
+
+}  // namespace gfxrepro::report

@@ -1,0 +1,53 @@
+// What the SVGs of curves are made of. They take the colour of the text around them, have no ids
+// and fetch nothing, so that any number may stand in a page.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "runner/report/axis.h"
+
+namespace gfxrepro::report {
+
+/// Each curve is drawn for a page with room, where two stand side by side, and for a narrow one;
+/// report.css shows one of them.
+inline constexpr double kWidePx = 608.0;
+inline constexpr double kNarrowPx = 360.0;
+inline constexpr double kLinePx = 16.0;  // from one line of text to the next
+
+/// The whole, named by its title.
+std::string svgElement(double width, double height, const std::string& title,
+                       const std::string& content);
+/// `style`: further attributes.
+std::string svgLine(double x1, double y1, double x2, double y2, std::string_view style = "");
+/// `anchor`: "start", "middle" or "end", which lies at x.
+std::string svgText(double x, double y, std::string_view anchor, std::string_view text,
+                    std::string_view style = "");
+/// Lines that are about as wide or narrower; a word that is wider has one of its own.
+std::vector<std::string> wrapped(const std::string& text, double width);
+/// Text on several lines, of which the first has its base at y.
+std::string svgLines(double x, double y, std::string_view anchor,
+                     const std::vector<std::string>& lines, std::string_view style = "");
+
+/// A rectangle with its axes.
+struct Plane {
+    Axis x, y;
+    double left = 0.0, top = 0.0, width = 0.0, height = 0.0;
+
+    double xOf(double value) const { return left + width * x.at(value); }
+    double yOf(double value) const { return top + height * (1.0 - y.at(value)); }
+};
+/// Both axes, their ticks, and rules at those of y.
+std::string axesSvg(const Plane& plane, const std::vector<Tick>& x, const std::vector<Tick>& y);
+/// What is left of a plane for the texts of these ticks.
+double roomOf(std::span<const Tick> yTicks);
+/// Through neighbours; without a y, or where an axis does not show it, there is a gap.
+std::string pathSvg(const Plane& plane,
+                    std::span<const std::pair<double, std::optional<double>>> points,
+                    std::string_view style);
+
+}  // namespace gfxrepro::report
