@@ -3,107 +3,61 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <utility>
 
 #include "runner/metrics/statistics.h"
 #include "runner/report/markup.h"
+#include "runner/report/svg.h"
 
 namespace gfxrepro::regression {
 
 namespace {
 
-// In units of the SVG, which are pixels where the page has room for it.
-constexpr double kWidth = 600, kHeight = 190, kLeft = 70, kRight = 16, kTop = 20, kBottom = 26;
-constexpr std::size_t kMostDays = 6;
+constexpr double kTop = 22.0, kHeight = 146.0, kBottom = 24.0;
 
-/// From nights and values to places.
-struct Scale {
-    double low = 0.0, high = 1.0;
-    std::size_t count = 1;
+using report::Plane;
 
-    double x(double night) const {
-        const double span = std::max<double>(1.0, static_cast<double>(count) - 1.0);
-        return kLeft + (kWidth - kLeft - kRight) * (count == 1 ? 0.5 : night / span);
-    }
-    double y(double value) const {
-        return kTop + (kHeight - kTop - kBottom) * (high - value) / (high - low);
-    }
-};
-
-Scale scaleOf(const ChartSeries& series) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+Plane planeOf(const ChartSeries& series, double width) {
+    std::vector<double> values;
     for (const std::optional<double>& value : series.values) {
-        if (!value || !std::isfinite(*value)) continue;
-        low = std::min(low, *value);
-        high = std::max(high, *value);
+        if (value) values.push_back(*value);
     }
-    if (low > high) low = high = 0.0;
-    const double pad = high > low ? 0.06 * (high - low) : std::max(0.05 * std::abs(high), 1e-9);
-    return {low - pad, high + pad, series.values.size()};
+    Plane plane;
+    plane.x = {-0.5, std::max(0.5, static_cast<double>(series.values.size()) - 0.5)};
+    plane.y = report::axisOf(values, false, false);
+    plane.left = report::roomOf(report::ticksOf(plane.y, kHeight, report::Along::Y));
+    plane.top = kTop;
+    plane.width = width - plane.left - 8.0;
+    plane.height = kHeight;
+    return plane;
 }
 
-std::string line(double x1, double y1, double x2, double y2, const char* style) {
-    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", x1,
-                       y1, x2, y2, style);
-}
-
-std::string text(double x, double y, const char* anchor, const std::string& words,
-                 const char* colour = "var(--soft)") {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\">{}</text>\n",
-                       x, y, anchor, colour, report::escapeXml(words));
-}
-
-std::string axesSvg(const std::vector<ChartNight>& nights, const Scale& scale,
-                    const std::string& unit) {
-    std::string svg;
-    for (const double tick : roundTicks(scale.low, scale.high)) {
-        const double y = scale.y(tick);
-        svg += line(kLeft, y, kWidth - kRight, y, "stroke=\"var(--rule)\"");
-        svg += text(kLeft - 6, y + 4, "end", fmt::format("{:.6g}", tick));
+std::string nightsSvg(const std::vector<ChartNight>& nights, const Plane& plane) {
+    std::vector<report::Tick> days;
+    const auto most = static_cast<std::size_t>(plane.width / report::textWidth("2026-11-21 "));
+    const std::size_t step = (nights.size() + most - 1) / most;
+    for (std::size_t i = step / 2; i < nights.size(); i += step) {
+        days.push_back({static_cast<double>(i), nights[i].day});
     }
-    svg += text(kLeft - 6, kTop - 8, "end", unit);
-    const std::size_t step = std::max<std::size_t>(1, (nights.size() + kMostDays - 1) / kMostDays);
-    for (std::size_t i = 0; i < nights.size(); i += step) {
-        svg += text(scale.x(static_cast<double>(i)), kHeight - 8, "middle", nights[i].day);
-    }
-    return svg;
+    return report::axesSvg(plane, days, report::ticksOf(plane.y, plane.height, report::Along::Y));
 }
 
-/// The line through nights that follow one another.
-std::string lineSvg(const ChartSeries& series, const Scale& scale) {
-    std::string path;
-    bool isOpen = false;
-    for (std::size_t i = 0; i < series.values.size(); ++i) {
-        const std::optional<double>& value = series.values[i];
-        const bool isThere = value && std::isfinite(*value);
-        if (isThere) {
-            path += fmt::format("{}{:.1f} {:.1f}", isOpen ? 'L' : 'M',
-                                scale.x(static_cast<double>(i)), scale.y(*value));
-        }
-        isOpen = isThere;
-    }
-    return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"var(--soft)\" opacity=\".5\"/>\n",
-                       path);
-}
-
-std::string pointsSvg(const std::vector<ChartNight>& nights, const ChartSeries& series,
-                      const Scale& scale) {
+std::string nightPointsSvg(const std::vector<ChartNight>& nights, const ChartSeries& series,
+                           const Plane& plane) {
     std::string svg;
     for (std::size_t i = 0; i < series.values.size(); ++i) {
         const std::optional<double>& value = series.values[i];
-        if (!value || !std::isfinite(*value)) continue;
+        if (!value || !plane.y.shows(*value)) continue;
         svg += fmt::format(
-            "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\" fill=\"currentColor\"><title>{}: {:.6g} "
-            "{}</title></circle>\n",
-            scale.x(static_cast<double>(i)), scale.y(*value), report::escapeXml(nights[i].label),
-            *value, report::escapeXml(series.unit));
+            "<circle cx=\"{:.5g}\" cy=\"{:.5g}\" r=\"2.4\"><title>{}: {:.6g} {}</title></circle>\n",
+            plane.xOf(static_cast<double>(i)), plane.yOf(*value),
+            report::escapeXml(nights[i].label), *value, report::escapeXml(series.unit));
     }
     return svg;
 }
 
 /// The median of the values between two marks.
-std::string levelsSvg(const ChartSeries& series, const Scale& scale) {
+std::string levelsSvg(const ChartSeries& series, const Plane& plane) {
     std::string svg;
     for (std::size_t level = 0; level <= series.marks.size(); ++level) {
         const std::size_t first = level == 0 ? 0 : series.marks[level - 1].night;
@@ -114,51 +68,47 @@ std::string levelsSvg(const ChartSeries& series, const Scale& scale) {
             if (series.values[i]) values.push_back(*series.values[i]);
         }
         if (values.empty()) continue;
-        const double y = scale.y(metrics::summarize(values, metrics::Statistic::Median));
-        svg += line(scale.x(static_cast<double>(first)), y, scale.x(static_cast<double>(last) - 1),
-                    y, "stroke=\"var(--link)\" stroke-width=\"2\"");
+        const double y = plane.yOf(metrics::summarize(values, metrics::Statistic::Median));
+        svg += report::svgLine(plane.xOf(static_cast<double>(first)), y,
+                               plane.xOf(static_cast<double>(last) - 1.0), y,
+                               "stroke=\"var(--link)\" stroke-width=\"2\"");
     }
     return svg;
 }
 
-std::string marksSvg(const ChartSeries& series, const Scale& scale) {
+std::string marksSvg(const ChartSeries& series, const Plane& plane) {
     std::string svg;
     for (const ChartSeries::Mark& mark : series.marks) {
-        const double x = scale.x(static_cast<double>(mark.night) - 0.5);
-        const char* colour = mark.isWorse ? "var(--fails)" : "var(--holds)";
-        svg += line(x, kTop - 4, x, kHeight - kBottom,
-                    mark.isWorse ? "stroke=\"var(--fails)\" stroke-dasharray=\"5 3\""
-                                 : "stroke=\"var(--holds)\" stroke-dasharray=\"5 3\"");
-        svg += text(x, kTop - 8, "middle", mark.text, colour);
+        const double x = plane.xOf(static_cast<double>(mark.night) - 0.5);
+        const std::string colour = mark.isWorse ? "var(--fails)" : "var(--holds)";
+        svg += report::svgLine(x, plane.top - 4.0, x, plane.top + plane.height,
+                               "stroke=\"" + colour + "\" stroke-dasharray=\"5 3\"");
+        svg += report::svgText(x, plane.top - 8.0, "middle", mark.text, "fill=\"" + colour + "\"");
     }
     return svg;
+}
+
+std::string chartOf(const std::vector<ChartNight>& nights, const ChartSeries& series,
+                    const std::string& title, double width) {
+    const Plane plane = planeOf(series, width);
+    std::vector<std::pair<double, std::optional<double>>> places;
+    for (const std::optional<double>& value : series.values) {
+        places.emplace_back(static_cast<double>(places.size()), value);
+    }
+    const std::string content =
+        nightsSvg(nights, plane) + report::svgText(0.0, plane.top - 8.0, "start", series.unit) +
+        report::pathSvg(plane, places, "stroke=\"currentColor\" opacity=\".3\"") +
+        (series.hasLevels ? levelsSvg(series, plane) : "") + nightPointsSvg(nights, series, plane) +
+        marksSvg(series, plane);
+    return report::svgElement(width, kTop + kHeight + kBottom, title, content);
 }
 
 }  // namespace
 
-std::vector<double> roundTicks(double low, double high) {
-    if (!(high > low)) return {low};
-    constexpr double kWanted = 4.0;
-    const double rough = (high - low) / kWanted;
-    const double power = std::pow(10.0, std::floor(std::log10(rough)));
-    double step = 10.0 * power;
-    for (const double factor : {5.0, 2.0, 1.0}) {
-        if (factor * power >= rough) step = factor * power;
-    }
-    std::vector<double> ticks;
-    for (double at = std::ceil(low / step); at * step <= high; ++at) ticks.push_back(at * step);
-    return ticks;
-}
-
-std::string chartSvg(const std::vector<ChartNight>& nights, const ChartSeries& series) {
-    const Scale scale = scaleOf(series);
-    return fmt::format(
-               "<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
-               "font-size=\"11\" font-family=\"system-ui, sans-serif\">\n",
-               kWidth, kHeight) +
-           axesSvg(nights, scale, series.unit) + lineSvg(series, scale) +
-           (series.hasLevels ? levelsSvg(series, scale) : "") + pointsSvg(nights, series, scale) +
-           marksSvg(series, scale) + "</svg>\n";
+std::string chartSvg(const std::vector<ChartNight>& nights, const ChartSeries& series,
+                     const std::string& title) {
+    return chartOf(nights, series, title, report::kWidePx) +
+           chartOf(nights, series, title, report::kNarrowPx);
 }
 
 }  // namespace gfxrepro::regression

@@ -27,10 +27,9 @@ struct ChartSeries {
     bool hasLevels = true;  // draws the median between marks
 };
 
-/// Points with a title each (label and value), a line through neighbours, marks as upright lines.
-std::string chartSvg(const std::vector<ChartNight>& nights, const ChartSeries& series);
-
-/// Round values within [low, high], three to six of them; `low` alone where both are one.
-std::vector<double> roundTicks(double low, double high);
+/// Points with a title each (label and value), a line through neighbours, marks as upright lines:
+/// for wide pages, then for narrow ones.
+std::string chartSvg(const std::vector<ChartNight>& nights, const ChartSeries& series,
+                     const std::string& title);
 
 }  // namespace gfxrepro::regression

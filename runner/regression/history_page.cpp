@@ -148,7 +148,7 @@ std::string curveHtml(const MachineHistory& history, const SeriesHistory& series
     }
     return fmt::format(
         "<figure class=\"curve\" id=\"{}\">\n{}<figcaption>{}</figcaption></figure>\n", anchor,
-        chartSvg(nights, chart), escapeXml(title));
+        chartSvg(nights, chart, title), escapeXml(title));
 }
 
 std::string nightsHtml(const MachineHistory& history) {
