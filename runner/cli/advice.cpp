@@ -185,12 +185,7 @@ void addDiskFindings(const MachineFacts& facts, Findings& findings) {
     }
 }
 
-void addProgramFindings(const MachineFacts& facts, Findings& findings) {
-    if (!facts.hasGnuplot) {
-        findings.push_back({"no_gnuplot", Severity::Result,
-                            "gnuplot is not installed: the report has no curves.",
-                            "Install gnuplot-nox, then `gfxrepro report RUN` draws them."});
-    }
+void addProcessorFindings(const MachineFacts& facts, Findings& findings) {
     if (facts.cpuIsa == "SSE") {
         findings.push_back({"no_avx", Severity::Timing,
                             "The processor has no AVX: ray tracing on it takes several times "
@@ -236,7 +231,7 @@ std::vector<Finding> findingsOf(const MachineFacts& facts) {
     for (const DeviceFacts& device : facts.devices) addLimitFindings(device, findings);
     addDiskFindings(facts, findings);
     addSceneFindings(facts, findings);
-    addProgramFindings(facts, findings);
+    addProcessorFindings(facts, findings);
     addNoiseFindings(facts, findings);
     std::stable_sort(findings.begin(), findings.end(),
                      [](const Finding& a, const Finding& b) { return a.severity < b.severity; });

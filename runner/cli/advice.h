@@ -40,7 +40,6 @@ struct MachineFacts {
     double freeDiskBytes = 1e12;
     std::string runsFolder = "runs";
     bool isRunsWritable = true;
-    bool hasGnuplot = true;
     std::string cpuGovernor;  // empty: not known
     double load = 0.0;        // runnable tasks, averaged over a minute
     int coreCount = 1;

@@ -108,14 +108,6 @@ double stolenFraction() {
     return sum > 0.0 ? ticks.back() / sum : 0.0;
 }
 
-bool isOnPath(const std::string& program) {
-    const char* path = std::getenv("PATH");
-    for (const std::string& folder : split(path ? path : "", ':')) {
-        if (::access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
-    }
-    return false;
-}
-
 MachineFacts gatherFacts(const std::vector<gl::DeviceReport>& reports,
                          const scene::Catalog& catalog) {
     MachineFacts facts;
@@ -141,7 +133,6 @@ MachineFacts gatherFacts(const std::vector<gl::DeviceReport>& reports,
     facts.runsFolder = fs::absolute("runs").string();
     const fs::path writable = fs::is_directory("runs") ? "runs" : ".";
     facts.isRunsWritable = ::access(writable.c_str(), W_OK | X_OK) == 0;
-    facts.hasGnuplot = isOnPath("gnuplot");
     facts.cpuGovernor = firstLineOf("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
     facts.load = parseDouble(split(firstLineOf("/proc/loadavg"), ' ').front()).value_or(0.0);
     facts.coreCount = usableProcessors();
@@ -171,7 +162,6 @@ Json gather(const std::vector<gl::DeviceReport>& reports, const scene::Catalog& 
             {"assets", {{"folder", facts.assetsFolder}, {"exists", facts.hasAssets}}},
             {"scenes", scenes},
             {"free_disk_bytes", facts.freeDiskBytes},
-            {"gnuplot", facts.hasGnuplot},
             {"runs", {{"folder", facts.runsFolder}, {"writable", facts.isRunsWritable}}},
             {"cpu",
              {{"cores", facts.coreCount},

@@ -41,9 +41,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# GLVND finds its drivers at run time, and the report starts gnuplot: no library says so. A GPU's own
-# driver serves instead of Mesa's.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri, gnuplot-nox")
+# GLVND finds its drivers at run time: no library says so. A GPU's own driver serves instead of Mesa's.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri")
 set(CPACK_PACKAGE_DESCRIPTION
 "Experiments are YAML files: a published table, figure or section each, with
 its printed numbers, what is measured for it, and the claims that must
