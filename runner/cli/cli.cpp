@@ -358,7 +358,8 @@ int runCommand(int argc, const char* const* argv,
     CLI::App app("Measures the tables of rendering papers again.", "gfxrepro");
     app.require_subcommand(0, 1);  // what follows a command is no other one: describe scene
     app.set_help_flag("-h,--help", "this text");
-    app.set_version_flag("--version", "gfxrepro " + run::programCommit());
+    app.set_version_flag("--version", fmt::format("gfxrepro {} (commit {})", GFXREPRO_VERSION,
+                                                  run::programCommit()));
     addQueries(app, context, options);
     addRuns(app, context, options);
     addCluster(app, context, options);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runner/cli/help.h"
+#include "runner/run/manifest.h"
 
 namespace gfxrepro::cli {
 
@@ -139,10 +140,10 @@ names another.
 
 std::string manPage(const CLI::App& app) {
     std::string text = fmt::format(
-        ".TH GFXREPRO 1 \"\" \"gfxrepro {}\" \"User Commands\"\n"
+        ".TH GFXREPRO 1 \"{}\" \"gfxrepro {}\" \"User Commands\"\n"
         ".SH NAME\ngfxrepro \\- measure the tables of rendering papers again\n"
         ".SH SYNOPSIS\n.B gfxrepro\n.I COMMAND\n[\\fIOPTION\\fR…]\n",
-        GFXREPRO_VERSION);
+        run::programCommitDay(), GFXREPRO_VERSION);
     text += kDescription;
     text += ".SH COMMANDS\n";
     for (const CLI::App* command : visibleCommands(app)) {

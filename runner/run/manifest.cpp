@@ -31,6 +31,10 @@ std::string programCommit() {
     return GFXREPRO_COMMIT;
 }
 
+std::string programCommitDay() {
+    return GFXREPRO_COMMIT_DAY;
+}
+
 std::string programBuild() {
 #if defined(__clang__)
     const std::string compiler = "Clang " + std::string(__clang_version__);

@@ -52,8 +52,10 @@ std::string machineName(const Json& manifest);
 /// The machine that the times of an experiment come from: all of them from one.
 std::string timingMachine(const Json& manifest, const std::string& experiment);
 
-/// Of the program: commit, "Release, GCC 12.2.0".
+/// Of the program: commit, the day of it ("2026-11-28", empty where none is known), "Release,
+/// GCC 12.2.0".
 std::string programCommit();
+std::string programCommitDay();
 std::string programBuild();
 
 /// Whether a manifest is of a merge that nothing was measured into since.

@@ -288,6 +288,8 @@ TEST(Usage, HelpAndVersionAreCommandsToo) {
               "gfxrepro: unknown command 'reprodcue'; did you mean 'reproduce'?; see 'gfxrepro "
               "--help'\n");
     EXPECT_EQ(gfxrepro({"version"}).out, gfxrepro({"--version"}).out);
+    EXPECT_THAT(gfxrepro({"--version"}).out,
+                testing::MatchesRegex("gfxrepro [0-9]+\\.[0-9]+\\.[0-9]+ \\(commit [^ ]+\\)\n"));
 }
 
 TEST(Usage, TablesAndCasesAreChosenByPatterns) {
