@@ -27,12 +27,51 @@ add_custom_target(gfxrepro_share ALL DEPENDS ${made})
 
 install(PROGRAMS "${CMAKE_SOURCE_DIR}/scripts/fetch-assets"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/gfxrepro/scripts")
-install(FILES "${CMAKE_SOURCE_DIR}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(FILES "${CMAKE_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright)
+# Of the kept results, what a report reads.
+install(DIRECTORY "${CMAKE_SOURCE_DIR}/results/sensitivity" "${CMAKE_SOURCE_DIR}/results/calibration"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/gfxrepro/results" FILES_MATCHING PATTERN "*.csv")
+install(FILES "${CMAKE_SOURCE_DIR}/README.md" "${CMAKE_SOURCE_DIR}/CHANGELOG.md" "${CMAKE_SOURCE_DIR}/CITATION.cff"
+    DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+
+# Debian's policy wants the notice with a pointer to the licence, and a changelog of its own form.
+set(developers "gfxrepro developers <developers@gfxrepro.invalid>")
+file(CONFIGURE OUTPUT "${shared}/copyright" CONTENT
+"Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: gfxrepro
+
+Files: *
+Copyright: gfxrepro developers
+License: Apache-2.0
+Comment: The notices of the code of others that is compiled in are in licenses/.
+
+License: Apache-2.0
+ Licensed under the Apache License, Version 2.0 (the \"License\"); you may not use
+ this file except in compliance with the License. You may obtain a copy of the
+ License at http://www.apache.org/licenses/LICENSE-2.0
+ .
+ Unless required by applicable law or agreed to in writing, software distributed
+ under the License is distributed on an \"AS IS\" BASIS, WITHOUT WARRANTIES OR
+ CONDITIONS OF ANY KIND, either express or implied. See the License for the
+ specific language governing permissions and limitations under the License.
+ .
+ On Debian systems its text is in /usr/share/common-licenses/Apache-2.0.
+")
+string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
+file(CONFIGURE OUTPUT "${shared}/changelog" CONTENT
+"gfxrepro (${PROJECT_VERSION}) unstable; urgency=medium
+
+  * What is new stands in CHANGELOG.md.
+
+ -- ${developers}  ${now}
+")
+execute_process(COMMAND "${GFXREPRO_GZIP}" -9nf "${shared}/changelog" COMMAND_ERROR_IS_FATAL ANY)
+install(FILES "${shared}/copyright" "${shared}/changelog.gz" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(CODE "execute_process(COMMAND_ERROR_IS_FATAL ANY COMMAND \"${CMAKE_SOURCE_DIR}/scripts/notices\"
+    \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/licenses\" \"${CMAKE_BINARY_DIR}\")")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME gfxrepro)
-set(CPACK_PACKAGE_CONTACT "gfxrepro developers <developers@gfxrepro.invalid>")
+set(CPACK_PACKAGE_CONTACT "${developers}")
 set(CPACK_PACKAGE_DIRECTORY "${CMAKE_BINARY_DIR}/package")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
