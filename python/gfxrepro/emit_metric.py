@@ -5,12 +5,13 @@ import math
 import operator
 import os
 import sys
+import typing
 
 DESCRIPTOR = "GFXREPRO_METRICS_FD"
 FILE = "GFXREPRO_METRICS_FILE"
 
 
-def emit(metric, value, unit, pass_=None, frame=None):
+def emit(metric: str, value: typing.SupportsFloat, unit: str, pass_: str | None = None, frame: int | None = None) -> None:
     """Says one number: {"metric": …, "pass": …, "frame": …, "value": …, "unit": …} on a line of its own.
 
     The line goes to the descriptor that GFXREPRO_METRICS_FD names; without it, it is appended to the file that
@@ -19,7 +20,7 @@ def emit(metric, value, unit, pass_=None, frame=None):
     given is left out. `unit` is "1" for what has none. Any kind of real number will do, NumPy's too.
     Raises TypeError or ValueError for what is no finite number or no name, OSError where it cannot be written.
     """
-    line = {"metric": _text("metric", metric)}
+    line: dict[str, typing.Any] = {"metric": _text("metric", metric)}
     if pass_ is not None:
         line["pass"] = _text("pass_", pass_)
     if frame is not None:

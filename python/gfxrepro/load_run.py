@@ -5,6 +5,7 @@ import csv
 import dataclasses
 import io
 import json
+import os
 import pathlib
 import typing
 
@@ -18,13 +19,13 @@ WHOLE = ("process", "frame", "repeat")
 class Run:
     """What load() gives. `cases` and `records` have the columns of `gfxrepro export --tidy`, joined by `case_id`."""
 
-    cases: typing.Any    # a row a case, run or not: CASE_COLUMNS, then a column for every parameter
-    records: typing.Any  # a row a number: RECORD_COLUMNS; frame and repeat are -1 for what is of the whole case
-    axes: dict           # by experiment: the columns of `cases` that were swept
-    manifest: dict       # with what, on what and when it was made
+    cases: typing.Any                # a row a case, run or not: CASE_COLUMNS, then a column for every parameter
+    records: typing.Any              # a row a number: RECORD_COLUMNS; frame and repeat are -1 for what is of the whole case
+    axes: dict[str, list[str]]       # by experiment: the columns of `cases` that were swept
+    manifest: dict[str, typing.Any]  # with what, on what and when it was made
 
 
-def load(run, as_frames=None):
+def load(run: str | os.PathLike[str], as_frames: bool | None = None) -> Run:
     """The run in the folder `run`.
 
     Its tables are pandas' DataFrames where pandas is installed, else lists of dicts; `as_frames` asks for the one
@@ -39,8 +40,8 @@ def load(run, as_frames=None):
         raise ValueError(f"{folder}: is no run folder (it has no plan.json)")
     plan = _json(folder / "plan.json")
     cases = [_case(item) for item in plan["cases"]]
-    columns = list(CASE_COLUMNS)
-    columns += dict.fromkeys(name for case in cases for name in case if name not in CASE_COLUMNS)
+    columns: list[str] = list(CASE_COLUMNS)
+    columns.extend(dict.fromkeys(name for case in cases for name in case if name not in CASE_COLUMNS))
     cases = [{name: case.get(name) for name in columns} for case in cases]
     records = _records(folder / "records.csv", {case["case_id"] for case in cases})
     axes = {}
@@ -78,9 +79,10 @@ def _parts(name, value):
 
 def _case(item):
     swept = item["axes"].get("scene") if "stands_for" not in item else None
-    case = {"case_id": item["id"], "experiment": item["experiment"], "technique": item["technique"],
-            "scene": swept if swept is not None else item["scene"] if item["scene"] is not None else "",
-            "lane": item["measure"]["lane"], "run_seed": int(item["seed"])}
+    case: dict[str, typing.Any] = {
+        "case_id": item["id"], "experiment": item["experiment"], "technique": item["technique"],
+        "scene": swept if swept is not None else item["scene"] if item["scene"] is not None else "",
+        "lane": item["measure"]["lane"], "run_seed": int(item["seed"])}
     width, height = item["output"]
     params = item["params"] | {"output": {"width": width, "height": height}}
     params |= {name: item[name] for name in ("stands_for", "scene_sample") if name in item}

@@ -1,5 +1,6 @@
 """A run's tidy tables as Parquet files, by Arrow's library: python -m gfxrepro.parquet RUN FOLDER"""
 
+import os
 import pathlib
 import sys
 
@@ -9,7 +10,7 @@ NEEDED = "Parquet is written by pyarrow, which is not installed; install it by: 
 LARGEST_INT64 = 2**63 - 1
 
 
-def to_parquet(run, folder):
+def to_parquet(run: str | os.PathLike[str], folder: str | os.PathLike[str]) -> None:
     """Writes `cases.parquet` and `records.parquet` of the run folder `run` into `folder`, which is made.
 
     They have the columns and types of load(): whole numbers (int64, or uint64 where they need it), numbers (double),
