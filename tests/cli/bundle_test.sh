@@ -2,7 +2,8 @@
 # bundle_test.sh SURROUNDINGS SOURCE BUILD: the bundle measures the smoke config as the build does. Exit 77: skipped.
 #   without_environment: `env -i`, every library from the bundle but the C library's
 #   beside_a_newer_cpp_library: the node's libstdc++ is taken where it is newer, and not where it is older
-#   packed: the archive is under 32 MiB and has the bundle
+#   packed: the archive is under 32 MiB and has the bundle, with the notices of what is in it
+#   released: scripts/release; its wheel, installed by pip in an environment of its own, is the program and the Python package
 #   in_a_bare_root: chroot into a folder of the bundle, the C library and Mesa; needs root
 set -euo pipefail
 surroundings=$1 source=$2 build=$3
@@ -10,7 +11,7 @@ skip() { echo "skipped: $*"; exit 77; }
 fail() { echo "FAILED: $*"; exit 1; }
 D=$(mktemp -d)
 trap 'rm -rf "$D"' EXIT
-"$source/scripts/bundle" "$D/bundle" "$build"
+[ "$surroundings" = released ] || "$source/scripts/bundle" "$D/bundle" "$build"
 c_library='(linux-vdso|ld-linux.*|libc|libm|libdl|libpthread|librt|libresolv|libutil)\.so[.0-9]*'
 
 # The tables of the run in $1 are those of the build's own run.
@@ -23,6 +24,34 @@ require_same_tables() {
         fail "the bundle's plan has another hash than the build's"
 }
 
+# A report of the program $1 knows what a checkout's knows: the kept results are beside its configs, and no more of them than it reads.
+require_kept_results() {
+    local folder=$2/results
+    diff -r <(cd "$source/results" && find sensitivity calibration -name '*.csv' -exec sha256sum {} + | sort) \
+        <(cd "$folder" && find . -type f -printf '%P\0' | xargs -0 sha256sum | sort) || fail "other kept results"
+    env -i HOME="$D" "$1" reproduce zju2005/2.4.1 --profile quick --device software --quiet --out "$D/judged" >"$D/judged.txt" || [ $? = 1 ] || fail "not judged"
+    ! grep 'is not known' "$D/judged.txt" || fail "the kept results are not found"
+}
+
+# The notices in $1 are of code that is compiled in, and of all libraries in $2.
+require_notices() {
+    [ -n "$(command -v dpkg-query)" ] || return 0
+    for package in libglm-dev libcli11-dev nlohmann-json3-dev libnanoflann-dev; do
+        [ -s "$1/$package" ] || fail "no notice of $package"
+    done
+    ldd "$build/gfxrepro" | awk '$2 == "=>" {print $3}' | while read -r library; do
+        [ -e "$2/${library##*/}" ] || continue
+        library=$(realpath "$library")
+        package=$(dpkg-query -S "*${library#/usr}" | sed -n '1s/:.*//p')
+        [ -s "$1/$package" ] || fail "no notice of $package, which ${library##*/} is of"
+        grep -q "^| $package | $(dpkg-query -W -f='${Version} | ${source:Package} | ${source:Version} |' "$package" | head -n 1)" "$1/README.md" ||
+            fail "$package is not in the list"
+    done
+    for licence in $(grep -rhoE 'common-licenses/(GPL|LGPL|Apache)-[0-9.]*[0-9]' "$1" | sort -u); do
+        [ -s "$1/$licence" ] || fail "no text of $licence"
+    done
+}
+
 case $surroundings in
 without_environment)
     cd /
@@ -32,6 +61,7 @@ without_environment)
     env -i "$D/bundle/gfxrepro" run "$D/bundle/configs/smoke/template.yaml" --device software --quiet --out "$D/run"
     env -i "$D/bundle/gfxrepro" table "$D/run"
     require_same_tables "$D/run"
+    require_kept_results "$D/bundle/gfxrepro" "$D/bundle"
     ;;
 beside_a_newer_cpp_library)
     cd "$D"
@@ -55,6 +85,59 @@ packed)
     mkdir "$D/elsewhere"
     tar -C "$D/elsewhere" -xf "$D/packed.tar.xz"
     diff -r --no-dereference "$D/packed" "$D/elsewhere/packed" || fail "other files"
+    require_notices "$D/packed/licenses" "$D/packed/lib"
+    # A library that nobody knows is refused rather than passed on without its notice.
+    cp "$(ldd "$build/gfxrepro" | awk '/libfmt/ {print $3}')" "$D/libmine.so"
+    ! "$source/scripts/notices" "$D/notices" "$build" "$D/libmine.so" 2>"$D/refused" || fail "libmine.so has a notice"
+    grep -qx "notices: $D/libmine.so is of no Debian package, so its notice is not known" "$D/refused" || fail "$(cat "$D/refused")"
+    ;;
+released)
+    python=
+    for one in python3 /usr/bin/python3; do ! "$one" -c 'import hatchling' 2>/dev/null || { python=$one && break; }; done
+    [ -n "$python" ] || skip "hatchling is not installed"
+    "$python" -m venv "$D/env" >/dev/null || skip "python3-venv is not installed"
+    command -v dpkg-shlibdeps >/dev/null || skip "dpkg-dev is not installed"
+    "$source/scripts/release" "$D/dist" "$build"
+    cd "$D/dist"
+    sha256sum --quiet -c SHA256SUMS
+    version=$("$build/gfxrepro" --version | cut -d ' ' -f 2)
+    wheels=("gfxrepro-$version-py3-none-manylinux_2_"*"_$(uname -m).whl")
+    [ "$(find . -type f | wc -l)" = 4 ] && [ "$(cut -c 67- SHA256SUMS | wc -l)" = 3 ] || fail "other files: $(ls)"
+    for file in "${wheels[@]}" "gfxrepro_${version}_"*.deb "gfxrepro-$version-linux-$(uname -m).tar.xz"; do
+        grep -q "  $file\$" SHA256SUMS || fail "no sum of $file"
+    done
+    ! command -v lintian >/dev/null || lintian --fail-on error ./*.deb || fail "lintian"
+
+    env -i HOME="$D" PATH=/usr/bin:/bin "$D/env/bin/pip" install --quiet --disable-pip-version-check --no-index "./${wheels[0]}"
+    command=$D/env/bin/gfxrepro
+    program=$(echo "$D"/env/lib/python3.*/site-packages/gfxrepro/program)
+    cmp "$program/gfxrepro" "$build/gfxrepro" || fail "another program"
+    require_notices "$program/licenses" "$program/lib"
+    # The kind of the wheel: no library asks for a newer C library than it names, one for that very one, and what is not in
+    # the wheel is what PEP 600 lets it expect.
+    newest=$(objdump -T "$program/gfxrepro" "$program"/lib/* | grep -oE 'GLIBC_2\.[0-9]+' | sort -uV | tail -n 1)
+    [[ ${wheels[0]} == *"manylinux_${newest#GLIBC_}_"* || ${wheels[0]} == *"manylinux_2_${newest#GLIBC_2.}_"* ]] || fail "${wheels[0]} needs $newest"
+    strange=$(env -i LD_TRACE_LOADED_OBJECTS=1 "$program/gfxrepro" |
+        grep -vE "^\s*(/\S*/)?($c_library|libstdc\+\+\.so\.6|libgcc_s\.so\.1)( |$)" | grep -v "=> $program/lib/" || true)
+    [ -z "$strange" ] || fail "not from the wheel: $strange"
+
+    cd "$D"
+    [ "$("$command" --version)" = "$("$build/gfxrepro" --version)" ] || fail "another version"
+    [ "$("$D/env/bin/python" -c 'import gfxrepro; print(gfxrepro.__version__)')" = "$version" ] || fail "another version of the package"
+    env -i HOME="$D" "$command" run "$program/configs/smoke/template.yaml" --device software --quiet --out "$D/run"
+    env -i HOME="$D" "$command" table "$D/run"
+    require_same_tables "$D/run"
+    require_kept_results "$command" "$program"
+    "$D/env/bin/python" -c 'import gfxrepro, sys; assert gfxrepro.load(sys.argv[1], as_frames=False).records' "$D/run"
+    # Exit codes, words and signals are the program's.
+    said=$("$command" reprodcue 2>&1) && fail "no error" || [ $? = 2 ] || fail "another exit code"
+    [ "$said" = "$("$build/gfxrepro" reprodcue 2>&1 || true)" ] || fail "said $said"
+    signals() { env -i LD_PRELOAD= "$@" & sleep 0.5; sed -n 's/^Sig\(Ign\|Cgt\).*\t/\1 /p' "/proc/$!/status"; readlink "/proc/$!/exe"; kill -TERM $!; code=0; wait $! || code=$?; echo $code; }
+    long="run $program/configs/smoke/template.yaml --device software --quiet --set measure.processes=200 --out"
+    diff <(signals "$build/gfxrepro" $long "$D/long-1") <(signals "$command" $long "$D/long-2" | sed "s|^$program/|$build/|") || fail "other signals or another end"
+
+    "$D/env/bin/pip" uninstall --quiet --yes gfxrepro
+    [ ! -e "$program" ] && [ ! -e "$command" ] || fail "uninstalling leaves something"
     ;;
 in_a_bare_root)
     [ "$(id -u)" = 0 ] || skip "a chroot needs root"
