@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # fresh_system.sh SUITE [STEP…]: makes a bare system beside this one (bookworm, trixie: Debian 12, 13; noble: Ubuntu
 # 24.04) and there runs, from a clone of the last commit,
-#   1 2 3      the README's commands, by their order in its first block
+#   1 2 3      the README's commands for a checkout, by their order
 #   container  what containers/Containerfile runs, each stage in a bare system of its own
 #   arm64      compiles every source, and links the program, for an ARM processor, in a bare system of its own (trixie)
-#   bundle     the bundle of this machine's build/release, which is an older system's; left out where it is not built
-# or only the steps that are named.
+#   wheel      the README's commands without a compiler, with the wheel of build/dist, in a bare system of its own
+#   bundle     the bundle of build/dist, in another: both say how long each step takes, and are of an older system than trixie
+# or only the steps that are named. build/dist is what scripts/release makes of this machine's build/release; where neither is
+# there, wheel and bundle are left out.
 # GFXREPRO_SYSTEMS  the folder for systems and for the compiler's cache, which stays (default build/systems)
 # Needs root, mmdebstrap and a mount namespace. Exit 77: skipped, the last line says why.
 set -euo pipefail
@@ -13,7 +15,9 @@ suite=$1
 shift
 source=$(cd "$(dirname "$0")/../.." && pwd)
 systems=${GFXREPRO_SYSTEMS:-$source/build/systems}
-steps=${*:-1 2 3 container $([ "$suite" != trixie ] || echo arm64) $([ ! -x "$source/build/release/gfxrepro" ] || echo bundle)}
+dist=$source/build/dist
+program=$source/build/release/gfxrepro
+steps=${*:-1 2 3 container $([ "$suite" != trixie ] || echo arm64) $([ ! -e "$dist" ] && [ ! -x "$program" ] || echo wheel bundle)}
 
 skip() { echo "skipped: $*"; exit 77; }
 [ "$(id -u)" = 0 ] || skip "a chroot needs root"
@@ -23,7 +27,7 @@ unshare --mount true 2>/dev/null || skip "this machine grants no mount namespace
 root=$systems/$suite
 cache=$systems/ccache-$suite
 mkdir -p "$systems" "$cache"
-trap 'rm -rf --one-file-system "$root" "$root-final" "$root-arm64"' EXIT
+trap 'rm -rf --one-file-system "$root" "$root-final" "$root-arm64" "$root-bare"' EXIT
 
 # bare FOLDER: a minimal system with certificates, from the servers that mmdebstrap knows for the suite.
 bare() {
@@ -62,7 +66,37 @@ inside() {
 # stage_commands N: what the N-th stage of the Containerfile runs.
 stage_commands() { awk -v n="$1" '/^FROM /{s++} s == n && sub(/^RUN /, "")' "$source/containers/Containerfile"; }
 
-with_source "$root"
+# readme_block N: its N-th block of commands.
+readme_block() { awk -v n="$1" '/^```/ {inside = /^```sh/ ? ++blocks == n : 0; next} inside' "$source/README.md"; }
+
+# without_compiler KIND: a bare system with the file of build/dist of that kind, and a user without rights.
+without_compiler() {
+    [ ! -x "$program" ] || [ "$dist/SHA256SUMS" -nt "$program" ] || "$source/scripts/release" "$dist"
+    (cd "$dist" && sha256sum --quiet -c SHA256SUMS)
+    bare "$root-bare"
+    chroot "$root-bare" useradd --create-home someone
+    mkdir "$root-bare/src"
+    cp "$dist"/*"$1" "$root-bare/home/someone/"
+}
+
+# timed COMMAND [USER]: in the bare system, with what it took on a line of its own.
+timed() {
+    local begin=${EPOCHREALTIME/./} code=0 command=$1
+    [ -z "${2:-}" ] || command="cd ~$2 && exec runuser -u $2 -- env HOME=/home/$2 sh -ec '$1'"
+    inside "$root-bare" "$command" || code=$?
+    # A claim that fails is a result.
+    [ $code -eq 0 ] || { [ $code -eq 1 ] && [[ $1 == *reproduce* ]]; } || exit $code
+    echo "== $suite: $step: $(((${EPOCHREALTIME/./} - begin) / 1000)) ms: $1"
+}
+
+# A report of the only run of someone: pictures, and what the kept results say of its verdicts.
+require_report() {
+    local run=("$root-bare"/home/someone/runs/*/)
+    grep -q 'class="shot"' "${run[0]}report.html" || { echo "FAILED: the report has no picture"; exit 1; }
+    ! grep -q 'not known$' "${run[0]}claims.csv" || { echo "FAILED: the kept results were not found"; exit 1; }
+}
+
+[[ ! " $steps " =~ \ (1|2|3|container)\  ]] || with_source "$root"
 for step in $steps; do
     echo "== $suite: $step"
     case $step in
@@ -101,9 +135,23 @@ for step in $steps; do
             cmake --preset arm64
             cmake --build --preset arm64 -- --quiet gfxrepro $(ninja -C build/arm64 -t targets all | sed -n "s/: CXX_COMPILER.*//p")'
         ;;
+    wheel)
+        without_compiler .whl
+        mapfile -t commands < <(readme_block 1)
+        timed "apt-get update -qq && ${commands[0]%#*} >/dev/null"
+        timed "${commands[1]}" someone
+        timed "env/bin/gfxrepro doctor" someone
+        timed "${commands[2]}" someone
+        require_report
+        inside "$root-bare" "cd /home/someone; env/bin/python -c \"import glob, gfxrepro; print(gfxrepro.__version__, len(gfxrepro.load(*glob.glob('runs/*/')).records), 'records')\""
+        ;;
     bundle)
-        "$source/scripts/bundle" "$root/bundle"
-        inside "$root" "/bundle/gfxrepro doctor; /bundle/gfxrepro run /bundle/configs/smoke/template.yaml --device software --quiet --out bundle-run; /bundle/gfxrepro table bundle-run"
+        without_compiler .tar.xz
+        timed "apt-get update -qq && apt-get install -y -qq libegl-mesa0 libgl1-mesa-dri xz-utils >/dev/null"
+        timed "tar -xf gfxrepro-*.tar.xz" someone
+        timed "gfxrepro-*/gfxrepro doctor" someone
+        timed "gfxrepro-*/gfxrepro reproduce zju2005/figure-4.3 --profile quick" someone
+        require_report
         ;;
     *) echo "fresh_system.sh: unknown step '$step'" >&2; exit 2 ;;
     esac
