@@ -40,7 +40,7 @@ file(CONFIGURE OUTPUT "${shared}/copyright" CONTENT
 Upstream-Name: gfxrepro
 
 Files: *
-Copyright: gfxrepro developers
+Copyright: 2026 gfxrepro developers
 License: Apache-2.0
 Comment: The notices of the code of others that is compiled in are in licenses/.
 
