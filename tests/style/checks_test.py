@@ -59,9 +59,16 @@ for action in ("other/action@v1", "'other/action@main'", "other/action@0123abc",
     expect("check_style", {WORKFLOW: f"      - uses: {action}\n"},
            f"{WORKFLOW}:1: " + action.strip("'") + ": not pinned to a commit")
 for action in ("actions/checkout@v4", "other/action@" + "0123456789" * 4 + "  # v1"):
-    code, output = run("check_style", {**GOOD, WORKFLOW: f"      - uses: {action}\n"})
+    code, output = run("check_style", {**GOOD, WORKFLOW: f"permissions: {{}}\n      - uses: {action}\n"})
     if code != 0:
         sys.exit(f"check_style found something in {action}:\n{output}")
+expect("check_style", {WORKFLOW: "jobs:\n  a:\n    permissions: {}\n"}, f"{WORKFLOW}: no permissions of its own")
+PROJECT = {"CMakeLists.txt": "project(a VERSION 1.2.0 LANGUAGES CXX)\n"}
+expect("check_style", {**PROJECT, "CHANGELOG.md": "# Changelog\n## [1.3.0] - 2026-01-01\n## [1.2.0] - 2025-01-01\n"},
+       "CHANGELOG.md: its newest version is 1.3.0, and not the one of the top CMakeLists.txt\n")
+code, output = run("check_style", {**GOOD, **PROJECT, "CHANGELOG.md": "## [1.2.0] - Unreleased\n## [1.1.0] - 2025-01-01\n"})
+if code != 0:
+    sys.exit(f"check_style found something in a good change log:\n{output}")
 TABLE = "configs/x/a.yaml"
 for says in ("… too", '"and so on"', "nor this", '"and, unlike it, that"'):
     expect("check_style", {TABLE: f"  A: {{says: {says}, origin: ours}}\n"},

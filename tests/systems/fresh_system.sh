@@ -143,7 +143,7 @@ for step in $steps; do
         timed "env/bin/gfxrepro doctor" someone
         timed "${commands[2]}" someone
         require_report
-        inside "$root-bare" "cd /home/someone; env/bin/python -c \"import glob, gfxrepro; print(gfxrepro.__version__, len(gfxrepro.load(*glob.glob('runs/*/')).records), 'records')\""
+        inside "$root-bare" "cd /home/someone; env/bin/python -c \"import glob, gfxrepro; print(gfxrepro.__version__, len(gfxrepro.load(sorted(glob.glob('runs/*/'))[0]).records), 'records')\""
         ;;
     bundle)
         without_compiler .tar.xz
