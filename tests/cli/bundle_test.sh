@@ -97,7 +97,7 @@ released)
     [ -n "$python" ] || skip "hatchling is not installed"
     "$python" -m venv "$D/env" >/dev/null || skip "python3-venv is not installed"
     command -v dpkg-shlibdeps >/dev/null || skip "dpkg-dev is not installed"
-    "$source/scripts/release" "$D/dist" "$build"
+    (cd "$D" && "$source/scripts/release" dist "$build")
     cd "$D/dist"
     sha256sum --quiet -c SHA256SUMS
     version=$("$build/gfxrepro" --version | cut -d ' ' -f 2)
