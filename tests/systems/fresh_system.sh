@@ -125,7 +125,7 @@ for step in $steps; do
             export DEBIAN_FRONTEND=noninteractive CMAKE_CXX_COMPILER_LAUNCHER=ccache
             dpkg --add-architecture arm64
             apt-get update -qq
-            libraries=$(sed -n "/^packages=/,/^)/p; /^test_packages=/,/^)/p" scripts/setup | grep -oE "(lib|nlohmann)[a-z0-9+-]*-dev" |
+            libraries=$(sed -n "/^[a-z_]*packages=/,/^)/p" scripts/setup | grep -oE "(lib|nlohmann)[a-z0-9+-]*-dev" |
                 while read -r package; do
                     # What holds headers alone is of no processor.
                     apt-cache policy "$package:arm64" | grep -q "Candidate: [0-9]" && package=$package:arm64
