@@ -1,9 +1,10 @@
-"""scripts/new_technique writes a technique that is in style, registered, and compiles.
+"""scripts/new_technique writes a technique that is in style, registered, and compiles; tries it out, and says how to undo it.
 
 Usage: new_technique_test.py SOURCE BUILD. Works in a copy; compiles as BUILD did the template.
 """
 
 import json
+import os
 import pathlib
 import shlex
 import shutil
@@ -17,6 +18,29 @@ NAME = "zonal_aa"  # sorts behind all others, and is short where the template's 
 
 def run(*command, **options):
     return subprocess.run(command, capture_output=True, text=True, **options)
+
+
+# Makes programs that say what they are asked; the test's fails where BROKEN is set.
+PRETENDED_BUILD = f"""#!/bin/sh
+echo "asked: build $*"
+cd "$(dirname "$0")/.."
+mkdir -p build/release/tests/techniques/{NAME}
+for program in gfxrepro tests/techniques/{NAME}/test_{NAME}; do
+    printf '#!/bin/sh\n[ "$1" = describe ] || echo "asked: $(basename $0) $*"\n' >build/release/$program
+    chmod +x build/release/$program
+done
+[ -z "$BROKEN" ] || echo "exit 3" >>build/release/$program
+"""
+
+
+def undo(root, said):
+    """The command that was printed leaves the tree as it was, but for the test's own programs."""
+    command = said.splitlines()[-1].partition(": ")[2]
+    undone = run("sh", "-c", command, cwd=root)
+    expect(undone.returncode == 0, f"{command}: {undone.stderr}")
+    left = run("git", "-C", root, "status", "--porcelain").stdout.splitlines()
+    expect([line for line in left if line[3:] not in ("build/", "scripts/build", "scripts/__pycache__/")] == [],
+           f"{command} leaves {left}")
 
 
 def expect(is_true, message):
@@ -38,13 +62,16 @@ def compiles(root, name, template):
 
 with tempfile.TemporaryDirectory() as folder:
     root = pathlib.Path(folder).resolve()
-    for part in ("scripts", "techniques", "tests/techniques", "configs/smoke", "configs/nightly", "runner/gl"):
+    for part in ("scripts", "techniques", "tests/techniques", "configs/schema", "configs/smoke", "configs/nightly", "runner/gl"):
         shutil.copytree(SOURCE / part, root / part)
     for part in (".clang-format", "techniques/README.md"):
         shutil.copy(SOURCE / part, root / part)
     for part in ("configs", "runner", "tests"):
         shutil.copy(SOURCE / part / "README.md", root / part / "README.md")
     script = root / "scripts/new_technique"
+    git = ("git", "-C", root, "-c", "user.name=test", "-c", "user.email=test@gfxrepro.invalid")
+    for command in (["init", "--quiet"], ["add", "."], ["commit", "--quiet", "-m", "before"]):
+        expect(run(*git, *command).returncode == 0, f"git {command} fails")
 
     for name, reason in {
             "ContactShadows": "is not snake_case, such as contact_shadows",
@@ -72,4 +99,27 @@ with tempfile.TemporaryDirectory() as folder:
         expect(checked.returncode == 0, checked.stdout)
     compiles(root, f"techniques/{NAME}/{NAME}.cpp", "techniques/template/template.cpp")
     compiles(root, f"tests/techniques/{NAME}/{NAME}_test.cpp", "tests/techniques/template/template_test.cpp")
+    undo(root, written.stdout)
+
+    # The steps of trying it out, with programs that only say what they were asked; one that fails ends them.
+    (root / "scripts/build").write_text(PRETENDED_BUILD)
+    tried = run(script, NAME)
+    expect(tried.returncode == 0, f"{tried.stdout}\n{tried.stderr}")
+    asked = [line for line in tried.stdout.splitlines() if line.startswith("asked: ")]
+    expect(asked == [f"asked: build release gfxrepro test_{NAME}", f"asked: test_{NAME} --gtest_brief=1",
+                     f"asked: gfxrepro check {root}/configs/nightly/{NAME}.yaml",
+                     f"asked: gfxrepro reproduce {root}/configs/smoke/{NAME}.yaml --device software"], asked)
+    undo(root, tried.stdout)
+    failed = run(script, NAME, env={**os.environ, "BROKEN": "1"})
+    expect(failed.returncode == 3 and failed.stderr == f"new_technique: test_{NAME} failed\n"
+           and "asked: gfxrepro check" not in failed.stdout and "is there and registered" not in failed.stdout, failed)
+    undo(root, failed.stdout)
+
+    without = root / "without"
+    without.mkdir()
+    (without / "c++").write_text("#!/bin/sh\n! grep -q gmock\n")
+    (without / "c++").chmod(0o755)
+    refused = run(script, NAME, env={**os.environ, "PATH": f"{without}:{os.environ['PATH']}"})
+    expect(refused.returncode == 1 and not (root / "techniques" / NAME).exists() and refused.stderr ==
+           "new_technique: GoogleTest is not here; scripts/setup --technique installs it\n", refused.stderr)
 print("a new technique is in style and compiles")
