@@ -15,12 +15,18 @@ progress() {
 }
 progress_end() { [ ! -t 2 ] || printf '\r\033[K' >&2; }
 
-duration() { if (($1 < 100)); then echo "$1 s"; else echo "$((($1 + 30) / 60)) min"; fi; }
+duration() { # SECONDS
+    if (($1 < 100)); then echo "$1 s"; else echo "$(($1 / 60)) min$( (($1 % 60 == 0)) || echo " $(($1 % 60)) s")"; fi
+}
 
 # how_far BEGAN DONE ALL: the time since BEGAN, and by the pace until now what is left.
 how_far() {
-    local elapsed=$((SECONDS - $1)) left=
-    (($2 == 0 || elapsed < 5)) || left=", about $(duration $((elapsed * ($3 - $2) / $2))) left"
+    local elapsed=$((SECONDS - $1)) left=''
+    if (($2 > 0 && elapsed >= 5)); then
+        left=$((elapsed * ($3 - $2) / $2))
+        ((left < 100)) || left=$(((left + 30) / 60 * 60))
+        left=", about $(duration $left) left"
+    fi
     echo "$(duration $elapsed)$left"
 }
 
