@@ -2,6 +2,7 @@
 # fresh_system.sh SUITE [STEP…]: makes a bare system beside this one (bookworm, trixie: Debian 12, 13; noble: Ubuntu
 # 24.04) and there runs, from a clone of the last commit,
 #   1 2 3      the README's commands for a checkout, by their order
+#   technique  after 1: scripts/new_technique, with what scripts/setup --technique installs
 #   container  what containers/Containerfile runs, each stage in a bare system of its own
 #   arm64      compiles every source, and links the program, for an ARM processor, in a bare system of its own (trixie)
 #   wheel      the README's commands without a compiler, with the wheel of build/dist, in a bare system of its own
@@ -17,7 +18,7 @@ source=$(cd "$(dirname "$0")/../.." && pwd)
 systems=${GFXREPRO_SYSTEMS:-$source/build/systems}
 dist=$source/build/dist
 program=$source/build/release/gfxrepro
-steps=${*:-1 2 3 container $([ "$suite" != trixie ] || echo arm64) $([ ! -e "$dist" ] && [ ! -x "$program" ] || echo wheel bundle)}
+steps=${*:-1 2 technique 3 container $([ "$suite" != trixie ] || echo arm64) $([ ! -e "$dist" ] && [ ! -x "$program" ] || echo wheel bundle)}
 
 skip() { echo "skipped: $*"; exit 77; }
 [ "$(id -u)" = 0 ] || skip "a chroot needs root"
@@ -108,6 +109,9 @@ for step in $steps; do
         inside "$root" "$command" || code=$?
         # A claim that fails is a result.
         [ $code -eq 0 ] || { [ $code -eq 1 ] && [[ $command == *reproduce* ]]; } || exit $code
+        ;;
+    technique)
+        inside "$root" "scripts/setup --technique && scripts/new_technique contact_shadows && git checkout --quiet . && git clean --quiet -fd"
         ;;
     container)
         inside "$root" "$(stage_commands 1)"
