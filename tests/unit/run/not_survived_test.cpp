@@ -1,6 +1,7 @@
 #include "runner/run/not_survived.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/unit/run/plan_fixture.h"
 
