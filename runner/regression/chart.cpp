@@ -13,7 +13,7 @@ namespace gfxrepro::regression {
 
 namespace {
 
-constexpr double kTop = 22.0, kHeight = 146.0, kBottom = 24.0;
+constexpr double kTop = 22.0, kHeight = 146.0, kBottom = 24.0, kRight = 8.0;
 
 using report::Plane;
 
@@ -27,7 +27,7 @@ Plane planeOf(const ChartSeries& series, double width) {
     plane.y = report::axisOf(values, false, false);
     plane.left = report::roomOf(report::ticksOf(plane.y, kHeight, report::Along::Y));
     plane.top = kTop;
-    plane.width = width - plane.left - 8.0;
+    plane.width = width - plane.left - kRight;
     plane.height = kHeight;
     return plane;
 }
@@ -37,7 +37,9 @@ std::string nightsSvg(const std::vector<ChartNight>& nights, const Plane& plane)
     const auto most = static_cast<std::size_t>(plane.width / report::textWidth("2026-11-21 "));
     const std::size_t step = (nights.size() + most - 1) / most;
     for (std::size_t i = step / 2; i < nights.size(); i += step) {
-        days.push_back({static_cast<double>(i), nights[i].day});
+        const double place = static_cast<double>(i);
+        const double end = plane.xOf(place) + 0.5 * report::textWidth(nights[i].day);
+        if (end < plane.left + plane.width + kRight) days.push_back({place, nights[i].day});
     }
     return report::axesSvg(plane, days, report::ticksOf(plane.y, plane.height, report::Along::Y));
 }
