@@ -77,7 +77,7 @@ Ticks multiples(const Axis& axis, int factor, int exponent) {
 
 /// The finest that have room; two of them may lie nearer together than more would.
 Ticks linearTicks(const Axis& axis, double length, Along along) {
-    constexpr double kGap = 10.0, kLeastX = 64.0, kLeastY = 36.0;
+    constexpr double kGap = 10.0, kLeastX = 64.0, kLeastY = 30.0;
     Ticks best;
     for (int exponent = static_cast<int>(std::floor(std::log10(axis.high - axis.low))) + 1;;
          --exponent) {
@@ -138,7 +138,7 @@ Axis axisOf(const std::vector<double>& values, bool isLog, bool fromZero) {
 
 std::vector<Tick> ticksOf(const Axis& axis, double length, Along along) {
     if (!axis.isLog) return linearTicks(axis, length, along);
-    const double gap = along == Along::X ? 20.0 : 9.0;
+    const double gap = along == Along::X ? 28.0 : 9.0;
     const int least = axis.high < 10.0 * axis.low ? 2 : 1;  // texts
     using Candidate = std::pair<std::set<int>, int>;
     std::vector<Candidate> candidates = {{{1, 2, 3, 4, 5, 6, 8}, 1}, {{1, 2, 5}, 1}};

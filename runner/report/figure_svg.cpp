@@ -39,7 +39,7 @@ constexpr std::array<CurveStyle, 7> kCurveStyles = {{{"#1f77c9", 0, 0},
 constexpr double kEdge = 14.0;  // right of a plot
 constexpr double kGap = 18.0;   // between entries, panels
 constexpr double kSample = 30.0;
-constexpr double kMeasured = 3.2, kPrinted = 5.0;  // sizes of markers
+constexpr double kMeasured = 3.2, kPrinted = 4.5;  // sizes of markers
 constexpr std::string_view kReference = "stroke-dasharray=\"6 4\" stroke-width=\"1.2\"";
 constexpr std::string_view kHollow = "fill=\"none\" stroke-width=\"1.4\"";
 
@@ -198,6 +198,7 @@ class FigureDrawing {
         const bool hasOneLabel = std::ranges::all_of(
             figure_.panels, [&](const auto& panel) { return panel.yLabel == label; });
         if (hasOneLabel) addLines(wrapped(label, width_));
+        if (count > 1) end_ += 4.0;
         std::vector<Panel> panels(count);
         double left = 0.0, head = 0.0;
         for (std::size_t i = 0; i < count; ++i) {
