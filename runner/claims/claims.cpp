@@ -165,8 +165,8 @@ std::string calibratedNote(const ClaimSpec& claim, const ClaimReader& reader) {
                                     : "some of what it reads is calibrated";
 }
 
-ClaimResult evaluate(const ClaimSpec& claim, const tables::Table& table,
-                     const ReportContext& context) {
+ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
+                          const ReportContext& context) {
     ClaimResult result = unjudged(claim, table, context);
     if (result.verdict == Verdict::NotApplicable) return result;
     ClaimReader reader(claim, table);
@@ -211,7 +211,7 @@ ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const tables::Table& tab
                                 const ReportContext& context) {
     const tables::Table own = tableFor(claim, table);
     try {
-        return evaluate(claim, own, context);
+        return evaluateClaim(claim, own, context);
     } catch (const AbsentColumnError& error) {
         ClaimResult result = unjudged(claim, own, context);
         result.reason = "not among what was measured: " + error.text();

@@ -50,8 +50,8 @@ SourceLocation placeOf(const claims::ClaimResult& claim) {
     return claim.where;
 }
 
-void write(std::string_view level, const SourceLocation& where, std::string_view title,
-           std::string_view message) {
+void writeAnnotation(std::string_view level, const SourceLocation& where, std::string_view title,
+                     std::string_view message) {
     if (!areAnnotationsWanted()) return;
     const std::string command = annotation(level, where, title, message) + '\n';
     std::fwrite(command.data(), 1, command.size(), stderr);
@@ -79,7 +79,7 @@ std::string annotation(std::string_view level, const SourceLocation& where, std:
 }
 
 void annotateError(const SourceLocation& where, std::string_view title, std::string_view message) {
-    write("error", where, title, message);
+    writeAnnotation("error", where, title, message);
 }
 
 void annotate(const std::exception& error) {
@@ -97,10 +97,10 @@ void annotate(const std::vector<records::CaseResult>& cases) {
 void annotate(const std::vector<claims::ClaimResult>& claims) {
     for (const claims::ClaimResult& claim : claims) {
         if (claim.verdict != claims::Verdict::Fails || !areAnnotationsWanted()) continue;
-        write(claim.isNews() ? "error" : "notice", placeOf(claim),
-              fmt::format("{} {} fails", claim.table, claim.id),
-              fmt::format("{}; measured {}, required {}", claim.text, claim.measured,
-                          claim.required));
+        writeAnnotation(claim.isNews() ? "error" : "notice", placeOf(claim),
+                        fmt::format("{} {} fails", claim.table, claim.id),
+                        fmt::format("{}; measured {}, required {}", claim.text, claim.measured,
+                                    claim.required));
     }
 }
 

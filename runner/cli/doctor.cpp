@@ -200,7 +200,7 @@ std::vector<std::string> namesInState(const Json& scenes, const std::string& sta
     return names;
 }
 
-void print(const Json& found) {
+void printFacts(const Json& found) {
     say("program    {}, {}\n", found["commit"].get<std::string>(),
         found["build"].get<std::string>());
     for (const Json& device : found["devices"]) printDevice(device);
@@ -239,7 +239,7 @@ int doctor(const Context& context, const std::string& assets, bool asJson) {
         found["findings"] = findingsJson(findings);
         fmt::print("{}\n", found.dump(2, ' ', false, Json::error_handler_t::replace));
     } else {
-        print(found);
+        printFacts(found);
         for (const Finding& finding : findings) {
             say("\n{:<10} {}\n{:<10} {}\n", severityName(finding.severity), finding.problem,
                 "  to do", finding.advice);

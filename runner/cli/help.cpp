@@ -52,7 +52,7 @@ constexpr Place kPlaces[] = {
     {"completion", "shell", "source <(gfxrepro completion bash)"},
 };
 
-std::size_t placeOf(const CLI::App& command) {
+std::size_t helpPlaceOf(const CLI::App& command) {
     const auto* found = std::find_if(std::begin(kPlaces), std::end(kPlaces), [&](const Place& p) {
         return p.command == command.get_name();
     });
@@ -157,7 +157,7 @@ std::string entryLines(const std::string& name, const std::string& doc, std::siz
 
 void arrangeHelp(CLI::App& app) {
     for (CLI::App* command : app.get_subcommands({})) {
-        const std::size_t place = placeOf(*command);
+        const std::size_t place = helpPlaceOf(*command);
         if (place == std::size(kPlaces)) continue;
         command->group(std::string(kPlaces[place].group));
         command->footer(std::string(kPlaces[place].example));
@@ -182,8 +182,9 @@ std::string valueName(const CLI::Option& option) {
 std::vector<const CLI::App*> visibleCommands(const CLI::App& app) {
     std::vector<const CLI::App*> commands =
         app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
-    std::stable_sort(commands.begin(), commands.end(),
-                     [](const auto* a, const auto* b) { return placeOf(*a) < placeOf(*b); });
+    std::stable_sort(commands.begin(), commands.end(), [](const auto* a, const auto* b) {
+        return helpPlaceOf(*a) < helpPlaceOf(*b);
+    });
     return commands;
 }
 

@@ -126,7 +126,7 @@ Image8 shown(const ImageF& linear, const ImageConvertOptions& options) {
                                             toneMapOf(options.toneMap)));
 }
 
-Image8 pictureOf(const ImageConvertOptions& options) {
+Image8 convertedPicture(const ImageConvertOptions& options) {
     if (options.channels.empty()) {
         if (!options.range.empty()) throw UsageError("--range is of one channel: give --channels");
         return shown(image::readLinear(options.in), options);
@@ -178,7 +178,7 @@ int imageConvert(const ImageConvertOptions& options) {
     if (image::isExrFile(options.out)) {
         image::writeExr(options.out, exrFrom(options));
     } else {
-        image::writePng(options.out, pictureOf(options));
+        image::writePng(options.out, convertedPicture(options));
     }
     return kExitOk;
 }

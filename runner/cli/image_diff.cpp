@@ -61,9 +61,9 @@ ImageF flipMapOf(const ImageDiffOptions& options, const Pair& pair) {
 /// Structural similarity has no value for smaller images.
 constexpr int kLeastSsimPx = 11;
 
-std::vector<std::pair<std::string, double>> valuesOf(const ImageDiffOptions& options,
-                                                     const Pair& pair,
-                                                     std::optional<ImageF>& flipMap) {
+std::vector<std::pair<std::string, double>> differencesOf(const ImageDiffOptions& options,
+                                                          const Pair& pair,
+                                                          std::optional<ImageF>& flipMap) {
     const ImageF& a = pair.reference;
     const ImageF& b = pair.test;
     const auto isWanted = [&](const char* name) {
@@ -101,7 +101,8 @@ ImageF numbersOf(const ImageDiffOptions& options, const Pair& pair, const ImageF
 }
 
 /// Differences of what is compared above: linear light of EXR files, displayed values of PNG files.
-image::Image8 pictureOf(const ImageDiffOptions& options, const Pair& pair, const ImageF* flipMap) {
+image::Image8 diffPicture(const ImageDiffOptions& options, const Pair& pair,
+                          const ImageF* flipMap) {
     if (flipMap != nullptr) return metrics::flipPicture(*flipMap);
     const auto draw =
         options.map == "abs" ? metrics::absoluteErrorPicture : metrics::signedErrorPicture;
@@ -113,7 +114,7 @@ void writeMap(const ImageDiffOptions& options, const Pair& pair, std::optional<I
     if (options.map == "flip" && !flipMap) flipMap = flipMapOf(options, pair);
     const ImageF* flip = options.map == "flip" ? &*flipMap : nullptr;
     if (!image::isExrFile(options.out)) {
-        image::writePng(options.out, pictureOf(options, pair, flip));
+        image::writePng(options.out, diffPicture(options, pair, flip));
         return;
     }
     static const std::vector<std::string> kNames[] = {
@@ -137,7 +138,7 @@ int imageDiff(const ImageDiffOptions& options) {
     }
     const Pair pair = readPair(options);
     std::optional<ImageF> flipMap;
-    const auto values = valuesOf(options, pair, flipMap);
+    const auto values = differencesOf(options, pair, flipMap);
     if (options.asJson) {
         nlohmann::ordered_json json;
         for (const auto& [name, value] : values) {

@@ -27,7 +27,7 @@ scene::Scene loadNamed(const Context& context, const SceneOptions& options) {
     return openCatalog(context, options.assets).load(config::Node::scalar(options.name));
 }
 
-void print(const scene::Scene& scene) {
+void printScene(const scene::Scene& scene) {
     const scene::Box box = scene.bounds();
     say("from       {}\n", scene.origin.description);
     say("triangles  {}\nvertices   {}\npoints     {}\n", scene.triangleCount(), scene.vertexCount(),
@@ -99,7 +99,7 @@ int scene(const Context& context, const SceneOptions& options) {
     requireNoInput(options.exportFile, {&options.name, 1}, "--export");
     requireNoInput(options.renderFile, {&options.name, 1}, "--render");
     const scene::Scene scene = loadNamed(context, options);
-    print(scene);
+    printScene(scene);
     if (!options.exportFile.empty()) exportTo(options.exportFile, scene);
     if (!options.renderFile.empty()) renderTo(options.renderFile, scene, options);
     return kExitOk;

@@ -103,7 +103,7 @@ studies::Outcome measureNext(Study& study, const Selection& selection) {
         results::writeResults(dir, run, {.tables = true, .claims = true, .report = false}).claims};
 }
 
-void write(const Study& study, const std::string& keep) {
+void writeStudy(const Study& study, const std::string& keep) {
     const std::string markdown = studies::sensitivityMarkdown(study.experiment(), study.outcomes,
                                                               study.variations, study.left());
     const std::string csv = studies::sensitivityCsv(study.withLeft(), study.basis);
@@ -159,7 +159,7 @@ void takeBase(const run::StoredRun& run, Study& study) {
             continue;
         }
         study.outcomes.push_back({study.next(), results::resultsOf(run, {experiment}).claims});
-        write(study, "");
+        writeStudy(study, "");
     }
 }
 
@@ -210,7 +210,7 @@ Study* nextOf(std::vector<Study>& studies) {
     return next;
 }
 
-void print(const Study& study) {
+void printStudy(const Study& study) {
     if (study.outcomes.empty()) return;
     const studies::Outcome& base = study.outcomes.front();
     if (!base.error.empty()) say("{}: {}\n", study.experiment().id, base.error);
@@ -243,7 +243,7 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
         if (!options.keep.empty()) takeKept(options.keep, study);
         made += study.outcomes.size();
         // In today's words, and with what is left, also where no time is left to measure more.
-        if (!study.outcomes.empty()) write(study, options.keep);
+        if (!study.outcomes.empty()) writeStudy(study, options.keep);
     }
     if (!options.from.empty()) {
         const run::StoredRun run = run::readRun(options.from);
@@ -255,7 +255,7 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
         const studies::Outcome& outcome =
             study->outcomes.emplace_back(measureNext(*study, options.selection));
         study->spentS += secondsSince(start);
-        write(*study, options.keep);
+        writeStudy(*study, options.keep);
         tell("[{}/{}] {} {}{}\n", ++made, total, study->experiment().id, outcome.variation.title(),
              outcome.error.empty() ? "" : ": " + outcome.error);
         // Without verdicts as configured there is nothing to compare with.
@@ -264,7 +264,7 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
             study->isIncomplete = true;
         }
     }
-    for (const Study& study : studies) print(study);
+    for (const Study& study : studies) printStudy(study);
     if (!options.keep.empty() && fs::is_directory(options.keep)) {
         writeFileAtomic(fs::path(options.keep) / "README.md",
                         studies::sensitivityIndex(options.keep, context.commandLine));

@@ -183,7 +183,7 @@ cluster::ShardProgress progressOf(const fs::path& folder, int unitCount) {
     return progress;
 }
 
-std::vector<std::string> jobsOf(const Stored& stored) {
+std::vector<std::string> storedJobs(const Stored& stored) {
     std::vector<std::string> jobs;
     for (const std::string& job : {stored.arrayJob, stored.mergeJob}) {
         if (!job.empty() && job != kUnknownJob) jobs.push_back(job);
@@ -191,8 +191,8 @@ std::vector<std::string> jobsOf(const Stored& stored) {
     return jobs;
 }
 
-std::optional<std::map<std::string, std::string>> askQueue(const Stored& stored) {
-    const std::vector<std::string> jobs = jobsOf(stored);
+std::optional<std::map<std::string, std::string>> askForStored(const Stored& stored) {
+    const std::vector<std::string> jobs = storedJobs(stored);
     if (jobs.empty()) return std::nullopt;
     return cli::askQueue(jobs, stored.cluster);
 }
@@ -204,7 +204,7 @@ std::string taskOf(const Stored& stored, int shard) {
 int printStatus(const fs::path& out) {
     const std::optional<Stored> stored = readStored(out);
     if (!stored) throw Error(out.string() + ": holds no submission");
-    const auto queue = askQueue(*stored);
+    const auto queue = askForStored(*stored);
     std::vector<std::vector<std::string>> rows = {{"shard", "done", "failed", "state"}};
     const auto count = static_cast<int>(stored->unitCounts.size());
     bool isComplete = true;
@@ -276,7 +276,7 @@ void requireNotQueued(const Stored& before, const fs::path& out, const std::vect
     const bool isMerged = fs::exists(out / "plan.json") && progressOf(out, 0).isComplete();
     if (!before.mergeJob.empty() && !isMerged) tasks[before.mergeJob] = "the merge";
     if (tasks.empty()) return;
-    const auto queue = askQueue(before);
+    const auto queue = askForStored(before);
     for (const auto& [task, name] : tasks) {
         if (!queue || !cluster::isUnderWay(*queue, task)) continue;
         throw Error(fmt::format("{}: {} is {} already; wait, or scancel {}", out.string(), name,

@@ -52,7 +52,7 @@ ClaimSpec::Known readKnown(const Node& node, const std::string& what) {
     return known;
 }
 
-std::string placeOf(const ClaimSpec::Known& known) {
+std::string knownPlace(const ClaimSpec::Known& known) {
     return known.device.value_or("any device") + ", " + known.profile.value_or("any profile") +
            (known.scenes ? ", scenes: " + *known.scenes : "");
 }
@@ -76,8 +76,8 @@ void requireApart(const std::vector<ClaimSpec::Known>& known, const Node::Sequen
             }
             if (areApart || (isWithin && narrow != wide)) continue;
             throw Error(entries[later].location(),
-                        what + " is of " + placeOf(other) + ", and an earlier one of " +
-                            placeOf(one) +
+                        what + " is of " + knownPlace(other) + ", and an earlier one of " +
+                            knownPlace(one) +
                             "; allowed: one for each device, profile and kind of "
                             "scenes, what is of more behind what is of less");
         }

@@ -34,7 +34,7 @@ Selection selectionOf(const LayoutAxis& axis, const std::string& value) {
 }
 
 /// The labels of an axis: its own, or the values that a sweep gives it.
-Names labelsOf(const LayoutAxis& axis, const std::vector<AxisPoint>& sweep) {
+Names axisLabels(const LayoutAxis& axis, const std::vector<AxisPoint>& sweep) {
     Names labels;
     for (const auto& [label, selection] : axis.labels) labels.push_back(label);
     if (!axis.isSweepAxis()) return labels;
@@ -61,7 +61,7 @@ Selection cellSelection(const Experiment& experiment, const Names& row, const st
     for (const LayoutAxis& axis : layout.columns) {
         std::map<std::string, Selection> finer;
         for (const auto& [name, above] : columns) {
-            for (const std::string& label : labelsOf(axis, sweep)) {
+            for (const std::string& label : axisLabels(axis, sweep)) {
                 const std::string own = name.empty() ? label : name + "_" + label;
                 finer.emplace(own, laidOver(above, selectionOf(axis, label)));
             }
@@ -104,7 +104,7 @@ bool isCompared(const Experiment& table, const std::string& method) {
                                [&](const Node& name) { return name.text() == method; });
 }
 
-const Node& required(const Node& entry, const std::string& what, std::string_view key) {
+const Node& requiredText(const Node& entry, const std::string& what, std::string_view key) {
     const Node* value = entry.find(key);
     if (!value) throw Error(entry.location(), fmt::format("{} needs '{}'", what, key));
     return *value;
@@ -115,7 +115,7 @@ Names rowLabels(const Node& row, const Layout& layout, const std::string& what) 
     Names axes, labels;
     for (const LayoutAxis& axis : layout.rows) axes.push_back(axis.name);
     requireKeys(row, what + ": row", axes);
-    for (const std::string& axis : axes) labels.push_back(required(row, what, axis).text());
+    for (const std::string& axis : axes) labels.push_back(requiredText(row, what, axis).text());
     return labels;
 }
 
@@ -181,13 +181,13 @@ bool isCalibrated(const Experiment& table, const std::vector<std::string>& row,
 Node withPrintedCell(const Node& entry, const std::string& column, const Experiment& fit,
                      const Experiment& table) {
     const std::string what = "fit: '" + column + "'";
-    const Node& place = required(entry, what, "table");
+    const Node& place = requiredText(entry, what, "table");
     if (table.technique != fit.technique || !table.layout.isGiven) {
         throw Error(place.location(), fmt::format("{}: {} is not measured by technique '{}'", what,
                                                   table.id, fit.technique));
     }
-    const Names row = rowLabels(required(entry, what, "row"), table.layout, what);
-    const Node& theirs = required(entry, what, "column");
+    const Names row = rowLabels(requiredText(entry, what, "row"), table.layout, what);
+    const Node& theirs = requiredText(entry, what, "column");
     const Selection cell = cellSelection(table, row, lineOf(theirs, what + ": column"));
     const Selection own = cellSelection(fit, Names(fit.layout.rows.size()), column);
     // What a fit may read compares no methods: that is how the other rows stay blind.
@@ -226,8 +226,8 @@ std::vector<FitTarget> fitTargets(const Experiment& experiment) {
     if (!fit || fit->isNull()) return {};
     std::vector<FitTarget> targets;
     for (const auto& [column, entry] : fit->entries()) {
-        targets.push_back({column, required(entry, "fit", "id").text(),
-                           required(entry, "fit", "printed").asDouble()});
+        targets.push_back({column, requiredText(entry, "fit", "id").text(),
+                           requiredText(entry, "fit", "printed").asDouble()});
     }
     return targets;
 }

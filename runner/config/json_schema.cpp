@@ -111,7 +111,7 @@ Json definitionsOf(const SchemaFile& file) {
 }
 
 /// What a parameter is swept over.
-Json axisOf(const std::string& technique, const std::string& param) {
+Json axisSchema(const std::string& technique, const std::string& param) {
     Json value = refTo("params_" + technique + "/properties/" + param);
     return orNull(anyOf({listOf(std::move(value), 1), refTo("axis")}));
 }
@@ -160,7 +160,7 @@ void defineTechnique(const SchemaNames::Technique& technique, Json& definitions)
         param["description"] = info.unit.empty() ? info.doc : info.doc + " [" + info.unit + "]";
         param["default"] = parseYaml(info.defaultValue, "default").toJson();
         params[info.name] = std::move(param);
-        axes[info.name] = axisOf(technique.name, info.name);
+        axes[info.name] = axisSchema(technique.name, info.name);
     }
     definitions["params_" + technique.name] = {{"type", {"object", "null"}},
                                                {"properties", std::move(params)},

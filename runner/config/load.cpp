@@ -251,7 +251,7 @@ void applySweeps(const std::vector<Override>& sweeps, Node& document) {
     }
 }
 
-void requireNotSwept(const Override& given, const std::string& name, const Node& document) {
+void requireNotOverridden(const Override& given, const std::string& name, const Node& document) {
     const Node* sweep = document.find("sweep");
     if (!sweep) return;
     for (const AxisPoint& point : expandSweep(*sweep)) {
@@ -278,7 +278,7 @@ void applySets(const std::vector<Override>& sets, Node& document) {
         const auto& sections = sectionKeys();
         const bool isPath = std::find(sections.begin(), sections.end(), first) != sections.end();
         const std::string path = isPath ? given.key : "params." + given.key;
-        requireNotSwept(given, parameterName(path), document);
+        requireNotOverridden(given, parameterName(path), document);
         const Node value =
             path == "scene" ? withSceneFile(given.value, fs::current_path()) : given.value;
         document.setPath(path, value);

@@ -20,7 +20,7 @@ std::vector<std::string> cellsOf(const std::string& line) {
 }
 
 template <class Range, class Value>
-bool contains(const Range& range, const Value& value) {
+bool rangeContains(const Range& range, const Value& value) {
     return std::find(range.begin(), range.end(), value) != range.end();
 }
 
@@ -35,14 +35,14 @@ void requireHeader(const std::vector<std::string>& header, const TableNames* nam
         if (!names || !names->hasAllColumns) continue;
         std::vector<std::string> known = names->rowAxes;
         known.insert(known.end(), names->columns.begin(), names->columns.end());
-        if (contains(known, name)) continue;
+        if (rangeContains(known, name)) continue;
         const std::string near = suggestion(name, known);
         throw Error(where, "printed: '" + name + "' is neither a row axis nor a column" +
                                (near.empty() ? "; allowed: " + joined(known) : near));
     }
     if (!names) return;
     for (const std::string& axis : names->rowAxes) {
-        if (!axis.empty() && !contains(header, axis)) {
+        if (!axis.empty() && !rangeContains(header, axis)) {
             throw Error(where, "printed: row axis '" + axis + "' has no column");
         }
     }
@@ -53,7 +53,7 @@ std::string keyOfRow(const std::vector<std::string>& row, const std::vector<std:
                      const TableNames& names) {
     std::string key;
     for (std::size_t i = 0; i < row.size(); ++i) {
-        if (contains(names.rowAxes, header[i])) key += row[i] + ",";
+        if (rangeContains(names.rowAxes, header[i])) key += row[i] + ",";
     }
     return key;
 }
@@ -67,7 +67,7 @@ void requireLabels(const std::vector<std::string>& row, const std::vector<std::s
         const std::string& value = row[static_cast<std::size_t>(at - header.begin())];
         std::vector<std::string> labels;
         for (const auto& label : axis.labels) labels.push_back(label.first);
-        if (contains(labels, value)) continue;
+        if (rangeContains(labels, value)) continue;
         throw Error(where, fmt::format("printed: {} is '{}'; allowed: {}", axis.name, value,
                                        joined(labels, " | ")));
     }
@@ -83,7 +83,7 @@ Node::Map readAt(const Node& at) {
     for (const auto& [name, value] : at.entries()) {
         const bool isSize =
             std::find(std::begin(kSizes), std::end(kSizes), name) != std::end(kSizes);
-        if (!isSize && contains(name, '.')) {
+        if (!isSize && rangeContains(name, '.')) {
             throw Error(at.keyLocation(name), "printed.at: '" + name +
                                                   "'; allowed: a parameter, scene, output.width, "
                                                   "output.height, measure.frames");

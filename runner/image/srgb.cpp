@@ -7,7 +7,7 @@ namespace gfxrepro::image {
 
 namespace {
 
-double decoded(double srgb) {
+double decodedSrgb(double srgb) {
     return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
 }
 
@@ -18,13 +18,13 @@ float srgbOf(float linear) {
 }
 
 float linearOf(float srgb) {
-    return static_cast<float>(decoded(srgb));
+    return static_cast<float>(decodedSrgb(srgb));
 }
 
 std::array<float, 256> srgbDecoding() {
     std::array<float, 256> table{};
     for (std::size_t i = 0; i < table.size(); ++i) {
-        table[i] = static_cast<float>(decoded(static_cast<double>(i) / 255.0));
+        table[i] = static_cast<float>(decodedSrgb(static_cast<double>(i) / 255.0));
     }
     return table;
 }

@@ -36,7 +36,7 @@ Luminances luminancesOf(const ImageF& image) {
 }
 
 /// Of all `count` values, of which those that are not given are 0; of those given where it is 0.
-double medianOf(std::vector<double>& positive, std::size_t count) {
+double medianOfPositive(std::vector<double>& positive, std::size_t count) {
     std::sort(positive.begin(), positive.end());
     const std::size_t zeros = count - positive.size();
     const auto at = [&](std::size_t i) { return i < zeros ? 0.0 : positive[i - zeros]; };
@@ -79,7 +79,8 @@ Exposures flipExposures(const ImageF& reference) {
     const double most = *std::max_element(luminances.positive.begin(), luminances.positive.end());
     Exposures exposures;
     exposures.start = std::log2(shownAs85() / most);
-    exposures.stop = std::log2(shownAs85() / medianOf(luminances.positive, luminances.count));
+    exposures.stop =
+        std::log2(shownAs85() / medianOfPositive(luminances.positive, luminances.count));
     const double stops = exposures.stop - exposures.start;
     if (stops > 0.0) exposures.count = std::max(2, static_cast<int>(std::ceil(stops)));
     return exposures;

@@ -92,7 +92,7 @@ std::string wordOf(const SeriesHistory& series, const SeriesChange& change) {
 }
 
 /// Titles, with the parameters where several series have one.
-std::vector<std::string> titlesOf(const MachineHistory& history) {
+std::vector<std::string> machineTitles(const MachineHistory& history) {
     std::map<std::string, int> counts;
     for (const SeriesHistory& series : history.series) ++counts[series.key.title()];
     std::vector<std::string> titles;
@@ -163,7 +163,7 @@ std::string nightsHtml(const MachineHistory& history) {
 }
 
 std::string machineHtml(const MachineHistory& history, std::size_t machine) {
-    const std::vector<std::string> titles = titlesOf(history);
+    const std::vector<std::string> titles = machineTitles(history);
     std::vector<ChartNight> nights;
     for (const NightOf& night : history.nights) {
         nights.push_back({dayOf(night.time), night.time + ", " + night.commit});

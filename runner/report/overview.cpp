@@ -212,7 +212,7 @@ std::string saidHtml(const Model& model) {
 }
 
 /// Verdicts that are not what the configs know.
-std::string newsHtml(const Model& model) {
+std::string newsSection(const Model& model) {
     std::string items;
     for (const Page& page : model.pages) {
         for (std::size_t run = 0; run < page.parts.size(); ++run) {
@@ -285,7 +285,7 @@ std::string overviewHtml(const Model& model) {
     if (hasClaims && !model.isOneTable())
         html += "<h3>What the verdicts mean</h3>\n" + legendHtml();
     html += fmt::format("<h2>{}</h2>\n", hasClaims ? "Every claim, in words" : "All tables");
-    return html + filtersHtml(model) + saidHtml(model) + newsHtml(model) + missingHtml(model) +
+    return html + filtersHtml(model) + saidHtml(model) + newsSection(model) + missingHtml(model) +
            "<h3>Machine and run</h3>\n" + factsHtml(model) + "</section>\n";
 }
 

@@ -8,7 +8,7 @@ namespace gfxrepro::report {
 
 namespace {
 
-std::string paragraph(const char* cssClass, const char* label, const std::string& text) {
+std::string classedParagraph(const char* cssClass, const char* label, const std::string& text) {
     if (text.empty()) return "";
     return fmt::format("<p class=\"{}\"><span class=\"soft\">{}</span>{}</p>\n", cssClass, label,
                        escapeXml(text));
@@ -121,12 +121,12 @@ std::string pageHtml(const Page& page, const Model& model) {
                            !shown->experiment->shows.empty();
     if (isPicture) html += images;
     html += tableHtml(page, model);
-    html += paragraph("small", "Printed numbers: ", shown->table.hardware);
-    html += paragraph("small", "Remark: ", shown->table.remark);
+    html += classedParagraph("small", "Printed numbers: ", shown->table.hardware);
+    html += classedParagraph("small", "Remark: ", shown->table.remark);
     for (std::size_t run = 0; run < page.parts.size(); ++run) {
         const std::string whose = model.isComparison() ? Model::letter(run) + ": " : "";
         for (const std::string& note : page.parts[run].table.notes) {
-            html += paragraph("small soft", whose.c_str(), note);
+            html += classedParagraph("small soft", whose.c_str(), note);
         }
     }
     html += curvesHtml(page, model);

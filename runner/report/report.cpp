@@ -31,7 +31,7 @@ std::string navigationHtml(const Model& model) {
     return html + "</select></nav>\n";
 }
 
-std::string titleOf(const Model& model) {
+std::string pageTitle(const Model& model) {
     if (model.isOneTable()) return model.pages.front().heading();
     std::string names;
     for (const ReportRun& run : model.runs) {
@@ -80,7 +80,7 @@ void writeReport(const fs::path& file, std::span<const ReportRun> runs,
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<link rel=\"icon\" href=\"data:,\">\n"
         "<title>gfxrepro: {}</title>\n<style>\n{}</style>\n</head>\n<body>\n",
-        escapeXml(titleOf(model)), kStyle);
+        escapeXml(pageTitle(model)), kStyle);
     html += navigationHtml(model) + "<main>\n";
     // The first section is the one that the report opens with.
     if (!model.isOneTable()) html += overviewHtml(model);

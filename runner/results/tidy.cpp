@@ -19,7 +19,7 @@ using records::FrameValue;
 
 namespace {
 
-FrameValue valueOf(const run::Json& value) {
+FrameValue tidyValue(const run::Json& value) {
     if (value.is_boolean()) return value.get<bool>();
     if (value.is_number_integer()) return value.get<long long>();
     if (value.is_number()) return value.get<double>();
@@ -36,7 +36,7 @@ void addParts(const std::string& name, const run::Json& value, Fields& fields,
               std::vector<std::string>& columns) {
     if (!value.is_structured()) {
         if (!fields.contains(name)) columns.push_back(name);
-        fields[name] = valueOf(value);
+        fields[name] = tidyValue(value);
         return;
     }
     for (const auto& [key, part] : value.items()) {
@@ -60,7 +60,7 @@ std::pair<Fields, std::vector<std::string>> paramsOf(const run::Case& item) {
     return {std::move(fields), std::move(columns)};
 }
 
-std::string laneName(const run::Case& item) {
+std::string laneOf(const run::Case& item) {
     return item.measure.lane == config::Measure::Lane::Timing ? "timing" : "quality";
 }
 
@@ -152,7 +152,7 @@ Frame caseFrame(std::span<const run::Case> cases) {
         const run::Case& item = cases[i];
         std::vector<FrameValue> row = {item.id,        item.experiment,
                                        item.technique, item.recordedScene(),
-                                       laneName(item), static_cast<long long>(item.seed)};
+                                       laneOf(item),   static_cast<long long>(item.seed)};
         Fields fields = paramsOf(item).first;
         for (std::size_t at = row.size(); at < columns.size(); ++at) {
             row.push_back(std::move(fields[columns[at]]));

@@ -30,7 +30,7 @@ std::optional<std::string> valueOfKey(const Case& item, const std::string& key) 
 }
 
 /// What is allowed: one value, or those between signs `|`, or of a list.
-config::Node::Sequence alternativesOf(const config::Node& wanted) {
+config::Node::Sequence wantedAlternatives(const config::Node& wanted) {
     if (wanted.isSequence()) return wanted.items();
     if (!wanted.isScalar() || wanted.text().find('|') == std::string::npos) return {wanted};
     config::Node::Sequence values;
@@ -45,7 +45,7 @@ bool has(const Case& item, const config::Override& wanted) {
     if (!value) return false;
     // A vector is a list itself.
     if (value == tables::canonicalText(wanted.value)) return true;
-    return std::ranges::any_of(alternativesOf(wanted.value), [&](const config::Node& allowed) {
+    return std::ranges::any_of(wantedAlternatives(wanted.value), [&](const config::Node& allowed) {
         const std::string text = tables::canonicalText(allowed);
         if (wanted.key == kCaseKey) return value->starts_with(text);
         return value == text || ::fnmatch(text.c_str(), value->c_str(), 0) == 0;
@@ -53,8 +53,8 @@ bool has(const Case& item, const config::Override& wanted) {
 }
 
 /// What the case has under all of the keys; empty where it lacks one.
-std::optional<std::vector<std::string>> valuesOf(const Case& item,
-                                                 const std::vector<std::string>& keys) {
+std::optional<std::vector<std::string>> keyValues(const Case& item,
+                                                  const std::vector<std::string>& keys) {
     std::vector<std::string> values;
     for (const std::string& key : keys) {
         std::optional<std::string> value = valueOfKey(item, key);
@@ -143,10 +143,10 @@ std::vector<std::string> CaseNames::onlyOf(const Case& item) {
     if (isNew) {
         for (const Case& other : plan_.cases) {
             if (other.experiment != item.experiment) continue;
-            if (const auto values = valuesOf(other, keys)) ++counts->second[*values];
+            if (const auto values = keyValues(other, keys)) ++counts->second[*values];
         }
     }
-    const auto values = valuesOf(item, keys);
+    const auto values = keyValues(item, keys);
     const auto alike = counts->second.find(values.value_or(Keys()));
     if (alike != counts->second.end() && alike->second > 1) {
         return {std::string(kCaseKey) + '=' + item.id};

@@ -48,7 +48,7 @@ bool isSeededByProcess(const Case& item) {
 }
 
 /// The batch case loop's catch: whatever a case throws becomes its status.
-CaseResult resultOf(const Case& item, MeasureContext& context) {
+CaseResult measuredResult(const Case& item, MeasureContext& context) {
     try {
         return measureCase(item, context);
     } catch (const UnsupportedError& error) {
@@ -101,7 +101,7 @@ void serve(gl::Device& device, const WorkerOptions& options,
             item.seed +=
                 static_cast<std::uint64_t>(process->asInteger() * config::kSeedsOfAProcess);
         }
-        const CaseResult result = resultOf(item, context);
+        const CaseResult result = measuredResult(item, context);
         std::cout.flush();
         std::cerr.flush();
         send({{"done", toJson(result)}});

@@ -30,7 +30,7 @@ void requireKeys(const Node& map, const std::string& what, std::string_view sect
 
 // Literals, not strings: a reference from a call with a temporary is one that GCC 14 takes for
 // dangling.
-const Node& required(const Node& map, const char* what, const char* key) {
+const Node& requiredMember(const Node& map, const char* what, const char* key) {
     const Node* value = map.find(key);
     if (!value) throw Error(map.location(), std::string(what) + ": '" + key + "' is missing");
     return *value;
@@ -51,7 +51,7 @@ std::optional<long long> readCount(const Node& source, const std::string& key,
 SceneSource readFileSource(const Node& node) {
     requireKeys(node, "source", "file_source");
     SceneSource source;
-    const Node& file = required(node, "source", "file");
+    const Node& file = requiredMember(node, "source", "file");
     source.file = file.text();
     if (source.file.empty() || fs::path(source.file).is_absolute()) {
         throw Error(file.location(),
@@ -84,7 +84,7 @@ float readPositive(const Node& node, const std::string& key) {
 SceneSource readHeightMapSource(const Node& node) {
     requireKeys(node, "source", "height_map_source");
     SceneSource source;
-    const Node& file = required(node, "source", "height_map");
+    const Node& file = requiredMember(node, "source", "height_map");
     source.file = file.text();
     if (source.file.empty() || fs::path(source.file).is_absolute()) {
         throw Error(file.location(),
@@ -92,7 +92,7 @@ SceneSource readHeightMapSource(const Node& node) {
                                 source.file));
     }
     HeightMapSource map;
-    map.units.spacingM = readPositive(required(node, "source", "spacing_m"), "spacing_m");
+    map.units.spacingM = readPositive(requiredMember(node, "source", "spacing_m"), "spacing_m");
     if (const Node* scale = node.find("height_scale_m")) {
         map.units.heightScaleM = readPositive(*scale, "height_scale_m");
     }
@@ -134,7 +134,7 @@ SceneSource readGeneratorSource(const Node& node, bool isGenerated,
                                 std::span<const GeneratorInfo> generators) {
     requireKeys(node, "source", "generator_source");
     SceneSource source;
-    const Node& generator = required(node, "source", "generator");
+    const Node& generator = requiredMember(node, "source", "generator");
     source.generator = &findGenerator(generators, generator.text(), generator.location());
     if (const Node* params = node.find("params")) source.params = *params;
     if (const Node* seed = node.find("seed")) {
@@ -177,18 +177,18 @@ SceneEntry readEntry(const fs::path& path, const std::string& expectedName,
     requireKeys(root, "scene entry", "scene");
     SceneEntry entry;
     entry.path = path;
-    const Node& name = required(root, "scene entry", "scene");
+    const Node& name = requiredMember(root, "scene entry", "scene");
     entry.name = name.text();
     if (entry.name != expectedName) {
         throw Error(name.location(), "scene is '" + entry.name +
                                          "', but the file's place names it '" + expectedName + "'");
     }
-    entry.doc = required(root, "scene entry", "doc").text();
+    entry.doc = requiredMember(root, "scene entry", "doc").text();
     if (const Node* canonical = root.find("canonical")) entry.canonical = canonical->text();
     if (const Node* licence = root.find("licence")) entry.licence = licence->text();
     const Node* generated = root.find("generated");
     const bool isGenerated = generated && generated->asBool();
-    const Node& sources = required(root, "scene entry", "sources");
+    const Node& sources = requiredMember(root, "scene entry", "sources");
     for (const Node& source : sources.items()) {
         entry.sources.push_back(readSource(source, isGenerated, generators));
     }

@@ -144,7 +144,7 @@ class Resampling {
     std::vector<float> shares_;
 };
 
-HeightMap withoutHeights(const HeightMap& map, const Resampling& rows) {
+HeightMap resampledWithoutHeights(const HeightMap& map, const Resampling& rows) {
     HeightMap result;
     result.filledCount = map.filledCount;
     result.isEightBit = map.isEightBit;
@@ -158,7 +158,7 @@ HeightMap withoutHeights(const HeightMap& map, const Resampling& rows) {
 HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed) {
     GFXREPRO_ASSERT(sizeSamples <= kMaxHeightMapSide);
     const Resampling rows(map, sizeSamples, detailM, seed);
-    HeightMap result = withoutHeights(map, rows);
+    HeightMap result = resampledWithoutHeights(map, rows);
     const auto width = static_cast<std::size_t>(result.sizeSamples.x);
     result.heightsM.resize(width * static_cast<std::size_t>(result.sizeSamples.y));
     tbb::parallel_for(0, result.sizeSamples.y, [&](int row) {
@@ -170,7 +170,7 @@ HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::u
 HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed,
                           const std::filesystem::path& folder, const std::string& key) {
     const Resampling rows(map, sizeSamples, detailM, seed);
-    HeightMap result = withoutHeights(map, rows);
+    HeightMap result = resampledWithoutHeights(map, rows);
     try {
         result.file = HeightFile::openOrBuild(
             folder, key, result.sizeSamples,

@@ -71,13 +71,13 @@ class PngHeightRows : public HeightRows {
 
 enum class ValueType { U16, I16, F32 };
 
-std::size_t sizeBytes(ValueType type) {
+std::size_t valueBytes(ValueType type) {
     return type == ValueType::F32 ? 4 : 2;
 }
 
 float valueAt(const char* bytes, ValueType type, bool isBigEndian) {
     std::array<char, 4> ordered{};
-    const std::size_t size = sizeBytes(type);
+    const std::size_t size = valueBytes(type);
     const bool isSwapped = isBigEndian != (std::endian::native == std::endian::big);
     for (std::size_t i = 0; i < size; ++i) ordered[isSwapped ? size - 1 - i : i] = bytes[i];
     if (type == ValueType::F32) return std::bit_cast<float>(ordered);
@@ -98,14 +98,14 @@ class BareRows : public HeightRows {
         sizeSamples = size;
         canBeNan = type == ValueType::F32;
         if (type != ValueType::U16) noData.push_back(kSrtmVoid);
-        row_.resize(static_cast<std::size_t>(size.x) * sizeBytes(type));
+        row_.resize(static_cast<std::size_t>(size.x) * valueBytes(type));
     }
 
     void read(float* values) override {
         if (!file_.read(row_.data(), static_cast<std::streamsize>(row_.size()))) {
             throw Error(fmt::format("cannot read {}: {}", name_, std::strerror(errno)));
         }
-        const std::size_t step = sizeBytes(type_);
+        const std::size_t step = valueBytes(type_);
         for (std::size_t i = 0; i < row_.size(); i += step) {
             *values++ = valueAt(&row_[i], type_, isBigEndian_);
         }
@@ -119,7 +119,7 @@ class BareRows : public HeightRows {
     std::vector<char> row_;
 };
 
-std::uintmax_t fileBytes(const fs::path& path) {
+std::uintmax_t bytesOfFile(const fs::path& path) {
     std::error_code failure;
     const std::uintmax_t bytes = fs::file_size(path, failure);
     if (failure) throw Error(fmt::format("cannot read {}: {}", path.string(), failure.message()));
@@ -127,7 +127,7 @@ std::uintmax_t fileBytes(const fs::path& path) {
 }
 
 std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path) {
-    const std::uintmax_t bytes = fileBytes(path);
+    const std::uintmax_t bytes = bytesOfFile(path);
     for (const int side : {1201, 3601}) {
         if (bytes != 2 * static_cast<std::uintmax_t>(side) * static_cast<std::uintmax_t>(side)) {
             continue;
@@ -184,9 +184,9 @@ std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
     const long long height = required(root, "height").asInteger();
     checkHeightMapSize(width, height, sidecar.string());
     const ValueType type = typeOf(required(root, "type"));
-    const std::uintmax_t bytes = fileBytes(path);
+    const std::uintmax_t bytes = bytesOfFile(path);
     const auto wanted =
-        static_cast<std::uintmax_t>(width) * static_cast<std::uintmax_t>(height) * sizeBytes(type);
+        static_cast<std::uintmax_t>(width) * static_cast<std::uintmax_t>(height) * valueBytes(type);
     if (bytes != wanted) {
         throw Error(fmt::format("{}: {} bytes; {} x {} samples of {} need {}", path.string(), bytes,
                                 width, height, root.find("type")->text(), wanted));

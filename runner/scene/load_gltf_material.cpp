@@ -16,19 +16,19 @@ namespace {
 using Value = tinygltf::Value;
 
 /// Null when the object or the key is not there.
-const Value* find(const tinygltf::ExtensionMap& extensions, const std::string& extension,
-                  const std::string& key) {
+const Value* findExtension(const tinygltf::ExtensionMap& extensions, const std::string& extension,
+                           const std::string& key) {
     const auto found = extensions.find(extension);
     return found != extensions.end() && found->second.Has(key) ? &found->second.Get(key) : nullptr;
 }
 
-double number(const Value* value, double fallback) {
+double gltfNumber(const Value* value, double fallback) {
     return value != nullptr && value->IsNumber() ? value->GetNumberAsDouble() : fallback;
 }
 
 glm::vec2 vec2(const Value* value, const glm::vec2& fallback) {
     if (value == nullptr || !value->IsArray() || value->ArrayLen() != 2) return fallback;
-    return {number(&value->Get(0), fallback.x), number(&value->Get(1), fallback.y)};
+    return {gltfNumber(&value->Get(0), fallback.x), gltfNumber(&value->Get(1), fallback.y)};
 }
 
 /// Of tinygltf's TextureInfo, or NormalTextureInfo, which is a type of its own.
@@ -38,12 +38,15 @@ TextureUse textureUse(const Info& info) {
     TextureUse use;
     use.texcoordSet = info.texCoord;
     if (info.extensions.count(kExtension) == 0) return use;
-    if (const Value* set = find(info.extensions, kExtension, "texCoord"); set && set->IsInt()) {
+    if (const Value* set = findExtension(info.extensions, kExtension, "texCoord");
+        set && set->IsInt()) {
         use.texcoordSet = set->Get<int>();
     }
-    const glm::vec2 offset = vec2(find(info.extensions, kExtension, "offset"), glm::vec2(0.0F));
-    const glm::vec2 scale = vec2(find(info.extensions, kExtension, "scale"), glm::vec2(1.0F));
-    const double angleRad = number(find(info.extensions, kExtension, "rotation"), 0.0);
+    const glm::vec2 offset =
+        vec2(findExtension(info.extensions, kExtension, "offset"), glm::vec2(0.0F));
+    const glm::vec2 scale =
+        vec2(findExtension(info.extensions, kExtension, "scale"), glm::vec2(1.0F));
+    const double angleRad = gltfNumber(findExtension(info.extensions, kExtension, "rotation"), 0.0);
     // Counter-clockwise as seen in the image, where v grows downwards.
     const auto c = static_cast<float>(std::cos(angleRad));
     const auto s = static_cast<float>(std::sin(angleRad));
@@ -94,7 +97,7 @@ class TextureTable {
     std::map<int, int> textureOf_;
 };
 
-Material materialOf(const tinygltf::Material& from) {
+Material gltfMaterial(const tinygltf::Material& from) {
     const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
     Material material;
     material.name = from.name;
@@ -104,8 +107,8 @@ Material materialOf(const tinygltf::Material& from) {
     }
     material.metallic = static_cast<float>(pbr.metallicFactor);
     material.roughness = static_cast<float>(pbr.roughnessFactor);
-    const double strength =
-        number(find(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength"), 1.0);
+    const double strength = gltfNumber(
+        findExtension(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength"), 1.0);
     for (std::size_t c = 0; c < 3 && from.emissiveFactor.size() == 3; ++c) {
         material.emissive[static_cast<int>(c)] =
             static_cast<float>(from.emissiveFactor[c] * strength);
@@ -114,10 +117,10 @@ Material materialOf(const tinygltf::Material& from) {
     material.normalScale = static_cast<float>(from.normalTexture.scale);
     material.isDoubleSided = from.doubleSided;
     material.isUnlit = from.extensions.count("KHR_materials_unlit") != 0;
-    material.transmission = static_cast<float>(
-        number(find(from.extensions, "KHR_materials_transmission", "transmissionFactor"), 0.0));
-    material.indexOfRefraction =
-        static_cast<float>(number(find(from.extensions, "KHR_materials_ior", "ior"), 1.5));
+    material.transmission = static_cast<float>(gltfNumber(
+        findExtension(from.extensions, "KHR_materials_transmission", "transmissionFactor"), 0.0));
+    material.indexOfRefraction = static_cast<float>(
+        gltfNumber(findExtension(from.extensions, "KHR_materials_ior", "ior"), 1.5));
     return material;
 }
 
@@ -163,7 +166,7 @@ std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessor
     TextureTable textures(file, accessors, scene);
     std::vector<TextureUse> uses;
     for (const tinygltf::Material& from : file.model.materials) {
-        scene.materials.push_back(materialOf(from));
+        scene.materials.push_back(gltfMaterial(from));
         uses.push_back(addTextures(from, textures, scene.materials.back(), scene.warnings));
     }
     return uses;

@@ -28,12 +28,27 @@ using ply::Type;
 using ply::visitType;
 
 /// What a vertex row may hold for us.
-enum Slot { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kU, kV, kRadius, kSlotCount, kNoSlot };
+enum PropertySlot {
+    kX,
+    kY,
+    kZ,
+    kNx,
+    kNy,
+    kNz,
+    kRed,
+    kGreen,
+    kBlue,
+    kU,
+    kV,
+    kRadius,
+    kSlotCount,
+    kNoSlot
+};
 
-Slot slotOf(const Property& property) {
+PropertySlot slotOf(const Property& property) {
     struct Named {
         std::string_view name;
-        Slot slot;
+        PropertySlot slot;
     };
     constexpr std::array<Named, 16> kNamed{{{"x", kX},
                                             {"y", kY},
@@ -140,8 +155,9 @@ class VertexParser {
     }
 
   private:
-    bool hasAll(std::initializer_list<Slot> slots) const {
-        return std::all_of(slots.begin(), slots.end(), [this](Slot slot) { return has_[slot]; });
+    bool hasAll(std::initializer_list<PropertySlot> slots) const {
+        return std::all_of(slots.begin(), slots.end(),
+                           [this](PropertySlot slot) { return has_[slot]; });
     }
 
     void readRow() {
@@ -157,7 +173,7 @@ class VertexParser {
         }
     }
 
-    float read(const Property& property, Slot slot) {
+    float read(const Property& property, PropertySlot slot) {
         const double number = reader_.number(property.type);
         const bool isColour = slot == kRed || slot == kGreen || slot == kBlue;
         if (isColour && property.type == Type::UInt8) {
@@ -181,7 +197,7 @@ class VertexParser {
 
     Reader& reader_;
     const Element& element_;
-    std::vector<Slot> slots_;
+    std::vector<PropertySlot> slots_;
     std::array<bool, kSlotCount> has_{};
     std::array<float, kSlotCount> row_{};
     std::array<float, 256> linearBytes_;

@@ -70,13 +70,13 @@ std::string plyContent(const PlyVertices& vertices, std::span<const glm::uvec3> 
 
 // ---- GLB
 
-tinygltf::Value number(float value) {
+tinygltf::Value numberText(float value) {
     return tinygltf::Value(static_cast<double>(value));
 }
 
 /// An extension object with one number in it, or none.
 tinygltf::Value extension(const char* key, float value) {
-    return tinygltf::Value(tinygltf::Value::Object{{key, number(value)}});
+    return tinygltf::Value(tinygltf::Value::Object{{key, numberText(value)}});
 }
 
 std::vector<double> matrixOf(const glm::mat4& matrix) {

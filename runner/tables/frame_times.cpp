@@ -25,7 +25,7 @@ double medianOf(const std::vector<double>& values) {
     return metrics::summarize(values, Statistic::Median);
 }
 
-std::vector<double> valuesOf(const std::map<int, double>& rounds) {
+std::vector<double> roundValues(const std::map<int, double>& rounds) {
     std::vector<double> values;
     for (const auto& [process, value] : rounds) values.push_back(value);
     return values;
@@ -98,7 +98,7 @@ std::vector<std::map<int, double>> FrameTimes::times(Clock clock) const {
         for (const auto& [process, frames] : processes) {
             if (frames.size() < frameCount) continue;
             for (const auto& [frame, repeats] : frames) {
-                sums[process] += medianOf(valuesOf(repeats));
+                sums[process] += medianOf(roundValues(repeats));
             }
         }
     }
@@ -132,7 +132,7 @@ std::optional<double> FrameTimes::relativeErrorOf(std::size_t rounds) const {
     std::optional<double> largest;
     for (const Clock clock : judgedClocks()) {
         for (const std::map<int, double>& processes : times(clock)) {
-            std::vector<double> values = valuesOf(processes);
+            std::vector<double> values = roundValues(processes);
             if (values.size() < rounds) continue;
             values.resize(rounds);
             const auto interval = metrics::medianInterval(values);
@@ -165,7 +165,7 @@ std::optional<double> FrameTimes::noise(Clock clock) const {
         if (interval) widths.push_back(halfWidth(*interval));
     }
     if (cases.size() == 1) {
-        std::vector<double> logs = valuesOf(cases[0]);
+        std::vector<double> logs = roundValues(cases[0]);
         for (double& value : logs) value = std::log(value);
         const auto interval = metrics::centreInterval(logs);
         if (interval) widths.push_back(std::numbers::sqrt2 * halfWidth(*interval));

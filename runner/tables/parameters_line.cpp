@@ -14,7 +14,7 @@ namespace {
 /// More values of a parameter than these are cut short in a sentence.
 constexpr std::size_t kSaidValues = 4;
 
-void addOnce(const std::string& value, std::vector<std::string>& values) {
+void addTextOnce(const std::string& value, std::vector<std::string>& values) {
     if (std::ranges::find(values, value) == values.end()) values.push_back(value);
 }
 
@@ -29,7 +29,7 @@ struct Tally {
 
     int count() const { return same + asGiven + different + alone; }
     void add(const Cell& cell) {
-        for (const std::string& name : cell.openParameters) addOnce(name, open);
+        for (const std::string& name : cell.openParameters) addTextOnce(name, open);
         if (cell.isAtPrintedParameters) {
             ++(cell.openParameters.empty() ? same : asGiven);
         } else if (cell.departures.empty()) {
@@ -44,8 +44,8 @@ struct Tally {
                                  ? departures.emplace_back(
                                        Departure{departure.parameter, {}, {}, departure.isOpen})
                                  : *known;
-            for (const std::string& value : departure.measured) addOnce(value, all.measured);
-            for (const std::string& value : departure.printed) addOnce(value, all.printed);
+            for (const std::string& value : departure.measured) addTextOnce(value, all.measured);
+            for (const std::string& value : departure.printed) addTextOnce(value, all.printed);
         }
     }
 };

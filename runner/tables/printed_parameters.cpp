@@ -39,7 +39,8 @@ std::string settingNameOf(const std::string& name) {
 }
 
 /// Lays what `printed.at` says over a case.
-void layOver(const config::Printed& printed, std::string& scene, Json& params, Json& frames) {
+void layPrintedOver(const config::Printed& printed, std::string& scene, Json& params,
+                    Json& frames) {
     for (const auto& [name, value] : printed.at) {
         if (name == "scene") {
             scene = value.text();
@@ -78,7 +79,7 @@ Settings settingsOf(const CaseRecords& item, int frameCount, const config::Print
     Json params = item.params.toJson();
     std::string scene = sceneNameOf(item, params);
     Json frames = frameCount;
-    layOver(printed, scene, params, frames);
+    layPrintedOver(printed, scene, params, frames);
     Settings settings;
     if (!scene.empty()) settings.emplace_back("scene", scene);
     if (const auto output = params.find("output"); output != params.end()) {

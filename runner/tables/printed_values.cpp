@@ -28,7 +28,7 @@ std::vector<SourceLocation> linesOf(const config::Node& values) {
 }
 
 /// The printed cell of that name; null where there is no such column.
-const std::string* find(const std::string& name, const Cells& header, const Cells& printed) {
+const std::string* findColumn(const std::string& name, const Cells& header, const Cells& printed) {
     const auto found = std::ranges::find(header, name);
     return found == header.end() ? nullptr
                                  : &printed[static_cast<std::size_t>(found - header.begin())];
@@ -36,7 +36,7 @@ const std::string* find(const std::string& name, const Cells& header, const Cell
 
 bool isOf(const Cells& printed, const Cells& header, const Table& table, const TableRow& row) {
     for (std::size_t i = 0; i < table.rowAxes.size(); ++i) {
-        const std::string* label = find(table.rowAxes[i], header, printed);
+        const std::string* label = findColumn(table.rowAxes[i], header, printed);
         if (label && canonicalText(config::Node::scalar(*label)) != row.labels[i]) return false;
     }
     return true;

@@ -18,7 +18,7 @@ namespace gfxrepro::tables {
 namespace {
 
 /// Numbers compare as numbers: "64.0" is 64.
-std::string canonicalText(const std::string& text) {
+std::string canonicalCell(const std::string& text) {
     const auto number = parseDouble(trimmed(text));
     return number ? records::shortestText(*number) : std::string(trimmed(text));
 }
@@ -131,7 +131,7 @@ std::vector<std::string> absentColumns(const config::Printed& printed, const Tab
 bool isRowOf(const std::vector<std::string>& printedRow, const PrintedColumns& found,
              const TableRow& row) {
     for (std::size_t i = 0; i < found.axes.size(); ++i) {
-        if (found.axes[i] && canonicalText(printedRow[*found.axes[i]]) != row.labels[i]) {
+        if (found.axes[i] && canonicalCell(printedRow[*found.axes[i]]) != row.labels[i]) {
             return false;
         }
     }
@@ -170,7 +170,7 @@ void layPrintedBeside(const config::Experiment& experiment, const std::vector<Ke
         unplanned.isPlanned = false;
         TableRow row{{}, SceneSource::Unknown, std::vector<Cell>(columns.size(), unplanned)};
         for (const auto& axis : found.axes) {
-            row.labels.push_back(axis ? canonicalText(printedRow[*axis]) : "");
+            row.labels.push_back(axis ? canonicalCell(printedRow[*axis]) : "");
         }
         layInto(row, printedRow);
         table.printedRows.push_back(std::move(row));

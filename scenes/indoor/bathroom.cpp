@@ -407,7 +407,7 @@ void addFloor(MeshBuilder& builder) {
 }
 
 // A panelled door with its casing and handle, in the wall opposite the window.
-void addDoor(MeshBuilder& builder) {
+void addBathroomDoor(MeshBuilder& builder) {
     constexpr float kLeft = 0.55F, kRight = 1.4F, kHigh = 2.05F, kCasing = 0.075F;
     const float z = kRoom.z;
     const auto board = [&](float x0, float y0, float x1, float y1, float out) {
@@ -427,7 +427,7 @@ void addDoor(MeshBuilder& builder) {
 }
 
 // Two casements in a deep reveal, with a sill; the panes show what is outside.
-void addWindow(MeshBuilder& builder, MeshBuilder& view) {
+void addBathroomWindow(MeshBuilder& builder, MeshBuilder& view) {
     constexpr float kDepth = 0.16F, kFrame = 0.05F;
     const glm::vec2 lo = kWindowMin, hi = kWindowMax, size = hi - lo;
     const glm::vec3 in(0.0F, 0.0F, kDepth);
@@ -1007,7 +1007,7 @@ constexpr Occluder kOccluders[] = {
     {{2.0F, 0.0F, 0.06F}, {2.2F, 0.22F, 0.26F}, true},
 };
 
-void addShell(Room& room, std::uint64_t seed) {
+void addBathroomShell(Room& room, std::uint64_t seed) {
     MeshBuilder builder, view;
     addTiledWalls(builder);
     room.addDiffuse(builder, "wall_tiles", glm::vec3(1.0F),
@@ -1019,9 +1019,9 @@ void addShell(Room& room, std::uint64_t seed) {
     room.addDiffuse(
         builder, "floor", glm::vec3(1.0F),
         room.addTexture(tilesTexture({0.50F, 0.52F, 0.54F}, {0.36F, 0.37F, 0.38F}, 4, seed + 1)));
-    addDoor(builder);
+    addBathroomDoor(builder);
     room.addDiffuse(builder, "door", {0.78F, 0.79F, 0.76F});
-    addWindow(builder, view);
+    addBathroomWindow(builder, view);
     room.addDiffuse(builder, "window", {0.86F, 0.86F, 0.84F});
     Material outdoors = glowing(glm::vec3(1.0F), glm::vec3(0.0F));
     outdoors.baseColorTexture = room.addTexture(outdoorsTexture(seed + 2));
@@ -1075,7 +1075,7 @@ struct Moving {
     int pendant, dispenser, shavingMirror;
 };
 
-Moving addReflectors(Room& room, std::uint64_t seed) {
+Moving addBathroomReflectors(Room& room, std::uint64_t seed) {
     constexpr glm::vec3 kCeramic(0.86F, 0.86F, 0.84F), kSteel(0.55F, 0.56F, 0.58F);
     constexpr float kGlazed = 0.3F, kChrome = 0.85F;
     MeshBuilder builder;
@@ -1123,7 +1123,7 @@ Moving addReflectors(Room& room, std::uint64_t seed) {
     return moving;
 }
 
-void addLights(Scene& scene) {
+void addBathroomLights(Scene& scene) {
     scene.lights = {{{1.15F, 1.75F, 0.45F}, glm::vec3(0.42F, 0.46F, 0.52F), 1.5F},  // the window
                     {kPendant - glm::vec3(0.0F, 0.05F, 0.0F), glm::vec3(0.50F, 0.46F, 0.39F), 1.6F},
                     {{0.35F, 1.8F, kVanityZ}, glm::vec3(0.2F, 0.18F, 0.14F), 0.9F},  // wall lamps
@@ -1169,19 +1169,19 @@ Scene bathroom(config::Params& params, std::uint64_t seed) {
     params.finish();
     Room room;
     Random random(seed, 11);
-    addShell(room, seed);
+    addBathroomShell(room, seed);
     addFurniture(room, random, seed);
     const int towels = addTextiles(room, random);
     MeshBuilder builder;
     addBulb(builder);
     const int bulb = room.add(builder, "bulb", glowing(glm::vec3(1.0F), {0.7F, 0.65F, 0.55F}));
     room.fill(towels, false, kDiffuseTriangles);
-    const Moving moving = addReflectors(room, seed);
+    const Moving moving = addBathroomReflectors(room, seed);
     Scene& scene = room.scene;
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         if (scene.materials[i].emissive == glm::vec3(0.0F)) darken(scene.meshes[i], kOccluders);
     }
-    addLights(scene);
+    addBathroomLights(scene);
     addBathroomCameras(scene);
     const glm::vec3 swing(0.07F, 0.0F, 0.03F), up(0.0F, 1.0F, 0.0F);
     constexpr float kTwoPi = 2.0F * std::numbers::pi_v<float>;

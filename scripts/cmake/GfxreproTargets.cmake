@@ -27,6 +27,9 @@ endif()
 
 set(CMAKE_CXX_EXTENSIONS OFF)
 
+# Tests take longer to compile than to run. ccache wants to see which precompiled header they take.
+set(GFXREPRO_TEST_OPTIONS $<IF:$<CONFIG:Release>,-O1,-O0> $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+
 # gfxrepro_verify_headers(TARGET [targets …]): every header beside the target's sources compiles alone, with the
 # targets that those have. One with a source of its name does so there: sources begin with their header (check_style).
 function(gfxrepro_verify_headers target)
@@ -100,14 +103,12 @@ function(gfxrepro_shaders target folder)
 endfunction()
 
 # gfxrepro_test(NAME [SERIAL] LABEL label SOURCES … LINK targets …) → one GoogleTest program, one ctest entry a case;
-# SERIAL: beside no other test. Tests take longer to compile than to run: they are optimized less than what they test,
-# and share a precompiled header. Each source has helpers of its own in names that others have, too: no unity.
+# SERIAL: beside no other test. Tests share a precompiled header. Their sources have helpers of the same names: no unity.
 function(gfxrepro_test name)
     cmake_parse_arguments(arg "SERIAL" "LABEL" "SOURCES;LINK" ${ARGN})
     add_executable(${name} ${arg_SOURCES})
     set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
-    # ccache wants to see which precompiled header a source takes.
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+    target_compile_options(${name} PRIVATE ${GFXREPRO_TEST_OPTIONS})
     target_precompile_headers(${name} REUSE_FROM gfxrepro_test_support)
     target_link_libraries(${name} PRIVATE gfxrepro_test_support ${arg_LINK} GTest::gmock GTest::gtest_main)
     include(GoogleTest)

@@ -91,6 +91,10 @@ for includes in ('#include <map>\n#include "runner/core/a.h"\n',
            "runner/core/a.cpp: includes are in another order than the own header, <…>, ours")
 expect("check_style", {"runner/core/a.h": "#pragma once\n", "runner/core/a.cpp": '#include <map>\n'},
        "runner/core/a.cpp: includes are in another order than the own header, <…>, ours")
+for kind in ("int twice(int n) {\n", "template <class T>\nvoid twice(T n) {\n", "struct twice {\n", "constexpr int twice = 1;\n"):
+    expect("check_style", {"runner/core/a.cpp": "namespace {\nint twice(long n) {\n}  // namespace\n",
+                           "runner/core/b.cpp": "namespace {\n" + kind + "    twice(1);\n}  // namespace\n"},
+           "runner/core/b.cpp: twice has a namesake in a.cpp")
 expect("check_style", {"runner/core/CMakeLists.txt": "a(b\n    SOURCES b.cpp a.cpp\n    PUBLIC c)\n"},
        "runner/core/CMakeLists.txt: a.cpp stands behind b.cpp: sort the sources")
 expect("check_style", {"techniques/a/README.md": "\n" * 71}, "techniques/a/README.md: 71 lines, at most 70")
