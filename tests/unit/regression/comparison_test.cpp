@@ -16,7 +16,7 @@
 namespace gfxrepro::regression {
 namespace {
 
-constexpr int kNights = test::kIsSanitized ? 4 : 20, kMethods = 20;
+constexpr int kNights = gfxrepro::test::kIsSanitized ? 4 : 20, kMethods = 20;
 
 std::ptrdiff_t alarms(const std::vector<Difference>& differences) {
     return std::ranges::count_if(differences, &Difference::isAlarm);

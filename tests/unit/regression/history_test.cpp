@@ -73,13 +73,14 @@ TEST(History, TheChanceOfAStepIsExact) {
 
 TEST(History, AYearOfNoiseHasNoStep) {
     int alarms = 0;
-    for (std::uint64_t seed = 0; seed < (test::kIsSanitized ? 1 : 5); ++seed) {
+    for (std::uint64_t seed = 0; seed < (gfxrepro::test::kIsSanitized ? 1 : 5); ++seed) {
         SeriesMap history;
         for (int method = 0; method < 20; ++method) {
             Series& own = history[test::timeOf(std::to_string(method))];
             own = nights(100 * seed + static_cast<std::uint64_t>(method), 120, 120, 1.0, 0.15);
         }
-        for (std::size_t night = 10; night <= 120; night += test::kIsSanitized ? 55 : 10) {
+        for (std::size_t night = 10; night <= 120;
+             night += gfxrepro::test::kIsSanitized ? 55 : 10) {
             SeriesMap until = history;
             for (auto& [key, values] : until) values.resize(night);
             alarms += static_cast<int>(findSteps(until).size());
