@@ -112,7 +112,9 @@ Ticks powerTicks(const Axis& axis, const std::set<int>& labelled, int every) {
 }  // namespace
 
 bool Axis::shows(double value) const {
-    return std::abs(value) < 1e300 && (!isLog || value > 1e-300);
+    // Ratios and differences of these are numbers, too.
+    const double size = std::abs(value);
+    return (size == 0.0 || size > 1e-120) && size < 1e120 && (!isLog || value > 0.0);
 }
 
 double Axis::at(double value) const {

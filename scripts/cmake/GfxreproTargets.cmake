@@ -56,7 +56,7 @@ function(gfxrepro_verify_headers target)
 endfunction()
 
 # gfxrepro_module(NAME [COLD] SOURCES … [PUBLIC targets …] [PRIVATE targets …]) → library gfxrepro_NAME
-# COLD: touches no pixel, ray or triangle, and so is optimized less, which builds faster.
+# COLD: no technique spends its time in it, and so it is optimized less, which builds faster.
 function(gfxrepro_module name)
     cmake_parse_arguments(arg "COLD" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
     add_library(gfxrepro_${name} STATIC ${arg_SOURCES})

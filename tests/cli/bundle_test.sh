@@ -86,6 +86,10 @@ packed)
     tar -C "$D/elsewhere" -xf "$D/packed.tar.xz"
     diff -r --no-dereference "$D/packed" "$D/elsewhere/packed" || fail "other files"
     require_notices "$D/packed/licenses" "$D/packed/lib"
+    # A folder of something else is left as it is.
+    mkdir "$D/mine"
+    touch "$D/mine/kept"
+    ! "$source/scripts/notices" "$D/mine" "$build" 2>/dev/null && [ -e "$D/mine/kept" ] || fail "notices took a folder of something else"
     # A library that nobody knows is refused rather than passed on without its notice.
     cp "$(ldd "$build/gfxrepro" | awk '/libfmt/ {print $3}')" "$D/libmine.so"
     ! "$source/scripts/notices" "$D/notices" "$build" "$D/libmine.so" 2>"$D/refused" || fail "libmine.so has a notice"

@@ -13,7 +13,7 @@
 namespace gfxrepro::test {
 
 /// Built with a sanitizer, which looks at what is touched and not at how often: simulations run a
-/// twentieth of their trials there, and what share of them comes out is judged in other builds.
+/// part of their trials there, and what share of them comes out is judged in other builds.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kIsSanitized = true;
 #else

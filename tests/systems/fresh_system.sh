@@ -142,7 +142,7 @@ for step in $steps; do
     wheel)
         without_compiler .whl
         mapfile -t commands < <(readme_block 1)
-        timed "apt-get update -qq && ${commands[0]%#*} >/dev/null"
+        timed "${commands[0]%#*} >/dev/null"
         timed "${commands[1]}" someone
         timed "env/bin/gfxrepro doctor" someone
         timed "${commands[2]}" someone

@@ -132,6 +132,23 @@ TEST(Axis, TextsDoNotOverlap) {
     }
 }
 
+TEST(Axis, ExtremeValuesEndTicksToo) {
+    const std::vector<std::vector<double>> extremes = {
+        {1e-310, 2e-310}, {1e-200, 1.0, 1e200}, {1e-119, 1e119}, {-1e119, 1e119}, {1e-9, 1e299}};
+    for (const auto& values : extremes) {
+        for (const bool isLog : {false, true}) {
+            const Axis axis = axisOf(values, isLog, false);
+            EXPECT_FALSE(ticksOf(axis, 300.0, Along::X).empty()) << values[0] << ' ' << isLog;
+            EXPECT_FALSE(ticksOf(axis, 100.0, Along::Y).empty()) << values[0] << ' ' << isLog;
+            for (const double value : values) {
+                if (!axis.shows(value)) continue;
+                EXPECT_GE(axis.at(value), 0.0) << value;
+                EXPECT_LE(axis.at(value), 1.0) << value;
+            }
+        }
+    }
+}
+
 TEST(Axis, TicksStandAtFewAndShortValues) {
     EXPECT_THAT(textsOf(ticksAt({512, 64, 128, 256, 64}, {60, 540, true}, 300.0)),
                 ElementsAre("64", "128", "256", "512"));
