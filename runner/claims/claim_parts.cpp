@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::claims {
 

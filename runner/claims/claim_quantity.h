@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/metrics/statistics.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/operand.h"
-#include "runner/metrics/statistics.h"
 
 namespace gfxrepro::claims {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/tables/case_records.h"
 #include "runner/tables/labels.h"
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "engine/metrics/mean_test.h"
 #include "runner/config/program.h"
-#include "runner/metrics/mean_test.h"
 
 namespace gfxrepro::claims {
 
@@ -31,7 +31,7 @@ std::string whyNotTestable(const config::Experiment& experiment, const config::C
             "and alone",
             kSameMeanMetric);
     }
-    const config::Node& node = config::programOf(experiment);
+    const Node& node = config::programOf(experiment);
     if (node.isNull()) return "";  // a technique that records it knows its samples
     const int truths = truthFramesOf(config::readProgram(node));
     if (truths == 0) {

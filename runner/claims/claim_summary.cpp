@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "engine/core/text.h"
 #include "runner/claims/claims.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::claims {
 

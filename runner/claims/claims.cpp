@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <iterator>
 
+#include "engine/core/text.h"
 #include "runner/claims/claim_parts.h"
 #include "runner/claims/claim_reader.h"
 #include "runner/claims/claim_same_mean.h"
 #include "runner/config/schema.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::claims {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "engine/core/files.h"
 #include "runner/config/schema.h"
-#include "runner/core/files.h"
 #include "runner/records/csv.h"
 
 namespace gfxrepro::claims {

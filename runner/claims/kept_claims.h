@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/error.h"
 #include "runner/claims/claims.h"
-#include "runner/core/error.h"
 
 namespace gfxrepro::claims {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "engine/core/text.h"
 #include "runner/config/claim_operands.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::claims {
 

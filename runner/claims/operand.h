@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::claims {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/text.h"
 #include "runner/claims/claims.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::claims {
 

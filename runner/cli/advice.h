@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/gl/device.h"
+#include "engine/gl/device.h"
 
 namespace gfxrepro::cli {
 

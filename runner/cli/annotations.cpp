@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "runner/config/node.h"
+#include "engine/core/node.h"
 
 namespace gfxrepro::cli {
 
@@ -40,8 +40,8 @@ std::string fileFor(const SourceLocation& where) {
 SourceLocation placeOf(const claims::ClaimResult& claim) {
     if (claim.where.line > 0) return claim.where;
     try {
-        const config::Node document = config::parseYamlFile(claim.where.file.text());
-        const config::Node* claims = document.isMap() ? document.find("claims") : nullptr;
+        const Node document = parseYamlFile(claim.where.file.text());
+        const Node* claims = document.isMap() ? document.find("claims") : nullptr;
         if (claims && claims->isMap() && claims->find(claim.id)) {
             return claims->keyLocation(claim.id);
         }

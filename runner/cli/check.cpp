@@ -7,6 +7,9 @@
 #include <optional>
 #include <set>
 
+#include "engine/core/files.h"
+#include "engine/core/text.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/claims/claims.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
@@ -14,10 +17,7 @@
 #include "runner/cli/experiments.h"
 #include "runner/config/program.h"
 #include "runner/config/program_files.h"
-#include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/ledger.h"
 #include "runner/tables/figure.h"
@@ -70,11 +70,11 @@ void requireProfiles(const Context& context, const scene::Catalog& catalog,
 }
 
 /// Throws Error for a sweep that the text names ("sweeps/NAME") and that is not among the configs.
-void requireNamedSweeps(const config::Node& node) {
+void requireNamedSweeps(const Node& node) {
     if (node.isMap()) {
         for (const auto& [key, value] : node.entries()) requireNamedSweeps(value);
     } else if (node.isSequence()) {
-        for (const config::Node& item : node.items()) requireNamedSweeps(item);
+        for (const Node& item : node.items()) requireNamedSweeps(item);
     }
     if (!node.isScalar()) return;
     static constexpr std::string_view kFolder = "sweeps/";
@@ -101,9 +101,9 @@ void requireNamedSweeps(const config::Node& node) {
 }
 
 /// Throws Error for a scene that the technique of a case cannot take.
-void requireTaken(const Context& context, const run::Case& item, const config::Node& reference,
+void requireTaken(const Context& context, const run::Case& item, const Node& reference,
                   const scene::Scene& scene) {
-    config::Params params(item.given, "technique '" + item.technique + "'");
+    Params params(item.given, "technique '" + item.technique + "'");
     if (!item.offered.isNull()) params.offer(item.offered);
     const auto technique = technique::makeTechnique(
         technique::findTechnique(context.techniques, item.technique, {}), item.program, params);
@@ -116,11 +116,11 @@ void requireTaken(const Context& context, const run::Case& item, const config::N
 }
 
 /// The scene; what may be wrong in a user's own file is said.
-scene::Scene loadScene(const config::Node& reference, const scene::Catalog& catalog) {
+scene::Scene loadScene(const Node& reference, const scene::Catalog& catalog) {
     try {
         scene::Scene scene = catalog.load(reference);
-        const std::string name = config::sceneName(reference.text());
-        if (!config::isSceneFile(name)) return scene;
+        const std::string name = scene::sceneName(reference.text());
+        if (!scene::isSceneFile(name)) return scene;
         for (const std::string& line : scene.warnings) tell("warning: {}: {}\n", name, line);
         return scene;
     } catch (const Error& error) {
@@ -133,25 +133,25 @@ scene::Scene loadScene(const config::Node& reference, const scene::Catalog& cata
 void requireScenes(const Context& context, const config::Experiment& experiment,
                    const std::vector<run::Case>& cases, const scene::Catalog& catalog) {
     struct Use {
-        const config::Node* reference;
+        const Node* reference;
         const run::Case* item;
     };
     std::map<std::string, std::vector<Use>> uses;
-    const auto add = [&](const config::Node& reference, const run::Case& item) {
+    const auto add = [&](const Node& reference, const run::Case& item) {
         if (reference.isNull() || reference.text().empty()) return;
         uses[reference.text()].push_back({&reference, &item});
     };
     for (const run::Case& item : cases) {
         add(item.scene, item);
         for (const auto& [name, value] : item.params.entries()) {
-            if (config::isSceneKey(name)) add(value, item);
+            if (scene::isSceneKey(name)) add(value, item);
         }
     }
     for (const auto& [name, users] : uses) {
-        const config::Node& first = *users.front().reference;
+        const Node& first = *users.front().reference;
         const scene::SceneSource source = catalog.resolve(first);
         const bool isOwn =
-            config::isSceneFile(name) || (experiment.hasDefaultLayout() && !source.heightMap);
+            scene::isSceneFile(name) || (experiment.hasDefaultLayout() && !source.heightMap);
         if (!isOwn) continue;
         const scene::Scene scene = loadScene(first, catalog);
         for (const Use& use : users) requireTaken(context, *use.item, *use.reference, scene);
@@ -192,7 +192,7 @@ int check(const Context& context, const Selection& selection) {
         requireScenes(context, experiment, cases, catalog);
         requireProfiles(context, catalog, file);
         for (const char* section : {"claims", "assumptions", "printed"}) {
-            const config::Node* node = experiment.document.find(section);
+            const Node* node = experiment.document.find(section);
             if (node) requireNamedSweeps(*node);
         }
         sayAbsent(file, cases);

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <functional>
 
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/completion.h"
@@ -17,8 +19,6 @@
 #include "runner/cli/image_commands.h"
 #include "runner/cli/man_page.h"
 #include "runner/cli/parse.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 #include "runner/run/manifest.h"
 #include "runner/run/worker.h"
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "runner/scene/generators.h"
+#include "engine/scene/generators.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::cli {

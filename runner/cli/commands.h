@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/scene/generators.h"
+#include "engine/scene/generators.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::cli {
@@ -113,7 +113,7 @@ inline constexpr const char* kListed = "tables|techniques|scenes|configs|generat
 int doctor(const Context& context, const std::string& assets, bool asJson);
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson);
 int describe(const Context& context, const DescribeOptions& options);
-using ParamInfos = std::vector<config::ParamInfo>;
+using ParamInfos = std::vector<ParamInfo>;
 /// All parameters of a technique: those of its defaults, then those that single choices bring.
 ParamInfos paramsOf(const technique::TechniqueInfo& technique);
 int check(const Context& context, const Selection& selection);

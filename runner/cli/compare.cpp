@@ -8,11 +8,11 @@
 #include <map>
 #include <set>
 
+#include "engine/core/files.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/core/files.h"
 #include "runner/regression/comparison.h"
 #include "runner/regression/history.h"
 #include "runner/regression/pictures.h"

@@ -8,10 +8,10 @@
 #include <set>
 #include <span>
 
+#include "engine/core/text.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
 #include "runner/config/program.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::cli {
 
@@ -184,10 +184,10 @@ Words valuesOf(const std::string& kind, const Context& context, const std::strin
 
 /// What pairs may name.
 struct PairNames {
-    std::vector<config::ParamInfo> params;
+    std::vector<ParamInfo> params;
     std::vector<config::MetricInfo> metrics;
 
-    void add(std::span<const config::ParamInfo> more, const config::Outputs& outputs) {
+    void add(std::span<const ParamInfo> more, const config::Outputs& outputs) {
         params.insert(params.end(), more.begin(), more.end());
         metrics.insert(metrics.end(), outputs.metrics.begin(), outputs.metrics.end());
     }
@@ -203,11 +203,11 @@ PairNames pairNamesOf(const Words& tables, const Context& context) {
         if (!tables.empty()) request.configs = findPaperConfigs(tables);
         for (const config::Experiment& experiment : loadExperiments(request, "full")) {
             techniques.insert(experiment.technique);
-            const config::Node& node = config::programOf(experiment);
+            const Node& node = config::programOf(experiment);
             if (node.isNull()) continue;
             const config::Program program = config::readProgram(node);
             for (const config::ProgramParam& param : program.params) {
-                config::ParamInfo& info = found.params.emplace_back();
+                ParamInfo& info = found.params.emplace_back();
                 info.name = param.name;
                 info.choices = param.choices;
             }
@@ -232,7 +232,7 @@ Words pairs(const Typed& typed, const Context& context, const std::string& prefi
     const std::string before = typed.key.empty() && isValue ? key + "=" : "";
     const PairNames names = pairNamesOf(typed.arguments, context);
     Words words;
-    for (const config::ParamInfo& param : names.params) {
+    for (const ParamInfo& param : names.params) {
         if (!isValue) words.push_back(param.name + "=");
         if (!isValue || key != param.name) continue;
         for (const std::string& choice : param.choices) words.push_back(before + choice);

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::cli {
 

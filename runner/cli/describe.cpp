@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "engine/core/text.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
 #include "runner/config/program.h"
 #include "runner/config/schema.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::cli {
 
 namespace {
 
-ParamInfos paramsGiven(const technique::TechniqueInfo& info, config::Node values) {
-    config::Params params(std::move(values), "technique '" + std::string(info.name) + "'");
+ParamInfos paramsGiven(const technique::TechniqueInfo& info, Node values) {
+    Params params(std::move(values), "technique '" + std::string(info.name) + "'");
     // A choice may ask for others beside it: what was declared until then counts. So this catches.
     try {
         if (info.create) info.create(params);
@@ -30,11 +30,10 @@ ParamInfos paramsGiven(const technique::TechniqueInfo& info, config::Node values
 ParamInfos paramsOf(const technique::TechniqueInfo& technique) {
     const ParamInfos usual = paramsGiven(technique, {});
     ParamInfos all = usual;
-    for (const config::ParamInfo& param : usual) {
+    for (const ParamInfo& param : usual) {
         for (const std::string& choice : param.choices) {
-            const auto value = config::Node::scalar(choice, {}, true);
-            for (config::ParamInfo& info :
-                 paramsGiven(technique, config::Node::map({{param.name, value}}))) {
+            const auto value = Node::scalar(choice, {}, true);
+            for (ParamInfo& info : paramsGiven(technique, Node::map({{param.name, value}}))) {
                 const bool isKnown = std::ranges::any_of(
                     all, [&](const auto& known) { return known.name == info.name; });
                 if (isKnown) continue;
@@ -51,7 +50,7 @@ namespace {
 constexpr std::size_t kColumn = 28;
 
 /// "[256; 32 … 1024 voxels]"; a number that was given as a float is printed as one.
-std::string valuesText(const config::ParamInfo& info) {
+std::string valuesText(const ParamInfo& info) {
     std::string text = info.defaultValue;
     const auto number = parseDouble(text);
     const auto single = static_cast<float>(number.value_or(0.0));
@@ -65,9 +64,9 @@ std::string valuesText(const config::ParamInfo& info) {
     return fmt::format("[{}]", text);
 }
 
-void printParams(const std::vector<config::ParamInfo>& params) {
+void printParams(const std::vector<ParamInfo>& params) {
     fmt::print("\nparameters, each with [default; what is allowed]\n");
-    for (const config::ParamInfo& info : params) {
+    for (const ParamInfo& info : params) {
         fmt::print("{}", entryLines("  " + info.name, info.doc + ' ' + valuesText(info), kColumn));
     }
 }
@@ -111,7 +110,7 @@ void describeTechnique(const technique::TechniqueInfo& info) {
 void describeProgram(const config::Experiment& experiment,
                      const technique::TechniqueInfo& technique) {
     const config::Program program = config::readProgram(config::programOf(experiment));
-    config::Params params(config::Node::map({}), "program");
+    Params params(Node::map({}), "program");
     program.declare(params);
     fmt::print("\nprogram\n");
     for (const config::ProgramFile& file :
@@ -192,10 +191,10 @@ void describeExperiment(const Context& context, const config::Experiment& experi
                     technique::findTechnique(context.techniques, experiment.technique, {}));
 }
 
-config::Json jsonOf(const ParamInfos& params) {
-    config::Json list = config::Json::array();
-    for (const config::ParamInfo& info : params) {
-        config::Json param = {{"name", info.name}, {"default", info.defaultValue}};
+Json jsonOf(const ParamInfos& params) {
+    Json list = Json::array();
+    for (const ParamInfo& info : params) {
+        Json param = {{"name", info.name}, {"default", info.defaultValue}};
         if (!info.range.empty()) param["range"] = info.range;
         if (!info.choices.empty()) param["choices"] = info.choices;
         if (!info.unit.empty()) param["unit"] = info.unit;
@@ -205,8 +204,8 @@ config::Json jsonOf(const ParamInfos& params) {
     return list;
 }
 
-config::Json jsonOf(std::span<const config::MetricInfo> metrics) {
-    config::Json list = config::Json::array();
+Json jsonOf(std::span<const config::MetricInfo> metrics) {
+    Json list = Json::array();
     for (const config::MetricInfo& info : metrics) {
         list.push_back({{"name", info.name},
                         {"unit", info.unit},
@@ -216,15 +215,15 @@ config::Json jsonOf(std::span<const config::MetricInfo> metrics) {
     return list;
 }
 
-config::Json jsonOf(std::span<const config::PassInfo> passes) {
-    config::Json list = config::Json::array();
+Json jsonOf(std::span<const config::PassInfo> passes) {
+    Json list = Json::array();
     for (const config::PassInfo& pass : passes) {
         list.push_back({{"name", pass.name}, {"doc", pass.doc}});
     }
     return list;
 }
 
-config::Json jsonOf(const technique::TechniqueInfo& info) {
+Json jsonOf(const technique::TechniqueInfo& info) {
     const config::Outputs outputs = info.outputs();
     return {{"technique", info.name},
             {"doc", info.summary},
@@ -234,16 +233,16 @@ config::Json jsonOf(const technique::TechniqueInfo& info) {
             {"metrics_of_every_technique", jsonOf(technique::commonMetrics())}};
 }
 
-config::Json jsonOf(const scene::GeneratorInfo& info) {
+Json jsonOf(const scene::GeneratorInfo& info) {
     return {{"generator", info.name},
             {"doc", info.summary},
             {"parameters", jsonOf(scene::declaredParams(info, {}))}};
 }
 
-config::Json jsonOf(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
-    config::Json sources = config::Json::array();
+Json jsonOf(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
+    Json sources = Json::array();
     for (const scene::SceneSource& source : entry.sources) {
-        config::Json json = {{"kind", scene::kindName(source.kind)}};
+        Json json = {{"kind", scene::kindName(source.kind)}};
         if (source.file.empty()) {
             json["generator"] = source.generator->name;
             json["seed"] = source.seed;
@@ -259,15 +258,15 @@ config::Json jsonOf(const scene::SceneEntry& entry, const scene::Catalog& catalo
             {"sources", std::move(sources)}};
 }
 
-config::Json jsonOf(const config::Program& program) {
-    config::Params params(config::Node::map({}), "program");
+Json jsonOf(const config::Program& program) {
+    Params params(Node::map({}), "program");
     program.declare(params);
-    config::Json files = config::Json::array();
+    Json files = Json::array();
     for (const config::ProgramFile& file :
          config::filesOf(program, program.valuesOf(params.resolved()))) {
         files.push_back({{"file", file.name}, {"path", file.path.string()}});
     }
-    config::Json images = config::Json::array();
+    Json images = Json::array();
     for (const config::ProgramPicture& picture : program.pictures) {
         images.push_back(
             {{"name", picture.name}, {"file", picture.file}, {"has_truth", picture.hasTruth()}});
@@ -280,25 +279,25 @@ config::Json jsonOf(const config::Program& program) {
             {"images", std::move(images)}};
 }
 
-config::Json jsonOf(const config::Experiment& experiment) {
-    config::Json claims = config::Json::array();
+Json jsonOf(const config::Experiment& experiment) {
+    Json claims = Json::array();
     for (const config::ClaimSpec& claim : experiment.claims) {
         claims.push_back({{"id", claim.id}, {"says", claim.text}});
     }
-    config::Json assumptions = config::Json::array();
+    Json assumptions = Json::array();
     for (const config::Assumption& assumption : experiment.assumptions) {
         assumptions.push_back({{"name", assumption.name}, {"why", assumption.why}});
     }
-    config::Json json = {{"experiment", experiment.id},
-                         {"label", experiment.label()},
-                         {"title", experiment.title},
-                         {"file", experiment.file.string()},
-                         {"technique", experiment.technique},
-                         {"cases", config::expandCases(experiment).size()},
-                         {"profiles", experiment.profiles},
-                         {"claims", std::move(claims)},
-                         {"assumptions", std::move(assumptions)}};
-    if (const config::Node& program = config::programOf(experiment); !program.isNull()) {
+    Json json = {{"experiment", experiment.id},
+                 {"label", experiment.label()},
+                 {"title", experiment.title},
+                 {"file", experiment.file.string()},
+                 {"technique", experiment.technique},
+                 {"cases", config::expandCases(experiment).size()},
+                 {"profiles", experiment.profiles},
+                 {"claims", std::move(claims)},
+                 {"assumptions", std::move(assumptions)}};
+    if (const Node& program = config::programOf(experiment); !program.isNull()) {
         json["program"] = jsonOf(config::readProgram(program));
     }
     return json;
@@ -340,7 +339,7 @@ bool describeSchema(const Context& context, const DescribeOptions& options) {
     return true;
 }
 
-int sayJson(const config::Json& json) {
+int sayJson(const Json& json) {
     fmt::print("{}\n", json.dump(2));
     return kExitOk;
 }

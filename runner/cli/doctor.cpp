@@ -9,20 +9,20 @@
 #include <numeric>
 #include <sstream>
 
+#include "engine/core/files.h"
+#include "engine/core/processors.h"
+#include "engine/core/text.h"
+#include "engine/gl/balance.h"
+#include "engine/gl/device.h"
+#include "engine/gl/gpu_nodes.h"
+#include "engine/gl/vendor_libraries.h"
+#include "engine/raycast/embree.h"
 #include "runner/cli/advice.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/scene_state.h"
-#include "runner/core/files.h"
-#include "runner/core/processors.h"
-#include "runner/core/text.h"
-#include "runner/gl/balance.h"
-#include "runner/gl/device.h"
-#include "runner/gl/gpu_nodes.h"
-#include "runner/gl/vendor_libraries.h"
-#include "runner/raycast/embree.h"
 #include "runner/run/manifest.h"
 #include "runner/run/protocol.h"
 

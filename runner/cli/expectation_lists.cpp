@@ -5,9 +5,9 @@
 #include <map>
 #include <set>
 
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/cli/experiments.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 #include "runner/run/expectations.h"
 
 namespace gfxrepro::cli {

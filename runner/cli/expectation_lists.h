@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/error.h"
 #include "runner/cli/commands.h"
-#include "runner/core/error.h"
 
 namespace gfxrepro::cli {
 

@@ -6,11 +6,11 @@
 #include <array>
 #include <set>
 
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/cli/console.h"
 #include "runner/config/imported.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 #include "runner/results/report_runs.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/expectations.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/catalog.h"
 #include "runner/cli/commands.h"
 #include "runner/run/plan.h"
-#include "runner/scene/catalog.h"
 
 namespace gfxrepro::cli {
 

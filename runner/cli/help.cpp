@@ -8,7 +8,7 @@
 #include <cctype>
 #include <memory>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::cli {
 

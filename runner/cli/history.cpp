@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/run/twins.h"
 
 namespace gfxrepro::cli {

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "runner/core/error.h"
-#include "runner/core/text.h"
+#include "engine/core/error.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::cli {
 

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/text.h"
+#include "engine/image/colour_map.h"
+#include "engine/image/exr_io.h"
+#include "engine/image/image_file.h"
+#include "engine/image/png_io.h"
+#include "engine/image/tone_map.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/image_commands.h"
-#include "runner/core/text.h"
-#include "runner/image/colour_map.h"
-#include "runner/image/exr_io.h"
-#include "runner/image/image_file.h"
-#include "runner/image/png_io.h"
-#include "runner/image/tone_map.h"
 
 namespace gfxrepro::cli {
 

@@ -1,11 +1,11 @@
 #include <fmt/core.h>
 
+#include "engine/image/exr_io.h"
+#include "engine/image/image_file.h"
+#include "engine/image/png_io.h"
+#include "engine/image/resample.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/image_commands.h"
-#include "runner/image/exr_io.h"
-#include "runner/image/image_file.h"
-#include "runner/image/png_io.h"
-#include "runner/image/resample.h"
 
 namespace gfxrepro::cli {
 

@@ -6,14 +6,14 @@
 #include <optional>
 #include <utility>
 
+#include "engine/image/exr_io.h"
+#include "engine/image/image_file.h"
+#include "engine/image/png_io.h"
+#include "engine/metrics/error_map.h"
+#include "engine/metrics/hdr_flip.h"
+#include "engine/metrics/image_error.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/image_commands.h"
-#include "runner/image/exr_io.h"
-#include "runner/image/image_file.h"
-#include "runner/image/png_io.h"
-#include "runner/metrics/error_map.h"
-#include "runner/metrics/hdr_flip.h"
-#include "runner/metrics/image_error.h"
 
 namespace gfxrepro::cli {
 

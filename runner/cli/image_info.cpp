@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/image/exr_io.h"
+#include "engine/image/image_file.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/image_commands.h"
-#include "runner/image/exr_io.h"
-#include "runner/image/image_file.h"
 
 namespace gfxrepro::cli {
 

@@ -1,11 +1,11 @@
 #include <algorithm>
 
+#include "engine/image/contact_sheet.h"
+#include "engine/image/image_file.h"
+#include "engine/image/png_io.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/image_commands.h"
-#include "runner/image/contact_sheet.h"
-#include "runner/image/image_file.h"
-#include "runner/image/png_io.h"
 
 namespace gfxrepro::cli {
 

@@ -6,11 +6,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/scene_state.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::cli {
 

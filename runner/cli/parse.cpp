@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/error.h"
+#include "engine/core/text.h"
+#include "engine/gl/device_name.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
 #include "runner/config/schema.h"
-#include "runner/core/error.h"
-#include "runner/core/text.h"
-#include "runner/gl/device_name.h"
 
 namespace gfxrepro::cli {
 

@@ -8,13 +8,13 @@
 #include <map>
 #include <set>
 
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
 #include "runner/results/made_from.h"

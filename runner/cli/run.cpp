@@ -7,6 +7,10 @@
 #include <set>
 #include <utility>
 
+#include "engine/core/files.h"
+#include "engine/core/processors.h"
+#include "engine/scene/height_map.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
@@ -16,9 +20,6 @@
 #include "runner/cli/progress.h"
 #include "runner/cli/results.h"
 #include "runner/cluster/shards.h"
-#include "runner/config/scene_reference.h"
-#include "runner/core/files.h"
-#include "runner/core/processors.h"
 #include "runner/results/import_run.h"
 #include "runner/run/machine_state.h"
 #include "runner/run/manifest.h"
@@ -26,7 +27,6 @@
 #include "runner/run/run.h"
 #include "runner/run/run_files.h"
 #include "runner/run/twins.h"
-#include "runner/scene/height_map.h"
 #include "runner/studies/budget.h"
 
 namespace gfxrepro::cli {
@@ -102,8 +102,8 @@ void warnOfSteepTerrain(const run::Plan& plan, const scene::Catalog& catalog) {
     std::set<std::string> seen;
     for (const run::Case& item : plan.cases) {
         if (item.scene.isNull()) continue;
-        const std::string name = config::sceneName(item.scene.text());
-        const bool isOwnMap = config::isSceneFile(name) && scene::isHeightMapFile(name);
+        const std::string name = scene::sceneName(item.scene.text());
+        const bool isOwnMap = scene::isSceneFile(name) && scene::isHeightMapFile(name);
         if (!isOwnMap || !seen.insert(item.scene.text()).second) continue;
         for (const std::string& line : catalog.load(item.scene).warnings) {
             tell("warning: {}: {}\n", name, line);

@@ -1,18 +1,18 @@
 #include <filesystem>
 
+#include "engine/core/files.h"
+#include "engine/gpu_scene/gpu_mesh.h"
+#include "engine/image/png_io.h"
+#include "engine/metrics/image_error.h"
+#include "engine/raycast/ray_tracer.h"
+#include "engine/scene/height_map.h"
+#include "engine/scene/load.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/image_commands.h"
-#include "runner/config/scene_reference.h"
-#include "runner/core/files.h"
-#include "runner/gpu_scene/gpu_mesh.h"
-#include "runner/image/png_io.h"
-#include "runner/metrics/image_error.h"
-#include "runner/raycast/ray_tracer.h"
-#include "runner/scene/height_map.h"
-#include "runner/scene/load.h"
 
 namespace gfxrepro::cli {
 
@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 namespace {
 
 scene::Scene loadNamed(const Context& context, const SceneOptions& options) {
-    const bool isModel = config::isSceneFile(options.name) &&
-                         !scene::isHeightMapFile(config::sceneName(options.name));
+    const bool isModel =
+        scene::isSceneFile(options.name) && !scene::isHeightMapFile(scene::sceneName(options.name));
     if (isModel) return scene::loadScene(options.name);
-    return openCatalog(context, options.assets).load(config::Node::scalar(options.name));
+    return openCatalog(context, options.assets).load(Node::scalar(options.name));
 }
 
 void printScene(const scene::Scene& scene) {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runner/scene/catalog.h"
+#include "engine/scene/catalog.h"
 
 namespace gfxrepro::cli {
 

@@ -8,12 +8,12 @@
 #include <limits>
 #include <optional>
 
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 #include "runner/results/results.h"
 #include "runner/run/child_process.h"
 #include "runner/run/run.h"

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "engine/core/error.h"
+#include "engine/core/text.h"
 #include "runner/cluster/submission.h"
-#include "runner/core/error.h"
-#include "runner/core/text.h"
 #include "runner/run/child_process.h"
 
 namespace gfxrepro::cli {

@@ -6,6 +6,9 @@
 #include <filesystem>
 #include <numeric>
 
+#include "engine/core/files.h"
+#include "engine/core/json_shape.h"
+#include "engine/core/text.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
@@ -14,9 +17,6 @@
 #include "runner/cluster/kept_program.h"
 #include "runner/cluster/shards.h"
 #include "runner/cluster/submission.h"
-#include "runner/config/json_shape.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 #include "runner/run/run.h"
 #include "runner/run/twins.h"
 
@@ -47,15 +47,14 @@ fs::path storedFile(const fs::path& out) {
 
 std::optional<Stored> readStored(const fs::path& out) {
     if (!fs::exists(storedFile(out))) return std::nullopt;
-    using config::JsonKind;
-    static constexpr config::JsonMember kMembers[] = {
+    static constexpr JsonMember kMembers[] = {
         {"/run_arguments", JsonKind::List}, {"/run_arguments", JsonKind::Texts},
         {"/units", JsonKind::List},         {"/units", JsonKind::Ints},
         {"/array_job", JsonKind::Text},     {"/merge_job", JsonKind::Text},
         {"/cluster", JsonKind::Text, false}};
     const SourceLocation where{storedFile(out).string(), 0, 0};
-    const Json json = config::parseJsonObject(MappedFile(storedFile(out)).text(), where);
-    config::requireMembers(json, kMembers, where);
+    const Json json = parseJsonObject(MappedFile(storedFile(out)).text(), where);
+    requireMembers(json, kMembers, where);
     return Stored{json.at("run_arguments"), json.at("units"), json.at("array_job"),
                   json.at("merge_job"), json.value("cluster", "")};
 }

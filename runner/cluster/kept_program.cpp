@@ -6,8 +6,8 @@
 
 #include <chrono>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "runner/run/child_process.h"
 #include "runner/run/plan.h"
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <utility>
 
-#include "runner/core/files.h"
-#include "runner/core/text.h"
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/records/images.h"
 #include "runner/run/manifest.h"
 

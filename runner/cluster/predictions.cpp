@@ -5,9 +5,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "runner/core/files.h"
-#include "runner/core/text.h"
-#include "runner/metrics/statistics.h"
+#include "engine/core/files.h"
+#include "engine/core/text.h"
+#include "engine/metrics/statistics.h"
 #include "runner/records/csv.h"
 #include "runner/run/run_files.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/run/twins.h"
 
 namespace gfxrepro::cluster {

@@ -1,9 +1,9 @@
 // The points of a sweep as cases: parameters with those of the scene and the axes laid over.
 #include <algorithm>
 
-#include "runner/config/checks.h"
+#include "engine/core/checks.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
-#include "runner/config/scene_reference.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {
@@ -19,7 +19,7 @@ const Node& sceneAt(const AxisPoint& point, const Experiment& experiment) {
 Node paramsOf(const Node& scene, const Experiment& experiment) {
     Node params = experiment.params;
     const Node* own =
-        scene.isScalar() ? experiment.paramsByScene.find(sceneName(scene.text())) : nullptr;
+        scene.isScalar() ? experiment.paramsByScene.find(scene::sceneName(scene.text())) : nullptr;
     if (!own) return params;
     for (const auto& [name, value] : own->entries()) {
         params.set(name, value, own->keyLocation(name));

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::config {
 

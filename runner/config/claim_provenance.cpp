@@ -1,10 +1,10 @@
 // Whose claim it is, where its bound comes from, and what is known of it.
 #include <array>
 
-#include "runner/config/checks.h"
+#include "engine/core/checks.h"
+#include "engine/core/text.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::config {
 

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "runner/config/checks.h"
+#include "engine/core/checks.h"
+#include "engine/core/text.h"
 #include "runner/config/claim_operands.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::config {
 

@@ -4,8 +4,8 @@
 
 #include <map>
 
-#include "runner/config/checks.h"
-#include "runner/config/node.h"
+#include "engine/core/checks.h"
+#include "engine/core/node.h"
 #include "runner/config/schema.h"
 
 namespace gfxrepro::config {

@@ -7,13 +7,13 @@
 #include <set>
 #include <tuple>
 
-#include "runner/config/checks.h"
-#include "runner/config/params.h"
+#include "engine/core/checks.h"
+#include "engine/core/params.h"
+#include "engine/core/text.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/config/program.h"
-#include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::config {
 
@@ -185,7 +185,7 @@ Node paramsByScene(const Node& document) {
         if (!params.isMap()) {
             throwNotAllowed(params, "params_by_scene: '" + scene + "'", "a map {name: value}");
         }
-        if (sceneName(scene) != scene) {
+        if (scene::sceneName(scene) != scene) {
             throw Error(
                 scenes.keyLocation(scene),
                 "params_by_scene: '" + scene +

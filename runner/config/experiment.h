@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "runner/config/node.h"
+#include "engine/core/node.h"
 #include "runner/config/outputs.h"
 
 namespace gfxrepro::config {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/node.h"
 #include "runner/config/imported.h"
-#include "runner/config/node.h"
 #include "runner/config/schema_files.h"
 #include "runner/config/schema_types.h"
 

@@ -3,14 +3,14 @@
 #include <iterator>
 #include <optional>
 
-#include "runner/config/checks.h"
+#include "engine/core/checks.h"
+#include "engine/core/text.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
 #include "runner/config/fit.h"
 #include "runner/config/program.h"
-#include "runner/config/scene_reference.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::config {
 
@@ -155,15 +155,15 @@ Node withSceneFile(const Node& reference, const std::optional<fs::path>& folder 
         for (const Node& item : reference.items()) items.push_back(withSceneFile(item, folder));
         return Node::sequence(std::move(items), reference.location());
     }
-    if (!reference.isScalar() || !isSceneFile(reference.text())) return reference;
+    if (!reference.isScalar() || !scene::isSceneFile(reference.text())) return reference;
     const fs::path beside =
         folder ? *folder : fs::path(reference.location().file.text()).parent_path();
     const fs::path file = fs::absolute(beside / reference.text()).lexically_normal();
     return Node::scalar(file.string(), reference.location(), true);
 }
 
-/// The same for every isSceneKey() below a node whose maps go by axis (`isAxisMap`), or below the
-/// selectors `where` and `at`.
+/// The same for every scene::isSceneKey() below a node whose maps go by axis (`isAxisMap`), or
+/// below the selectors `where` and `at`.
 Node withSceneFiles(const Node& node, bool isAxisMap) {
     if (node.isSequence()) {
         Node::Sequence items;
@@ -173,7 +173,7 @@ Node withSceneFiles(const Node& node, bool isAxisMap) {
     if (!node.isMap()) return node;
     Node result = node;
     for (const auto& [key, value] : node.entries()) {
-        const bool isReference = isAxisMap && isSceneKey(key) && !value.isMap();
+        const bool isReference = isAxisMap && scene::isSceneKey(key) && !value.isMap();
         const bool isSelector = key == "where" || key == "at";
         result.set(
             key,

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/config/params.h"
+#include "engine/core/params.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::config {
 

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/config/checks.h"
+#include "engine/core/checks.h"
+#include "engine/core/text.h"
 #include "runner/config/reference_slope.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::config {
 

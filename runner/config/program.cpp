@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <regex>
 
-#include "runner/config/checks.h"
+#include "engine/core/checks.h"
+#include "engine/core/text.h"
 #include "runner/config/program_parts.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 #include "runner/config/time_names.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::config {
 

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/node.h"
+#include "engine/core/params.h"
 #include "runner/config/experiment.h"
-#include "runner/config/node.h"
 #include "runner/config/outputs.h"
-#include "runner/config/params.h"
 
 namespace gfxrepro::config {
 

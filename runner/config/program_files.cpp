@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "engine/core/hash.h"
+#include "engine/core/text.h"
 #include "runner/config/program.h"
 #include "runner/config/sections.h"
-#include "runner/core/hash.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::config {
 

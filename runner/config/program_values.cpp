@@ -6,11 +6,11 @@
 #include <limits>
 #include <utility>
 
-#include "runner/config/checks.h"
+#include "engine/core/checks.h"
+#include "engine/core/text.h"
 #include "runner/config/program_parts.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::config {
 

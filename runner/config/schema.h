@@ -1,6 +1,5 @@
-// The schema of the files that people write, as data: every key with its type, default and meaning.
-// The readers take the keys that they allow from here; so do `gfxrepro describe config`, the JSON
-// schema for editors and configs/README.md. A new key is one line here, and its reading.
+// The schema of the files that people write. A new key is one line in schema_*.cpp, and its
+// reading.
 #pragma once
 
 #include <array>
@@ -8,14 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "engine/core/params.h"
+#include "engine/core/schema.h"
 #include "runner/config/outputs.h"
-#include "runner/config/params.h"
 
 namespace gfxrepro::config {
-
-using Json = nlohmann::ordered_json;
 
 /// What summarizes the records of a cell.
 inline constexpr std::array<std::string_view, 7> kStatistics = {"median", "mean",  "min", "max",
@@ -34,35 +30,6 @@ inline constexpr std::array<std::string_view, 2> kDeviceClasses = {"software", "
 /// Of scenes: a file was read for them, or a generator made them, if in a real one's place.
 inline constexpr std::array<std::string_view, 2> kSceneClasses = {"files", "generated"};
 inline constexpr std::array<std::string_view, 3> kProfiles = {"quick", "full", "paper"};
-
-/// A key of a map.
-struct SchemaKey {
-    std::string name;
-    std::string type;    // in words
-    std::string absent;  // the default, or what its absence means: "none", "required"
-    std::string doc;
-    Json json;  // the type as JSON schema has it
-
-    bool isRequired() const { return absent == "required"; }
-};
-
-/// The keys of one kind of map.
-struct SchemaSection {
-    std::string name;  // "layout": for keysOf, and in the JSON schema
-    std::string path;  // what stands before its keys: "layout.", "claims.ID."
-    std::string doc;   // begins its table
-    std::vector<SchemaKey> keys;
-    bool isRemovable = true;    // a key may be null, which removes what an extended file has set
-    Json others = nullptr;      // the type of all further keys; null: there are none
-    Json conditions = nullptr;  // further JSON schema: which keys go together
-};
-
-/// A kind of file and its sections, the top of the file first.
-struct SchemaFile {
-    std::string name;  // "experiment", "scene", "expectations", "documents"
-    std::string doc;
-    std::vector<SchemaSection> sections;
-};
 
 const std::vector<SchemaFile>& schema();
 const SchemaSection& schemaSection(std::string_view name);

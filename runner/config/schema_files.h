@@ -8,7 +8,6 @@ namespace gfxrepro::config {
 SchemaFile experimentSchema();
 std::vector<SchemaSection> programSections();
 std::vector<SchemaSection> claimSections();
-SchemaFile sceneSchema();
 SchemaFile expectationsSchema();
 SchemaFile documentsSchema();
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/node.h"
 #include "runner/config/experiment.h"
-#include "runner/config/node.h"
 
 namespace gfxrepro::config {
 

@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "runner/config/checks.h"
+#include "engine/core/checks.h"
+#include "engine/core/text.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
-#include "runner/config/scene_reference.h"
 #include "runner/config/sections.h"
 #include "runner/config/when.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::config {
 
@@ -249,7 +249,7 @@ std::vector<Fixed> fixedOf(const Experiment& experiment) {
     if (output && output->isMap()) add("output", *output, "output.");
     if (!experiment.scene.isNull()) {
         all.push_back({"scene", "scene", experiment.scene.location()});
-        const SceneReference scene = SceneReference::from(experiment.scene);
+        const scene::SceneReference scene = scene::SceneReference::from(experiment.scene);
         for (const auto& [name, value] : scene.params.entries()) {
             all.push_back(
                 {std::string(kSceneAxisPrefix) + name, "scene", experiment.scene.location()});

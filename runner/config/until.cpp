@@ -1,7 +1,7 @@
 // `measure: {until: {…}}`: the keys that it stands for.
 #include <fmt/format.h>
 
-#include "runner/config/checks.h"
+#include "engine/core/checks.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "runner/config/checks.h"
+#include "engine/core/checks.h"
 
 namespace gfxrepro::config {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::records {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::records {
 

@@ -1,6 +1,6 @@
 #include "runner/records/frame.h"
 
-#include "runner/core/atomic_file.h"
+#include "engine/core/atomic_file.h"
 #include "runner/records/csv.h"
 
 namespace gfxrepro::records {

@@ -4,9 +4,9 @@
 #include <map>
 #include <tuple>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/records/csv.h"
 
 namespace gfxrepro::records {

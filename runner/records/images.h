@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/core/appended_file.h"
+#include "engine/core/appended_file.h"
 
 namespace gfxrepro::records {
 

@@ -7,9 +7,9 @@
 #include <memory>
 #include <set>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/records/frame.h"
 
 namespace gfxrepro::records {

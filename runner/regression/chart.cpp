@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "runner/metrics/statistics.h"
+#include "engine/metrics/statistics.h"
 #include "runner/report/markup.h"
 #include "runner/report/svg.h"
 

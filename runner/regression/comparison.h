@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runner/metrics/statistics.h"
+#include "engine/metrics/statistics.h"
 #include "runner/regression/series.h"
 
 namespace gfxrepro::regression {

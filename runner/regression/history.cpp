@@ -7,9 +7,9 @@
 #include <cmath>
 #include <span>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
-#include "runner/metrics/statistics.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/metrics/statistics.h"
 #include "runner/records/csv.h"
 #include "runner/regression/rank_tests.h"
 

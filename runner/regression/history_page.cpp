@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "runner/records/frame.h"
 #include "runner/regression/chart.h"
 #include "runner/report/markup.h"

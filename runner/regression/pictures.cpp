@@ -11,14 +11,14 @@
 #include <set>
 #include <utility>
 
-#include "runner/core/text.h"
-#include "runner/image/exr_io.h"
-#include "runner/image/image_file.h"
-#include "runner/image/limits.h"
-#include "runner/image/png_io.h"
-#include "runner/metrics/error_map.h"
-#include "runner/metrics/flip.h"
-#include "runner/metrics/hdr_flip.h"
+#include "engine/core/text.h"
+#include "engine/image/exr_io.h"
+#include "engine/image/image_file.h"
+#include "engine/image/limits.h"
+#include "engine/image/png_io.h"
+#include "engine/metrics/error_map.h"
+#include "engine/metrics/flip.h"
+#include "engine/metrics/hdr_flip.h"
 #include "runner/records/images.h"
 
 namespace gfxrepro::regression {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::regression {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "runner/metrics/statistics.h"
+#include "engine/metrics/statistics.h"
 #include "runner/regression/series.h"
 
 namespace gfxrepro::regression {

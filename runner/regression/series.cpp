@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "runner/metrics/statistics.h"
+#include "engine/metrics/statistics.h"
 
 namespace gfxrepro::regression {
 

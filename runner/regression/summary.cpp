@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/report/markup.h"
 
 namespace gfxrepro::regression {

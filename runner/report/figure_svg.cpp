@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/report/markup.h"
 #include "runner/report/svg.h"
 #include "runner/tables/reference_line.h"

@@ -12,14 +12,14 @@
 #include <string_view>
 #include <tuple>
 
-#include "runner/core/files.h"
-#include "runner/core/hash.h"
-#include "runner/image/limits.h"
-#include "runner/image/png_io.h"
-#include "runner/image/resample.h"
-#include "runner/image/srgb.h"
-#include "runner/metrics/error_map.h"
-#include "runner/metrics/flip.h"
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "engine/image/limits.h"
+#include "engine/image/png_io.h"
+#include "engine/image/resample.h"
+#include "engine/image/srgb.h"
+#include "engine/metrics/error_map.h"
+#include "engine/metrics/flip.h"
 #include "runner/report/markup.h"
 
 namespace gfxrepro::report {

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include "runner/image/png_io.h"
+#include "engine/image/png_io.h"
 #include "runner/report/picture_grid.h"
 
 namespace gfxrepro::report {

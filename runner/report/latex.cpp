@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/report/markup.h"
 #include "runner/tables/labels.h"
 #include "runner/tables/moved_clocks.h"

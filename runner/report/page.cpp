@@ -22,7 +22,7 @@ std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions,
         "<th>what the paper left open</th><th>taken</th><th>range</th><th>why</th></tr></thead>\n"
         "<tbody>\n";
     for (const config::Assumption& assumption : assumptions) {
-        const auto text = [](const config::Node& node) {
+        const auto text = [](const Node& node) {
             return node.isNull() ? ""
                                  : escapeXml(node.isScalar() ? node.text() : node.toFlowText());
         };

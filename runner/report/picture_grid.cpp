@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/tables/labels.h"
 
 namespace gfxrepro::report {

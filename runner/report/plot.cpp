@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <optional>
 
+#include "engine/core/files.h"
 #include "runner/config/reference_slope.h"
-#include "runner/core/files.h"
 #include "runner/report/figure_svg.h"
 #include "runner/report/svg.h"
 #include "runner/tables/default_layout.h"

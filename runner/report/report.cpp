@@ -7,7 +7,7 @@
 #include <cstring>
 #include <optional>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "runner/report/markup.h"
 #include "runner/report/parts.h"
 

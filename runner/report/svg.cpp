@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/report/markup.h"
 
 namespace gfxrepro::report {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/claims/kept_claims.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 #include "runner/records/csv.h"
 #include "runner/report/markup.h"
 #include "runner/tables/labels.h"

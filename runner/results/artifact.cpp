@@ -8,11 +8,11 @@
 #include <set>
 #include <vector>
 
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "engine/core/text.h"
 #include "runner/cluster/predictions.h"
 #include "runner/config/program.h"
-#include "runner/core/files.h"
-#include "runner/core/hash.h"
-#include "runner/core/text.h"
 #include "runner/report/markup.h"
 #include "runner/results/import_run.h"
 #include "runner/results/made_from.h"
@@ -120,7 +120,7 @@ fs::path configPlace(const config::Experiment& experiment) {
 std::map<fs::path, std::string> programFiles(const run::Plan& plan,
                                              const config::Experiment& experiment) {
     std::map<fs::path, std::string> files;
-    const config::Node& node = config::programOf(experiment);
+    const Node& node = config::programOf(experiment);
     if (node.isNull()) return files;
     const config::Program program = config::readProgram(node);
     try {
@@ -177,7 +177,7 @@ std::string scriptText(const run::Plan& plan, const config::Experiment& experime
 
 /// The plan may be anybody's: what it names is taken for a config only when it is that config.
 void requireExperiment(const config::Experiment& experiment) {
-    const config::Node whole = config::parseYamlFile(experiment.file);
+    const Node whole = parseYamlFile(experiment.file);
     for (const char* key : {"table", "section", "figure", "sweep_of", "technique", "extends"}) {
         if (whole.isMap() && whole.find(key)) return;
     }

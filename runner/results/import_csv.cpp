@@ -11,8 +11,8 @@
 #include <set>
 #include <tuple>
 
-#include "runner/core/files.h"
-#include "runner/core/text.h"
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/records/csv.h"
 
 namespace gfxrepro::results {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "runner/records/records.h"
 
 namespace gfxrepro::results {

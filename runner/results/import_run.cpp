@@ -9,11 +9,11 @@
 #include <optional>
 #include <set>
 
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "engine/core/text.h"
 #include "runner/config/imported.h"
 #include "runner/config/time_names.h"
-#include "runner/core/files.h"
-#include "runner/core/hash.h"
-#include "runner/core/text.h"
 #include "runner/results/tidy.h"
 #include "runner/run/expectations.h"
 #include "runner/run/ledger.h"
@@ -24,7 +24,6 @@ namespace gfxrepro::results {
 
 namespace fs = std::filesystem;
 using config::Experiment;
-using config::Node;
 
 namespace {
 

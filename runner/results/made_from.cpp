@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
 
 namespace gfxrepro::results {
 

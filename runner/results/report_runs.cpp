@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <map>
 
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/run_directory.h"
 #include "runner/run/run_files.h"

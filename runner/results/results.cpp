@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
 #include "runner/results/made_from.h"

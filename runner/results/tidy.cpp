@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "runner/records/csv.h"
 #include "runner/results/made_from.h"
 #include "runner/results/results.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/tables/case_records.h"
 
 namespace gfxrepro::run {
@@ -19,23 +19,23 @@ constexpr std::size_t kShownValues = 12;
 /// What the case has under a key; empty where it has nothing of that name.
 std::optional<std::string> valueOfKey(const Case& item, const std::string& key) {
     if (item.axes.isMap()) {
-        if (const config::Node* value = item.axes.find(key)) return tables::canonicalText(*value);
+        if (const Node* value = item.axes.find(key)) return tables::canonicalText(*value);
     }
     if (key == kCaseKey) return item.id;
     if (key == "scene" && !item.scene.isNull()) return tables::canonicalText(item.scene);
     if (key == "output.width") return std::to_string(item.outputWidthPx);
     if (key == "output.height") return std::to_string(item.outputHeightPx);
-    const config::Node* value = item.params.isMap() ? item.params.find(key) : nullptr;
+    const Node* value = item.params.isMap() ? item.params.find(key) : nullptr;
     return value ? std::optional(tables::canonicalText(*value)) : std::nullopt;
 }
 
 /// What is allowed: one value, or those between signs `|`, or of a list.
-config::Node::Sequence wantedAlternatives(const config::Node& wanted) {
+Node::Sequence wantedAlternatives(const Node& wanted) {
     if (wanted.isSequence()) return wanted.items();
     if (!wanted.isScalar() || wanted.text().find('|') == std::string::npos) return {wanted};
-    config::Node::Sequence values;
+    Node::Sequence values;
     for (const std::string& text : split(wanted.text(), '|')) {
-        values.push_back(config::Node::scalar(text, wanted.location()));
+        values.push_back(Node::scalar(text, wanted.location()));
     }
     return values;
 }
@@ -45,7 +45,7 @@ bool has(const Case& item, const config::Override& wanted) {
     if (!value) return false;
     // A vector is a list itself.
     if (value == tables::canonicalText(wanted.value)) return true;
-    return std::ranges::any_of(wantedAlternatives(wanted.value), [&](const config::Node& allowed) {
+    return std::ranges::any_of(wantedAlternatives(wanted.value), [&](const Node& allowed) {
         const std::string text = tables::canonicalText(allowed);
         if (wanted.key == kCaseKey) return value->starts_with(text);
         return value == text || ::fnmatch(text.c_str(), value->c_str(), 0) == 0;

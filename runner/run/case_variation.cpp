@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <set>
 
-#include "runner/config/scene_reference.h"
-#include "runner/core/text.h"
+#include "engine/core/text.h"
+#include "engine/scene/scene_reference.h"
 
 namespace gfxrepro::run {
 
-void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case& item) {
+void takeInstead(const config::CaseSpec& spec, const Node& instead, Case& item) {
     item.given = spec.params;
     for (const auto& [name, value] : instead.entries()) {
         for (const auto& [axis, swept] : spec.axes) {
@@ -18,7 +18,7 @@ void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case
             throw Error(instead.keyLocation(name),
                         "'params_instead': '" + name + "' is swept here");
         }
-        config::Node& map = item.given.find(name) ? item.given : item.offered;
+        Node& map = item.given.find(name) ? item.given : item.offered;
         map.set(name, value, instead.keyLocation(name));
     }
 }
@@ -26,8 +26,8 @@ void takeInstead(const config::CaseSpec& spec, const config::Node& instead, Case
 namespace {
 
 /// Parameters of the generated scene, which are among the case's.
-config::Node sceneParamsOf(const Case& item) {
-    config::Node params = config::Node::map({});
+Node sceneParamsOf(const Case& item) {
+    Node params = Node::map({});
     for (const auto& [name, value] : item.params.entries()) {
         if (!name.starts_with(config::kSceneAxisPrefix)) continue;
         params.set(name.substr(config::kSceneAxisPrefix.size()), value,
@@ -42,14 +42,14 @@ std::vector<Case> withScenes(const Case& item, const config::Experiment& experim
                              const scene::Catalog& catalog) {
     if (item.scene.isNull()) return {item};
     Case first = item;
-    const config::Node& instead = experiment.sceneInstead;
-    const config::Node* other = instead.isNull() ? nullptr : instead.find(item.scene.text());
+    const Node& instead = experiment.sceneInstead;
+    const Node* other = instead.isNull() ? nullptr : instead.find(item.scene.text());
     if (other) first.scene = *other;
     scene::SceneSource source = catalog.resolve(first.scene);
-    const config::Node params = sceneParamsOf(item);
+    const Node params = sceneParamsOf(item);
     if (!params.entries().empty()) {
-        scene::takeParams(config::sceneName(first.scene.text()), params, source);
-        first.scene = config::withSceneParams(first.scene, params);
+        scene::takeParams(scene::sceneName(first.scene.text()), params, source);
+        first.scene = scene::withSceneParams(first.scene, params);
     }
     const std::uint64_t seed =
         experiment.sceneSeed ? static_cast<std::uint64_t>(*experiment.sceneSeed) : source.seed;
@@ -59,7 +59,7 @@ std::vector<Case> withScenes(const Case& item, const config::Experiment& experim
         Case& taken = cases.emplace_back(first);
         if (count > 1) taken.sceneSample = i;
         if (source.isSeeded() && (i > 0 || experiment.sceneSeed)) {
-            taken.scene = config::withSeed(first.scene, seed + static_cast<std::uint64_t>(i));
+            taken.scene = scene::withSeed(first.scene, seed + static_cast<std::uint64_t>(i));
         }
         if (taken.scene.text() != item.scene.text()) taken.standsFor = item.scene;
     }
@@ -93,8 +93,8 @@ void requireSceneNames(const config::Experiment& experiment, const std::vector<C
     for (const auto& [name, entry] : catalog.entries()) scenes.insert(name);
     for (const Case& item : cases) {
         for (const auto& [name, value] : item.params.entries()) known.insert(name);
-        const config::Node& scene = item.standsFor.isNull() ? item.scene : item.standsFor;
-        if (!scene.isNull()) scenes.insert(config::sceneName(scene.text()));
+        const Node& scene = item.standsFor.isNull() ? item.scene : item.standsFor;
+        if (!scene.isNull()) scenes.insert(scene::sceneName(scene.text()));
     }
     const auto require = [](const std::set<std::string>& names, const std::string& name,
                             const SourceLocation& where, const std::string& what) {

@@ -15,8 +15,8 @@
 #include <set>
 #include <thread>
 
-#include "runner/core/descriptor.h"
-#include "runner/core/error.h"
+#include "engine/core/descriptor.h"
+#include "engine/core/error.h"
 #include "runner/run/process_memory.h"
 
 namespace gfxrepro::run {

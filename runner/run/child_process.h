@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runner/core/descriptor.h"
+#include "engine/core/descriptor.h"
 
 namespace gfxrepro::run {
 

@@ -1,6 +1,6 @@
 #include "runner/run/cpu_name.h"
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::run {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "runner/core/hash.h"
+#include "engine/core/hash.h"
 
 namespace gfxrepro::run {
 

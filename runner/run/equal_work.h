@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "runner/gl/work_query.h"
-#include "runner/image/image.h"
+#include "engine/gl/work_query.h"
+#include "engine/image/image.h"
 
 namespace gfxrepro::run {
 

@@ -6,10 +6,10 @@
 #include <map>
 #include <set>
 
-#include "runner/config/params.h"
+#include "engine/core/files.h"
+#include "engine/core/params.h"
+#include "engine/core/text.h"
 #include "runner/config/schema.h"
-#include "runner/core/files.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::run {
 
@@ -26,11 +26,11 @@ std::string listName(std::string_view deviceClass) {
     return fmt::format("expect-{}.yaml", deviceClass);
 }
 
-bool isOneOf(const config::Node& value, const config::Node& allowed) {
+bool isOneOf(const Node& value, const Node& allowed) {
     if (!allowed.isSequence()) return value.sameContent(allowed);
     const auto& items = allowed.items();
     return std::any_of(items.begin(), items.end(),
-                       [&](const config::Node& item) { return value.sameContent(item); });
+                       [&](const Node& item) { return value.sameContent(item); });
 }
 
 /// "2027-01-31"; compares as text.
@@ -46,20 +46,20 @@ void requireDay(const std::string& text, const SourceLocation& where) {
     }
 }
 
-Expectation readEntry(const config::Node& node, Expectation::Kind kind, const std::string& list) {
+Expectation readEntry(const Node& node, Expectation::Kind kind, const std::string& list) {
     if (!node.isMap()) {
         throw Error(node.location(),
                     fmt::format("{}: expected a map, found {}", list, node.kindName()));
     }
-    config::Node values = node;
+    Node values = node;
     Expectation entry;
     entry.kind = kind;
     entry.location = node.location();
-    if (const config::Node* at = node.find("at")) {
+    if (const Node* at = node.find("at")) {
         entry.at = at->entries();
         values.erase("at");
     }
-    config::Params params(values, "an entry of '" + list + "'");
+    Params params(values, "an entry of '" + list + "'");
     entry.table = params.getText("table", "", {"experiment, as in zju2005/2.1"});
     entry.reason = params.getText("reason", "", {"why"});
     entry.until = params.getText("until", "", {"the last day on which it counts"});
@@ -86,8 +86,8 @@ Expectation readEntry(const config::Node& node, Expectation::Kind kind, const st
 }
 
 /// What the case has of an axis or parameter, or `scene`; null for no such one.
-const config::Node* valueOf(const Case& item, const std::string& axis) {
-    const config::Node* value = item.axes.find(axis);
+const Node* valueOf(const Case& item, const std::string& axis) {
+    const Node* value = item.axes.find(axis);
     if (!value) value = item.params.find(axis);
     return !value && axis == "scene" ? &item.scene : value;
 }
@@ -97,7 +97,7 @@ const config::Node* valueOf(const Case& item, const std::string& axis) {
 bool Expectation::matches(const Case& item) const {
     if (item.experiment != table) return false;
     for (const auto& [axis, allowed] : at) {
-        const config::Node* value = valueOf(item, axis);
+        const Node* value = valueOf(item, axis);
         if (!value || !isOneOf(*value, allowed)) return false;
     }
     return true;
@@ -157,7 +157,7 @@ std::vector<std::string> changedExpectations(const Plan& plan) {
 }
 
 std::vector<Expectation> readExpectations(const ExpectationList& list) {
-    const config::Node document = config::parseYaml(list.text, list.file);
+    const Node document = parseYaml(list.text, list.file);
     std::vector<Expectation> entries;
     if (document.isNull()) return entries;
     for (const auto& [name, items] : document.entries()) {
@@ -167,7 +167,7 @@ std::vector<Expectation> readExpectations(const ExpectationList& list) {
             throw Error(document.keyLocation(name),
                         fmt::format("unknown list '{}'; allowed: fails, flakes, skips", name));
         }
-        for (const config::Node& node : items.items()) {
+        for (const Node& node : items.items()) {
             entries.push_back(readEntry(node, found->second, name));
         }
     }
@@ -177,12 +177,12 @@ std::vector<Expectation> readExpectations(const ExpectationList& list) {
 void requireKnown(const Expectation& entry, const std::vector<Case>& cases) {
     for (const auto& [axis, allowed] : entry.at) {
         std::vector<std::string> names = {"scene"}, values;
-        std::vector<const config::Node*> nodes;
+        std::vector<const Node*> nodes;
         for (const Case& item : cases) {
-            for (const config::Node* map : {&item.axes, &item.params}) {
+            for (const Node* map : {&item.axes, &item.params}) {
                 for (const auto& [name, value] : map->entries()) names.push_back(name);
             }
-            if (const config::Node* value = valueOf(item, axis)) {
+            if (const Node* value = valueOf(item, axis)) {
                 nodes.push_back(value);
                 values.push_back(value->toFlowText());
             }
@@ -192,10 +192,10 @@ void requireKnown(const Expectation& entry, const std::vector<Case>& cases) {
                         fmt::format("at: '{}' is no axis or parameter of {}{}", axis, entry.table,
                                     suggestion(axis, names)));
         }
-        const config::Node::Sequence one = {allowed};
-        for (const config::Node& value : allowed.isSequence() ? allowed.items() : one) {
+        const Node::Sequence one = {allowed};
+        for (const Node& value : allowed.isSequence() ? allowed.items() : one) {
             const bool isKnown = std::ranges::any_of(
-                nodes, [&](const config::Node* node) { return node->sameContent(value); });
+                nodes, [&](const Node* node) { return node->sameContent(value); });
             if (isKnown) continue;
             throw Error(value.location(),
                         fmt::format("at: no case of {} has {}={}{}", entry.table, axis,

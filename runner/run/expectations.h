@@ -18,7 +18,7 @@ struct Expectation {
     enum class Kind { Fails, Flakes, Skips };
     Kind kind = Kind::Fails;
     std::string table;                      // "zju2005/2.1"
-    config::Node::Map at;                   // axis or parameter = value or values
+    Node::Map at;                           // axis or parameter = value or values
     std::optional<records::Status> status;  // of a failure; none: any
     std::string reason;
     std::string until;  // "2027-01-31": the last day on which it counts

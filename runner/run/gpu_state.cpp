@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/tables/moved_clocks.h"
 
 namespace gfxrepro::run {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "runner/image/exr_io.h"
+#include "engine/image/exr_io.h"
 #include "runner/run/plan.h"
 #include "runner/technique/technique.h"
 

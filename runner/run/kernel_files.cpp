@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::run {
 

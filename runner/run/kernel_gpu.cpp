@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/run/kernel_files.h"
 
 namespace gfxrepro::run {

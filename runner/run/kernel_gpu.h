@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/gl/nvml.h"
+#include "engine/gl/nvml.h"
 
 namespace gfxrepro::run {
 

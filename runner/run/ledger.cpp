@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/core/text.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/config/imported.h"
-#include "runner/config/scene_reference.h"
-#include "runner/core/text.h"
 #include "runner/run/case_variation.h"
 #include "runner/tables/case_records.h"
 
@@ -16,24 +16,22 @@ namespace gfxrepro::run {
 namespace {
 
 using config::Assumption;
-using config::Node;
 
 constexpr std::size_t kMostShown = 12;
 /// What techniques call the camera or path of the scene that a case is seen along; some have views
 /// of their own beside.
 constexpr const char* kView = "view";
 
-std::vector<config::ParamInfo> declaredBy(const config::Experiment& experiment,
-                                          std::span<const technique::TechniqueInfo> techniques) {
-    config::Params none(Node::map({}), "technique '" + experiment.technique + "'");
+std::vector<ParamInfo> declaredBy(const config::Experiment& experiment,
+                                  std::span<const technique::TechniqueInfo> techniques) {
+    Params none(Node::map({}), "technique '" + experiment.technique + "'");
     technique::makeTechnique(technique::findTechnique(techniques, experiment.technique, {}),
                              config::programOf(experiment), none);
     return none.declared();
 }
 
-const config::ParamInfo* findInfo(const std::vector<config::ParamInfo>& declared,
-                                  const std::string& name) {
-    const auto found = std::ranges::find(declared, name, &config::ParamInfo::name);
+const ParamInfo* findInfo(const std::vector<ParamInfo>& declared, const std::string& name) {
+    const auto found = std::ranges::find(declared, name, &ParamInfo::name);
     return found == declared.end() ? nullptr : &*found;
 }
 
@@ -75,7 +73,7 @@ std::string valuesOf(const std::string& name, const std::vector<Case>& cases,
     return joined(values);
 }
 
-std::string unitOf(const std::string& name, const config::ParamInfo* info) {
+std::string unitOf(const std::string& name, const ParamInfo* info) {
     if (name == config::kOutputAssumption) return "pixels";
     if (name == config::kFramesAssumption) return "frames";
     return info && info->unit != "1" ? info->unit : "";
@@ -88,10 +86,10 @@ bool isNumber(const Node& node) {
 /// Numbers are what parameters take: a number whose name is nearly a parameter's is that one
 /// misspelt, and a range of numbers is of one.
 void requireFreeText(const Assumption& assumption, const config::Experiment& experiment,
-                     const std::vector<config::ParamInfo>& declared) {
+                     const std::vector<ParamInfo>& declared) {
     std::vector<std::string> names = {config::kOutputAssumption, config::kSceneAssumption,
                                       config::kSceneSeedAssumption, config::kFramesAssumption};
-    for (const config::ParamInfo& info : declared) names.push_back(info.name);
+    for (const ParamInfo& info : declared) names.push_back(info.name);
     const std::string near = suggestion(assumption.name, names);
     const auto refuse = [&](const SourceLocation& where, const std::string& what) {
         throw Error(where, fmt::format("assumption '{}' {}: it is no parameter of technique '{}'{}",
@@ -144,7 +142,7 @@ void requireCatalogued(const Assumption& assumption, const Node& name,
     const std::string text = name.isScalar() ? name.text() : "";
     std::vector<std::string> known;
     for (const auto& [entry, source] : catalog.entries()) known.push_back(entry);
-    if (catalog.entries().contains(config::sceneName(text))) return;
+    if (catalog.entries().contains(scene::sceneName(text))) return;
     refuseRange(assumption, name, "catalogued scenes" + suggestion(text, known));
 }
 
@@ -163,7 +161,7 @@ void requireAlternatives(const Assumption& assumption, const Node& others, const
     if (!others.isSequence() || others.items().empty()) {
         refuseRange(assumption, others, "a list of scenes");
     }
-    const auto own = catalog.entries().find(config::sceneName(scene));
+    const auto own = catalog.entries().find(scene::sceneName(scene));
     std::vector<std::string> seen;
     for (const Node& other : others.items()) {
         requireCatalogued(assumption, other, catalog);
@@ -171,7 +169,7 @@ void requireAlternatives(const Assumption& assumption, const Node& others, const
             refuseRange(assumption, other, "each scene once");
         }
         seen.push_back(other.text());
-        const std::string name = config::sceneName(other.text());
+        const std::string name = scene::sceneName(other.text());
         if (name != other.text()) catalog.resolve(other);
         if (own == catalog.entries().end()) continue;
         const bool needsHeights = hasHeights(own->second);
@@ -239,7 +237,7 @@ void requireViews(const Assumption& assumption, const std::vector<Case>& cases,
     std::vector<std::string> loaded;
     for (const Case& item : cases) {
         if (item.scene.isNull()) continue;
-        const std::string name = config::sceneName(item.scene.text());
+        const std::string name = scene::sceneName(item.scene.text());
         if (std::ranges::find(loaded, name) != loaded.end()) continue;
         loaded.push_back(name);
         const scene::Scene scene = catalog.load(item.scene);
@@ -265,7 +263,7 @@ void requireReadable(const config::Experiment& experiment, const Assumption& ass
             spec.axes.clear();  // of a swept one, too
             Case item;
             takeInstead(spec, Node::map({{assumption.name, value}}), item);
-            config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+            Params params(item.given, "technique '" + std::string(info.name) + "'");
             if (!item.offered.isNull()) params.offer(item.offered);
             technique::makeTechnique(info, config::programOf(experiment), params);
         }
@@ -302,9 +300,9 @@ void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& ca
                      const scene::Catalog& catalog,
                      std::span<const technique::TechniqueInfo> techniques) {
     if (!config::isMeasuredHere(experiment)) return;
-    const std::vector<config::ParamInfo> declared = declaredBy(experiment, techniques);
+    const std::vector<ParamInfo> declared = declaredBy(experiment, techniques);
     for (Assumption& assumption : experiment.assumptions) {
-        const config::ParamInfo* info = findInfo(declared, assumption.name);
+        const ParamInfo* info = findInfo(declared, assumption.name);
         if (!info && !isOfCases(assumption.name)) {
             requireFreeText(assumption, experiment, declared);
             continue;
@@ -327,7 +325,7 @@ void requireRanges(const config::Experiment& experiment, const std::vector<Case>
                    std::span<const technique::TechniqueInfo> techniques) {
     constexpr long long kMaxOutputPx = 16384, kMaxSeed = 1'000'000'000, kMaxFrames = 1'000'000;
     if (!config::isMeasuredHere(experiment)) return;
-    const std::vector<config::ParamInfo> declared = declaredBy(experiment, techniques);
+    const std::vector<ParamInfo> declared = declaredBy(experiment, techniques);
     for (const Assumption& assumption : experiment.assumptions) {
         if (!assumption.isBound || assumption.range.isNull()) continue;
         if (assumption.name == config::kOutputAssumption) {
@@ -343,7 +341,7 @@ void requireRanges(const config::Experiment& experiment, const std::vector<Case>
             requireReadable(experiment, assumption,
                             technique::findTechnique(techniques, experiment.technique, {}));
             requireMeasuredWithin(assumption, cases);
-            const config::ParamInfo* info = findInfo(declared, assumption.name);
+            const ParamInfo* info = findInfo(declared, assumption.name);
             // A technique whose default is a view by name has views of its own.
             if (assumption.name == kView && info && info->type == "text" &&
                 (info->defaultValue.empty() || info->defaultValue == "\"\"")) {

@@ -27,8 +27,8 @@ void requireRanges(const config::Experiment& experiment, const std::vector<Case>
 
 /// A scene of the config and those that may take its place, of a range of `scene`; `scenes` are
 /// what the cases are called by.
-std::vector<std::pair<std::string, config::Node>> alternativesOf(
-    const config::Assumption& assumption, const std::vector<std::string>& scenes);
+std::vector<std::pair<std::string, Node>> alternativesOf(const config::Assumption& assumption,
+                                                         const std::vector<std::string>& scenes);
 
 /// What the config calls the scenes of the cases, each once.
 std::vector<std::string> sceneNames(const std::vector<Case>& cases);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/run/kernel_files.h"
 
 namespace gfxrepro::run {

@@ -9,7 +9,7 @@
 
 #include <unistd.h>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/run/process_memory.h"
 
 namespace gfxrepro::run {

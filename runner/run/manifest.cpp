@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "runner/core/hash.h"
-#include "runner/core/text.h"
+#include "engine/core/hash.h"
+#include "engine/core/text.h"
 #include "runner/run/commit.h"  // made by the build
 #include "runner/run/cpu_name.h"
 #include "runner/run/run_directory.h"

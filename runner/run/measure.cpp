@@ -7,8 +7,8 @@
 #include <map>
 #include <vector>
 
-#include "runner/gl/barrier.h"
-#include "runner/gl/debug_group.h"
+#include "engine/gl/barrier.h"
+#include "engine/gl/debug_group.h"
 #include "runner/run/equal_work.h"
 #include "runner/run/pacing.h"
 #include "runner/run/process_memory.h"
@@ -289,7 +289,7 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
         technique::findTechnique(context.techniques, item.technique, nowhere);
     RunRecorder recorder(context.runDir, context.command, item,
                          technique::outputsOf(info, item.program), result);
-    config::Params params(item.given, "technique '" + item.technique + "'");
+    Params params(item.given, "technique '" + item.technique + "'");
     if (!item.offered.isNull()) params.offer(item.offered);
 
     const std::string sceneName = item.scene.isNull() ? "" : item.scene.text();

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/config/imported.h"
-#include "runner/config/scene_reference.h"
-#include "runner/core/files.h"
-#include "runner/core/hash.h"
 #include "runner/run/expectations.h"
 #include "runner/run/ledger.h"
 #include "runner/run/plan_hash.h"
@@ -73,7 +73,7 @@ std::string Case::title() const {
         title += ' ' + name + '=' + (value.isScalar() ? value.text() : value.toFlowText());
     }
     // A file with its units is no other scene.
-    const bool isOther = !standsFor.isNull() && !config::isSceneFile(scene.text());
+    const bool isOther = !standsFor.isNull() && !scene::isSceneFile(scene.text());
     if (isOther) title += " (" + scene.text() + ")";
     return title;
 }
@@ -85,22 +85,22 @@ std::string Case::slug() const {
 }
 
 std::string Case::method() const {
-    const config::Node* method = params.find("method");
+    const Node* method = params.find("method");
     return method ? method->text() : "";
 }
 
 std::string Case::recordedScene() const {
-    const config::Node* swept = axes.find("scene");
-    const config::Node& shown = swept && standsFor.isNull() ? *swept : scene;
+    const Node* swept = axes.find("scene");
+    const Node& shown = swept && standsFor.isNull() ? *swept : scene;
     return shown.isNull() ? "" : shown.text();
 }
 
-config::Node Case::recordedParams() const {
-    config::Node recorded = params;
-    recorded.set("output", config::Node::map({{"width", config::Node::number(outputWidthPx)},
-                                              {"height", config::Node::number(outputHeightPx)}}));
+Node Case::recordedParams() const {
+    Node recorded = params;
+    recorded.set("output", Node::map({{"width", Node::number(outputWidthPx)},
+                                      {"height", Node::number(outputHeightPx)}}));
     if (!standsFor.isNull()) recorded.set(tables::kStandsFor, standsFor);
-    if (sceneSample) recorded.set(tables::kSceneSample, config::Node::number(*sceneSample));
+    if (sceneSample) recorded.set(tables::kSceneSample, Node::number(*sceneSample));
     return recorded;
 }
 
@@ -206,7 +206,7 @@ std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
         return "its plan has no frozen_hash: that it is as it was made cannot be verified";
     }
     for (const auto& [reference, key] : plan.sceneKeys) {
-        if (catalog.contentKey(config::Node::scalar(reference)) != key) {
+        if (catalog.contentKey(Node::scalar(reference)) != key) {
             return "the scene '" + reference + "' changed";
         }
     }

@@ -13,9 +13,9 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/scene/catalog.h"
 #include "runner/config/experiment.h"
 #include "runner/config/program.h"
-#include "runner/scene/catalog.h"
 #include "runner/tables/case_records.h"
 #include "runner/technique/technique.h"
 
@@ -26,16 +26,16 @@ struct Case {
     std::string id;          // 12 hexadecimal digits of the content hash
     std::string experiment;  // "zju2005/2.1"
     std::string technique;
-    config::Node program;            // null, or the config's `program`
+    Node program;                    // null, or the config's `program`
     std::string programKey;          // identity of its files; empty where it is not at hand
-    config::Node scene;              // null or a reference: what is loaded
-    config::Node standsFor;          // what the config calls it, where that is another; else null
+    Node scene;                      // null or a reference: what is loaded
+    Node standsFor;                  // what the config calls it, where that is another; else null
     std::optional<int> sceneSample;  // from 0, where several seeds are measured
-    config::Node given;    // the parameters that the config gives: a technique is made from these
-    config::Node offered;  // null, or values that take the place of the technique's defaults
-    config::Node params;   // every declared parameter with its value, and `scene.NAME` of a
-                           // generated scene where the config gives it: what records say
-    config::Node axes;     // the swept ones
+    Node given;    // the parameters that the config gives: a technique is made from these
+    Node offered;  // null, or values that take the place of the technique's defaults
+    Node params;   // every declared parameter with its value, and `scene.NAME` of a
+                   // generated scene where the config gives it: what records say
+    Node axes;     // the swept ones
     int outputWidthPx = 0;
     int outputHeightPx = 0;
     config::Measure measure;
@@ -48,10 +48,10 @@ struct Case {
     /// path in `scene`. Empty for none.
     std::string recordedScene() const;
     /// `params` with the size of the output and which scene it is: what images say.
-    config::Node recordedParams() const;
+    Node recordedParams() const;
     nlohmann::ordered_json toJson() const;
     void addSceneTo(nlohmann::ordered_json& json) const;
-    static Case fromJson(const config::Node& node);
+    static Case fromJson(const Node& node);
 };
 
 /// What was asked for, so that a resumed run can ask for the same again.

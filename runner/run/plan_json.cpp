@@ -5,7 +5,7 @@
 #include <climits>
 #include <nlohmann/json.hpp>
 
-#include "runner/core/atomic_file.h"
+#include "engine/core/atomic_file.h"
 #include "runner/run/plan.h"
 #include "runner/run/plan_hash.h"
 #include "runner/tables/case_records.h"
@@ -36,26 +36,26 @@ Json measureJson(const config::Measure& measure) {
     return json;
 }
 
-void requireMap(const config::Node& node, const char* what) {
+void requireMap(const Node& node, const char* what) {
     if (node.isMap()) return;
     throw Error(node.location(), std::string(what) + " is not a map but " + node.kindName());
 }
 
-const config::Node& required(const config::Node& map, const char* key) {
+const Node& required(const Node& map, const char* key) {
     requireMap(map, ("what should hold '" + std::string(key) + "'").c_str());
-    const config::Node* value = map.find(key);
+    const Node* value = map.find(key);
     if (!value) throw Error(map.location(), "the entry '" + std::string(key) + "' is missing");
     return *value;
 }
 
-const config::Node& requiredMap(const config::Node& map, const char* key) {
-    const config::Node& value = required(map, key);
+const Node& requiredMap(const Node& map, const char* key) {
+    const Node& value = required(map, key);
     requireMap(value, key);
     return value;
 }
 
-std::uint64_t requiredSeed(const config::Node& map) {
-    const config::Node& node = required(map, "seed");
+std::uint64_t requiredSeed(const Node& map) {
+    const Node& node = required(map, "seed");
     const std::string& text = node.text();
     std::uint64_t seed = 0;
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
@@ -66,15 +66,15 @@ std::uint64_t requiredSeed(const config::Node& map) {
 }
 
 /// Twelve hexadecimal digits: files have it in their names.
-std::string requiredId(const config::Node& map) {
-    const config::Node& node = required(map, "id");
+std::string requiredId(const Node& map) {
+    const Node& node = required(map, "id");
     const std::string& id = node.text();
     const bool isId = id.size() == 12 && id.find_first_not_of("0123456789abcdef") == id.npos;
     if (!isId) throw Error(node.location(), "'" + id + "' is no id of a case");
     return id;
 }
 
-int intFrom(const config::Node& node, const char* what, int most = INT_MAX) {
+int intFrom(const Node& node, const char* what, int most = INT_MAX) {
     const auto value = node.tryInteger();
     if (value && *value >= 0 && *value <= most) return static_cast<int>(*value);
     throw Error(node.location(),
@@ -82,17 +82,17 @@ int intFrom(const config::Node& node, const char* what, int most = INT_MAX) {
                             node.isScalar() ? node.text() : node.kindName(), most));
 }
 
-int requiredInt(const config::Node& map, const char* key) {
+int requiredInt(const Node& map, const char* key) {
     return intFrom(required(map, key), key);
 }
 
-const std::string& requiredText(const config::Node& map, const char* key) {
-    const config::Node& node = required(map, key);
+const std::string& requiredText(const Node& map, const char* key) {
+    const Node& node = required(map, key);
     if (node.isScalar()) return node.text();
     throw Error(node.location(), fmt::format("'{}' is {}; expected text", key, node.kindName()));
 }
 
-config::Measure measureFrom(const config::Node& node) {
+config::Measure measureFrom(const Node& node) {
     config::Measure measure;
     measure.lane = requiredText(node, "lane") == "timing" ? config::Measure::Lane::Timing
                                                           : config::Measure::Lane::Quality;
@@ -108,10 +108,10 @@ config::Measure measureFrom(const config::Node& node) {
     measure.frames = requiredInt(node, "frames");
     measure.timeLimitS = required(node, "time_limit_s").asDouble();
     measure.memoryLimitBytes = required(node, "memory_limit_bytes").asInteger();
-    if (const config::Node* rounds = node.find("processes_at_least")) {
+    if (const Node* rounds = node.find("processes_at_least")) {
         measure.processesAtLeast = intFrom(*rounds, "processes_at_least");
     }
-    if (const config::Node* repeats = node.find("repeats_at_most")) {
+    if (const Node* repeats = node.find("repeats_at_most")) {
         measure.repeatsAtMost = intFrom(*repeats, "repeats_at_most");
     }
     return measure;
@@ -127,10 +127,10 @@ Json assumedJson(const config::Experiment& experiment) {
     return json;
 }
 
-void takeAssumed(const config::Node& assumed, config::Experiment& experiment) {
+void takeAssumed(const Node& assumed, config::Experiment& experiment) {
     requireMap(assumed, "assumed");
     for (config::Assumption& assumption : experiment.assumptions) {
-        const config::Node* bound = assumed.find(assumption.name);
+        const Node* bound = assumed.find(assumption.name);
         if (!bound) continue;
         assumption.isBound = true;
         assumption.value = required(*bound, "value");
@@ -146,9 +146,9 @@ Json paperToJson(const config::Experiment& experiment) {
     return {{"document", experiment.paperDocument.toJson()}, {"cases", std::move(cases)}};
 }
 
-void readPaper(const config::Node& node, config::Experiment& experiment) {
+void readPaper(const Node& node, config::Experiment& experiment) {
     experiment.paperDocument = requiredMap(node, "document");
-    for (const config::Node& item : required(node, "cases").items()) {
+    for (const Node& item : required(node, "cases").items()) {
         experiment.paperCases.push_back({requiredText(item, "scene"), requiredMap(item, "params")});
     }
 }
@@ -165,9 +165,9 @@ Json outputsToJson(const config::Outputs& outputs) {
     return metrics;
 }
 
-config::Outputs outputsFrom(const config::Node& metrics) {
+config::Outputs outputsFrom(const Node& metrics) {
     config::Outputs outputs;
-    for (const config::Node& item : metrics.items()) {
+    for (const Node& item : metrics.items()) {
         config::MetricInfo info{requiredText(item, "name"), requiredText(item, "unit"),
                                 requiredText(item, "doc")};
         for (const config::Better better : {config::Better::Lower, config::Better::Higher}) {
@@ -183,19 +183,19 @@ config::Outputs outputsFrom(const config::Node& metrics) {
 /// had fewer entries and no hash of all of them. (The plan's own hash has neither assumptions nor
 /// published parameters, and with --only it is that of all cases, which the plan does not have.)
 /// Gives whether all could be verified.
-bool isAsPlanned(const fs::path& path, const config::Node& node, const Plan& plan) {
+bool isAsPlanned(const fs::path& path, const Node& node, const Plan& plan) {
     const auto fail = [&](const std::string& what) {
         throw Error(path.string() + ": " + what + " planned: " + path.filename().string() +
                     " was changed");
     };
-    const config::Node::Sequence& cases = required(node, "cases").items();
+    const Node::Sequence& cases = required(node, "cases").items();
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const Case& item = plan.cases[i];
         if (caseId(item, cases[i].toJson(), plan) == item.id) continue;
         fail("the case " + item.id + ", " + item.title() + ", is not the one that was");
     }
     bool isSame = true;
-    const config::Node* frozen = node.find(kFrozenHash);
+    const Node* frozen = node.find(kFrozenHash);
     if (frozen) {
         Json head = Json::object();
         for (const auto& [name, value] : node.entries()) {
@@ -204,7 +204,7 @@ bool isAsPlanned(const fs::path& path, const config::Node& node, const Plan& pla
         isSame = frozenHash(head, plan.cases) == frozen->text();
     } else if (plan.request.only.empty()) {
         std::vector<Json> documents;
-        for (const config::Node& item : required(node, "experiments").items()) {
+        for (const Node& item : required(node, "experiments").items()) {
             documents.push_back(required(item, "document").toJson());
         }
         isSame = planHash(plan, documents) == plan.hash;
@@ -213,9 +213,9 @@ bool isAsPlanned(const fs::path& path, const config::Node& node, const Plan& pla
     return frozen != nullptr;
 }
 
-std::vector<std::string> textsFrom(const config::Node& list) {
+std::vector<std::string> textsFrom(const Node& list) {
     std::vector<std::string> texts;
-    for (const config::Node& item : list.items()) texts.push_back(item.text());
+    for (const Node& item : list.items()) texts.push_back(item.text());
     return texts;
 }
 
@@ -246,8 +246,8 @@ Json Case::toJson() const {
     return json;
 }
 
-Case Case::fromJson(const config::Node& node) {
-    const config::Node::Sequence& output = required(node, "output").items();
+Case Case::fromJson(const Node& node) {
+    const Node::Sequence& output = required(node, "output").items();
     if (output.size() != 2) throw Error(node.location(), "'output' is not [width, height]");
     Case item;
     item.id = requiredId(node);
@@ -261,13 +261,13 @@ Case Case::fromJson(const config::Node& node) {
     item.outputHeightPx = intFrom(output[1], "output");
     item.measure = measureFrom(required(node, "measure"));
     item.seed = requiredSeed(node);
-    if (const config::Node* offered = node.find("offered")) item.offered = *offered;
-    if (const config::Node* program = node.find("program")) {
+    if (const Node* offered = node.find("offered")) item.offered = *offered;
+    if (const Node* program = node.find("program")) {
         item.program = *program;
         item.programKey = requiredText(node, "program_key");
     }
-    if (const config::Node* name = node.find(tables::kStandsFor)) item.standsFor = *name;
-    if (const config::Node* sample = node.find(tables::kSceneSample)) {
+    if (const Node* name = node.find(tables::kStandsFor)) item.standsFor = *name;
+    if (const Node* sample = node.find(tables::kSceneSample)) {
         item.sceneSample = intFrom(*sample, tables::kSceneSample, tables::kMostSceneSample);
     }
     return item;
@@ -324,7 +324,7 @@ void Plan::writeFile(const fs::path& path) const {
 }
 
 Plan Plan::fromJsonFile(const fs::path& path) {
-    const config::Node node = config::parseJsonFile(path);
+    const Node node = parseJsonFile(path);
     if (required(node, "schema").asInteger() != kPlanSchema) {
         throw Error(path.string() + ": schema " + requiredText(node, "schema") +
                     "; this program reads schema " + std::to_string(kPlanSchema));
@@ -335,38 +335,38 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     plan.profile = requiredText(node, "profile");
     plan.deviceClass = requiredText(node, "device_class");
     plan.seed = requiredSeed(node);
-    const config::Node& request = required(node, "request");
+    const Node& request = required(node, "request");
     plan.request = {textsFrom(required(request, "configs")),
                     textsFrom(required(request, "sets")),
                     textsFrom(required(request, "sweeps")),
                     {},
                     requiredText(request, "device")};
-    if (const config::Node* only = request.find("only")) plan.request.only = textsFrom(*only);
+    if (const Node* only = request.find("only")) plan.request.only = textsFrom(*only);
     for (const auto& [reference, key] : required(node, "scenes").entries()) {
         plan.sceneKeys[reference] = key.text();
     }
-    for (const config::Node& item : required(node, "experiments").items()) {
+    for (const Node& item : required(node, "experiments").items()) {
         plan.experiments.push_back(config::experimentFromDocument(
             requiredMap(item, "document"), fs::path(requiredText(item, "file"))));
-        if (const config::Node* assumed = item.find("assumed")) {
+        if (const Node* assumed = item.find("assumed")) {
             takeAssumed(*assumed, plan.experiments.back());
         }
-        if (const config::Node* paper = item.find("paper")) {  // older plans have none
+        if (const Node* paper = item.find("paper")) {  // older plans have none
             readPaper(*paper, plan.experiments.back());
         }
-        if (const config::Node* metrics = item.find("metrics")) {
+        if (const Node* metrics = item.find("metrics")) {
             plan.experiments.back().outputs = outputsFrom(*metrics);
         }
     }
-    if (const config::Node* lists = node.find("expectations")) {
-        for (const config::Node& item : lists->items()) {
+    if (const Node* lists = node.find("expectations")) {
+        for (const Node& item : lists->items()) {
             plan.expectations.push_back({requiredText(item, "file"), requiredText(item, "text")});
         }
     }
-    for (const config::Node& item : required(node, "cases").items()) {
+    for (const Node& item : required(node, "cases").items()) {
         plan.cases.push_back(Case::fromJson(item));
     }
-    if (const config::Node* shard = node.find("shard")) {
+    if (const Node* shard = node.find("shard")) {
         plan.shard = Shard{requiredInt(*shard, "index"), requiredInt(*shard, "count")};
         for (const std::string& id : textsFrom(required(*shard, "cases"))) {
             plan.shard->caseIds.insert(id);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/run/child_process.h"
 
 namespace gfxrepro::run {
@@ -23,7 +23,7 @@ std::string firstLine(const std::string& output) {
 
 }  // namespace
 
-std::vector<ProgramUse> ProgramCache::require(const Case& item, const config::Node& params) {
+std::vector<ProgramUse> ProgramCache::require(const Case& item, const Node& params) {
     const config::Program program = config::readProgram(item.program);
     const std::vector<config::ProgramFile> files =
         config::filesOf(program, program.valuesOf(params));

@@ -15,7 +15,7 @@ class ProgramCache {
     /// The case's program with its version, and the files that it reads. Throws UnsupportedError
     /// where the program is not on this machine, and Error where it, or a file, is not what it was
     /// when the run was planned.
-    std::vector<ProgramUse> require(const Case& item, const config::Node& params);
+    std::vector<ProgramUse> require(const Case& item, const Node& params);
 
   private:
     std::string versionOf(const config::Program& program, const std::string& sha256);

@@ -4,14 +4,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "runner/config/json_shape.h"
+#include "engine/core/json_shape.h"
 
 namespace gfxrepro::run {
 
 namespace {
-
-using config::JsonKind;
-using config::JsonMember;
 
 constexpr JsonMember kDevice[] = {{"/index", JsonKind::Int},
                                   {"/platform", JsonKind::Text},
@@ -72,7 +69,7 @@ Json toJson(const gl::DeviceBalance& balance) {
 
 gl::DeviceBalance balanceFromJson(const Json& json, const SourceLocation& where,
                                   const std::string& prefix) {
-    config::requireMembers(json, kBalance, where, prefix);
+    requireMembers(json, kBalance, where, prefix);
     gl::DeviceBalance balance;
     json.at("fragment_gflops").get_to(balance.fragmentGflops);
     json.at("compute_gflops").get_to(balance.computeGflops);
@@ -99,7 +96,7 @@ Json toJson(const gl::DeviceInfo& info) {
 }
 
 gl::DeviceInfo deviceInfoFromJson(const Json& json) {
-    config::requireMembers(json, kDevice, kAnswer);
+    requireMembers(json, kDevice, kAnswer);
     gl::DeviceInfo info;
     json.at("index").get_to(info.index);
     json.at("platform").get_to(info.platform);
@@ -162,11 +159,11 @@ Json toJson(const CaseResult& result) {
 }
 
 CaseResult caseResultFromJson(const Json& json) {
-    config::requireMembers(json, kResult, kAnswer);
-    config::requireRows(json, "/samples", kSample, kAnswer);
-    config::requireRows(json, "/images", kImage, kAnswer);
-    config::requireRows(json, "/scenes", kScene, kAnswer);
-    config::requireRows(json, "/programs", kProgram, kAnswer);
+    requireMembers(json, kResult, kAnswer);
+    requireRows(json, "/samples", kSample, kAnswer);
+    requireRows(json, "/images", kImage, kAnswer);
+    requireRows(json, "/scenes", kScene, kAnswer);
+    requireRows(json, "/programs", kProgram, kAnswer);
     CaseResult result;
     result.status = records::statusFromName(json.at("status").get<std::string>());
     json.at("message").get_to(result.message);

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "runner/core/error.h"
-#include "runner/gl/device.h"
+#include "engine/core/error.h"
+#include "engine/gl/device.h"
 #include "runner/records/images.h"
 #include "runner/records/records.h"
 

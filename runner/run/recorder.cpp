@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <limits>
 
-#include "runner/core/hash.h"
-#include "runner/image/exr_io.h"
-#include "runner/image/png_io.h"
+#include "engine/core/hash.h"
+#include "engine/image/exr_io.h"
+#include "engine/image/png_io.h"
 #include "runner/run/file_stem.h"
 #include "runner/run/image_attributes.h"
 

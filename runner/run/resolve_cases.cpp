@@ -9,10 +9,10 @@
 #include <regex>
 #include <set>
 
+#include "engine/core/hash.h"
+#include "engine/core/text.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/config/imported.h"
-#include "runner/config/scene_reference.h"
-#include "runner/core/hash.h"
-#include "runner/core/text.h"
 #include "runner/run/case_variation.h"
 #include "runner/run/plan.h"
 
@@ -26,13 +26,13 @@ namespace {
 constexpr const char* kPictures = "pictures";
 
 /// A user's own scene file is named relative to the config; a worker gets the absolute path.
-config::Node absoluteReference(const config::Node& reference, const scene::Catalog& catalog) {
+Node absoluteReference(const Node& reference, const scene::Catalog& catalog) {
     if (!reference.isScalar() || catalog.entries().contains(reference.text())) return reference;
     const fs::path path = reference.text();
-    if (!config::isSceneFile(reference.text()) || path.is_absolute()) return reference;
+    if (!scene::isSceneFile(reference.text()) || path.is_absolute()) return reference;
     const fs::path folder = fs::path(reference.location().file.text()).parent_path();
-    return config::Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
-                                reference.location());
+    return Node::scalar(fs::absolute(folder / path).lexically_normal().string(),
+                        reference.location());
 }
 
 /// Keys with a dot are checked where `printed.at` is read. A value is one that the technique takes:
@@ -45,7 +45,7 @@ void requireKnownAt(const config::Printed& printed, const Case& item,
         if (name.find('.') != std::string::npos) continue;
         if (name == "scene") {
             const std::string text = value.isScalar() ? value.text() : "";
-            if (catalog.entries().contains(config::sceneName(text))) continue;
+            if (catalog.entries().contains(scene::sceneName(text))) continue;
             throw Error(value.location(), fmt::format("printed.at: scene is {}; allowed: a "
                                                       "catalogued scene",
                                                       value.toFlowText()));
@@ -54,9 +54,9 @@ void requireKnownAt(const config::Printed& printed, const Case& item,
             throw Error(value.location(),
                         "printed.at: '" + name + "' is no parameter" + suggestion(name, known));
         }
-        config::Node given = item.given;
+        Node given = item.given;
         given.set(name, value, value.location());
-        config::Params params(given, "printed.at");
+        Params params(given, "printed.at");
         if (!item.offered.isNull()) params.offer(item.offered);
         info.create(params);
     }
@@ -136,11 +136,11 @@ void requireScene(const Case& item, technique::SceneNeed need, const config::Exp
 void offerPictures(const technique::TechniqueInfo& info, Case& item) {
     if (item.given.find(kPictures) || (item.offered.isMap() && item.offered.find(kPictures)))
         return;
-    config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+    Params params(item.given, "technique '" + std::string(info.name) + "'");
     technique::makeTechnique(info, item.program, params);
     const bool isTaken = std::ranges::any_of(
         params.declared(), [](const auto& param) { return param.name == kPictures; });
-    if (isTaken) item.offered.set(kPictures, config::Node::scalar("true"));
+    if (isTaken) item.offered.set(kPictures, Node::scalar("true"));
 }
 
 /// Throws Error for two cases that are alike. Those whose scenes have two names, but one content,
@@ -182,8 +182,8 @@ void requireFrames(const technique::Technique& technique, const config::Experime
     try {
         technique.requireFrames(experiment.measure.frames);
     } catch (const Error& error) {
-        const config::Node* measure = experiment.document.find("measure");
-        const config::Node* frames = measure ? measure->find("frames") : nullptr;
+        const Node* measure = experiment.document.find("measure");
+        const Node* frames = measure ? measure->find("frames") : nullptr;
         const SourceLocation file{experiment.file.string(), 0, 0};
         throw Error(frames ? frames->location() : file, error.what());
     }
@@ -225,7 +225,7 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
                  std::span<const technique::TechniqueInfo> techniques, std::uint64_t seed,
                  const std::function<void(Case, technique::SceneNeed)>& take) {
     if (!config::isMeasuredHere(experiment)) return;
-    const config::Node* named = experiment.document.find("technique");
+    const Node* named = experiment.document.find("technique");
     const SourceLocation where =
         named ? named->location() : SourceLocation{experiment.file.string(), 0, 0};
     const technique::TechniqueInfo& info =
@@ -237,7 +237,7 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         Case item;
         takeInstead(spec, experiment.paramsInstead, item);
         item.program = config::programOf(experiment);
-        config::Params params(item.given, "technique '" + std::string(info.name) + "'");
+        Params params(item.given, "technique '" + std::string(info.name) + "'");
         technique::SceneNeed need{};
         try {
             if (experiment.hasDefaultLayout()) offerPictures(info, item);
@@ -252,19 +252,19 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         item.experiment = experiment.id;
         item.technique = experiment.technique;
         item.scene = absoluteReference(spec.scene, catalog);
-        item.params = config::Node::map(params.resolved().entries());  // without places of keys
+        item.params = Node::map(params.resolved().entries());  // without places of keys
         for (const auto& [name, value] : spec.sceneParams.entries()) {
             item.params.set(std::string(config::kSceneAxisPrefix) + name, value,
                             spec.sceneParams.keyLocation(name));
         }
-        item.axes = config::Node::map(spec.axes);
+        item.axes = Node::map(spec.axes);
         requireModestTitle(experiment, item);
         item.outputWidthPx = spec.outputWidthPx;
         item.outputHeightPx = spec.outputHeightPx;
         item.measure = experiment.measure;
         item.seed = seed;
         // Of a program that takes {seed} it is a parameter.
-        const config::Node* own = item.params.find(config::placeholder::kSeed);
+        const Node* own = item.params.find(config::placeholder::kSeed);
         if (own && !item.program.isNull()) item.seed = static_cast<std::uint64_t>(own->asInteger());
         take(std::move(item), need);
     }
@@ -310,11 +310,11 @@ std::vector<config::PaperCase> resolvePaperCases(
     for (const Case& item : resolveParameters(paper, catalog, techniques, 0)) {
         requireKnownAt(paper.printed, item,
                        technique::findTechnique(techniques, paper.technique, {}), catalog);
-        config::Node params = item.params;
-        params.setPath("output.width", config::Node::number(item.outputWidthPx));
-        params.setPath("output.height", config::Node::number(item.outputHeightPx));
-        const config::Node* axis = item.axes.find("scene");
-        const config::Node& scene = axis ? *axis : item.scene;  // as records say it
+        Node params = item.params;
+        params.setPath("output.width", Node::number(item.outputWidthPx));
+        params.setPath("output.height", Node::number(item.outputHeightPx));
+        const Node* axis = item.axes.find("scene");
+        const Node& scene = axis ? *axis : item.scene;  // as records say it
         cases.push_back({scene.isNull() ? "" : scene.text(), std::move(params)});
     }
     return cases;

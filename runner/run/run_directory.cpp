@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
-#include "runner/core/temporary.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/temporary.h"
 #include "runner/run/run_files.h"
 
 namespace gfxrepro::run {

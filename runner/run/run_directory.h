@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "runner/core/descriptor.h"
+#include "engine/core/descriptor.h"
 
 namespace gfxrepro::run {
 

@@ -8,17 +8,13 @@
 #include <string_view>
 #include <utility>
 
-#include "runner/config/json_shape.h"
-#include "runner/core/error.h"
-#include "runner/core/files.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/json_shape.h"
 
 namespace gfxrepro::run {
 
 namespace fs = std::filesystem;
-using config::JsonKind;
-using config::JsonMember;
-using config::requireEach;
-using config::requireMembers;
 
 namespace {
 
@@ -103,7 +99,7 @@ void requireModestLog(const fs::path& file) {
 
 Json readManifest(const fs::path& file) {
     const SourceLocation where{file.string(), 0, 0};
-    Json manifest = config::parseJsonObject(MappedFile(file).text(), where);
+    Json manifest = parseJsonObject(MappedFile(file).text(), where);
     requireMembers(manifest, kManifest, where);
     if (const auto& gl = manifest["gl"]; gl.contains("balance")) {
         balanceFromJson(gl["balance"], where, "/gl/balance");
@@ -150,7 +146,7 @@ std::vector<Json> readLog(const fs::path& file) {
             throw Error({name, line, 0},
                         fmt::format("more than {} events, which are not read", kMostEvents));
         }
-        config::requireShallowJson(text, {name, line, 0});
+        requireShallowJson(text, {name, line, 0});
         Json event = Json::parse(text, nullptr, false);
         if (!event.is_object()) continue;
         requireMembers(event, kEvent, {name, line, 0});

@@ -39,7 +39,7 @@ const SceneCache::Entry& SceneCache::get(const std::string& reference) {
     const auto begin = std::chrono::steady_clock::now();
     Entry entry;
     entry.reference = reference;
-    entry.scene = catalog_.load(config::Node::scalar(reference));
+    entry.scene = catalog_.load(Node::scalar(reference));
     const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
     entry.loadTimeMs = time.count();
     entry.sizeBytes = sizeBytesOf(entry.scene);

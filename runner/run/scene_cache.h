@@ -4,7 +4,7 @@
 #include <list>
 #include <string>
 
-#include "runner/scene/catalog.h"
+#include "engine/scene/catalog.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::run {

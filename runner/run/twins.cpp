@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "runner/core/error.h"
-#include "runner/core/hash.h"
+#include "engine/core/error.h"
+#include "engine/core/hash.h"
 #include "runner/run/file_stem.h"
 
 namespace gfxrepro::run {
@@ -82,7 +82,7 @@ std::map<const Case*, std::string> keysOfTwins(const std::set<const Case*>& case
 }
 
 bool savesPictures(const Case& item) {
-    const config::Node* pictures = item.params.find("pictures");
+    const Node* pictures = item.params.find("pictures");
     return pictures && pictures->toJson() == true;
 }
 

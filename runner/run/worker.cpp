@@ -9,8 +9,8 @@
 #include <iostream>
 #include <new>
 
-#include "runner/core/files.h"
-#include "runner/gl/balance.h"
+#include "engine/core/files.h"
+#include "engine/gl/balance.h"
 #include "runner/run/child_process.h"
 #include "runner/run/measure.h"
 #include "runner/run/process_memory.h"
@@ -92,11 +92,11 @@ void serve(gl::Device& device, const WorkerOptions& options,
     send({{"ready", toJson(info)}});
     std::string line;
     while (std::getline(std::cin, line)) {
-        const config::Node request = config::parseJson(line, "what the runner sent");
-        const config::Node* asked = request.isMap() ? request.find("case") : nullptr;
+        const Node request = parseJson(line, "what the runner sent");
+        const Node* asked = request.isMap() ? request.find("case") : nullptr;
         if (!asked) throw Error("what the runner sent: '/case' is missing");
         Case item = Case::fromJson(*asked);
-        const config::Node* process = request.find("process");
+        const Node* process = request.find("process");
         if (process && isSeededByProcess(item)) {
             item.seed +=
                 static_cast<std::uint64_t>(process->asInteger() * config::kSeedsOfAProcess);

@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
+#include "engine/scene/generators.h"
 #include "runner/config/experiment.h"
-#include "runner/scene/generators.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::run {

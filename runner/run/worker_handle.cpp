@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "runner/core/descriptor.h"
-#include "runner/core/text.h"
+#include "engine/core/descriptor.h"
+#include "engine/core/text.h"
 #include "runner/run/process_memory.h"
 
 namespace gfxrepro::run {

@@ -7,7 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/records/csv.h"
 #include "runner/run/ledger.h"
 
@@ -90,7 +90,7 @@ std::vector<Variation> variationsOf(const config::Assumption& assumption,
                                     const std::vector<run::Case>& cases, int points) {
     if (assumption.name == config::kSceneAssumption) return sceneVariations(assumption, cases);
     const Json range = assumption.range.toJson();
-    const config::Node* current = cases.front().params.find(assumption.name);
+    const Node* current = cases.front().params.find(assumption.name);
     std::vector<Json> values(range.begin(), range.end());
     if (range.size() == 2 && range[0].is_number() && range[1].is_number()) {
         values.clear();

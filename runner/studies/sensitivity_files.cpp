@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
-#include "runner/core/files.h"
-#include "runner/core/hash.h"
-#include "runner/core/text.h"
 #include "runner/records/csv.h"
 #include "runner/report/markup.h"
 #include "runner/studies/sensitivity.h"
@@ -47,7 +47,7 @@ std::string runsMarkdown(const std::vector<Outcome>& outcomes) {
 }
 
 /// What a claim asks, without what is said about it.
-Json requirementOf(const config::Node& claim) {
+Json requirementOf(const Node& claim) {
     Json json = claim.toJson();
     for (const char* key : {"says", "origin", "bound_from", "because"}) json.erase(key);
     return json;
@@ -154,13 +154,13 @@ std::string basisOf(const run::Plan& plan, const config::Experiment& experiment)
                                     {"frames", item.measure.frames},
                                     {"lane", static_cast<int>(item.measure.lane)}});
     }
-    if (const config::Node* layout = experiment.document.find("layout")) {
+    if (const Node* layout = experiment.document.find("layout")) {
         content["layout"] = layout->toJson();
     }
     for (const std::vector<std::string>& row : experiment.printed.rows) {
         content["printed"].push_back(row);
     }
-    if (const config::Node* claims = experiment.document.find("claims")) {
+    if (const Node* claims = experiment.document.find("claims")) {
         for (const auto& [id, claim] : claims->entries()) {
             content["claims"][id] = requirementOf(claim);
         }

@@ -14,7 +14,7 @@ namespace gfxrepro::tables {
 
 namespace {
 
-std::string textOf(const config::Node& node) {
+std::string textOf(const Node& node) {
     const nlohmann::ordered_json value = node.toJson();
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number()) return records::shortestText(value.get<double>());
@@ -22,17 +22,17 @@ std::string textOf(const config::Node& node) {
 }
 
 /// "output.width": an entry of that name, or of the map within the map.
-const config::Node* findPath(const config::Node& map, std::string_view path) {
+const Node* findPath(const Node& map, std::string_view path) {
     if (!map.isMap()) return nullptr;
-    if (const config::Node* found = map.find(path)) return found;
+    if (const Node* found = map.find(path)) return found;
     const std::size_t dot = path.find('.');
     if (dot == std::string_view::npos) return nullptr;
-    const config::Node* inner = map.find(path.substr(0, dot));
+    const Node* inner = map.find(path.substr(0, dot));
     return inner ? findPath(*inner, path.substr(dot + 1)) : nullptr;
 }
 
-std::optional<std::string> valueIn(const config::Node& params, const std::string& axis) {
-    const config::Node* value = findPath(params, axis);
+std::optional<std::string> valueIn(const Node& params, const std::string& axis) {
+    const Node* value = findPath(params, axis);
     if (!value || value->isNull()) return std::nullopt;
     return textOf(*value);
 }
@@ -47,7 +47,7 @@ std::optional<std::string> valueOf(const PlannedCase& item, const std::string& a
 
 /// The axes that the sweep's `when` leaves out of the case: its parameters have them with their
 /// defaults.
-std::set<std::string> leftOut(const PlannedCase& item, const config::Node& when) {
+std::set<std::string> leftOut(const PlannedCase& item, const Node& when) {
     std::set<std::string> names, conditional;
     for (const auto& [axis, conditions] : when.entries()) {
         conditional.insert(axis);
@@ -57,7 +57,7 @@ std::set<std::string> leftOut(const PlannedCase& item, const config::Node& when)
     config::AxisPoint point;
     for (const std::string& name : names) {
         if (const auto value = valueOf(item, name)) {
-            point.emplace_back(name, config::Node::scalar(*value));
+            point.emplace_back(name, Node::scalar(*value));
         }
     }
     config::applyWhen(when, point);
@@ -65,8 +65,7 @@ std::set<std::string> leftOut(const PlannedCase& item, const config::Node& when)
     return conditional;
 }
 
-AxisValues axesOf(const PlannedCase& item, const std::vector<std::string>& axes,
-                  const config::Node* when) {
+AxisValues axesOf(const PlannedCase& item, const std::vector<std::string>& axes, const Node* when) {
     const std::set<std::string> absent = when ? leftOut(item, *when) : std::set<std::string>();
     AxisValues values;
     for (const std::string& axis : axes) {
@@ -76,13 +75,13 @@ AxisValues axesOf(const PlannedCase& item, const std::vector<std::string>& axes,
 }
 
 std::optional<int> sampleOf(const PlannedCase& item) {
-    const config::Node* sample = findPath(item.params, kSceneSample);
+    const Node* sample = findPath(item.params, kSceneSample);
     return sample ? std::optional(static_cast<int>(sample->asInteger())) : std::nullopt;
 }
 
 /// What of a case's identity stays when its scene is taken at another seed.
 std::string familyOf(const PlannedCase& item) {
-    config::Node params = item.params;
+    Node params = item.params;
     params.erase(kSceneSample);
     params.erase(kStandsFor);
     return valueIn(item.params, kStandsFor).value_or(item.scene) + params.toJson().dump();
@@ -94,7 +93,7 @@ bool isOfSetup(const records::Record* record) {
 
 }  // namespace
 
-std::string canonicalText(const config::Node& value) {
+std::string canonicalText(const Node& value) {
     return value.isMap() ? value.toFlowText() : textOf(value);
 }
 
@@ -113,7 +112,7 @@ std::vector<const records::Record*> CaseRecords::Attempt::values(std::string_vie
 std::vector<CaseRecords> groupByCase(std::span<const PlannedCase> planned,
                                      const std::vector<records::Record>& records,
                                      std::string_view table, const std::vector<std::string>& axes,
-                                     const config::Node* when) {
+                                     const Node* when) {
     struct Place {
         std::size_t index;  // in `cases`
         int sample;

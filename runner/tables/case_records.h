@@ -22,7 +22,7 @@ inline constexpr const char* kSceneSample = "scene_sample";
 inline constexpr int kMostSceneSample = 999;  // of `measure.scene_seeds`
 
 /// One text for one value, however it is spelt: 64 and 64.0, or a scene as text or as a map.
-std::string canonicalText(const config::Node& value);
+std::string canonicalText(const Node& value);
 
 /// The values of a case beside a list of axes; empty where the case has none.
 using AxisValues = std::vector<std::optional<std::string>>;
@@ -32,7 +32,7 @@ struct PlannedCase {
     std::string id;
     std::string table;              // "zju2005/2.1"
     std::string scene;              // as its records say it; empty for none
-    config::Node params;            // a map, with `output` and the names above
+    Node params;                    // a map, with `output` and the names above
     std::vector<std::string> axes;  // names of those that are swept
 };
 
@@ -62,7 +62,7 @@ struct CaseRecords {
     AxisValues axes;
     std::map<int, Attempt> processes;
     std::string scene;  // as PlannedCase has them
-    config::Node params;
+    Node params;
 };
 
 /// The cases of `table` in the order of the plan, with their records, which must outlive the
@@ -72,6 +72,6 @@ struct CaseRecords {
 std::vector<CaseRecords> groupByCase(std::span<const PlannedCase> planned,
                                      const std::vector<records::Record>& records,
                                      std::string_view table, const std::vector<std::string>& axes,
-                                     const config::Node* when = nullptr);
+                                     const Node* when = nullptr);
 
 }  // namespace gfxrepro::tables

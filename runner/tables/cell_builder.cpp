@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/tables/sampling.h"
 #include "runner/tables/share_draws.h"
 
@@ -25,7 +25,7 @@ void layOver(const config::Selection& part, config::Selection& selection, Where&
     for (const auto& [axis, value] : part.where) {
         std::vector<std::string> allowed = {canonicalText(value)};
         if (value.isSequence()) {
-            for (const config::Node& item : value.items()) allowed.push_back(canonicalText(item));
+            for (const Node& item : value.items()) allowed.push_back(canonicalText(item));
         }
         where[axis] = std::move(allowed);
     }

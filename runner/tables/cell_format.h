@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "runner/core/error.h"
-#include "runner/metrics/statistics.h"
+#include "engine/core/error.h"
+#include "engine/metrics/statistics.h"
 
 namespace gfxrepro::tables {
 

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/records/csv.h"
 #include "runner/tables/labels.h"
 

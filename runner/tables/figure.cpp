@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/tables/case_records.h"
 #include "runner/tables/labels.h"
 

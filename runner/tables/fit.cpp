@@ -10,8 +10,8 @@
 #include <ranges>
 #include <set>
 
-#include "runner/core/files.h"
-#include "runner/core/text.h"
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/records/csv.h"
 
 namespace gfxrepro::tables {

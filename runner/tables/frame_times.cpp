@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::tables {
 

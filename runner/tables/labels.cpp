@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/core/text.h"
 #include "runner/config/experiment.h"
-#include "runner/core/text.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::tables {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/tables/labels.h"
 #include "runner/tables/printed_parameters.h"
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "runner/config/scene_reference.h"
-#include "runner/core/text.h"
+#include "engine/core/text.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/records/csv.h"
 #include "runner/tables/cell_builder.h"
 #include "runner/tables/labels.h"
@@ -72,7 +72,7 @@ std::string sceneNameOf(const CaseRecords& item, const Json& params) {
     const auto named = params.find(kStandsFor);
     if (named == params.end()) return item.scene;
     const std::string name = settingText(*named);
-    return config::sceneName(item.scene) == name ? name : item.scene;
+    return scene::sceneName(item.scene) == name ? name : item.scene;
 }
 
 Settings settingsOf(const CaseRecords& item, int frameCount, const config::Printed& printed) {

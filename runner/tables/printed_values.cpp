@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "runner/tables/case_records.h"
 
 namespace gfxrepro::tables {
@@ -16,7 +16,7 @@ namespace {
 using Cells = std::vector<std::string>;
 
 /// Where the printed rows stand, in their order.
-std::vector<SourceLocation> linesOf(const config::Node& values) {
+std::vector<SourceLocation> linesOf(const Node& values) {
     std::vector<SourceLocation> lines;
     const std::vector<std::string> texts = split(values.text(), '\n');
     for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -37,7 +37,7 @@ const std::string* findColumn(const std::string& name, const Cells& header, cons
 bool isOf(const Cells& printed, const Cells& header, const Table& table, const TableRow& row) {
     for (std::size_t i = 0; i < table.rowAxes.size(); ++i) {
         const std::string* label = findColumn(table.rowAxes[i], header, printed);
-        if (label && canonicalText(config::Node::scalar(*label)) != row.labels[i]) return false;
+        if (label && canonicalText(Node::scalar(*label)) != row.labels[i]) return false;
     }
     return true;
 }

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runner/metrics/statistics.h"
+#include "engine/metrics/statistics.h"
 
 namespace gfxrepro::tables {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "engine/core/text.h"
 #include "runner/config/program.h"
-#include "runner/core/text.h"
 #include "runner/records/csv.h"
 #include "runner/tables/cell_builder.h"
 #include "runner/tables/default_layout.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::tables {
 
@@ -157,7 +157,7 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const Pl
         }
     }
     addAxesOf(layout.cell, cases.axes);
-    const config::Node& sweep = experiment.sweep;
+    const Node& sweep = experiment.sweep;
     cases.cases = groupByCase(planned, records, experiment.id, cases.axes,
                               sweep.isMap() ? sweep.find("when") : nullptr);
     cases.frameCount = experiment.measure.frames;

@@ -1,8 +1,8 @@
 #include "runner/technique/technique.h"
 
+#include "engine/core/error.h"
+#include "engine/core/text.h"
 #include "runner/config/program.h"
-#include "runner/core/error.h"
-#include "runner/core/text.h"
 
 namespace gfxrepro::technique {
 
@@ -52,7 +52,7 @@ std::span<const config::MetricInfo> commonMetrics() {
     return metrics;
 }
 
-config::Outputs outputsOf(const TechniqueInfo& technique, const config::Node& program) {
+config::Outputs outputsOf(const TechniqueInfo& technique, const Node& program) {
     const config::Outputs own = technique.outputs();
     const std::span<const config::MetricInfo> common = commonMetrics();
     config::Outputs all{{common.begin(), common.end()}, own.passes};
@@ -76,8 +76,8 @@ config::Outputs outputsOf(const TechniqueInfo& technique, const config::Node& pr
     return all;
 }
 
-std::unique_ptr<Technique> makeTechnique(const TechniqueInfo& info, const config::Node& program,
-                                         config::Params& params) {
+std::unique_ptr<Technique> makeTechnique(const TechniqueInfo& info, const Node& program,
+                                         Params& params) {
     if (info.createFrom && program.isNull()) {
         throw Error("technique '" + std::string(info.name) +
                     "' needs 'program': see 'gfxrepro describe config'");
@@ -98,7 +98,7 @@ void setUp(Technique& technique, SetupContext& context) {
     technique.setup(context);
 }
 
-bool needsDevice(const TechniqueInfo& info, const config::Node& program) {
+bool needsDevice(const TechniqueInfo& info, const Node& program) {
     return !info.createFrom || program.isNull() || config::readProgram(program).usesGpu;
 }
 

@@ -11,14 +11,14 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/params.h"
+#include "engine/gl/device.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/profiler.h"
+#include "engine/gl/program.h"
+#include "engine/image/exr_io.h"
+#include "engine/scene/scene.h"
 #include "runner/config/outputs.h"
-#include "runner/config/params.h"
-#include "runner/gl/device.h"
-#include "runner/gl/objects.h"
-#include "runner/gl/profiler.h"
-#include "runner/gl/program.h"
-#include "runner/image/exr_io.h"
-#include "runner/scene/scene.h"
 
 namespace gfxrepro::technique {
 
@@ -121,7 +121,7 @@ class Technique {
     /// What it asks of the case's scene: known without a device.
     virtual SceneNeed sceneNeed() const { return SceneNeed::Nothing; }
     /// Throws Error for a scene that it cannot take: the case's, or one that a parameter names
-    /// (config::isSceneKey). Known without a device.
+    /// (isSceneKey). Known without a device.
     virtual void requireScene(const scene::Scene& /*scene*/) const {}
     /// Throws Error for more frames than it has. Known without a device.
     virtual void requireFrames(int /*frameCount*/) const {}
@@ -133,33 +133,32 @@ struct TechniqueInfo {
     std::string_view name;
     std::string_view summary;
     /// Null where `createFrom` is not.
-    std::unique_ptr<Technique> (*create)(config::Params& params);
+    std::unique_ptr<Technique> (*create)(Params& params);
     /// All that record() may give and render() may scope: nothing else can be recorded.
     config::Outputs (*outputs)();
     /// Of a technique that is made of a program, as `program` of its config says
     /// (config/program.h): what that declares comes to parameters and outputs.
-    std::unique_ptr<Technique> (*createFrom)(const config::Node& program,
-                                             config::Params& params) = nullptr;
+    std::unique_ptr<Technique> (*createFrom)(const Node& program, Params& params) = nullptr;
 };
 
 /// The technique with the program of its config, null for none. Throws Error where it takes one and
 /// there is none, or the other way about, and as its constructor does.
-std::unique_ptr<Technique> makeTechnique(const TechniqueInfo& info, const config::Node& program,
-                                         config::Params& params);
+std::unique_ptr<Technique> makeTechnique(const TechniqueInfo& info, const Node& program,
+                                         Params& params);
 
 /// requireScene() and setup(). Throws Error where the technique needs a scene and the case has
 /// none.
 void setUp(Technique& technique, SetupContext& context);
 
 /// Whether cases of the technique open a device.
-bool needsDevice(const TechniqueInfo& info, const config::Node& program);
+bool needsDevice(const TechniqueInfo& info, const Node& program);
 
 /// What the runner records of every case, whatever the technique.
 std::span<const config::MetricInfo> commonMetrics();
 
 /// What a case of the technique records: that, its own, and what its program says. Throws Error
 /// where the program declares a metric that is recorded anyway.
-config::Outputs outputsOf(const TechniqueInfo& technique, const config::Node& program = {});
+config::Outputs outputsOf(const TechniqueInfo& technique, const Node& program = {});
 
 /// Every technique, from techniques/registry.cpp.
 std::span<const TechniqueInfo> registeredTechniques();

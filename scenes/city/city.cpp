@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string>
 
-#include "runner/core/error.h"
-#include "runner/scene/refine.h"
+#include "engine/core/error.h"
+#include "engine/scene/refine.h"
 #include "scenes/city/parts.h"
 #include "scenes/outdoor/outdoor.h"
 #include "scenes/shared/fitted_camera.h"
@@ -280,8 +280,7 @@ Builders filled(const Plan& plan, std::size_t triangles, float recessedShare, st
 }
 
 /// Throws Error unless the city can have `triangles`, to the 2 % that the ground may take up.
-void checkCount(const config::Params& params, const Plan& plan, std::size_t count,
-                std::size_t triangles) {
+void checkCount(const Params& params, const Plan& plan, std::size_t count, std::size_t triangles) {
     const bool isTooMany = count > triangles;
     if (!isTooMany && 50 * count >= 49 * triangles) return;
     const std::string across = std::to_string(plan.blocks.x);
@@ -304,7 +303,7 @@ void addMesh(Scene& scene, MeshBuilder& builder, const char* name, float roughne
 
 }  // namespace
 
-Scene city(config::Params& params, std::uint64_t seed) {
+Scene city(Params& params, std::uint64_t seed) {
     const int triangles =
         params.getInt("triangles", 50'000, {"exact count; more make a larger city", "", 5000, 1e6});
     Settings settings;

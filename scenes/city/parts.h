@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "scenes/shared/mesh_builder.h"
 
 namespace gfxrepro::scene::city_parts {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "scenes/indoor/lofts.h"
 #include "scenes/indoor/parts.h"
 #include "scenes/indoor/rooms.h"
@@ -1165,7 +1165,7 @@ void addBathroomCameras(Scene& scene) {
 
 }  // namespace
 
-Scene bathroom(config::Params& params, std::uint64_t seed) {
+Scene bathroom(Params& params, std::uint64_t seed) {
     params.finish();
     Room room;
     Random random(seed, 11);

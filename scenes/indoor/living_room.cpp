@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "runner/core/error.h"
-#include "runner/core/random.h"
+#include "engine/core/error.h"
+#include "engine/core/random.h"
 #include "scenes/indoor/parts.h"
 #include "scenes/indoor/rooms.h"
 #include "scenes/shared/sdf.h"
@@ -1247,7 +1247,7 @@ void addLamplight(Scene& scene) {
 
 }  // namespace
 
-Scene livingRoom(config::Params& params, std::uint64_t seed) {
+Scene livingRoom(Params& params, std::uint64_t seed) {
     const int diffuse =
         params.getInt("diffuse_triangles", 150'000,
                       {"exact count on diffuse objects; 130,000 more are on reflective ones", "",

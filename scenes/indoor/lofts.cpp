@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "scenes/shared/sdf.h"
 
 namespace gfxrepro::scene::indoor {

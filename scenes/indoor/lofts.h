@@ -4,7 +4,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 #include "scenes/shared/mesh_builder.h"
 
 namespace gfxrepro::scene::indoor {

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "runner/core/random.h"
-#include "runner/image/image.h"
+#include "engine/core/random.h"
+#include "engine/image/image.h"
 #include "scenes/shared/mesh_builder.h"
 
 namespace gfxrepro::scene::indoor {

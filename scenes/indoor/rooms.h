@@ -4,14 +4,14 @@
 
 #include <cstdint>
 
-#include "runner/config/params.h"
-#include "runner/scene/scene.h"
+#include "engine/core/params.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::scene {
 
 /// 280,000 triangles: 150,000 of diffuse and 130,000 of 25 reflective objects.
-Scene livingRoom(config::Params& params, std::uint64_t seed);
+Scene livingRoom(Params& params, std::uint64_t seed);
 /// 90,000 triangles: 44,000 of diffuse and 46,000 of 15 reflective objects.
-Scene bathroom(config::Params& params, std::uint64_t seed);
+Scene bathroom(Params& params, std::uint64_t seed);
 
 }  // namespace gfxrepro::scene

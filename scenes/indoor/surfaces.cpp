@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/core/error.h"
-#include "runner/scene/refine.h"
+#include "engine/core/error.h"
+#include "engine/scene/refine.h"
 #include "scenes/indoor/parts.h"
 #include "scenes/shared/sdf.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/core/random.h"
-#include "runner/scene/refine.h"
+#include "engine/core/random.h"
+#include "engine/scene/refine.h"
 #include "scenes/models/shapes.h"
 
 namespace gfxrepro::scene {
@@ -30,7 +30,7 @@ enum class ModelShape {
     Wagner
 };
 
-constexpr config::Choice<ModelShape> kModelShapes[] = {
+constexpr Choice<ModelShape> kModelShapes[] = {
     {ModelShape::Blade, "blade", "turbine blade: twisted airfoil on a root block"},
     {ModelShape::Brain, "brain", "two hemispheres with gyri, cerebellum and stem"},
     {ModelShape::Buddha, "buddha", "sitting figure on a lotus"},
@@ -154,7 +154,7 @@ void addSeams(Mesh& mesh, std::size_t vertexCount, std::uint64_t seed) {
 
 }  // namespace
 
-Scene sdfModel(config::Params& params, std::uint64_t seed) {
+Scene sdfModel(Params& params, std::uint64_t seed) {
     const ModelShape shape =
         params.getEnum("shape", ModelShape::Sphere, kModelShapes, {"what is modelled"});
     const int triangles = params.getInt(

@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 
-#include "runner/core/error.h"
-#include "runner/core/random.h"
-#include "runner/scene/refine.h"
+#include "engine/core/error.h"
+#include "engine/core/random.h"
+#include "engine/scene/refine.h"
 #include "scenes/outdoor/outdoor.h"
 #include "scenes/shared/mesh_builder.h"
 #include "scenes/shared/sdf.h"
@@ -315,7 +315,7 @@ Material diffuse(std::string_view name, const glm::vec3& color) {
 
 }  // namespace
 
-Scene birdNest(config::Params& params, std::uint64_t seed) {
+Scene birdNest(Params& params, std::uint64_t seed) {
     const int triangles =
         params.getInt("triangles", 67'000,
                       {"exact count; even, for twigs, eggs and branch are closed", "", 5000, 4e6});

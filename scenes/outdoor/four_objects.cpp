@@ -34,7 +34,7 @@ constexpr std::array kPillars{
 }  // namespace
 
 // [xie2017] Fig. 11–12: A hides B and C from V₀, D hides C from V₁; V₀ sees A and D.
-Scene fourObjects(config::Params& params, std::uint64_t /*seed*/) {
+Scene fourObjects(Params& params, std::uint64_t /*seed*/) {
     params.finish();
     Scene scene;
     for (const Pillar& pillar : kPillars) {

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "runner/core/error.h"
-#include "runner/core/random.h"
+#include "engine/core/error.h"
+#include "engine/core/random.h"
 #include "scenes/outdoor/outdoor.h"
 #include "scenes/shared/mesh_builder.h"
 #include "scenes/shared/sdf.h"
@@ -252,7 +252,7 @@ Mesh bladeMesh(int triangles, int count, float width, const Field& field, std::u
 
 }  // namespace
 
-Scene grass(config::Params& params, std::uint64_t seed) {
+Scene grass(Params& params, std::uint64_t seed) {
     const int triangles = params.getInt(
         "triangles", 56'000,
         {"exact count, ground of 2048 included; even, for a blade has two sides", "", 10'000, 4e6});

@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 
-#include "runner/core/error.h"
-#include "runner/core/random.h"
+#include "engine/core/error.h"
+#include "engine/core/random.h"
 #include "scenes/outdoor/outdoor.h"
 #include "scenes/shared/fitted_camera.h"
 #include "scenes/shared/mesh_builder.h"
@@ -277,7 +277,7 @@ void addMesh(Scene& scene, MeshBuilder& builder, const char* name) {
 
 }  // namespace
 
-Scene tree(config::Params& params, std::uint64_t seed) {
+Scene tree(Params& params, std::uint64_t seed) {
     const int triangles =
         params.getInt("triangles", static_cast<int>(kDefaultTriangles),
                       {"exact count; even, for a leaf has two sides; more make finer twigs and "

@@ -8,7 +8,7 @@ namespace {
 
 enum class StandingShape { Bunny, Dragon, Hugo, Torus };
 
-constexpr config::Choice<StandingShape> kStandingShapes[] = {
+constexpr Choice<StandingShape> kStandingShapes[] = {
     {StandingShape::Bunny, "bunny", "sitting rabbit"},
     {StandingShape::Dragon, "dragon", "long body with crest, legs and horns"},
     {StandingShape::Hugo, "hugo", "standing man"},
@@ -43,7 +43,7 @@ void addPart(Scene& scene, Mesh mesh, const glm::vec4& baseColor, bool isDoubleS
 
 }  // namespace
 
-Scene objectOnPlane(config::Params& params, std::uint64_t seed) {
+Scene objectOnPlane(Params& params, std::uint64_t seed) {
     const StandingShape shape =
         params.getEnum("shape", StandingShape::Hugo, kStandingShapes, {"what stands on the plane"});
     const auto spacing = static_cast<float>(params.getDouble(

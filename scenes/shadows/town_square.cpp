@@ -192,7 +192,7 @@ void addCameraAndLights(Scene& scene) {
 
 }  // namespace
 
-Scene townSquare(config::Params& params, std::uint64_t seed) {
+Scene townSquare(Params& params, std::uint64_t seed) {
     const auto detail =
         static_cast<float>(params.getDouble("detail", 1.0, {"of the houses", "1", 0.1, 4.0}));
     const int leaves = params.getInt("leaves", 1500, {"of each tree", "", 0, 100'000});

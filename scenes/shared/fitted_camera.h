@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::scene {
 

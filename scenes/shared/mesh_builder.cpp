@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "scenes/shared/sdf.h"
 
 namespace gfxrepro::scene {

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::scene {
 

@@ -9,7 +9,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::scene::sdf {
 

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <optional>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
-#include "runner/core/hash.h"
-#include "runner/scene/generators.h"
-#include "runner/scene/height_noise.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "engine/scene/generators.h"
+#include "engine/scene/height_noise.h"
 
 namespace gfxrepro::scene {
 
@@ -115,7 +115,7 @@ HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed
     return map;
 }
 
-Scene terrain(config::Params& params, std::uint64_t seed) {
+Scene terrain(Params& params, std::uint64_t seed) {
     FractalTerrain shape;
     shape.sizeSamples =
         params.getInt("size_samples", shape.sizeSamples,

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include "runner/config/params.h"
-#include "runner/scene/height_map.h"
-#include "runner/scene/scene.h"
+#include "engine/core/params.h"
+#include "engine/scene/height_map.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::scene {
 
@@ -26,6 +26,6 @@ HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed
                                const std::filesystem::path& folder, const std::string& key);
 
 /// Mountains and lowland of fractal noise (fractalTerrain), a height map without triangles.
-Scene terrain(config::Params& params, std::uint64_t seed);
+Scene terrain(Params& params, std::uint64_t seed);
 
 }  // namespace gfxrepro::scene

@@ -5,7 +5,7 @@
 #include <functional>
 #include <numbers>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::clustered_reflections {
 

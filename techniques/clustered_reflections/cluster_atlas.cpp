@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {

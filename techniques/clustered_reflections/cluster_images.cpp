@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/reflections/kept_colour.h"
 
 namespace gfxrepro::clustered_reflections {

@@ -6,7 +6,7 @@
 
 namespace gfxrepro::clustered_reflections {
 
-ClusteredReflections::ClusteredReflections(config::Params& params) : params_(params) {}
+ClusteredReflections::ClusteredReflections(Params& params) : params_(params) {}
 
 void ClusteredReflections::setup(technique::SetupContext& context) {
     const gl::ShaderLibrary& shaders = context.shaders;
@@ -70,7 +70,7 @@ void ClusteredReflections::render(technique::FrameContext& context) {
 }
 
 namespace {
-std::unique_ptr<technique::Technique> create(config::Params& params) {
+std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<ClusteredReflections>(params);
 }
 }  // namespace

@@ -16,7 +16,7 @@ config::Outputs outputs();
 
 class ClusteredReflections final : public technique::Technique {
   public:
-    explicit ClusteredReflections(config::Params& params);
+    explicit ClusteredReflections(Params& params);
 
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "runner/core/error.h"
-#include "runner/gl/pass.h"
+#include "engine/core/error.h"
+#include "engine/gl/pass.h"
 #include "techniques/clustered_reflections/bin_tables.h"
 #include "techniques/clustered_reflections/kd_clustering.h"
 #include "techniques/kit/draws.h"

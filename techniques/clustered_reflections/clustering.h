@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "runner/gl/objects.h"
-#include "runner/gl/profiler.h"
-#include "runner/gl/program.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/profiler.h"
+#include "engine/gl/program.h"
 #include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::clustered_reflections {

@@ -7,13 +7,13 @@
 #include <set>
 #include <string>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/reflections/reflector_rule.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {
 
-constexpr config::Choice<Method> kMethods[] = {
+constexpr Choice<Method> kMethods[] = {
     {Method::Clustered, "clustered", "clustered depth images (algorithm 6)"},
     {Method::EnvironmentMap, "environment_map", "one environment map of the scene"},
     {Method::ScreenSpace, "screen_space", "rays marched through what the eye sees"},
@@ -21,11 +21,11 @@ constexpr config::Choice<Method> kMethods[] = {
      "ray tracing on the same device, its hierarchy rebuilt each frame"},
     {Method::Embree, "embree", "ray tracing on the CPU, its hierarchy rebuilt each frame"},
 };
-constexpr config::Choice<Clustering> kClusterings[] = {
+constexpr Choice<Clustering> kClusterings[] = {
     {Clustering::NormalBins, "normal_bins", "bins of the normal's spherical coordinates"},
     {Clustering::KdTree, "kd_tree", "splits by position and normal, largest first"},
 };
-constexpr config::Choice<ImageDrawing> kDrawings[] = {
+constexpr Choice<ImageDrawing> kDrawings[] = {
     {ImageDrawing::OneByOne, "one_by_one", "a cluster's image is overwritten by the next one's"},
     {ImageDrawing::Atlas, "atlas", "all images side by side, by one multi-draw"},
     {ImageDrawing::Visible, "visible",
@@ -33,11 +33,11 @@ constexpr config::Choice<ImageDrawing> kDrawings[] = {
     {ImageDrawing::None, "none",
      "nothing is drawn, clusters and their occlusion errors are counted"},
 };
-constexpr config::Choice<March> kMarches[] = {
+constexpr Choice<March> kMarches[] = {
     {March::Linear, "linear", "a texel per step (algorithm 7)"},
     {March::Hierarchical, "hierarchical", "over a pyramid of nearest depths"},
 };
-constexpr config::Choice<OwnReflector> kOwnReflectors[] = {
+constexpr Choice<OwnReflector> kOwnReflectors[] = {
     {OwnReflector::WholeScene, "whole_scene",
      "the first way of Sec. 4.7.4: images are of the whole scene"},
     {OwnReflector::ConcaveDiffuse, "concave_diffuse",
@@ -46,12 +46,11 @@ constexpr config::Choice<OwnReflector> kOwnReflectors[] = {
     {OwnReflector::LeftOut, "left_out", "a reflector is left out of its own images"},
 };
 
-float number(config::Params& params, const char* name, double fallback,
-             const config::ParamSpec& spec) {
+float number(Params& params, const char* name, double fallback, const ParamSpec& spec) {
     return static_cast<float>(params.getDouble(name, fallback, spec));
 }
 
-void readLobe(config::Params& params, reflections::LobeSettings& lobe) {
+void readLobe(Params& params, reflections::LobeSettings& lobe) {
     lobe.maxHalfAngleRad =
         glm::radians(number(params, "lobe_half_angle_deg", 34.4,
                             {"half angle of the cone of rays at glossiness 1", "°", 0.0, 90.0}));
@@ -61,7 +60,7 @@ void readLobe(config::Params& params, reflections::LobeSettings& lobe) {
                 "1", 0.0, 64.0});
 }
 
-BinSettings readBins(config::Params& params) {
+BinSettings readBins(Params& params) {
     BinSettings bins;
     bins.maxThetaBins = params.getInt(
         "theta_bins", bins.maxThetaBins,
@@ -83,7 +82,7 @@ BinSettings readBins(config::Params& params) {
     return bins;
 }
 
-ClusteredSettings readClustered(config::Params& params) {
+ClusteredSettings readClustered(Params& params) {
     ClusteredSettings settings;
     settings.clustering = params.getEnum("clustering", Clustering::NormalBins, kClusterings,
                                          {"how samples become clusters"});
@@ -125,7 +124,7 @@ void ReflectionParams::requireScene(const scene::Scene& scene) const {
                             errorsOf, fmt::join(names, ", ")));
 }
 
-ReflectionParams::ReflectionParams(config::Params& params)
+ReflectionParams::ReflectionParams(Params& params)
     : method(
           params.getEnum("method", Method::Clustered, kMethods, {"where reflections come from"})) {
     readView(params);

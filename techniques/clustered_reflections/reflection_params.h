@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runner/config/params.h"
+#include "engine/core/params.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/reflections/frame.h"
 
@@ -32,7 +32,7 @@ struct ReflectionParams : reflections::FrameSettings {
     /// Throws Error for scenes without reflectors, and without the one that `errorsOf` names.
     void requireScene(const scene::Scene& scene) const;
     /// Declares the parameters. Throws Error for combinations that mean nothing.
-    explicit ReflectionParams(config::Params& params);
+    explicit ReflectionParams(Params& params);
 };
 
 }  // namespace gfxrepro::clustered_reflections

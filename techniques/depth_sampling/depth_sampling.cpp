@@ -18,7 +18,7 @@
 namespace gfxrepro::depth_sampling {
 namespace {
 
-std::unique_ptr<technique::Technique> create(config::Params& params) {
+std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<DepthSampling>(params);
 }
 
@@ -83,7 +83,7 @@ void requireSamples(const Measures& measures, Method method, const Views& views,
 
 }  // namespace
 
-DepthSampling::DepthSampling(config::Params& params) : params_(params) {
+DepthSampling::DepthSampling(Params& params) : params_(params) {
     params.finish();
 }
 

@@ -48,12 +48,12 @@ struct DepthSamplingParams {
     Measured measured = Measured::ReferenceImages;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
-    explicit DepthSamplingParams(config::Params& params);
+    explicit DepthSamplingParams(Params& params);
 };
 
 class DepthSampling final : public technique::Technique {
   public:
-    explicit DepthSampling(config::Params& params);
+    explicit DepthSampling(Params& params);
 
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }

@@ -7,48 +7,48 @@
 namespace gfxrepro::depth_sampling {
 namespace {
 
-constexpr config::Choice<Method> kMethods[] = {
+constexpr Choice<Method> kMethods[] = {
     {Method::Conventional, "conventional", "ordinary depth images: the nearest sample of a pixel"},
     {Method::NonRedundant, "non_redundant",
      "the nearest sample that no earlier image has (algorithm 1)"},
     {Method::DepthPeeling, "depth_peeling", "layers of one view"},
 };
-constexpr config::Choice<Redundancy> kRedundancies[] = {
+constexpr Choice<Redundancy> kRedundancies[] = {
     {Redundancy::Pixel, "pixel",
      "the earlier image's pixel has the same triangle (algorithm 3); drawn on the device"},
     {Redundancy::Visibility, "visibility",
      "visible from the earlier image's view (algorithm 2); ray cast on the CPU"},
 };
-constexpr config::Choice<Earlier> kEarlier[] = {
+constexpr Choice<Earlier> kEarlier[] = {
     {Earlier::Views, "views", "what is visible from their views, as algorithm 2 has it"},
     {Earlier::Samples, "samples", "what they hold, with what they uncovered"},
 };
-constexpr config::Choice<Placement> kPlacements[] = {
+constexpr Choice<Placement> kPlacements[] = {
     {Placement::Fixed, "fixed", "the triangle's corners, then evenly inside of it"},
     {Placement::Automatic, "automatic", "each next view where the images so far lack most"},
 };
-constexpr config::Choice<PeeledFrom> kPeeledFrom[] = {
+constexpr Choice<PeeledFrom> kPeeledFrom[] = {
     {PeeledFrom::Centre, "centre", "the centre of the triangle of views"},
     {PeeledFrom::FirstView, "first_view", "V0, as figures 11 and 12 have it"},
 };
-constexpr config::Choice<kit::TriangleIds> kTriangleIds[] = {
+constexpr Choice<kit::TriangleIds> kTriangleIds[] = {
     {kit::TriangleIds::PrimitiveId, "primitive_id", "gl_PrimitiveID"},
     {kit::TriangleIds::GeometryShader, "geometry_shader",
      "by a geometry stage, as the thesis has it"},
 };
-constexpr config::Choice<kit::DepthFormat> kDepthFormats[] = {
+constexpr Choice<kit::DepthFormat> kDepthFormats[] = {
     {kit::DepthFormat::Unorm24, "unorm24", "24-bit integers"},
     {kit::DepthFormat::Float32, "float32", "32-bit floats, 0 at the near plane"},
     {kit::DepthFormat::ReversedFloat32, "reversed_float32", "32-bit floats, 0 at the far plane"},
 };
-constexpr config::Choice<Measured> kMeasured[] = {
+constexpr Choice<Measured> kMeasured[] = {
     {Measured::ReferenceImages, "reference_images", "making the reference images"},
     {Measured::OutputFrame, "output_frame",
      "one output frame, and the test which of its samples the reference images have"},
 };
 
-ViewTriangleSettings readTriangle(config::Params& params) {
-    const auto number = [&](const char* name, double fallback, const config::ParamSpec& spec) {
+ViewTriangleSettings readTriangle(Params& params) {
+    const auto number = [&](const char* name, double fallback, const ParamSpec& spec) {
         return static_cast<float>(params.getDouble(name, fallback, spec));
     };
     ViewTriangleSettings settings;
@@ -68,12 +68,11 @@ ViewTriangleSettings readTriangle(config::Params& params) {
     return settings;
 }
 
-[[noreturn]] void refuse(const config::Params& params, const char* name,
-                         const std::string& because) {
+[[noreturn]] void refuse(const Params& params, const char* name, const std::string& because) {
     throw Error(params.locationOf(name), because);
 }
 
-void checkPlacement(const config::Params& params, const DepthSamplingParams& read) {
+void checkPlacement(const Params& params, const DepthSamplingParams& read) {
     if (read.placement == Placement::Fixed) {
         params.refuseGiven({"candidates"}, "'placement: automatic'");
         return;
@@ -95,7 +94,7 @@ void checkPlacement(const config::Params& params, const DepthSamplingParams& rea
 }
 
 /// Rays have neither a depth buffer nor primitives.
-void checkVisibility(const config::Params& params, const DepthSamplingParams& read) {
+void checkVisibility(const Params& params, const DepthSamplingParams& read) {
     if (read.redundancy == Redundancy::Pixel) {
         params.refuseGiven({"earlier"}, "'redundancy: visibility'");
         return;
@@ -106,7 +105,7 @@ void checkVisibility(const config::Params& params, const DepthSamplingParams& re
     }
 }
 
-void checkFrames(const config::Params& params, const DepthSamplingParams& read) {
+void checkFrames(const Params& params, const DepthSamplingParams& read) {
     const bool hasFrames = read.measures.usefulness || read.measures.availability ||
                            read.showsPictures || read.measured == Measured::OutputFrame;
     if (hasFrames) return;
@@ -116,7 +115,7 @@ void checkFrames(const config::Params& params, const DepthSamplingParams& read) 
 
 }  // namespace
 
-DepthSamplingParams::DepthSamplingParams(config::Params& params)
+DepthSamplingParams::DepthSamplingParams(Params& params)
     : method(params.getEnum("method", Method::Conventional, kMethods, {"which images are taken"})),
       redundancy(params.getEnum("redundancy", Redundancy::Pixel, kRedundancies,
                                 {"which samples count as captured"})),

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "runner/gl/profiler.h"
-#include "runner/raycast/ray_tracer.h"
+#include "engine/gl/profiler.h"
+#include "engine/raycast/ray_tracer.h"
 #include "techniques/depth_sampling/pixel_measures.h"
 #include "techniques/kit/depth_image_renderer.h"
 

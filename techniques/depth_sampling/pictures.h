@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 #include "techniques/kit/depth_image.h"
 
 namespace gfxrepro::depth_sampling {

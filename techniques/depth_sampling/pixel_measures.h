@@ -5,8 +5,8 @@
 #include <map>
 #include <span>
 
-#include "runner/gl/device.h"
-#include "runner/gl/pass.h"
+#include "engine/gl/device.h"
+#include "engine/gl/pass.h"
 #include "techniques/kit/depth_image.h"
 #include "techniques/kit/whole_image.h"
 

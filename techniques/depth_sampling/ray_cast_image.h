@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 #include "techniques/depth_sampling/visibility.h"
 #include "techniques/kit/depth_image.h"
 

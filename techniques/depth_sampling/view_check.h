@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "runner/raycast/ray_tracer.h"
+#include "engine/raycast/ray_tracer.h"
 #include "techniques/kit/view.h"
 
 namespace gfxrepro::depth_sampling {

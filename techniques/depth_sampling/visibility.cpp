@@ -5,7 +5,7 @@
 #include <deque>
 #include <limits>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {

@@ -9,12 +9,12 @@
 #include <map>
 #include <optional>
 
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "engine/core/text.h"
+#include "engine/metrics/mean_test.h"
+#include "engine/scene/load.h"
 #include "runner/config/program.h"
-#include "runner/core/files.h"
-#include "runner/core/hash.h"
-#include "runner/core/text.h"
-#include "runner/metrics/mean_test.h"
-#include "runner/scene/load.h"
 #include "techniques/external/metric_lines.h"
 #include "techniques/external/pictures.h"
 #include "techniques/external/process.h"
@@ -70,8 +70,7 @@ class Folder {
 
 class External : public technique::Technique {
   public:
-    External(const config::Node& program, config::Params& params)
-        : program_(config::readProgram(program)) {
+    External(const Node& program, Params& params) : program_(config::readProgram(program)) {
         program_.declare(params);
         params.finish();
         values_ = program_.valuesOf(params.resolved());
@@ -336,8 +335,7 @@ class External : public technique::Technique {
     long long peakBytes_ = 0;
 };
 
-std::unique_ptr<technique::Technique> createFrom(const config::Node& program,
-                                                 config::Params& params) {
+std::unique_ptr<technique::Technique> createFrom(const Node& program, Params& params) {
     return std::make_unique<External>(program, params);
 }
 

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "runner/core/files.h"
-#include "runner/core/json_depth.h"
-#include "runner/core/text.h"
+#include "engine/core/files.h"
+#include "engine/core/json_depth.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::external {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/image/image_file.h"
-#include "runner/metrics/hdr_flip.h"
-#include "runner/metrics/image_error.h"
-#include "runner/metrics/mean_test.h"
+#include "engine/image/image_file.h"
+#include "engine/metrics/hdr_flip.h"
+#include "engine/metrics/image_error.h"
+#include "engine/metrics/mean_test.h"
 
 namespace gfxrepro::external {
 

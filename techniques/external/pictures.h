@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::external {

@@ -14,8 +14,8 @@
 #include <cstring>
 #include <fstream>
 
-#include "runner/core/descriptor.h"
-#include "runner/core/error.h"
+#include "engine/core/descriptor.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::external {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::kit {
 

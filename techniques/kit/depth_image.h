@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "runner/gl/objects.h"
+#include "engine/gl/objects.h"
 #include "techniques/kit/picture.h"
 #include "techniques/kit/view.h"
 

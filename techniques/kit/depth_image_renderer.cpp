@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "runner/core/error.h"
-#include "runner/gpu_scene/gpu_mesh.h"
+#include "engine/core/error.h"
+#include "engine/gpu_scene/gpu_mesh.h"
 
 namespace gfxrepro::kit {
 

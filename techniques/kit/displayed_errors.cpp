@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "runner/core/error.h"
-#include "runner/image/srgb.h"
+#include "engine/core/error.h"
+#include "engine/image/srgb.h"
 
 namespace gfxrepro::kit {
 

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 
 namespace gfxrepro::kit {
 

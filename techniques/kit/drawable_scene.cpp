@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "runner/core/error.h"
-#include "runner/gpu_scene/gpu_mesh.h"
+#include "engine/core/error.h"
+#include "engine/gpu_scene/gpu_mesh.h"
 #include "techniques/kit/draws.h"
 
 namespace gfxrepro::kit {

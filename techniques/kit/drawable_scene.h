@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "runner/gl/objects.h"
-#include "runner/gl/pass.h"
-#include "runner/scene/scene.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/pass.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::kit {
 

@@ -7,8 +7,8 @@
 #include <glm/glm.hpp>
 #include <type_traits>
 
-#include "runner/gl/device.h"
-#include "runner/gl/gl.h"
+#include "engine/gl/device.h"
+#include "engine/gl/gl.h"
 
 namespace gfxrepro::kit {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::kit {
 

@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
 
 namespace gfxrepro::kit {
 

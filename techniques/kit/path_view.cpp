@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "runner/core/error.h"
-#include "runner/scene/animation.h"
+#include "engine/core/error.h"
+#include "engine/scene/animation.h"
 
 namespace gfxrepro::kit {
 

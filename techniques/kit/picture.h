@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <type_traits>
 
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 
 namespace gfxrepro::kit {
 

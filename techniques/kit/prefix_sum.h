@@ -1,8 +1,8 @@
 // Prefix sums on the device.
 #pragma once
 
-#include "runner/gl/objects.h"
-#include "runner/gl/pass.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/pass.h"
 
 namespace gfxrepro::kit {
 

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::kit {
 

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::kit {
 

@@ -1,7 +1,7 @@
 // Passes over every pixel of a target.
 #pragma once
 
-#include "runner/gl/objects.h"
+#include "engine/gl/objects.h"
 
 namespace gfxrepro::kit {
 

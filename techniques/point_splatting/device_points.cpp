@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::point_splatting {
 

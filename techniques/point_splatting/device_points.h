@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/point_splatting/model_file.h"
 #include "techniques/point_splatting/patch_selection.h"
 

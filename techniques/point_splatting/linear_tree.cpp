@@ -9,8 +9,8 @@
 #include <limits>
 #include <numeric>
 
-#include "runner/core/error.h"
-#include "runner/scene/covariance.h"
+#include "engine/core/error.h"
+#include "engine/scene/covariance.h"
 
 namespace gfxrepro::point_splatting {
 

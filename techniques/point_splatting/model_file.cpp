@@ -8,9 +8,9 @@
 #include <cstring>
 #include <optional>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
-#include "runner/core/hash.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
 #include "techniques/kit/kept_file.h"
 
 namespace gfxrepro::point_splatting {

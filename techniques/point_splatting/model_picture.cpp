@@ -4,8 +4,8 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "runner/core/error.h"
-#include "runner/image/resample.h"
+#include "engine/core/error.h"
+#include "engine/image/resample.h"
 
 namespace gfxrepro::point_splatting {
 

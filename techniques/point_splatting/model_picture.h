@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 
 namespace gfxrepro::point_splatting {
 

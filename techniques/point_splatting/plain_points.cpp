@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "runner/gpu_scene/gpu_mesh.h"
+#include "engine/gpu_scene/gpu_mesh.h"
 #include "techniques/kit/draws.h"
 
 namespace gfxrepro::point_splatting {

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "runner/gl/pass.h"
-#include "runner/gl/profiler.h"
+#include "engine/gl/pass.h"
+#include "engine/gl/profiler.h"
 #include "techniques/point_splatting/model_file.h"
 #include "techniques/point_splatting/patch_selection.h"
 

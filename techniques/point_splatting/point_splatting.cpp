@@ -5,7 +5,7 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "techniques/kit/requirements.h"
 #include "techniques/point_splatting/outputs.h"
 
@@ -42,7 +42,7 @@ scene::Camera turntableCamera(const scene::Box& box, float aspect, const ViewSet
     return camera;
 }
 
-PointSplatting::PointSplatting(config::Params& params) : params_(params) {
+PointSplatting::PointSplatting(Params& params) : params_(params) {
     if (params.isGiven("points")) pointsAt_ = params.locationOf("points");
 }
 
@@ -143,7 +143,7 @@ image::ImageF PointSplatting::drawnWith(const SplatSettings& splats,
 }
 
 namespace {
-std::unique_ptr<technique::Technique> create(config::Params& params) {
+std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<PointSplatting>(params);
 }
 }  // namespace

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/scene/point_sampling.h"
+#include "engine/scene/point_sampling.h"
 #include "runner/technique/technique.h"
 #include "techniques/point_splatting/compute_splatter.h"
 #include "techniques/point_splatting/model_file.h"
@@ -48,7 +48,7 @@ struct PointSplattingParams {
     bool showsPictures = false;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
-    explicit PointSplattingParams(config::Params& params);
+    explicit PointSplattingParams(Params& params);
 };
 
 /// The box seen from `settings.distance` times as far as frames it at no rotation.
@@ -56,7 +56,7 @@ scene::Camera turntableCamera(const scene::Box& box, float aspect, const ViewSet
 
 class PointSplatting final : public technique::Technique {
   public:
-    explicit PointSplatting(config::Params& params);
+    explicit PointSplatting(Params& params);
 
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }

@@ -9,7 +9,7 @@
 namespace gfxrepro::point_splatting {
 namespace {
 
-constexpr config::Choice<Method> kMethods[] = {
+constexpr Choice<Method> kMethods[] = {
     {Method::Adaptive, "adaptive",
      "a filter per patch, by its points' size on the screen (Eq. 13)"},
     {Method::FullEwa, "full_ewa", "H = J V^r Jᵀ + V^h everywhere (Eq. 3)"},
@@ -19,18 +19,17 @@ constexpr config::Choice<Method> kMethods[] = {
     {Method::Compute, "compute", "one pixel per point, by compute shaders"},
     {Method::GlPoints, "gl_points", "one white pixel per point, by a plain draw of positions"},
 };
-constexpr config::Choice<PointStorage> kStorages[] = {
+constexpr Choice<PointStorage> kStorages[] = {
     {PointStorage::Compressed, "compressed", "8 bytes per point (table 3.1)"},
     {PointStorage::Uncompressed, "uncompressed", "60 bytes per point"},
 };
 enum class LevelChoice { BySize, All };
-constexpr config::Choice<LevelChoice> kLevels[] = {
+constexpr Choice<LevelChoice> kLevels[] = {
     {LevelChoice::BySize, "by_size", "the coarsest whose splats are small enough on the screen"},
     {LevelChoice::All, "all", "all points of a patch"},
 };
 
-float number(config::Params& params, const char* name, float fallback,
-             const config::ParamSpec& spec) {
+float number(Params& params, const char* name, float fallback, const ParamSpec& spec) {
     // 0.7, not what a float makes of it, goes into manifests.
     const double written = std::stod(fmt::format("{:g}", fallback));
     return static_cast<float>(params.getDouble(name, written, spec));
@@ -54,7 +53,7 @@ SplatMethod splatMethod(Method method) {
     return SplatMethod::Adaptive;
 }
 
-SplatSettings readSplats(config::Params& params) {
+SplatSettings readSplats(Params& params) {
     SplatSettings settings;
     settings.storage = params.getEnum("storage", PointStorage::Compressed, kStorages,
                                       {"how points lie on the device"});
@@ -69,7 +68,7 @@ SplatSettings readSplats(config::Params& params) {
     return settings;
 }
 
-SelectionSettings readSelection(config::Params& params, Method method) {
+SelectionSettings readSelection(Params& params, Method method) {
     SelectionSettings settings;
     settings.method = splatMethod(method);
     settings.cullsFrustum =
@@ -104,7 +103,7 @@ SelectionSettings readSelection(config::Params& params, Method method) {
     return settings;
 }
 
-TreeSettings readTree(config::Params& params) {
+TreeSettings readTree(Params& params) {
     TreeSettings settings;
     settings.maxPatchPoints = static_cast<std::uint32_t>(
         params.getInt("patch_points_max", static_cast<int>(settings.maxPatchPoints),
@@ -118,7 +117,7 @@ TreeSettings readTree(config::Params& params) {
     return settings;
 }
 
-ViewSettings readView(config::Params& params) {
+ViewSettings readView(Params& params) {
     ViewSettings view;
     view.distance =
         number(params, "distance", view.distance,
@@ -135,7 +134,7 @@ ViewSettings readView(config::Params& params) {
 
 }  // namespace
 
-PointSplattingParams::PointSplattingParams(config::Params& params)
+PointSplattingParams::PointSplattingParams(Params& params)
     : method(params.getEnum("method", Method::Adaptive, kMethods, {"what is measured"})),
       splats(readSplats(params)),
       selection(readSelection(params, method)),

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <span>
 
-#include "runner/gl/gl.h"
-#include "runner/image/resample.h"
-#include "runner/metrics/flip.h"
-#include "runner/metrics/image_error.h"
-#include "runner/metrics/statistics.h"
+#include "engine/gl/gl.h"
+#include "engine/image/resample.h"
+#include "engine/metrics/flip.h"
+#include "engine/metrics/image_error.h"
+#include "engine/metrics/statistics.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
 #include "techniques/point_splatting/compression_errors.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/kit/draws.h"
 
 namespace gfxrepro::point_splatting {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "runner/gl/profiler.h"
+#include "engine/gl/profiler.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/point_splatting/device_points.h"
 

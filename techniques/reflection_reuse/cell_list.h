@@ -1,8 +1,8 @@
 // Which cells of the grid over a key frame are drawn: lists without gaps for indirect draws.
 #pragma once
 
-#include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/program.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/reflection_reuse/reflection_depth_image.h"
 

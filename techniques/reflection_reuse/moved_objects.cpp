@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::reflection_reuse {
 

@@ -6,8 +6,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/program.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/reflection_reuse/reflection_depth_image.h"
 

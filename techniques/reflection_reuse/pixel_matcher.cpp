@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/kit/draws.h"
 #include "techniques/reflection_reuse/matching_constants.h"
 

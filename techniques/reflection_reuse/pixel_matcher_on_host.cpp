@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/reflection_reuse/matching_constants.h"
 #include "techniques/reflection_reuse/pixel_matcher.h"
 

@@ -9,7 +9,7 @@
 
 namespace gfxrepro::reflection_reuse {
 
-ReflectionReuse::ReflectionReuse(config::Params& params) : params_(params) {}
+ReflectionReuse::ReflectionReuse(Params& params) : params_(params) {}
 
 void ReflectionReuse::setup(technique::SetupContext& context) {
     const gl::ShaderLibrary& shaders = context.shaders;
@@ -113,7 +113,7 @@ const reflections::ReflectionTarget& ReflectionReuse::reflection() const {
 }
 
 namespace {
-std::unique_ptr<technique::Technique> create(config::Params& params) {
+std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<ReflectionReuse>(params);
 }
 }  // namespace

@@ -16,7 +16,7 @@ config::Outputs outputs();
 
 class ReflectionReuse final : public technique::Technique {
   public:
-    explicit ReflectionReuse(config::Params& params);
+    explicit ReflectionReuse(Params& params);
 
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }

@@ -5,41 +5,40 @@
 namespace gfxrepro::reflection_reuse {
 namespace {
 
-constexpr config::Choice<Method> kMethods[] = {
+constexpr Choice<Method> kMethods[] = {
     {Method::Reuse, "reuse", "key frames' reflections moved to where they are seen (algorithm 8)"},
     {Method::Direct, "direct", "the same by depth alone, as if they were painted on"},
     {Method::RayTraced, "ray_traced", "every sample of every frame"},
 };
-constexpr config::Choice<Tracer> kTracers[] = {
+constexpr Choice<Tracer> kTracers[] = {
     {Tracer::Compute, "compute", "ray tracing on the same device"},
     {Tracer::Embree, "embree", "ray tracing on the CPU"},
     {Tracer::Clustered, "clustered", "clustered depth images, as clustered_reflections has them"},
 };
-constexpr config::Choice<reflections::Blend> kBlends[] = {
+constexpr Choice<reflections::Blend> kBlends[] = {
     {reflections::Blend::Fresnel, "fresnel", "by view, normal and reflectivity"},
     {reflections::Blend::Reflectivity, "reflectivity", "by reflectivity alone, as chapter 4"},
 };
-constexpr config::Choice<Matching> kMatchings[] = {
+constexpr Choice<Matching> kMatchings[] = {
     {Matching::FirstOrder, "first_order", "among planes, pixel by pixel (algorithm 9)"},
     {Matching::SecondOrder, "second_order", "among bent surfaces, between pixels"},
 };
-constexpr config::Choice<Forward> kForwards[] = {
+constexpr Choice<Forward> kForwards[] = {
     {Forward::Grid, "grid", "a mesh over the image"},
     {Forward::Splats, "splats", "a point per pixel"},
 };
 
-constexpr config::Choice<Resampling> kResamplings[] = {
+constexpr Choice<Resampling> kResamplings[] = {
     {Resampling::Twice, "twice",
      "shifted in the key frame's view, then warped (Sec. 5.4.2, 5.4.3)"},
     {Resampling::Once, "once", "moved to the new view at once"},
 };
 
-float number(config::Params& params, const char* name, float fallback,
-             const config::ParamSpec& spec) {
+float number(Params& params, const char* name, float fallback, const ParamSpec& spec) {
     return static_cast<float>(params.getDouble(name, static_cast<double>(fallback), spec));
 }
 
-ReuseSettings readReuse(config::Params& params) {
+ReuseSettings readReuse(Params& params) {
     ReuseSettings settings;
     settings.keyFrameThreshold = static_cast<float>(params.getDouble(
         "threshold", 0.3,
@@ -81,7 +80,7 @@ ReuseSettings readReuse(config::Params& params) {
 
 }  // namespace
 
-ReuseParams::ReuseParams(config::Params& params)
+ReuseParams::ReuseParams(Params& params)
     : method(params.getEnum("method", Method::Reuse, kMethods, {"where reflections come from"})),
       tracer(params.getEnum("tracer", Tracer::Compute, kTracers,
                             {"what traces key frames and recomputed samples"})) {

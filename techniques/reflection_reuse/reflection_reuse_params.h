@@ -1,7 +1,7 @@
 // Parameters of reflection_reuse.
 #pragma once
 
-#include "runner/config/params.h"
+#include "engine/core/params.h"
 #include "techniques/reflection_reuse/reuse_renderer.h"
 #include "techniques/reflections/frame.h"
 
@@ -29,7 +29,7 @@ struct ReuseParams : reflections::FrameSettings {
     int exhaustiveSamples = 0;  // searched over their whole reflector; 0: none
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
-    explicit ReuseParams(config::Params& params);
+    explicit ReuseParams(Params& params);
 };
 
 }  // namespace gfxrepro::reflection_reuse

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <glm/gtc/constants.hpp>
 
-#include "runner/image/srgb.h"
+#include "engine/image/srgb.h"
 #include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"

@@ -2,8 +2,8 @@
 // two steps or in one.
 #pragma once
 
-#include "runner/gl/objects.h"
-#include "runner/gl/program.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/program.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/reflection_reuse/cell_list.h"
 #include "techniques/reflection_reuse/pixel_matcher.h"

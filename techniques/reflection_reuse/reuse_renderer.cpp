@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/reflection_reuse/moved_objects.h"
 
 namespace gfxrepro::reflection_reuse {

@@ -1,9 +1,9 @@
 // Step 3.c.iii of [xie2017] Algorithm 6 and the average of supersampling.
 #pragma once
 
-#include "runner/gl/objects.h"
-#include "runner/gl/pass.h"
-#include "runner/image/image.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/pass.h"
+#include "engine/image/image.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/reflections/reflection_tracer.h"
 

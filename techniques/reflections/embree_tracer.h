@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "runner/raycast/ray_tracer.h"
+#include "engine/raycast/ray_tracer.h"
 #include "techniques/reflections/environment_map.h"
 #include "techniques/reflections/reflection_tracer.h"
 #include "techniques/reflections/wanted_samples.h"

@@ -2,26 +2,26 @@
 
 #include <fmt/format.h>
 
-#include "runner/metrics/flip.h"
-#include "runner/scene/animation.h"
+#include "engine/metrics/flip.h"
+#include "engine/scene/animation.h"
 #include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/path_view.h"
 #include "techniques/reflections/surface_pictures.h"
 
 namespace gfxrepro::reflections {
 
-void FrameSettings::readView(config::Params& params) {
+void FrameSettings::readView(Params& params) {
     view = params.getText(
         "view", "", {"a path or camera of the scene; none: its first path, else its first camera"});
 }
 
-void FrameSettings::readMotionAndSupersampling(config::Params& params, int defaultSupersampling) {
+void FrameSettings::readMotionAndSupersampling(Params& params, int defaultSupersampling) {
     hasMotion = params.getBool("motion", false, {"objects move as the scene says"});
     supersampling = params.getInt("supersampling", defaultSupersampling,
                                   {"samples along each edge of an output pixel", "samples", 1, 8});
 }
 
-void FrameSettings::readGlossiness(config::Params& params, const std::string& technique) {
+void FrameSettings::readGlossiness(Params& params, const std::string& technique) {
     const auto given = static_cast<float>(params.getDouble(
         "glossiness", -1.0,
         {"of all reflectors, 0 a mirror, 1 the widest lobe; -1: as their materials say", "1", -1.0,
@@ -41,17 +41,17 @@ void FrameSettings::readGlossiness(config::Params& params, const std::string& te
     glossiness = given;
 }
 
-void FrameSettings::readRoughness(config::Params& params) {
+void FrameSettings::readRoughness(Params& params) {
     reflectors.maxRoughness = static_cast<float>(params.getDouble(
         "reflector_roughness", 0.4, {"materials up to this roughness reflect", "1", 0.0, 1.0}));
 }
 
-void FrameSettings::readTextureFilter(config::Params& params) {
+void FrameSettings::readTextureFilter(Params& params) {
     textureFilter =
         params.getEnum("texture_filter", textureFilter, kTextureFilters, kTextureFilterSpec);
 }
 
-void FrameSettings::readRays(config::Params& params) {
+void FrameSettings::readRays(Params& params) {
     lobe.rays = params.getInt(
         "rays", 0, {"rays of a glossy sample; 0: 8 … 49, with the glossiness", "rays", 0, 4096});
 }

@@ -26,13 +26,13 @@ struct FrameSettings {
     bool showsPictures = false;
 
     // Each declares the parameters that it is named after.
-    void readView(config::Params& params);
-    void readMotionAndSupersampling(config::Params& params, int defaultSupersampling);
+    void readView(Params& params);
+    void readMotionAndSupersampling(Params& params, int defaultSupersampling);
     /// Throws Error for one between -1, which is none, and 0.
-    void readGlossiness(config::Params& params, const std::string& technique);
-    void readRoughness(config::Params& params);
-    void readTextureFilter(config::Params& params);
-    void readRays(config::Params& params);
+    void readGlossiness(Params& params, const std::string& technique);
+    void readRoughness(Params& params);
+    void readTextureFilter(Params& params);
+    void readRays(Params& params);
 
     /// Throws Error for a scene without triangles, reflectors or the view.
     void requireScene(const scene::Scene& scene) const;

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "runner/gl/objects.h"
-#include "runner/gl/pass.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/pass.h"
 #include "techniques/kit/view.h"
 #include "techniques/reflections/gpu_objects.h"
 

@@ -1,9 +1,9 @@
 // A bounding volume hierarchy made on the device, from the posed scene, each frame.
 #pragma once
 
-#include "runner/gl/objects.h"
-#include "runner/gl/pass.h"
-#include "runner/gl/profiler.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/pass.h"
+#include "engine/gl/profiler.h"
 #include "techniques/reflections/gpu_objects.h"
 #include "techniques/reflections/radix_sort.h"
 

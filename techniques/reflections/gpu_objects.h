@@ -5,8 +5,8 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "runner/gl/objects.h"
-#include "runner/gl/pass.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/pass.h"
 #include "techniques/reflections/surfaces.h"
 
 namespace gfxrepro::reflections {

@@ -1,6 +1,6 @@
 #include "techniques/reflections/gpu_ray_tracer.h"
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/kit/draws.h"
 #include "techniques/reflections/embree_tracer.h"
 

@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "runner/gl/gl.h"
+#include "engine/gl/gl.h"
 
 namespace gfxrepro::reflections {
 

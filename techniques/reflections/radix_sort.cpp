@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/glm.hpp>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/kit/draws.h"
 
 namespace gfxrepro::reflections {

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "runner/gl/objects.h"
-#include "runner/gl/pass.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/pass.h"
 #include "techniques/kit/prefix_sum.h"
 
 namespace gfxrepro::reflections {

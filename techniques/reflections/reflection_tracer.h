@@ -4,8 +4,8 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "runner/gl/objects.h"
-#include "runner/gl/profiler.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/profiler.h"
 #include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::reflections {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::reflections {
 

@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::reflections {
 

@@ -1,6 +1,6 @@
 #include "techniques/reflections/screen_space_tracer.h"
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::reflections {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/reflections/gbuffer.h"
 

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/reflections/reflector_parts.h"
 
 namespace gfxrepro::reflections {

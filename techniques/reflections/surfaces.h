@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "runner/image/image.h"
-#include "runner/scene/scene.h"
+#include "engine/image/image.h"
+#include "engine/scene/scene.h"
 #include "techniques/reflections/reflector_rule.h"
 #include "techniques/reflections/texture_filter.h"
 #include "techniques/reflections/texture_layer.h"

@@ -1,7 +1,7 @@
 // How finely textures are read, on all sides: drawn surfaces, clusters' images and rays.
 #pragma once
 
-#include "runner/config/params.h"
+#include "engine/core/params.h"
 
 namespace gfxrepro::reflections {
 
@@ -10,10 +10,10 @@ enum class TextureFilter {
     FinestLevel,  // as they are
 };
 
-constexpr config::Choice<TextureFilter> kTextureFilters[] = {
+constexpr Choice<TextureFilter> kTextureFilters[] = {
     {TextureFilter::Footprint, "footprint", "averaged over what a sample, a texel or a ray covers"},
     {TextureFilter::FinestLevel, "finest_level", "as they are, however much a sample covers"},
 };
-constexpr config::ParamSpec kTextureFilterSpec = {"how textures are read"};
+constexpr ParamSpec kTextureFilterSpec = {"how textures are read"};
 
 }  // namespace gfxrepro::reflections

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/core/error.h"
-#include "runner/image/srgb.h"
+#include "engine/core/error.h"
+#include "engine/image/srgb.h"
 
 namespace gfxrepro::reflections {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 
 namespace gfxrepro::reflections {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::shadow_mapping {
 

@@ -4,7 +4,7 @@
 
 namespace gfxrepro::shadow_mapping {
 
-ShadowMapping::ShadowMapping(config::Params& params) : params_(params) {}
+ShadowMapping::ShadowMapping(Params& params) : params_(params) {}
 
 void ShadowMapping::requireScene(const scene::Scene& scene) const {
     kit::requireTriangles(scene, "shadow_mapping");

@@ -35,7 +35,7 @@ struct ShadowMappingParams {
     bool showsPictures = false;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
-    explicit ShadowMappingParams(config::Params& params);
+    explicit ShadowMappingParams(Params& params);
 
     /// How near a true edge an error counts as one of the edge: edgeTexels and half the filter.
     float edgeReachTexels() const;
@@ -55,7 +55,7 @@ TruthLight truthLight(const Light& light, const scene::Box& bounds, int sizePx);
 
 class ShadowMapping final : public technique::Technique {
   public:
-    explicit ShadowMapping(config::Params& params);
+    explicit ShadowMapping(Params& params);
 
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }

@@ -5,34 +5,33 @@
 namespace gfxrepro::shadow_mapping {
 namespace {
 
-constexpr config::Choice<Storage> kMethods[] = {
+constexpr Choice<Storage> kMethods[] = {
     {Storage::Standard, "standard", "depths in a float colour texture, compared in the shader"},
     {Storage::Hardware, "hardware", "a depth texture, compared by the texture unit"},
 };
-constexpr config::Choice<FilterKind> kFilters[] = {
+constexpr Choice<FilterKind> kFilters[] = {
     {FilterKind::Nearest, "nearest", "one comparison"},
     {FilterKind::Bilinear, "bilinear", "four comparisons, weighted"},
     {FilterKind::Pcf, "pcf", "the mean of filter_size² comparisons"},
     {FilterKind::Pcss, "pcss", "percentage-closer soft shadows"},
     {FilterKind::Variance, "variance", "variance shadow maps, blurred"},
 };
-constexpr config::Choice<LightKind> kLightKinds[] = {
+constexpr Choice<LightKind> kLightKinds[] = {
     {LightKind::Spot, "spot", "one perspective map around the scene"},
     {LightKind::Directional, "directional", "one orthographic map around the scene"},
     {LightKind::Point, "point", "six maps, the sides of a cube"},
 };
-constexpr config::Choice<LightPlace> kLightPlaces[] = {
+constexpr Choice<LightPlace> kLightPlaces[] = {
     {LightPlace::Orbit, "orbit", "around the scene's box, evenly over the azimuth"},
     {LightPlace::Scene, "scene", "the scene's own lights, in their order"},
 };
-constexpr config::Choice<DepthFormat> kFormats[] = {
+constexpr Choice<DepthFormat> kFormats[] = {
     {DepthFormat::Unorm16, "unorm16", "D16"},
     {DepthFormat::Unorm24, "unorm24", "D24"},
     {DepthFormat::Float32, "float32", "32-bit float"},
 };
 
-float number(config::Params& params, const char* name, double fallback,
-             const config::ParamSpec& spec) {
+float number(Params& params, const char* name, double fallback, const ParamSpec& spec) {
     return static_cast<float>(params.getDouble(name, fallback, spec));
 }
 
@@ -52,7 +51,7 @@ Filter filterOf(FilterKind kind, int size) {
     return Filter::Variance;
 }
 
-void readLights(config::Params& params, ShadowMappingParams& p) {
+void readLights(Params& params, ShadowMappingParams& p) {
     p.lightKind = params.getEnum("light_kind", LightKind::Spot, kLightKinds, {"of all lights"});
     p.lightPlace =
         params.getEnum("light_place", LightPlace::Orbit, kLightPlaces, {"where lights stand"});
@@ -68,7 +67,7 @@ void readLights(config::Params& params, ShadowMappingParams& p) {
                          {"diameter of the lights, for pcss", "diagonals", 0.0, 10.0});
 }
 
-void refuseUnread(const config::Params& params, FilterKind filter, const ShadowMappingParams& p) {
+void refuseUnread(const Params& params, FilterKind filter, const ShadowMappingParams& p) {
     if (filter != FilterKind::Pcf && filter != FilterKind::Variance) {
         params.refuseGiven({"filter_size"}, "'filter: pcf' or 'filter: variance'");
     }
@@ -93,7 +92,7 @@ void refuseUnread(const config::Params& params, FilterKind filter, const ShadowM
 
 }  // namespace
 
-ShadowMappingParams::ShadowMappingParams(config::Params& params) {
+ShadowMappingParams::ShadowMappingParams(Params& params) {
     maps.storage =
         params.getEnum("method", Storage::Hardware, kMethods, {"how depths are compared"});
     const FilterKind filter =

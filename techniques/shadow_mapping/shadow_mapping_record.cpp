@@ -137,7 +137,7 @@ void ShadowMapping::recordDifference(technique::Recorder& recorder, const Shaded
 }
 
 namespace {
-std::unique_ptr<technique::Technique> create(config::Params& params) {
+std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<ShadowMapping>(params);
 }
 }  // namespace

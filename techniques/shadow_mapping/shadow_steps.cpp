@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::shadow_mapping {
 namespace {

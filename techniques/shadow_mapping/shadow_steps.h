@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/gl/program.h"
+#include "engine/gl/program.h"
 
 namespace gfxrepro::shadow_mapping {
 

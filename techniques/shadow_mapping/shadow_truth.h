@@ -17,8 +17,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "runner/image/image.h"
-#include "runner/raycast/ray_tracer.h"
+#include "engine/image/image.h"
+#include "engine/raycast/ray_tracer.h"
 #include "techniques/kit/view.h"
 
 namespace gfxrepro::shadow_mapping {

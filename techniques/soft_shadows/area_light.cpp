@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::soft_shadows {
 namespace {

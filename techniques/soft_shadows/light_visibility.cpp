@@ -1,6 +1,6 @@
 #include "techniques/soft_shadows/light_visibility.h"
 
-#include "runner/gpu_scene/gpu_mesh.h"
+#include "engine/gpu_scene/gpu_mesh.h"
 
 namespace gfxrepro::soft_shadows {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/kit/drawable_scene.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/soft_shadows/area_light.h"

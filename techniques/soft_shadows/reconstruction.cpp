@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/kit/draws.h"
 
 namespace gfxrepro::soft_shadows {

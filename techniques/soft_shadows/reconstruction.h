@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "runner/gl/device.h"
-#include "runner/gl/pass.h"
-#include "runner/scene/scene.h"
+#include "engine/gl/device.h"
+#include "engine/gl/pass.h"
+#include "engine/scene/scene.h"
 #include "techniques/kit/depth_image.h"
 #include "techniques/kit/prefix_sum.h"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "runner/gpu_scene/gpu_mesh.h"
+#include "engine/gpu_scene/gpu_mesh.h"
 #include "techniques/soft_shadows/light_visibility.h"
 #include "techniques/soft_shadows/reconstruction.h"
 

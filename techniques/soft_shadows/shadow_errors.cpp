@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/kit/picture.h"
 
 namespace gfxrepro::soft_shadows {

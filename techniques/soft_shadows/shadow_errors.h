@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "runner/image/image.h"
-#include "runner/raycast/ray_tracer.h"
+#include "engine/image/image.h"
+#include "engine/raycast/ray_tracer.h"
 #include "techniques/soft_shadows/light_visibility.h"
 
 namespace gfxrepro::soft_shadows {

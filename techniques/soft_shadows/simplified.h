@@ -1,7 +1,7 @@
 // A reconstructed mesh with fewer triangles ([xie2017] names it as future work).
 #pragma once
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::soft_shadows {
 

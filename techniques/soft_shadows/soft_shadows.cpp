@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/kit/requirements.h"
 
 namespace gfxrepro::soft_shadows {
@@ -57,7 +57,7 @@ std::vector<const kit::DepthImage*> firstOf(const std::vector<kit::DepthImage>& 
 
 }  // namespace
 
-SoftShadows::SoftShadows(config::Params& params) : params_(params) {}
+SoftShadows::SoftShadows(Params& params) : params_(params) {}
 
 void SoftShadows::requireScene(const scene::Scene& scene) const {
     kit::requireTriangles(scene, "soft_shadows");

@@ -55,7 +55,7 @@ struct SoftShadowsParams {
     bool exportsMesh = false;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
-    explicit SoftShadowsParams(config::Params& params);
+    explicit SoftShadowsParams(Params& params);
 
     /// Whether shadows come from meshes rebuilt from depth images.
     bool reconstructs() const;
@@ -65,7 +65,7 @@ struct SoftShadowsParams {
 
 class SoftShadows final : public technique::Technique {
   public:
-    explicit SoftShadows(config::Params& params);
+    explicit SoftShadows(Params& params);
 
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }

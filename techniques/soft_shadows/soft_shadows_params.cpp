@@ -5,7 +5,7 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-constexpr config::Choice<Method> kMethods[] = {
+constexpr Choice<Method> kMethods[] = {
     {Method::Geometry, "geometry", "shadow maps of the original geometry"},
     {Method::NonRedundant, "non_redundant",
      "meshes from non-redundant depth images of the light's corners (algorithm 5)"},
@@ -15,30 +15,29 @@ constexpr config::Choice<Method> kMethods[] = {
     {Method::Pcss, "pcss", "percentage-closer soft shadows from the light's centre"},
     {Method::Variance, "variance", "variance soft shadows from the light's centre"},
 };
-constexpr config::Choice<Reconstruction> kReconstructions[] = {
+constexpr Choice<Reconstruction> kReconstructions[] = {
     {Reconstruction::Hybrid, "hybrid", "a quad per sample (algorithm 4)"},
     {Reconstruction::Classic, "classic", "triangles between neighbouring samples"},
 };
 
-constexpr config::Choice<kit::Redundancy> kRedundancies[] = {
+constexpr Choice<kit::Redundancy> kRedundancies[] = {
     {kit::Redundancy::Pixel, "pixel",
      "an earlier image holds the triangle where the sample lands (algorithm 3)"},
     {kit::Redundancy::Visibility, "visibility",
      "an earlier view sees the sample (algorithm 2), by a shadow map's test"},
 };
-constexpr config::Choice<Measured> kMeasured[] = {
+constexpr Choice<Measured> kMeasured[] = {
     {Measured::SoftShadow, "soft_shadow", "the light's visibility"},
     {Measured::DepthAndPass, "depth_and_pass",
      "a yardstick: for each light sample a depth-only draw of the casters and a pass over the "
      "image that only writes"},
 };
 
-float number(config::Params& params, const char* name, double fallback,
-             const config::ParamSpec& spec) {
+float number(Params& params, const char* name, double fallback, const ParamSpec& spec) {
     return static_cast<float>(params.getDouble(name, fallback, spec));
 }
 
-AreaLightSettings readLight(config::Params& params) {
+AreaLightSettings readLight(Params& params) {
     AreaLightSettings light;
     light.sizeRatio =
         number(params, "light_ratio", 1.0,
@@ -55,7 +54,7 @@ AreaLightSettings readLight(config::Params& params) {
     return light;
 }
 
-ReconstructionSettings readReconstruction(config::Params& params) {
+ReconstructionSettings readReconstruction(Params& params) {
     ReconstructionSettings settings;
     settings.method = params.getEnum("reconstruction", Reconstruction::Hybrid, kReconstructions,
                                      {"how depth images become meshes"});
@@ -72,7 +71,7 @@ ReconstructionSettings readReconstruction(config::Params& params) {
 
 }  // namespace
 
-SoftShadowsParams::SoftShadowsParams(config::Params& params)
+SoftShadowsParams::SoftShadowsParams(Params& params)
     : method(params.getEnum("method", Method::NonRedundant, kMethods, {"where shadows come from"})),
       redundancy(params.getEnum("redundancy", kit::Redundancy::Pixel, kRedundancies,
                                 {"which samples non-redundant images leave out"})),

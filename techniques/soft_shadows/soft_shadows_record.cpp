@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/scene/load.h"
+#include "engine/scene/load.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
 #include "techniques/kit/picture.h"
@@ -236,7 +236,7 @@ void SoftShadows::recordLightView(technique::Recorder& recorder, const char* nam
 }
 
 namespace {
-std::unique_ptr<technique::Technique> create(config::Params& params) {
+std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<SoftShadows>(params);
 }
 }  // namespace

@@ -4,11 +4,11 @@
 #include <numeric>
 #include <optional>
 
-#include "runner/gl/gl.h"
-#include "runner/gl/objects.h"
-#include "runner/gl/pass.h"
-#include "runner/gpu_scene/gpu_mesh.h"
-#include "runner/raycast/ray_tracer.h"
+#include "engine/gl/gl.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/pass.h"
+#include "engine/gpu_scene/gpu_mesh.h"
+#include "engine/raycast/ray_tracer.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/requirements.h"
 #include "techniques/kit/view.h"
@@ -21,7 +21,7 @@ namespace {
 // The methods that are compared: the paper's, its baseline, its ablations.
 enum class Method { Gradient, Silhouette };
 
-constexpr config::Choice<Method> kMethods[] = {
+constexpr Choice<Method> kMethods[] = {
     {Method::Gradient, "gradient", "a horizontal ramp from black to white"},
     {Method::Silhouette, "silhouette", "white where the scene covers a pixel"},
 };
@@ -30,7 +30,7 @@ class TemplateTechnique : public technique::Technique {
   public:
     // Every parameter is declared here, once: default, meaning, unit and range. No GL, so that
     // `gfxrepro check` validates a config on any machine.
-    explicit TemplateTechnique(config::Params& params)
+    explicit TemplateTechnique(Params& params)
         : method_(params.getEnum("method", Method::Gradient, kMethods, {"what is drawn"})),
           brightness_(static_cast<float>(
               params.getDouble("brightness", 1.0, {"value of a white pixel", "1", 0.0, 1.0}))),
@@ -152,7 +152,7 @@ class TemplateTechnique : public technique::Technique {
     std::optional<kit::WholeImage> wholeImage_;
 };
 
-std::unique_ptr<technique::Technique> create(config::Params& params) {
+std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<TemplateTechnique>(params);
 }
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 #include "techniques/terrain_tessellation/factor_check.h"
 
 namespace gfxrepro::terrain_tessellation {

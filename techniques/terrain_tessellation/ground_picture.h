@@ -1,8 +1,8 @@
 // A picture of the ground, made from its heights: no aerial picture of the papers' map is at hand.
 #pragma once
 
-#include "runner/image/image.h"
-#include "runner/scene/height_map.h"
+#include "engine/image/image.h"
+#include "engine/scene/height_map.h"
 
 namespace gfxrepro::terrain_tessellation {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/core/error.h"
-#include "runner/gl/gl.h"
+#include "engine/core/error.h"
+#include "engine/gl/gl.h"
 
 namespace gfxrepro::terrain_tessellation {
 

@@ -9,8 +9,8 @@
 #include <tuple>
 #include <vector>
 
-#include "runner/gl/objects.h"
-#include "runner/scene/height_map.h"
+#include "engine/gl/objects.h"
+#include "engine/scene/height_map.h"
 #include "techniques/terrain_tessellation/tile_selection.h"
 
 namespace gfxrepro::terrain_tessellation {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::terrain_tessellation {
 

@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/terrain_tessellation/height_pages.h"
 #include "techniques/terrain_tessellation/terrain_metadata.h"
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {

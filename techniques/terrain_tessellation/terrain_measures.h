@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 #include "techniques/kit/view.h"
 
 namespace gfxrepro::terrain_tessellation {

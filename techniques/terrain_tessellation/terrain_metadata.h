@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/scene/height_map.h"
+#include "engine/scene/height_map.h"
 
 namespace gfxrepro::terrain_tessellation {
 

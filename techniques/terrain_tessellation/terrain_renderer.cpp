@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/kit/draws.h"
 
 namespace gfxrepro::terrain_tessellation {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/terrain_tessellation/edge_factors.h"
 #include "techniques/terrain_tessellation/height_textures.h"
 #include "techniques/terrain_tessellation/patch_batches.h"

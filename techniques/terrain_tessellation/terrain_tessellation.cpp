@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "runner/core/files.h"
-#include "runner/gl/gl.h"
+#include "engine/core/files.h"
+#include "engine/gl/gl.h"
 #include "techniques/kit/requirements.h"
 #include "techniques/terrain_tessellation/ground_picture.h"
 #include "techniques/terrain_tessellation/outputs.h"
@@ -63,7 +63,7 @@ void TerrainTessellation::Target::clear() const {
     framebuffer.clearDepth(1.0F);
 }
 
-TerrainTessellation::TerrainTessellation(config::Params& params) : params_(params) {}
+TerrainTessellation::TerrainTessellation(Params& params) : params_(params) {}
 
 void TerrainTessellation::requireScene(const scene::Scene& scene) const {
     if (!scene.heights || scene.heights->isEmpty()) {
@@ -187,7 +187,7 @@ void TerrainTessellation::render(technique::FrameContext& context) {
 }
 
 namespace {
-std::unique_ptr<technique::Technique> create(config::Params& params) {
+std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<TerrainTessellation>(params);
 }
 }  // namespace

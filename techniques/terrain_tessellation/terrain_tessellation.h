@@ -46,12 +46,12 @@ struct TerrainTessellationParams {
     int supersampling = 1;  // of pictures and errors, along each axis
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
-    explicit TerrainTessellationParams(config::Params& params);
+    explicit TerrainTessellationParams(Params& params);
 };
 
 class TerrainTessellation final : public technique::Technique {
   public:
-    explicit TerrainTessellation(config::Params& params);
+    explicit TerrainTessellation(Params& params);
 
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::HeightMap; }

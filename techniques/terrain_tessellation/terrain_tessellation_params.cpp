@@ -5,48 +5,48 @@
 namespace gfxrepro::terrain_tessellation {
 namespace {
 
-constexpr config::Choice<Method> kMethods[] = {
+constexpr Choice<Method> kMethods[] = {
     {Method::Adaptive, "adaptive", "patches tessellated to the screen"},
     {Method::Patches, "patches", "the patches as they reach the GPU, two triangles each"},
     {Method::UniformGrid, "uniform_grid", "every sample of the height map: the truth"},
     {Method::Cdlod, "cdlod", "levels by distance that morph into each other, no tessellation"},
 };
-constexpr config::Choice<Culling> kCullings[] = {
+constexpr Choice<Culling> kCullings[] = {
     {Culling::None, "none", "everything is drawn"},
     {Culling::Tile, "tile", "tiles outside the frustum are dropped on the CPU"},
     {Culling::TileAndPatch, "tile_and_patch", "patches, too, in the control stage"},
 };
-constexpr config::Choice<Shading> kShadings[] = {
+constexpr Choice<Shading> kShadings[] = {
     {Shading::SlopeAltitude, "slope_altitude", "grass, rock and snow"},
     {Shading::ColourMap, "colour_map", "the scene's picture of the ground"},
     {Shading::GeneratedMap, "generated_map", "a picture of the ground, made from the heights"},
     {Shading::Patches, "patches", "a chequer of the patches, those of coarser tiles darker"},
 };
-constexpr config::Choice<Segment> kSegments[] = {
+constexpr Choice<Segment> kSegments[] = {
     {Segment::Vertical, "vertical", "along the world's up, as printed"},
     {Segment::ViewFacing, "view_facing", "parallel to the picture"},
     {Segment::Sphere, "sphere", "the apparent diameter of a sphere"},
 };
-constexpr config::Choice<InnerFactors> kInnerFactors[] = {
+constexpr Choice<InnerFactors> kInnerFactors[] = {
     {InnerFactors::Mean, "mean", "of the opposite edges', as printed"},
     {InnerFactors::Minimum, "minimum", "after Yusov and Shevtsov"},
     {InnerFactors::Maximum, "maximum", ""},
 };
-constexpr config::Choice<EdgeRule> kEdgeRules[] = {
+constexpr Choice<EdgeRule> kEdgeRules[] = {
     {EdgeRule::Shared, "shared", "from the edge alone, equal on both of its sides"},
     {EdgeRule::OwnPatch, "own_patch", "the patch's mean, unequal on both sides: cracks"},
 };
-constexpr config::Choice<Spacing> kSpacings[] = {
+constexpr Choice<Spacing> kSpacings[] = {
     {Spacing::FractionalEven, "fractional_even", "as printed"},
     {Spacing::FractionalOdd, "fractional_odd", ""},
     {Spacing::Equal, "integer", "factors rounded up"},
 };
-constexpr config::Choice<HeightFormat> kHeightFormats[] = {
+constexpr Choice<HeightFormat> kHeightFormats[] = {
     {HeightFormat::Float32, "float32", "exact"},
     {HeightFormat::Unorm16, "unorm16", "half the memory, 65,536 steps"},
 };
 
-FactorSettings readFactors(config::Params& params) {
+FactorSettings readFactors(Params& params) {
     FactorSettings factors;
     factors.segmentPx = static_cast<float>(
         params.getDouble("delta_s", 5.0, {"ΔS of eq. (4)", "pixels", 0.1, 1000.0}));
@@ -67,7 +67,7 @@ bool isPowerOfTwo(int value) {
     return (value & (value - 1)) == 0;
 }
 
-void requireShape(int blockSegments, const TileSettings& tile, const config::Params& params) {
+void requireShape(int blockSegments, const TileSettings& tile, const Params& params) {
     const auto require = [&](const char* name, int value) {
         if (isPowerOfTwo(value)) return;
         throw Error(params.locationOf(name), fmt::format("{} {} is no power of two", name, value));
@@ -86,7 +86,7 @@ void requireShape(int blockSegments, const TileSettings& tile, const config::Par
 
 }  // namespace
 
-TerrainTessellationParams::TerrainTessellationParams(config::Params& params)
+TerrainTessellationParams::TerrainTessellationParams(Params& params)
     : method(params.getEnum("method", Method::Adaptive, kMethods, {"how terrain is drawn"})),
       culling(params.getEnum("culling", Culling::TileAndPatch, kCullings,
                              {"what is dropped outside the frustum"})) {

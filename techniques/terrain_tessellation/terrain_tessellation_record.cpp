@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "runner/image/resample.h"
-#include "runner/metrics/flip.h"
+#include "engine/image/resample.h"
+#include "engine/metrics/flip.h"
 #include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"

@@ -7,8 +7,8 @@
 #include <glm/gtc/constants.hpp>
 #include <numeric>
 
-#include "runner/core/error.h"
-#include "runner/scene/animation.h"
+#include "engine/core/error.h"
+#include "engine/scene/animation.h"
 #include "techniques/kit/path_view.h"
 
 namespace gfxrepro::terrain_tessellation {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::terrain_tessellation {
 

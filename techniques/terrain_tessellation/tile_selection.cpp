@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::terrain_tessellation {
 

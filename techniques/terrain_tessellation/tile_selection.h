@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 #include "techniques/terrain_tessellation/terrain_metadata.h"
 
 namespace gfxrepro::terrain_tessellation {

@@ -1,5 +1,5 @@
 // What the worksheet method is measured against.
-#include "runner/gpu_scene/gpu_mesh.h"
+#include "engine/gpu_scene/gpu_mesh.h"
 #include "techniques/voxelization/mesh_voxelizer.h"
 
 namespace gfxrepro::voxelization {

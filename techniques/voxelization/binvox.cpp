@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 
 namespace gfxrepro::voxelization {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/voxelization/worksheet.h"
 
 namespace gfxrepro::voxelization {

@@ -10,7 +10,7 @@ namespace gfxrepro::voxelization {
 namespace {
 
 using OptionalOperation = std::optional<CsgOperation>;
-constexpr config::Choice<OptionalOperation> kOperations[] = {
+constexpr Choice<OptionalOperation> kOperations[] = {
     {std::nullopt, "none", "the first model alone"},
     {CsgOperation::Union, "union", "voxels of either model"},
     {CsgOperation::Intersection, "intersection", "voxels of both models"},
@@ -19,7 +19,7 @@ constexpr config::Choice<OptionalOperation> kOperations[] = {
 
 }  // namespace
 
-CombinationSettings::CombinationSettings(config::Params& params)
+CombinationSettings::CombinationSettings(Params& params)
     : csg(params.getEnum("csg", OptionalOperation(), kOperations,
                          {"boolean operation with the second model"})),
       findsCollision(params.getBool("collision", false,

@@ -20,7 +20,7 @@ struct CombinationSettings {
 
     /// Declares csg, collision, scene_b and offset_b. Throws Error when a second scene is missing
     /// or not used.
-    explicit CombinationSettings(config::Params& params);
+    explicit CombinationSettings(Params& params);
     bool needsSecond() const { return csg || findsCollision; }
 };
 

@@ -1,6 +1,6 @@
 #include "techniques/voxelization/csg.h"
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::voxelization {
 

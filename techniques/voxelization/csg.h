@@ -1,7 +1,7 @@
 // Constructive solid geometry on worksheets. [zju2005] Sec. 2.4.1 (3).
 #pragma once
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/voxelization/worksheet.h"
 
 namespace gfxrepro::voxelization {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "runner/gpu_scene/gpu_mesh.h"
+#include "engine/gpu_scene/gpu_mesh.h"
 #include "techniques/kit/draws.h"
 #include "techniques/voxelization/lattice.h"
 

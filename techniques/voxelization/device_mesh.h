@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/voxelization/axis_split.h"
 #include "techniques/voxelization/grid_source.h"
 #include "techniques/voxelization/worksheet.h"

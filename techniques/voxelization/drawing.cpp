@@ -9,24 +9,24 @@ namespace {
 
 constexpr int kHeadResolution = 128;  // [zju2005] Sec. 2.4.2
 
-constexpr config::Choice<DrawMode> kModes[] = {
+constexpr Choice<DrawMode> kModes[] = {
     {DrawMode::None, "none", "no picture"},
     {DrawMode::Opaque, "opaque", "the first voxel of each ray, shaded"},
     {DrawMode::Transparent, "transparent", "all voxels blended (section 2.4.2)"},
     {DrawMode::Mixed, "mixed", "blended together with a CT/MR head around the model (figure 2.7)"},
 };
 
-constexpr config::Choice<Framing> kFramings[] = {
+constexpr Choice<Framing> kFramings[] = {
     {Framing::Model, "model", "the model, as large as it fits"},
     {Framing::Grid, "grid", "the whole grid: the same pixels per plane for every model"},
 };
 
-std::optional<scene::Box> readCut(config::Params& params) {
-    const config::ParamSpec lowSpec{
+std::optional<scene::Box> readCut(Params& params) {
+    const ParamSpec lowSpec{
         "lowest corner of a box that is not drawn, as a fraction of the "
         "grid's; with cut_max",
         "1", 0.0, 1.0};
-    const config::ParamSpec highSpec{"highest corner of that box", "1", 0.0, 1.0};
+    const ParamSpec highSpec{"highest corner of that box", "1", 0.0, 1.0};
     const auto low = params.getOptionalVector("cut_min", 3, lowSpec);
     const auto high = params.getOptionalVector("cut_max", 3, highSpec);
     if (!low && !high) return std::nullopt;
@@ -43,7 +43,7 @@ std::optional<scene::Box> readCut(config::Params& params) {
 
 }  // namespace
 
-DrawingSettings::DrawingSettings(config::Params& params, VoxelValue value) {
+DrawingSettings::DrawingSettings(Params& params, VoxelValue value) {
     draw.value = value;
     draw.mode = params.getEnum("draw", DrawMode::None, kModes, {"what is drawn of the grid"});
     if (params.getBool("pictures", false,

@@ -20,7 +20,7 @@ struct DrawingSettings {
     bool isBeside = false;  // no pass: drawn once, when everything is measured
 
     /// Declares draw, pictures, opacity, frame, azimuth_deg, elevation_deg, cut_min and cut_max.
-    DrawingSettings(config::Params& params, VoxelValue value);
+    DrawingSettings(Params& params, VoxelValue value);
     bool isOn() const { return draw.mode != DrawMode::None; }
     bool isPass() const { return isOn() && !isBeside; }
 };

@@ -13,7 +13,7 @@
 #include <optional>
 #include <string_view>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::voxelization {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::voxelization {
 

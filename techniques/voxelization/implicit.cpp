@@ -10,21 +10,21 @@ constexpr int kImplicitGroupSize = 8;
 constexpr std::string_view kQuartic = "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8";
 constexpr float kQuarticExtent = 2.5F;
 
-Expression readFormula(config::Params& params) {
+Expression readFormula(Params& params) {
     const std::string formula =
         params.getText("formula", kQuartic, {"f(x, y, z) of the implicit surface f = 0"});
     return {formula, {"x", "y", "z"}, params.locationOf("formula")};
 }
 
-bool readInside(config::Params& params) {
-    constexpr config::Choice<bool> kSigns[] = {{true, "negative", "f < 0 inside"},
-                                               {false, "positive", "f > 0 inside"}};
+bool readInside(Params& params) {
+    constexpr Choice<bool> kSigns[] = {{true, "negative", "f < 0 inside"},
+                                       {false, "positive", "f > 0 inside"}};
     return params.getEnum("inside", true, kSigns, {"sign of f inside the implicit surface"});
 }
 
 }  // namespace
 
-ImplicitSource::ImplicitSource(config::Params& params, const GridSettings& settings,
+ImplicitSource::ImplicitSource(Params& params, const GridSettings& settings,
                                const std::optional<scene::Box>& box)
     : settings_(settings), formula_(readFormula(params)), isNegativeInside_(readInside(params)) {
     if (settings.value == VoxelValue::Color) {

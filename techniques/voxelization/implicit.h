@@ -1,7 +1,7 @@
 // Implicit surfaces f(x, y, z) = 0 sampled into a worksheet. [zju2005] Sec. 2.4.1 (1), figure 2.6.
 #pragma once
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/voxelization/expression.h"
 #include "techniques/voxelization/grid_source.h"
 
@@ -12,7 +12,7 @@ class ImplicitSource final : public GridSource {
   public:
     /// Declares `formula` and `inside`. `box` is cubic, world space; without one, the box of the
     /// thesis's quartic.
-    ImplicitSource(config::Params& params, const GridSettings& settings,
+    ImplicitSource(Params& params, const GridSettings& settings,
                    const std::optional<scene::Box>& box);
 
     void setup(technique::SetupContext& context) override;

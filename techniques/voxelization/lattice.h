@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::voxelization {
 

@@ -1,6 +1,6 @@
 #include "techniques/voxelization/lookup_tables.h"
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::voxelization {
 namespace {

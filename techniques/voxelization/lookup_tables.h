@@ -1,7 +1,7 @@
 // The look-up textures of [zju2005] Sec. 2.3.2, beside the integer instructions of worksheet.glsl.
 #pragma once
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/voxelization/worksheet.h"
 
 namespace gfxrepro::voxelization {

@@ -1,6 +1,6 @@
 #include "techniques/voxelization/mesh_draw.h"
 
-#include "runner/gpu_scene/gpu_mesh.h"
+#include "engine/gpu_scene/gpu_mesh.h"
 #include "techniques/voxelization/lattice.h"
 
 namespace gfxrepro::voxelization {

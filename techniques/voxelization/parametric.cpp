@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
 constexpr std::array<std::string_view, 3> kTorus{"(1 + 0.4*cos(v))*cos(u)",
                                                  "(1 + 0.4*cos(v))*sin(u)", "0.4*sin(v)"};
 
-glm::vec4 readDomain(config::Params& params) {
+glm::vec4 readDomain(Params& params) {
     constexpr double kFullTurn[] = {0.0, 6.283185307179586};
     const std::vector<double> u =
         params.getVector("u_range", kFullTurn, {"first and last u of the parametric surface"});
@@ -28,7 +28,7 @@ glm::vec4 readDomain(config::Params& params) {
     return {u[0], v[0], u[1], v[1]};
 }
 
-glm::ivec2 readSampleCounts(config::Params& params) {
+glm::ivec2 readSampleCounts(Params& params) {
     constexpr double kDefault[] = {1024, 1024};
     const std::vector<double> counts =
         params.getVector("samples", kDefault, {"points along u and v", "points", 2, kMaxSamples});
@@ -86,7 +86,7 @@ SampleStatistics statisticsOf(std::span<const glm::vec3> points, int countU, int
     return statistics;
 }
 
-ParametricSource::ParametricSource(config::Params& params, const GridSettings& settings,
+ParametricSource::ParametricSource(Params& params, const GridSettings& settings,
                                    const std::optional<scene::Box>& box)
     : settings_(settings), box_(box) {
     for (std::size_t i = 0; i < kNames.size(); ++i) {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/voxelization/expression.h"
 #include "techniques/voxelization/grid_source.h"
 
@@ -24,7 +24,7 @@ class ParametricSource final : public GridSource {
   public:
     /// Declares `x`, `y`, `z`, `u_range`, `v_range` and `samples`. `box` is cubic, world space;
     /// without one, the surface fits with a voxel to spare.
-    ParametricSource(config::Params& params, const GridSettings& settings,
+    ParametricSource(Params& params, const GridSettings& settings,
                      const std::optional<scene::Box>& box);
 
     void setup(technique::SetupContext& context) override;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 
 namespace gfxrepro::voxelization {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "runner/gl/objects.h"
-#include "runner/scene/scene.h"
+#include "engine/gl/objects.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::voxelization {
 

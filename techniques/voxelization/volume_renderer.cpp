@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/kit/view.h"
 
 namespace gfxrepro::voxelization {

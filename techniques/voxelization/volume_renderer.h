@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "runner/gl/pass.h"
-#include "runner/image/image.h"
-#include "runner/scene/scene.h"
+#include "engine/gl/pass.h"
+#include "engine/image/image.h"
+#include "engine/scene/scene.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/voxelization/grid_source.h"
 

@@ -15,13 +15,12 @@
 namespace gfxrepro::voxelization {
 namespace {
 
-std::unique_ptr<technique::Technique> create(config::Params& params) {
+std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<Voxelization>(params);
 }
 
 /// Formulas are read with the parameters; a mesh comes at set-up, with the scene.
-std::unique_ptr<GridSource> makeFormulaSource(const VoxelizationParams& read,
-                                              config::Params& params) {
+std::unique_ptr<GridSource> makeFormulaSource(const VoxelizationParams& read, Params& params) {
     switch (read.input) {
         case InputKind::Implicit:
             return std::make_unique<ImplicitSource>(params, read.voxelizer.grid, read.box);
@@ -42,7 +41,7 @@ DenseGrid together(const DenseGrid& a, const DenseGrid& b) {
 
 }  // namespace
 
-Voxelization::Voxelization(config::Params& params)
+Voxelization::Voxelization(Params& params)
     : params_(params),
       source_(makeFormulaSource(params_, params)),
       combination_(params_.combination),

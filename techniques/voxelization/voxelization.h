@@ -28,12 +28,12 @@ struct VoxelizationParams {
     bool showsSlices = false;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
-    explicit VoxelizationParams(config::Params& params);
+    explicit VoxelizationParams(Params& params);
 };
 
 class Voxelization final : public technique::Technique {
   public:
-    explicit Voxelization(config::Params& params);
+    explicit Voxelization(Params& params);
 
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override {

@@ -10,59 +10,59 @@
 namespace gfxrepro::voxelization {
 namespace {
 
-constexpr config::Choice<InputKind> kInputs[] = {
+constexpr Choice<InputKind> kInputs[] = {
     {InputKind::Mesh, "mesh", "the case's scene"},
     {InputKind::Implicit, "implicit", "a surface f(x, y, z) = 0 (section 2.4.1)"},
     {InputKind::Parametric, "parametric", "a surface (x, y, z)(u, v) (section 2.4.1)"},
 };
-constexpr config::Choice<Method> kMethods[] = {
+constexpr Choice<Method> kMethods[] = {
     {Method::Worksheet, "worksheet", "rasterization, texelization and synthesis of worksheets"},
     {Method::Direct, "direct", "one pass with image atomics into the grid"},
     {Method::Slices, "slices", "the mesh is drawn once per slice (section 2.5.3)"},
     {Method::DepthOnly, "depth_only", "no grid: a depth-only draw, the yardstick of speed"},
 };
-constexpr config::Choice<Rule> kRules[] = {
+constexpr Choice<Rule> kRules[] = {
     {Rule::Rasterized, "rasterized", "pixels that the hardware samples, as the thesis"},
     {Rule::Thin, "thin", "6-separating: no path over faces leaks through"},
     {Rule::Conservative, "conservative", "every voxel whose closed cube meets a triangle"},
 };
-constexpr config::Choice<Fill> kFills[] = {
+constexpr Choice<Fill> kFills[] = {
     {Fill::Surface, "surface", "voxels of the surface"},
     {Fill::Solid, "solid", "voxels whose centre lies inside, by scan-line parity on three axes"},
 };
-constexpr config::Choice<FillRule> kFillRules[] = {
+constexpr Choice<FillRule> kFillRules[] = {
     {FillRule::Crossings, "crossings", "exact crossings of the surface; two of three axes decide"},
     {FillRule::SurfaceVoxels, "surface_voxels",
      "rasterized voxels of the surface, as the thesis: leaves streaks"},
 };
-constexpr config::Choice<VoxelValue> kValues[] = {
+constexpr Choice<VoxelValue> kValues[] = {
     {VoxelValue::Occupancy, "occupancy", "full or empty"},
     {VoxelValue::Normal, "normal", "octahedral normal"},
     {VoxelValue::Color, "color", "the vertices' or the material's colour"},
 };
-constexpr config::Choice<Split> kSplits[] = {
+constexpr Choice<Split> kSplits[] = {
     {Split::Once, "once", "a static model: split at set-up"},
     {Split::EveryFrame, "every_frame", "a deforming model: split and uploaded every frame"},
 };
-constexpr config::Choice<OpenMesh> kOpenMeshes[] = {
+constexpr Choice<OpenMesh> kOpenMeshes[] = {
     {OpenMesh::Refuse, "refuse", "an error with the number of ambiguous scan lines"},
     {OpenMesh::Report, "report", "filled by the majority of three axes, and counted"},
 };
-constexpr config::Choice<Merging> kMergings[] = {
+constexpr Choice<Merging> kMergings[] = {
     {Merging::PerVoxel, "per_voxel", "a fetch per voxel, as the thesis"},
     {Merging::Transposed, "transposed", "tiles of voxels, a fetch per texel"},
     {Merging::Sparse, "sparse",
      "as transposed, and only tiles that hold fragments; not for solids"},
 };
-constexpr config::Choice<Addressing> kAddressings[] = {
+constexpr Choice<Addressing> kAddressings[] = {
     {Addressing::Instructions, "instructions", "shifts and masks"},
     {Addressing::Tables, "tables", "look-up textures, as the thesis; with synthesis: per_voxel"},
 };
 
 /// An integer that is one of `allowed`.
 template <std::size_t N>
-int getOneOf(config::Params& params, std::string_view name, int fallback,
-             const std::array<int, N>& allowed, const config::ParamSpec& spec) {
+int getOneOf(Params& params, std::string_view name, int fallback, const std::array<int, N>& allowed,
+             const ParamSpec& spec) {
     const int value = params.getInt(name, fallback, spec);
     std::string list;
     for (int candidate : allowed) {
@@ -73,7 +73,7 @@ int getOneOf(config::Params& params, std::string_view name, int fallback,
                 fmt::format("{}: {} is not allowed; allowed: {}", name, value, list));
 }
 
-std::optional<scene::Box> readBox(config::Params& params) {
+std::optional<scene::Box> readBox(Params& params) {
     const auto low = params.getOptionalVector(
         "box_min", 3, {"lowest corner of the grid; with box_max", "scene units"});
     const auto high = params.getOptionalVector(
@@ -98,7 +98,7 @@ std::optional<scene::Box> readBox(config::Params& params) {
 }
 
 /// Solids are decided along scan lines, in the worksheets, and say occupancy only.
-void checkSolid(const config::Params& params, const MeshVoxelizerSettings& settings) {
+void checkSolid(const Params& params, const MeshVoxelizerSettings& settings) {
     if (settings.grid.fill != Fill::Solid) {
         params.refuseGiven({"fill_rule"}, "'fill: solid'");
         return;
@@ -128,7 +128,7 @@ void checkSolid(const config::Params& params, const MeshVoxelizerSettings& setti
 }
 
 /// How the stages of the worksheet method address voxels; every way makes the same grid.
-void readStages(config::Params& params, MeshVoxelizerSettings& settings) {
+void readStages(Params& params, MeshVoxelizerSettings& settings) {
     const bool isSolid = settings.grid.fill == Fill::Solid;
     settings.merging =
         params.getEnum("synthesis", isSolid ? Merging::Transposed : Merging::Sparse, kMergings,
@@ -157,7 +157,7 @@ void readStages(config::Params& params, MeshVoxelizerSettings& settings) {
     }
 }
 
-MeshVoxelizerSettings readVoxelizer(config::Params& params) {
+MeshVoxelizerSettings readVoxelizer(Params& params) {
     MeshVoxelizerSettings settings;
     const int resolution =
         getOneOf(params, "resolution", 256, std::array{32, 64, 128, 256, 512, 1024},
@@ -194,7 +194,7 @@ MeshVoxelizerSettings readVoxelizer(config::Params& params) {
 }
 
 /// Formulas know neither triangles nor the ways to them.
-void checkInput(const config::Params& params, const VoxelizationParams& read) {
+void checkInput(const Params& params, const VoxelizationParams& read) {
     if (read.input == InputKind::Mesh) {
         if (read.voxelizer.method != Method::DepthOnly) return;
         for (const char* name : {"collision", "csg", "draw", "pictures"}) {
@@ -215,7 +215,7 @@ void checkInput(const config::Params& params, const VoxelizationParams& read) {
 
 }  // namespace
 
-VoxelizationParams::VoxelizationParams(config::Params& params)
+VoxelizationParams::VoxelizationParams(Params& params)
     : input(params.getEnum("input", InputKind::Mesh, kInputs, {"what is voxelized"})),
       voxelizer(readVoxelizer(params)),
       combination(params),

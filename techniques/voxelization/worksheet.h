@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "runner/gl/objects.h"
-#include "runner/gl/program.h"
-#include "runner/scene/scene.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/program.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::voxelization {
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 
 namespace gfxrepro::test {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "runner/core/files.h"
-#include "runner/core/text.h"
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {

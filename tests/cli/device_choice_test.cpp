@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "runner/core/files.h"
-#include "runner/gl/device.h"
+#include "engine/core/files.h"
+#include "engine/gl/device.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {

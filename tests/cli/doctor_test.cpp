@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "engine/gl/vendor_libraries.h"
 #include "runner/cli/advice.h"
 #include "runner/cli/cpp_library.h"
-#include "runner/gl/vendor_libraries.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::cli {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -54,8 +54,8 @@ TEST(Expectations, BadFilesAreRefusedInTheirPlace) {
 run::Case caseWith(const std::string& experiment, const std::string& axes) {
     run::Case item;
     item.experiment = experiment;
-    item.axes = config::parseYaml(axes, "axes");
-    item.params = config::Node::map({});
+    item.axes = parseYaml(axes, "axes");
+    item.params = Node::map({});
     return item;
 }
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {

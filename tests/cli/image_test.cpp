@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "runner/image/exr_io.h"
-#include "runner/image/png_io.h"
-#include "runner/metrics/flip.h"
-#include "runner/metrics/hdr_flip.h"
+#include "engine/image/exr_io.h"
+#include "engine/image/png_io.h"
+#include "engine/metrics/flip.h"
+#include "engine/metrics/hdr_flip.h"
 #include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 

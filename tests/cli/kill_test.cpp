@@ -12,7 +12,7 @@
 #include <random>
 #include <thread>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {

@@ -43,7 +43,7 @@ enum class Behaviour {
     Unequal
 };
 
-constexpr config::Choice<Behaviour> kBehaviours[] = {
+constexpr Choice<Behaviour> kBehaviours[] = {
     {Behaviour::Ok, "ok"},
     {Behaviour::Crash, "crash"},
     {Behaviour::Exit, "exit"},
@@ -63,7 +63,7 @@ constexpr config::Choice<Behaviour> kBehaviours[] = {
 
 class Mock : public technique::Technique {
   public:
-    explicit Mock(config::Params& params)
+    explicit Mock(Params& params)
         : behaviour_(params.getEnum("behaviour", Behaviour::Ok, kBehaviours, {"what happens"})),
           number_(params.getInt("number", 0, {"given back as a metric"})),
           marker_(params.getText("marker", "/nonexistent", {"file that ends the flakes"})),
@@ -183,7 +183,7 @@ class Mock : public technique::Technique {
     std::size_t shown_ = 0;
 };
 
-std::unique_ptr<technique::Technique> create(config::Params& params) {
+std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<Mock>(params);
 }
 

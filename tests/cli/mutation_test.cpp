@@ -7,8 +7,8 @@
 #include <random>
 #include <set>
 
-#include "runner/core/files.h"
-#include "runner/image/png_io.h"
+#include "engine/core/files.h"
+#include "engine/image/png_io.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "runner/core/files.h"
-#include "runner/image/png_io.h"
+#include "engine/core/files.h"
+#include "engine/image/png_io.h"
 #include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 

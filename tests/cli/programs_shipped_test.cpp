@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "runner/core/files.h"
-#include "runner/image/png_io.h"
+#include "engine/core/files.h"
+#include "engine/image/png_io.h"
 #include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 

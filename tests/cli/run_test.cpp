@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {

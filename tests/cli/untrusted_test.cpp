@@ -7,8 +7,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "runner/core/files.h"
-#include "runner/core/text.h"
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {

@@ -10,7 +10,7 @@
 #include <functional>
 #include <thread>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {

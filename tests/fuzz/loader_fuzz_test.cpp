@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/files.h"
+#include "engine/core/random.h"
+#include "engine/image/exr_io.h"
+#include "engine/image/png_io.h"
+#include "engine/scene/load.h"
 #include "runner/config/experiment.h"
-#include "runner/core/files.h"
-#include "runner/core/random.h"
-#include "runner/image/exr_io.h"
-#include "runner/image/png_io.h"
 #include "runner/records/images.h"
 #include "runner/records/records.h"
-#include "runner/scene/load.h"
 #include "tests/fuzz/memory_meter.h"
 #include "tests/support/support.h"
 
@@ -91,7 +91,7 @@ const Load kLoadConfig = [](const fs::path& path) {
     config::experimentFromDocument(experiment.document, path);
     config::expandCases(experiment);
 };
-const Load kParseJson = [](const fs::path& path) { config::parseJsonFile(path); };
+const Load kParseJson = [](const fs::path& path) { parseJsonFile(path); };
 const Load kReadRecords = [](const fs::path& path) { records::readRecords(path); };
 const Load kReadImages = [](const fs::path& path) {
     records::readImages(path.parent_path().parent_path());

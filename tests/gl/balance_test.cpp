@@ -1,10 +1,10 @@
-#include "runner/gl/balance.h"
+#include "engine/gl/balance.h"
 
 #include <cmath>
 
-#include "runner/core/files.h"
-#include "runner/gl/gl.h"
-#include "runner/gl/pass.h"
+#include "engine/core/files.h"
+#include "engine/gl/gl.h"
+#include "engine/gl/pass.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "runner/gl/gl.h"
-#include "runner/gl/gpu_nodes.h"
+#include "engine/gl/gl.h"
+#include "engine/gl/gpu_nodes.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {

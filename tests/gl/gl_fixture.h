@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "runner/gl/device.h"
-#include "runner/gl/objects.h"
-#include "runner/gl/pass.h"
-#include "runner/gl/program.h"
+#include "engine/gl/device.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/pass.h"
+#include "engine/gl/program.h"
 #include "tests/support/support.h"
 #include "tests/support/test_device.h"
 

@@ -1,4 +1,4 @@
-#include "runner/gl/gpu_nodes.h"
+#include "engine/gl/gpu_nodes.h"
 
 #include <gmock/gmock.h>
 

@@ -1,9 +1,9 @@
-#include "runner/gl/objects.h"
+#include "engine/gl/objects.h"
 
 #include <array>
 #include <numeric>
 
-#include "runner/gl/work_query.h"
+#include "engine/gl/work_query.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {

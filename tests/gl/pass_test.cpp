@@ -1,4 +1,4 @@
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 
 #include <gmock/gmock.h>
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "runner/core/files.h"
-#include "runner/gpu_scene/gpu_mesh.h"
-#include "runner/raycast/ray_tracer.h"
-#include "runner/scene/load.h"
+#include "engine/core/files.h"
+#include "engine/gpu_scene/gpu_mesh.h"
+#include "engine/raycast/ray_tracer.h"
+#include "engine/scene/load.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <utility>
 
-#include "runner/core/files.h"
-#include "runner/gpu_scene/gpu_mesh.h"
+#include "engine/core/files.h"
+#include "engine/gpu_scene/gpu_mesh.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {

@@ -1,4 +1,4 @@
-#include "runner/gl/profiler.h"
+#include "engine/gl/profiler.h"
 
 #include <array>
 #include <thread>

@@ -1,4 +1,4 @@
-#include "runner/gl/program.h"
+#include "engine/gl/program.h"
 
 #include <gmock/gmock.h>
 

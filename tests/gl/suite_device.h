@@ -5,9 +5,9 @@
 
 #include <optional>
 
-#include "runner/core/files.h"
-#include "runner/gl/device.h"
-#include "runner/gl/program.h"
+#include "engine/core/files.h"
+#include "engine/gl/device.h"
+#include "engine/gl/program.h"
 #include "tests/support/test_device.h"
 
 namespace gfxrepro::test {

@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-#include "runner/core/files.h"
-#include "runner/gl/device.h"
-#include "runner/image/exr_io.h"
-#include "runner/metrics/image_error.h"
+#include "engine/core/files.h"
+#include "engine/gl/device.h"
+#include "engine/image/exr_io.h"
+#include "engine/metrics/image_error.h"
 #include "tests/support/process.h"
 #include "tests/support/support.h"
 

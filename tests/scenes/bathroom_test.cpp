@@ -6,9 +6,9 @@
 #include <span>
 #include <string>
 
-#include "runner/core/hash.h"
-#include "runner/raycast/ray_tracer.h"
-#include "runner/scene/animation.h"
+#include "engine/core/hash.h"
+#include "engine/raycast/ray_tracer.h"
+#include "engine/scene/animation.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
 
@@ -16,7 +16,7 @@ namespace gfxrepro::scene {
 namespace {
 
 Scene generated(std::uint64_t seed = 1, const std::string& yaml = "{}") {
-    config::Params params(config::parseYaml(yaml, "t.yaml"), "generator 'bathroom'");
+    Params params(parseYaml(yaml, "t.yaml"), "generator 'bathroom'");
     return findGenerator(registeredGenerators(), "bathroom", {}).generate(params, seed);
 }
 

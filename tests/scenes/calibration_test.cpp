@@ -5,16 +5,16 @@
 #include <sstream>
 #include <string>
 
-#include "runner/config/node.h"
-#include "runner/core/files.h"
+#include "engine/core/files.h"
+#include "engine/core/node.h"
 
 namespace gfxrepro {
 namespace {
 
 const std::filesystem::path kSource = GFXREPRO_SOURCE_DIR;
 
-config::Node yaml(const std::filesystem::path& file) {
-    return config::parseYaml(readFile(kSource / "configs" / file), file.string());
+Node yaml(const std::filesystem::path& file) {
+    return parseYaml(readFile(kSource / "configs" / file), file.string());
 }
 
 /// The values of results/calibration/NAME.csv: scene.NAME, view_NAME and light_NAME.
@@ -35,7 +35,7 @@ std::map<std::string, double> fitted(const std::string& calibration) {
 }
 
 /// The numbers are of shipped tables, the cases of conventional images.
-void expectConventional(const config::Node& calibration, const config::Node& preset) {
+void expectConventional(const Node& calibration, const Node& preset) {
     EXPECT_FALSE(calibration.find("params")) << "the preset says which method";
     EXPECT_EQ(preset.find("params")->find("method")->text(), "conventional");
     // A table beside the calibration is found, too: a copy may mark other cells as fitted.
@@ -52,13 +52,13 @@ class Calibration : public testing::TestWithParam<std::string> {};
 TEST_P(Calibration, CatalogueAndPresetHoldWhatWasFitted) {
     const std::map<std::string, double> values = fitted(GetParam());
     ASSERT_GE(values.size(), 3U);
-    const config::Node catalogue = yaml("scenes/outdoor/" + GetParam() + ".yaml");
-    const config::Node preset = yaml("presets/depth-sampling.yaml");
-    const config::Node& params = *catalogue.find("sources")->items().at(0).find("params");
-    const config::Node& views = *preset.find("params_by_scene")->find("outdoor/" + GetParam());
+    const Node catalogue = yaml("scenes/outdoor/" + GetParam() + ".yaml");
+    const Node preset = yaml("presets/depth-sampling.yaml");
+    const Node& params = *catalogue.find("sources")->items().at(0).find("params");
+    const Node& views = *preset.find("params_by_scene")->find("outdoor/" + GetParam());
     for (const auto& [name, value] : values) {
         const bool isOfScene = name.starts_with("scene.");
-        const config::Node* node = isOfScene ? params.find(name.substr(6)) : views.find(name);
+        const Node* node = isOfScene ? params.find(name.substr(6)) : views.find(name);
         ASSERT_TRUE(node != nullptr) << name;
         EXPECT_EQ(std::stod(node->text()), value) << name;
     }
@@ -73,8 +73,8 @@ TEST_P(Calibration, NumbersAreThoseOfShippedTablesAndOfConventionalImages) {
 class LightCalibration : public testing::TestWithParam<std::string> {};
 
 TEST_P(LightCalibration, PresetHoldsTheLightThatWasFitted) {
-    const config::Node preset = yaml("presets/soft-shadows.yaml");
-    const config::Node& light = *preset.find("params_by_scene")->find("outdoor/" + GetParam());
+    const Node preset = yaml("presets/soft-shadows.yaml");
+    const Node& light = *preset.find("params_by_scene")->find("outdoor/" + GetParam());
     const std::map<std::string, double> values = fitted(GetParam() + "-light");
     ASSERT_EQ(values.size(), 2U);
     for (const auto& [name, value] : values) {

@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "runner/raycast/ray_tracer.h"
-#include "runner/scene/generators.h"
+#include "engine/raycast/ray_tracer.h"
+#include "engine/scene/generators.h"
 #include "scenes/outdoor/outdoor.h"
 
 namespace gfxrepro::raycast {
@@ -15,7 +15,7 @@ namespace {
 class FourObjects : public testing::Test {
   protected:
     FourObjects() {
-        config::Params params({}, "generator 'four_objects'");
+        Params params({}, "generator 'four_objects'");
         scene_ = scene::fourObjects(params, 1);
         tracer_.emplace(scene_);
         // The lower corners of an upright equilateral triangle around the camera.

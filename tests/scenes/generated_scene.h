@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/core/hash.h"
+#include "engine/core/hash.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
 
@@ -19,7 +19,7 @@ namespace gfxrepro::scene {
 
 /// The scene of a generator with parameters in YAML.
 inline Scene generated(const std::string& name, const std::string& yaml, std::uint64_t seed = 1) {
-    config::Params params(config::parseYaml(yaml, "t.yaml"), "generator '" + name + "'");
+    Params params(parseYaml(yaml, "t.yaml"), "generator '" + name + "'");
     return findGenerator(registeredGenerators(), name, {}).generate(params, seed);
 }
 

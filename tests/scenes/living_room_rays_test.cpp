@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/raycast/ray_tracer.h"
-#include "runner/scene/animation.h"
+#include "engine/raycast/ray_tracer.h"
+#include "engine/scene/animation.h"
 #include "scenes/registry.h"
 
 namespace gfxrepro::raycast {
@@ -16,7 +16,7 @@ namespace {
 class LivingRoom : public testing::Test {
   protected:
     static void SetUpTestSuite() {
-        config::Params params(config::parseYaml("{}", "t.yaml"), "generator 'living_room'");
+        Params params(parseYaml("{}", "t.yaml"), "generator 'living_room'");
         scene_ =
             new scene::Scene(scene::findGenerator(scene::registeredGenerators(), "living_room", {})
                                  .generate(params, 1));

@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "runner/core/hash.h"
-#include "runner/scene/animation.h"
+#include "engine/core/hash.h"
+#include "engine/scene/animation.h"
 #include "scenes/indoor/parts.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
@@ -17,7 +17,7 @@ namespace gfxrepro::scene {
 namespace {
 
 Scene room(const std::string& yaml = "{}", std::uint64_t seed = 1) {
-    config::Params params(config::parseYaml(yaml, "t.yaml"), "generator 'living_room'");
+    Params params(parseYaml(yaml, "t.yaml"), "generator 'living_room'");
     return findGenerator(registeredGenerators(), "living_room", {}).generate(params, seed);
 }
 

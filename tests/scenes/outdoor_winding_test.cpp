@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "runner/raycast/ray_tracer.h"
+#include "engine/raycast/ray_tracer.h"
 #include "scenes/registry.h"
 
 namespace gfxrepro::raycast {
@@ -13,7 +13,7 @@ namespace {
 class OutdoorWinding : public testing::TestWithParam<const char*> {};
 
 TEST_P(OutdoorWinding, AlmostNoRayMeetsABackFaceFirst) {
-    config::Params params({}, "generator");
+    Params params({}, "generator");
     const scene::Scene scene =
         scene::findGenerator(scene::registeredGenerators(), GetParam(), {}).generate(params, 1);
     const RayTracer tracer(scene);

@@ -1,4 +1,4 @@
-#include "runner/scene/generators.h"
+#include "engine/scene/generators.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "runner/core/hash.h"
+#include "engine/core/hash.h"
 #include "scenes/models/shapes.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
@@ -17,7 +17,7 @@ namespace gfxrepro::scene {
 namespace {
 
 Scene generated(const std::string& yaml, std::uint64_t seed = 1) {
-    config::Params params(config::parseYaml(yaml, "t.yaml"), "generator 'sdf_model'");
+    Params params(parseYaml(yaml, "t.yaml"), "generator 'sdf_model'");
     return findGenerator(registeredGenerators(), "sdf_model", {}).generate(params, seed);
 }
 

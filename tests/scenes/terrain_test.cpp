@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {

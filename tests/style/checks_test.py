@@ -26,20 +26,20 @@ def expect(script, files, wanted):
         sys.exit(f"{script} should have said {wanted!r}; exit {code}:\n{output}")
 
 
-GOOD = {"runner/scene/a.h": '#pragma once\n#include "runner/image/image.h"\n',
-        "runner/README.md": "", "runner/scene/README.md": ""}
+GOOD = {"engine/scene/a.h": '#pragma once\n#include "engine/image/image.h"\n',
+        "runner/README.md": "", "engine/scene/README.md": ""}
 for name in ("check_layers", "check_style"):
     code, output = run(name, GOOD)
     if code != 0:
         sys.exit(f"{name} found something in a good tree:\n{output}")
 
-expect("check_layers", {"runner/scene/a.h": '#include "runner/gl/device.h"\n'},
-       "runner/scene/a.h:1: runner/scene may not include runner/gl/device.h")
+expect("check_layers", {"engine/scene/a.h": '#include "engine/gl/device.h"\n'},
+       "engine/scene/a.h:1: engine/scene may not include engine/gl/device.h")
 expect("check_layers", {"runner/report/a.cpp": "#include <EGL/egl.h>\n"},
        "runner/report/a.cpp:1: runner/report may not include EGL/egl.h")
 expect("check_layers", {"techniques/a/a.cpp": '#include "techniques/b/b.h"\n'},
        "techniques/a/a.cpp:1: techniques/a may not include techniques/b/b.h")
-for folder in ("runner/run", "runner/scene", "techniques/a"):
+for folder in ("runner/run", "engine/scene", "techniques/a"):
     expect("check_layers", {folder + "/a.cpp": '#include "scenes/city/parts.h"\n'},
            f"{folder}/a.cpp:1: {folder} may not include scenes/city/parts.h")
 expect("check_layers", {"scenes/city/a.cpp": '#include "runner/technique/technique.h"\n'},
@@ -50,10 +50,10 @@ expect("check_layers",
         "techniques/clustered_reflections/a.cpp": '#include "techniques/reflection_reuse/b.h"\n'},
        "techniques/clustered_reflections/a.cpp:1: techniques/clustered_reflections may not include "
        "techniques/reflection_reuse/b.h\n")
-expect("check_layers", {"techniques/marching/x.h": "", "runner/core/a.cpp": "// marching\n"},
-       "runner/core/a.cpp: runner/ names the technique 'marching'")
-expect("check_layers", {"runner/core/a.cpp": '#include "error.h"\n'},
-       'runner/core/a.cpp:1: includes are root-relative, not "error.h"')
+expect("check_layers", {"techniques/marching/x.h": "", "engine/core/a.cpp": "// marching\n"},
+       "engine/core/a.cpp: runner/ names the technique 'marching'")
+expect("check_layers", {"engine/core/a.cpp": '#include "error.h"\n'},
+       'engine/core/a.cpp:1: includes are root-relative, not "error.h"')
 WORKFLOW = ".github/workflows/a.yml"
 for action in ("other/action@v1", "'other/action@main'", "other/action@0123abc", "actions-rs/toolchain@v1"):
     expect("check_style", {WORKFLOW: f"      - uses: {action}\n"},
@@ -83,29 +83,29 @@ code, output = run("check_style", {**GOOD, "configs/README.md": "", "configs/x/R
     "  A: {says: soft shadows do, ratio: a_b / c_d}\n  remark: see sweeps/soft_shadows-light.yaml, a D3DFMT_32F\n"})
 if code != 0:
     sys.exit(f"check_style found something in good words:\n{output}")
-expect("check_style", {"runner/core/a.h": "int x;\n"}, "runner/core/a.h: no #pragma once")
-expect("check_style", {"runner/core/a.cpp": "\n" * 401}, "runner/core/a.cpp: 401 lines, at most 400")
-for includes in ('#include <map>\n#include "runner/core/a.h"\n',
-                 '#include "runner/core/a.h"\n#include "runner/core/b.h"\n#include <map>\n'):
-    expect("check_style", {"runner/core/a.cpp": includes},
-           "runner/core/a.cpp: includes are in another order than the own header, <…>, ours")
-expect("check_style", {"runner/core/a.h": "#pragma once\n", "runner/core/a.cpp": '#include <map>\n'},
-       "runner/core/a.cpp: includes are in another order than the own header, <…>, ours")
+expect("check_style", {"engine/core/a.h": "int x;\n"}, "engine/core/a.h: no #pragma once")
+expect("check_style", {"engine/core/a.cpp": "\n" * 401}, "engine/core/a.cpp: 401 lines, at most 400")
+for includes in ('#include <map>\n#include "engine/core/a.h"\n',
+                 '#include "engine/core/a.h"\n#include "engine/core/b.h"\n#include <map>\n'):
+    expect("check_style", {"engine/core/a.cpp": includes},
+           "engine/core/a.cpp: includes are in another order than the own header, <…>, ours")
+expect("check_style", {"engine/core/a.h": "#pragma once\n", "engine/core/a.cpp": '#include <map>\n'},
+       "engine/core/a.cpp: includes are in another order than the own header, <…>, ours")
 for kind in ("int twice(int n) {\n", "template <class T>\nvoid twice(T n) {\n", "struct twice {\n", "constexpr int twice = 1;\n"):
-    expect("check_style", {"runner/core/a.cpp": "namespace {\nint twice(long n) {\n}  // namespace\n",
-                           "runner/core/b.cpp": "namespace {\n" + kind + "    twice(1);\n}  // namespace\n"},
-           "runner/core/b.cpp: twice has a namesake in a.cpp")
-expect("check_style", {"runner/core/CMakeLists.txt": "a(b\n    SOURCES b.cpp a.cpp\n    PUBLIC c)\n"},
-       "runner/core/CMakeLists.txt: a.cpp stands behind b.cpp: sort the sources")
+    expect("check_style", {"engine/core/a.cpp": "namespace {\nint twice(long n) {\n}  // namespace\n",
+                           "engine/core/b.cpp": "namespace {\n" + kind + "    twice(1);\n}  // namespace\n"},
+           "engine/core/b.cpp: twice has a namesake in a.cpp")
+expect("check_style", {"engine/core/CMakeLists.txt": "a(b\n    SOURCES b.cpp a.cpp\n    PUBLIC c)\n"},
+       "engine/core/CMakeLists.txt: a.cpp stands behind b.cpp: sort the sources")
 expect("check_style", {"techniques/a/README.md": "\n" * 71}, "techniques/a/README.md: 71 lines, at most 70")
 # The data of a scene may be long, that of others not.
 DATA = "// Longer than other files: the data of one scene.\n" + "int a;\n" * 400
 expect("check_style", {"scenes/a.cpp": "\n" * 401}, "scenes/a.cpp: 401 lines, at most 400")
-expect("check_style", {"runner/core/a.cpp": DATA}, "runner/core/a.cpp: 401 lines, at most 400")
+expect("check_style", {"engine/core/a.cpp": DATA}, "engine/core/a.cpp: 401 lines, at most 400")
 code, output = run("check_style", {"scenes/README.md": "", "scenes/a.cpp": DATA})
 if code != 0:
     sys.exit(f"check_style found something in a long scene:\n{output}")
-expect("check_style", {"runner/core/a.cpp": "// TO" + "DO later\n"}, "runner/core/a.cpp:1: unfinished")
+expect("check_style", {"engine/core/a.cpp": "// TO" + "DO later\n"}, "engine/core/a.cpp:1: unfinished")
 for line in ("a[0] = a[1] = 1u;", "b.x = a = c + 1;"):
     expect("check_style", {"techniques/a/a.glsl": line + "\n"}, "techniques/a/a.glsl:1: a chained assignment")
 for line in ("i64vec3 edges[3];", "whole3 e[] = whole3[](a, b);"):
@@ -116,8 +116,8 @@ if code != 0:
     sys.exit(f"check_style found something in good GLSL:\n{output}")
 for drawn in ("glm::vec2 a(random.uniform(), random.uniform());", "f(g(random_.index(3)), {random_.next(), 1});",
               "f({g(random.index(2), random.index(3))});", "f([&] { g(random.uniform(0, 1), -random.uniform()); });"):
-    expect("check_style", {"runner/core/a.cpp": "int a;\n" + drawn + "\n"},
-           "runner/core/a.cpp:2: two arguments draw: compilers differ in their order; braces have one\n")
+    expect("check_style", {"engine/core/a.cpp": "int a;\n" + drawn + "\n"},
+           "engine/core/a.cpp:2: two arguments draw: compilers differ in their order; braces have one\n")
 DRAWS = """const glm::vec2 a{random.uniform(0, 1), random.uniform()};
 f({random.uniform(), random.index(3)}, 1);
 // f(random.uniform(), random.uniform());
@@ -125,10 +125,10 @@ for (int i = random.index(2); i < 9; i += random.index(3))
   g(i, random.index(4));
 f([&] { return random.uniform(); }, [&]() { return random.uniform(); });
 """
-code, output = run("check_style", {"runner/README.md": "", "runner/core/README.md": "", "runner/core/a.cpp": DRAWS})
+code, output = run("check_style", {"runner/README.md": "", "engine/core/README.md": "", "engine/core/a.cpp": DRAWS})
 if code != 0:
     sys.exit(f"check_style found something in draws in their order:\n{output}")
-expect("check_style", {"runner/core/a.cpp": ""}, "runner/core: no README.md")
+expect("check_style", {"engine/core/a.cpp": ""}, "engine/core: no README.md")
 # One version of clang-format decides; another is not asked, and that is said.
 for version, wanted in {"14.0.6": (1, "runner/a.h:1:1: error: code should be clang-formatted\n"),
                         "19.1.7": (0, "style: formatting was not looked at: clang-format 14 is not here\nstyle: nothing found\n")}.items():

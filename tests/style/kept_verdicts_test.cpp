@@ -8,10 +8,10 @@
 #include <regex>
 #include <set>
 
+#include "engine/scene/scene_reference.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
 #include "runner/config/experiment.h"
-#include "runner/config/scene_reference.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::test {
@@ -44,7 +44,7 @@ std::map<std::pair<std::string, std::string>, std::vector<Kept>> keptVerdicts(
         const auto manifest = nlohmann::json::parse(file);
         claims::SceneFiles scenes;
         for (const auto& [scene, from] : manifest.at("scenes").items()) {
-            scenes[config::sceneName(scene)] = from.at("sha256") != "";
+            scenes[scene::sceneName(scene)] = from.at("sha256") != "";
         }
         for (const claims::ClaimResult& claim : claims::readClaims(entry.path())) {
             kept[{claim.table, claim.id}].push_back(
@@ -60,7 +60,7 @@ std::map<std::pair<std::string, std::string>, std::vector<Kept>> keptVerdicts(
 std::set<std::string> scenesOf(const config::Experiment& experiment) {
     std::set<std::string> scenes;
     for (const config::CaseSpec& item : config::expandCases(experiment)) {
-        if (!item.scene.isNull()) scenes.insert(config::sceneName(item.scene.text()));
+        if (!item.scene.isNull()) scenes.insert(scene::sceneName(item.scene.text()));
     }
     return scenes;
 }
@@ -213,7 +213,7 @@ TEST(KeptVerdicts, WhatDiffersIsFound) {
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {fails}}}).size(), 1u);
     // What is known of real scenes alone tells nothing of generated ones.
     experiment.technique = "t";
-    experiment.scene = config::Node::scalar("s");
+    experiment.scene = Node::scalar("s");
     experiment.claims[0].because[0] = {"fails", std::nullopt, std::nullopt, "files", "r", ""};
     Kept real = fails, generated = fails;
     real.scenes["s"] = true;

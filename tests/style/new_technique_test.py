@@ -63,7 +63,7 @@ def compiles(root, name, template):
 
 with tempfile.TemporaryDirectory() as folder:
     root = pathlib.Path(folder).resolve()
-    for part in ("scripts", "techniques", "tests/techniques", "configs/schema", "configs/smoke", "configs/nightly", "runner/gl"):
+    for part in ("scripts", "techniques", "tests/techniques", "configs/schema", "configs/smoke", "configs/nightly", "engine/gl"):
         shutil.copytree(SOURCE / part, root / part)
     for part in (".clang-format", "techniques/README.md"):
         shutil.copy(SOURCE / part, root / part)
@@ -79,7 +79,7 @@ with tempfile.TemporaryDirectory() as folder:
             "a__b": "is not snake_case, such as contact_shadows",
             "voxelization": "is taken: techniques/voxelization is there already",
             "class": "is a word of C++",
-            "gl": "is taken: runner/gl/balance.h has a namespace of that name"}.items():
+            "gl": "is taken: engine/gl/balance.h has a namespace of that name"}.items():
         refused = run(script, name, "--write-only")
         expect(refused.returncode == 1 and refused.stderr == f"new_technique: '{name}' {reason}\n",
                f"{name}: {refused.stderr}")

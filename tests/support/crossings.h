@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "runner/raycast/ray_tracer.h"
+#include "engine/raycast/ray_tracer.h"
 
 namespace gfxrepro::test {
 

@@ -9,7 +9,7 @@
 
 #include <cerrno>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 extern char** environ;
 

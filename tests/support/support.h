@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 
 namespace gfxrepro::test {
 

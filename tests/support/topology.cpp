@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "runner/scene/topology.h"
+#include "engine/scene/topology.h"
 
 namespace gfxrepro::scene {
 

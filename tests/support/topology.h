@@ -1,7 +1,7 @@
 // What a mesh is as a surface: boundaries, fans, components, enclosed volume.
 #pragma once
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::scene {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "runner/technique/technique.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/technique_recorder.h"
@@ -13,9 +13,8 @@
 namespace gfxrepro::test {
 
 /// The parameters of a case, for the technique's constructor.
-inline config::Params paramsOf(const technique::TechniqueInfo& technique, const std::string& yaml) {
-    return config::Params(config::parseYaml(yaml, "case.yaml"),
-                          "technique '" + std::string(technique.name) + "'");
+inline Params paramsOf(const technique::TechniqueInfo& technique, const std::string& yaml) {
+    return Params(parseYaml(yaml, "case.yaml"), "technique '" + std::string(technique.name) + "'");
 }
 
 /// Derive from it with the technique and the size of its output.
@@ -28,7 +27,7 @@ class TechniqueTest : public GlTest {
     /// left. passes_ then names the second's passes.
     MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene, int frame = 0,
                             int frameCount = 1) {
-        config::Params params = paramsOf(technique_, yaml);
+        Params params = paramsOf(technique_, yaml);
         const auto technique = technique_.create(params);
         NoScenes scenes;
         technique::SetupContext context{device,        shaders_, scenes,   scene,

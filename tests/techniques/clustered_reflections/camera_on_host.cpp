@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "tests/techniques/clustered_reflections/clusters_on_host.h"
 
 namespace gfxrepro::clustered_reflections {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "runner/core/files.h"
-#include "runner/core/random.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
 #include "techniques/clustered_reflections/cluster_cameras.h"
 #include "techniques/clustered_reflections/clustering.h"
 #include "tests/gl/gl_fixture.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "techniques/clustered_reflections/cluster_atlas.h"
 #include "techniques/clustered_reflections/visible_triangles.h"
 #include "tests/techniques/clustered_reflections/tracer_fixture.h"

@@ -35,7 +35,7 @@ constexpr const char* kMethods[] = {"clustered", "environment_map", "screen_spac
 
 // [xie2017] Sec. 4.7.4 recommends the second of its ways with the own reflector.
 TEST(ReflectionParamsTest, ConcaveClustersShowTheirOwnReflectorByDefault) {
-    config::Params params = test::paramsOf(kClusteredReflections, "{}");
+    Params params = test::paramsOf(kClusteredReflections, "{}");
     const ReflectionParams defaults(params);
     EXPECT_EQ(defaults.clustered.ownReflector, OwnReflector::ConcaveDiffuse);
     EXPECT_TRUE(defaults.reflectors.splitsParts);
@@ -48,8 +48,7 @@ TEST(ReflectionParamsTest, ErrorsOfBothWaysAreMeasuredOnAllCameraPaths) {
         std::set<std::pair<std::string, OwnReflector>> measured;
         for (const config::CaseSpec& one : config::expandCases(config::loadExperiment(
                  configs / "xie2017" / "section-4.7.4.yaml", {.profile = profile}, configs))) {
-            config::Params params =
-                test::paramsOf(kClusteredReflections, one.params.toJson().dump());
+            Params params = test::paramsOf(kClusteredReflections, one.params.toJson().dump());
             const ReflectionParams read(params);
             if (!read.measuresErrors) continue;
             measured.emplace(one.scene.toJson().dump() + read.view, read.clustered.ownReflector);
@@ -85,7 +84,7 @@ TEST(ReflectionParamsTest, TablesNameTheirOwnDepthImages) {
 TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
-            config::Params params = test::paramsOf(kClusteredReflections, yaml);
+            Params params = test::paramsOf(kClusteredReflections, yaml);
             ClusteredReflections technique(params);
         });
     };

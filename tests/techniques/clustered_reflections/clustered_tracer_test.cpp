@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "tests/techniques/clustered_reflections/tracer_fixture.h"
 #include "tests/techniques/voxelization/shapes.h"
 

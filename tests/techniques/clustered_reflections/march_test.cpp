@@ -1,8 +1,8 @@
 // The marches on the device against the march on the host, and against rays whose hit is known.
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/core/files.h"
-#include "runner/core/random.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
 #include "techniques/clustered_reflections/cluster_intersection.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/clustered_reflections/march_on_host.h"

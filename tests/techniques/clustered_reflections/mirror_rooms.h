@@ -1,7 +1,7 @@
 // A box of a room with reflectors in it, whose reflections are known.
 #pragma once
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::clustered_reflections::rooms {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "runner/image/srgb.h"
+#include "engine/image/srgb.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/reflections/gbuffer.h"
 #include "tests/gl/suite_device.h"

@@ -4,8 +4,8 @@
 #include <map>
 #include <set>
 
-#include "runner/core/files.h"
-#include "runner/core/random.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
 #include "scenes/shared/mesh_builder.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/technique_recorder.h"
@@ -15,8 +15,8 @@ namespace {
 
 using test::errorText;
 
-config::Params paramsOf(const std::string& yaml) {
-    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'depth_sampling'");
+Params paramsOf(const std::string& yaml) {
+    return Params(parseYaml(yaml, "case.yaml"), "technique 'depth_sampling'");
 }
 
 class DepthSamplingTest : public test::GlTest {
@@ -25,7 +25,7 @@ class DepthSamplingTest : public test::GlTest {
 
     test::MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene,
                                   int sizePx = kSizePx) {
-        config::Params params = paramsOf(yaml);
+        Params params = paramsOf(yaml);
         const auto technique = kDepthSampling.create(params);
         test::NoScenes scenes;
         technique::SetupContext context{device,           shaders_, scenes,   scene,
@@ -87,7 +87,7 @@ scene::Scene clutter() {
 TEST(DepthSamplingParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
-            config::Params params = paramsOf(yaml);
+            Params params = paramsOf(yaml);
             DepthSampling technique(params);
         });
     };

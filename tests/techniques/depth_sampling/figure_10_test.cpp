@@ -1,8 +1,8 @@
 // [xie2017] Fig. 10: where a sample s₁ of I₁ lands on I₀, and by which definition it is redundant.
 #include <gtest/gtest.h>
 
-#include "runner/core/files.h"
-#include "runner/raycast/ray_tracer.h"
+#include "engine/core/files.h"
+#include "engine/raycast/ray_tracer.h"
 #include "techniques/depth_sampling/pixel_measures.h"
 #include "techniques/depth_sampling/visibility.h"
 #include "tests/gl/gl_fixture.h"

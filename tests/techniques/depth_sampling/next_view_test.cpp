@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "scenes/shared/mesh_builder.h"
 #include "tests/gl/gl_fixture.h"
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/depth_sampling/host_images.h"
 #include "tests/techniques/kit/write_depth_image.h"

@@ -2,7 +2,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {

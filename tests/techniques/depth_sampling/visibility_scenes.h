@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 #include "techniques/depth_sampling/visibility.h"
 
 namespace gfxrepro::depth_sampling {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "tests/support/crossings.h"
 #include "tests/techniques/depth_sampling/brute_visibility.h"
 #include "tests/techniques/depth_sampling/visibility_scenes.h"

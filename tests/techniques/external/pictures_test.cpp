@@ -5,9 +5,9 @@
 
 #include <limits>
 
-#include "runner/core/files.h"
-#include "runner/image/exr_io.h"
-#include "runner/image/png_io.h"
+#include "engine/core/files.h"
+#include "engine/image/exr_io.h"
+#include "engine/image/png_io.h"
 #include "tests/support/support.h"
 #include "tests/techniques/technique_recorder.h"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <thread>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::external {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "runner/core/files.h"
-#include "runner/core/random.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
 #include "techniques/kit/depth_image_renderer.h"
 #include "tests/gl/gl_fixture.h"
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "tests/techniques/kit/depth_image_fixture.h"
 
 namespace gfxrepro::kit {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "runner/raycast/ray_tracer.h"
+#include "engine/raycast/ray_tracer.h"
 #include "tests/techniques/kit/depth_image_fixture.h"
 
 namespace gfxrepro::kit {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "runner/core/files.h"
-#include "runner/core/random.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
 #include "tests/techniques/kit/depth_image_fixture.h"
 
 namespace gfxrepro::kit {

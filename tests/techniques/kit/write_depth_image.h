@@ -1,7 +1,7 @@
 // Depth images that were made on the host, by ray casting or by hand, for what reads them.
 #pragma once
 
-#include "runner/core/error.h"
+#include "engine/core/error.h"
 #include "techniques/kit/depth_image.h"
 
 namespace gfxrepro::kit {

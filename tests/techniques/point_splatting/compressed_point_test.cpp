@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 
 namespace gfxrepro::point_splatting {
 namespace {

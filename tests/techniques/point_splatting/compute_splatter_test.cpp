@@ -1,7 +1,7 @@
 // The compute splatter against the same two traversals on the host.
 #include "techniques/point_splatting/compute_splatter.h"
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "tests/techniques/point_splatting/splat_fixture.h"
 
 namespace gfxrepro::point_splatting {

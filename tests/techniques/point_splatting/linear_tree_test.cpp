@@ -7,8 +7,8 @@
 #include <glm/gtc/constants.hpp>
 #include <set>
 
-#include "runner/core/error.h"
-#include "runner/core/random.h"
+#include "engine/core/error.h"
+#include "engine/core/random.h"
 
 namespace gfxrepro::point_splatting {
 namespace {

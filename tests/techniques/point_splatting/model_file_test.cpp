@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "runner/core/error.h"
-#include "runner/core/random.h"
+#include "engine/core/error.h"
+#include "engine/core/random.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::point_splatting {

@@ -9,8 +9,8 @@
 #include <sstream>
 #include <string>
 
-#include "runner/core/files.h"
-#include "runner/core/random.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
 
 namespace gfxrepro::point_splatting {
 namespace {

@@ -63,7 +63,7 @@ int coveredPixels(const image::ImageF& image) {
 TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
-            config::Params params = test::paramsOf(kPointSplatting, yaml);
+            Params params = test::paramsOf(kPointSplatting, yaml);
             PointSplatting technique(params);
         });
     };

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "techniques/point_splatting/compute_splatter.h"
 #include "techniques/point_splatting/splat_renderer.h"
 #include "tests/gl/gl_fixture.h"

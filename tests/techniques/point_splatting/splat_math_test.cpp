@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "techniques/point_splatting/patch_selection.h"
 
 namespace gfxrepro::point_splatting {

@@ -1,7 +1,7 @@
 // Decoding and screen covariance on the device against the host.
 #include <filesystem>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "tests/techniques/point_splatting/splat_fixture.h"
 #include "tests/techniques/point_splatting/splat_math.h"
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "techniques/clustered_reflections/clustered_reflections.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/clustered_reflections/room.h"
@@ -17,8 +17,8 @@ namespace {
 
 using test::errorText;
 
-config::Params paramsOf(const std::string& yaml) {
-    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'reflection_reuse'");
+Params paramsOf(const std::string& yaml) {
+    return Params(parseYaml(yaml, "case.yaml"), "technique 'reflection_reuse'");
 }
 
 scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
@@ -47,7 +47,7 @@ constexpr const char* kPrinted = ", matching: first_order, resampling: twice";
 
 TEST(ReuseParamsTest, MatchesLieBetweenPixelsAndAreResampledOnceByDefault) {
     const auto settingsOf = [](const std::string& yaml) {
-        config::Params params = paramsOf(yaml);
+        Params params = paramsOf(yaml);
         return ReuseParams(params).reuse;
     };
     EXPECT_EQ(settingsOf("{}").matching.matching, Matching::SecondOrder);
@@ -63,7 +63,7 @@ class ReflectionReuseTest : public test::GlTest {
     std::vector<test::MetricRecorder> recorded(
         const std::string& yaml, const scene::Scene* scene, int frameCount, int repeats = 1,
         const technique::TechniqueInfo& info = kReflectionReuse) {
-        config::Params params = paramsOf(yaml);
+        Params params = paramsOf(yaml);
         const auto technique = info.create(params);
         test::NoScenes scenes;
         technique::SetupContext context{device, shaders_, scenes, scene, {64, 48}, 1, profiler_};
@@ -111,7 +111,7 @@ class ReflectionReuseTest : public test::GlTest {
 TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
-            config::Params params = paramsOf(yaml);
+            Params params = paramsOf(yaml);
             ReflectionReuse technique(params);
         });
     };

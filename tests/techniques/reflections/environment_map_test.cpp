@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/image/srgb.h"
+#include "engine/image/srgb.h"
 #include "techniques/reflections/gbuffer.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 

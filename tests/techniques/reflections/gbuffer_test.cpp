@@ -5,8 +5,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/image/srgb.h"
-#include "runner/raycast/ray_tracer.h"
+#include "engine/image/srgb.h"
+#include "engine/raycast/ray_tracer.h"
 #include "tests/techniques/reflections/gl_calls.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 

@@ -2,7 +2,7 @@
 
 #include <dlfcn.h>
 
-#include "runner/gl/gl.h"
+#include "engine/gl/gl.h"
 
 namespace gfxrepro::reflections {
 

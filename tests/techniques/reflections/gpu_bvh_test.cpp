@@ -5,10 +5,10 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/core/files.h"
-#include "runner/core/random.h"
-#include "runner/raycast/ray_tracer.h"
-#include "runner/scene/load.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
+#include "engine/raycast/ray_tracer.h"
+#include "engine/scene/load.h"
 #include "scenes/shared/mesh_builder.h"
 #include "tests/gl/gl_fixture.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/core/files.h"
-#include "runner/scene/animation.h"
+#include "engine/core/files.h"
+#include "engine/scene/animation.h"
 #include "scenes/shared/mesh_builder.h"
 #include "techniques/reflections/embree_tracer.h"
 #include "tests/gl/gl_fixture.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <glm/glm.hpp>
 
-#include "runner/core/files.h"
-#include "runner/core/random.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::reflections {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "runner/core/files.h"
-#include "runner/core/random.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
 #include "scenes/shared/mesh_builder.h"
 #include "techniques/reflections/gbuffer.h"
 #include "techniques/reflections/gpu_objects.h"

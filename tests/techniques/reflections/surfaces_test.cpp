@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
-#include "runner/image/srgb.h"
+#include "engine/image/srgb.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runner/image/srgb.h"
+#include "engine/image/srgb.h"
 
 namespace gfxrepro::reflections {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "scenes/shared/mesh_builder.h"
 #include "techniques/shadow_mapping/shaded_view.h"
 #include "tests/gl/gl_fixture.h"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "runner/core/files.h"
-#include "runner/gl/device.h"
+#include "engine/core/files.h"
+#include "engine/gl/device.h"
 #include "scenes/shared/mesh_builder.h"
 #include "techniques/soft_shadows/shadow_casters.h"
 #include "techniques/soft_shadows/shadow_errors.h"

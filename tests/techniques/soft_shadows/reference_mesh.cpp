@@ -4,7 +4,7 @@
 #include <numeric>
 #include <set>
 
-#include "runner/raycast/ray_tracer.h"
+#include "engine/raycast/ray_tracer.h"
 #include "tests/techniques/soft_shadows/reconstruction_fixture.h"
 
 namespace gfxrepro::soft_shadows {

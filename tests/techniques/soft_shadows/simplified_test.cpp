@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "runner/scene/topology.h"
+#include "engine/scene/topology.h"
 #include "tests/support/topology.h"
 #include "tests/techniques/voxelization/shapes.h"
 

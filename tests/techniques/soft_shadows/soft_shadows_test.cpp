@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "scenes/shared/mesh_builder.h"
 #include "tests/techniques/technique_fixture.h"
 
@@ -69,7 +69,7 @@ scene::Scene clutter() {
 TEST(SoftShadowsParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
-            config::Params params = test::paramsOf(kSoftShadows, yaml);
+            Params params = test::paramsOf(kSoftShadows, yaml);
             SoftShadows technique(params);
         });
     };

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "techniques/terrain_tessellation/factor_check.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/terrain_tessellation/terrain_views_fixture.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "runner/image/resample.h"
+#include "engine/image/resample.h"
 #include "techniques/terrain_tessellation/terrain_views.h"
 #include "tests/support/support.h"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
-#include "runner/core/random.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::terrain_tessellation {

@@ -43,7 +43,7 @@ class TerrainTessellationTest : public test::TechniqueTest {
 TEST(TerrainTessellationParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
-            config::Params params = test::paramsOf(kTerrainTessellation, yaml);
+            Params params = test::paramsOf(kTerrainTessellation, yaml);
             TerrainTessellation technique(params);
         });
     };

@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <tuple>
 
-#include "runner/scene/height_map.h"
+#include "engine/scene/height_map.h"
 #include "scenes/terrain/terrain.h"
 
 namespace gfxrepro::terrain_tessellation {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "runner/core/random.h"
-#include "runner/gl/pass.h"
+#include "engine/core/random.h"
+#include "engine/gl/pass.h"
 #include "tests/support/support.h"
 #include "tests/techniques/voxelization/gl_fixture.h"
 

@@ -1,7 +1,7 @@
 // A device and the shaders for tests of the voxelization passes.
 #pragma once
 
-#include "runner/gl/profiler.h"
+#include "engine/gl/profiler.h"
 #include "tests/gl/suite_device.h"
 #include "tests/techniques/technique_recorder.h"
 

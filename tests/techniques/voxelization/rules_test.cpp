@@ -1,7 +1,7 @@
 // The rules of surface voxelization against the CPU references, voxel by voxel.
 #include <algorithm>
 
-#include "runner/scene/load.h"
+#include "engine/scene/load.h"
 #include "tests/techniques/voxelization/voxel_value.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
 

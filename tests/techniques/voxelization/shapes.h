@@ -1,8 +1,8 @@
 // Small meshes with known answers.
 #pragma once
 
-#include "runner/core/random.h"
-#include "runner/scene/scene.h"
+#include "engine/core/random.h"
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::voxelization::shapes {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 
-#include "runner/raycast/ray_tracer.h"
+#include "engine/raycast/ray_tracer.h"
 #include "tests/support/crossings.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
 

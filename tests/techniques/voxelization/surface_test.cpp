@@ -15,8 +15,8 @@ namespace {
 
 constexpr const char* kTorusFormula = "(sqrt(x^2 + y^2) - 1)^2 + z^2 - 0.16";
 
-config::Params paramsOf(const std::string& yaml) {
-    return config::Params(config::parseYaml(yaml, "test.yaml"), "test");
+Params paramsOf(const std::string& yaml) {
+    return Params(parseYaml(yaml, "test.yaml"), "test");
 }
 
 scene::Box cube(float half) {
@@ -71,7 +71,7 @@ class SurfaceTest : public GlTest {
   protected:
     ImplicitSource implicitOf(const std::string& yaml, const GridSettings& settings,
                               const std::optional<scene::Box>& box = std::nullopt) {
-        config::Params params = paramsOf(yaml);
+        Params params = paramsOf(yaml);
         ImplicitSource source(params, settings, box);
         params.finish();
         technique::SetupContext context = setupContext();
@@ -81,7 +81,7 @@ class SurfaceTest : public GlTest {
     }
     ParametricSource parametricOf(const std::string& yaml, const GridSettings& settings,
                                   const std::optional<scene::Box>& box = std::nullopt) {
-        config::Params params = paramsOf(yaml);
+        Params params = paramsOf(yaml);
         ParametricSource source(params, settings, box);
         params.finish();
         technique::SetupContext context = setupContext();
@@ -260,7 +260,7 @@ TEST(SampleStatistics, MeasuresGapsAndSkipsWhatIsNoPoint) {
 TEST(ParametricSource, RefusesWhatItCannotDo) {
     const auto errorOf = [](const std::string& yaml, const GridSettings& settings) {
         return test::errorText([&] {
-            config::Params params = paramsOf(yaml);
+            Params params = paramsOf(yaml);
             ParametricSource(params, settings, std::nullopt);
         });
     };

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "techniques/voxelization/collision.h"
 #include "techniques/voxelization/csg.h"
 #include "tests/techniques/voxelization/gl_fixture.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "techniques/voxelization/phantom.h"
 #include "tests/techniques/voxelization/gl_fixture.h"
 

@@ -11,15 +11,15 @@ namespace {
 
 using test::errorText;
 
-config::Params paramsOf(const std::string& yaml) {
-    return config::Params(config::parseYaml(yaml, "case.yaml"), "technique 'voxelization'");
+Params paramsOf(const std::string& yaml) {
+    return Params(parseYaml(yaml, "case.yaml"), "technique 'voxelization'");
 }
 
 class VoxelizationTest : public VoxelizerTest {
   protected:
     std::map<std::string, double> run(const std::string& yaml, const scene::Scene& scene,
                                       const std::filesystem::path& folder = {}) {
-        config::Params params = paramsOf(yaml);
+        Params params = paramsOf(yaml);
         const auto technique = kVoxelization.create(params);
         technique::SetupContext context = setupContext();
         context.scene = &scene;
@@ -45,7 +45,7 @@ class VoxelizationTest : public VoxelizerTest {
 TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
-            config::Params params = paramsOf(yaml);
+            Params params = paramsOf(yaml);
             Voxelization technique(params);
         });
     };

@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "runner/gl/pass.h"
+#include "engine/gl/pass.h"
 #include "techniques/voxelization/axis_split.h"
 #include "techniques/voxelization/voxelization.h"
 #include "tests/techniques/voxelization/voxel_value.h"

@@ -9,7 +9,7 @@
 #include <limits>
 #include <map>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
@@ -961,7 +961,7 @@ TEST(Claims, BadOperandsAreErrors) {
     EXPECT_THAT(error("a +"),
                 testing::StartsWith("t.yaml:4:2: claim 'X': 'a +' is no expression: "));
     EXPECT_EQ(error("max(a, c-c) * 2"), "no error");
-    experiment.claims[0].at = {{"m", {config::Node::number(1.0)}}};
+    experiment.claims[0].at = {{"m", {Node::number(1.0)}}};
     EXPECT_EQ(error("a"),
               "t.yaml:4:2: claim 'X': at: 'm' is no row axis; did you mean 'n'? (row "
               "axes: n)");

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/random.h"
 #include "runner/claims/claim_times.h"
-#include "runner/core/random.h"
 #include "runner/tables/frame_times.h"
 #include "runner/tables/sampling.h"
 #include "tests/support/support.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 #include "tests/support/process.h"
 #include "tests/unit/run/plan_fixture.h"
 

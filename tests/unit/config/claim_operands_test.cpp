@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runner/core/text.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro::config {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/unit/config/experiment_fixture.h"
 
 namespace gfxrepro::config {

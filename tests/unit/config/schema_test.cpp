@@ -8,9 +8,9 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "engine/core/files.h"
 #include "runner/config/documents.h"
 #include "runner/config/schema.h"
-#include "runner/core/files.h"
 #include "runner/records/records.h"
 #include "tests/unit/config/experiment_fixture.h"
 

@@ -3,9 +3,9 @@
 
 #include <set>
 
+#include "engine/core/random.h"
+#include "engine/core/text.h"
 #include "runner/config/experiment.h"
-#include "runner/core/random.h"
-#include "runner/core/text.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::config {

@@ -8,14 +8,14 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "runner/core/atomic_file.h"
-#include "runner/core/error.h"
-#include "runner/core/files.h"
-#include "runner/core/hash.h"
-#include "runner/core/json_depth.h"
-#include "runner/core/kept_text.h"
-#include "runner/core/random.h"
-#include "runner/core/text.h"
+#include "engine/core/atomic_file.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "engine/core/json_depth.h"
+#include "engine/core/kept_text.h"
+#include "engine/core/random.h"
+#include "engine/core/text.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro {

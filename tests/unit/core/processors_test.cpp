@@ -1,4 +1,4 @@
-#include "runner/core/processors.h"
+#include "engine/core/processors.h"
 
 #include <gtest/gtest.h>
 #include <sched.h>

@@ -1,4 +1,4 @@
-#include "runner/image/colour_map.h"
+#include "engine/image/colour_map.h"
 
 #include <gtest/gtest.h>
 

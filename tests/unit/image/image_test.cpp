@@ -1,4 +1,4 @@
-#include "runner/image/image.h"
+#include "engine/image/image.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <limits>
 #include <string>
 
-#include "runner/core/files.h"
-#include "runner/core/random.h"
-#include "runner/image/exr_io.h"
-#include "runner/image/png_io.h"
+#include "engine/core/files.h"
+#include "engine/core/random.h"
+#include "engine/image/exr_io.h"
+#include "engine/image/png_io.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::image {

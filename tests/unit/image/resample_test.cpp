@@ -1,4 +1,4 @@
-#include "runner/image/resample.h"
+#include "engine/image/resample.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "runner/image/contact_sheet.h"
-#include "runner/image/text.h"
+#include "engine/image/contact_sheet.h"
+#include "engine/image/text.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::image {

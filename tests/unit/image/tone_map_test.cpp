@@ -1,4 +1,4 @@
-#include "runner/image/tone_map.h"
+#include "engine/image/tone_map.h"
 
 #include <gtest/gtest.h>
 

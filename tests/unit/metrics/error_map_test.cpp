@@ -1,4 +1,4 @@
-#include "runner/metrics/error_map.h"
+#include "engine/metrics/error_map.h"
 
 #include <gtest/gtest.h>
 

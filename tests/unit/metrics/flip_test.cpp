@@ -1,4 +1,4 @@
-#include "runner/metrics/flip.h"
+#include "engine/metrics/flip.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <numbers>
 #include <thread>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::metrics {

@@ -1,4 +1,4 @@
-#include "runner/metrics/hdr_flip.h"
+#include "engine/metrics/hdr_flip.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "runner/metrics/image_error.h"
+#include "engine/metrics/image_error.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::metrics {

@@ -1,5 +1,5 @@
 // How often pictures of one expectation are said to differ, and a bias is found: by simulation.
-#include "runner/metrics/mean_test.h"
+#include "engine/metrics/mean_test.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 
 namespace gfxrepro::metrics {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runner/core/random.h"
-#include "runner/image/image.h"
+#include "engine/core/random.h"
+#include "engine/image/image.h"
 
 namespace gfxrepro::metrics {
 

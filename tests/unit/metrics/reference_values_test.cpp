@@ -12,11 +12,11 @@
 
 #include <filesystem>
 
-#include "runner/core/files.h"
-#include "runner/image/exr_io.h"
-#include "runner/metrics/flip.h"
-#include "runner/metrics/hdr_flip.h"
-#include "runner/metrics/image_error.h"
+#include "engine/core/files.h"
+#include "engine/image/exr_io.h"
+#include "engine/metrics/flip.h"
+#include "engine/metrics/hdr_flip.h"
+#include "engine/metrics/image_error.h"
 #include "tests/support/support.h"
 #include "tests/unit/metrics/pairs.h"
 

@@ -1,4 +1,4 @@
-#include "runner/metrics/statistics.h"
+#include "engine/metrics/statistics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,9 +6,9 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "runner/config/params.h"
-#include "runner/core/random.h"
-#include "runner/raycast/ray_tracer.h"
+#include "engine/core/params.h"
+#include "engine/core/random.h"
+#include "engine/raycast/ray_tracer.h"
 #include "scenes/registry.h"
 #include "tests/support/crossings.h"
 #include "tests/support/support.h"
@@ -33,10 +33,10 @@ scene::Mesh square() {
 }
 
 scene::Scene body(const std::string& shape, int triangles = 20000) {
-    config::Node values;
-    values.set("shape", config::Node::scalar(shape));
-    values.set("triangles", config::Node::number(triangles));
-    config::Params params(values, "generator");
+    Node values;
+    values.set("shape", Node::scalar(shape));
+    values.set("triangles", Node::number(triangles));
+    Params params(values, "generator");
     return scene::findGenerator(scene::registeredGenerators(), "sdf_model", {}).generate(params, 1);
 }
 

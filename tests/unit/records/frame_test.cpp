@@ -7,7 +7,7 @@
 #include <limits>
 #include <memory>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::records {

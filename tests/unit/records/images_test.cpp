@@ -6,7 +6,7 @@
 #include <fstream>
 #include <functional>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::records {

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <limits>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "runner/records/csv.h"
 #include "tests/support/support.h"
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "runner/regression/chart.h"
 #include "tests/support/support.h"
 #include "tests/unit/regression/nights.h"

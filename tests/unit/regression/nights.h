@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-#include "runner/core/random.h"
+#include "engine/core/random.h"
 #include "runner/regression/series.h"
 
 namespace gfxrepro::regression::test {

@@ -5,10 +5,10 @@
 
 #include <limits>
 
-#include "runner/core/files.h"
-#include "runner/image/exr_io.h"
-#include "runner/image/png_io.h"
-#include "runner/image/srgb.h"
+#include "engine/core/files.h"
+#include "engine/image/exr_io.h"
+#include "engine/image/png_io.h"
+#include "engine/image/srgb.h"
 #include "runner/records/images.h"
 #include "runner/regression/summary.h"
 #include "tests/support/support.h"

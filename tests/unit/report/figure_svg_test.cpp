@@ -10,7 +10,7 @@
 #include <regex>
 #include <set>
 
-#include "runner/core/files.h"
+#include "engine/core/files.h"
 #include "runner/report/plot.h"
 #include "runner/report/svg.h"
 #include "runner/tables/table.h"

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "runner/image/png_io.h"
+#include "engine/image/png_io.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::report {

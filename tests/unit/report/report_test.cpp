@@ -8,10 +8,10 @@
 #include <map>
 #include <set>
 
+#include "engine/core/files.h"
+#include "engine/image/png_io.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
-#include "runner/core/files.h"
-#include "runner/image/png_io.h"
 #include "runner/records/images.h"
 #include "runner/tables/labels.h"
 #include "runner/tables/moved_clocks.h"
@@ -175,8 +175,8 @@ TEST(Report, MarksTimesThatAreNotOfOneClock) {
 TEST(Report, NoRatioAtOtherParameters) {
     const test::TemporaryFolder folder;
     ReportRun run = runIn(folder.path());
-    const config::Node printed = run.experiments[0].paperCases[0].params;
-    run.experiments[0].paperCases[0].params.set("light_grid", config::Node::number(16));
+    const Node printed = run.experiments[0].paperCases[0].params;
+    run.experiments[0].paperCases[0].params.set("light_grid", Node::number(16));
     judge(run, records());
     writeReport(folder.path() / "report.html", {&run, 1});
     std::string html = readFile(folder.path() / "report.html");
@@ -515,7 +515,7 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
 TEST(Report, RunsStandSideBySide) {
     const test::TemporaryFolder a, b, out;
     std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
-    runs[1].experiments[0].paperCases[0].params.set("light_grid", config::Node::number(16));
+    runs[1].experiments[0].paperCases[0].params.set("light_grid", Node::number(16));
     judge(runs[1], records(12.0));
     runs[1].tables[0].notes.emplace_back("Noise of this one.");
     writeReport(out.path() / "both.html", runs);

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "engine/core/files.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
-#include "runner/core/files.h"
 #include "runner/report/writers.h"
 #include "runner/tables/moved_clocks.h"
 #include "tests/support/support.h"

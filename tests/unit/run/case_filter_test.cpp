@@ -11,9 +11,9 @@ Case caseOf(const std::string& id, const std::string& axes) {
     Case item;
     item.id = id;
     item.experiment = "zju2005/9.9";
-    item.axes = config::parseYaml(axes, "axes");
-    item.params = config::parseYaml("{resolution: 64, method: slices}", "params");
-    item.scene = config::Node::scalar("models/duck");
+    item.axes = parseYaml(axes, "axes");
+    item.params = parseYaml("{resolution: 64, method: slices}", "params");
+    item.scene = Node::scalar("models/duck");
     item.outputWidthPx = 32;
     item.outputHeightPx = 16;
     return item;

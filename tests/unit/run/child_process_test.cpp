@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "runner/core/descriptor.h"
+#include "engine/core/descriptor.h"
 #include "tests/support/support.h"
 #include "tests/unit/run/held_at_its_end.h"
 

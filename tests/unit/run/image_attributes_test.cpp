@@ -5,7 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
-#include "runner/config/node.h"
+#include "engine/core/node.h"
 #include "runner/run/manifest.h"
 #include "runner/run/recorder.h"
 #include "tests/support/support.h"
@@ -18,9 +18,9 @@ Case someCase() {
     item.id = "0123456789ab";
     item.experiment = "xie2017/8";
     item.technique = "clustered_reflections";
-    item.scene = config::parseYaml("office", "test");
-    item.params = config::parseYaml("{method: clustered, supersampling: 2}", "test");
-    item.axes = config::parseYaml("{frames: 3}", "test");
+    item.scene = parseYaml("office", "test");
+    item.params = parseYaml("{method: clustered, supersampling: 2}", "test");
+    item.axes = parseYaml("{frames: 3}", "test");
     item.outputWidthPx = 64;
     item.outputHeightPx = 32;
     item.measure.frames = 1;

@@ -16,7 +16,7 @@ using testing::Pair;
 
 class Still : public technique::Technique {
   public:
-    explicit Still(config::Params& params) {
+    explicit Still(Params& params) {
         const double bias = params.getDouble("bias", 0.5, {"taken from the depth", "texels", 0, 1});
         const bool isStatic = params.getBool("static", false, {"drawn once"});
         params.getInt("last", 0, {"frame that is drawn"});
@@ -33,7 +33,7 @@ class Still : public technique::Technique {
 
 const technique::TechniqueInfo kTechniques[] = {
     {"still", "measures nothing",
-     [](config::Params& params) -> std::unique_ptr<technique::Technique> {
+     [](Params& params) -> std::unique_ptr<technique::Technique> {
          return std::make_unique<Still>(params);
      },
      [] { return config::Outputs(); }}};
@@ -384,7 +384,7 @@ TEST(Cases, TakeParametersOfTheGeneratedScene) {
     const auto scenes = [&](const std::string& lines) {
         std::vector<std::pair<std::string, std::string>> result;
         for (const Case& item : ledger.cases(ledger.load(lines))) {
-            const config::Node* count = item.params.find("scene.triangles");
+            const Node* count = item.params.find("scene.triangles");
             result.emplace_back(item.scene.text() + " for " + item.standsFor.text(),
                                 count ? count->text() : "");
         }

@@ -2,8 +2,6 @@
 
 namespace gfxrepro::test {
 
-using config::Node;
-
 run::Case makeCase(const std::string& experiment, const std::string& method, int size,
                    config::Measure::Lane lane) {
     run::Case item;

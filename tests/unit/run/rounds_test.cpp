@@ -143,7 +143,7 @@ TEST(Rounds, OfAProgramGoOnWhileItsClockIsUnknown) {
         std::vector<records::Record> records;
         for (std::size_t i = 2; i < plan.cases.size(); ++i) {
             plan.cases[i].measure.processesAtMost = 20;
-            if (isProgram) plan.cases[i].program = config::Node::map({});
+            if (isProgram) plan.cases[i].program = Node::map({});
             for (int process = 0; process < 14; ++process) {
                 records.push_back(
                     timeRow(plan.cases[i], process % 2 == 0 ? 500.0 : 750.0, process));

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "runner/core/files.h"
-#include "runner/core/text.h"
+#include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "runner/run/run_files.h"
 #include "tests/support/support.h"
 

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kHeights = 1000;
 
 /// A map in memory, and nothing else.
-scene::Scene terrain(config::Params&, std::uint64_t) {
+scene::Scene terrain(Params&, std::uint64_t) {
     scene::Scene scene;
     scene.heights.emplace().heightsM.resize(kHeights);
     return scene;

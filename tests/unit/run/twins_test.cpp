@@ -5,9 +5,9 @@
 
 #include <functional>
 
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
 #include "runner/cluster/shards.h"
-#include "runner/core/files.h"
-#include "runner/core/hash.h"
 #include "runner/run/file_stem.h"
 #include "runner/run/rounds.h"
 #include "tests/support/support.h"
@@ -17,7 +17,6 @@ namespace gfxrepro::test {
 namespace {
 
 namespace fs = std::filesystem;
-using config::Node;
 using run::Case;
 using Lane = config::Measure::Lane;
 using ::testing::ElementsAre;

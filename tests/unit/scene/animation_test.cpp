@@ -1,4 +1,4 @@
-#include "runner/scene/animation.h"
+#include "engine/scene/animation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // Heights in a file: the same as in memory, made once, remade where damaged, never too many.
-#include "runner/scene/height_file.h"
+#include "engine/scene/height_file.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cmath>
 
-#include "runner/core/error.h"
-#include "runner/scene/height_map.h"
+#include "engine/core/error.h"
+#include "engine/scene/height_map.h"
 #include "scenes/terrain/terrain.h"
 #include "tests/support/support.h"
 

@@ -1,4 +1,4 @@
-#include "runner/scene/height_map.h"
+#include "engine/scene/height_map.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 
 #include <tiffio.h>
 
-#include "runner/core/error.h"
-#include "runner/core/files.h"
-#include "runner/image/png_io.h"
-#include "runner/scene/scene.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/image/png_io.h"
+#include "engine/scene/scene.h"
 #include "scenes/terrain/terrain.h"
 #include "tests/support/support.h"
 

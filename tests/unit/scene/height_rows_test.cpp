@@ -1,5 +1,5 @@
 // Maps from files into files: the heights of those in memory, holes filled by bands, bounds.
-#include "runner/scene/height_rows.h"
+#include "engine/scene/height_rows.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -11,10 +11,10 @@
 #include <random>
 #include <vector>
 
-#include "runner/core/files.h"
-#include "runner/image/png_io.h"
-#include "runner/scene/height_holes.h"
-#include "runner/scene/height_map.h"
+#include "engine/core/files.h"
+#include "engine/image/png_io.h"
+#include "engine/scene/height_holes.h"
+#include "engine/scene/height_map.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "runner/scene/load.h"
+#include "engine/scene/load.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {

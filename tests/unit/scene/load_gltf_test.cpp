@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "runner/scene/load.h"
+#include "engine/scene/load.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {

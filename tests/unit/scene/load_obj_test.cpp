@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "runner/image/png_io.h"
-#include "runner/scene/load.h"
+#include "engine/image/png_io.h"
+#include "engine/scene/load.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {

@@ -1,4 +1,4 @@
-#include "runner/scene/point_sampling.h"
+#include "engine/scene/point_sampling.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
-#include "runner/core/error.h"
-#include "runner/core/random.h"
-#include "runner/scene/covariance.h"
+#include "engine/core/error.h"
+#include "engine/core/random.h"
+#include "engine/scene/covariance.h"
 #include "scenes/shared/mesh_builder.h"
 
 namespace gfxrepro::scene {

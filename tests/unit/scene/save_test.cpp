@@ -3,8 +3,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
 
-#include "runner/core/random.h"
-#include "runner/scene/load.h"
+#include "engine/core/random.h"
+#include "engine/scene/load.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {

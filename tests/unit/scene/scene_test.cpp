@@ -1,4 +1,4 @@
-#include "runner/scene/scene.h"
+#include "engine/scene/scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "runner/config/node.h"
+#include "engine/core/node.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::studies {
@@ -13,8 +13,8 @@ using claims::Verdict;
 using testing::ElementsAre;
 using testing::Pair;
 
-config::Node node(const std::string& yaml) {
-    return config::parseYaml(yaml, "t.yaml");
+Node node(const std::string& yaml) {
+    return parseYaml(yaml, "t.yaml");
 }
 
 /// One that is bound to cases which take `value`; an empty one is free text.
@@ -22,7 +22,7 @@ config::Assumption assumption(const std::string& name, const std::string& value,
                               const std::string& range) {
     config::Assumption result;
     result.name = name;
-    result.value = config::Node::scalar(value);
+    result.value = Node::scalar(value);
     result.range = node(range);
     result.isBound = !value.empty();
     return result;

@@ -35,7 +35,7 @@ Table tableOf(const std::vector<std::vector<double>>& rows) {
 config::Experiment experimentOf() {
     config::Experiment experiment;
     experiment.document =
-        config::parseYaml("fit: {a: {id: p/1, printed: 70}, b: {id: p/2, printed: 50}}", "t.yaml");
+        parseYaml("fit: {a: {id: p/1, printed: 70}, b: {id: p/2, printed: 50}}", "t.yaml");
     return experiment;
 }
 
@@ -75,7 +75,7 @@ TEST(Fit, TellsThatABetterRowMayLieBeyondTheGrid) {
 
 TEST(Fit, SaysNothingWithoutOne) {
     config::Experiment none;
-    none.document = config::parseYaml("title: t", "t.yaml");
+    none.document = parseYaml("title: t", "t.yaml");
     EXPECT_THAT(fitNotes(fitOf(none, tableOf({{1, 2}})), tableOf({{1, 2}})), IsEmpty());
     const Table table = tableOf({{-1, 2}});
     EXPECT_THAT(fitNotes(fitOf(experimentOf(), table), table),

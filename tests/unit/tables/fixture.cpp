@@ -19,7 +19,7 @@ config::Experiment withPaperCases(
     config::Experiment experiment,
     std::initializer_list<std::pair<const char*, const char*>> cases) {
     for (const auto& [scene, params] : cases) {
-        experiment.paperCases.push_back({scene, config::parseYaml(params, "paper case")});
+        experiment.paperCases.push_back({scene, parseYaml(params, "paper case")});
     }
     return experiment;
 }
@@ -28,12 +28,12 @@ namespace {
 
 /// Whether the recorded case lies at that point of the sweep: what both name is the same.
 bool isAt(const PlannedCase& recorded, const PlannedCase& point) {
-    const config::Node* standsFor = recorded.params.find(kStandsFor);
+    const Node* standsFor = recorded.params.find(kStandsFor);
     const std::string scene = standsFor ? standsFor->text() : recorded.scene;
     if (recorded.table != point.table) return false;
     if (!point.scene.empty() && scene != point.scene) return false;
     for (const auto& [name, value] : point.params.entries()) {
-        const config::Node* own = recorded.params.find(name);
+        const Node* own = recorded.params.find(name);
         if (own && !own->sameContent(value)) return false;
     }
     return true;
@@ -47,8 +47,8 @@ std::vector<PlannedCase> planOf(const config::Experiment& experiment, const Reco
     for (const config::CaseSpec& spec : config::expandCases(experiment)) {
         PlannedCase point{
             "", experiment.id, spec.scene.isNull() ? "" : spec.scene.text(), spec.params, {}};
-        point.params.setPath("output.width", config::Node::number(spec.outputWidthPx));
-        point.params.setPath("output.height", config::Node::number(spec.outputHeightPx));
+        point.params.setPath("output.width", Node::number(spec.outputWidthPx));
+        point.params.setPath("output.height", Node::number(spec.outputHeightPx));
         for (const auto& [axis, value] : spec.axes) point.axes.push_back(axis);
         bool isRecorded = false;
         for (const PlannedCase& item : records.cases) {
@@ -88,7 +88,7 @@ RecordMaker& RecordMaker::beginCase(const std::string& scene, const std::string&
     if (json.contains("method")) current_.method = json["method"].get<std::string>();
     current_.scene = scene;
     records_.cases.push_back(
-        {current_.caseId, current_.table, scene, config::parseJson(params, "params"), {}});
+        {current_.caseId, current_.table, scene, parseJson(params, "params"), {}});
     current_.lane = "timing";
     return *this;
 }

@@ -1,4 +1,4 @@
-#include "runner/scene/catalog.h"
+#include "engine/scene/catalog.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-#include "runner/image/png_io.h"
+#include "engine/image/png_io.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
 #include "tests/support/topology.h"
@@ -18,8 +18,8 @@ constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 const std::filesystem::path kShippedScenes = GFXREPRO_SOURCE_DIR "/configs/scenes";
 
-config::Node reference(const std::string& name) {
-    return config::Node::scalar(name, {"table.yaml", 5, 8});
+Node reference(const std::string& name) {
+    return Node::scalar(name, {"table.yaml", 5, 8});
 }
 
 /// configs with one entry m/x, and an assets folder beside it.
@@ -124,7 +124,7 @@ TEST(Catalog, TakesAGeneratedSceneWithOtherParameters) {
 }
 
 /// One triangle, `size_m` wide.
-Scene oneTriangle(config::Params& params, std::uint64_t) {
+Scene oneTriangle(Params& params, std::uint64_t) {
     const auto sizeM = static_cast<float>(params.getDouble("size_m", 1.0, {"width", "m", 0.1, 9}));
     params.finish();
     Mesh mesh;
@@ -310,17 +310,17 @@ TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
     const Folders folders;
     const std::string file = folders.folder.write("mine/my.obj", kTriangle).string();
     const std::string config = (folders.folder.path() / "mine/table.yaml").string();
-    const auto my = config::Node::scalar("my.obj", {config, 2, 3});
+    const auto my = Node::scalar("my.obj", {config, 2, 3});
     const Catalog catalog = folders.catalog();
     EXPECT_EQ(catalog.resolve(my).file, file);
     const Scene scene = catalog.load(my);
     EXPECT_EQ(scene.name, "my.obj");
     EXPECT_EQ(scene.origin.kind, Origin::Kind::Real);
-    const auto missing = config::Node::scalar("../no.obj", {config, 2, 3});
+    const auto missing = Node::scalar("../no.obj", {config, 2, 3});
     EXPECT_EQ(test::errorText([&] { catalog.load(missing); }, folders.folder.path()),
               "DIR/mine/table.yaml:2:3: scene file '../no.obj' is not there; looked at DIR/no.obj");
     // Known before it is looked for, so that a check without a device finds it.
-    const auto unknown = config::Node::scalar("my.STL", {config, 2, 3});
+    const auto unknown = Node::scalar("my.STL", {config, 2, 3});
     EXPECT_EQ(test::errorText([&] { catalog.resolve(unknown); }, folders.folder.path()),
               "DIR/mine/table.yaml:2:3: scene file my.STL: unknown extension '.stl'; .ply, .obj, "
               ".gltf and .glb are allowed");

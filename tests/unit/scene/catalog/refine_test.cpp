@@ -1,4 +1,4 @@
-#include "runner/scene/refine.h"
+#include "engine/scene/refine.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,66 @@
+#include "engine/core/checks.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/text.h"
+
+namespace gfxrepro {
+
+void requireKeys(const Node& map, std::string_view what, std::span<const std::string> allowed) {
+    if (!map.isMap()) throwNotAllowed(map, what, "a map of " + joined(allowed));
+    for (const auto& [key, value] : map.entries()) {
+        if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
+        const std::string near = suggestion(key, allowed);
+        throw Error(map.keyLocation(key),
+                    std::string(what) + ": unknown key '" + key + "'" +
+                        (near.empty() ? "; allowed: " + joined(allowed) : near));
+    }
+}
+
+void throwNotAllowed(const Node& value, std::string_view what, std::string_view allowed) {
+    throw Error(value.location(), std::string(what) + " is " +
+                                      (value.isNull() ? "empty" : value.toFlowText()) +
+                                      "; allowed: " + std::string(allowed));
+}
+
+std::optional<double> fractionOf(const Node& node) {
+    const std::string text = node.isScalar() ? node.text() : "";
+    std::optional<double> fraction = node.tryDouble();
+    if (text.ends_with('%')) {
+        fraction = parseDouble(trimmed(std::string_view(text).substr(0, text.size() - 1)));
+        if (fraction) *fraction /= 100.0;
+    } else if (fraction && *fraction > 1.0) {
+        fraction.reset();
+    }
+    return fraction;
+}
+
+std::string contentKey(const Node& node) {
+    if (const auto number = node.tryDouble()) return Node::number(*number).text();
+    std::string key;
+    if (node.isSequence()) {
+        for (const Node& item : node.items()) key += contentKey(item) + ",";
+        return fmt::format("[{}]", key);
+    }
+    if (node.isMap()) {
+        std::vector<std::string> parts;
+        for (const auto& [name, value] : node.entries()) {
+            parts.push_back(nlohmann::json(name).dump() + ":" + contentKey(value));
+        }
+        std::sort(parts.begin(), parts.end());
+        return fmt::format("{{{}}}", joined(parts));
+    }
+    return node.toJson().dump();
+}
+
+bool matchesAny(const Node& value, const Node& pattern) {
+    if (value.sameContent(pattern)) return true;
+    return pattern.isSequence() &&
+           std::any_of(pattern.items().begin(), pattern.items().end(),
+                       [&](const Node& item) { return value.sameContent(item); });
+}
+
+}  // namespace gfxrepro

@@ -1,0 +1,32 @@
+// What the readers of a config's sections share; private to this module.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/node.h"
+
+namespace gfxrepro {
+
+/// Throws Error at the first key of `map` that is not among `allowed`, with the nearest; `what`
+/// begins the message ("layout"). Throws too when `map` is no map.
+void requireKeys(const Node& map, std::string_view what, std::span<const std::string> allowed);
+
+/// Throws Error "WHAT is VALUE; allowed: ALLOWED" at the value's place.
+[[noreturn]] void throwNotAllowed(const Node& value, std::string_view what,
+                                  std::string_view allowed);
+
+/// A share, as a percentage ("25%", "25 %") or a fraction; none for another text, and for a
+/// fraction beyond 1, where the sign is likely forgotten.
+std::optional<double> fractionOf(const Node& node);
+
+/// Equal when the contents are (1.0 and 1, x and 'x'): a key for sets.
+std::string contentKey(const Node& node);
+
+/// Whether `value` equals `pattern`, or one of its items when it is a list.
+bool matchesAny(const Node& value, const Node& pattern);
+
+}  // namespace gfxrepro

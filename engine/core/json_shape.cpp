@@ -1,0 +1,136 @@
+#include "engine/core/json_shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <climits>
+
+#include "engine/core/json_depth.h"
+
+namespace gfxrepro {
+
+namespace {
+
+bool isOfKind(const Json& value, JsonKind kind) {
+    const auto areAll = [&](JsonKind item) {
+        return value.is_structured() &&
+               std::ranges::all_of(value, [&](const Json& one) { return isOfKind(one, item); });
+    };
+    const auto isWholeUpTo = [&](long long most) {
+        if (value.is_number_unsigned()) {
+            return value.get<unsigned long long>() <= static_cast<unsigned long long>(most);
+        }
+        return value.is_number_integer() && value.get<long long>() >= -most - 1;
+    };
+    switch (kind) {
+        case JsonKind::Text:
+            return value.is_string();
+        case JsonKind::Line:
+            return value.is_string() &&
+                   std::ranges::none_of(value.get_ref<const std::string&>(),
+                                        [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+        case JsonKind::Boolean:
+            return value.is_boolean();
+        case JsonKind::Int:
+            return isWholeUpTo(INT_MAX);
+        case JsonKind::Whole:
+            return isWholeUpTo(LLONG_MAX);
+        case JsonKind::Number:
+            return value.is_number();
+        case JsonKind::Infinite:
+            return value.is_number() || value == "inf" || value == "-inf";
+        case JsonKind::Object:
+            return value.is_object();
+        case JsonKind::List:
+            return value.is_array();
+        case JsonKind::Texts:
+            return areAll(JsonKind::Text);
+        case JsonKind::Lines:
+            return areAll(JsonKind::Line);
+        case JsonKind::Ints:
+            return areAll(JsonKind::Int);
+        case JsonKind::Objects:
+            return areAll(JsonKind::Object);
+    }
+    return false;
+}
+
+std::string_view nameOf(JsonKind kind) {
+    static constexpr std::array<std::string_view, 13> kNames = {"text",
+                                                                "a line of text",
+                                                                "true or false",
+                                                                "a whole number below 2^31",
+                                                                "a whole number",
+                                                                "a number",
+                                                                "a number, \"inf\" or \"-inf\"",
+                                                                "an object",
+                                                                "a list",
+                                                                "texts",
+                                                                "lines of text",
+                                                                "whole numbers below 2^31",
+                                                                "objects"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+void requireKind(const Json& value, JsonKind kind, const SourceLocation& where,
+                 const std::string& place) {
+    if (isOfKind(value, kind)) return;
+    throw Error(where,
+                fmt::format("'{}' is {}; expected {}", place, value.type_name(), nameOf(kind)));
+}
+
+}  // namespace
+
+void requireShallowJson(std::string_view text, const SourceLocation& where) {
+    if (!isTooDeepJson(text)) return;
+    throw Error(where, fmt::format("nested deeper than {} levels", kMostJsonLevels));
+}
+
+Json parseJsonObject(std::string_view text, const SourceLocation& where) {
+    requireShallowJson(text, where);
+    Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object()) throw Error(where, "is no JSON object");
+    return json;
+}
+
+void requireMembers(const Json& object, std::span<const JsonMember> members,
+                    const SourceLocation& where, const std::string& prefix) {
+    for (const JsonMember& member : members) {
+        const Json::json_pointer place(member.place);
+        if (object.contains(place)) {
+            requireKind(object.at(place), member.kind, where, prefix + member.place);
+        } else if (member.isRequired) {
+            throw Error(where, fmt::format("'{}{}' is missing", prefix, member.place));
+        }
+    }
+}
+
+void requireEach(const Json& object, const char* place, std::span<const JsonMember> members,
+                 const SourceLocation& where, const std::string& prefix) {
+    const Json::json_pointer pointer(place);
+    if (!object.contains(pointer)) return;
+    for (const auto& [name, value] : object.at(pointer).items()) {
+        requireMembers(value, members, where, fmt::format("{}{}/{}", prefix, place, name));
+    }
+}
+
+void requireRows(const Json& object, const char* place, std::span<const JsonKind> columns,
+                 const SourceLocation& where, const std::string& prefix) {
+    const JsonMember list{place, JsonKind::List};
+    requireMembers(object, {&list, 1}, where, prefix);
+    const Json& rows = object.at(Json::json_pointer(place));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::string row = fmt::format("{}{}/{}", prefix, place, i);
+        requireKind(rows[i], JsonKind::List, where, row);
+        if (rows[i].size() != columns.size()) {
+            throw Error(where, fmt::format("'{}' has {} values; expected {}", row, rows[i].size(),
+                                           columns.size()));
+        }
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+            requireKind(rows[i][k], columns[k], where, fmt::format("{}/{}", row, k));
+        }
+    }
+}
+
+}  // namespace gfxrepro

@@ -1,0 +1,138 @@
+// The schema of files that people write, as data: every key with its type, default and meaning. The
+// readers take the keys that they allow from here; so do `gfxrepro describe config`, the JSON
+// schema for editors and configs/README.md.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/core/json_shape.h"
+
+namespace gfxrepro {
+
+/// A key of a map.
+struct SchemaKey {
+    std::string name;
+    std::string type;    // in words
+    std::string absent;  // the default, or what its absence means: "none", "required"
+    std::string doc;
+    Json json;  // the type as JSON schema has it
+
+    bool isRequired() const { return absent == "required"; }
+};
+
+/// The keys of one kind of map.
+struct SchemaSection {
+    std::string name;  // "layout": for keysOf, and in the JSON schema
+    std::string path;  // what stands before its keys: "layout.", "claims.ID."
+    std::string doc;   // begins its table
+    std::vector<SchemaKey> keys;
+    bool isRemovable = true;    // a key may be null, which removes what an extended file has set
+    Json others = nullptr;      // the type of all further keys; null: there are none
+    Json conditions = nullptr;  // further JSON schema: which keys go together
+
+    std::vector<std::string> keyNames() const;
+};
+
+/// A kind of file and its sections, the top of the file first.
+struct SchemaFile {
+    std::string name;  // "experiment", "scene", "expectations", "documents"
+    std::string doc;
+    std::vector<SchemaSection> sections;
+
+    /// The section of that name, or null.
+    const SchemaSection* find(std::string_view section) const;
+};
+
+}  // namespace gfxrepro
+
+// Types as JSON schema writes them. They allow what the readers allow: whatever stands on one line
+// is text, also `2.1`.
+namespace gfxrepro::types {
+
+inline Json text() {
+    return {{"type", {"string", "number", "boolean"}}};
+}
+inline Json number() {
+    return {{"type", "number"}};
+}
+inline Json count() {
+    return {{"type", "integer"}, {"minimum", 1}};
+}
+inline Json boolean() {
+    return {{"type", "boolean"}};
+}
+inline Json anything() {
+    return Json::object();
+}
+template <class Names>
+Json choice(const Names& names) {
+    Json values = Json::array();
+    for (const auto& name : names) values.push_back(std::string(name));
+    return {{"enum", std::move(values)}};
+}
+inline Json choice(std::initializer_list<std::string_view> names) {
+    return choice<std::initializer_list<std::string_view>>(names);
+}
+inline Json listOf(Json item, int atLeast = 0) {
+    Json list = {{"type", "array"}, {"items", std::move(item)}};
+    if (atLeast > 0) list["minItems"] = atLeast;
+    return list;
+}
+/// Exactly `size` items.
+inline Json tupleOf(Json item, int size) {
+    Json list = listOf(std::move(item), size);
+    list["maxItems"] = size;
+    return list;
+}
+inline Json anyOf(std::initializer_list<Json> types) {
+    Json list = Json::array();
+    for (const Json& type : types) list.push_back(type);
+    return {{"anyOf", std::move(list)}};
+}
+/// Null removes what an extended file has set.
+inline Json orNull(Json type) {
+    if (type.empty()) return type;
+    if (type.contains("anyOf")) {
+        type["anyOf"].push_back({{"type", "null"}});
+    } else if (type.contains("enum")) {
+        type["enum"].push_back(nullptr);
+    } else if (type.contains("type") && type["type"].is_array()) {
+        type["type"].push_back("null");
+    } else if (type.contains("type")) {
+        type["type"] = Json::array({type["type"], "null"});
+    } else {
+        return anyOf({std::move(type), {{"type", "null"}}});
+    }
+    return type;
+}
+/// Any keys, each with such a value.
+inline Json mapOf(Json value) {
+    return {{"type", "object"}, {"additionalProperties", orNull(std::move(value))}};
+}
+inline Json refTo(std::string_view definition) {
+    return {{"$ref", "#/definitions/" + std::string(definition)}};
+}
+/// A value or several of them.
+inline Json oneOrMore(Json value) {
+    return anyOf({value, listOf(value)});
+}
+/// {axis: value}, {axis: [values]}.
+inline Json pairs() {
+    return mapOf(anything());
+}
+/// One of these groups of keys must be there: {{"a"}, {"b", "c"}} is a, or b and c.
+inline Json needsOneOf(std::initializer_list<std::initializer_list<std::string_view>> groups) {
+    Json list = Json::array();
+    for (const auto& group : groups) {
+        Json keys = Json::array();
+        for (const std::string_view key : group) keys.push_back(std::string(key));
+        list.push_back({{"required", std::move(keys)}});
+    }
+    return {{"anyOf", std::move(list)}};
+}
+
+}  // namespace gfxrepro::types

@@ -1,0 +1,65 @@
+#include "engine/gl/gpu_nodes.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+
+namespace gfxrepro::gl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Files of `folder` that are called `prefix` and a number, in the order of their names.
+std::vector<fs::path> numbered(const fs::path& folder, std::string_view prefix) {
+    std::vector<fs::path> files;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none)) {
+        const std::string name = entry.path().filename();
+        if (name.starts_with(prefix) && name.size() > prefix.size() &&
+            name.find_first_not_of("0123456789", prefix.size()) == std::string::npos) {
+            files.push_back(entry.path());
+        }
+    }
+    std::ranges::sort(files);
+    return files;
+}
+
+/// The kernel's driver of a file of /dev/dri: "amdgpu"; empty when it is not known.
+std::string driverOf(const fs::path& file, const fs::path& drivers) {
+    std::error_code none;
+    return fs::read_symlink(drivers / file.filename() / "device/driver", none).filename();
+}
+
+bool isVirtualDisplay(const std::string& driver) {
+    return std::ranges::any_of(
+        std::array{"vgem", "vkms", "virtio_gpu", "virtio-pci", "qxl", "bochs-drm", "vmwgfx"},
+        [&](const char* name) { return driver == name; });
+}
+
+}  // namespace
+
+std::vector<std::string> unusedGpus(const fs::path& devices, const fs::path& drivers) {
+    std::vector<std::string> sentences;
+    const auto add = [&](const fs::path& file, const std::string& driver) {
+        const bool opens = ::access(file.c_str(), R_OK | W_OK) == 0;
+        sentences.push_back(
+            file.string() + (driver.empty() ? "" : " (" + driver + ")") + ": " +
+            (opens ? "no driver gives an OpenGL device for it" : std::strerror(errno)));
+    };
+    for (const fs::path& file : numbered(devices, "nvidia")) add(file, "");
+    for (const fs::path& file : numbered(devices / "dri", "renderD")) {
+        const std::string driver = driverOf(file, drivers);
+        // Those of NVIDIA were named above.
+        if (driver != "nvidia" && !isVirtualDisplay(driver)) add(file, driver);
+    }
+    // The Windows host's, of a Linux that runs in it.
+    if (std::error_code none; fs::exists(devices / "dxg", none)) add(devices / "dxg", "");
+    return sentences;
+}
+
+}  // namespace gfxrepro::gl

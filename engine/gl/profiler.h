@@ -1,0 +1,85 @@
+// Times of passes: GL_TIMESTAMP pairs on the device, steady clock on the CPU.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/gl/objects.h"
+
+namespace gfxrepro::gl {
+
+/// The measured time of one scope.
+struct PassTime {
+    enum class Clock { Gpu, Cpu };
+    std::string pass;
+    Clock clock = Clock::Gpu;
+    double timeMs = 0.0;
+    double processTimeMs = 0.0;  // CPU time of all threads of the process meanwhile
+};
+
+/// CPU time, user and system, that all threads of this process have spent
+/// (CLOCK_PROCESS_CPUTIME_ID, POSIX). On a software device it is the work that was done, whoever
+/// else wants the cores.
+double processTimeMs();
+
+/// Collects scopes of one iteration. On a software device everything is finished before and
+/// after each stamp, so that no pass's work is counted with its neighbour (llvmpipe runs vertex
+/// work when the draw is called, and rasterizes and takes the stamp at the next flush). So the CPU
+/// time of a pass is its own, too.
+class Profiler {
+  public:
+    explicit Profiler(bool isSoftwareDevice) : isSoftwareDevice_(isSoftwareDevice) {}
+
+    /// The scopes since the last call, in the order in which they began, scopes of one name and
+    /// clock summed. Waits for the device.
+    std::vector<PassTime> collect();
+
+  private:
+    friend class GpuScope;
+    friend class CpuScope;
+    struct Entry {
+        std::string pass;
+        PassTime::Clock clock;
+        detail::Name<detail::deleteQuery> begin, end;
+        double cpuTimeMs = 0.0;
+        double processTimeMs = 0.0;  // less what it was at the begin
+    };
+    std::size_t beginGpu(std::string_view pass);
+    void endGpu(std::size_t entry);
+
+    bool isSoftwareDevice_;
+    std::vector<Entry> entries_;
+};
+
+/// Times the commands issued in its life on the device. Scopes may nest.
+class GpuScope {
+  public:
+    GpuScope(Profiler& profiler, std::string_view pass)
+        : profiler_(profiler), entry_(profiler.beginGpu(pass)) {}
+    ~GpuScope() { profiler_.endGpu(entry_); }
+    GpuScope(const GpuScope&) = delete;
+    GpuScope& operator=(const GpuScope&) = delete;
+
+  private:
+    Profiler& profiler_;
+    std::size_t entry_;
+};
+
+/// Times its life on the CPU.
+class CpuScope {
+  public:
+    CpuScope(Profiler& profiler, std::string_view pass);
+    ~CpuScope();
+    CpuScope(const CpuScope&) = delete;
+    CpuScope& operator=(const CpuScope&) = delete;
+
+  private:
+    Profiler& profiler_;
+    std::size_t entry_;
+    std::chrono::steady_clock::time_point begin_;
+};
+
+}  // namespace gfxrepro::gl

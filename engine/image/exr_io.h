@@ -1,0 +1,53 @@
+// OpenEXR files: named channels of half, float or whole numbers, with attributes.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/image/image.h"
+
+namespace gfxrepro::image {
+
+enum class ExrPixelType {
+    Half,
+    Float,
+    Uint,  // of 32 bits; in memory as float, which holds whole numbers up to 2²⁴
+};
+
+/// Channels of one size, each with its EXR name ("R", "depth.Z", "id"). Values are linear.
+struct ExrImage {
+    struct Channel {
+        std::string name;
+        ExrPixelType type = ExrPixelType::Half;
+        ImageF values;  // one channel
+    };
+    std::vector<Channel> channels;
+    std::map<std::string, std::string> attributes;  // text metadata: camera, command, case
+    /// Attributes of type m44f ("worldToCamera"), row by row; they take row vectors, so that a
+    /// matrix of GLM has the same 16 numbers in the same order.
+    std::map<std::string, std::array<float, 16>> matrices;
+
+    int width() const { return channels.empty() ? 0 : channels.front().values.width(); }
+    int height() const { return channels.empty() ? 0 : channels.front().values.height(); }
+    /// Null when there is no such channel.
+    const ImageF* find(const std::string& name) const;
+    /// Adds image channel by channel under `names` ("R","G","B", …).
+    void add(const ImageF& image, const std::vector<std::string>& names,
+             ExrPixelType type = ExrPixelType::Half);
+    /// R, G, B (and A where it is there) as one image; a file with a single channel Y or Z gives 1
+    /// channel. Throws Error when neither is there.
+    ImageF colour() const;
+};
+
+/// Scanline or tiled, any compression that OpenEXR reads, level 0 of the first part. Attributes of
+/// other types than text and m44f are passed over. Throws Error with the path and the library's
+/// reason; memory is bounded as in png_io.h.
+ExrImage readExr(const std::filesystem::path& path);
+/// ZIP-compressed scanlines, written atomically. Throws Error for what a file cannot hold: channels
+/// of different sizes, two of one name, numbers in a Uint channel that are not whole or beyond 2²⁴.
+void writeExr(const std::filesystem::path& path, const ExrImage& image);
+
+}  // namespace gfxrepro::image

@@ -1,0 +1,66 @@
+// Images in memory: rows from the top, channels interleaved.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/core/error.h"
+
+namespace gfxrepro::image {
+
+/// width × height pixels of `channels` values; pixel (x, y) counts from the top-left corner.
+template <class T>
+class Image {
+  public:
+    Image() = default;
+    Image(int width, int height, int channels, T fill = T{})
+        : width_(width), height_(height), channels_(channels) {
+        GFXREPRO_ASSERT(width >= 0 && height >= 0 && channels >= 1);
+        values_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                           static_cast<std::size_t>(channels),
+                       fill);
+    }
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    int channels() const { return channels_; }
+    bool empty() const { return values_.empty(); }
+
+    T& at(int x, int y, int channel = 0) { return values_[index(x, y, channel)]; }
+    const T& at(int x, int y, int channel = 0) const { return values_[index(x, y, channel)]; }
+
+    std::span<T> values() { return values_; }
+    std::span<const T> values() const { return values_; }
+    std::span<T> row(int y) {
+        const auto rowValues =
+            static_cast<std::size_t>(width_) * static_cast<std::size_t>(channels_);
+        return std::span<T>(values_).subspan(static_cast<std::size_t>(y) * rowValues, rowValues);
+    }
+
+    bool operator==(const Image&) const = default;
+
+  private:
+    std::size_t index(int x, int y, int channel) const {
+        return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                static_cast<std::size_t>(x)) *
+                   static_cast<std::size_t>(channels_) +
+               static_cast<std::size_t>(channel);
+    }
+
+    int width_ = 0;
+    int height_ = 0;
+    int channels_ = 1;
+    std::vector<T> values_;
+};
+
+using Image8 = Image<std::uint8_t>;
+using Image16 = Image<std::uint16_t>;
+using ImageF = Image<float>;
+
+/// Linear to sRGB (IEC 61966-2-1), clamped to [0, 1] and rounded to 8 bits. The fourth channel, if
+/// there is one, is alpha and stays linear. Not-a-number becomes 0.
+Image8 toSrgb8(const ImageF& linear);
+
+}  // namespace gfxrepro::image

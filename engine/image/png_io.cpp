@@ -1,0 +1,332 @@
+#include "engine/image/png_io.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <csetjmp>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/core/files.h"
+
+namespace gfxrepro::image {
+
+namespace {
+
+constexpr bool kSwapBytes = std::endian::native == std::endian::little;  // PNG is big-endian
+constexpr int kZlibLevel = 2;  // of 1 … 9: a run writes hundreds of images, and waits for each
+
+/// libpng reports an error by this callback, which must not return.
+[[noreturn]] void keepMessageAndJump(png_structp png, png_const_charp message) {
+    *static_cast<std::string*>(png_get_error_ptr(png)) = message;
+    png_longjmp(png, 1);
+}
+
+void ignoreWarning(png_structp, png_const_charp) {}
+
+/// Runs libpng calls and turns libpng's longjmp into an Error. `step` and what it calls hold
+/// nothing with a destructor, as a jump would skip it.
+template <class Step>
+void guarded(png_structp png, const std::string& place, const std::string& message, Step&& step) {
+    if (setjmp(png_jmpbuf(png)) != 0) throw Error(place + ": " + message);
+    step();
+}
+
+class Reader {
+  public:
+    /// Reads the header. It delegates so that the destructor runs when that throws.
+    Reader(std::span<const std::byte> bytes, const std::string& name, ImageUse use)
+        : Reader(bytes.first(std::min(bytes.size(), kSignatureBytes)), name, Unread{}) {
+        rest_ = bytes;
+        png_set_read_fn(png_, this, take);
+        readHeader(bytes.size(), kMaxSidePx, use);
+    }
+    /// The same of a file, which is read as far as its rows are.
+    Reader(std::ifstream& file, std::size_t fileBytes, const std::string& name,
+           std::int64_t maxSidePx, ImageUse use)
+        : Reader(signatureOf(file), name, Unread{}) {
+        png_set_read_fn(png_, &file, takeOfFile);
+        readHeader(fileBytes, maxSidePx, use);
+    }
+    ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
+
+    int bitDepth() const { return png_get_bit_depth(png_, info_); }
+    int width() const { return static_cast<int>(png_get_image_width(png_, info_)); }
+    int height() const { return static_cast<int>(png_get_image_height(png_, info_)); }
+    int channels() const { return png_get_channels(png_, info_); }
+    bool isInterlaced() const { return png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE; }
+
+    /// Rows come as T, palettes, low depths and transparent colours expanded.
+    template <class T>
+    void expandTo() {
+        guarded(png_, name_, message_, [this] {
+            png_set_expand(png_);
+            if (sizeof(T) == 2) {
+                png_set_expand_16(png_);
+                if (kSwapBytes) png_set_swap(png_);
+            }
+            png_set_interlace_handling(png_);
+            png_read_update_info(png_, info_);
+        });
+    }
+
+    /// All rows, after expandTo<T>().
+    template <class T>
+    Image<T> image() {
+        Image<T> image(width(), height(), channels());
+        std::vector<png_bytep> rows(static_cast<std::size_t>(image.height()));
+        for (int y = 0; y < image.height(); ++y) {
+            rows[static_cast<std::size_t>(y)] = reinterpret_cast<png_bytep>(image.row(y).data());
+        }
+        GFXREPRO_ASSERT_EQ(png_get_rowbytes(png_, info_), image.row(0).size_bytes());
+        guarded(png_, name_, message_, [this, &rows] {
+            png_read_image(png_, rows.data());
+            png_read_end(png_, nullptr);
+        });
+        return image;
+    }
+
+    template <class T>
+    Image<T> decoded() {
+        expandTo<T>();
+        return image<T>();
+    }
+
+    /// The next row, after expandTo<T>() of its T; with the last one, what follows it.
+    void readRow(void* values, bool isLast) {
+        guarded(png_, name_, message_, [&] {
+            png_read_row(png_, static_cast<png_bytep>(values), nullptr);
+            if (isLast) png_read_end(png_, nullptr);
+        });
+    }
+
+  private:
+    static constexpr std::size_t kSignatureBytes = 8;
+    using Signature = std::array<std::byte, kSignatureBytes>;
+    struct Unread {};
+    Reader(std::span<const std::byte> signature, const std::string& name, Unread) : name_(name) {
+        if (signature.size() < kSignatureBytes ||
+            png_sig_cmp(reinterpret_cast<png_const_bytep>(signature.data()), 0, kSignatureBytes) !=
+                0) {
+            throw Error(name + ": not a PNG file");
+        }
+        png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message_, keepMessageAndJump,
+                                      ignoreWarning);
+        if (png_ != nullptr) info_ = png_create_info_struct(png_);
+        if (info_ == nullptr) {
+            png_destroy_read_struct(&png_, &info_, nullptr);
+            throw Error(name + ": libpng cannot be started");
+        }
+    }
+
+    static Signature signatureOf(std::ifstream& file) {
+        Signature signature{};
+        file.read(reinterpret_cast<char*>(signature.data()), kSignatureBytes);
+        file.clear();
+        file.seekg(0);
+        return signature;
+    }
+
+    void readHeader(std::size_t fileBytes, std::int64_t maxSidePx, ImageUse use) {
+        guarded(png_, name_, message_, [this] { png_read_info(png_, info_); });
+        checkDeclaredSize(png_get_image_width(png_, info_), png_get_image_height(png_, info_),
+                          decodedBytesPerPixel(), fileBytes, name_, maxSidePx, use);
+    }
+
+    static void takeOfFile(png_structp png, png_bytep to, std::size_t count) {
+        auto& file = *static_cast<std::ifstream*>(png_get_io_ptr(png));
+        file.read(reinterpret_cast<char*>(to), static_cast<std::streamsize>(count));
+        if (static_cast<std::size_t>(file.gcount()) != count) {
+            png_error(png, "the file ends early");
+        }
+    }
+
+    static void take(png_structp png, png_bytep to, std::size_t count) {
+        auto& rest = static_cast<Reader*>(png_get_io_ptr(png))->rest_;
+        if (count > rest.size()) png_error(png, "the file ends early");
+        std::memcpy(to, rest.data(), count);
+        rest = rest.subspan(count);
+    }
+
+    /// At most: with the alpha that a transparent colour may add.
+    std::size_t decodedBytesPerPixel() const {
+        return bitDepth() == 16 ? 4 * sizeof(std::uint16_t) : 4;
+    }
+
+    std::span<const std::byte> rest_;
+    std::string name_;
+    std::string message_;
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+};
+
+class Writer {
+  public:
+    Writer() {
+        png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message_, keepMessageAndJump,
+                                       ignoreWarning);
+        if (png_ != nullptr) info_ = png_create_info_struct(png_);
+        if (info_ == nullptr) {
+            png_destroy_write_struct(&png_, &info_);
+            throw Error("libpng cannot be started");
+        }
+        png_set_write_fn(png_, &encoded_, append, nullptr);
+        png_set_compression_level(png_, kZlibLevel);
+    }
+    ~Writer() { png_destroy_write_struct(&png_, &info_); }
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+
+    /// `place` begins the message of an Error.
+    template <class T>
+    std::string encoded(const Image<T>& image, const std::string& place) {
+        constexpr int kColourTypes[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA,
+                                        PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
+        if (image.channels() > 4) {
+            throw Error(place + ": " + std::to_string(image.channels()) +
+                        " channels; PNG has 1 to 4");
+        }
+        const std::size_t rowValues =
+            static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.channels());
+        guarded(png_, place, message_, [&] {
+            png_set_IHDR(png_, info_, static_cast<png_uint_32>(image.width()),
+                         static_cast<png_uint_32>(image.height()), 8 * sizeof(T),
+                         kColourTypes[image.channels() - 1], PNG_INTERLACE_NONE,
+                         PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+            png_write_info(png_, info_);
+            if (sizeof(T) == 2 && kSwapBytes) png_set_swap(png_);
+            for (std::size_t y = 0; y < static_cast<std::size_t>(image.height()); ++y) {
+                png_write_row(
+                    png_, reinterpret_cast<png_const_bytep>(image.values().data() + y * rowValues));
+            }
+            png_write_end(png_, info_);
+        });
+        return std::move(encoded_);
+    }
+
+  private:
+    static void append(png_structp png, png_bytep from, std::size_t count) {
+        static_cast<std::string*>(png_get_io_ptr(png))
+            ->append(reinterpret_cast<const char*>(from), count);
+    }
+
+    std::string encoded_;
+    std::string message_;
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+};
+
+Image8 decoded8(std::span<const std::byte> bytes, const std::string& name, ImageUse use) {
+    Reader reader(bytes, name, use);
+    if (reader.bitDepth() == 16) throw Error(name + ": 16 bits a channel; at most 8 are allowed");
+    return reader.decoded<std::uint8_t>();
+}
+
+template <class T>
+void writeEncoded(const std::filesystem::path& path, const Image<T>& image) {
+    writeFileAtomic(path, Writer().encoded(image, "cannot write " + path.string()));
+}
+
+}  // namespace
+
+Image8 decodePng8(std::span<const std::byte> bytes, const std::string& name) {
+    return decoded8(bytes, name, ImageUse::Texture);
+}
+
+Image8 readPng8(const std::filesystem::path& path) {
+    return decoded8(MappedFile(path).bytes(), path.string(), ImageUse::Picture);
+}
+
+Image16 readPng16(const std::filesystem::path& path) {
+    const MappedFile file(path);
+    return Reader(file.bytes(), path.string(), ImageUse::Picture).decoded<std::uint16_t>();
+}
+
+class PngRows::Decoder {
+  public:
+    Decoder(const std::filesystem::path& path, std::int64_t maxSidePx, ImageUse use)
+        : file_(opened(path)),
+          reader_(file_, std::filesystem::file_size(path), path.string(), maxSidePx, use),
+          bitDepth_(reader_.bitDepth()) {
+        reader_.expandTo<std::uint16_t>();
+    }
+
+    const Reader& reader() const { return reader_; }
+    int bitDepth() const { return bitDepth_; }
+
+    void read(std::uint16_t* values) {
+        GFXREPRO_ASSERT(row_ < reader_.height());
+        if (!reader_.isInterlaced()) {
+            reader_.readRow(values, row_ + 1 == reader_.height());
+        } else {
+            if (row_ == 0) whole_ = reader_.image<std::uint16_t>();
+            const auto row = whole_->row(row_);
+            std::copy(row.begin(), row.end(), values);
+        }
+        ++row_;
+    }
+
+  private:
+    static std::ifstream opened(const std::filesystem::path& path) {
+        std::error_code isAbsent;
+        const auto status = std::filesystem::status(path, isAbsent);
+        if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+            throw Error("cannot read " + path.string() + ": a folder, a pipe or a device");
+        }
+        std::ifstream file(path, std::ios::binary);
+        if (!file) throw Error("cannot read " + path.string() + ": " + std::strerror(errno));
+        return file;
+    }
+
+    std::ifstream file_;
+    Reader reader_;
+    int bitDepth_;  // of the file: expanded, all are 16
+    std::optional<Image16> whole_;
+    int row_ = 0;
+};
+
+PngRows::PngRows(const std::filesystem::path& path, std::int64_t maxSidePx, ImageUse use)
+    : decoder_(std::make_unique<Decoder>(path, maxSidePx, use)) {}
+PngRows::~PngRows() = default;
+PngRows::PngRows(PngRows&&) noexcept = default;
+
+int PngRows::width() const {
+    return decoder_->reader().width();
+}
+int PngRows::height() const {
+    return decoder_->reader().height();
+}
+int PngRows::channels() const {
+    return decoder_->reader().channels();
+}
+int PngRows::bitDepth() const {
+    return decoder_->bitDepth();
+}
+bool PngRows::isInterlaced() const {
+    return decoder_->reader().isInterlaced();
+}
+void PngRows::read(std::uint16_t* values) {
+    decoder_->read(values);
+}
+
+void writePng(const std::filesystem::path& path, const Image8& image) {
+    writeEncoded(path, image);
+}
+
+void writePng(const std::filesystem::path& path, const Image16& image) {
+    writeEncoded(path, image);
+}
+
+std::string encodePng(const Image8& image) {
+    return Writer().encoded(image, "cannot encode a PNG");
+}
+
+}  // namespace gfxrepro::image

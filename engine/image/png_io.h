@@ -1,0 +1,54 @@
+// PNG files (libpng).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "engine/image/image.h"
+#include "engine/image/limits.h"
+
+namespace gfxrepro::image {
+
+/// 8-bit values, 1 to 4 channels; palettes and lower depths are expanded, 16-bit is an Error.
+/// Throws Error with the path and the decoder's reason; the memory stays bounded by what the header
+/// declares, and that as limits.h says of pictures.
+Image8 readPng8(const std::filesystem::path& path);
+/// 16-bit values; 8-bit files are widened (v·257).
+Image16 readPng16(const std::filesystem::path& path);
+/// Of a texture, from memory; `name` stands in messages.
+Image8 decodePng8(std::span<const std::byte> bytes, const std::string& name);
+
+/// A PNG file's rows of 16-bit values, one after the other: in memory are a few of them. An
+/// interlaced file has no such order, and is decoded whole with its first row.
+class PngRows {
+  public:
+    /// Reads the header. Throws as readPng16() does, of at most `maxSidePx` a side.
+    PngRows(const std::filesystem::path& path, std::int64_t maxSidePx,
+            ImageUse use = ImageUse::Texture);
+    ~PngRows();
+    PngRows(PngRows&&) noexcept;
+
+    int width() const;
+    int height() const;
+    /// With the alpha that a transparent colour adds.
+    int channels() const;
+    int bitDepth() const;
+    bool isInterlaced() const;
+    /// width · channels values of the next row; behind the last one the file is read to its end.
+    void read(std::uint16_t* values);
+
+  private:
+    class Decoder;
+    std::unique_ptr<Decoder> decoder_;
+};
+
+void writePng(const std::filesystem::path& path, const Image8& image);
+void writePng(const std::filesystem::path& path, const Image16& image);
+/// Encoded in memory, for reports that carry their images inside.
+std::string encodePng(const Image8& image);
+
+}  // namespace gfxrepro::image

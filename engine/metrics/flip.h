@@ -1,0 +1,38 @@
+// FLIP: the difference that a person sees when flipping between two images.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+#include "engine/image/image.h"
+
+namespace gfxrepro::metrics {
+
+/// Pixels a degree of visual angle: 0.7 m before a 0.7 m wide display of 3840 pixels, as the
+/// published reference implementation has it.
+constexpr double kFlipPixelsPerDegree = 67.0206;
+
+/// FLIP takes some 90 bytes of memory a pixel: of files that may come from anyone, no larger ones
+/// (8192²) are compared by it.
+constexpr std::int64_t kMaxFlipPixels = 1 << 26;
+/// Throws Error for a larger image.
+void requireFlipSize(const image::ImageF& image);
+/// Calls `body` for the pictures 0 … count − 1, several at once; those of more than 2048² pixels
+/// one after another, as FLIP and what it compares take gigabytes of memory for one.
+void forEachPicture(std::size_t count, const std::function<std::int64_t(std::size_t)>& pixelsOf,
+                    const std::function<void(std::size_t)>& body);
+
+/// LDR-FLIP (Andersson et al. 2020) a pixel, in [0, 1]. `reference` and `test` have 3 channels,
+/// linear, Rec. 709; what a display cannot show is clamped to [0, 1]. (The method takes sRGB and
+/// begins with decoding it: linear images enter there.) Throws Error when sizes differ, channels
+/// are not 3, a value is not finite, or pixelsPerDegree is outside of [1, 1000].
+image::ImageF flipMap(const image::ImageF& reference, const image::ImageF& test,
+                      double pixelsPerDegree = kFlipPixelsPerDegree);
+/// The mean of such a map: what is printed.
+double meanOfFlip(const image::ImageF& map);
+/// Of the map of two images.
+double flip(const image::ImageF& reference, const image::ImageF& test,
+            double pixelsPerDegree = kFlipPixelsPerDegree);
+
+}  // namespace gfxrepro::metrics

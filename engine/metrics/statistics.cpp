@@ -1,0 +1,156 @@
+#include "engine/metrics/statistics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "engine/core/error.h"
+
+namespace gfxrepro::metrics {
+
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Statistic>, 7> kStatistics = {{
+    {"median", Statistic::Median},
+    {"mean", Statistic::Mean},
+    {"min", Statistic::Min},
+    {"max", Statistic::Max},
+    {"sum", Statistic::Sum},
+    {"count", Statistic::Count},
+    {"rate", Statistic::Rate},
+}};
+
+double median(std::span<const double> values) {
+    std::vector<double> sorted(values.begin(), values.end());
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    if (sorted.size() % 2 == 1) return *middle;
+    return std::midpoint(*std::max_element(sorted.begin(), middle), *middle);
+}
+
+double harmonicMean(std::span<const double> values) {
+    double sum = 0.0;
+    for (const double value : values) sum += 1.0 / value;
+    return static_cast<double>(values.size()) / sum;
+}
+
+/// The means of all pairs of values, each with itself too, in ascending order.
+std::vector<double> walshAverages(std::span<const double> values) {
+    std::vector<double> means;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        for (std::size_t j = i; j < values.size(); ++j) {
+            means.push_back(std::midpoint(values[i], values[j]));
+        }
+    }
+    std::ranges::sort(means);
+    return means;
+}
+
+/// The greatest number of outcomes to leave out at each end of a symmetric distribution over 0, 1,
+/// … with these chances, so that 95 % or more is left.
+std::size_t leftOut(const std::vector<double>& chances) {
+    double below = 0.0;
+    std::size_t count = 0;
+    while (below + chances[count] <= 0.025) below += chances[count++];
+    return count;
+}
+
+}  // namespace
+
+Statistic statisticFromName(std::string_view name) {
+    for (const auto& [known, statistic] : kStatistics) {
+        if (known == name) return statistic;
+    }
+    throw Error("unknown statistic '" + std::string(name) +
+                "'; allowed: median, mean, min, max, sum, count, rate");
+}
+
+double summarize(std::span<const double> values, Statistic statistic) {
+    if (statistic == Statistic::Count) return static_cast<double>(values.size());
+    GFXREPRO_ASSERT(!values.empty());
+    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+    switch (statistic) {
+        case Statistic::Median:
+            return median(values);
+        case Statistic::Mean:
+            return sum / static_cast<double>(values.size());
+        case Statistic::Min:
+            return *std::min_element(values.begin(), values.end());
+        case Statistic::Max:
+            return *std::max_element(values.begin(), values.end());
+        case Statistic::Sum:
+            return sum;
+        case Statistic::Rate:
+            return harmonicMean(values);
+        case Statistic::Count:
+            break;
+    }
+    return static_cast<double>(values.size());
+}
+
+std::optional<Interval> medianInterval(std::span<const double> values) {
+    if (values.size() < kFewestForInterval) return std::nullopt;
+    std::vector<double> sorted(values.begin(), values.end());
+    std::ranges::sort(sorted);
+    const std::size_t count = medianIntervalDepth(sorted.size());
+    return Interval{sorted[count - 1], sorted[sorted.size() - count]};
+}
+
+std::optional<double> relativeErrorOfMedian(std::span<const double> values) {
+    const auto interval = medianInterval(values);
+    const double middle = interval ? median(values) : 0.0;
+    if (middle == 0.0) return std::nullopt;
+    return 0.5 * (interval->high - interval->low) / std::abs(middle);
+}
+
+std::size_t medianIntervalDepth(std::size_t count) {
+    // Of k outcomes left out, the interval ends at the k-th value from each end. Signs are scores
+    // of one each.
+    return leftOut(coinSums(std::vector<std::size_t>(count, 1)));
+}
+
+double centre(std::span<const double> values) {
+    return median(walshAverages(values));
+}
+
+std::optional<Interval> centreInterval(std::span<const double> values) {
+    if (values.size() < kFewestForInterval) return std::nullopt;
+    const std::vector<double> means = walshAverages(values);
+    std::vector<std::size_t> ranks(values.size());
+    std::iota(ranks.begin(), ranks.end(), std::size_t{1});
+    const std::size_t count = leftOut(coinSums(ranks));
+    return Interval{means[count - 1], means[means.size() - count]};
+}
+
+std::vector<double> coinSums(std::span<const std::size_t> scores) {
+    std::vector<double> chances(std::accumulate(scores.begin(), scores.end(), std::size_t{1}), 0.0);
+    chances[0] = 1.0;
+    std::size_t largest = 0;
+    for (const std::size_t score : scores) {
+        largest += score;
+        for (std::size_t sum = largest + 1; sum-- > 0;) {
+            chances[sum] = 0.5 * (chances[sum] + (sum >= score ? chances[sum - score] : 0.0));
+        }
+    }
+    return chances;
+}
+
+double kendall(std::span<const double> x, std::span<const double> y) {
+    GFXREPRO_ASSERT_EQ(x.size(), y.size());
+    int score = 0;
+    int pairs = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        for (std::size_t j = i + 1; j < x.size(); ++j) {
+            if (x[i] == x[j]) continue;
+            ++pairs;
+            if (y[i] == y[j]) continue;
+            score += (x[i] < x[j]) == (y[i] < y[j]) ? 1 : -1;
+        }
+    }
+    return pairs == 0 ? 0.0 : static_cast<double>(score) / pairs;
+}
+
+}  // namespace gfxrepro::metrics

@@ -1,0 +1,254 @@
+#include "engine/raycast/ray_tracer.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "engine/raycast/embree.h"
+
+namespace gfxrepro::raycast {
+
+namespace {
+
+template <class T, void (*release)(T)>
+struct Releaser {
+    void operator()(T object) const { release(object); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, Releaser<RTCDevice, rtcReleaseDevice>>;
+using BvhScene = std::unique_ptr<RTCSceneTy, Releaser<RTCScene, rtcReleaseScene>>;
+using Geometry = std::unique_ptr<RTCGeometryTy, Releaser<RTCGeometry, rtcReleaseGeometry>>;
+
+Device newDevice() {
+    Device device(rtcNewDevice(nullptr));
+    if (!device) {
+        throw Error("Embree gives no device (error " + std::to_string(rtcGetDeviceError(nullptr)) +
+                    ")");
+    }
+    return device;
+}
+
+/// What an Embree call that returned nothing ran into.
+void requireNoError(RTCDevice device, const char* step) {
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
+        throw Error(std::string("Embree failed to ") + step + " (error " + std::to_string(error) +
+                    ")");
+    }
+}
+
+template <class T>
+T* newBuffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTCFormat format,
+             std::size_t count) {
+    void* data = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(T), count);
+    if (!data) requireNoError(device, "reserve memory");
+    return static_cast<T*>(data);
+}
+
+RTCRay rayAlong(const glm::vec3& origin, const glm::vec3& unitDirection, float tMin, float tMax) {
+    RTCRay ray{};
+    ray.org_x = origin.x;
+    ray.org_y = origin.y;
+    ray.org_z = origin.z;
+    ray.dir_x = unitDirection.x;
+    ray.dir_y = unitDirection.y;
+    ray.dir_z = unitDirection.z;
+    ray.tnear = tMin;
+    ray.tfar = tMax;
+    ray.mask = 0xFFFFFFFF;
+    return ray;
+}
+
+RTCRayHit rayHitAlong(const RTCRay& ray) {
+    RTCRayHit rayHit{};
+    rayHit.ray = ray;
+    rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return rayHit;
+}
+
+/// What is kept of an instance; its number is the number of the Embree geometry.
+struct Placed {
+    unsigned firstTriangle = 0;  // of the flattened scene
+    bool isMirrored = false;
+    bool isDoubleSided = false;
+    const glm::vec3* positions = nullptr;   // in the world; Embree's
+    const glm::uvec3* triangles = nullptr;  // Embree's
+};
+
+bool isEntering(const RTCRay& ray, const RTCHit& hit) {
+    return hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z < 0.0F;
+}
+
+/// Extends Embree's context, which its filter gets to see. `base` comes first.
+struct SelectingContext {
+    QueryContext base;
+    const std::vector<Placed>* placed;
+    Faces faces;
+    unsigned ignored;
+    std::vector<TriangleHit>* hits;  // for collectSelected
+
+    bool isSelected(const RTCRay& ray, const RTCHit& hit) const {
+        const Placed& instance = (*placed)[hit.geomID];
+        if (instance.firstTriangle + hit.primID == ignored) return false;
+        return faces == Faces::All || instance.isDoubleSided || isEntering(ray, hit);
+    }
+};
+
+/// Rejects what is not selected, so that the ray goes on.
+void rejectOthers(const RTCFilterFunctionNArguments* arguments) {
+    GFXREPRO_ASSERT_EQ(arguments->N, 1U);
+    const auto& context = *reinterpret_cast<const SelectingContext*>(arguments->context);
+    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+    const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+    if (!context.isSelected(ray, hit)) *arguments->valid = 0;
+}
+
+/// Notes what is selected and rejects everything, so that traversal goes on.
+void collectSelected(const RTCFilterFunctionNArguments* arguments) {
+    GFXREPRO_ASSERT_EQ(arguments->N, 1U);
+    const auto& context = *reinterpret_cast<const SelectingContext*>(arguments->context);
+    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+    const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+    if (context.isSelected(ray, hit)) {
+        context.hits->push_back(
+            {ray.tfar, (*context.placed)[hit.geomID].firstTriangle + hit.primID});
+    }
+    *arguments->valid = 0;
+}
+
+}  // namespace
+
+struct RayTracer::Impl {
+    Device device = newDevice();
+    BvhScene bvh;
+    std::vector<Placed> placed;  // by instance
+
+    explicit Impl(const scene::Scene& scene);
+    void addInstance(const scene::Mesh& mesh, const glm::mat4& worldFromMesh, unsigned id);
+    SelectingContext selecting(Faces faces, unsigned ignored) const;
+};
+
+RayTracer::Impl::Impl(const scene::Scene& scene)
+    : bvh(rtcNewScene(device.get())), placed(scene.instances.size()) {
+    rtcSetSceneFlags(bvh.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | kFilterOfQuery));
+    unsigned triangleCount = 0;
+    for (unsigned i = 0; i < scene.instances.size(); ++i) {
+        const scene::Instance& instance = scene.instances[i];
+        const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+        placed[i].firstTriangle = triangleCount;
+        triangleCount += static_cast<unsigned>(mesh.triangles.size());
+        placed[i].isDoubleSided = materialOf(scene, mesh).isDoubleSided;
+        if (!mesh.triangles.empty()) addInstance(mesh, instance.worldFromMesh, i);
+    }
+    rtcCommitScene(bvh.get());
+    requireNoError(device.get(), "build the hierarchy");
+}
+
+void RayTracer::Impl::addInstance(const scene::Mesh& mesh, const glm::mat4& worldFromMesh,
+                                  unsigned id) {
+    const Geometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+    auto* positions = newBuffer<glm::vec3>(device.get(), geometry.get(), RTC_BUFFER_TYPE_VERTEX,
+                                           RTC_FORMAT_FLOAT3, mesh.positions.size());
+    const bool isPlaced = worldFromMesh != glm::mat4(1.0F);
+    std::transform(mesh.positions.begin(), mesh.positions.end(), positions,
+                   [&](const glm::vec3& p) {
+                       return isPlaced ? glm::vec3(worldFromMesh * glm::vec4(p, 1.0F)) : p;
+                   });
+    auto* triangles = newBuffer<glm::uvec3>(device.get(), geometry.get(), RTC_BUFFER_TYPE_INDEX,
+                                            RTC_FORMAT_UINT3, mesh.triangles.size());
+    // A mirror turns triangles inside out; turning them once more keeps the outside outside.
+    const bool isMirrored = glm::determinant(glm::mat3(worldFromMesh)) < 0.0F;
+    std::transform(mesh.triangles.begin(), mesh.triangles.end(), triangles,
+                   [&](const glm::uvec3& t) { return isMirrored ? glm::uvec3(t.x, t.z, t.y) : t; });
+    placed[id].isMirrored = isMirrored;
+    placed[id].positions = positions;
+    placed[id].triangles = triangles;
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(bvh.get(), geometry.get(), id);
+}
+
+SelectingContext RayTracer::Impl::selecting(Faces faces, unsigned ignored) const {
+    SelectingContext context{};
+    context.placed = &placed;
+    context.faces = faces;
+    context.ignored = ignored;
+    return context;
+}
+
+RayTracer::RayTracer(const scene::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+RayTracer::~RayTracer() = default;
+RayTracer::RayTracer(RayTracer&&) noexcept = default;
+RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
+
+std::optional<Hit> RayTracer::closestHit(const glm::vec3& origin, const glm::vec3& direction,
+                                         float tMin, float tMax, Faces faces) const {
+    const glm::vec3 unit = glm::normalize(direction);
+    SelectingContext context = impl_->selecting(faces, kNoTriangle);
+    RTCRayHit rayHit = rayHitAlong(rayAlong(origin, unit, tMin, tMax));
+    intersect(impl_->bvh.get(), rayHit, context.base,
+              faces == Faces::All ? nullptr : &rejectOthers);
+    const RTCHit& found = rayHit.hit;
+    if (found.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+
+    Hit hit;
+    hit.distance = rayHit.ray.tfar;
+    hit.position = origin + hit.distance * unit;
+    hit.geometricNormal = glm::normalize(glm::vec3(found.Ng_x, found.Ng_y, found.Ng_z));
+    // The triangle was turned when it was put in: vertices 1 and 2 are swapped.
+    hit.barycentric = impl_->placed[found.geomID].isMirrored ? glm::vec2(found.v, found.u)
+                                                             : glm::vec2(found.u, found.v);
+    hit.instance = found.geomID;
+    hit.triangle = found.primID;
+    hit.flattenedTriangle = impl_->placed[found.geomID].firstTriangle + found.primID;
+    return hit;
+}
+
+void RayTracer::hitsBetween(const glm::vec3& origin, const glm::vec3& direction, float tMin,
+                            float tMax, Faces faces, std::vector<TriangleHit>& hits) const {
+    hits.clear();
+    SelectingContext context = impl_->selecting(faces, kNoTriangle);
+    context.hits = &hits;
+    RTCRayHit rayHit = rayHitAlong(rayAlong(origin, glm::normalize(direction), tMin, tMax));
+    intersect(impl_->bvh.get(), rayHit, context.base, &collectSelected);
+    // The filter sees triangles in order of traversal, and one twice where the hierarchy refers to
+    // it twice.
+    const auto inOrder = [](const TriangleHit& a, const TriangleHit& b) {
+        return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
+    };
+    const auto isSame = [](const TriangleHit& a, const TriangleHit& b) {
+        return a.triangle == b.triangle;
+    };
+    std::sort(hits.begin(), hits.end(), inOrder);
+    hits.erase(std::unique(hits.begin(), hits.end(), isSame), hits.end());
+}
+
+bool RayTracer::isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin,
+                           float tMax, Faces faces, unsigned ignored) const {
+    const bool isPlain = faces == Faces::All && ignored == kNoTriangle;
+    SelectingContext context = impl_->selecting(faces, ignored);
+    RTCRay ray = rayAlong(origin, glm::normalize(direction), tMin, tMax);
+    occluded(impl_->bvh.get(), ray, context.base, isPlain ? nullptr : &rejectOthers);
+    return ray.tfar < 0.0F;  // Embree's sign for "something is in the way"
+}
+
+WorldTriangle RayTracer::triangle(unsigned flattenedTriangle) const {
+    // The last instance that begins at or before it; instances without triangles begin where the
+    // next one does.
+    const auto next = std::upper_bound(
+        impl_->placed.begin(), impl_->placed.end(), flattenedTriangle,
+        [](unsigned number, const Placed& instance) { return number < instance.firstTriangle; });
+    GFXREPRO_ASSERT(next != impl_->placed.begin());
+    const Placed& instance = *std::prev(next);
+    const glm::uvec3 corners = instance.triangles[flattenedTriangle - instance.firstTriangle];
+    return {{instance.positions[corners.x], instance.positions[corners.y],
+             instance.positions[corners.z]},
+            instance.isDoubleSided};
+}
+
+bool WorldTriangle::isDrawnFrom(const glm::vec3& point) const {
+    // In double precision: a float loses the sign for triangles seen edge-on.
+    const glm::dvec3 a(corners[0]);
+    const glm::dvec3 outside = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
+    const double height = glm::dot(outside, glm::dvec3(point) - a);
+    return isDoubleSided ? height != 0.0 : height > 0.0;
+}
+
+}  // namespace gfxrepro::raycast

@@ -1,0 +1,373 @@
+#include "engine/scene/catalog.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "engine/core/text.h"
+#include "engine/image/png_io.h"
+#include "engine/scene/catalog_entry.h"
+#include "engine/scene/height_rows.h"
+#include "engine/scene/load.h"
+#include "engine/scene/model_files.h"
+#include "engine/scene/point_sampling.h"
+#include "engine/scene/refine.h"
+#include "engine/scene/scene_reference.h"
+
+namespace gfxrepro::scene {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Goes up when resampled() makes other heights.
+constexpr int kResamplingVersion = 1;
+/// Goes up when loadHeightMap() makes other heights.
+constexpr int kReadingVersion = 1;
+
+/// "the file s.obj", "generator grass".
+std::string kindOf(const SceneSource& source) {
+    return source.generator ? "generator " + std::string(source.generator->name)
+                            : "the file " + source.file;
+}
+
+/// "file, refined to N triangles" or "generator g, seed n: {params}".
+std::string descriptionOf(const SceneSource& source) {
+    std::string text = source.file;
+    if (source.generator) {
+        text = kindOf(source) + ", seed " + std::to_string(source.seed) +
+               (source.params.isNull() ? "" : ": " + source.params.toFlowText());
+    }
+    if (source.heightMap && source.heightMap->resampleTo) {
+        text += fmt::format(", resampled to {} samples a side with up to {} m of noise, seed {}",
+                            *source.heightMap->resampleTo, source.heightMap->detailM, source.seed);
+    }
+    if (source.refineTo) text += ", refined to " + std::to_string(*source.refineTo) + " triangles";
+    if (source.points) text += ", sampled to " + std::to_string(*source.points) + " points";
+    return text;
+}
+
+/// What was up +z stands up +y.
+void turnUp(Scene& scene) {
+    const auto turned = [](const glm::vec3& v) { return glm::vec3(v.x, v.z, -v.y); };
+    const glm::mat4 turn(glm::vec4(turned({1, 0, 0}), 0), glm::vec4(turned({0, 1, 0}), 0),
+                         glm::vec4(turned({0, 0, 1}), 0), glm::vec4(0, 0, 0, 1));
+    for (Instance& instance : scene.instances) {
+        instance.worldFromMesh = turn * instance.worldFromMesh;
+    }
+    for (glm::vec3& position : scene.points.positions) position = turned(position);
+    for (glm::vec3& normal : scene.points.normals) normal = turned(normal);
+}
+
+/// All instances as one mesh of the wanted count; materials and cameras stay.
+void refine(Scene& scene, const SceneSource& source) {
+    try {
+        Mesh mesh = refinedTo(flattened(scene), *source.refineTo);
+        scene.meshes.clear();
+        scene.meshes.push_back(std::move(mesh));
+        scene.instances = {Instance{}};
+    } catch (const Error& error) {
+        throw Error(source.where, source.file + ": " + error.what());
+    }
+}
+
+/// The wanted number of complete points instead of meshes.
+void turnIntoPoints(Scene& scene, const SceneSource& source) {
+    const auto count = static_cast<std::size_t>(*source.points);
+    const std::size_t all = scene.points.positions.size();
+    if (all > 0 && count > all) {
+        throw Error(
+            source.where,
+            fmt::format("{} points wanted of {}, a cloud of {}; allowed: no more than it has",
+                        count, source.file, all));
+    }
+    try {
+        scene.points = scene.points.positions.empty() ? sampledPoints(scene, count)
+                                                      : thinnedPoints(scene.points, count);
+        completePoints(scene.points);
+    } catch (const Error& error) {
+        throw Error(source.where, descriptionOf(source) + ": " + error.what());
+    }
+    scene.meshes.clear();
+    scene.instances.clear();
+}
+
+/// RGB, whatever the PNG has.
+image::Image8 rgbOf(const image::Image8& image) {
+    image::Image8 rgb(image.width(), image.height(), 3);
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            for (int c = 0; c < 3; ++c) {
+                rgb.at(x, y, c) = image.at(x, y, image.channels() < 3 ? 0 : c);
+            }
+        }
+    }
+    return rgb;
+}
+
+/// Throws Error for a large file that no loader would take, before anybody reads it through.
+void requireWhatIsRead(const fs::path& file) {
+    if (!isHeightMapFile(file)) return requireReadAtOnce(file);
+    const std::uintmax_t bytes = fs::file_size(file);
+    if (bytes < kMostBytesAtOnce) return;
+    const auto size = openHeightRows(file)->sizeSamples;
+    // Floats, and as much again for the coarser levels that surveyors' programs put beside them.
+    const auto mostBytes = 2 * sizeof(float) * static_cast<std::uintmax_t>(size.x) *
+                           static_cast<std::uintmax_t>(size.y);
+    if (bytes <= mostBytes) return;
+    throw Error(fmt::format("{}: has {} bytes; a height map of {} x {} samples has at most {}",
+                            file.string(), bytes, size.x, size.y, mostBytes));
+}
+
+std::string sha256AtOnce(const fs::path& file) {
+    requireReadAtOnce(file);
+    return sha256OfFile(file);
+}
+
+std::string heightMapKey(const fs::path& assetsFolder, const SceneSource& source) {
+    const HeightMapSource& how = *source.heightMap;
+    const std::string colours =
+        how.colourMap.empty() ? "" : " colours " + sha256AtOnce(assetsFolder / how.colourMap);
+    // A raw file's, which says how its bytes are read.
+    const fs::path sidecar = (assetsFolder / source.file).string() + ".yaml";
+    const std::string reading =
+        (fs::is_regular_file(sidecar) ? " sidecar " + sha256AtOnce(sidecar) : "") +
+        (how.units.noData == 0.0F ? " no data 0" : "");
+    return colours + reading +
+           fmt::format(" heights {} {} {} {} {} {}", how.units.spacingM, how.units.heightScaleM,
+                       how.units.noData.value_or(0.0F), how.resampleTo.value_or(0), how.detailM,
+                       source.seed);
+}
+
+Scene loadTerrain(const fs::path& assetsFolder, const SceneSource& source) {
+    const HeightMapSource& how = *source.heightMap;
+    Scene scene;
+    const fs::path path = assetsFolder / source.file;
+    requireWhatIsRead(path);
+    const std::string content =
+        fmt::format("of file {}{}", sha256OfFile(path), heightMapKey(assetsFolder, source));
+    const fs::path folder = cacheFolder() / "heights";
+    if (how.resampleTo) {
+        scene.heights = resampledInFile(
+            loadHeightMap(path, how.units), *how.resampleTo, how.detailM, source.seed, folder,
+            sha256(fmt::format("resampled {} {}", kResamplingVersion, content)));
+    } else {
+        scene.heights = loadHeightMapInFile(
+            path, how.units, folder, sha256(fmt::format("read {} {}", kReadingVersion, content)));
+    }
+    if (!how.colourMap.empty()) {
+        const fs::path map = assetsFolder / how.colourMap;
+        scene.textures.push_back(rgbOf(image::decodePng8(MappedFile(map).bytes(), map.string())));
+        Material ground;
+        ground.baseColorTexture = 0;
+        scene.materials.push_back(ground);
+    }
+    addTerrainCameras(scene);
+    return scene;
+}
+
+void takeSeed(const std::string& name, const std::string& seed, const SourceLocation& where,
+              SceneSource& source) {
+    const auto number = parseInteger(seed);
+    if (!number || *number < 0) {
+        throw Error(
+            where,
+            fmt::format("the seed of scene '{}' is '{}'; allowed: a whole number, at least 0", name,
+                        seed));
+    }
+    if (!source.isSeeded()) {
+        throw Error(where,
+                    fmt::format("scene '{}' has no seed: it is {}{}", name,
+                                source.file.empty() ? "the only one of " : "", kindOf(source)));
+    }
+    source.seed = static_cast<std::uint64_t>(*number);
+}
+
+}  // namespace
+
+Catalog::Catalog(const fs::path& scenesFolder, fs::path assetsFolder,
+                 std::span<const GeneratorInfo> generators)
+    : assetsFolder_(std::move(assetsFolder)) {
+    std::vector<fs::path> files;
+    for (const auto& file : fs::recursive_directory_iterator(scenesFolder)) {
+        if (file.is_regular_file() && file.path().extension() == ".yaml") {
+            files.push_back(file.path());
+        }
+    }
+    std::sort(files.begin(), files.end());  // so that the first error does not depend on the disk
+    for (const fs::path& file : files) {
+        const std::string name =
+            file.lexically_relative(scenesFolder).replace_extension().generic_string();
+        entries_.emplace(name, readEntry(file, name, generators));
+    }
+}
+
+const SceneEntry& Catalog::entryNamed(const Node& reference) const {
+    const auto found = entries_.find(reference.text());
+    if (found != entries_.end()) return found->second;
+    std::vector<std::string> names;
+    for (const auto& [name, entry] : entries_) names.push_back(name);
+    throw Error(reference.location(), "unknown scene '" + reference.text() + "'" +
+                                          suggestion(reference.text(), names) +
+                                          " (`gfxrepro list scenes` prints all)");
+}
+
+namespace {
+
+/// How the values of a height map of one's own become metres.
+void takeUnits(const std::string& name, const Node& params, SceneSource& source) {
+    HeightMapUnits& units = source.heightMap->units;
+    static const std::vector<std::string> kNames = {"spacing_m", "height_scale_m", "no_data"};
+    for (const auto& [key, value] : params.entries()) {
+        if (std::ranges::find(kNames, key) == kNames.end()) {
+            throw Error(params.keyLocation(key),
+                        fmt::format("height map '{}' has no parameter '{}'{}; allowed: {}", name,
+                                    key, suggestion(key, kNames), joined(kNames)));
+        }
+        const auto number = static_cast<float>(value.asDouble());
+        const bool isLength = key != "no_data";
+        if (isLength && !(number > 0.0F && number <= 1e6F)) {
+            throw Error(value.location(),
+                        fmt::format("{} is {}; allowed: above 0, at most 1e6", key, value.text()));
+        }
+        if (key == "spacing_m") units.spacingM = number;
+        if (key == "height_scale_m") units.heightScaleM = number;
+        if (key == "no_data") units.noData = number;
+    }
+}
+
+}  // namespace
+
+bool SceneSource::isSeeded() const {
+    if (generator) return generator->isSeeded;
+    return heightMap && heightMap->detailM > 0.0F;
+}
+
+std::string_view kindName(Origin::Kind kind) {
+    switch (kind) {
+        case Origin::Kind::Real:
+            return "real";
+        case Origin::Kind::StandIn:
+            return "stand-in";
+        case Origin::Kind::Generated:
+            break;
+    }
+    return "generated";
+}
+
+void takeParams(const std::string& name, const Node& params, SceneSource& source) {
+    if (source.heightMap && isSceneFile(name)) {
+        takeUnits(name, params, source);
+        return;
+    }
+    if (!source.generator) {
+        const std::string& first = params.entries().front().key();
+        throw Error(
+            params.keyLocation(first),
+            fmt::format("scene '{}' is not generated, so it has no parameter '{}': it is {}", name,
+                        first, kindOf(source)));
+    }
+    source.params = merged(source.params, params);
+    declaredParams(*source.generator, source.params);
+}
+
+SceneSource Catalog::resolve(const Node& reference) const {
+    const SceneReference parts = SceneReference::from(reference);
+    const SourceLocation& where = reference.location();
+    SceneSource source = sourceOf(Node::scalar(parts.name, where));
+    if (parts.seed) takeSeed(parts.name, *parts.seed, where, source);
+    if (!parts.params.entries().empty()) takeParams(parts.name, parts.params, source);
+    return source;
+}
+
+SceneSource Catalog::sourceOf(const Node& reference) const {
+    const std::string& name = reference.text();
+    if (isSceneFile(name)) {
+        SceneSource source;
+        source.file = fs::absolute(fs::path(reference.location().file.text()).parent_path() / name)
+                          .lexically_normal();
+        source.where = reference.location();
+        if (isHeightMapFile(source.file)) source.heightMap = HeightMapSource{};
+        try {
+            if (!source.heightMap) requireKnownExtension(name);
+        } catch (const Error& error) {
+            throw Error(reference.location(), std::string("scene file ") + error.what());
+        }
+        if (fs::is_regular_file(source.file)) return source;
+        throw Error(reference.location(),
+                    "scene file '" + name + "' is not there; looked at " + source.file);
+    }
+    const SceneEntry& entry = entryNamed(reference);
+    std::string tried;
+    for (const SceneSource& source : entry.sources) {
+        if (source.generator) return source;
+        const fs::path path = assetsFolder_ / source.file;
+        if (fs::is_regular_file(path)) return source;
+        tried += "\n  " + path.string();
+    }
+    throw Error(reference.location(),
+                "scene '" + name + "' not found; searched:" + tried + "\nget it with " +
+                    "scripts/fetch-assets" +
+                    (entry.canonical.empty() ? "" : " or from " + entry.canonical));
+}
+
+const Catalog::FileDigest& Catalog::digestOf(const fs::path& path) const {
+    FileDigest& digest = digests_[path];
+    const auto sizeBytes = fs::file_size(path);
+    const auto time = fs::last_write_time(path);
+    if (digest.sha256.empty() || digest.sizeBytes != sizeBytes || digest.time != time) {
+        requireWhatIsRead(path);  // or throws, before all is read
+        std::vector<fs::path> beside = filesBeside(path);
+        digest = {sizeBytes, time, sha256OfFile(path), std::move(beside)};
+    }
+    return digest;
+}
+
+std::string Catalog::contentKey(const Node& reference) const {
+    const SceneSource source = resolve(reference);
+    const std::string points =
+        source.points ? " sampled to " + std::to_string(*source.points) : std::string();
+    if (source.generator) {
+        return sha256("generator " + std::to_string(kGeneratorVersion) + ' ' +
+                      std::string(source.generator->name) + ' ' + std::to_string(source.seed) +
+                      ' ' + source.params.toFlowText() + points);
+    }
+    const FileDigest& digest = digestOf(assetsFolder_ / source.file);
+    std::string content = digest.sha256;
+    for (const fs::path& file : digest.beside) content += digestOf(file).sha256;
+    return sha256("file " + content + ' ' +
+                  (source.refineTo ? std::to_string(*source.refineTo) : "as it is") +
+                  (source.isZUp ? " z up" : "") + points +
+                  (source.heightMap ? heightMapKey(assetsFolder_, source) : ""));
+}
+
+Scene Catalog::load(const Node& reference) const {
+    const SceneSource source = resolve(reference);
+    Scene scene;
+    std::string sha256;
+    if (source.heightMap) {
+        scene = loadTerrain(assetsFolder_, source);
+        sha256 = sha256OfFile(assetsFolder_ / source.file);
+        const bool isOwn = isSceneFile(SceneReference::from(reference).name);
+        if (const std::string warning = isOwn ? steepnessWarning(*scene.heights) : "";
+            !warning.empty()) {
+            scene.warnings.push_back(warning);
+        }
+    } else if (!source.generator) {
+        scene = loadScene(assetsFolder_ / source.file);
+        sha256 = scene.origin.sha256;
+        if (source.isZUp) turnUp(scene);
+        if (source.refineTo) refine(scene, source);
+    } else {
+        Params params(source.params, "generator '" + std::string(source.generator->name) + "'");
+        scene = source.generator->generate(params, source.seed);
+    }
+    if (source.points) turnIntoPoints(scene, source);
+    scene.name = reference.text();
+    scene.origin = {source.kind, descriptionOf(source), sha256};
+    return scene;
+}
+
+}  // namespace gfxrepro::scene

@@ -1,0 +1,10 @@
+// The keys of a scene of the catalogue.
+#pragma once
+
+#include "engine/core/schema.h"
+
+namespace gfxrepro::scene {
+
+SchemaFile sceneSchema();
+
+}  // namespace gfxrepro::scene

@@ -1,0 +1,35 @@
+// Loading and writing scene files. All loaders refuse hostile input with one Error that names file
+// and place, never allocate more than a small multiple of the file's size, and never return an
+// index out of range.
+#pragma once
+
+#include <filesystem>
+
+#include "engine/scene/scene.h"
+
+namespace gfxrepro::scene {
+
+/// No coordinate of a file's vertices and points, where they stand in the world, is farther from 0:
+/// the fourth power of a length, which the square of an area is, is still a float.
+constexpr float kMaxCoordinate = 1e9F;
+
+/// Throws Error for a file that loadScene() does not know by its extension.
+void requireKnownExtension(const std::filesystem::path& path);
+
+/// By extension (.ply .obj .gltf .glb, any case); others are an Error that lists these.
+/// `origin` is Real, with the file's sha256.
+Scene loadScene(const std::filesystem::path& path);
+
+/// PLY 1.0, ascii or binary of either endianness, meshes (polygons are fan-triangulated) or points.
+Scene loadPly(const std::filesystem::path& path);
+/// Wavefront OBJ with MTL: v/vt/vn, negative indices, polygons (fan), materials split into meshes.
+Scene loadObj(const std::filesystem::path& path);
+/// glTF 2.0, text or binary, through tinygltf: node transforms, materials, textures, cameras.
+Scene loadGltf(const std::filesystem::path& path);
+
+/// Binary little-endian PLY of the flattened scene (or of its points when it has no triangles).
+void savePly(const std::filesystem::path& path, const Scene& scene);
+/// GLB with instances, materials, textures and cameras.
+void saveGlb(const std::filesystem::path& path, const Scene& scene);
+
+}  // namespace gfxrepro::scene

@@ -1,0 +1,175 @@
+#include "engine/scene/load_gltf_material.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "engine/scene/load_texture.h"
+
+namespace gfxrepro::scene::gltf {
+
+namespace {
+
+using Value = tinygltf::Value;
+
+/// Null when the object or the key is not there.
+const Value* findExtension(const tinygltf::ExtensionMap& extensions, const std::string& extension,
+                           const std::string& key) {
+    const auto found = extensions.find(extension);
+    return found != extensions.end() && found->second.Has(key) ? &found->second.Get(key) : nullptr;
+}
+
+double gltfNumber(const Value* value, double fallback) {
+    return value != nullptr && value->IsNumber() ? value->GetNumberAsDouble() : fallback;
+}
+
+glm::vec2 vec2(const Value* value, const glm::vec2& fallback) {
+    if (value == nullptr || !value->IsArray() || value->ArrayLen() != 2) return fallback;
+    return {gltfNumber(&value->Get(0), fallback.x), gltfNumber(&value->Get(1), fallback.y)};
+}
+
+/// Of tinygltf's TextureInfo, or NormalTextureInfo, which is a type of its own.
+template <class Info>
+TextureUse textureUse(const Info& info) {
+    constexpr const char* kExtension = "KHR_texture_transform";
+    TextureUse use;
+    use.texcoordSet = info.texCoord;
+    if (info.extensions.count(kExtension) == 0) return use;
+    if (const Value* set = findExtension(info.extensions, kExtension, "texCoord");
+        set && set->IsInt()) {
+        use.texcoordSet = set->Get<int>();
+    }
+    const glm::vec2 offset =
+        vec2(findExtension(info.extensions, kExtension, "offset"), glm::vec2(0.0F));
+    const glm::vec2 scale =
+        vec2(findExtension(info.extensions, kExtension, "scale"), glm::vec2(1.0F));
+    const double angleRad = gltfNumber(findExtension(info.extensions, kExtension, "rotation"), 0.0);
+    // Counter-clockwise as seen in the image, where v grows downwards.
+    const auto c = static_cast<float>(std::cos(angleRad));
+    const auto s = static_cast<float>(std::sin(angleRad));
+    use.isTransformed = true;
+    use.transform = glm::mat3x2(glm::vec2(c, -s) * scale.x, glm::vec2(s, c) * scale.y, offset);
+    return use;
+}
+
+class TextureTable {
+  public:
+    TextureTable(const File& file, const Accessors& accessors, Scene& scene)
+        : file_(file), accessors_(accessors), scene_(scene) {}
+
+    /// Into Scene::textures; −1 when the material has none, or one that only an extension gives.
+    int find(int texture) {
+        if (texture < 0) return -1;
+        const auto& textures = file_.model.textures;
+        const auto index = static_cast<std::size_t>(texture);
+        if (index >= textures.size()) {
+            throw Error(fmt::format("{}: texture {} does not exist; there are {}", file_.name,
+                                    texture, textures.size()));
+        }
+        const int image = textures[index].source;
+        if (image < 0) return -1;
+        const auto [found, isNew] =
+            textureOf_.try_emplace(image, static_cast<int>(scene_.textures.size()));
+        if (isNew) scene_.textures.push_back(decoded(image));
+        return found->second;
+    }
+
+  private:
+    image::Image8 decoded(int index) const {
+        const auto& images = file_.model.images;
+        const std::string where = fmt::format("{}: image {}", file_.name, index);
+        if (static_cast<std::size_t>(index) >= images.size()) {
+            throw Error(fmt::format("{} does not exist; there are {}", where, images.size()));
+        }
+        const tinygltf::Image& image = images[static_cast<std::size_t>(index)];
+        std::span<const unsigned char> bytes = image.image;
+        if (image.bufferView >= 0) bytes = accessors_.view(image.bufferView);
+        if (bytes.empty()) throw Error(fmt::format("{}: '{}' cannot be read", where, image.uri));
+        return decodeTexture(std::as_bytes(bytes), where);
+    }
+
+    const File& file_;
+    const Accessors& accessors_;
+    Scene& scene_;
+    std::map<int, int> textureOf_;
+};
+
+Material gltfMaterial(const tinygltf::Material& from) {
+    const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+    Material material;
+    material.name = from.name;
+    material.baseColor = glm::vec4(1.0F);
+    for (std::size_t c = 0; c < 4 && pbr.baseColorFactor.size() == 4; ++c) {
+        material.baseColor[static_cast<int>(c)] = static_cast<float>(pbr.baseColorFactor[c]);
+    }
+    material.metallic = static_cast<float>(pbr.metallicFactor);
+    material.roughness = static_cast<float>(pbr.roughnessFactor);
+    const double strength = gltfNumber(
+        findExtension(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength"), 1.0);
+    for (std::size_t c = 0; c < 3 && from.emissiveFactor.size() == 3; ++c) {
+        material.emissive[static_cast<int>(c)] =
+            static_cast<float>(from.emissiveFactor[c] * strength);
+    }
+    if (from.alphaMode == "MASK") material.alphaCutoff = static_cast<float>(from.alphaCutoff);
+    material.normalScale = static_cast<float>(from.normalTexture.scale);
+    material.isDoubleSided = from.doubleSided;
+    material.isUnlit = from.extensions.count("KHR_materials_unlit") != 0;
+    material.transmission = static_cast<float>(gltfNumber(
+        findExtension(from.extensions, "KHR_materials_transmission", "transmissionFactor"), 0.0));
+    material.indexOfRefraction = static_cast<float>(
+        gltfNumber(findExtension(from.extensions, "KHR_materials_ior", "ior"), 1.5));
+    return material;
+}
+
+/// One of a material's textures.
+struct Slot {
+    const char* name;
+    int texture;  // into Scene::textures; −1: none
+    TextureUse use;
+    int* to;  // of the material
+};
+
+/// Sets the material's textures; returns how it reads them.
+TextureUse addTextures(const tinygltf::Material& from, TextureTable& textures, Material& material,
+                       std::vector<std::string>& warnings) {
+    const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+    const auto slot = [&](const char* name, const auto& info, int& to) {
+        return Slot{name, textures.find(info.index), textureUse(info), &to};
+    };
+    const std::array<Slot, 4> slots{
+        slot("base colour", pbr.baseColorTexture, material.baseColorTexture),
+        slot("metallic-roughness", pbr.metallicRoughnessTexture, material.metallicRoughnessTexture),
+        slot("normal", from.normalTexture, material.normalTexture),
+        slot("emissive", from.emissiveTexture, material.emissiveTexture)};
+    std::optional<TextureUse> shared;
+    for (const Slot& s : slots) {
+        if (s.texture < 0) continue;
+        if (!shared) shared = s.use;
+        if (s.use == *shared) {
+            *s.to = s.texture;
+        } else {
+            warnings.push_back(
+                fmt::format("material '{}': its {} texture is left out, as it reads other texture "
+                            "coordinates than those before it",
+                            from.name, s.name));
+        }
+    }
+    return shared.value_or(slots[0].use);
+}
+
+}  // namespace
+
+std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessors, Scene& scene) {
+    TextureTable textures(file, accessors, scene);
+    std::vector<TextureUse> uses;
+    for (const tinygltf::Material& from : file.model.materials) {
+        scene.materials.push_back(gltfMaterial(from));
+        uses.push_back(addTextures(from, textures, scene.materials.back(), scene.warnings));
+    }
+    return uses;
+}
+
+}  // namespace gfxrepro::scene::gltf

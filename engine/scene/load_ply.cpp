@@ -1,0 +1,336 @@
+// PLY 1.0. The header says how the rows are laid out; one reader for text and one for binary rows
+// give the same numbers, so what follows them is written once.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <type_traits>
+
+#include "engine/core/files.h"
+#include "engine/scene/load.h"
+#include "engine/scene/load_ply_header.h"
+#include "engine/scene/load_ply_reader.h"
+#include "engine/scene/load_text.h"
+
+namespace gfxrepro::scene {
+
+namespace {
+
+using ply::AsciiReader;
+using ply::BinaryReader;
+using ply::Element;
+using ply::Header;
+using ply::Property;
+using ply::Type;
+using ply::visitType;
+
+/// What a vertex row may hold for us.
+enum PropertySlot {
+    kX,
+    kY,
+    kZ,
+    kNx,
+    kNy,
+    kNz,
+    kRed,
+    kGreen,
+    kBlue,
+    kU,
+    kV,
+    kRadius,
+    kSlotCount,
+    kNoSlot
+};
+
+PropertySlot slotOf(const Property& property) {
+    struct Named {
+        std::string_view name;
+        PropertySlot slot;
+    };
+    constexpr std::array<Named, 16> kNamed{{{"x", kX},
+                                            {"y", kY},
+                                            {"z", kZ},
+                                            {"nx", kNx},
+                                            {"ny", kNy},
+                                            {"nz", kNz},
+                                            {"red", kRed},
+                                            {"green", kGreen},
+                                            {"blue", kBlue},
+                                            {"u", kU},
+                                            {"v", kV},
+                                            {"s", kU},
+                                            {"t", kV},
+                                            {"texture_u", kU},
+                                            {"texture_v", kV},
+                                            {"radius", kRadius}}};
+    if (property.isList()) return kNoSlot;
+    for (const Named& each : kNamed) {
+        if (property.name == each.name) return each.slot;
+    }
+    return kNoSlot;
+}
+
+/// Bytes are sRGB; wider integers and floats are linear, integers as parts of their maximum.
+float linearColour(Type type, double value) {
+    if (type == Type::UInt8) return linearFromSrgb(static_cast<float>(value / 255.0));
+    return visitType(type, [value](auto sample) {
+        using T = decltype(sample);
+        if constexpr (std::is_integral_v<T>) {
+            return static_cast<float>(value / std::numeric_limits<T>::max());
+        } else {
+            return static_cast<float>(value);
+        }
+    });
+}
+
+struct Vertices {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec3> colors;
+    std::vector<glm::vec2> texcoords;
+    std::vector<float> radii;
+};
+
+template <class Reader>
+void skipList(Reader& reader, const Property& property) {
+    const double count = reader.number(*property.countType);
+    if (count < 0) reader.fail("list '" + property.name + "' has a negative count");
+    reader.skip(property.type, static_cast<std::uint64_t>(count));
+}
+
+template <class Reader>
+void skipElement(Reader& reader, const Element& element) {
+    for (reader.row.number = 0; reader.row.number < element.count; ++reader.row.number) {
+        for (const Property& property : element.properties) {
+            if (property.isList()) {
+                skipList(reader, property);
+            } else {
+                reader.skip(property.type, 1);
+            }
+        }
+    }
+}
+
+template <class Reader>
+class VertexParser {
+  public:
+    VertexParser(Reader& reader, const Element& element, const std::string& file)
+        : reader_(reader), element_(element) {
+        for (const Property& property : element.properties) {
+            slots_.push_back(slotOf(property));
+            if (slots_.back() != kNoSlot) has_[slots_.back()] = true;
+        }
+        if (!hasAll({kX, kY, kZ})) {
+            throw Error({file, element.line, 0}, "element 'vertex' lacks x, y or z");
+        }
+        for (std::size_t byte = 0; byte < linearBytes_.size(); ++byte) {
+            linearBytes_[byte] = linearColour(Type::UInt8, static_cast<double>(byte));
+        }
+    }
+
+    Vertices parse() {
+        Vertices vertices;
+        const bool normals = hasAll({kNx, kNy, kNz});
+        const bool colors = hasAll({kRed, kGreen, kBlue});
+        const bool texcoords = hasAll({kU, kV});
+        const bool radii = hasAll({kRadius});
+        vertices.positions.reserve(element_.count);
+        if (normals) vertices.normals.reserve(element_.count);
+        if (colors) vertices.colors.reserve(element_.count);
+        if (texcoords) vertices.texcoords.reserve(element_.count);
+        if (radii) vertices.radii.reserve(element_.count);
+        std::uint64_t& number = reader_.row.number;
+        for (number = 0; number < element_.count; ++number) {
+            readRow();
+            vertices.positions.push_back({row_[kX], row_[kY], row_[kZ]});
+            if (normals) vertices.normals.push_back(unitNormal({row_[kNx], row_[kNy], row_[kNz]}));
+            if (colors) vertices.colors.push_back({row_[kRed], row_[kGreen], row_[kBlue]});
+            if (texcoords) vertices.texcoords.push_back({row_[kU], row_[kV]});
+            if (radii) vertices.radii.push_back(row_[kRadius]);
+        }
+        return vertices;
+    }
+
+  private:
+    bool hasAll(std::initializer_list<PropertySlot> slots) const {
+        return std::all_of(slots.begin(), slots.end(),
+                           [this](PropertySlot slot) { return has_[slot]; });
+    }
+
+    void readRow() {
+        for (std::size_t i = 0; i < slots_.size(); ++i) {
+            const Property& property = element_.properties[i];
+            if (property.isList()) {
+                skipList(reader_, property);
+            } else if (slots_[i] == kNoSlot) {
+                reader_.skip(property.type, 1);
+            } else {
+                row_[slots_[i]] = read(property, slots_[i]);
+            }
+        }
+    }
+
+    float read(const Property& property, PropertySlot slot) {
+        const double number = reader_.number(property.type);
+        const bool isColour = slot == kRed || slot == kGreen || slot == kBlue;
+        if (isColour && property.type == Type::UInt8) {
+            return linearBytes_[static_cast<std::size_t>(number)];
+        }
+        const auto value =
+            isColour ? linearColour(property.type, number) : static_cast<float>(number);
+        // Scanners write normals that are not numbers; unitNormal() takes those.
+        const bool isNormal = slot == kNx || slot == kNy || slot == kNz;
+        if (!std::isfinite(value) && !isNormal) {
+            reader_.fail(property.name + " is " + std::to_string(number) +
+                         "; finite numbers in the range of float are allowed");
+        }
+        const bool isLength = slot == kX || slot == kY || slot == kZ || slot == kRadius;
+        if (isLength && std::abs(value) > kMaxCoordinate) {
+            reader_.fail(fmt::format("{} is {}; {:g} to {:g} are allowed", property.name, value,
+                                     -kMaxCoordinate, kMaxCoordinate));
+        }
+        return value;
+    }
+
+    Reader& reader_;
+    const Element& element_;
+    std::vector<PropertySlot> slots_;
+    std::array<bool, kSlotCount> has_{};
+    std::array<float, kSlotCount> row_{};
+    std::array<float, 256> linearBytes_;
+};
+
+/// A polygon as a fan around its first corner; fewer than three corners cover nothing.
+void appendFan(std::vector<glm::uvec3>& triangles, std::span<const std::int64_t> corners) {
+    for (std::size_t i = 2; i < corners.size(); ++i) {
+        triangles.emplace_back(corners[0], corners[i - 1], corners[i]);
+    }
+}
+
+/// A strip of triangles, where −1 begins another one. Every second triangle is turned round.
+void appendStrip(std::vector<glm::uvec3>& triangles, std::span<const std::int64_t> corners) {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (corners[i] < 0) begin = i + 1;
+        if (i < begin + 2) continue;
+        const bool isTurned = (i - begin) % 2 != 0;
+        triangles.emplace_back(corners[i - 2], corners[isTurned ? i : i - 1],
+                               corners[isTurned ? i - 1 : i]);
+    }
+}
+
+/// Faces, or strips of them, into `triangles`.
+template <class Reader>
+void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCount,
+                const std::string& file, std::vector<glm::uvec3>& triangles) {
+    const bool isStrip = element.name == "tristrips";
+    const auto isIndexList = [](const Property& property) {
+        return property.isList() &&
+               (property.name == "vertex_indices" || property.name == "vertex_index");
+    };
+    const auto list = std::ranges::find_if(element.properties, isIndexList);
+    if (list == element.properties.end()) {
+        throw Error({file, element.line, 0},
+                    "element '" + element.name + "' lacks the list vertex_indices");
+    }
+    // A file of zeros has a face of no corners in each byte.
+    const std::size_t triangleBytes =
+        Reader::minimumBytes(*list->countType) + 3 * Reader::minimumBytes(list->type);
+    if (!isStrip) {
+        triangles.reserve(
+            triangles.size() +
+            std::min<std::uint64_t>(element.count, reader.restBytes() / triangleBytes));
+    }
+    std::vector<std::int64_t> corners;
+    const auto readCorners = [&](const Property& property) {
+        const double count = reader.number(*property.countType);
+        const std::size_t most = reader.restBytes() / Reader::minimumBytes(property.type);
+        if (count < 0 || count > static_cast<double>(most)) {
+            reader.fail("a list of " + std::to_string(static_cast<std::int64_t>(count)) +
+                        " indices does not fit into the file");
+        }
+        corners.resize(static_cast<std::size_t>(count));
+        for (std::int64_t& corner : corners) {
+            const double index = reader.number(property.type);
+            const bool isRestart = isStrip && index == -1.0;
+            if (!isRestart && !(index >= 0.0 && index < static_cast<double>(vertexCount))) {
+                reader.fail(
+                    fmt::format("index {} is not one of the {} vertices", index, vertexCount));
+            }
+            corner = static_cast<std::int64_t>(index);
+        }
+    };
+    for (reader.row.number = 0; reader.row.number < element.count; ++reader.row.number) {
+        for (const Property& property : element.properties) {
+            if (isIndexList(property)) {
+                readCorners(property);
+                isStrip ? appendStrip(triangles, corners) : appendFan(triangles, corners);
+            } else if (property.isList()) {
+                skipList(reader, property);
+            } else {
+                reader.skip(property.type, 1);
+            }
+        }
+    }
+}
+
+template <class Reader>
+Scene parseBody(Reader reader, const Header& header, const std::string& file) {
+    const Element* vertexElement = header.find("vertex");
+    if (vertexElement == nullptr || vertexElement->count == 0) throw Error(file + ": no vertices");
+    if (vertexElement->count > std::numeric_limits<std::uint32_t>::max()) {
+        throw Error(
+            {file, vertexElement->line, 0},
+            std::to_string(vertexElement->count) + " vertices; at most 4294967295 are allowed");
+    }
+    Vertices vertices;
+    Mesh mesh;
+    for (const Element& element : header.elements) {
+        reader.row = {element.name, 0};
+        const std::size_t rowBytes = element.minimumRowBytes(Reader::kIsAscii);
+        if (rowBytes == 0) continue;  // rows without properties take no room
+        if (element.count > reader.restBytes() / rowBytes) {
+            throw Error({file, element.line, 0}, std::to_string(element.count) +
+                                                     " rows of element '" + element.name +
+                                                     "' do not fit into the file");
+        }
+        if (element.name == "vertex") {
+            vertices = VertexParser<Reader>(reader, element, file).parse();
+        } else if (element.name == "face" || element.name == "tristrips") {
+            parseFaces(reader, element, vertexElement->count, file, mesh.triangles);
+        } else {
+            skipElement(reader, element);
+        }
+    }
+    if (vertices.positions.empty()) {
+        throw Error({file, vertexElement->line, 0}, "element 'vertex' lacks x, y or z");
+    }
+    if (mesh.triangles.empty()) {
+        Scene scene;
+        scene.points = {std::move(vertices.positions), std::move(vertices.normals),
+                        std::move(vertices.radii), std::move(vertices.colors)};
+        return scene;
+    }
+    mesh.positions = std::move(vertices.positions);
+    mesh.normals = std::move(vertices.normals);
+    mesh.texcoords = std::move(vertices.texcoords);
+    mesh.colors = std::move(vertices.colors);
+    return sceneOf(std::move(mesh));
+}
+
+}  // namespace
+
+Scene loadPly(const std::filesystem::path& path) {
+    const MappedFile mapped(path);
+    const std::string file = path.string();
+    const Header header = ply::parseHeader(mapped.text(), file);
+    if (header.format == ply::Format::Ascii) {
+        return parseBody(AsciiReader(mapped.text(), header, file), header, file);
+    }
+    return parseBody(BinaryReader(mapped.text(), header, file), header, file);
+}
+
+}  // namespace gfxrepro::scene

@@ -1,0 +1,36 @@
+// Surfaces turned into points, and what points lack made up for.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/scene/scene.h"
+
+namespace gfxrepro::scene {
+
+/// `count` points on the triangles of a scene: evenly by area, and within a triangle by the R₂
+/// sequence (Roberts 2018). Normals interpolated (area-weighted ones where the mesh has none: a
+/// scan is smooth), colours of material times vertex (none without either, or all white; textures
+/// are not read), radii twice those of discs that together have the surface's area: neighbours
+/// overlap. Same input, same bytes. Throws Error for scenes without area and for no points.
+PointCloud sampledPoints(const Scene& scene, std::size_t count);
+
+/// `count` of the points, at equal steps along a space-filling curve (Morton order); all of them
+/// where there are not more. Radii grow by √(all / count).
+PointCloud thinnedPoints(const PointCloud& points, std::size_t count);
+
+/// What completePoints() did.
+struct PointRepairs {
+    std::size_t dropped = 0;     // positions that are not finite
+    std::size_t duplicates = 0;  // points at the place of another one: dropped, too
+    std::size_t normals = 0;     // estimated: missing, not finite or zero
+    std::size_t radii = 0;       // estimated: missing, not finite or not positive
+};
+/// Makes every attribute but the colour complete. Normals are the least principal axis of the 16
+/// nearest neighbours, turned the way of neighbours that have one, else upwards at the topmost
+/// point of each connected part (Hoppe et al. 1992); radii are the mean distance to the 6 nearest
+/// neighbours, at most 4 times that distance's median. A point without neighbours gets the normal
+/// +y and the radius 1. Throws Error when no point is left.
+PointRepairs completePoints(PointCloud& points);
+
+}  // namespace gfxrepro::scene

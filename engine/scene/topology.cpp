@@ -1,0 +1,46 @@
+#include "engine/scene/topology.h"
+
+#include "engine/scene/key_table.h"
+
+namespace gfxrepro::scene {
+
+Welding weldedByPosition(std::span<const glm::vec3> positions) {
+    Welding welding;
+    welding.idOfVertex.reserve(positions.size());
+    KeyTable<std::array<std::uint32_t, 3>> table(positions.size());
+    for (const glm::vec3& p : positions) {
+        // Adding 0 turns −0 into 0, which compares equal.
+        const auto id = table.number({std::bit_cast<std::uint32_t>(p.x + 0.0F),
+                                      std::bit_cast<std::uint32_t>(p.y + 0.0F),
+                                      std::bit_cast<std::uint32_t>(p.z + 0.0F)});
+        welding.idOfVertex.push_back(id.first);
+    }
+    welding.count = static_cast<std::uint32_t>(table.size());
+    return welding;
+}
+
+EdgeTable edgesOf(std::span<const glm::uvec3> triangles, const Welding& welding) {
+    EdgeTable edges;
+    edges.edgeOfCorner.assign(triangles.size() * 3, kNone);
+    edges.nextCorner.assign(triangles.size() * 3, kNone);
+    KeyTable<std::uint64_t> table(triangles.size() * 3 / 2);
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        std::uint32_t id[3];
+        for (int i = 0; i < 3; ++i) id[i] = welding.idOfVertex[triangles[t][i]];
+        if (id[0] == id[1] || id[1] == id[2] || id[2] == id[0]) continue;
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = id[i];
+            const std::uint32_t b = id[(i + 1) % 3];
+            const auto [edge, isNew] =
+                table.number((std::uint64_t{std::min(a, b)} << 32) | std::max(a, b));
+            const std::uint32_t corner = 3 * t + i;
+            if (isNew) edges.firstCorner.push_back(kNone);
+            edges.edgeOfCorner[corner] = edge;
+            edges.nextCorner[corner] = edges.firstCorner[edge];
+            edges.firstCorner[edge] = corner;
+        }
+    }
+    return edges;
+}
+
+}  // namespace gfxrepro::scene
