@@ -87,9 +87,9 @@ void annotate(const std::exception& error) {
     annotateError(own ? own->where() : SourceLocation{}, "", error.what());
 }
 
-void annotate(const std::vector<records::CaseResult>& cases) {
-    for (const records::CaseResult& one : cases) {
-        if (one.outcome != records::CaseResult::Outcome::Failed) continue;
+void annotate(const std::vector<records::CaseEnd>& cases) {
+    for (const records::CaseEnd& one : cases) {
+        if (one.outcome != records::CaseEnd::Outcome::Failed) continue;
         annotateError(one.where, one.title, one.text);
     }
 }

@@ -9,7 +9,7 @@
 
 #include "engine/core/error.h"
 #include "runner/claims/claims.h"
-#include "runner/records/case_result.h"
+#include "runner/records/case_end.h"
 
 namespace gfxrepro::cli {
 
@@ -29,7 +29,7 @@ void annotate(const std::exception& error);
 
 /// Of a run: an error for each case and each claim that failed; of a claim that is known to fail, a
 /// notice.
-void annotate(const std::vector<records::CaseResult>& cases);
+void annotate(const std::vector<records::CaseEnd>& cases);
 void annotate(const std::vector<claims::ClaimResult>& claims);
 
 }  // namespace gfxrepro::cli

@@ -32,9 +32,9 @@ namespace {
 void sayUnread(const Context& context, const scene::Catalog& catalog, const std::string& file,
                const config::Experiment& experiment, const tables::Table& table) {
     const config::Experiment whole = loadExperiments({{file}, {}, {}, {}, ""}, "full").front();
-    const std::vector<run::Case> cases =
+    const std::vector<config::Case> cases =
         run::resolveParameters(whole, catalog, context.techniques, 1);
-    const tables::Table wholeTable = tables::buildTable(whole, run::plannedCases(cases), {});
+    const tables::Table wholeTable = tables::buildTable(whole, cases, {});
     for (const config::ClaimSpec& claim : experiment.claims) {
         const std::string absent = claims::whatIsAbsent(claim, table);
         const auto then = std::ranges::find(whole.claims, claim.id, &config::ClaimSpec::id);
@@ -61,9 +61,9 @@ void requireProfiles(const Context& context, const scene::Catalog& catalog,
     for (const char* profile : {"full", "quick", "paper"}) {
         const config::Experiment one = loadExperiments({{file}, {}, {}, {}, ""}, profile).front();
         if (one.technique.empty() || one.printed.rows.empty()) continue;
-        const std::vector<run::Case> cases =
+        const std::vector<config::Case> cases =
             run::resolveParameters(one, catalog, context.techniques, 1);
-        tables.push_back(tables::buildTable(one, run::plannedCases(cases), {}));
+        tables.push_back(tables::buildTable(one, cases, {}));
         if (!whole) whole = one;
     }
     if (whole) tables::requirePrintedValues(*whole, tables);
@@ -101,7 +101,7 @@ void requireNamedSweeps(const Node& node) {
 }
 
 /// Throws Error for a scene that the technique of a case cannot take.
-void requireTaken(const Context& context, const run::Case& item, const Node& reference,
+void requireTaken(const Context& context, const config::Case& item, const Node& reference,
                   const scene::Scene& scene) {
     Params params(item.given, "technique '" + item.technique + "'");
     if (!item.offered.isNull()) params.offer(item.offered);
@@ -131,17 +131,17 @@ scene::Scene loadScene(const Node& reference, const scene::Catalog& catalog) {
 /// Reads the user's own files, and the scenes of an experiment that nobody has laid out, each once:
 /// what is wrong in one, or what the technique cannot take, the first case would find.
 void requireScenes(const Context& context, const config::Experiment& experiment,
-                   const std::vector<run::Case>& cases, const scene::Catalog& catalog) {
+                   const std::vector<config::Case>& cases, const scene::Catalog& catalog) {
     struct Use {
         const Node* reference;
-        const run::Case* item;
+        const config::Case* item;
     };
     std::map<std::string, std::vector<Use>> uses;
-    const auto add = [&](const Node& reference, const run::Case& item) {
+    const auto add = [&](const Node& reference, const config::Case& item) {
         if (reference.isNull() || reference.text().empty()) return;
         uses[reference.text()].push_back({&reference, &item});
     };
-    for (const run::Case& item : cases) {
+    for (const config::Case& item : cases) {
         add(item.scene, item);
         for (const auto& [name, value] : item.params.entries()) {
             if (scene::isSceneKey(name)) add(value, item);
@@ -160,9 +160,9 @@ void requireScenes(const Context& context, const config::Experiment& experiment,
 
 /// Says which programs are not on this machine: other machines may have them. Files that they read
 /// have to be there.
-void sayAbsent(const std::string& file, const std::vector<run::Case>& cases) {
+void sayAbsent(const std::string& file, const std::vector<config::Case>& cases) {
     std::set<std::string> absent;
-    for (const run::Case& item : cases) {
+    for (const config::Case& item : cases) {
         if (item.program.isNull()) continue;
         const config::Program program = config::readProgram(item.program);
         const config::Placeholders values = program.valuesOf(item.params);
@@ -185,7 +185,7 @@ int check(const Context& context, const Selection& selection) {
     for (const std::string& file : selection.names) {
         request.configs = {file};
         config::Experiment experiment = loadExperiments(request, selection.profile).front();
-        const std::vector<run::Case> cases =
+        const std::vector<config::Case> cases =
             run::resolveCases(experiment, catalog, context.techniques, 1);
         run::bindAssumptions(experiment, cases, catalog, context.techniques);
         run::requireRanges(experiment, cases, catalog, context.techniques);
@@ -197,7 +197,7 @@ int check(const Context& context, const Selection& selection) {
         }
         sayAbsent(file, cases);
         const std::size_t caseCount = cases.size();
-        const tables::Table table = tables::buildTable(experiment, run::plannedCases(cases), {});
+        const tables::Table table = tables::buildTable(experiment, cases, {});
         claims::requireProvenance(experiment, table);
         run::resolvePaperCases(experiment, catalog, context.techniques);
         say("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,

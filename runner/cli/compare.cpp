@@ -56,8 +56,8 @@ struct Measured {
 regression::CaseTexts unexpectedFailures(const run::StoredRun& run,
                                          const regression::CaseParams& params) {
     const run::Expectations expectations = run::expectationsOf(run.plan, run.manifest);
-    std::map<std::string, const run::Case*> cases;
-    for (const run::Case& item : run.plan.cases) cases[item.id] = &item;
+    std::map<std::string, const config::Case*> cases;
+    for (const config::Case& item : run.plan.cases) cases[item.id] = &item;
     std::vector<records::Record> rows;
     std::ranges::copy_if(run.records, std::back_inserter(rows), [&](const records::Record& row) {
         const auto item = cases.find(row.caseId);
@@ -69,7 +69,7 @@ regression::CaseTexts unexpectedFailures(const run::StoredRun& run,
 Measured readMeasured(const fs::path& runDir) {
     const run::StoredRun run = run::readRun(runDir);
     regression::CaseParams params;
-    for (const run::Case& item : run.plan.cases)
+    for (const config::Case& item : run.plan.cases)
         params[item.id] = item.recordedParams().toJson().dump();
     Measured measured{regression::seriesOf(run.records, params),
                       regression::failuresOf(run.records, params),

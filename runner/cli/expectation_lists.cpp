@@ -50,10 +50,10 @@ class Folder {
     struct Table {
         fs::path file;
         std::vector<std::string> profiles;
-        std::vector<run::Case> cases = {};
+        std::vector<config::Case> cases = {};
     };
 
-    const std::vector<run::Case>& casesOf(Table& table) {
+    const std::vector<config::Case>& casesOf(Table& table) {
         if (!table.cases.empty()) return table.cases;
         std::vector<std::string> profiles = table.profiles;
         profiles.emplace_back("full");

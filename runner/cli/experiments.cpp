@@ -63,13 +63,9 @@ bool isConfig(const fs::path& file) {
 
 /// Before anything is measured, for which it would be too late.
 void requireJudgeable(const run::Plan& plan) {
-    // A large plan's cases are much to copy.
-    const auto hasClaims = [](const config::Experiment& one) { return !one.claims.empty(); };
-    if (std::ranges::none_of(plan.experiments, hasClaims)) return;
-    const std::vector<tables::PlannedCase> cases = run::plannedCases(plan.cases);
     for (const config::Experiment& experiment : plan.experiments) {
-        if (!hasClaims(experiment)) continue;
-        claims::requireJudgeable(experiment, tables::buildTable(experiment, cases, {}));
+        if (experiment.claims.empty()) continue;
+        claims::requireJudgeable(experiment, tables::buildTable(experiment, plan.cases, {}));
     }
 }
 

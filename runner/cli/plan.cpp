@@ -16,7 +16,7 @@ long long iterationsOf(const config::Measure& measure) {
 }
 
 /// Time of all processes of a case, its memory, and how they are known. `first` is its first twin.
-std::vector<std::string> predictionTexts(const run::Case& item, const run::Case& first,
+std::vector<std::string> predictionTexts(const config::Case& item, const config::Case& first,
                                          const cluster::Predictor& predictor) {
     if (&item != &first) return {"-", "-", "as " + first.id};
     const std::optional<cluster::Prediction> known = predictor.predict(item);
@@ -27,7 +27,7 @@ std::vector<std::string> predictionTexts(const run::Case& item, const run::Case&
 }
 
 /// A case of the listing.
-std::vector<std::string> rowTexts(const run::Case& item, const run::Case& first,
+std::vector<std::string> rowTexts(const config::Case& item, const config::Case& first,
                                   const cluster::Predictor& predictor) {
     const config::Measure& measure = item.measure;
     std::vector<std::string> row = {

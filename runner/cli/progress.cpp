@@ -37,7 +37,7 @@ std::size_t terminalWidth() {
 }  // namespace
 
 Progress::Progress(const std::vector<run::Unit>& units,
-                   const std::map<const run::Case*, double>& unitTimesS, int jobs, bool isQuiet)
+                   const std::map<const config::Case*, double>& unitTimesS, int jobs, bool isQuiet)
     : unitCount_(static_cast<int>(units.size())),
       unitTimesS_(unitTimesS),
       jobs_(jobs),

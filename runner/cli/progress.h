@@ -13,7 +13,7 @@ class Progress : public run::Observer {
   public:
     /// `unitTimesS`: predictions by case, for the time left; empty when nothing is known.
     Progress(const std::vector<run::Unit>& units,
-             const std::map<const run::Case*, double>& unitTimesS, int jobs, bool isQuiet);
+             const std::map<const config::Case*, double>& unitTimesS, int jobs, bool isQuiet);
 
     void unitsAdded(const std::vector<run::Unit>& units) override;
     void unitBegan(const run::Unit& unit) override;
@@ -29,7 +29,7 @@ class Progress : public run::Observer {
     std::string etaText() const;
 
     int unitCount_;
-    std::map<const run::Case*, double> unitTimesS_;
+    std::map<const config::Case*, double> unitTimesS_;
     int jobs_;
     double totalS_ = 0.0;  // predicted; units where there are no predictions
     double doneS_ = 0.0;

@@ -47,7 +47,7 @@ struct Prepared {
     run::RunDirectory directory;
     run::Json manifest;
     run::SchedulerOptions scheduler;
-    std::vector<run::Json> log{};  // of a run that goes on
+    std::vector<run::Json> journal{};  // of a run that goes on
 };
 
 std::string deviceClassOf(const gl::DeviceInfo& device) {
@@ -100,7 +100,7 @@ run::Request withinBudget(const run::Plan& plan, const run::Request& request,
 /// Of the user's own height maps: at a wrong scale one sees it after the run, in every picture.
 void warnOfSteepTerrain(const run::Plan& plan, const scene::Catalog& catalog) {
     std::set<std::string> seen;
-    for (const run::Case& item : plan.cases) {
+    for (const config::Case& item : plan.cases) {
         if (item.scene.isNull()) continue;
         const std::string name = scene::sceneName(item.scene.text());
         const bool isOwnMap = scene::isSceneFile(name) && scene::isHeightMapFile(name);
@@ -181,7 +181,7 @@ void requireSameRequest(const RunOptions& options, const run::Request& request,
 void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device, Prepared& run) {
     const std::string machine = run::machineName(run::newManifest(run.plan, device));
     const std::vector<std::string> again =
-        run::replaceForeignTimes(run.plan, run.directory, run.log, run.manifest, machine);
+        run::replaceForeignTimes(run.plan, run.directory, run.journal, run.manifest, machine);
     const std::vector<std::string> machines = run::machinesOf(run.manifest);
     run::beginInvocation(run.manifest, commandLine);
     run::breakSeal(run.manifest);
@@ -196,8 +196,8 @@ void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device,
     run::noteMachines(run.manifest);
     writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
     for (const std::string& experiment : again) {
-        run.log.push_back({{"event", "machine"}, {"table", experiment}, {"machine", machine}});
-        run.directory.log(run.log.back());
+        run.journal.push_back({{"event", "machine"}, {"table", experiment}, {"machine", machine}});
+        run.directory.note(run.journal.back());
         tell("{}: begun on another machine; its times are measured again on {}\n", experiment,
              machine);
     }
@@ -226,9 +226,9 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
                          "the run goes on with its configs as they were when it began");
     Prepared run{std::move(stored.plan), std::move(directory), std::move(stored.manifest),
                  scheduler};
-    // Before anything is written: a log that cannot be read leaves the folder as it is.
-    run.log = run::readLog(run.directory.path() / "log.jsonl");
-    if (!options.triesAgain) run.scheduler.givenUp = run::casesNotSurvived(run.plan, run.log);
+    // Before anything is written: a journal that cannot be read leaves the folder as it is.
+    run.journal = run::readJournal(run.directory.path() / "journal.jsonl");
+    if (!options.triesAgain) run.scheduler.givenUp = run::casesNotSurvived(run.plan, run.journal);
     settleMachine(context.commandLine, device, run);
     return run;
 }
@@ -246,12 +246,12 @@ std::string countText(int count, std::string_view what) {
 }
 
 /// Says what is ahead, and gives the predicted time of a unit of each case.
-std::map<const run::Case*, double> forecast(const RunOptions& options, const Prepared& run) {
+std::map<const config::Case*, double> forecast(const RunOptions& options, const Prepared& run) {
     const History history = openHistory(options.from, run.plan.deviceClass);
-    std::map<const run::Case*, double> unitTimesS;
+    std::map<const config::Case*, double> unitTimesS;
     const std::vector<std::size_t> firsts = run::firstTwins(run.plan.cases);
     for (std::size_t i = 0; i < firsts.size(); ++i) {
-        const run::Case& item = run.plan.cases[i];
+        const config::Case& item = run.plan.cases[i];
         const auto known = history.predictor.predict(item);
         if (known) unitTimesS[&item] = firsts[i] == i ? known->timeS : 0.0;
     }
@@ -261,9 +261,9 @@ std::map<const run::Case*, double> forecast(const RunOptions& options, const Pre
 }
 
 /// What failed in an earlier invocation goes last: else --max-failures would end each at the same.
-void putFailedLast(const std::vector<run::Json>& log, std::vector<run::Unit>& units) {
+void putFailedLast(const std::vector<run::Json>& journal, std::vector<run::Unit>& units) {
     std::set<run::UnitKey> failed;
-    for (const run::Json& event : log) {
+    for (const run::Json& event : journal) {
         if (event.value("event", "") != "case") continue;
         const std::string status = event.value("status", "");
         if (status == records::statusName(records::Status::Ok) ||
@@ -290,11 +290,11 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
     run.scheduler.expectations = run::expectationsOf(run.plan, run.manifest);
     run.scheduler.failuresAtMost = options.failuresAtMost;
     std::vector<run::Unit> units = run::remainingUnits(run.plan, run.directory);
-    if (options.failuresAtMost > 0) putFailedLast(run.log, units);
-    run::Rounds rounds = run::roundsOf(run.plan, run.directory, run.log);
-    std::map<std::string, run::MachineState> states = run::machineStatesIn(run.log);
-    run.log.clear();
-    run.directory.log({{"event", "begin"}, {"command", context.commandLine}});
+    if (options.failuresAtMost > 0) putFailedLast(run.journal, units);
+    run::Rounds rounds = run::roundsOf(run.plan, run.directory, run.journal);
+    std::map<std::string, run::MachineState> states = run::machineStatesIn(run.journal);
+    run.journal.clear();
+    run.directory.note({{"event", "begin"}, {"command", context.commandLine}});
     Progress progress(units, forecast(options, run), run.scheduler.jobs, options.isQuiet);
     run::MachineWatch watch(progress, run.directory, std::move(states), machineRoot(),
                             run.manifest.at("gl").value("uuid", ""),
@@ -302,9 +302,9 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
     const run::RunOutcome outcome =
         run::runUnits(units, rounds, run.directory, run.scheduler, phases, watch);
     progress.clear();
-    run.directory.log({{"event", outcome.isInterrupted ? "interrupted" : "end"},
-                       {"finished", outcome.finished},
-                       {"failed", outcome.failed}});
+    run.directory.note({{"event", outcome.isInterrupted ? "interrupted" : "end"},
+                        {"finished", outcome.finished},
+                        {"failed", outcome.failed}});
     run.directory.removeScratch();
     run::addScenes(run.manifest, outcome.scenes);
     run::addPrograms(run.manifest, outcome.programs);

@@ -36,7 +36,7 @@ void requireOnePlan(const std::vector<ShardRun>& shards) {
 /// Cases that a shard was to measure, and those that it has rows of.
 std::set<std::string> casesOf(const run::StoredRun& run) {
     std::set<std::string> ids;
-    for (const run::Case& item : run.plan.cases) {
+    for (const config::Case& item : run.plan.cases) {
         if (run.plan.measures(item)) ids.insert(item.id);
     }
     for (const records::Record& row : run.records) ids.insert(row.caseId);
@@ -49,7 +49,7 @@ void requireDisjoint(const std::vector<ShardRun>& shards) {
         for (const std::string& id : casesOf(shard.run)) {
             const auto [owner, isNew] = owners.try_emplace(id, &shard);
             if (isNew) continue;
-            const auto item = std::ranges::find(shard.run.plan.cases, id, &run::Case::id);
+            const auto item = std::ranges::find(shard.run.plan.cases, id, &config::Case::id);
             throw Error("the case '" + (item == shard.run.plan.cases.end() ? id : item->title()) +
                         "' is in both " + owner->second->path.string() + " and " +
                         shard.path.string() + ": these are no shards of one cut");
@@ -155,13 +155,13 @@ void copyImages(const run::RunDirectory& directory, const std::vector<ShardRun>&
     // The copy of a shard's list goes: the new one has the images of all, in the plan's order.
     fs::remove(directory.path() / "images" / "index.csv");
     std::vector<records::ImageEntry> images;
-    for (const run::Case& item : plan.cases) {
+    for (const config::Case& item : plan.cases) {
         std::ranges::move(imagesOf[item.id], std::back_inserter(images));
     }
     records::ImageWriter(directory.path()).append(images);
 }
 
-/// A line of a log without what its worker printed, or in short.
+/// A line of a journal without what its worker printed, or in short.
 std::string reduced(std::string_view line, bool isInShort) {
     if (!isInShort && line.find("\"output\":") == line.npos) return std::string(line);
     const run::Json event = run::Json::parse(line, nullptr, false);
@@ -179,14 +179,14 @@ std::string reduced(std::string_view line, bool isInShort) {
 
 }  // namespace
 
-std::string mergedLog(const std::vector<ShardRun>& shards, std::size_t mostBytesWithOutput,
-                      std::size_t mostWholeBytes) {
+std::string mergedJournal(const std::vector<ShardRun>& shards, std::size_t mostBytesWithOutput,
+                          std::size_t mostWholeBytes) {
     const std::size_t part = mostBytesWithOutput / shards.size();
     std::string text;
     for (const ShardRun& shard : shards) {
-        const fs::path file = shard.path / "log.jsonl";
+        const fs::path file = shard.path / "journal.jsonl";
         if (!fs::exists(file)) continue;
-        run::requireModestLog(file);
+        run::requireModestJournal(file);
         const MappedFile mapped(file);
         const std::size_t begin = text.size();
         for (std::string_view rest = mapped.text(); !rest.empty();) {
@@ -196,11 +196,11 @@ std::string mergedLog(const std::vector<ShardRun>& shards, std::size_t mostBytes
             const bool isFull = text.size() - begin + line.size() > part;
             text += isInShort || isFull ? reduced(line, isInShort) : std::string(line);
             text += '\n';
-            if (text.size() > run::kMostLogBytes) {
+            if (text.size() > run::kMostJournalBytes) {
                 throw Error(
                     fmt::format("the logs of the shards have more than {} MiB, even in "
                                 "short: a larger log is not read again",
-                                run::kMostLogBytes >> 20));
+                                run::kMostJournalBytes >> 20));
             }
         }
     }
@@ -261,7 +261,7 @@ void writeMerged(const run::RunDirectory& directory, const std::vector<ShardRun>
     records::RecordWriter(records).append(merged.records);
     fs::rename(records, directory.recordsFile());
     copyImages(directory, shards, merged.plan);
-    writeFileAtomic(directory.path() / "log.jsonl", mergedLog(shards));
+    writeFileAtomic(directory.path() / "journal.jsonl", mergedJournal(shards));
     run::Json manifest = merged.manifest;
     run::sealRecords(manifest, directory.path());
     writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');

@@ -27,14 +27,14 @@ std::vector<std::string> missingUnits(const run::StoredRun& run);
 /// Which of the cut's shards are not there: "2/4".
 std::vector<std::string> missingShards(const std::vector<ShardRun>& shards);
 
-/// The logs of the shards one after another; each with what workers printed as far as its part of
-/// `mostBytesWithOutput`, and in short beyond `mostWholeBytes`: all of it may be more than is read
-/// again. Throws Error where even that is.
-std::string mergedLog(const std::vector<ShardRun>& shards,
-                      std::size_t mostBytesWithOutput = std::size_t{256} << 20,
-                      std::size_t mostWholeBytes = run::kMostWholeLogBytes);
+/// The journals of the shards one after another; each with what workers printed as far as its part
+/// of `mostBytesWithOutput`, and in short beyond `mostWholeBytes`: all of it may be more than is
+/// read again. Throws Error where even that is.
+std::string mergedJournal(const std::vector<ShardRun>& shards,
+                          std::size_t mostBytesWithOutput = std::size_t{256} << 20,
+                          std::size_t mostWholeBytes = run::kMostWholeJournalBytes);
 
-/// Writes plan, manifest, records, log, images and artifacts into `directory`, the plan last.
+/// Writes plan, manifest, records, journal, images and artifacts into `directory`, the plan last.
 void writeMerged(const run::RunDirectory& directory, const std::vector<ShardRun>& shards,
                  const run::StoredRun& merged);
 

@@ -39,12 +39,12 @@ double scaledTimeS(const PastCase& past, const config::Measure& measure) {
 }
 
 /// Everything that a time depends on but for the build, the device and how often it is measured.
-std::string contentOf(const run::Case& item) {
+std::string contentOf(const config::Case& item) {
     return item.technique + item.scene.toFlowText() + item.params.toFlowText() +
            std::to_string(item.outputWidthPx) + 'x' + std::to_string(item.outputHeightPx);
 }
 
-std::string methodOf(const run::Case& item) {
+std::string methodOf(const config::Case& item) {
     return item.technique + '/' + item.method();
 }
 
@@ -65,7 +65,7 @@ run::Cost medianOf(const std::vector<run::Cost>& costs) {
 /// The costs in a run's log, by case. Lines that are torn or without a cost are passed over.
 std::map<std::string, std::vector<run::Cost>> loggedCosts(const fs::path& runDir) {
     std::map<std::string, std::vector<run::Cost>> costs;
-    for (const run::Json& event : run::readLog(runDir / "log.jsonl")) {
+    for (const run::Json& event : run::readJournal(runDir / "journal.jsonl")) {
         if (!event.contains("cost") || !event.contains("case")) continue;
         costs[event.at("case").get<std::string>()].push_back(run::costFromJson(event.at("cost")));
     }
@@ -116,7 +116,7 @@ std::vector<PastCase> readPastCases(const fs::path& runDir) {
     const std::map<std::string, std::vector<run::Cost>> costs = loggedCosts(runDir);
     std::vector<PastCase> past;
     if (costs.empty()) return past;
-    for (run::Case& item : run::Plan::fromJsonFile(runDir / "plan.json").cases) {
+    for (config::Case& item : run::Plan::fromJsonFile(runDir / "plan.json").cases) {
         const auto found = costs.find(item.id);
         if (found == costs.end()) continue;
         const run::Cost cost = medianOf(found->second);
@@ -168,7 +168,7 @@ Predictor Predictor::from(const std::vector<fs::path>& sources) {
     return predictor;
 }
 
-std::optional<Prediction> Predictor::predict(const run::Case& item) const {
+std::optional<Prediction> Predictor::predict(const config::Case& item) const {
     if (const auto found = file_.find(item.title()); found != file_.end()) return found->second;
     const auto as = [&](std::size_t index, Prediction::Source source) {
         const PastCase& past = past_[index];
@@ -184,7 +184,7 @@ std::optional<Prediction> Predictor::predict(const run::Case& item) const {
     return prediction ? prediction : median(item);
 }
 
-std::vector<Predictor::Feature> Predictor::featuresOf(const run::Case& item) {
+std::vector<Predictor::Feature> Predictor::featuresOf(const config::Case& item) {
     std::vector<Feature> features = {
         {"scene", item.scene.isNull() ? "" : item.scene.text(), {}},
         {"pixels", "", static_cast<double>(item.outputWidthPx) * item.outputHeightPx}};
@@ -217,7 +217,7 @@ double Predictor::distance(const std::vector<Feature>& a, const std::vector<Feat
     return sum;
 }
 
-std::optional<Prediction> Predictor::nearest(const run::Case& item) const {
+std::optional<Prediction> Predictor::nearest(const config::Case& item) const {
     const std::vector<Feature> features = featuresOf(item);
     const std::string method = methodOf(item);
     double least = std::numeric_limits<double>::infinity();
@@ -235,7 +235,7 @@ std::optional<Prediction> Predictor::nearest(const run::Case& item) const {
                       Prediction::Source::Nearest, found->item.title(), least <= kFarthestTold};
 }
 
-std::optional<Prediction> Predictor::median(const run::Case& item) const {
+std::optional<Prediction> Predictor::median(const config::Case& item) const {
     if (past_.empty()) return std::nullopt;
     std::vector<double> timesS[2], bytes[2];  // of all cases; of this technique
     for (const PastCase& past : past_) {
@@ -252,7 +252,7 @@ std::optional<Prediction> Predictor::median(const run::Case& item) const {
 
 void writePredictions(const fs::path& path, const run::Plan& plan, const Predictor& predictor) {
     std::string text = std::string(kFileHeader) + '\n';
-    for (const run::Case& item : plan.cases) {
+    for (const config::Case& item : plan.cases) {
         const std::optional<Prediction> known = predictor.predict(item);
         if (!known) continue;
         records::CsvRow row(text);
@@ -266,7 +266,7 @@ void writePredictions(const fs::path& path, const run::Plan& plan, const Predict
 
 std::vector<double> caseTimesS(const run::Plan& plan, const Predictor& predictor) {
     std::vector<double> timesS;
-    for (const run::Case& item : plan.cases) {
+    for (const config::Case& item : plan.cases) {
         const std::optional<Prediction> known = predictor.predict(item);
         timesS.push_back(item.measure.processes *
                          (known ? known->timeS : iterationsOf(item.measure)));

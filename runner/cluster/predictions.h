@@ -34,7 +34,7 @@ std::string_view sourceName(Prediction::Source source);
 
 /// A case that an earlier run finished.
 struct PastCase {
-    run::Case item;
+    config::Case item;
     run::Cost cost;  // the median over its processes
 };
 /// Those of a run directory: its plan and its log. Throws Error when it is no run.
@@ -54,7 +54,7 @@ class Predictor {
     static Predictor from(const std::vector<std::filesystem::path>& sources);
 
     /// None when nothing is known at all.
-    std::optional<Prediction> predict(const run::Case& item) const;
+    std::optional<Prediction> predict(const config::Case& item) const;
 
   private:
     /// A parameter as a number, or as text where it is none.
@@ -63,10 +63,10 @@ class Predictor {
         std::string text;
         std::optional<double> number;
     };
-    static std::vector<Feature> featuresOf(const run::Case& item);
+    static std::vector<Feature> featuresOf(const config::Case& item);
     static double distance(const std::vector<Feature>& a, const std::vector<Feature>& b);
-    std::optional<Prediction> nearest(const run::Case& item) const;
-    std::optional<Prediction> median(const run::Case& item) const;
+    std::optional<Prediction> nearest(const config::Case& item) const;
+    std::optional<Prediction> median(const config::Case& item) const;
 
     std::vector<PastCase> past_;
     std::vector<std::vector<Feature>> features_;  // beside past_

@@ -25,7 +25,7 @@ run::Shard parseShard(std::string_view text) {
     return {static_cast<int>(*index), static_cast<int>(*count)};
 }
 
-std::vector<std::vector<std::size_t>> indivisibleGroups(std::span<const run::Case> cases) {
+std::vector<std::vector<std::size_t>> indivisibleGroups(std::span<const config::Case> cases) {
     std::vector<std::vector<std::size_t>> groups;
     std::map<std::string, std::size_t> groupOf;  // of an experiment, or of work
     for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -38,7 +38,7 @@ std::vector<std::vector<std::size_t>> indivisibleGroups(std::span<const run::Cas
     return groups;
 }
 
-std::vector<int> cutShards(std::span<const run::Case> cases, std::span<const double> timesS,
+std::vector<int> cutShards(std::span<const config::Case> cases, std::span<const double> timesS,
                            int count) {
     GFXREPRO_ASSERT_EQ(cases.size(), timesS.size());
     const std::vector<std::vector<std::size_t>> groups = indivisibleGroups(cases);

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "engine/core/node.h"
+#include "runner/config/case.h"
+#include "runner/config/measure.h"
 #include "runner/config/outputs.h"
 
 namespace gfxrepro::config {
@@ -35,42 +37,6 @@ using AxisPoint = Node::Map;
 /// A pair's value may be a list: any of these. Points made equal by `when` are one. Throws Error at
 /// the place of what is wrong, and for more than 1,000,000 points.
 std::vector<AxisPoint> expandSweep(const Node& sweep);
-
-/// Processes that a 95 % interval of a time takes (metrics::kFewestForInterval).
-inline constexpr int kFewestRounds = 6;
-
-/// How often and how a case is measured.
-struct Measure {
-    enum class Lane { Quality, Timing };
-    Lane lane = Lane::Quality;
-    int warmup = 0;   // iterations before the first measured one
-    int repeats = 1;  // measured iterations in one process; the fewest, where more may follow:
-    /// Timing lane with `relativeError`: iterations of a frame go on in each process until half of
-    /// the 95 % interval of their median ÷ it is no more than that, or there are so many. 0: they
-    /// do not.
-    int repeatsAtMost = 0;
-    int processes = 1;  // rounds, in each of which a case is run in a process of its own if more
-                        // than 1; the fewest, where more may follow:
-    /// Timing lane, from metrics::kFewestForInterval processes on: rounds go on until half of each
-    /// case's 95 % interval ÷ the time of its frames is no more than this. 0: they do not.
-    double relativeError = 0.0;
-    int processesAtMost = 20;
-    double timeBudgetS = 60.0;  // of all rounds of the experiment
-    int frames = 1;             // frames of a path; each is repeated
-    int sceneSeeds = 1;         // samples of a generated scene: its seed and those that follow it
-    /// Timing lane: rounds that are measured whatever they take; of `processes` the others are
-    /// begun only where they end within `timeBudgetS`. 0: all.
-    int processesAtLeast = 0;
-    double timeLimitS = 120.0;       // of the whole case, scene loading included
-    long long memoryLimitBytes = 0;  // resident; 0: none
-
-    /// Whether rounds may follow the first `processes`.
-    bool mayContinue() const;
-    /// Whether iterations may follow the first `repeats`.
-    bool mayRepeat() const;
-    /// Rounds that are measured whatever they take.
-    int certainRounds() const;
-};
 
 /// `picture_tolerance:` — how far apart the pictures of a case may be that two builds have
 /// recorded.
@@ -219,9 +185,6 @@ struct PlotSpec {
     SourceLocation location;
 };
 
-/// Begins the name of an axis that is a parameter of the generated scene: "scene.blades".
-inline constexpr std::string_view kSceneAxisPrefix = "scene.";
-
 /// The assumptions that are bound to what a case has beside its parameters.
 inline constexpr const char* kOutputAssumption = "output";
 inline constexpr const char* kSceneAssumption = "scene";
@@ -239,12 +202,6 @@ struct Assumption {
     std::string why;
     bool isBound = false;
     SourceLocation location = {};  // of the name
-};
-
-/// A case of the profile `paper`, every parameter resolved: what measured cases are compared with.
-struct PaperCase {
-    std::string scene;  // empty for none
-    Node params;        // with `output`, as records say them
 };
 
 struct Experiment {
@@ -280,7 +237,7 @@ struct Experiment {
     /// Likewise with the profile `paper` and without overrides. Null where there is nothing to
     /// compare with print: in a sweep that prints nothing, and without a technique.
     Node paperDocument;
-    std::vector<PaperCase> paperCases;  // its cases; a plan fills them in
+    std::vector<Case> paperCases;  // its cases, every parameter resolved; a plan fills them in
     Outputs outputs;  // what its cases record, where it has no layout; a plan fills it in
 
     /// Whether its table is made of what was recorded: an experiment of one's own without a layout.
@@ -320,16 +277,8 @@ Experiment loadExperiment(const std::filesystem::path& file, const ExperimentOpt
 /// be printed and claimed.
 Experiment experimentFromDocument(const Node& document, const std::filesystem::path& file);
 
-/// One case before the technique's defaults are filled in.
-struct CaseSpec {
-    AxisPoint axes;
-    Node params;       // with those of the scene, then the axes laid over
-    Node scene;        // null or a reference
-    Node sceneParams;  // a map, with the axes laid over
-    int outputWidthPx = 0;
-    int outputHeightPx = 0;
-};
-/// The cases of an experiment, in the order of the sweep.
-std::vector<CaseSpec> expandCases(const Experiment& experiment);
+/// The cases of an experiment, in the order of the sweep, before a technique's defaults are filled
+/// in: `params` has what the config says of the generated scene alone, and ids are empty.
+std::vector<Case> expandCases(const Experiment& experiment);
 
 }  // namespace gfxrepro::config

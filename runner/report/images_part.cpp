@@ -281,17 +281,24 @@ std::string casesHtml(const Page& page, const Model& model) {
     std::string html;
     std::size_t count = 0;
     for (std::size_t run = 0; run < page.parts.size(); ++run) {
-        for (const ReportCase* item : page.parts[run].cases) {
+        const ReportRun& of = model.runs[run];
+        const auto commandOf = [&](const std::string& id) {
+            const auto command = of.commands.find(id);
+            return command == of.commands.end() ? "" : command->second;
+        };
+        for (const config::Case* item : page.parts[run].cases) {
             ++count;
             html += fmt::format(
                 "<article class=\"case\" id=\"{}\"><h4>{}{} <span class=\"soft\">case {}</span>"
                 "</h4>\n<pre class=\"command\">{}</pre>\n",
                 escapeXml(caseAnchor(run, item->id)),
                 model.isComparison() ? Model::letter(run) + ": " : "",
-                escapeXml(tables::shownCase(item->title, page.id, page.parts[run].table.words)),
-                escapeXml(item->id), escapeXml(item->command));
+                escapeXml(tables::shownCase(item->title(), page.id, page.parts[run].table.words)),
+                escapeXml(item->id), escapeXml(commandOf(item->id)));
             std::string log;
-            for (const std::string& line : item->log) log += escapeXml(line) + '\n';
+            if (const auto events = of.events.find(item->id); events != of.events.end()) {
+                for (const std::string& line : events->second) log += escapeXml(line) + '\n';
+            }
             html += fmt::format("<pre class=\"log\">{}</pre></article>\n",
                                 log.empty() ? "not run" : log);
         }

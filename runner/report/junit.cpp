@@ -15,14 +15,14 @@ namespace {
 struct Test {
     std::string table;
     std::string name;
-    records::CaseResult::Outcome outcome = records::CaseResult::Outcome::Measured;
+    records::CaseEnd::Outcome outcome = records::CaseEnd::Outcome::Measured;
     std::string message;
 };
 
-std::vector<Test> testsOf(const std::vector<records::CaseResult>& cases) {
+std::vector<Test> testsOf(const std::vector<records::CaseEnd>& cases) {
     std::map<std::string, int> known;
     std::vector<Test> tests;
-    for (const records::CaseResult& one : cases) {
+    for (const records::CaseEnd& one : cases) {
         // Those of several seeds of a scene have one title; others differ by what XML cannot write.
         const int count = ++known[escapeXml(one.title)];
         tests.push_back({one.table, one.title + (count > 1 ? fmt::format(" ({})", count) : ""),
@@ -35,11 +35,11 @@ std::vector<Test> testsOf(const std::vector<claims::ClaimResult>& claims) {
     std::vector<Test> tests;
     for (const claims::ClaimResult& claim : claims) {
         Test test{claim.table, fmt::format("{} claim {}", claim.table, claim.id),
-                  records::CaseResult::Outcome::Skipped, ""};
+                  records::CaseEnd::Outcome::Skipped, ""};
         if (claim.verdict == claims::Verdict::Holds)
-            test.outcome = records::CaseResult::Outcome::Measured;
+            test.outcome = records::CaseEnd::Outcome::Measured;
         if (claim.verdict == claims::Verdict::Fails)
-            test.outcome = records::CaseResult::Outcome::Failed;
+            test.outcome = records::CaseEnd::Outcome::Failed;
         test.message =
             fmt::format("{}: measured {}, required {}{}", claims::verdictName(claim.verdict),
                         claim.measured.empty() ? "nothing" : claim.measured, claim.required,
@@ -51,30 +51,30 @@ std::vector<Test> testsOf(const std::vector<claims::ClaimResult>& claims) {
 }
 
 std::string suite(const char* name, const std::vector<Test>& tests) {
-    const auto count = [&](records::CaseResult::Outcome outcome) {
+    const auto count = [&](records::CaseEnd::Outcome outcome) {
         return std::ranges::count(tests, outcome, &Test::outcome);
     };
     std::string text = fmt::format(
         "<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n", name, tests.size(),
-        count(records::CaseResult::Outcome::Failed), count(records::CaseResult::Outcome::Skipped));
+        count(records::CaseEnd::Outcome::Failed), count(records::CaseEnd::Outcome::Skipped));
     for (const Test& test : tests) {
         text += fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escapeXml(test.table),
                             escapeXml(test.name));
-        if (test.outcome == records::CaseResult::Outcome::Measured) {
+        if (test.outcome == records::CaseEnd::Outcome::Measured) {
             text += "/>\n";
             continue;
         }
-        text += fmt::format(
-            "><{} message=\"{}\"/></testcase>\n",
-            test.outcome == records::CaseResult::Outcome::Failed ? "failure" : "skipped",
-            escapeXml(test.message));
+        text +=
+            fmt::format("><{} message=\"{}\"/></testcase>\n",
+                        test.outcome == records::CaseEnd::Outcome::Failed ? "failure" : "skipped",
+                        escapeXml(test.message));
     }
     return text + "</testsuite>\n";
 }
 
 }  // namespace
 
-std::string junitXml(const std::vector<records::CaseResult>& cases,
+std::string junitXml(const std::vector<records::CaseEnd>& cases,
                      const std::vector<claims::ClaimResult>& results) {
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n" +
            suite("cases", testsOf(cases)) + suite("claims", testsOf(results)) + "</testsuites>\n";

@@ -81,8 +81,8 @@ void addRun(std::size_t index, const GalleryPlace& place, const PicturesDone& pr
         for (const Curve& curve : run.curves) {
             if (curve.table == experiment.id) part.curves.push_back(&curve);
         }
-        for (const ReportCase& item : run.cases) {
-            if (item.table == experiment.id) part.cases.push_back(&item);
+        for (const config::Case& item : run.cases) {
+            if (item.experiment == experiment.id) part.cases.push_back(&item);
         }
     }
     for (const claims::ClaimResult& claim : run.claims) {

@@ -27,7 +27,7 @@ struct RunPart {
     std::vector<Shot> shots;
     std::vector<const Curve*> curves;
     std::vector<Failure> failures;
-    std::vector<const ReportCase*> cases;
+    std::vector<const config::Case*> cases;
 };
 
 /// A table, figure or section, with its part of every run.

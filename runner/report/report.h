@@ -18,15 +18,6 @@
 
 namespace gfxrepro::report {
 
-/// A case of a run's plan: how it is run again, and what its log says.
-struct ReportCase {
-    std::string id;
-    std::string table;    // "zju2005/2.1"
-    std::string title;    // "zju2005/2.1 scene=models/duck"
-    std::string command;  // for a shell
-    std::vector<std::string> log;
-};
-
 /// A finished run: all that its pages show. Of the manifest are shown, where there: commit, build,
 /// cpu, cores, memory_bytes, gl.renderer, gl.version, profile, started, scenes.
 struct ReportRun {
@@ -39,8 +30,10 @@ struct ReportRun {
     std::vector<claims::ClaimResult> claims;
     std::vector<Curve> curves;
     std::vector<records::Record> records;
-    std::vector<ReportCase> cases;
-    std::map<std::string, std::string> commands = {};  // that measure a table again, by its id
+    std::vector<config::Case> cases;  // of its plan
+    /// For a shell: what measures a table or a case again, by its id.
+    std::map<std::string, std::string> commands = {};
+    std::map<std::string, std::vector<std::string>> events = {};  // of a case, for people
 };
 
 /// A file that is to be sent is no larger, if its pictures can be small enough: mail takes no more.

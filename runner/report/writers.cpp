@@ -260,7 +260,7 @@ void writeTables(const fs::path& runDir, const std::vector<tables::Table>& table
     }
 }
 
-void writeClaims(const fs::path& runDir, const std::vector<records::CaseResult>& cases,
+void writeClaims(const fs::path& runDir, const std::vector<records::CaseEnd>& cases,
                  const std::vector<claims::ClaimResult>& results,
                  const claims::ReportContext& context) {
     writeFileAtomic(runDir / "claims.csv", claimsCsv(results, context));

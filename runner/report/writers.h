@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runner/claims/claims.h"
-#include "runner/records/case_result.h"
+#include "runner/records/case_end.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::report {
@@ -23,12 +23,12 @@ void writeTables(const std::filesystem::path& runDir, const std::vector<tables::
 /// claims.csv (kClaimsColumns) and junit.xml: every case and every claim is a test with a name of
 /// its own. A case or claim that failed is a failure; a case that was left out and a claim that
 /// could not be judged are skipped.
-void writeClaims(const std::filesystem::path& runDir, const std::vector<records::CaseResult>& cases,
+void writeClaims(const std::filesystem::path& runDir, const std::vector<records::CaseEnd>& cases,
                  const std::vector<claims::ClaimResult>& results,
                  const claims::ReportContext& context);
 
 /// The text of junit.xml.
-std::string junitXml(const std::vector<records::CaseResult>& cases,
+std::string junitXml(const std::vector<records::CaseEnd>& cases,
                      const std::vector<claims::ClaimResult>& results);
 
 /// A table as LaTeX: a macro for each number, and a tabular of these macros. Its head says how the

@@ -38,9 +38,9 @@ std::uintmax_t sizeOf(const fs::path& path) {
 
 /// What was measured; what is made of it is made again there.
 void copyMeasured(const fs::path& runDir, const fs::path& target) {
-    run::requireModestLog(runDir / "log.jsonl");  // the others were read
+    run::requireModestJournal(runDir / "journal.jsonl");  // the others were read
     for (const char* name :
-         {"plan.json", "manifest.json", "records.csv", "log.jsonl", "images", "artifacts"}) {
+         {"plan.json", "manifest.json", "records.csv", "journal.jsonl", "images", "artifacts"}) {
         copyTree(runDir / name, target / name);
     }
 }
@@ -124,7 +124,7 @@ std::map<fs::path, std::string> programFiles(const run::Plan& plan,
     if (node.isNull()) return files;
     const config::Program program = config::readProgram(node);
     try {
-        for (const run::Case& item : plan.cases) {
+        for (const config::Case& item : plan.cases) {
             if (item.experiment != experiment.id) continue;
             for (const config::ProgramFile& file :
                  config::filesOf(program, program.valuesOf(item.params))) {

@@ -18,7 +18,7 @@
 #include "runner/run/expectations.h"
 #include "runner/run/ledger.h"
 #include "runner/run/manifest.h"
-#include "runner/run/plan_hash.h"
+#include "runner/run/plan_json.h"
 
 namespace gfxrepro::results {
 
@@ -81,14 +81,14 @@ int outputSize(const ImportedCase& given, const std::string& column, int absent)
 }
 
 std::optional<int> sampleOf(const ImportedCase& given) {
-    const std::string text = given.cell(tables::kSceneSample);
+    const std::string text = given.cell(config::kSceneSample);
     if (text.empty()) return std::nullopt;
     const auto sample = parseInteger(text);
-    if (sample && *sample >= 0 && *sample <= tables::kMostSceneSample) {
+    if (sample && *sample >= 0 && *sample <= config::kMostSceneSample) {
         return static_cast<int>(*sample);
     }
     throw Error(given.where, fmt::format("column '{}': '{}'; allowed: a whole number from 0 to {}",
-                                         tables::kSceneSample, text, tables::kMostSceneSample));
+                                         config::kSceneSample, text, config::kMostSceneSample));
 }
 
 /// Cases have an output beside their parameters; a parameter of that name would be lost.
@@ -103,12 +103,12 @@ std::string paramOf(const std::string& column) {
     if (column.starts_with(kParamPrefix)) return column.substr(kParamPrefix.size());
     const bool isOther = std::ranges::find(kCaseColumns, column) != std::end(kCaseColumns) ||
                          column == kOutputWidth || column == kOutputHeight ||
-                         column == tables::kStandsFor || column == tables::kSceneSample;
+                         column == config::kStandsFor || column == config::kSceneSample;
     return isOther ? "" : column;
 }
 
-run::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
-    run::Case item;
+config::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
+    config::Case item;
     item.experiment = experiment.id;
     item.technique = experiment.technique;
     const std::string technique = given.cell("technique");
@@ -131,7 +131,7 @@ run::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
     if (const std::string scene = given.cell("scene"); !scene.empty()) {
         item.scene = Node::scalar(scene, {}, true);
     }
-    if (const std::string name = given.cell(tables::kStandsFor); !name.empty()) {
+    if (const std::string name = given.cell(config::kStandsFor); !name.empty()) {
         item.standsFor = Node::scalar(name, {}, true);
     }
     item.sceneSample = sampleOf(given);
@@ -145,7 +145,7 @@ run::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
 }
 
 /// The value of an axis; null where the case has none.
-Node axisOf(const run::Case& item, const std::string& axis) {
+Node axisOf(const config::Case& item, const std::string& axis) {
     if (axis == "scene") return item.standsFor.isNull() ? item.scene : item.standsFor;
     if (axis == kOutputWidth) return Node::number(item.outputWidthPx);
     if (axis == kOutputHeight) return Node::number(item.outputHeightPx);
@@ -161,7 +161,7 @@ Node axisOf(const run::Case& item, const std::string& axis) {
 /// What is swept: of a config, its axes; else what differs between the cases.
 std::vector<std::string> axesOf(const Experiment& experiment,
                                 const std::vector<std::string>& columns,
-                                const std::vector<run::Case*>& cases) {
+                                const std::vector<config::Case*>& cases) {
     std::vector<std::string> axes;
     const auto add = [&](const std::string& axis) {
         if (std::ranges::find(axes, axis) == axes.end()) axes.push_back(axis);
@@ -175,7 +175,7 @@ std::vector<std::string> axesOf(const Experiment& experiment,
         if (const std::string name = paramOf(column); !name.empty()) names.push_back(name);
     }
     for (const std::string& name : names) {
-        const bool varies = std::ranges::any_of(cases, [&](const run::Case* item) {
+        const bool varies = std::ranges::any_of(cases, [&](const config::Case* item) {
             return !axisOf(*item, name).sameContent(axisOf(*cases.front(), name));
         });
         if (varies) add(name);
@@ -215,7 +215,7 @@ void requireTimeNames(const ImportedNumbers& numbers, const run::Plan& plan, con
 }
 
 /// How often each case was measured, and in which lane, as its rows say.
-void takeMeasures(const ImportedNumbers& numbers, std::vector<run::Case>& cases) {
+void takeMeasures(const ImportedNumbers& numbers, std::vector<config::Case>& cases) {
     for (const ImportedRow& row : numbers.rows) {
         config::Measure& measure = cases[row.caseIndex].measure;
         measure.processes = std::max(measure.processes, row.record.process + 1);
@@ -227,12 +227,12 @@ void takeMeasures(const ImportedNumbers& numbers, std::vector<run::Case>& cases)
 
 void takeAxes(const ImportedNumbers& numbers, run::Plan& plan) {
     for (const Experiment& experiment : plan.experiments) {
-        std::vector<run::Case*> own;
-        for (run::Case& item : plan.cases) {
+        std::vector<config::Case*> own;
+        for (config::Case& item : plan.cases) {
             if (item.experiment == experiment.id) own.push_back(&item);
         }
         for (const std::string& axis : axesOf(experiment, numbers.columns, own)) {
-            for (run::Case* item : own) {
+            for (config::Case* item : own) {
                 if (const Node value = axisOf(*item, axis); !value.isNull()) {
                     item->axes.set(axis, value);
                 }
@@ -245,10 +245,10 @@ void takeAxes(const ImportedNumbers& numbers, run::Plan& plan) {
 void identify(const ImportedNumbers& numbers, run::Plan& plan) {
     std::map<std::string, int> lines;
     for (std::size_t i = 0; i < plan.cases.size(); ++i) {
-        run::Case& item = plan.cases[i];
+        config::Case& item = plan.cases[i];
         if (!item.scene.isNull())
             plan.sceneKeys[item.scene.text()] = "imported " + item.scene.text();
-        item.id = run::caseId(item, item.toJson(), plan);
+        item.id = run::caseId(item, run::toJson(item), plan);
         const SourceLocation& where = numbers.cases[i].where;
         const auto [known, isNew] = lines.try_emplace(item.id, where.line);
         if (!isNew) {
@@ -322,8 +322,8 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
             experiment.outputs = technique::outputsOf(
                 technique::findTechnique(techniques, experiment.technique, {}));
         }
-        std::vector<run::Case> own;
-        std::ranges::copy_if(plan.cases, std::back_inserter(own), [&](const run::Case& item) {
+        std::vector<config::Case> own;
+        std::ranges::copy_if(plan.cases, std::back_inserter(own), [&](const config::Case& item) {
             return item.experiment == experiment.id;
         });
         run::bindAssumptions(experiment, own, catalog, techniques);
@@ -331,7 +331,7 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
     if (!configs.empty()) plan.expectations = run::findExpectations(configs);
     identify(numbers, plan);
     for (const ImportedRow& row : numbers.rows) {
-        const run::Case& item = plan.cases[row.caseIndex];
+        const config::Case& item = plan.cases[row.caseIndex];
         records::Record record = row.record;
         record.caseId = item.id;
         record.table = item.experiment;
@@ -347,7 +347,7 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
 void writeImported(const run::RunDirectory& directory, const run::StoredRun& run) {
     run.plan.writeFile(directory.planFile());
     records::RecordWriter(directory.recordsFile()).append(run.records);
-    directory.log(
+    directory.note(
         run::Json{{"event", "imported"}, {"message", run::notesOf(run.manifest).front()}});
     run::Json manifest = run.manifest;
     run::sealRecords(manifest, directory.path());

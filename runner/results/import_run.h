@@ -28,7 +28,7 @@ struct ImportRequest {
 run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& catalog,
                          std::span<const technique::TechniqueInfo> techniques);
 
-/// plan.json, records.csv, log.jsonl and the sealed manifest.
+/// plan.json, records.csv, journal.jsonl and the sealed manifest.
 void writeImported(const run::RunDirectory& directory, const run::StoredRun& run);
 
 /// Throws Error where the run was imported: nobody can `purpose` ("go on with") it.

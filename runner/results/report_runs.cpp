@@ -43,7 +43,7 @@ std::string costText(const run::Json& cost) {
     return text;
 }
 
-/// A line of log.jsonl about a case, for people; then what its worker printed.
+/// A line of journal.jsonl about a case, for people; then what its worker printed.
 std::string eventText(const run::Json& event) {
     const int process = event.value("process", 0);
     std::string text = event.value("time", "");
@@ -57,14 +57,14 @@ std::string eventText(const run::Json& event) {
     return text;
 }
 
-/// Of each case, what the log says; a torn or foreign line is passed over.
-std::map<std::string, std::vector<std::string>> caseLogs(const fs::path& runDir) {
-    std::map<std::string, std::vector<std::string>> logs;
-    for (const run::Json& event : run::readLog(runDir / "log.jsonl")) {
+/// Of each case, what the journal says; a torn or foreign line is passed over.
+std::map<std::string, std::vector<std::string>> eventsOfCases(const fs::path& runDir) {
+    std::map<std::string, std::vector<std::string>> events;
+    for (const run::Json& event : run::readJournal(runDir / "journal.jsonl")) {
         if (!event.contains("case")) continue;
-        logs[event.value("case", "")].push_back(eventText(event));
+        events[event.value("case", "")].push_back(eventText(event));
     }
-    return logs;
+    return events;
 }
 
 /// "xie2017/table-13" of a shipped config; another's file.
@@ -91,7 +91,7 @@ std::string commandFor(const char* command, const std::string& experimentId,
     return text;
 }
 
-std::string commandOf(const run::Case& item, const run::Plan& plan, run::CaseNames& names) {
+std::string commandOf(const config::Case& item, const run::Plan& plan, run::CaseNames& names) {
     std::string command = commandFor("run", item.experiment, plan);
     for (const std::string& only : names.onlyOf(item)) command += " --only " + shellQuoted(only);
     return command;
@@ -155,14 +155,13 @@ report::ReportRun reportRun(const fs::path& runDir, const run::StoredRun& run,
     for (const config::Experiment& experiment : run.plan.experiments) {
         result.commands[experiment.id] = commandOf(experiment, run.plan);
     }
-    auto logs = caseLogs(runDir);
+    result.cases = run.plan.cases;
+    result.events = eventsOfCases(runDir);
     run::CaseNames names(run.plan);
     const bool isImported = run.manifest.contains("imported");
-    for (const run::Case& item : run.plan.cases) {
-        result.cases.push_back(
-            {item.id, item.experiment, item.title(),
-             isImported ? result.context.command : commandOf(item, run.plan, names),
-             std::move(logs[item.id])});
+    for (const config::Case& item : run.plan.cases) {
+        result.commands[item.id] =
+            isImported ? result.context.command : commandOf(item, run.plan, names);
     }
     return result;
 }

@@ -15,7 +15,7 @@ bool isPaperFolder(const std::filesystem::path& folder);
 /// What the shipped configs say of documents, for every report.
 report::ReportOptions reportOptions(bool embeds = false, report::PicturesDone progress = {});
 
-/// With the plan's cases: the command that runs each again, and what log.jsonl says of it. Its
+/// With the plan's cases: the command that runs each again, and what journal.jsonl says of it. Its
 /// curves are not drawn.
 report::ReportRun reportRun(const std::filesystem::path& runDir, const run::StoredRun& run,
                             const Results& results);

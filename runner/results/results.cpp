@@ -59,7 +59,7 @@ std::map<std::string, std::string> sceneClasses(const run::StoredRun& run) {
         files[scene] = !from.at("sha256").get<std::string>().empty();
     }
     std::map<std::string, std::set<std::string>> loaded;
-    for (const run::Case& item : run.plan.cases) {
+    for (const config::Case& item : run.plan.cases) {
         if (!item.scene.isNull()) loaded[item.experiment].insert(item.scene.text());
     }
     std::map<std::string, std::string> classes;
@@ -100,8 +100,7 @@ Results resultsOf(const run::StoredRun& run) {
 Results resultsOf(const run::StoredRun& run, const Experiments& experiments) {
     Results results;
     results.context = contextOf(run, experiments);
-    results.tables =
-        tables::buildTables(experiments, run::plannedCases(run.plan.cases), run.records);
+    results.tables = tables::buildTables(experiments, run.plan.cases, run.records);
     tables::addNotes(results.context.tableNotes, results.tables);
     const tables::MovedClocks clocks = run::movedClocks(run.manifest);
     for (tables::Table& table : results.tables) tables::markMovedClocks(clocks, table);

@@ -50,7 +50,7 @@ std::string columnOf(const std::string& param) {
 }
 
 /// Parameters by column, and the columns in the order in which the case has them.
-std::pair<Fields, std::vector<std::string>> paramsOf(const run::Case& item) {
+std::pair<Fields, std::vector<std::string>> paramsOf(const config::Case& item) {
     Fields fields;
     std::vector<std::string> columns;
     const run::Json params = item.recordedParams().toJson();
@@ -60,7 +60,7 @@ std::pair<Fields, std::vector<std::string>> paramsOf(const run::Case& item) {
     return {std::move(fields), std::move(columns)};
 }
 
-std::string laneOf(const run::Case& item) {
+std::string laneOf(const config::Case& item) {
     return item.measure.lane == config::Measure::Lane::Timing ? "timing" : "quality";
 }
 
@@ -95,7 +95,7 @@ Frame withoutParameters(const Frame& cases) {
 Frame axisFrame(const run::Plan& plan) {
     std::vector<std::vector<FrameValue>> rows;
     std::map<std::string, std::set<std::string>> known;
-    for (const run::Case& item : plan.cases) {
+    for (const config::Case& item : plan.cases) {
         std::set<std::string>& own = known[item.experiment];
         for (const auto& [axis, value] : item.axes.entries()) {
             if (!own.insert(axis).second) continue;
@@ -140,16 +140,16 @@ Frame programFrame(const run::Json& manifest) {
 
 }  // namespace
 
-Frame caseFrame(std::span<const run::Case> cases) {
+Frame caseFrame(std::span<const config::Case> cases) {
     Frame frame{"cases", {kCaseColumns, std::end(kCaseColumns)}, cases.size(), {}};
     std::set<std::string> known;
-    for (const run::Case& item : cases) {
+    for (const config::Case& item : cases) {
         for (std::string& column : paramsOf(item).second) {
             if (known.insert(column).second) frame.columns.push_back(std::move(column));
         }
     }
     frame.row = [cases, columns = frame.columns](std::size_t i) {
-        const run::Case& item = cases[i];
+        const config::Case& item = cases[i];
         std::vector<FrameValue> row = {item.id,        item.experiment,
                                        item.technique, item.recordedScene(),
                                        laneOf(item),   static_cast<long long>(item.seed)};

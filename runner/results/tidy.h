@@ -22,7 +22,7 @@ inline constexpr std::string_view kParamPrefix = "params.";
 
 /// A case a row: kCaseColumns, then a column for each parameter of any case, empty where a case has
 /// not got it. What has parts is a column a part: "output.width", "offset.0".
-records::Frame caseFrame(std::span<const run::Case> cases);
+records::Frame caseFrame(std::span<const config::Case> cases);
 
 /// A number a row: case_id, process, frame, repeat, lane, pass, metric, unit, value, status,
 /// message. `records` must outlive it. Of what belongs to the whole case, frame and repeat are −1.

@@ -10,11 +10,9 @@
 
 namespace gfxrepro::run {
 
-void takeInstead(const config::CaseSpec& spec, const Node& instead, Case& item) {
-    item.given = spec.params;
+void takeInstead(const Node& instead, Case& item) {
     for (const auto& [name, value] : instead.entries()) {
-        for (const auto& [axis, swept] : spec.axes) {
-            if (axis != name) continue;
+        if (item.axes.find(name)) {
             throw Error(instead.keyLocation(name),
                         "'params_instead': '" + name + "' is swept here");
         }
@@ -22,21 +20,6 @@ void takeInstead(const config::CaseSpec& spec, const Node& instead, Case& item) 
         map.set(name, value, instead.keyLocation(name));
     }
 }
-
-namespace {
-
-/// Parameters of the generated scene, which are among the case's.
-Node sceneParamsOf(const Case& item) {
-    Node params = Node::map({});
-    for (const auto& [name, value] : item.params.entries()) {
-        if (!name.starts_with(config::kSceneAxisPrefix)) continue;
-        params.set(name.substr(config::kSceneAxisPrefix.size()), value,
-                   item.params.keyLocation(name));
-    }
-    return params;
-}
-
-}  // namespace
 
 std::vector<Case> withScenes(const Case& item, const config::Experiment& experiment,
                              const scene::Catalog& catalog) {
@@ -46,7 +29,7 @@ std::vector<Case> withScenes(const Case& item, const config::Experiment& experim
     const Node* other = instead.isNull() ? nullptr : instead.find(item.scene.text());
     if (other) first.scene = *other;
     scene::SceneSource source = catalog.resolve(first.scene);
-    const Node params = sceneParamsOf(item);
+    const Node params = item.sceneParams();
     if (!params.entries().empty()) {
         scene::takeParams(scene::sceneName(first.scene.text()), params, source);
         first.scene = scene::withSceneParams(first.scene, params);

@@ -10,7 +10,7 @@ namespace gfxrepro::run {
 /// Fills in what a technique is made from: the parameters that `spec` gives with those of `instead`
 /// in their place; what it does not give is offered, so that a case which does not read the
 /// parameter refuses nothing. Throws Error for one that is swept.
-void takeInstead(const config::CaseSpec& spec, const Node& instead, Case& item);
+void takeInstead(const Node& instead, Case& item);
 
 /// The case, whose scene is the config's, with what takes its place; with a generated one, once for
 /// each of its seeds. Throws Error when the scene is not found.

@@ -187,8 +187,8 @@ void requireAlternatives(const Assumption& assumption, const Node& others, const
 std::vector<std::string> scenesOf(const config::Experiment& experiment) {
     std::vector<std::string> names;
     const auto add = [&](const config::Experiment& one) {
-        for (const config::CaseSpec& spec : config::expandCases(one)) {
-            const std::string name = spec.scene.isNull() ? "" : spec.scene.text();
+        for (const Case& item : config::expandCases(one)) {
+            const std::string name = item.scene.isNull() ? "" : item.scene.text();
             if (std::ranges::find(names, name) == names.end()) names.push_back(name);
         }
     };
@@ -218,8 +218,8 @@ void requireScenes(const config::Experiment& experiment, const Assumption& assum
         return;
     }
     std::vector<std::string> names;
-    for (const config::CaseSpec& spec : config::expandCases(experiment)) {
-        const std::string name = spec.scene.isNull() ? "" : spec.scene.text();
+    for (const Case& item : config::expandCases(experiment)) {
+        const std::string name = item.scene.isNull() ? "" : item.scene.text();
         if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
     for (const Node& other : listOf(assumption)) requireCatalogued(assumption, other, catalog);
@@ -257,12 +257,11 @@ void requireViews(const Assumption& assumption, const std::vector<Case>& cases,
 /// Makes every case with the value; the technique refuses what it cannot take.
 void requireReadable(const config::Experiment& experiment, const Assumption& assumption,
                      const technique::TechniqueInfo& info) {
-    const std::vector<config::CaseSpec> specs = config::expandCases(experiment);
+    const std::vector<Case> cases = config::expandCases(experiment);
     for (const Node& value : listOf(assumption)) {
-        for (config::CaseSpec spec : specs) {
-            spec.axes.clear();  // of a swept one, too
-            Case item;
-            takeInstead(spec, Node::map({{assumption.name, value}}), item);
+        for (Case item : cases) {
+            item.axes = Node::map({});  // of a swept one, too
+            takeInstead(Node::map({{assumption.name, value}}), item);
             Params params(item.given, "technique '" + std::string(info.name) + "'");
             if (!item.offered.isNull()) params.offer(item.offered);
             technique::makeTechnique(info, config::programOf(experiment), params);

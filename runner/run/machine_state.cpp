@@ -246,7 +246,7 @@ void MachineWatch::unitEnded(const Unit& unit, records::Status status, const std
                           {"unit", unit.item->id},
                           {"process", unit.process}};
             event.update(state.json());
-            directory_.log(event);
+            directory_.note(event);
         }
     }
     next_.unitEnded(unit, status, message);
@@ -276,9 +276,9 @@ std::string MachineWatch::warning() const {
     return "the machine was not quiet: " + joined(parts, "; ");
 }
 
-std::map<std::string, MachineState> machineStatesIn(const std::vector<Json>& log) {
+std::map<std::string, MachineState> machineStatesIn(const std::vector<Json>& journal) {
     std::map<std::string, MachineState> tables;
-    for (const Json& event : log) {
+    for (const Json& event : journal) {
         const std::string name = event.value("event", "");
         const std::string table = event.value("table", "");
         if (name == "machine") tables.erase(table);  // measured again from there

@@ -60,7 +60,7 @@ class MachineState {
 };
 
 /// Watches the machine around each unit of the timing lane, and passes on what a run tells. The
-/// state of each unit is a line of log.jsonl (event `machine_state`), the states of a table's
+/// state of each unit is a line of journal.jsonl (event `machine_state`), the states of a table's
 /// units together are its state.
 class MachineWatch : public Observer {
   public:
@@ -102,9 +102,9 @@ class MachineWatch : public Observer {
     std::map<std::string, MachineState> tables_;
 };
 
-/// By table, from the lines of log.jsonl; of a table that was measured again on another machine
+/// By table, from the lines of journal.jsonl; of a table that was measured again on another machine
 /// what came after.
-std::map<std::string, MachineState> machineStatesIn(const std::vector<Json>& log);
+std::map<std::string, MachineState> machineStatesIn(const std::vector<Json>& journal);
 
 /// Of which cases, by the manifest, the GPU's clock moved while they were timed.
 tables::MovedClocks movedClocks(const Json& manifest);

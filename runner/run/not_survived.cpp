@@ -19,7 +19,7 @@ using WorkUnit = std::pair<std::string, int>;  // work, process
 /// The invocations that ended during a unit, with the case under whose name it had begun.
 using Lost = std::map<WorkUnit, std::map<int, std::string>>;
 
-Lost lostUnits(const std::vector<Json>& log, const Works& works) {
+Lost lostUnits(const std::vector<Json>& journal, const Works& works) {
     Lost lost;
     std::map<WorkUnit, std::string> underWay;
     int invocation = 0;
@@ -28,7 +28,7 @@ Lost lostUnits(const std::vector<Json>& log, const Works& works) {
         underWay.clear();
         ++invocation;
     };
-    for (const Json& event : log) {
+    for (const Json& event : journal) {
         const std::string name = event.value("event", "");
         if (name == "begin") endUnsaid();
         if (name == "end" || name == "interrupted") underWay.clear();
@@ -64,11 +64,11 @@ std::string titleOf(const Plan& plan, const std::string& id) {
 }  // namespace
 
 std::map<std::string, std::string> casesNotSurvived(const Plan& plan,
-                                                    const std::vector<Json>& log) {
-    if (lostUnits(log, {}).empty()) return {};  // as of nearly every run: without a key a case
+                                                    const std::vector<Json>& journal) {
+    if (lostUnits(journal, {}).empty()) return {};  // as of nearly every run: without a key a case
     const Works works = worksOf(plan);
     std::map<std::string, std::map<int, std::string>> lostWork;  // all processes together
-    for (const auto& [unit, invocations] : lostUnits(log, works)) {
+    for (const auto& [unit, invocations] : lostUnits(journal, works)) {
         lostWork[unit.first].insert(invocations.begin(), invocations.end());
     }
     std::map<std::string, std::string> messages;

@@ -15,6 +15,7 @@ namespace gfxrepro::run {
 /// a case in whichever of its processes, and a twin (workKey) in place of another. A unit that ends
 /// after all clears what was counted of it; an interruption and a stop rule count nothing and clear
 /// nothing.
-std::map<std::string, std::string> casesNotSurvived(const Plan& plan, const std::vector<Json>& log);
+std::map<std::string, std::string> casesNotSurvived(const Plan& plan,
+                                                    const std::vector<Json>& journal);
 
 }  // namespace gfxrepro::run

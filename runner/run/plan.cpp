@@ -9,7 +9,7 @@
 #include "runner/config/imported.h"
 #include "runner/run/expectations.h"
 #include "runner/run/ledger.h"
-#include "runner/run/plan_hash.h"
+#include "runner/run/plan_json.h"
 
 namespace gfxrepro::run {
 
@@ -36,93 +36,12 @@ void requireNoImport(const config::Experiment& experiment) {
 
 }  // namespace
 
-std::string caseId(const Case& item, Json written, const Plan& plan) {
-    const auto scene =
-        item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
-    written["id"] = "";
-    written["scene"] = scene == plan.sceneKeys.end() ? "" : scene->second;
-    if (written.contains("program")) written["program"].erase(config::placeholder::kHere);
-    written["device_class"] = plan.deviceClass;
-    written["build"] = plan.buildId;
-    return sha256(written.dump()).substr(0, 12);
-}
-
-std::string planHash(const Plan& plan, const std::vector<Json>& documents) {
-    Json content = {{"profile", plan.profile},
-                    {"device_class", plan.deviceClass},
-                    {"build", plan.buildId},
-                    {"seed", plan.seed}};
-    for (const Case& item : plan.cases) content["cases"].push_back(item.id);
-    for (const Json& document : documents) content["documents"].push_back(document);
-    for (const ExpectationList& list : plan.expectations) {  // plans of older versions have none
-        content["expectations"].push_back({fs::path(list.file).filename().string(), list.text});
-    }
-    return sha256(content.dump());
-}
-
-std::string frozenHash(const Json& head, const std::vector<Case>& cases) {
-    Json content = {{"head", head}, {"cases", Json::array()}};
-    for (const Case& item : cases) content["cases"].push_back(item.id);
-    return sha256(content.dump());
-}
-
-std::string Case::title() const {
-    std::string title = experiment;
-    if (!axes.isMap()) return title;
-    for (const auto& [name, value] : axes.entries()) {
-        title += ' ' + name + '=' + (value.isScalar() ? value.text() : value.toFlowText());
-    }
-    // A file with its units is no other scene.
-    const bool isOther = !standsFor.isNull() && !scene::isSceneFile(scene.text());
-    if (isOther) title += " (" + scene.text() + ")";
-    return title;
-}
-
-std::string Case::slug() const {
-    std::string slug = experiment;
-    std::replace(slug.begin(), slug.end(), '/', '-');
-    return slug;
-}
-
-std::string Case::method() const {
-    const Node* method = params.find("method");
-    return method ? method->text() : "";
-}
-
-std::string Case::recordedScene() const {
-    const Node* swept = axes.find("scene");
-    const Node& shown = swept && standsFor.isNull() ? *swept : scene;
-    return shown.isNull() ? "" : shown.text();
-}
-
-Node Case::recordedParams() const {
-    Node recorded = params;
-    recorded.set("output", Node::map({{"width", Node::number(outputWidthPx)},
-                                      {"height", Node::number(outputHeightPx)}}));
-    if (!standsFor.isNull()) recorded.set(tables::kStandsFor, standsFor);
-    if (sceneSample) recorded.set(tables::kSceneSample, Node::number(*sceneSample));
-    return recorded;
-}
-
 std::string Shard::name() const {
     return std::to_string(index) + '/' + std::to_string(count);
 }
 
 bool Plan::measures(const Case& item) const {
     return !shard || shard->caseIds.contains(item.id);
-}
-
-std::vector<tables::PlannedCase> plannedCases(const std::vector<Case>& cases) {
-    std::vector<tables::PlannedCase> planned;
-    planned.reserve(cases.size());
-    for (const Case& item : cases) {
-        planned.push_back(
-            {item.id, item.experiment, item.recordedScene(), item.recordedParams(), {}});
-        for (const auto& [axis, value] : item.axes.entries()) {
-            planned.back().axes.push_back(axis);
-        }
-    }
-    return planned;
 }
 
 Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::Catalog& catalog,
@@ -160,7 +79,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
                 if (known.empty()) known = catalog.contentKey(item.scene);
             }
             item.programKey = programKeyOf(item, digests);
-            item.id = caseId(item, item.toJson(), plan);
+            item.id = caseId(item, toJson(item), plan);
             if (!caseIds.insert(item.id).second) {
                 throw Error(experiment.file.string() + ": the sweep gives the case '" +
                             item.title() + "' twice");
@@ -188,7 +107,7 @@ std::string programKeyOf(const Case& item, config::FileDigests& digests) {
 
 void rebind(Plan& plan, const std::string& deviceClass) {
     plan.deviceClass = deviceClass;
-    for (Case& item : plan.cases) item.id = caseId(item, item.toJson(), plan);
+    for (Case& item : plan.cases) item.id = caseId(item, toJson(item), plan);
     plan.hash = hashOf(plan);
 }
 

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
 #include <span>
@@ -16,43 +15,11 @@
 #include "engine/scene/catalog.h"
 #include "runner/config/experiment.h"
 #include "runner/config/program.h"
-#include "runner/tables/case_records.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::run {
 
-/// One case, complete: a worker needs nothing else.
-struct Case {
-    std::string id;          // 12 hexadecimal digits of the content hash
-    std::string experiment;  // "zju2005/2.1"
-    std::string technique;
-    Node program;                    // null, or the config's `program`
-    std::string programKey;          // identity of its files; empty where it is not at hand
-    Node scene;                      // null or a reference: what is loaded
-    Node standsFor;                  // what the config calls it, where that is another; else null
-    std::optional<int> sceneSample;  // from 0, where several seeds are measured
-    Node given;    // the parameters that the config gives: a technique is made from these
-    Node offered;  // null, or values that take the place of the technique's defaults
-    Node params;   // every declared parameter with its value, and `scene.NAME` of a
-                   // generated scene where the config gives it: what records say
-    Node axes;     // the swept ones
-    int outputWidthPx = 0;
-    int outputHeightPx = 0;
-    config::Measure measure;
-    std::uint64_t seed = 0;
-
-    std::string title() const;   // "zju2005/2.1 scene=models/duck"
-    std::string slug() const;    // "zju2005-2.1": for file names
-    std::string method() const;  // the parameter of that name; empty when there is none
-    /// As the config spells it, unless another takes its place: a user's own file is an absolute
-    /// path in `scene`. Empty for none.
-    std::string recordedScene() const;
-    /// `params` with the size of the output and which scene it is: what images say.
-    Node recordedParams() const;
-    nlohmann::ordered_json toJson() const;
-    void addSceneTo(nlohmann::ordered_json& json) const;
-    static Case fromJson(const Node& node);
-};
+using config::Case;
 
 /// What was asked for, so that a resumed run can ask for the same again.
 struct Request {
@@ -112,9 +79,6 @@ inline constexpr std::size_t kMostCases = 200'000;
 /// Throws Error, naming the config, for more.
 void requireCaseCount(std::size_t count, const config::Experiment& experiment);
 
-/// As tables see them.
-std::vector<tables::PlannedCase> plannedCases(const std::vector<Case>& cases);
-
 /// The cases of one experiment with every parameter resolved; ids are still empty. A case is there
 /// once for each seed of its scene. Throws Error for unknown techniques, parameters and scenes.
 /// Needs no device.
@@ -132,9 +96,9 @@ std::vector<Case> resolveParameters(const config::Experiment& experiment,
 /// with. None where nothing is published. Scenes need not be at hand. Throws Error as resolveCases,
 /// and for what `printed.at` names that is no parameter, or a value that the technique does not
 /// take.
-std::vector<config::PaperCase> resolvePaperCases(
-    const config::Experiment& experiment, const scene::Catalog& catalog,
-    std::span<const technique::TechniqueInfo> techniques);
+std::vector<Case> resolvePaperCases(const config::Experiment& experiment,
+                                    const scene::Catalog& catalog,
+                                    std::span<const technique::TechniqueInfo> techniques);
 
 /// Expands, constructs each technique once a case (which validates all parameters), resolves
 /// scenes, and hashes. Throws Error for anything that is wrong in a config.

@@ -1,4 +1,5 @@
-// plan.json: written by the program, and read by it alone.
+#include "runner/run/plan_json.h"
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -6,9 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/atomic_file.h"
-#include "runner/run/plan.h"
-#include "runner/run/plan_hash.h"
-#include "runner/tables/case_records.h"
+#include "engine/core/hash.h"
 
 namespace gfxrepro::run {
 
@@ -140,8 +139,9 @@ void takeAssumed(const Node& assumed, config::Experiment& experiment) {
 
 Json paperToJson(const config::Experiment& experiment) {
     Json cases = Json::array();
-    for (const config::PaperCase& item : experiment.paperCases) {
-        cases.push_back({{"scene", item.scene}, {"params", item.params.toJson()}});
+    for (const Case& item : experiment.paperCases) {
+        cases.push_back(
+            {{"scene", item.recordedScene()}, {"params", item.recordedParams().toJson()}});
     }
     return {{"document", experiment.paperDocument.toJson()}, {"cases", std::move(cases)}};
 }
@@ -149,7 +149,17 @@ Json paperToJson(const config::Experiment& experiment) {
 void readPaper(const Node& node, config::Experiment& experiment) {
     experiment.paperDocument = requiredMap(node, "document");
     for (const Node& item : required(node, "cases").items()) {
-        experiment.paperCases.push_back({requiredText(item, "scene"), requiredMap(item, "params")});
+        Case& paper = experiment.paperCases.emplace_back();
+        paper.experiment = experiment.id;
+        if (const std::string& scene = requiredText(item, "scene"); !scene.empty()) {
+            paper.scene = Node::scalar(scene);
+        }
+        paper.axes = Node::map({});
+        paper.params = requiredMap(item, "params");
+        const Node output = requiredMap(paper.params, "output");
+        paper.outputWidthPx = requiredInt(output, "width");
+        paper.outputHeightPx = requiredInt(output, "height");
+        paper.params.erase("output");
     }
 }
 
@@ -221,32 +231,58 @@ std::vector<std::string> textsFrom(const Node& list) {
 
 }  // namespace
 
-void Case::addSceneTo(Json& json) const {
-    if (!standsFor.isNull()) json[tables::kStandsFor] = standsFor.toJson();
-    if (sceneSample) json[tables::kSceneSample] = *sceneSample;
+std::string caseId(const Case& item, Json written, const Plan& plan) {
+    const auto scene =
+        item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
+    written["id"] = "";
+    written["scene"] = scene == plan.sceneKeys.end() ? "" : scene->second;
+    if (written.contains("program")) written["program"].erase(config::placeholder::kHere);
+    written["device_class"] = plan.deviceClass;
+    written["build"] = plan.buildId;
+    return sha256(written.dump()).substr(0, 12);
 }
 
-Json Case::toJson() const {
-    Json json = {{"id", id},
-                 {"experiment", experiment},
-                 {"technique", technique},
-                 {"scene", scene.toJson()},
-                 {"given", given.toJson()},
-                 {"params", params.toJson()},
-                 {"axes", axes.toJson()},
-                 {"output", {outputWidthPx, outputHeightPx}},
-                 {"measure", measureJson(measure)},
-                 {"seed", std::to_string(seed)}};
-    if (!offered.isNull()) json["offered"] = offered.toJson();
-    if (!program.isNull()) {
-        json["program"] = program.toJson();
-        json["program_key"] = programKey;
+std::string planHash(const Plan& plan, const std::vector<Json>& documents) {
+    Json content = {{"profile", plan.profile},
+                    {"device_class", plan.deviceClass},
+                    {"build", plan.buildId},
+                    {"seed", plan.seed}};
+    for (const Case& item : plan.cases) content["cases"].push_back(item.id);
+    for (const Json& document : documents) content["documents"].push_back(document);
+    for (const ExpectationList& list : plan.expectations) {  // plans of older versions have none
+        content["expectations"].push_back({fs::path(list.file).filename().string(), list.text});
     }
-    addSceneTo(json);
+    return sha256(content.dump());
+}
+
+std::string frozenHash(const Json& head, const std::vector<Case>& cases) {
+    Json content = {{"head", head}, {"cases", Json::array()}};
+    for (const Case& item : cases) content["cases"].push_back(item.id);
+    return sha256(content.dump());
+}
+
+Json toJson(const Case& item) {
+    Json json = {{"id", item.id},
+                 {"experiment", item.experiment},
+                 {"technique", item.technique},
+                 {"scene", item.scene.toJson()},
+                 {"given", item.given.toJson()},
+                 {"params", item.params.toJson()},
+                 {"axes", item.axes.toJson()},
+                 {"output", {item.outputWidthPx, item.outputHeightPx}},
+                 {"measure", measureJson(item.measure)},
+                 {"seed", std::to_string(item.seed)}};
+    if (!item.offered.isNull()) json["offered"] = item.offered.toJson();
+    if (!item.program.isNull()) {
+        json["program"] = item.program.toJson();
+        json["program_key"] = item.programKey;
+    }
+    if (!item.standsFor.isNull()) json[config::kStandsFor] = item.standsFor.toJson();
+    if (item.sceneSample) json[config::kSceneSample] = *item.sceneSample;
     return json;
 }
 
-Case Case::fromJson(const Node& node) {
+Case caseFromJson(const Node& node) {
     const Node::Sequence& output = required(node, "output").items();
     if (output.size() != 2) throw Error(node.location(), "'output' is not [width, height]");
     Case item;
@@ -266,9 +302,9 @@ Case Case::fromJson(const Node& node) {
         item.program = *program;
         item.programKey = requiredText(node, "program_key");
     }
-    if (const Node* name = node.find(tables::kStandsFor)) item.standsFor = *name;
-    if (const Node* sample = node.find(tables::kSceneSample)) {
-        item.sceneSample = intFrom(*sample, tables::kSceneSample, tables::kMostSceneSample);
+    if (const Node* name = node.find(config::kStandsFor)) item.standsFor = *name;
+    if (const Node* sample = node.find(config::kSceneSample)) {
+        item.sceneSample = intFrom(*sample, config::kSceneSample, config::kMostSceneSample);
     }
     return item;
 }
@@ -312,7 +348,7 @@ void Plan::write(const std::function<void(std::string_view)>& to) const {
     text.resize(text.size() - 2);  // "\n}"
     to(text + ",\n \"cases\": [");
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        to(fmt::format("{}\n  {}", i == 0 ? "" : ",", cases[i].toJson().dump()));
+        to(fmt::format("{}\n  {}", i == 0 ? "" : ",", toJson(cases[i]).dump()));
     }
     to("\n ]\n}\n");
 }
@@ -364,7 +400,7 @@ Plan Plan::fromJsonFile(const fs::path& path) {
         }
     }
     for (const Node& item : required(node, "cases").items()) {
-        plan.cases.push_back(Case::fromJson(item));
+        plan.cases.push_back(caseFromJson(item));
     }
     if (const Node* shard = node.find("shard")) {
         plan.shard = Shard{requiredInt(*shard, "index"), requiredInt(*shard, "count")};

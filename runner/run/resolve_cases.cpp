@@ -157,8 +157,8 @@ void requireDistinct(const config::Experiment& experiment, const std::vector<Cas
     }
 }
 
-/// A title stands in every line of the log, in tables and in pictures. Throws Error with the place
-/// of the longest value of an axis.
+/// A title stands in every line of the journal, in tables and in pictures. Throws Error with the
+/// place of the longest value of an axis.
 void requireModestTitle(const config::Experiment& experiment, const Case& item) {
     constexpr std::size_t kMostBytes = 4096;
     const std::size_t size = item.title().size();
@@ -190,17 +190,11 @@ void requireFrames(const technique::Technique& technique, const config::Experime
 }
 
 /// What a technique needs beside a swept parameter, with how a sweep says so.
-[[noreturn]] void throwWithWhen(const Error& error, const config::CaseSpec& spec) {
+[[noreturn]] void throwWithWhen(const Error& error, const Case& item) {
     const std::string text = error.what();
     std::smatch found;
     static const std::regex kNeeds(R"('(\w+)' needs '(\w+): (\w+)'$)");
-    const auto isSwept = [&](const std::string& name) {
-        for (const auto& [axis, value] : spec.axes) {
-            if (axis == name) return true;
-        }
-        return false;
-    };
-    if (!std::regex_search(text, found, kNeeds) || !isSwept(found[1])) throw;
+    if (!std::regex_search(text, found, kNeeds) || !item.axes.find(found[1].str())) throw;
     const std::string place = toString(error.where()) + ": ";
     throw Error(
         error.where(),
@@ -230,12 +224,11 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         named ? named->location() : SourceLocation{experiment.file.string(), 0, 0};
     const technique::TechniqueInfo& info =
         technique::findTechnique(techniques, experiment.technique, where);
-    std::vector<config::CaseSpec> specs = config::expandCases(experiment);
-    requireCaseCount(specs.size(), experiment);
-    for (config::CaseSpec& given : specs) {
-        const config::CaseSpec spec = std::move(given);
-        Case item;
-        takeInstead(spec, experiment.paramsInstead, item);
+    std::vector<Case> cases = config::expandCases(experiment);
+    requireCaseCount(cases.size(), experiment);
+    for (Case& given : cases) {
+        Case item = std::move(given);
+        takeInstead(experiment.paramsInstead, item);
         item.program = config::programOf(experiment);
         Params params(item.given, "technique '" + std::string(info.name) + "'");
         technique::SceneNeed need{};
@@ -246,22 +239,16 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
             need = technique->sceneNeed();
             requireFrames(*technique, experiment);
         } catch (const Error& error) {
-            throwWithWhen(error, spec);
+            throwWithWhen(error, item);
         }
         params.finish();
-        item.experiment = experiment.id;
-        item.technique = experiment.technique;
-        item.scene = absoluteReference(spec.scene, catalog);
-        item.params = Node::map(params.resolved().entries());  // without places of keys
-        for (const auto& [name, value] : spec.sceneParams.entries()) {
-            item.params.set(std::string(config::kSceneAxisPrefix) + name, value,
-                            spec.sceneParams.keyLocation(name));
+        item.scene = absoluteReference(item.scene, catalog);
+        Node resolved = Node::map(params.resolved().entries());  // without places of keys
+        for (const auto& [name, value] : item.params.entries()) {
+            resolved.set(name, value, item.params.keyLocation(name));
         }
-        item.axes = Node::map(spec.axes);
+        item.params = std::move(resolved);
         requireModestTitle(experiment, item);
-        item.outputWidthPx = spec.outputWidthPx;
-        item.outputHeightPx = spec.outputHeightPx;
-        item.measure = experiment.measure;
         item.seed = seed;
         // Of a program that takes {seed} it is a parameter.
         const Node* own = item.params.find(config::placeholder::kSeed);
@@ -300,22 +287,16 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
     return cases;
 }
 
-std::vector<config::PaperCase> resolvePaperCases(
-    const config::Experiment& experiment, const scene::Catalog& catalog,
-    std::span<const technique::TechniqueInfo> techniques) {
+std::vector<Case> resolvePaperCases(const config::Experiment& experiment,
+                                    const scene::Catalog& catalog,
+                                    std::span<const technique::TechniqueInfo> techniques) {
     if (experiment.paperDocument.isNull()) return {};
     const config::Experiment paper =
         config::experimentFromDocument(experiment.paperDocument, experiment.file);
-    std::vector<config::PaperCase> cases;
-    for (const Case& item : resolveParameters(paper, catalog, techniques, 0)) {
+    std::vector<Case> cases = resolveParameters(paper, catalog, techniques, 0);
+    for (const Case& item : cases) {
         requireKnownAt(paper.printed, item,
                        technique::findTechnique(techniques, paper.technique, {}), catalog);
-        Node params = item.params;
-        params.setPath("output.width", Node::number(item.outputWidthPx));
-        params.setPath("output.height", Node::number(item.outputHeightPx));
-        const Node* axis = item.axes.find("scene");
-        const Node& scene = axis ? *axis : item.scene;  // as records say it
-        cases.push_back({scene.isNull() ? "" : scene.text(), std::move(params)});
     }
     return cases;
 }

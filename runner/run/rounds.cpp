@@ -117,7 +117,7 @@ std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& 
 }
 
 Rounds::Rounds(const Plan& plan, const std::vector<records::Record>& records,
-               const std::vector<Json>& log) {
+               const std::vector<Json>& journal) {
     for (const Case& item : plan.cases) {
         if (!isTimed(item) || !plan.measures(item)) continue;
         const auto [table, isNew] = tables_.try_emplace(item.experiment);
@@ -128,7 +128,7 @@ Rounds::Rounds(const Plan& plan, const std::vector<records::Record>& records,
         table->second.cases.push_back(&item);
     }
     add(records);
-    for (const Json& event : log) {
+    for (const Json& event : journal) {
         const auto table = tables_.find(event.value("table", ""));
         if (table == tables_.end()) continue;
         const std::string name = event.value("event", "");

@@ -34,9 +34,9 @@ class Rounds {
   public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
-    /// Of a run with these records and lines of log.jsonl so far. The plan must outlive it.
+    /// Of a run with these records and lines of journal.jsonl so far. The plan must outlive it.
     Rounds(const Plan& plan, const std::vector<records::Record>& records,
-           const std::vector<Json>& log);
+           const std::vector<Json>& journal);
 
     /// A unit of an experiment runs, until end() or the begin() of its second try. Budgets count
     /// this alone, and of this start of the program.

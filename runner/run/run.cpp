@@ -61,15 +61,15 @@ std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory
     return units;
 }
 
-Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vector<Json>& log) {
+Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vector<Json>& journal) {
     std::vector<records::Record> records;
     if (fs::exists(directory.recordsFile()))
         records = records::readRecords(directory.recordsFile());
-    return {plan, records, log};
+    return {plan, records, journal};
 }
 
 std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
-                                             const std::vector<Json>& log, Json& manifest,
+                                             const std::vector<Json>& journal, Json& manifest,
                                              const std::string& machine) {
     if (!fs::exists(directory.recordsFile())) records::RecordWriter{directory.recordsFile()};
     std::set<std::string> unfinished;
@@ -78,7 +78,7 @@ std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirector
         unfinished.insert(unit.item->experiment);
     }
     // Between two rounds no unit is left of a table that goes on.
-    const Rounds rounds = roundsOf(plan, directory, log);
+    const Rounds rounds = roundsOf(plan, directory, journal);
     for (const std::string& experiment : rounds.undecided()) {
         if (rounds.mayFollow(experiment)) unfinished.insert(experiment);
     }
@@ -192,10 +192,10 @@ Completeness completeness(const StoredRun& run) {
 namespace {
 
 /// How one unit of a case ended; nothing more than that where it has values.
-records::CaseResult resultOf(const Case& item, const records::Record* row,
-                             const Expectations& expectations) {
-    using Ended = records::CaseResult::Outcome;
-    records::CaseResult result{item.experiment, item.title()};
+records::CaseEnd resultOf(const Case& item, const records::Record* row,
+                          const Expectations& expectations) {
+    using Ended = records::CaseEnd::Outcome;
+    records::CaseEnd result{item.experiment, item.title()};
     if (!row) {
         result.outcome = Ended::Failed;
         result.text = "not run";
@@ -223,8 +223,8 @@ records::CaseResult resultOf(const Case& item, const records::Record* row,
 
 }  // namespace
 
-std::vector<records::CaseResult> caseResults(const StoredRun& run) {
-    using Ended = records::CaseResult::Outcome;
+std::vector<records::CaseEnd> caseResults(const StoredRun& run) {
+    using Ended = records::CaseEnd::Outcome;
     const Expectations expectations = expectationsOf(run.plan, run.manifest);
     const WorstRows worst = worstRows(run.records);
     std::map<std::string, SourceLocation> files;
@@ -233,24 +233,24 @@ std::vector<records::CaseResult> caseResults(const StoredRun& run) {
     }
     // Of the processes of a case what failed weighs most, then what was left out; a case that was
     // to fail does so in all of them.
-    const auto weight = [](const records::CaseResult& result, bool isUnmet) {
+    const auto weight = [](const records::CaseEnd& result, bool isUnmet) {
         return result.outcome == Ended::Failed ? (isUnmet ? 1 : 3)
                                                : (result.outcome == Ended::Skipped ? 2 : 0);
     };
-    std::map<std::string, std::pair<int, records::CaseResult>> results;
+    std::map<std::string, std::pair<int, records::CaseEnd>> results;
     std::vector<std::string> order;
     for (const Unit& unit : unitsOf(run.plan, run.records)) {
         const Case& item = *unit.item;
         const auto found = worst.find({item.id, unit.process});
         const records::Record* row = found == worst.end() ? nullptr : found->second;
-        records::CaseResult result = resultOf(item, row, expectations);
+        records::CaseEnd result = resultOf(item, row, expectations);
         result.where = files[item.experiment];
         const int own = weight(result, row && hasValues(row->status));
         const auto [known, isNew] = results.try_emplace(item.id, own, result);
         if (isNew) order.push_back(item.id);
         if (own > known->second.first) known->second = {own, std::move(result)};
     }
-    std::vector<records::CaseResult> ordered;
+    std::vector<records::CaseEnd> ordered;
     for (const std::string& id : order) ordered.push_back(std::move(results.at(id).second));
     return ordered;
 }

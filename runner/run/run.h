@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/records/case_result.h"
+#include "runner/records/case_end.h"
 #include "runner/records/records.h"
 #include "runner/run/expectations.h"
 #include "runner/run/plan.h"
@@ -22,14 +22,14 @@ namespace gfxrepro::run {
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory);
 
 /// What was decided so far of the rounds of a run's tables.
-Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vector<Json>& log);
+Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vector<Json>& journal);
 
 /// A run that goes on on another machine: the times of an experiment are of one machine, so where
 /// some of them are still to be measured, all are measured again. The rows so far go from
 /// records.csv to `records-replaced.csv`. Notes the machine in the manifest and gives the
 /// experiments. Does nothing on the machine on which the run began.
 std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirectory& directory,
-                                             const std::vector<Json>& log, Json& manifest,
+                                             const std::vector<Json>& journal, Json& manifest,
                                              const std::string& machine);
 
 /// What a run directory holds, for tables, claims and report.
@@ -62,6 +62,6 @@ Completeness completeness(const StoredRun& run);
 
 /// How every case of the run's plan, or of its shard, ended: by its worst process. What was
 /// expected to fail and did is skipped, with the reason; what was and did not is a failure.
-std::vector<records::CaseResult> caseResults(const StoredRun& run);
+std::vector<records::CaseEnd> caseResults(const StoredRun& run);
 
 }  // namespace gfxrepro::run

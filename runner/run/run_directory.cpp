@@ -29,10 +29,11 @@ namespace {
 // A line stays below the 1 MiB that are read again (run_files.h) were each byte of its texts, at
 // most four of them long, escaped with six.
 constexpr std::size_t kMostTextBytes = std::size_t{32} << 10;
-// In a log of this size what drivers print is left out: one of 512 MiB is not read again.
+// In a journal of this size what drivers print is left out: one of 512 MiB is not read again.
 constexpr off_t kMostBytesWithOutput = off_t{64} << 20;
-constexpr auto kMostWholeBytes = static_cast<off_t>(kMostWholeLogBytes);
-constexpr auto kMostBytes = static_cast<off_t>(kMostLogBytes - (std::size_t{1} << 20));  // a line
+constexpr auto kMostWholeBytes = static_cast<off_t>(kMostWholeJournalBytes);
+constexpr auto kMostBytes =
+    static_cast<off_t>(kMostJournalBytes - (std::size_t{1} << 20));  // a line
 
 /// A worker that its runner began when it was killed has the lock until it is its own program.
 constexpr std::chrono::seconds kLockPatience{2};
@@ -51,15 +52,15 @@ std::string shortened(const std::string& text, bool isEndKept) {
                      : text.substr(0, kMostTextBytes) + mark;
 }
 
-/// The event as a log that has `logBytes` takes it.
-nlohmann::ordered_json logged(nlohmann::ordered_json event, off_t logBytes) {
+/// The event as a journal that has `journalBytes` takes it.
+nlohmann::ordered_json shortened(nlohmann::ordered_json event, off_t journalBytes) {
     for (const auto& [name, value] : event.items()) {
         if (!value.is_string()) continue;
         const std::string& text = value.get_ref<const std::string&>();
         const bool isOutput = name == "output";
-        value = isOutput && logBytes > kMostBytesWithOutput
-                    ? fmt::format("[{} bytes left out: the log has {} MiB]", text.size(),
-                                  logBytes >> 20)
+        value = isOutput && journalBytes > kMostBytesWithOutput
+                    ? fmt::format("[{} bytes left out: the journal has {} MiB]", text.size(),
+                                  journalBytes >> 20)
                     : shortened(text, isOutput);
     }
     return event;
@@ -97,9 +98,9 @@ bool isBegun(const fs::path& folder) {
 /// write over; empty when there is none.
 std::string foreignFile(const fs::path& folder) {
     if (isBegun(folder)) return "";
-    for (const char* name :
-         {"manifest.json", "records.csv", "cases.csv", "claims.csv", "junit.xml", "report.html",
-          "log.jsonl", "images", "tables", "plots", "thumbnails", "artifacts", kScratchFolder}) {
+    for (const char* name : {"manifest.json", "records.csv", "cases.csv", "claims.csv", "junit.xml",
+                             "report.html", "journal.jsonl", "images", "tables", "plots",
+                             "thumbnails", "artifacts", kScratchFolder}) {
         if (fs::exists(fs::symlink_status(folder / name))) return name;
     }
     return "";
@@ -152,7 +153,7 @@ RunDirectory::RunDirectory(const fs::path& path)
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    log_ = openFile(path_ / "log.jsonl", O_WRONLY | O_APPEND);
+    journal_ = openFile(path_ / "journal.jsonl", O_WRONLY | O_APPEND);
 }
 
 RunDirectory RunDirectory::create(const fs::path& path) {
@@ -195,32 +196,32 @@ void RunDirectory::requireOurs() const {
                 "measured into it any more");
 }
 
-void RunDirectory::log(const nlohmann::ordered_json& event) const {
+void RunDirectory::note(const nlohmann::ordered_json& event) const {
     requireOurs();
-    const off_t bytes = sizeOf(log_.get());
+    const off_t bytes = sizeOf(journal_.get());
     if (bytes > kMostBytes) {
         throw Error(
             fmt::format("{}: has {} MiB, and a larger one is not read again: nothing more "
                         "is measured into this folder",
-                        (path_ / "log.jsonl").string(), bytes >> 20));
+                        (path_ / "journal.jsonl").string(), bytes >> 20));
     }
-    if (bytes > kMostWholeBytes) return appendToLog(inShort(event));
-    appendToLog(event);
-    if (sizeOf(log_.get()) > kMostWholeBytes) appendToLog(inShortFromHere());
+    if (bytes > kMostWholeBytes) return appendToJournal(inShort(event));
+    appendToJournal(event);
+    if (sizeOf(journal_.get()) > kMostWholeBytes) appendToJournal(inShortFromHere());
 }
 
-void RunDirectory::appendToLog(const nlohmann::ordered_json& event) const {
+void RunDirectory::appendToJournal(const nlohmann::ordered_json& event) const {
     nlohmann::ordered_json line = {{"time", utcTime()}};
-    line.update(logged(event, sizeOf(log_.get())));
+    line.update(shortened(event, sizeOf(journal_.get())));
     const std::string text =
         line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
-    // One write a line; a log that cannot be written (disk full) does not stop the measurement.
-    [[maybe_unused]] const ssize_t written = ::write(log_.get(), text.data(), text.size());
+    // One write a line; a journal that cannot be written (disk full) does not stop the measurement.
+    [[maybe_unused]] const ssize_t written = ::write(journal_.get(), text.data(), text.size());
 }
 
-void RunDirectory::logFlushed(const nlohmann::ordered_json& event) const {
-    log(event);
-    ::fdatasync(log_.get());
+void RunDirectory::noteFlushed(const nlohmann::ordered_json& event) const {
+    note(event);
+    ::fdatasync(journal_.get());
 }
 
 }  // namespace gfxrepro::run

@@ -9,7 +9,7 @@
 
 namespace gfxrepro::run {
 
-/// plan.json, manifest.json, records.csv, log.jsonl, images/, artifacts/, tables/, … under one
+/// plan.json, manifest.json, records.csv, journal.jsonl, images/, artifacts/, tables/, … under one
 /// folder, locked for writing as long as the object lives.
 class RunDirectory {
   public:
@@ -28,13 +28,13 @@ class RunDirectory {
     /// Removes what cases keep for each other only while the run is under way.
     void removeScratch() const;
 
-    /// Appends one line to log.jsonl: "time" and the members of `event`; texts over 32 KiB are cut,
-    /// outputs left out once it has 64 MiB, and all of it written in short beyond
-    /// kMostWholeLogBytes. Throws as requireOurs(), and where the log would not be read again: what
-    /// began is known of every run.
-    void log(const nlohmann::ordered_json& event) const;
+    /// Appends one line to journal.jsonl: "time" and the members of `event`; texts over 32 KiB are
+    /// cut, outputs left out once it has 64 MiB, and all of it written in short beyond
+    /// kMostWholeJournalBytes. Throws as requireOurs(), and where the journal would not be read
+    /// again: what began is known of every run.
+    void note(const nlohmann::ordered_json& event) const;
     /// … and waits until it is on the disk.
-    void logFlushed(const nlohmann::ordered_json& event) const;
+    void noteFlushed(const nlohmann::ordered_json& event) const;
 
     /// Throws Error where the folder is no longer this run's: removed, moved, or without its lock,
     /// so that another one may write to it.
@@ -42,10 +42,10 @@ class RunDirectory {
 
   private:
     explicit RunDirectory(const std::filesystem::path& path);
-    void appendToLog(const nlohmann::ordered_json& event) const;
+    void appendToJournal(const nlohmann::ordered_json& event) const;
 
     std::filesystem::path path_;
-    Descriptor lock_, log_;
+    Descriptor lock_, journal_;
 };
 
 /// Below a run folder, where programs of any kind work while it is under way; it goes at the end.

@@ -93,8 +93,8 @@ void requireModestFiles(const fs::path& runDir) {
     for (const auto& [name, mostBytes] : kMostFileBytes) requireModest(runDir / name, mostBytes);
 }
 
-void requireModestLog(const fs::path& file) {
-    requireModest(file, kMostLogBytes);
+void requireModestJournal(const fs::path& file) {
+    requireModest(file, kMostJournalBytes);
 }
 
 Json readManifest(const fs::path& file) {
@@ -114,8 +114,8 @@ Json readManifest(const fs::path& file) {
 
 Json inShortFromHere() {
     return {{"event", "in_short"},
-            {"message", fmt::format("the log has {} MiB: what follows is without its texts",
-                                    kMostWholeLogBytes >> 20)}};
+            {"message", fmt::format("the journal has {} MiB: what follows is without its texts",
+                                    kMostWholeJournalBytes >> 20)}};
 }
 
 Json inShort(const Json& event) {
@@ -127,10 +127,10 @@ Json inShort(const Json& event) {
     return kept;
 }
 
-std::vector<Json> readLog(const fs::path& file) {
+std::vector<Json> readJournal(const fs::path& file) {
     std::vector<Json> events;
     if (!fs::exists(file)) return events;
-    requireModestLog(file);
+    requireModestJournal(file);
     const std::string name = file.string();
     const MappedFile mapped(file);
     std::string_view rest = mapped.text();

@@ -129,13 +129,13 @@ class Scheduler {
         return !waiting_.empty();
     }
 
-    /// Puts the next round of a table last; or says in the log why there is none.
+    /// Puts the next round of a table last; or says in the journal why there is none.
     void addRound(const std::string& table) {
         const std::vector<Unit> more = rounds_.next(table);
         if (more.empty()) {
             Json event = {{"event", "rounds"}};
             event.update(rounds_.ending(table));
-            directory_.log(event);
+            directory_.note(event);
             return;
         }
         waiting_.insert(waiting_.end(), more.begin(), more.end());
@@ -206,7 +206,7 @@ class Scheduler {
             worker = std::prev(workers_.end());
         }
         // On the disk before it runs: what takes the machine with it is known afterwards.
-        directory_.logFlushed(
+        directory_.noteFlushed(
             {{"event", "start"}, {"case", unit.item->id}, {"process", unit.process}});
         (*worker)->assign(unit);
         observer_.unitBegan(unit);
@@ -281,7 +281,7 @@ class Scheduler {
         }
         if (!result.message.empty()) event["message"] = result.message;
         if (!output.empty()) event["output"] = output;
-        directory_.log(event);
+        directory_.note(event);
     }
 
     void finish(const Unit& unit, const CaseResult& result, const std::string& output,

@@ -67,10 +67,10 @@ std::vector<std::string> workerCommand(const SchedulerOptions& options, config::
 gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,
                            bool isBalanceMeasured = false);
 
-/// Runs `units` and the further rounds that `rounds` asks for, appending records, images and log
-/// lines as each ends. Of units that are twins the first is run and recorded for each; one that is
-/// to be skipped is no twin. A failure that nobody expects is tried once more, in a fresh worker;
-/// what passes then is `flaky`, unless the first worker was killed from outside.
+/// Runs `units` and the further rounds that `rounds` asks for, appending records, images and
+/// journal lines as each ends. Of units that are twins the first is run and recorded for each; one
+/// that is to be skipped is no twin. A failure that nobody expects is tried once more, in a fresh
+/// worker; what passes then is `flaky`, unless the first worker was killed from outside.
 RunOutcome runUnits(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
                     const SchedulerOptions& options, PhaseClock& phases, Observer& observer);
 

@@ -13,6 +13,7 @@
 #include "engine/gl/balance.h"
 #include "runner/run/child_process.h"
 #include "runner/run/measure.h"
+#include "runner/run/plan_json.h"
 #include "runner/run/process_memory.h"
 #include "runner/run/protocol.h"
 
@@ -95,7 +96,7 @@ void serve(gl::Device& device, const WorkerOptions& options,
         const Node request = parseJson(line, "what the runner sent");
         const Node* asked = request.isMap() ? request.find("case") : nullptr;
         if (!asked) throw Error("what the runner sent: '/case' is missing");
-        Case item = Case::fromJson(*asked);
+        Case item = caseFromJson(*asked);
         const Node* process = request.find("process");
         if (process && isSeededByProcess(item)) {
             item.seed +=

@@ -10,6 +10,7 @@
 
 #include "engine/core/descriptor.h"
 #include "engine/core/text.h"
+#include "runner/run/plan_json.h"
 #include "runner/run/process_memory.h"
 
 namespace gfxrepro::run {
@@ -93,7 +94,7 @@ void WorkerHandle::sendUnit() {
     suspended_ = {};
     limit_ = lastLook_ + nanoseconds(unit_->item->measure.timeLimitS);
     // A worker that is gone is noticed by receive().
-    process_.sendLine(Json{{"case", unit_->item->toJson()}, {"process", unit_->process}}.dump());
+    process_.sendLine(Json{{"case", toJson(*unit_->item)}, {"process", unit_->process}}.dump());
     isSent_ = process_.sendRest();
 }
 

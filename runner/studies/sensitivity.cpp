@@ -54,11 +54,13 @@ std::vector<std::string> setsOf(const std::string& name, const std::string& valu
 }
 
 /// Why the assumption is not varied; empty if it is.
-std::string whyFixed(const config::Assumption& assumption, const std::vector<run::Case>& cases) {
+std::string whyFixed(const config::Assumption& assumption, const std::vector<config::Case>& cases) {
     if (!assumption.isBound) return "no parameter of the technique";
     const bool isScene = assumption.name == config::kSceneAssumption;
     for (const std::string& axis : {assumption.name, assumption.name + ".width"}) {
-        const auto isSwept = [&](const run::Case& item) { return item.axes.find(axis) != nullptr; };
+        const auto isSwept = [&](const config::Case& item) {
+            return item.axes.find(axis) != nullptr;
+        };
         if (!isScene && std::ranges::any_of(cases, isSwept)) {
             return "an axis of the table: it is varied there";
         }
@@ -74,7 +76,7 @@ std::string whyFixed(const config::Assumption& assumption, const std::vector<run
 }
 
 std::vector<Variation> sceneVariations(const config::Assumption& assumption,
-                                       const std::vector<run::Case>& cases) {
+                                       const std::vector<config::Case>& cases) {
     std::vector<Variation> variations;
     for (const auto& [name, other] : run::alternativesOf(assumption, run::sceneNames(cases))) {
         variations.push_back({assumption.name,
@@ -87,7 +89,7 @@ std::vector<Variation> sceneVariations(const config::Assumption& assumption,
 
 /// The values of the range but for the one that the cases take.
 std::vector<Variation> variationsOf(const config::Assumption& assumption,
-                                    const std::vector<run::Case>& cases, int points) {
+                                    const std::vector<config::Case>& cases, int points) {
     if (assumption.name == config::kSceneAssumption) return sceneVariations(assumption, cases);
     const Json range = assumption.range.toJson();
     const Node* current = cases.front().params.find(assumption.name);
@@ -169,8 +171,8 @@ std::string Variation::title() const {
     return assumption.empty() ? "as configured" : assumption + " = " + value;
 }
 
-Variations variationsOf(const config::Experiment& experiment, const std::vector<run::Case>& cases,
-                        int points) {
+Variations variationsOf(const config::Experiment& experiment,
+                        const std::vector<config::Case>& cases, int points) {
     Variations result;
     result.runs.push_back({});
     std::vector<std::vector<Variation>> byAssumption;

@@ -34,8 +34,8 @@ struct Variations {
 /// An assumption is varied where it is bound to the cases, the table does not sweep it, and it has
 /// a range: two numbers are an interval, of which `points` values are taken, evenly by ratio where
 /// it spans more than a factor of ten; else the listed values are. `cases` are the experiment's.
-Variations variationsOf(const config::Experiment& experiment, const std::vector<run::Case>& cases,
-                        int points);
+Variations variationsOf(const config::Experiment& experiment,
+                        const std::vector<config::Case>& cases, int points);
 
 /// What a run with a variation gave: the claims in the order of the config, or why there are none.
 struct Outcome {

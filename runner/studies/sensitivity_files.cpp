@@ -144,7 +144,7 @@ std::vector<Outcome> readSensitivity(const fs::path& file, const std::string& ba
 
 std::string basisOf(const run::Plan& plan, const config::Experiment& experiment) {
     Json content = {{"device_class", plan.deviceClass}, {"technique", experiment.technique}};
-    for (const run::Case& item : plan.cases) {
+    for (const config::Case& item : plan.cases) {
         if (item.experiment != experiment.id) continue;
         const auto scene =
             item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());

@@ -37,17 +37,23 @@ std::optional<std::string> valueIn(const Node& params, const std::string& axis) 
     return textOf(*value);
 }
 
-std::optional<std::string> valueOf(const PlannedCase& item, const std::string& axis) {
-    if (axis == "scene") {
-        if (const auto named = valueIn(item.params, kStandsFor)) return named;
-        if (!item.scene.empty()) return item.scene;
+/// A case as its records say it.
+struct Recorded {
+    std::string scene;
+    Node params;
+
+    std::optional<std::string> value(const std::string& axis) const {
+        if (axis == "scene") {
+            if (const auto named = valueIn(params, config::kStandsFor)) return named;
+            if (!scene.empty()) return scene;
+        }
+        return valueIn(params, axis);
     }
-    return valueIn(item.params, axis);
-}
+};
 
 /// The axes that the sweep's `when` leaves out of the case: its parameters have them with their
 /// defaults.
-std::set<std::string> leftOut(const PlannedCase& item, const Node& when) {
+std::set<std::string> leftOut(const Recorded& item, const Node& when) {
     std::set<std::string> names, conditional;
     for (const auto& [axis, conditions] : when.entries()) {
         conditional.insert(axis);
@@ -56,35 +62,28 @@ std::set<std::string> leftOut(const PlannedCase& item, const Node& when) {
     }
     config::AxisPoint point;
     for (const std::string& name : names) {
-        if (const auto value = valueOf(item, name)) {
-            point.emplace_back(name, Node::scalar(*value));
-        }
+        if (const auto value = item.value(name)) point.emplace_back(name, Node::scalar(*value));
     }
     config::applyWhen(when, point);
     for (const auto& [name, value] : point) conditional.erase(name);
     return conditional;
 }
 
-AxisValues axesOf(const PlannedCase& item, const std::vector<std::string>& axes, const Node* when) {
+AxisValues axesOf(const Recorded& item, const std::vector<std::string>& axes, const Node* when) {
     const std::set<std::string> absent = when ? leftOut(item, *when) : std::set<std::string>();
     AxisValues values;
     for (const std::string& axis : axes) {
-        values.push_back(absent.contains(axis) ? std::string(kLeftOut) : valueOf(item, axis));
+        values.push_back(absent.contains(axis) ? std::string(kLeftOut) : item.value(axis));
     }
     return values;
 }
 
-std::optional<int> sampleOf(const PlannedCase& item) {
-    const Node* sample = findPath(item.params, kSceneSample);
-    return sample ? std::optional(static_cast<int>(sample->asInteger())) : std::nullopt;
-}
-
 /// What of a case's identity stays when its scene is taken at another seed.
-std::string familyOf(const PlannedCase& item) {
+std::string familyOf(const Recorded& item) {
     Node params = item.params;
-    params.erase(kSceneSample);
-    params.erase(kStandsFor);
-    return valueIn(item.params, kStandsFor).value_or(item.scene) + params.toJson().dump();
+    params.erase(config::kSceneSample);
+    params.erase(config::kStandsFor);
+    return valueIn(item.params, config::kStandsFor).value_or(item.scene) + params.toJson().dump();
 }
 
 bool isOfSetup(const records::Record* record) {
@@ -109,7 +108,7 @@ std::vector<const records::Record*> CaseRecords::Attempt::values(std::string_vie
     return values;
 }
 
-std::vector<CaseRecords> groupByCase(std::span<const PlannedCase> planned,
+std::vector<CaseRecords> groupByCase(std::span<const config::Case> planned,
                                      const std::vector<records::Record>& records,
                                      std::string_view table, const std::vector<std::string>& axes,
                                      const Node* when) {
@@ -121,14 +120,20 @@ std::vector<CaseRecords> groupByCase(std::span<const PlannedCase> planned,
     std::vector<bool> isSeeded;
     std::unordered_map<std::string_view, Place> places;  // by the case's id
     std::unordered_map<std::string, std::size_t> families;
-    for (const PlannedCase& item : planned) {
-        if (item.table != table) continue;
-        const std::optional<int> sample = sampleOf(item);
+    for (const config::Case& item : planned) {
+        if (item.experiment != table) continue;
+        const std::optional<int> sample = item.sceneSample;
+        Recorded recorded{item.recordedScene(), item.recordedParams()};
         const std::size_t next = cases.size();
         const std::size_t index =
-            sample ? families.try_emplace(familyOf(item), next).first->second : next;
+            sample ? families.try_emplace(familyOf(recorded), next).first->second : next;
         if (index == next) {
-            cases.push_back({item.id, axesOf(item, axes, when), {}, item.scene, item.params});
+            AxisValues values = axesOf(recorded, axes, when);
+            cases.push_back({item.id,
+                             std::move(values),
+                             {},
+                             std::move(recorded.scene),
+                             std::move(recorded.params)});
             isSeeded.push_back(sample.has_value());
         }
         places[item.id] = {index, sample.value_or(0)};

@@ -10,31 +10,16 @@
 #include <tuple>
 #include <vector>
 
-#include "runner/config/experiment.h"
+#include "runner/config/case.h"
 #include "runner/records/records.h"
 
 namespace gfxrepro::tables {
-
-/// In a case's params: the scene of the table whose place its own takes, and which of the seeds of
-/// a generated scene it has, from 0.
-inline constexpr const char* kStandsFor = "stands_for";
-inline constexpr const char* kSceneSample = "scene_sample";
-inline constexpr int kMostSceneSample = 999;  // of `measure.scene_seeds`
 
 /// One text for one value, however it is spelt: 64 and 64.0, or a scene as text or as a map.
 std::string canonicalText(const Node& value);
 
 /// The values of a case beside a list of axes; empty where the case has none.
 using AxisValues = std::vector<std::optional<std::string>>;
-
-/// A case of a plan, run or not, with every parameter resolved.
-struct PlannedCase {
-    std::string id;
-    std::string table;              // "zju2005/2.1"
-    std::string scene;              // as its records say it; empty for none
-    Node params;                    // a map, with `output` and the names above
-    std::vector<std::string> axes;  // names of those that are swept
-};
 
 /// In place of the value of an axis that does not apply to a case.
 inline constexpr std::string_view kLeftOut = "–";
@@ -61,15 +46,15 @@ struct CaseRecords {
     std::string id;
     AxisValues axes;
     std::map<int, Attempt> processes;
-    std::string scene;  // as PlannedCase has them
-    Node params;
+    std::string scene;  // Case::recordedScene()
+    Node params;        // Case::recordedParams()
 };
 
 /// The cases of `table` in the order of the plan, with their records, which must outlive the
 /// result. A later row of a case replaces an earlier one of the same place; a failure replaces all
 /// before it. Beside cases at several seeds those without a seed count at each. On an axis that
 /// `when` of the sweep leaves out of a case it has the value kLeftOut.
-std::vector<CaseRecords> groupByCase(std::span<const PlannedCase> planned,
+std::vector<CaseRecords> groupByCase(std::span<const config::Case> planned,
                                      const std::vector<records::Record>& records,
                                      std::string_view table, const std::vector<std::string>& axes,
                                      const Node* when = nullptr);

@@ -151,13 +151,13 @@ std::vector<std::string> frameNotes(const config::Experiment& experiment,
 }  // namespace
 
 DefaultLayout defaultLayout(const config::Experiment& experiment,
-                            std::span<const PlannedCase> planned,
+                            std::span<const config::Case> planned,
                             const std::vector<records::Record>& records) {
     DefaultLayout result;
     std::set<std::string> axes;
-    for (const PlannedCase& item : planned) {
-        if (item.table != experiment.id) continue;
-        for (const std::string& axis : item.axes) {
+    for (const config::Case& item : planned) {
+        if (item.experiment != experiment.id) continue;
+        for (const auto& [axis, value] : item.axes.entries()) {
             if (axes.insert(axis).second) result.layout.rows.push_back({axis, {}});
         }
     }

@@ -23,7 +23,7 @@ struct DefaultLayout {
 /// them (Experiment::outputs), without details. Of plans that do not know what was declared: all,
 /// as recorded. A MiB and more is shown in MiB.
 DefaultLayout defaultLayout(const config::Experiment& experiment,
-                            std::span<const PlannedCase> planned,
+                            std::span<const config::Case> planned,
                             const std::vector<records::Record>& records);
 
 /// What the technique declares of each metric, beside the table's columns.

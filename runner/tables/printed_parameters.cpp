@@ -56,7 +56,8 @@ void layPrintedOver(const config::Printed& printed, std::string& scene, Json& pa
 
 /// What records say of a case beside its parameters.
 bool isNoParameter(const std::string& name) {
-    return name == "output" || name == kPictures || name == kStandsFor || name == kSceneSample;
+    return name == "output" || name == kPictures || name == config::kStandsFor ||
+           name == config::kSceneSample;
 }
 
 /// A parameter that is null or empty is one that a case has not got: the tables of a run that was
@@ -69,7 +70,7 @@ bool isNothing(const Json& value) {
 /// Of a generated scene at another seed ("outdoor/city@3") the name in the table: another sample of
 /// it, not another parameter. Its generator's parameters are among the case's.
 std::string sceneNameOf(const CaseRecords& item, const Json& params) {
-    const auto named = params.find(kStandsFor);
+    const auto named = params.find(config::kStandsFor);
     if (named == params.end()) return item.scene;
     const std::string name = settingText(*named);
     return scene::sceneName(item.scene) == name ? name : item.scene;
@@ -185,11 +186,7 @@ PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
     if (experiment.paperCases.empty()) return;
     config::Experiment paper =
         config::experimentFromDocument(experiment.paperDocument, experiment.file);
-    std::vector<PlannedCase> cases;
-    for (const config::PaperCase& item : experiment.paperCases) {
-        cases.push_back({"", paper.id, item.scene, item.params, {}});
-    }
-    cases_ = gatherCases(paper, cases, {});
+    cases_ = gatherCases(paper, experiment.paperCases, {});
     layout_ = std::move(paper.layout);
     printed_ = std::move(paper.printed);
     for (const config::Assumption& assumption : paper.assumptions) {
@@ -202,11 +199,9 @@ PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
     if (printed_.rows.empty()) return;
     for (const char* name : {"scene", "output", "measure.frames"})
         given_.insert(settingNameOf(name));
-    for (const config::CaseSpec& spec : config::expandCases(paper)) {
-        for (const auto& [name, value] : spec.params.entries()) given_.insert(settingNameOf(name));
-        for (const auto& [name, value] : spec.sceneParams.entries()) {
-            given_.insert(std::string(config::kSceneAxisPrefix) + name);
-        }
+    for (const config::Case& item : config::expandCases(paper)) {
+        for (const auto& [name, value] : item.given.entries()) given_.insert(settingNameOf(name));
+        for (const auto& [name, value] : item.params.entries()) given_.insert(name);
     }
 }
 

@@ -285,7 +285,7 @@ Table transposed(const Table& table, std::size_t rowAxis) {
     return result;
 }
 
-Table buildTable(const config::Experiment& given, std::span<const PlannedCase> planned,
+Table buildTable(const config::Experiment& given, std::span<const config::Case> planned,
                  const std::vector<records::Record>& records) {
     config::Experiment experiment = given;
     Table table;
@@ -338,7 +338,7 @@ Table buildTable(const config::Experiment& given, std::span<const PlannedCase> p
 }
 
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
-                               std::span<const PlannedCase> planned,
+                               std::span<const config::Case> planned,
                                const std::vector<records::Record>& records) {
     std::vector<Table> tables;
     for (const config::Experiment& experiment : experiments) {

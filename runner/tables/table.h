@@ -172,7 +172,7 @@ Table transposed(const Table& table, std::size_t rowAxis);
 ///
 /// A cell whose metric is a time or a frame rate never shows a record of the quality lane. Throws
 /// Error with the layout's place for an unknown statistic or axis.
-Table buildTable(const config::Experiment& experiment, std::span<const PlannedCase> planned,
+Table buildTable(const config::Experiment& experiment, std::span<const config::Case> planned,
                  const std::vector<records::Record>& records);
 
 /// Sentences below a table that its records do not tell: of calibrations that read its printed
@@ -181,7 +181,7 @@ using TableNotes = std::map<std::string, std::vector<std::string>>;
 
 /// The tables of a run, beside `experiments`; `planned` are the cases of its plan.
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
-                               std::span<const PlannedCase> planned,
+                               std::span<const config::Case> planned,
                                const std::vector<records::Record>& records);
 
 }  // namespace gfxrepro::tables

@@ -146,7 +146,7 @@ std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& c
     return found;
 }
 
-LayoutCases gatherCases(const config::Experiment& experiment, std::span<const PlannedCase> planned,
+LayoutCases gatherCases(const config::Experiment& experiment, std::span<const config::Case> planned,
                         const std::vector<records::Record>& records) {
     LayoutCases cases;
     const config::Layout& layout = experiment.layout;

@@ -50,7 +50,7 @@ using Where = std::map<std::string, std::vector<std::string>>;
 /// Those that lie there, run or not.
 std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& cases);
 
-LayoutCases gatherCases(const config::Experiment& experiment, std::span<const PlannedCase> planned,
+LayoutCases gatherCases(const config::Experiment& experiment, std::span<const config::Case> planned,
                         const std::vector<records::Record>& records);
 
 /// The combinations of `layoutAxes`: on sweep axes those that occur in the plan; on labelled axes

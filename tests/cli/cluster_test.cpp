@@ -98,7 +98,7 @@ TEST(Plan, NewestRunsTellAndBrokenOnesDoNotStop) {
     ASSERT_EQ(inFolder("run mock.yaml --device software --quiet").exitCode, 0);
     folder.write("runs/broken/plan.json", "{");
     folder.write("runs/broken/manifest.json", "{\"device_class\": \"software\"}");
-    folder.write("runs/broken/log.jsonl",
+    folder.write("runs/broken/journal.jsonl",
                  "{\"case\": \"x\", \"cost\": {\"load_s\": 0, \"setup_s\": 0, \"render_s\": 0, "
                  "\"record_s\": 0, \"peak_bytes\": 0}}\n");
     const ProcessResult plan = inFolder("plan mock.yaml --device software");

@@ -51,8 +51,8 @@ TEST(Expectations, BadFilesAreRefusedInTheirPlace) {
         "unsupported, timeout, oom, crash, device-lost, missing, error");
 }
 
-run::Case caseWith(const std::string& experiment, const std::string& axes) {
-    run::Case item;
+config::Case caseWith(const std::string& experiment, const std::string& axes) {
+    config::Case item;
     item.experiment = experiment;
     item.axes = parseYaml(axes, "axes");
     item.params = Node::map({});

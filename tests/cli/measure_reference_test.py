@@ -135,7 +135,7 @@ with tempfile.TemporaryDirectory() as folder:
     table(root, 3, 200, ["document", "ours"])
     runs = root / "runs/reference"
     process = started(root, "--program", PROGRAM, "--name", "mock", "--profile", "full", "paper/3")
-    wait_until(lambda: any('"start"' in read_if_there(log) for log in runs.glob("*/full/paper-table-3/log.jsonl")), "no case began")
+    wait_until(lambda: any('"start"' in read_if_there(log) for log in runs.glob("*/full/paper-table-3/journal.jsonl")), "no case began")
     process.send_signal(signal.SIGTERM)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130 and "Traceback" not in err, (process.returncode, out, err)

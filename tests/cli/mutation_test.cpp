@@ -134,7 +134,7 @@ TEST(Mutation, OfRunFolders) {
         return all[random() % all.size()];
     };
     for (const char* name :
-         {"plan.json", "manifest.json", "records.csv", "images/index.csv", "log.jsonl"}) {
+         {"plan.json", "manifest.json", "records.csv", "images/index.csv", "journal.jsonl"}) {
         restore();
         expectAnswers(fs::path(dir) / name, command, restore);
     }

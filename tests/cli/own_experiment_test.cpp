@@ -125,7 +125,7 @@ TEST(OwnExperiment, RoundsOfWhoNamesNoLaneEndWithTheirBudget) {
         mockGfxrepro({"run", config, "--device", "software", "--out", dir.string()});
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(processesOf(rowsOf(dir, "wall_time_ms")), std::set{0});
-    EXPECT_THAT(readFile(dir / "log.jsonl"), HasSubstr("\"ended_by\":\"time_budget_s\""));
+    EXPECT_THAT(readFile(dir / "journal.jsonl"), HasSubstr("\"ended_by\":\"time_budget_s\""));
 }
 
 TEST(OwnExperiment, LatestIsTheNewestAndRunsAreListed) {

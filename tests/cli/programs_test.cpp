@@ -136,7 +136,7 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
     EXPECT_EQ(lines[14],
               "wrong_unit: error (metric 'number' is recorded in 'm', but declared in '1')");
     // What it printed is in the log.
-    EXPECT_THAT(readFile(dir + "/log.jsonl"),
+    EXPECT_THAT(readFile(dir + "/journal.jsonl"),
                 HasSubstr("drawing fails\\n\\u001b[1;31mno such scene"));
     EXPECT_FALSE(fs::exists(dir + "/scratch"));
 }

@@ -52,7 +52,7 @@ std::map<int, double> timesOf(const std::string& dir, const std::string& table) 
 /// How often a worker was given a case: the lines of the log that are no twin's.
 int measuredCount(const std::string& dir) {
     int count = 0;
-    for (const std::string& line : split(readFile(dir + "/log.jsonl"), '\n')) {
+    for (const std::string& line : split(readFile(dir + "/journal.jsonl"), '\n')) {
         const auto event = nlohmann::json::parse(line, nullptr, false);
         if (event.is_object() && event.value("event", "") == "case" && !event.contains("as")) {
             ++count;
@@ -192,7 +192,7 @@ TEST(Twins, WhatOneTableExpectsOrSkipsIsNotTheOthers) {
     const ProcessResult run = measure(configs, dir);
     EXPECT_EQ(run.exitCode, 4) << run.err;
     EXPECT_THAT(run.out, HasSubstr("1 of 4 finished, 1 failed, 2 failed or skipped as expected;"));
-    EXPECT_THAT(readFile(dir + "/log.jsonl"), HasSubstr("\"event\":\"retry\""))
+    EXPECT_THAT(readFile(dir + "/journal.jsonl"), HasSubstr("\"event\":\"retry\""))
         << "the second table does not expect it";
 }
 

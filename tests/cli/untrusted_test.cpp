@@ -73,7 +73,7 @@ TEST_F(Untrusted, LinksAreNotFollowed) {
 TEST_F(Untrusted, NothingIsWrittenThroughALink) {
     const fs::path aside = folder.path() / "aside";
     const fs::path target = folder.write("target", "mine\n");
-    for (const char* name : {"log.jsonl", "records.csv", "images", "images/index.csv", "lock",
+    for (const char* name : {"journal.jsonl", "records.csv", "images", "images/index.csv", "lock",
                              "tables", "claims.csv"}) {
         const fs::path path = fs::path(dir) / name;
         const bool isThere = fs::exists(path);
@@ -94,7 +94,7 @@ TEST_F(Untrusted, NothingIsWrittenThroughALink) {
 }
 
 TEST_F(Untrusted, PipesAreNotWaitedFor) {
-    for (const char* file : {"records.csv", "log.jsonl"}) {
+    for (const char* file : {"records.csv", "journal.jsonl"}) {
         const std::string path = dir + "/" + file;
         const std::string content = readFile(path);
         fs::remove(path);
@@ -160,7 +160,7 @@ TEST_F(Untrusted, FilesLargerThanThoseOfAnyRunAreRefused) {
     for (const auto& [name, mostMib] : {std::pair{"plan.json", 512},
                                         {"manifest.json", 64},
                                         {"records.csv", 1024},
-                                        {"log.jsonl", 512},
+                                        {"journal.jsonl", 512},
                                         {"images/index.csv", 256}}) {
         const fs::path path = fs::path(dir) / name;
         const std::uintmax_t size = fs::file_size(path), most = std::uintmax_t(mostMib) << 20;
@@ -174,7 +174,7 @@ TEST_F(Untrusted, FilesLargerThanThoseOfAnyRunAreRefused) {
         expectRefused({"merge", "--out", out, dir}, why);
         fs::remove_all(out);
         // Nor need what does not read the log be without its tables.
-        const bool isLog = name == std::string_view("log.jsonl");
+        const bool isLog = name == std::string_view("journal.jsonl");
         for (const char* command : {"table", "claims"}) {
             EXPECT_EQ(mockGfxrepro({command, dir}).exitCode, isLog ? 0 : 2) << name;
         }
@@ -184,14 +184,14 @@ TEST_F(Untrusted, FilesLargerThanThoseOfAnyRunAreRefused) {
 }
 
 TEST_F(Untrusted, LinesOfALogTakeLittleMemory) {
-    const std::string log = readFile(dir + "/log.jsonl");
-    folder.write("run/log.jsonl", log + std::string(60'000'000, '\n'));
+    const std::string log = readFile(dir + "/journal.jsonl");
+    folder.write("run/journal.jsonl", log + std::string(60'000'000, '\n'));
     const ProcessResult report = runProgram(
         {"/bin/sh", "-c", "ulimit -v 1500000; exec " GFXREPRO_MOCK_PROGRAM " report " + dir});
     EXPECT_EQ(report.exitCode, 0) << report.err;
-    folder.write("run/log.jsonl", "{}\n" + std::string((1 << 20) + 1, 'x') + "\n");
+    folder.write("run/journal.jsonl", "{}\n" + std::string((1 << 20) + 1, 'x') + "\n");
     expectRefused({"report", dir},
-                  dir + "/log.jsonl:2: a line of 1048577 bytes; at most 1048576 are read\n");
+                  dir + "/journal.jsonl:2: a line of 1048577 bytes; at most 1048576 are read\n");
 }
 
 TEST_F(Untrusted, WhatHasAnotherShapeIsSaidWithItsPlace) {
@@ -212,12 +212,12 @@ TEST_F(Untrusted, WhatHasAnotherShapeIsSaidWithItsPlace) {
          "'/invocations/0/command' is null; expected text");
     with(manifest, "/gl/balance", nlohmann::ordered_json::object(), {"table", dir},
          "'/gl/balance/fragment_gflops' is missing");
-    folder.write("run/log.jsonl",
+    folder.write("run/journal.jsonl",
                  "{\"event\": \"case\", \"case\": \"a\", \"cost\": {\"load_s\": 0, "
                  "\"setup_s\": 0, \"render_s\": 0, \"record_s\": 0, "
                  "\"peak_bytes\": 1e300}}\n");
     expectRefused({"report", dir}, dir +
-                                       "/log.jsonl:1: '/cost/peak_bytes' is number; expected a "
+                                       "/journal.jsonl:1: '/cost/peak_bytes' is number; expected a "
                                        "whole number\n");
     folder.write("run/submission.json", "{}");
     with("submission.json", "/units", {1, "x"}, {"submit", "--status", dir},

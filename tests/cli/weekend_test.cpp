@@ -37,7 +37,7 @@ std::string readShared(const std::string& path) {
 void waitForStarts(const std::string& dir, std::size_t count) {
     const std::string start = "\"event\":\"start\"";
     for (int i = 0; i < 400; ++i) {
-        const std::string log = readShared(dir + "/log.jsonl");
+        const std::string log = readShared(dir + "/journal.jsonl");
         std::size_t found = 0;
         for (std::size_t at = log.find(start); at != std::string::npos;
              at = log.find(start, at + 1)) {
@@ -244,7 +244,7 @@ TEST(Weekend, WhatTookTheMachineDownInOneProcessIsNotTriedInTheOthers) {
         if (row.status == records::Status::Ok) continue;
         EXPECT_EQ(row.status, records::Status::Crash) << "process " << row.process;
     }
-    const std::string log = readFile(dir + "/log.jsonl");
+    const std::string log = readFile(dir + "/journal.jsonl");
     EXPECT_EQ(log.find("\"process\":2,\"status\":\"timeout\""), std::string::npos);
 }
 
@@ -321,7 +321,7 @@ void expectNoTimeout(const std::function<void(BackgroundProgram&, pid_t)>& suspe
     ASSERT_EQ(workers.size(), 1U);
     suspend(run, workers.front());
     EXPECT_EQ(run.wait().exitCode, 0);
-    EXPECT_EQ(readFile(dir + "/log.jsonl").find("retry"), std::string::npos);
+    EXPECT_EQ(readFile(dir + "/journal.jsonl").find("retry"), std::string::npos);
     EXPECT_EQ(rowsOf(dir, "number").front().status, records::Status::Ok);
 }
 

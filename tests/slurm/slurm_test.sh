@@ -89,7 +89,7 @@ cat "$D/status.txt"
 [ "$(grep -c ' complete$' "$D/status.txt")" = 5 ] || fail "the status does not say complete five times"
 # What was measured before the task went was not measured again: a case ends once in all logs (and once as a retry).
 for k in 1 2 3 4; do
-    [ -z "$(grep -h '"event":"case"' "$out/shards/$k/log.jsonl" | grep '"status":"ok"' | sed 's/.*"case":"\([0-9a-f]*\)".*/\1/' | sort | uniq -d)" ] ||
+    [ -z "$(grep -h '"event":"case"' "$out/shards/$k/journal.jsonl" | grep '"status":"ok"' | sed 's/.*"case":"\([0-9a-f]*\)".*/\1/' | sort | uniq -d)" ] ||
         fail "shard $k measured a case twice"
 done
 [ "$(grep -c '"command"' "$out/shards/$requeued/manifest.json")" -ge 2 ] || fail "the requeued shard did not go on"

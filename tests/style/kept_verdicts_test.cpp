@@ -59,7 +59,7 @@ std::map<std::pair<std::string, std::string>, std::vector<Kept>> keptVerdicts(
 /// By name alone: kept results have no plan that knows with which seeds they were loaded.
 std::set<std::string> scenesOf(const config::Experiment& experiment) {
     std::set<std::string> scenes;
-    for (const config::CaseSpec& item : config::expandCases(experiment)) {
+    for (const config::Case& item : config::expandCases(experiment)) {
         if (!item.scene.isNull()) scenes.insert(scene::sceneName(item.scene.text()));
     }
     return scenes;

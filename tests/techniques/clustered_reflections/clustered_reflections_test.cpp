@@ -46,9 +46,9 @@ TEST(ReflectionParamsTest, ErrorsOfBothWaysAreMeasuredOnAllCameraPaths) {
     const std::filesystem::path configs = GFXREPRO_CONFIGS;
     for (const char* const profile : {"full", "paper"}) {
         std::set<std::pair<std::string, OwnReflector>> measured;
-        for (const config::CaseSpec& one : config::expandCases(config::loadExperiment(
+        for (const config::Case& one : config::expandCases(config::loadExperiment(
                  configs / "xie2017" / "section-4.7.4.yaml", {.profile = profile}, configs))) {
-            Params params = test::paramsOf(kClusteredReflections, one.params.toJson().dump());
+            Params params = test::paramsOf(kClusteredReflections, one.given.toJson().dump());
             const ReflectionParams read(params);
             if (!read.measuresErrors) continue;
             measured.emplace(one.scene.toJson().dump() + read.view, read.clustered.ownReflector);

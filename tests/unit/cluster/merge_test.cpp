@@ -160,19 +160,19 @@ TEST(Merge, LogsAreNotLargerThanWhatIsRead) {
         const std::string whole = line + std::string(100, name[0]) + "\"}\n";
         const std::string cut = R"({"event":"case","cost":{"load_s":1.5},"output":")"
                                 "[left out: the logs of the shards are large]\"}\n";
-        folder.write(std::string(name) + "/log.jsonl", whole + "{\"event\":\"x\"}\n" + whole);
+        folder.write(std::string(name) + "/journal.jsonl", whole + "{\"event\":\"x\"}\n" + whole);
         shards.push_back({folder.path() / name, {}});
         expected += whole + "{\"event\":\"x\"}\n" + cut;
     }
-    EXPECT_EQ(cluster::mergedLog(shards, 600), expected);
-    EXPECT_EQ(cluster::mergedLog(shards).size(), expected.size() + 2 * (100 - 44 + 13));
+    EXPECT_EQ(cluster::mergedJournal(shards, 600), expected);
+    EXPECT_EQ(cluster::mergedJournal(shards).size(), expected.size() + 2 * (100 - 44 + 13));
 }
 
 TEST(Merge, WhatBeganIsInALogOfAnyLength) {
     const TemporaryFolder folder;
     const std::string line = R"({"event":"start","case":"a","deep":[[1]],"message":"many words"})";
-    folder.write("a/log.jsonl", line + '\n' + line + "\ntorn");
-    EXPECT_EQ(cluster::mergedLog({{folder.path() / "a", {}}}, 1000, line.size()),
+    folder.write("a/journal.jsonl", line + '\n' + line + "\ntorn");
+    EXPECT_EQ(cluster::mergedJournal({{folder.path() / "a", {}}}, 1000, line.size()),
               line + '\n' + R"({"event":"start","case":"a"})" + "\n\n");
 }
 
@@ -210,7 +210,7 @@ TEST(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
 
 TEST(ForeignTimes, TablesBetweenTwoRoundsAreMeasuredAgain) {
     run::Plan plan = makePlan();
-    for (run::Case& item : plan.cases) {
+    for (config::Case& item : plan.cases) {
         if (item.measure.lane == config::Measure::Lane::Quality) continue;
         item.measure.timeBudgetS = 60.0;
         item.measure.processes = 2;

@@ -11,7 +11,7 @@ namespace gfxrepro::test {
 namespace {
 
 using cluster::Predictor;
-using run::Case;
+using config::Case;
 using Source = cluster::Prediction::Source;
 
 TEST(Predictions, NothingIsKnownOfNothing) {

@@ -13,7 +13,7 @@
 namespace gfxrepro::test {
 namespace {
 
-using run::Case;
+using config::Case;
 using Lane = config::Measure::Lane;
 using ::testing::ElementsAre;
 

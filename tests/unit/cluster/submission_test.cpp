@@ -71,14 +71,14 @@ TEST(Submission, ArrayIndices) {
 TEST(Submission, TimeLimits) {
     run::Plan plan;
     plan.cases = {makeCase("t/1", "a", 1), makeCase("t/1", "a", 2), makeCase("t/1", "a", 3)};
-    for (run::Case& item : plan.cases) item.measure.timeLimitS = 3600.0;
+    for (config::Case& item : plan.cases) item.measure.timeLimitS = 3600.0;
     const std::vector<int> shardOf = {0, 1, 1};
     // The second shard: twice 90 s and ten minutes.
     EXPECT_EQ(cluster::timeLimitMin(plan, shardOf, {60.0, 30.0, 60.0}, true), 13);
     // Unknown: two tries of each of the two cases, and the start.
     EXPECT_EQ(cluster::timeLimitMin(plan, shardOf, {1.0, 1.0, 1.0}, false), 240);
     // Never more than the cases may take themselves, and ten minutes.
-    for (run::Case& item : plan.cases) item.measure.timeLimitS = 30.0;
+    for (config::Case& item : plan.cases) item.measure.timeLimitS = 30.0;
     EXPECT_EQ(cluster::timeLimitMin(plan, shardOf, {0.0, 9000.0, 9000.0}, true), 12);
 }
 

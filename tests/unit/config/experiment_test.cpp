@@ -131,7 +131,7 @@ TEST_F(ExperimentTest, VoxelizationTable) {
     const auto cases = expandCases(table);
     ASSERT_EQ(cases.size(), 6U);
     EXPECT_EQ(cases[2].scene.text(), "models/bunny");
-    EXPECT_EQ(cases[2].params.toFlowText(), "{resolution: 256, voxel: byte, method: worksheet}");
+    EXPECT_EQ(cases[2].given.toFlowText(), "{resolution: 256, voxel: byte, method: worksheet}");
     EXPECT_EQ(cases[2].outputWidthPx, 512);
 
     ASSERT_EQ(table.layout.rows.size(), 1U);
@@ -185,9 +185,9 @@ TEST_F(ExperimentTest, TerrainTable) {
     const Experiment table = load(kTerrain);
     const auto cases = expandCases(table);
     ASSERT_EQ(cases.size(), 10U);
-    EXPECT_EQ(cases[9].params.toFlowText(),
+    EXPECT_EQ(cases[9].given.toFlowText(),
               "{method: adaptive, block: 32, tile_patches: 8, tau: 4, delta_s: 10}");
-    EXPECT_EQ(cases[9].axes[0].value.asInteger(), 10);
+    EXPECT_EQ(cases[9].axes.entries()[0].value.asInteger(), 10);
     EXPECT_EQ(cases[0].scene.text(), "terrain/puget_sound");
     EXPECT_EQ(cases[0].outputHeightPx, 800);
     EXPECT_TRUE(table.claims[0].isStrict);
@@ -241,7 +241,7 @@ TEST_F(ExperimentTest, DocumentsRecreateTheExperiment) {
         const auto casesAgain = expandCases(again);
         ASSERT_EQ(casesAgain.size(), cases.size());
         for (std::size_t i = 0; i < cases.size(); ++i) {
-            EXPECT_TRUE(casesAgain[i].params.sameContent(cases[i].params));
+            EXPECT_TRUE(casesAgain[i].given.sameContent(cases[i].given));
             EXPECT_TRUE(casesAgain[i].scene.sameContent(cases[i].scene));
         }
     }
@@ -326,8 +326,8 @@ TEST_F(ExperimentTest, ParametersOfScenesMergeByKey) {
         "layout: {rows: scene, columns: {c: {where: {spread: 0.3}, metric: m}}}\n";
     const auto paramsOf = [&](const ExperimentOptions& options) {
         std::vector<std::string> params;
-        for (const CaseSpec& spec : expandCases(load(text, options))) {
-            params.push_back(spec.params.toFlowText());
+        for (const Case& item : expandCases(load(text, options))) {
+            params.push_back(item.given.toFlowText());
         }
         return params;
     };
@@ -390,7 +390,7 @@ TEST_F(ExperimentTest, Overrides) {
     const auto cases = expandCases(table);
     ASSERT_EQ(cases.size(), 6U);
     EXPECT_EQ(cases[5].scene.text(), "models/bunny");
-    EXPECT_EQ(cases[5].params.toFlowText(), "{resolution: 64, method: worksheet, slices: 8, k: 5}");
+    EXPECT_EQ(cases[5].given.toFlowText(), "{resolution: 64, method: worksheet, slices: 8, k: 5}");
 
     EXPECT_EQ(errorText([] { parseOverride("resolution"); }),
               "'resolution' on the command line; allowed: key=value");
@@ -450,7 +450,7 @@ TEST_F(ExperimentTest, SweptOutputSizes) {
     ASSERT_EQ(cases.size(), 2U);
     EXPECT_EQ(cases[1].outputWidthPx, 128);
     EXPECT_EQ(cases[1].outputHeightPx, 64);
-    EXPECT_EQ(cases[1].params.toFlowText(), "{}");
+    EXPECT_EQ(cases[1].given.toFlowText(), "{}");
     EXPECT_EQ(errorWith("sweep: {output.width: [0]}"),
               "DIR/zju/a.yaml:4:24: output.width is 0; allowed: a whole number, 1 … 16384 pixels");
     EXPECT_EQ(errorWith("sweep: {output.size: [1]}"),

@@ -78,12 +78,13 @@ ReportRun runIn(const std::filesystem::path& folder, double drawMs = 8.0) {
     run.manifest = {{"cpu", "Xeon <script>"},
                     {"scenes", {{"models/duck", {{"kind", "stand-in"}}}}}};
     run.experiments = {experiment()};
-    run.cases = {{records()[0].caseId,
-                  "zju2005/9.9",
-                  "zju2005/9.9 scene=models/duck",
-                  "gfxrepro run 'a<b'",
-                  {"ok"}}};
-    run.commands = {{"zju2005/9.9", "gfxrepro reproduce zju2005/9.9 --profile quick"}};
+    config::Case& shown = run.cases.emplace_back();
+    shown.id = records()[0].caseId;
+    shown.experiment = "zju2005/9.9";
+    shown.axes = parseYaml("scene: models/duck", "axes");
+    run.commands = {{"zju2005/9.9", "gfxrepro reproduce zju2005/9.9 --profile quick"},
+                    {shown.id, "gfxrepro run 'a<b'"}};
+    run.events = {{shown.id, {"ok"}}};
     judge(run, records(drawMs));
     return run;
 }

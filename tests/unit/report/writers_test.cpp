@@ -180,8 +180,8 @@ TEST(Writers, ClaimFiles) {
     context.tried[{"zju2005/9.9", "A"}] = {claims::Verdict::Holds, "none of the 5 tried"};
     context.tried[{"zju2005/9.9", "B"}] = {claims::Verdict::Holds, "bias (of 5 tried)"};
     const auto results = claims::evaluateClaims({experiment()}, tables, context);
-    using Outcome = records::CaseResult::Outcome;
-    const std::vector<records::CaseResult> cases = {
+    using Outcome = records::CaseEnd::Outcome;
+    const std::vector<records::CaseEnd> cases = {
         {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Measured},
         {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Failed, "crash: <11>"},
         {"zju2005/9.9", "zju2005/9.9 scene=b", Outcome::Skipped, "missing: too slow"},

@@ -424,10 +424,10 @@ TEST(Cases, SayWhichSceneTheyTake) {
     const std::vector<Case> cases =
         ledger.cases(ledger.load("scene: grass\nmeasure: {scene_seeds: 2}\n"));
     const nlohmann::ordered_json params = cases[1].recordedParams().toJson();
-    EXPECT_EQ(params.at(tables::kStandsFor), "grass");
-    EXPECT_EQ(params.at(tables::kSceneSample), 1);
+    EXPECT_EQ(params.at(config::kStandsFor), "grass");
+    EXPECT_EQ(params.at(config::kSceneSample), 1);
     EXPECT_EQ(cases[1].title(), "sweep/t (grass@4)");
-    EXPECT_EQ(cases[0].recordedParams().find(tables::kStandsFor), nullptr);
+    EXPECT_EQ(cases[0].recordedParams().find(config::kStandsFor), nullptr);
 }
 
 TEST(Plan, KeepsWhatIsAssumed) {

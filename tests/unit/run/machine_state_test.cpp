@@ -219,7 +219,7 @@ TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
     machine.read();
     Told told;
     run::MachineWatch watch(told, directory, {}, machine.root(), "", "");
-    const auto run = [&](const run::Case& item, double othersS) {
+    const auto run = [&](const config::Case& item, double othersS) {
         const run::Unit unit{&item, 0, {}};
         watch.unitBegan(unit);
         machine.busyS += 10.0 + othersS;
@@ -228,9 +228,9 @@ TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
         machine.read();
         watch.unitEnded(unit, records::Status::Ok, "");
     };
-    const run::Case loaded = makeCase("t/1", "a", 1, Lane::Timing);
-    const run::Case quiet = makeCase("t/2", "a", 1, Lane::Timing);
-    const run::Case untimed = makeCase("t/3", "a", 1);
+    const config::Case loaded = makeCase("t/1", "a", 1, Lane::Timing);
+    const config::Case quiet = makeCase("t/2", "a", 1, Lane::Timing);
+    const config::Case untimed = makeCase("t/3", "a", 1);
     run(loaded, 2.0);
     run(loaded, 6.0);
     run(quiet, 0.1);
@@ -247,7 +247,7 @@ TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
     EXPECT_EQ(run::machineStateNote(Json::object(), "t/1"), "");
 
     // A run that goes on knows what was before, but for times that are measured again.
-    std::vector<Json> log = run::readLog(directory.path() / "log.jsonl");
+    std::vector<Json> log = run::readJournal(directory.path() / "journal.jsonl");
     EXPECT_EQ(run::machineStatesIn(log).at("t/1").json(), watch.states().at("t/1"));
     log.push_back({{"event", "machine"}, {"table", "t/1"}});
     EXPECT_FALSE(run::machineStatesIn(log).contains("t/1"));
@@ -267,7 +267,7 @@ TEST(MachineWatch, TellsWhichCasesAreNotOfOneClock) {
         machine.write(device + "pp_dpm_sclk", fmt::format("0: {}Mhz *\n", clockMHz));
         watch.tick(phase);
     };
-    const auto run = [&](const run::Case& item, int process, int first, int second) {
+    const auto run = [&](const config::Case& item, int process, int first, int second) {
         const run::Unit unit{&item, process, {}};
         watch.unitBegan(unit);
         see("load", 345);
@@ -279,9 +279,9 @@ TEST(MachineWatch, TellsWhichCasesAreNotOfOneClock) {
         watch.unitEnded(unit, records::Status::Ok, "");
     };
     using Lane = config::Measure::Lane;
-    const run::Case steady = makeCase("t/1", "a", 1, Lane::Timing);
-    const run::Case moving = makeCase("t/1", "b", 1, Lane::Timing);
-    const run::Case apart = makeCase("t/1", "c", 1, Lane::Timing);
+    const config::Case steady = makeCase("t/1", "a", 1, Lane::Timing);
+    const config::Case moving = makeCase("t/1", "b", 1, Lane::Timing);
+    const config::Case apart = makeCase("t/1", "c", 1, Lane::Timing);
     run(steady, 0, 1980, 1950);
     run(moving, 0, 1980, 1410);
     run(apart, 0, 1980, 1980);
@@ -290,7 +290,7 @@ TEST(MachineWatch, TellsWhichCasesAreNotOfOneClock) {
                                           {apart.id, {1.695e9, 1.98e9}}};
     EXPECT_EQ(run::movedClocks({{"machine_states", watch.states()}}), expected);
     // Of a run that goes on, too.
-    const auto states = run::machineStatesIn(run::readLog(directory.path() / "log.jsonl"));
+    const auto states = run::machineStatesIn(run::readJournal(directory.path() / "journal.jsonl"));
     const Json again = {{"machine_states", {{"t/1", states.at("t/1").json()}}}};
     EXPECT_EQ(run::movedClocks(again), expected);
     EXPECT_TRUE(run::movedClocks(Json::object()).empty());
@@ -306,7 +306,7 @@ TEST(MachineWatch, SeesTheClockOfShortFrames) {
     machine.write(device + "gpu_busy_percent", "98\n");
     machine.write(device + "pp_dpm_sclk", "0: 1980Mhz *\n");
     run::MachineWatch watch(told, directory, {}, machine.root(), "", "/dev/dri/renderD128");
-    const run::Case item = makeCase("t/1", "a", 1, config::Measure::Lane::Timing);
+    const config::Case item = makeCase("t/1", "a", 1, config::Measure::Lane::Timing);
     const run::Unit unit{&item, 0, {}};
     watch.unitBegan(unit);
     watch.tick("render");

@@ -83,7 +83,7 @@ TEST_F(NotSurvived, TwinsAreGivenUpTogetherWhicheverBegan) {
 }
 
 TEST_F(NotSurvived, TimesHaveNoTwins) {
-    for (run::Case& item : plan.cases) item.measure.lane = config::Measure::Lane::Timing;
+    for (config::Case& item : plan.cases) item.measure.lane = config::Measure::Lane::Timing;
     die(kA);
     die(kA);
     EXPECT_THAT(lost(), ElementsAre(Pair(kA, twice)));

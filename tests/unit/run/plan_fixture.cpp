@@ -2,9 +2,9 @@
 
 namespace gfxrepro::test {
 
-run::Case makeCase(const std::string& experiment, const std::string& method, int size,
-                   config::Measure::Lane lane) {
-    run::Case item;
+config::Case makeCase(const std::string& experiment, const std::string& method, int size,
+                      config::Measure::Lane lane) {
+    config::Case item;
     item.experiment = experiment;
     item.technique = "mock";
     item.params = Node::map({});
@@ -17,11 +17,11 @@ run::Case makeCase(const std::string& experiment, const std::string& method, int
     return item;
 }
 
-cluster::PastCase makePast(const run::Case& item, double renderS) {
+cluster::PastCase makePast(const config::Case& item, double renderS) {
     return {item, {0.0, 0.0, renderS, 0.0, 1 << 20}};
 }
 
-records::Record makeRow(const run::Case& item, double value, int process) {
+records::Record makeRow(const config::Case& item, double value, int process) {
     records::Record row;
     row.caseId = item.id;
     row.table = item.experiment;

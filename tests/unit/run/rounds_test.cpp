@@ -19,7 +19,7 @@ run::Plan timedPlan() {
     plan.cases = {makeCase("q/1", "a", 1), makeCase("q/1", "b", 1),
                   makeCase("t/1", "a", 1, Lane::Timing), makeCase("t/1", "b", 1, Lane::Timing),
                   makeCase("t/1", "c", 1, Lane::Timing)};
-    for (run::Case& item : plan.cases) {
+    for (config::Case& item : plan.cases) {
         if (item.measure.lane == Lane::Quality) continue;
         item.measure.processes = 6;
         item.measure.relativeError = 0.05;
@@ -29,7 +29,7 @@ run::Plan timedPlan() {
     return plan;
 }
 
-records::Record timeRow(const run::Case& item, double timeMs, int process) {
+records::Record timeRow(const config::Case& item, double timeMs, int process) {
     records::Record row = makeRow(item, timeMs, process);
     row.metric = "wall_time_ms";
     return row;
@@ -61,7 +61,7 @@ TimePoint after(double seconds) {
 
 TEST(Units, GoForthAndBackByRounds) {
     run::Plan plan = timedPlan();
-    for (run::Case& item : plan.cases) item.measure.processes = 3;
+    for (config::Case& item : plan.cases) item.measure.processes = 3;
     EXPECT_THAT(namesOf(run::unitsOf(plan)),
                 ElementsAre("q/1 a 1 #0", "q/1 b 1 #0", "q/1 a 1 #1", "q/1 b 1 #1", "q/1 a 1 #2",
                             "q/1 b 1 #2", "t/1 a 1 #0", "t/1 b 1 #0", "t/1 c 1 #0", "t/1 c 1 #1",
@@ -115,7 +115,7 @@ TEST(Rounds, EndAtTheRelativeError) {
 /// It is small enough at once, and rounds follow (FrameTimes::isKnownTo).
 TEST(Rounds, GoOnToTheLastOfEqualDepth) {
     run::Plan plan = timedPlan();
-    for (run::Case& item : plan.cases) item.measure.processesAtMost = 20;
+    for (config::Case& item : plan.cases) item.measure.processesAtMost = 20;
     run::Rounds rounds(plan, rows(plan, 6, 0.08), {});
     for (int process = 6; process < 14; ++process) {
         EXPECT_EQ(rounds.next("t/1").size(), 3U);
@@ -178,7 +178,7 @@ TEST(Rounds, ACaseThatFailedTakesNoPartInFurtherOnes) {
 
 TEST(Rounds, AreAsManyAsAskedForWithoutATarget) {
     run::Plan plan = timedPlan();
-    for (run::Case& item : plan.cases) item.measure.processes = 5;  // too few for an interval
+    for (config::Case& item : plan.cases) item.measure.processes = 5;  // too few for an interval
     run::Rounds rounds(plan, rows(plan, 5, 0.5), {});
     EXPECT_THAT(rounds.next("t/1"), IsEmpty());
     EXPECT_EQ(rounds.ending("t/1")["ended_by"], "processes");

@@ -39,10 +39,10 @@ TEST(RunDirectory, TextsOfTheLogAreCut) {
     const TemporaryFolder folder;
     const run::RunDirectory directory = run::RunDirectory::create(folder.path() / "run");
     const std::string most(32768, '\1'), more = "begin" + std::string(100'000, '\1') + "end";
-    directory.log(
+    directory.note(
         {{"event", "case"}, {"title", more}, {"as", more}, {"message", more}, {"output", more}});
-    directory.log({{"event", "case"}, {"message", most}, {"output", most}});
-    const std::vector<run::Json> events = run::readLog(folder.path() / "run/log.jsonl");
+    directory.note({{"event", "case"}, {"message", most}, {"output", most}});
+    const std::vector<run::Json> events = run::readJournal(folder.path() / "run/journal.jsonl");
     ASSERT_EQ(events.size(), 2U);
     const std::string message = events[0]["message"], output = events[0]["output"];
     EXPECT_THAT(message, StartsWith("begin\1"));
@@ -56,37 +56,37 @@ TEST(RunDirectory, TextsOfTheLogAreCut) {
 TEST(RunDirectory, OutputsAreLeftOutOfALargeLog) {
     const TemporaryFolder folder;
     const run::RunDirectory directory = run::RunDirectory::create(folder.path() / "run");
-    const fs::path log = folder.path() / "run/log.jsonl";
+    const fs::path log = folder.path() / "run/journal.jsonl";
     const auto lastAt = [&](std::uintmax_t sizeBytes) {
         fs::resize_file(log, sizeBytes);  // of which the disk has nothing
-        directory.log({{"event", "case"}, {"message", "no end"}, {"output", "words"}});
+        directory.note({{"event", "case"}, {"message", "no end"}, {"output", "words"}});
         const MappedFile whole(log);
         return run::Json::parse(whole.text().substr(sizeBytes));
     };
     EXPECT_EQ(lastAt(64 << 20)["output"], "words");
     const run::Json beyond = lastAt((64 << 20) + 1);
-    EXPECT_EQ(beyond["output"], "[5 bytes left out: the log has 64 MiB]");
+    EXPECT_EQ(beyond["output"], "[5 bytes left out: the journal has 64 MiB]");
     EXPECT_EQ(beyond["message"], "no end");
 }
 
 TEST(RunDirectory, WhatBeganIsInALogOfAnyLength) {
     const TemporaryFolder folder;
     const run::RunDirectory directory = run::RunDirectory::create(folder.path() / "run");
-    const fs::path log = folder.path() / "run/log.jsonl";
+    const fs::path log = folder.path() / "run/journal.jsonl";
     constexpr std::uintmax_t kMost = std::uintmax_t{384} << 20;
     fs::resize_file(log, kMost);  // of which the disk has nothing
     const auto end = [&](int process) {
-        directory.log({{"event", "case"},
-                       {"case", "a"},
-                       {"title", "t"},
-                       {"process", process},
-                       {"status", "crash"},
-                       {"cost", {{"load_s", 1}}},
-                       {"message", "m"},
-                       {"output", "o"}});
+        directory.note({{"event", "case"},
+                        {"case", "a"},
+                        {"title", "t"},
+                        {"process", process},
+                        {"status", "crash"},
+                        {"cost", {{"load_s", 1}}},
+                        {"message", "m"},
+                        {"output", "o"}});
     };
     for (int i = 0; i < 3; ++i) {
-        directory.log({{"event", "start"}, {"case", "a"}, {"process", i}});
+        directory.note({{"event", "start"}, {"case", "a"}, {"process", i}});
         end(i);
     }
     const MappedFile whole(log);
@@ -101,7 +101,7 @@ TEST(RunDirectory, WhatBeganIsInALogOfAnyLength) {
         lines,
         testing::ElementsAre(
             R"({"event":"start","case":"a","process":0})",
-            R"({"event":"in_short","message":"the log has 384 MiB: what follows is without its texts"})",
+            R"({"event":"in_short","message":"the journal has 384 MiB: what follows is without its texts"})",
             R"({"event":"case","case":"a","process":0,"status":"crash"})",
             R"({"event":"start","case":"a","process":1})",
             R"({"event":"case","case":"a","process":1,"status":"crash"})",
@@ -112,11 +112,12 @@ TEST(RunDirectory, WhatBeganIsInALogOfAnyLength) {
 TEST(RunDirectory, NothingIsMeasuredWhoseBeginningWouldNotBeRead) {
     const TemporaryFolder folder;
     const run::RunDirectory directory = run::RunDirectory::create(folder.path() / "run");
-    fs::resize_file(folder.path() / "run/log.jsonl", (std::uintmax_t{511} << 20) + 1);
-    const auto start = [&] { directory.log({{"event", "start"}, {"process", 0}}); };
-    EXPECT_EQ(errorText(start, folder.path()),
-              "DIR/run/log.jsonl: has 511 MiB, and a larger one is not read again: nothing more is "
-              "measured into this folder");
+    fs::resize_file(folder.path() / "run/journal.jsonl", (std::uintmax_t{511} << 20) + 1);
+    const auto start = [&] { directory.note({{"event", "start"}, {"process", 0}}); };
+    EXPECT_EQ(
+        errorText(start, folder.path()),
+        "DIR/run/journal.jsonl: has 511 MiB, and a larger one is not read again: nothing more is "
+        "measured into this folder");
 }
 
 }  // namespace

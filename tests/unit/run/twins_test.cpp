@@ -17,7 +17,7 @@ namespace gfxrepro::test {
 namespace {
 
 namespace fs = std::filesystem;
-using run::Case;
+using config::Case;
 using Lane = config::Measure::Lane;
 using ::testing::ElementsAre;
 

@@ -28,8 +28,8 @@ config::Assumption assumption(const std::string& name, const std::string& value,
     return result;
 }
 
-run::Case caseWith(const std::string& params, const std::string& axes = "{}") {
-    run::Case item;
+config::Case caseWith(const std::string& params, const std::string& axes = "{}") {
+    config::Case item;
     item.params = node(params);
     item.axes = node(axes);
     item.outputWidthPx = 512;
@@ -76,7 +76,7 @@ TEST(Sensitivity, VariesWhatIsBoundByTurns) {
 }
 
 TEST(Sensitivity, VariesScenesBySeedAndByAlternatives) {
-    run::Case city = caseWith("{}"), tree = caseWith("{}");
+    config::Case city = caseWith("{}"), tree = caseWith("{}");
     city.scene = node("city");
     tree.scene = node("tree@2");
     tree.standsFor = node("tree");

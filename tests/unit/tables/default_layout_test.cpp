@@ -44,7 +44,7 @@ Recorded recordedAt(std::initializer_list<int> resolutions) {
     }
     Recorded records = maker.records();
     for (records::Record& record : records) record.table = "sweep/s";
-    for (PlannedCase& item : records.cases) item.table = "sweep/s";
+    for (config::Case& item : records.cases) item.experiment = "sweep/s";
     return records;
 }
 
@@ -78,7 +78,7 @@ TEST(DefaultLayout, AnAxisThatDoesNotApplyHasNoValue) {
     }
     Recorded records = maker.records();
     for (records::Record& record : records) record.table = "sweep/s";
-    for (PlannedCase& item : records.cases) item.table = "sweep/s";
+    for (config::Case& item : records.cases) item.experiment = "sweep/s";
     const Table table = buildTable(
         sweepOf("{method: [bins, none], gain: [2, 4], when: {gain: {method: bins}}}"), records);
     std::vector<std::string> gains;

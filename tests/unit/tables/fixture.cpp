@@ -15,11 +15,35 @@ config::Experiment experimentFrom(const std::string& body) {
     return config::loadExperiment(file, {}, folder.path());
 }
 
+namespace {
+
+/// The case whose records say this scene and these parameters.
+config::Case caseOf(const std::string& experiment, const std::string& scene, Node params) {
+    config::Case item;
+    item.experiment = experiment;
+    if (!scene.empty()) item.scene = Node::scalar(scene);
+    item.axes = Node::map({});
+    if (const Node* name = params.find(config::kStandsFor)) item.standsFor = *name;
+    if (const Node* sample = params.find(config::kSceneSample)) {
+        item.sceneSample = static_cast<int>(sample->asInteger());
+    }
+    if (const Node* output = params.find("output")) {
+        item.outputWidthPx = static_cast<int>(output->find("width")->asInteger());
+        item.outputHeightPx = static_cast<int>(output->find("height")->asInteger());
+    }
+    for (const char* name : {config::kStandsFor, config::kSceneSample, "output"})
+        params.erase(name);
+    item.params = std::move(params);
+    return item;
+}
+
+}  // namespace
+
 config::Experiment withPaperCases(
     config::Experiment experiment,
     std::initializer_list<std::pair<const char*, const char*>> cases) {
     for (const auto& [scene, params] : cases) {
-        experiment.paperCases.push_back({scene, parseYaml(params, "paper case")});
+        experiment.paperCases.push_back(caseOf(experiment.id, scene, parseYaml(params, "a case")));
     }
     return experiment;
 }
@@ -27,12 +51,12 @@ config::Experiment withPaperCases(
 namespace {
 
 /// Whether the recorded case lies at that point of the sweep: what both name is the same.
-bool isAt(const PlannedCase& recorded, const PlannedCase& point) {
-    const Node* standsFor = recorded.params.find(kStandsFor);
-    const std::string scene = standsFor ? standsFor->text() : recorded.scene;
-    if (recorded.table != point.table) return false;
-    if (!point.scene.empty() && scene != point.scene) return false;
-    for (const auto& [name, value] : point.params.entries()) {
+bool isAt(const config::Case& recorded, const config::Case& point) {
+    const std::string scene =
+        recorded.standsFor.isNull() ? recorded.recordedScene() : recorded.standsFor.text();
+    if (recorded.experiment != point.experiment) return false;
+    if (!point.scene.isNull() && scene != point.scene.text()) return false;
+    for (const auto& [name, value] : point.given.entries()) {
         const Node* own = recorded.params.find(name);
         if (own && !own->sameContent(value)) return false;
     }
@@ -41,26 +65,23 @@ bool isAt(const PlannedCase& recorded, const PlannedCase& point) {
 
 }  // namespace
 
-std::vector<PlannedCase> planOf(const config::Experiment& experiment, const Recorded& records) {
-    std::vector<PlannedCase> planned;
+std::vector<config::Case> planOf(const config::Experiment& experiment, const Recorded& records) {
+    std::vector<config::Case> planned;
     std::set<std::string> placed;
-    for (const config::CaseSpec& spec : config::expandCases(experiment)) {
-        PlannedCase point{
-            "", experiment.id, spec.scene.isNull() ? "" : spec.scene.text(), spec.params, {}};
-        point.params.setPath("output.width", Node::number(spec.outputWidthPx));
-        point.params.setPath("output.height", Node::number(spec.outputHeightPx));
-        for (const auto& [axis, value] : spec.axes) point.axes.push_back(axis);
+    for (config::Case& point : config::expandCases(experiment)) {
         bool isRecorded = false;
-        for (const PlannedCase& item : records.cases) {
+        for (const config::Case& item : records.cases) {
             if (!isAt(item, point)) continue;
             isRecorded = true;
             if (!placed.insert(item.id).second) continue;
             planned.push_back(item);
             planned.back().axes = point.axes;
         }
-        if (!isRecorded) planned.push_back(std::move(point));
+        if (isRecorded) continue;
+        for (const auto& [name, value] : point.given.entries()) point.params.set(name, value);
+        planned.push_back(std::move(point));
     }
-    for (const PlannedCase& item : records.cases) {
+    for (const config::Case& item : records.cases) {
         if (placed.insert(item.id).second) planned.push_back(item);
     }
     return planned;
@@ -87,8 +108,8 @@ RecordMaker& RecordMaker::beginCase(const std::string& scene, const std::string&
     const auto json = nlohmann::json::parse(params);
     if (json.contains("method")) current_.method = json["method"].get<std::string>();
     current_.scene = scene;
-    records_.cases.push_back(
-        {current_.caseId, current_.table, scene, parseJson(params, "params"), {}});
+    records_.cases.push_back(caseOf(current_.table, scene, parseJson(params, "params")));
+    records_.cases.back().id = current_.caseId;
     current_.lane = "timing";
     return *this;
 }

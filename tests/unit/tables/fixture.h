@@ -24,12 +24,12 @@ config::Experiment withPaperCases(config::Experiment experiment,
 
 /// Records with the cases that they are of.
 struct Recorded : std::vector<records::Record> {
-    std::vector<PlannedCase> cases;
+    std::vector<config::Case> cases;
 };
 
 /// The cases of the experiment's sweep, those that are recorded in the place of those that they
 /// are; behind them the other recorded ones.
-std::vector<PlannedCase> planOf(const config::Experiment& experiment, const Recorded& records);
+std::vector<config::Case> planOf(const config::Experiment& experiment, const Recorded& records);
 /// The table of a run with that plan.
 Table buildTable(const config::Experiment& experiment, const Recorded& records);
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,

@@ -285,7 +285,7 @@ TEST(Table, DoubtfulMeasurementIsNoNumber) {
 TEST(Table, OtherExperimentsArePassedOver) {
     Recorded records = duckAndBunny().records();
     for (records::Record& record : records) record.table = "zju2005/9.8";
-    for (PlannedCase& item : records.cases) item.table = "zju2005/9.8";
+    for (config::Case& item : records.cases) item.experiment = "zju2005/9.8";
     const Table table = buildTable(experimentFrom(kPlain), records);
     EXPECT_EQ(table.rows[0].cells[1].status, records::Status::Missing);
 }

@@ -1,4 +1,4 @@
-// How a case of a run ended.
+// How a case ended over all its processes.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace gfxrepro::records {
 
-/// How a case ended.
-struct CaseResult {
+/// How a case ended over all its processes.
+struct CaseEnd {
     enum class Outcome { Measured, Skipped, Failed };
     std::string table;  // "zju2005/2.1"
     std::string title;  // "zju2005/2.1 scene=models/duck"

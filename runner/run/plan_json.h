@@ -1,4 +1,4 @@
-// What identifies a plan and its cases.
+// plan.json, and what identifies a plan and its cases.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,6 +7,11 @@
 #include "runner/run/plan.h"
 
 namespace gfxrepro::run {
+
+/// A case as plan.json and a worker have it.
+nlohmann::ordered_json toJson(const Case& item);
+/// Throws Error for what is missing or of another kind.
+Case caseFromJson(const Node& node);
 
 /// The first 12 digits of the hash of everything that the case's results depend on: `written` is
 /// the case as plan.json has it, whatever its id.

@@ -1,0 +1,55 @@
+// What is measured: a point of an experiment's sweep, with all that decides its result.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/core/node.h"
+#include "runner/config/measure.h"
+
+namespace gfxrepro::config {
+
+/// Begins the name of an axis that is a parameter of the generated scene: "scene.blades".
+inline constexpr std::string_view kSceneAxisPrefix = "scene.";
+
+/// In a case's recorded parameters: the scene of the table whose place its own takes, and which of
+/// the seeds of a generated scene it has, from 0.
+inline constexpr const char* kStandsFor = "stands_for";
+inline constexpr const char* kSceneSample = "scene_sample";
+inline constexpr int kMostSceneSample = 999;  // of `measure.scene_seeds`
+
+/// One case. Of a plan it is complete: a worker needs nothing else.
+struct Case {
+    std::string id;          // 12 hexadecimal digits of the content hash
+    std::string experiment;  // "zju2005/2.1"
+    std::string technique;
+    Node program;                    // null, or the config's `program`
+    std::string programKey;          // identity of its files; empty where it is not at hand
+    Node scene;                      // null or a reference: what is loaded
+    Node standsFor;                  // what the config calls it, where that is another; else null
+    std::optional<int> sceneSample;  // from 0, where several seeds are measured
+    Node given;    // the parameters that the config gives: a technique is made from these
+    Node offered;  // null, or values that take the place of the technique's defaults
+    Node params;   // every declared parameter with its value, and `scene.NAME` of a
+                   // generated scene where the config gives it: what records say
+    Node axes;     // the swept ones
+    int outputWidthPx = 0;
+    int outputHeightPx = 0;
+    Measure measure;
+    std::uint64_t seed = 0;
+
+    std::string title() const;   // "zju2005/2.1 scene=models/duck"
+    std::string slug() const;    // "zju2005-2.1": for file names
+    std::string method() const;  // the parameter of that name; empty when there is none
+    /// As the config spells it, unless another takes its place: a user's own file is an absolute
+    /// path in `scene`. Empty for none.
+    std::string recordedScene() const;
+    /// `params` with the size of the output and which scene it is: what tables and images say.
+    Node recordedParams() const;
+    /// What the config gives of its generated scene, by the generator's names.
+    Node sceneParams() const;
+};
+
+}  // namespace gfxrepro::config
