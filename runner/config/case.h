@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "engine/core/node.h"
-#include "runner/config/measure.h"
+#include "runner/config/measure_spec.h"
 
 namespace gfxrepro::config {
 

@@ -13,7 +13,7 @@
 
 #include "engine/core/node.h"
 #include "runner/config/case.h"
-#include "runner/config/measure.h"
+#include "runner/config/measure_spec.h"
 #include "runner/config/outputs.h"
 
 namespace gfxrepro::config {

@@ -1,5 +1,7 @@
 // The sections whose keys are declared where they are read: `output`, `measure`,
 // `picture_tolerance`.
+#include "runner/config/measure_spec.h"
+
 #include <algorithm>
 #include <cmath>
 
