@@ -11,9 +11,11 @@
 #include "engine/core/node.h"
 #include "runner/config/experiment.h"
 
-namespace gfxrepro::config {
-
+namespace gfxrepro {
 class Params;
+}
+
+namespace gfxrepro::config {
 
 /// What the other sections may refer to.
 struct Vocabulary {
