@@ -7,7 +7,6 @@
 #include "engine/core/node.h"
 #include "runner/config/imported.h"
 #include "runner/config/schema_files.h"
-#include "runner/config/schema_types.h"
 
 namespace gfxrepro::config {
 

@@ -1,6 +1,5 @@
 // The keys of claims: what all have, and what each type has.
 #include "runner/config/schema_files.h"
-#include "runner/config/schema_types.h"
 
 namespace gfxrepro::config {
 

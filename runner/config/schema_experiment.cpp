@@ -1,6 +1,5 @@
 // The keys of tables, figures, sections and sweeps.
 #include "runner/config/schema_files.h"
-#include "runner/config/schema_types.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {

@@ -1,6 +1,5 @@
 // The keys of `program:`.
 #include "runner/config/schema_files.h"
-#include "runner/config/schema_types.h"
 
 namespace gfxrepro::config {
 
