@@ -2,8 +2,8 @@
 # bundle_test.sh SURROUNDINGS SOURCE BUILD: the bundle measures the smoke config as the build does. Exit 77: skipped.
 #   without_environment: `env -i`, every library from the bundle but the C library's
 #   beside_a_newer_cpp_library: the node's libstdc++ is taken where it is newer, and not where it is older
-#   packed: the archive is under 32 MiB and has the bundle, with the notices of what is in it
-#   released: scripts/release; its wheel, installed by pip in an environment of its own, is the program and the Python package
+#   released: scripts/release; its archive is under 32 MiB and has the bundle, with the notices of what is in it; its wheel,
+#     installed by pip in an environment of its own, is the program and the Python package
 #   in_a_bare_root: chroot into a folder of the bundle, the C library and Mesa; needs root
 set -euo pipefail
 surroundings=$1 source=$2 build=$3
@@ -79,22 +79,6 @@ beside_a_newer_cpp_library)
     called libstdc++.so.6.0.999
     [[ $(used) == *"$D/bundle/lib/"* ]] || fail "newer, and not its own: $(used)"
     ;;
-packed)
-    "$source/scripts/bundle" --tar "$D/packed" "$build"
-    [ "$(stat -c %s "$D/packed.tar.xz")" -lt $((32 << 20)) ] || fail "$(stat -c %s "$D/packed.tar.xz") bytes"
-    mkdir "$D/elsewhere"
-    tar -C "$D/elsewhere" -xf "$D/packed.tar.xz"
-    diff -r --no-dereference "$D/packed" "$D/elsewhere/packed" || fail "other files"
-    require_notices "$D/packed/licenses" "$D/packed/lib"
-    # A folder of something else is left as it is.
-    mkdir "$D/mine"
-    touch "$D/mine/kept"
-    ! "$source/scripts/notices" "$D/mine" "$build" 2>/dev/null && [ -e "$D/mine/kept" ] || fail "notices took a folder of something else"
-    # A library that nobody knows is refused rather than passed on without its notice.
-    cp "$(ldd "$build/gfxrepro" | awk '/libfmt/ {print $3}')" "$D/libmine.so"
-    ! "$source/scripts/notices" "$D/notices" "$build" "$D/libmine.so" 2>"$D/refused" || fail "libmine.so has a notice"
-    grep -qx "notices: $D/libmine.so is of no Debian package, so its notice is not known" "$D/refused" || fail "$(cat "$D/refused")"
-    ;;
 released)
     python=
     for one in python3 /usr/bin/python3; do ! "$one" -c 'import hatchling' 2>/dev/null || { python=$one && break; }; done
@@ -111,6 +95,21 @@ released)
         grep -q "  $file\$" SHA256SUMS || fail "no sum of $file"
     done
     ! command -v lintian >/dev/null || lintian --fail-on error ./*.deb || fail "lintian"
+
+    archive=gfxrepro-$version-linux-$(uname -m)
+    [ "$(stat -c %s "$archive.tar.xz")" -lt $((32 << 20)) ] || fail "$(stat -c %s "$archive.tar.xz") bytes"
+    tar -C "$D" -xf "$archive.tar.xz"
+    "$source/scripts/bundle" "$D/bundle" "$build"
+    diff -r --no-dereference "$D/bundle" "$D/$archive" || fail "other files"
+    require_notices "$D/$archive/licenses" "$D/$archive/lib"
+    # A folder of something else is left as it is.
+    mkdir "$D/mine"
+    touch "$D/mine/kept"
+    ! "$source/scripts/notices" "$D/mine" "$build" 2>/dev/null && [ -e "$D/mine/kept" ] || fail "notices took a folder of something else"
+    # A library that nobody knows is refused rather than passed on without its notice.
+    cp "$(ldd "$build/gfxrepro" | awk '/libfmt/ {print $3}')" "$D/libmine.so"
+    ! "$source/scripts/notices" "$D/notices" "$build" "$D/libmine.so" 2>"$D/refused" || fail "libmine.so has a notice"
+    grep -qx "notices: $D/libmine.so is of no Debian package, so its notice is not known" "$D/refused" || fail "$(cat "$D/refused")"
 
     env -i HOME="$D" PATH=/usr/bin:/bin "$D/env/bin/pip" install --quiet --disable-pip-version-check --no-index "./${wheels[0]}"
     command=$D/env/bin/gfxrepro
