@@ -13,7 +13,6 @@
 #include "runner/claims/claims.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
-#include "runner/cli/expectation_lists.h"
 #include "runner/cli/experiments.h"
 #include "runner/config/program.h"
 #include "runner/config/program_files.h"
@@ -213,10 +212,6 @@ int check(const Context& context, const Selection& selection) {
         run::keepOnly(all, selection.only);
         say("--only leaves {} of {} cases\n", all.cases.size(), caseCount);
     }
-    const std::vector<Error> unknown = unknownExpectations(
-        context, selection.names, {config::kDeviceClasses.begin(), config::kDeviceClasses.end()},
-        selection.assets);
-    if (!unknown.empty()) throw unknown.front();
     return kExitOk;
 }
 

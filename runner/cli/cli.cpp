@@ -135,7 +135,7 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
         ->option_text("NAME");
     describeApp->add_flag("--json-schema", o.describe.asJsonSchema,
                           "schema of NAME for editors: experiment (default), preset, scene, "
-                          "expectations, documents");
+                          "documents");
     describeApp->add_flag("--markdown", o.describe.asMarkdown,
                           "the keys of all kinds of files, as tables");
     describeApp->add_flag("--json", o.describe.asJson, "machine-readable");

@@ -39,7 +39,6 @@ struct Measured {
     regression::SeriesMap series;
     regression::CaseTexts failures, voidTimes;
     std::size_t untimedCases = 0;
-    regression::CaseTexts unexpected;  // of the failures, those that nobody expected
     std::string machine;
     std::string commit;
     bool isSoftware = false;
@@ -52,20 +51,6 @@ struct Measured {
     std::map<std::string, std::string> programs = {};  // hash and version by file
 };
 
-/// Of flaky cases, too.
-regression::CaseTexts unexpectedFailures(const run::StoredRun& run,
-                                         const regression::CaseParams& params) {
-    const run::Expectations expectations = run::expectationsOf(run.plan, run.manifest);
-    std::map<std::string, const config::Case*> cases;
-    for (const config::Case& item : run.plan.cases) cases[item.id] = &item;
-    std::vector<records::Record> rows;
-    std::ranges::copy_if(run.records, std::back_inserter(rows), [&](const records::Record& row) {
-        const auto item = cases.find(row.caseId);
-        return item == cases.end() || !expectations.isExpected(*item->second, row.status);
-    });
-    return regression::failuresOf(rows, params);
-}
-
 Measured readMeasured(const fs::path& runDir) {
     const run::StoredRun run = run::readRun(runDir);
     regression::CaseParams params;
@@ -75,7 +60,6 @@ Measured readMeasured(const fs::path& runDir) {
                       regression::failuresOf(run.records, params),
                       regression::voidTimesOf(run.records, params),
                       regression::untimedCases(run.records),
-                      unexpectedFailures(run, params),
                       run::machineName(run.manifest),
                       run.manifest.at("commit").get<std::string>(),
                       run.plan.deviceClass == "software",
@@ -145,7 +129,7 @@ class Turns {
     /// The newer program's rounds, without those that confirm.
     const Measured& newer() const { return newer_; }
     /// Cases of the newer program that failed in any round.
-    const regression::CaseTexts& unexpected() const { return unexpected_; }
+    const regression::CaseTexts& failures() const { return failures_; }
 
   private:
     void takeRound(regression::Sides& sides, const std::set<std::string>& tables,
@@ -160,10 +144,10 @@ class Turns {
         regression::append(sides.before, measured[0].series);
         regression::append(sides.after, measured[1].series);
         sides.failuresBefore.merge(measured[0].failures);
+        failures_.insert(measured[1].failures.begin(), measured[1].failures.end());
         sides.failuresAfter.merge(measured[1].failures);
         sides.voidBefore.merge(measured[0].voidTimes);
         sides.voidAfter.merge(measured[1].voidTimes);
-        unexpected_.merge(measured[1].unexpected);
         if (!tables.empty()) return;
         regression::append(newer_.series, measured[1].series);
         measured[1].series = std::move(newer_.series);
@@ -192,7 +176,7 @@ class Turns {
     const CompareOptions& options_;
     fs::path folder_;
     int roundCount_ = 0;
-    regression::CaseTexts unexpected_;
+    regression::CaseTexts failures_;
     Measured newer_;
 };
 
@@ -271,16 +255,14 @@ void sayAll(const regression::Comparison& comparison, const fs::path& folder) {
 
 /// A case that neither side measured weighs more than what the others say. One that the newer side
 /// alone lost is what they say.
-int exitCodeOf(const regression::Comparison& comparison,
-               const regression::CaseTexts& unexpectedFailures) {
+int exitCodeOf(const regression::Comparison& comparison, const regression::CaseTexts& failures) {
     const bool isUnmeasured =
         std::ranges::any_of(comparison.differences, [&](const Difference& one) {
-            return one.verdict == regression::Verdict::Failed &&
-                   unexpectedFailures.contains(one.key);
+            return one.verdict == regression::Verdict::Failed && failures.contains(one.key);
         });
     if (isUnmeasured) return kExitIncomplete;
     if (comparison.isAlarm()) return kExitClaimFailed;
-    return unexpectedFailures.empty() ? kExitOk : kExitIncomplete;
+    return failures.empty() ? kExitOk : kExitIncomplete;
 }
 
 }  // namespace
@@ -300,7 +282,7 @@ int compare(const CompareOptions& options) {
         Turns turns(options, folder);
         comparison.differences = turns.compare();
         newer = turns.newer();
-        newer.unexpected = turns.unexpected();
+        newer.failures = turns.failures();
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
@@ -326,7 +308,7 @@ int compare(const CompareOptions& options) {
                     regression::smallerIsBetterJson(comparison.differences));
     sayAll(comparison, folder);
     annotateChanges(comparison, newer.configs);
-    return exitCodeOf(comparison, newer.unexpected);
+    return exitCodeOf(comparison, newer.failures);
 }
 
 }  // namespace gfxrepro::cli

@@ -13,7 +13,6 @@
 #include "runner/config/imported.h"
 #include "runner/results/report_runs.h"
 #include "runner/run/case_filter.h"
-#include "runner/run/expectations.h"
 #include "runner/run/scheduler.h"
 
 namespace gfxrepro::cli {
@@ -56,9 +55,8 @@ bool matches(const fs::path& file, const std::string& pattern) {
     });
 }
 
-/// expect-software.yaml is beside the configs, but none.
 bool isConfig(const fs::path& file) {
-    return file.extension() == ".yaml" && !file.stem().string().starts_with("expect-");
+    return file.extension() == ".yaml";
 }
 
 /// Before anything is measured, for which it would be too late.
@@ -239,9 +237,6 @@ void warnOfChangedConfigs(const run::Plan& plan, const std::string& consequence)
         problem = planned.file.string() + " changed";
     }
     if (!problem.empty()) tell("warning: {}; {}\n", problem, consequence);
-    for (const std::string& list : run::changedExpectations(plan)) {
-        tell("warning: {}; {}\n", list, consequence);
-    }
 }
 
 run::Plan submittedPlan(const Context& context, const std::string& file,

@@ -68,11 +68,9 @@ int merge(const Context& context, const std::string& out, const std::vector<std:
     const std::vector<std::string> missing = cluster::missingUnits(merged);
     const run::Completeness counts = run::completeness(merged);
     printMissing(runs, missing);
-    say("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing{}\n", runs.size(),
+    say("merged {} shard{} into {}: {} of {} measured, {} failed, {} missing\n", runs.size(),
         runs.size() == 1 ? "" : "s", out, counts.measured(), counts.units, counts.failed,
-        counts.missing,
-        counts.expected > 0 ? fmt::format(", {} failed or skipped as expected", counts.expected)
-                            : "");
+        counts.missing);
     const int verdict = conclude(out);
     if (counts.isComplete()) return verdict;
     say("what is missing or failed is measured by: gfxrepro run --resume {}\n", out);

@@ -20,7 +20,7 @@
 #include "runner/results/made_from.h"
 #include "runner/results/report_runs.h"
 #include "runner/results/results.h"
-#include "runner/run/expectations.h"
+#include "runner/run/run.h"
 #include "runner/tables/printed_parameters.h"
 #include "runner/tables/table.h"
 
@@ -48,13 +48,6 @@ std::string failuresText(const run::Completeness& counts) {
 /// Says what is missing; the exit code of a command that has nothing worse to report.
 int completenessCode(const run::StoredRun& run) {
     const run::Completeness counts = run::completeness(run);
-    for (const std::string& line : counts.complaints) tell("{}\n", line);
-    for (const std::string& list : run::changedExpectations(run.plan)) {
-        tell("warning: {}; the run is judged by what it said when the run was planned\n", list);
-    }
-    if (counts.expected > 0) {
-        say("{} of {} failed or skipped as expected\n", counts.expected, counts.units);
-    }
     if (counts.isComplete()) return kExitOk;
     if (areAnnotationsWanted()) annotate(run::caseResults(run));
     say("incomplete: {} not run, {} failed{}{}\n", counts.missing, counts.failed,

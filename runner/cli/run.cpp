@@ -14,7 +14,6 @@
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
-#include "runner/cli/expectation_lists.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
 #include "runner/cli/progress.h"
@@ -128,12 +127,6 @@ Prepared prepareNew(const Context& context, const RunOptions& options, const run
     run::Plan plan = submitted ? std::move(*submitted)
                                : planFor(context, request, selection.profile,
                                          scheduler.assetsFolder, deviceClassOf(device));
-    if (!submitted) {
-        for (const Error& unknown : unknownExpectations(context, plan.request.configs,
-                                                        {plan.deviceClass}, selection.assets)) {
-            tell("warning: {}\n", unknown.what());
-        }
-    }
     warnOfSteepTerrain(plan, openCatalog(context, selection.assets));
     if (plan.deviceClass != deviceClassOf(device)) run::rebind(plan, deviceClassOf(device));
     if (!options.budget.empty()) {
@@ -287,7 +280,6 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
         (!request.configs.empty() && !fs::exists(fs::path(options.resume) / "plan.json"));
     Prepared run = isNew ? prepareNew(context, options, request, std::move(submitted), phases)
                          : prepareResumed(context, options, request, phases);
-    run.scheduler.expectations = run::expectationsOf(run.plan, run.manifest);
     run.scheduler.failuresAtMost = options.failuresAtMost;
     std::vector<run::Unit> units = run::remainingUnits(run.plan, run.directory);
     if (options.failuresAtMost > 0) putFailedLast(run.journal, units);
@@ -323,13 +315,11 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
     }
     const run::StoredRun stored = run::readRun(path);
     const run::Completeness counts = run::completeness(stored);
-    for (const std::string& line : counts.complaints) tell("{}\n", line);
     for (const std::string& line : outcome.warnings) tell("warning: {}\n", line);
     if (const std::string line = watch.warning(); !line.empty()) tell("warning: {}\n", line);
-    say("{} of {} finished{}{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
+    say("{} of {} finished{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
         countText(outcome.shared, "as a twin"), countText(outcome.flaky, "flaky"),
         countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
-        countText(outcome.expected, "failed or skipped as expected"),
         run.directory.recordsFile().string());
     const bool isComplete = counts.isComplete() && outcome.stopReason.empty();
     if (!isComplete && areAnnotationsWanted()) annotate(run::caseResults(stored));

@@ -109,7 +109,7 @@ int timeLimitMin(const run::Plan& plan, const std::vector<int>& shardOf,
     for (std::size_t i = 0; i < plan.cases.size(); ++i) {
         const config::Measure& measure = plan.cases[i].measure;
         predictedS[shardOf[i]] += timesS[i];
-        // An unexpected failure is tried twice.
+        // A failure is tried twice.
         allowedS[shardOf[i]] += 2.0 * measure.processes * measure.timeLimitS;
     }
     double limitS = 0.0;

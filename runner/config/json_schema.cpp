@@ -14,8 +14,7 @@ namespace {
 
 using namespace types;
 
-constexpr std::array<std::string_view, 5> kKinds = {"experiment", "preset", "scene", "expectations",
-                                                    "documents"};
+constexpr std::array<std::string_view, 4> kKinds = {"experiment", "preset", "scene", "documents"};
 
 /// A reference swallows what stands beside it in draft 7.
 Json beside(Json type) {
@@ -224,7 +223,7 @@ Json experimentOrPreset(bool isPreset, const SchemaNames& names) {
     return root;
 }
 
-Json sceneOrExpectations(std::string_view kind, const SchemaNames& names) {
+Json sceneOrDocuments(std::string_view kind, const SchemaNames& names) {
     for (const SchemaFile& file : schema()) {
         if (file.name != kind) continue;
         Json root = mapOfSections({&file.sections.front()});
@@ -292,7 +291,7 @@ std::string jsonSchema(std::string_view kind, const SchemaNames& names) {
                  {"title", fmt::format("gfxrepro {}", kind)}};
     const bool isPreset = kind == "preset";
     root.update(isPreset || kind == "experiment" ? experimentOrPreset(isPreset, names)
-                                                 : sceneOrExpectations(kind, names));
+                                                 : sceneOrDocuments(kind, names));
     return dumped(root, 0) + "\n";
 }
 

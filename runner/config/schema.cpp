@@ -11,7 +11,7 @@ namespace gfxrepro::config {
 
 const std::vector<SchemaFile>& schema() {
     static const std::vector<SchemaFile> files = {experimentSchema(), scene::sceneSchema(),
-                                                  expectationsSchema(), documentsSchema()};
+                                                  documentsSchema()};
     return files;
 }
 

@@ -48,7 +48,7 @@ struct SchemaNames {
     std::vector<std::string> generators;
 };
 
-/// `kind`: experiment, preset (what experiments extend), scene, expectations or documents.
+/// `kind`: experiment, preset (what experiments extend), scene or documents.
 /// JSON Schema, draft 7, as text. Throws UsageError for an unknown kind.
 std::string jsonSchema(std::string_view kind, const SchemaNames& names);
 

@@ -1,4 +1,4 @@
-// The keys of expectations and documents.
+// The keys of documents.
 #include "runner/config/schema_files.h"
 
 namespace gfxrepro::config {
@@ -6,40 +6,6 @@ namespace gfxrepro::config {
 namespace {
 
 using namespace types;
-
-SchemaSection lists() {
-    return {"expectations",
-            "",
-            "",
-            {{"fails", "[entry]", "[]", "cases that end otherwise than well",
-              listOf(refTo("expected_failure"))},
-             {"flakes", "[entry]", "[]", "cases that fail at times", listOf(refTo("expectation"))},
-             {"skips", "[entry]", "[]", "cases that are not tried", listOf(refTo("expectation"))}},
-            false};
-}
-
-std::vector<SchemaKey> entryKeys() {
-    return {{"table", "id", "required", "the experiment, as zju2005/2.1", text()},
-            {"at", "{axis: value | [values]}", "all cases", "axes or parameters", pairs()},
-            {"reason", "line", "required", "why", text()},
-            {"until",
-             "YYYY-MM-DD",
-             "required",
-             "the last day on which it counts",
-             {{"type", "string"}, {"pattern", "^[0-9]{4}-[0-9]{2}-[0-9]{2}$"}}}};
-}
-
-SchemaSection entries() {
-    return {"expectation", "flakes[]. or skips[].", "", entryKeys(), false};
-}
-
-SchemaSection failures() {
-    SchemaSection section{"expected_failure", "fails[].", "", entryKeys(), false};
-    section.keys.push_back({"status", "name", "any", "how the case ends",
-                            choice({"ok", "ambiguous", "flaky", "unsupported", "timeout", "oom",
-                                    "crash", "device-lost", "missing", "error"})});
-    return section;
-}
 
 SchemaSection documents() {
     SchemaSection section{
@@ -70,12 +36,6 @@ SchemaSection chapter() {
 }
 
 }  // namespace
-
-SchemaFile expectationsSchema() {
-    return {"expectations",
-            "`expect-software.yaml` and `expect-gpu.yaml`, beside configs",
-            {lists(), failures(), entries()}};
-}
 
 SchemaFile documentsSchema() {
     return {"documents",

@@ -8,7 +8,6 @@ namespace gfxrepro::config {
 SchemaFile experimentSchema();
 std::vector<SchemaSection> programSections();
 std::vector<SchemaSection> claimSections();
-SchemaFile expectationsSchema();
 SchemaFile documentsSchema();
 
 /// The JSON schema of a declared parameter's values.

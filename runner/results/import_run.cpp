@@ -15,7 +15,6 @@
 #include "runner/config/imported.h"
 #include "runner/config/time_names.h"
 #include "runner/results/tidy.h"
-#include "runner/run/expectations.h"
 #include "runner/run/ledger.h"
 #include "runner/run/manifest.h"
 #include "runner/run/plan_json.h"
@@ -303,9 +302,9 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
     if (!request.files.cases.empty()) content += sha256OfFile(request.files.cases);
     plan.buildId = "imported-" + sha256(content);
     plan.experiments = request.experiments;
-    std::vector<fs::path> configs;
-    for (const Experiment& experiment : plan.experiments) configs.push_back(experiment.file);
-    for (const fs::path& config : configs) plan.request.configs.push_back(config.string());
+    for (const Experiment& experiment : plan.experiments) {
+        plan.request.configs.push_back(experiment.file.string());
+    }
     if (plan.experiments.empty()) plan.experiments = {plainExperiment(request.files.file)};
     const bool isPlain = request.experiments.empty();
     run::requireCaseCount(numbers.cases.size(), plan.experiments.front());
@@ -328,7 +327,6 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
         });
         run::bindAssumptions(experiment, own, catalog, techniques);
     }
-    if (!configs.empty()) plan.expectations = run::findExpectations(configs);
     identify(numbers, plan);
     for (const ImportedRow& row : numbers.rows) {
         const config::Case& item = plan.cases[row.caseIndex];

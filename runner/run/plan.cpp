@@ -7,7 +7,6 @@
 #include "engine/core/hash.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/config/imported.h"
-#include "runner/run/expectations.h"
 #include "runner/run/ledger.h"
 #include "runner/run/plan_json.h"
 
@@ -91,10 +90,6 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
             std::ranges::move(cases, std::back_inserter(plan.cases));
         }
     }
-    std::vector<fs::path> files;
-    for (const config::Experiment& experiment : experiments) files.push_back(experiment.file);
-    plan.expectations = findExpectations(files);
-    for (const ExpectationList& list : plan.expectations) readExpectations(list);  // or throws
     plan.hash = hashOf(plan);
     return plan;
 }
@@ -161,13 +156,6 @@ std::string planDifference(const Plan& then, const Plan& now) {
             return "the config " + before.file.string() + " changed";
         }
     }
-    const auto textsOf = [](const Plan& plan) {
-        std::vector<std::string> texts;
-        for (const ExpectationList& list : plan.expectations) texts.push_back(list.text);
-        return texts;
-    };
-    if (textsOf(then) != textsOf(now))
-        return "the lists of expectations beside the configs changed";
     return "the experiments are not the same";
 }
 

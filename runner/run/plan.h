@@ -39,12 +39,6 @@ struct Shard {
     std::string name() const;  // "2/4"
 };
 
-/// `expect-<class>.yaml` as it was when a plan was made (expectations.h reads it).
-struct ExpectationList {
-    std::string file;  // absolute path
-    std::string text;
-};
-
 struct Plan {
     Request request;
     std::string profile;
@@ -61,8 +55,6 @@ struct Plan {
     /// The experiments as loaded (file text after merging), so that tables can be made again from
     /// the run directory alone; with their cases under the profile `paper`, which no worker sees.
     std::vector<config::Experiment> experiments;
-    /// Those beside the experiments' configs, of every class of device: rebind() may change it.
-    std::vector<ExpectationList> expectations;
     std::optional<Shard> shard;  // none: all cases
 
     /// Whether a run of this plan measures the case: all do but those of other shards.

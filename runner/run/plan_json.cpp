@@ -249,9 +249,6 @@ std::string planHash(const Plan& plan, const std::vector<Json>& documents) {
                     {"seed", plan.seed}};
     for (const Case& item : plan.cases) content["cases"].push_back(item.id);
     for (const Json& document : documents) content["documents"].push_back(document);
-    for (const ExpectationList& list : plan.expectations) {  // plans of older versions have none
-        content["expectations"].push_back({fs::path(list.file).filename().string(), list.text});
-    }
     return sha256(content.dump());
 }
 
@@ -336,9 +333,6 @@ void Plan::write(const std::function<void(std::string_view)>& to) const {
             json["experiments"].back()["metrics"] = outputsToJson(experiment.outputs);
         }
     }
-    for (const ExpectationList& list : expectations) {
-        json["expectations"].push_back({{"file", list.file}, {"text", list.text}});
-    }
     if (shard) {
         json["shard"] = {
             {"index", shard->index}, {"count", shard->count}, {"cases", shard->caseIds}};
@@ -392,11 +386,6 @@ Plan Plan::fromJsonFile(const fs::path& path) {
         }
         if (const Node* metrics = item.find("metrics")) {
             plan.experiments.back().outputs = outputsFrom(*metrics);
-        }
-    }
-    if (const Node* lists = node.find("expectations")) {
-        for (const Node& item : lists->items()) {
-            plan.expectations.push_back({requiredText(item, "file"), requiredText(item, "text")});
         }
     }
     for (const Node& item : required(node, "cases").items()) {

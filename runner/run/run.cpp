@@ -146,27 +146,8 @@ StoredRun readRun(const fs::path& runDir) {
     return run;
 }
 
-Expectations expectationsOf(const Plan& plan, const Json& manifest) {
-    const auto startOf = [](const Json& json) {
-        const auto found = json.find("started");
-        return found != json.end() && found->is_string() ? found->get<std::string>() : "";
-    };
-    const auto dayOf = [&](const Json& run) {
-        const Json& invocations = run.at("invocations");
-        std::string start = invocations.empty() ? "" : startOf(invocations.back());
-        return (start.empty() ? startOf(manifest) : start).substr(0, 10);
-    };
-    std::string day = dayOf(manifest);
-    if (isOnlyMerged(manifest)) {  // that of the shards, not of the merge
-        day.clear();
-        for (const Json& shard : manifest.at("merged")) day = std::max(day, dayOf(shard));
-    }
-    return {plan.expectations, plan.deviceClass, day};
-}
-
 Completeness completeness(const StoredRun& run) {
     const WorstRows worst = worstRows(run.records);
-    Expectations expectations = expectationsOf(run.plan, run.manifest);
     Completeness counts;
     for (const Unit& unit : unitsOf(run.plan, run.records)) {
         ++counts.units;
@@ -176,24 +157,17 @@ Completeness completeness(const StoredRun& run) {
             continue;
         }
         const records::Status status = found->second->status;
-        expectations.note(*unit.item, status);
         if (hasValues(status)) continue;
-        if (expectations.isExpected(*unit.item, status)) {
-            ++counts.expected;
-        } else {
-            ++counts.failed;
-            ++counts.failures[status];
-        }
+        ++counts.failed;
+        ++counts.failures[status];
     }
-    counts.complaints = expectations.complaints();
     return counts;
 }
 
 namespace {
 
 /// How one unit of a case ended; nothing more than that where it has values.
-records::CaseEnd resultOf(const Case& item, const records::Record* row,
-                          const Expectations& expectations) {
+records::CaseEnd resultOf(const Case& item, const records::Record* row) {
     using Ended = records::CaseEnd::Outcome;
     records::CaseEnd result{item.experiment, item.title()};
     if (!row) {
@@ -201,23 +175,12 @@ records::CaseEnd resultOf(const Case& item, const records::Record* row,
         result.text = "not run";
         return result;
     }
-    if (hasValues(row->status)) {
-        const Expectation* unmet = expectations.failureOf(item);
-        if (!unmet || row->status != records::Status::Ok) return result;
-        result.outcome = Ended::Failed;
-        result.text = fmt::format("ended well, but was expected to fail until {}: {} ({})",
-                                  unmet->until, unmet->reason, toString(unmet->location));
-        return result;
-    }
+    if (hasValues(row->status)) return result;
     result.text = records::statusName(row->status);
     if (!row->message.empty()) result.text += ": " + row->message;
-    const Expectation* excuse = expectations.excuseOf(item, row->status);
     const bool isSkipped =
         row->status == records::Status::Missing || row->status == records::Status::Unsupported;
-    result.outcome = excuse || isSkipped ? Ended::Skipped : Ended::Failed;
-    if (excuse && excuse->kind == Expectation::Kind::Fails) {
-        result.text += fmt::format("; expected until {}: {}", excuse->until, excuse->reason);
-    }
+    result.outcome = isSkipped ? Ended::Skipped : Ended::Failed;
     return result;
 }
 
@@ -225,33 +188,28 @@ records::CaseEnd resultOf(const Case& item, const records::Record* row,
 
 std::vector<records::CaseEnd> caseResults(const StoredRun& run) {
     using Ended = records::CaseEnd::Outcome;
-    const Expectations expectations = expectationsOf(run.plan, run.manifest);
     const WorstRows worst = worstRows(run.records);
     std::map<std::string, SourceLocation> files;
     for (const config::Experiment& experiment : run.plan.experiments) {
         files[experiment.id] = {experiment.file.string(), 0, 0};
     }
-    // Of the processes of a case what failed weighs most, then what was left out; a case that was
-    // to fail does so in all of them.
-    const auto weight = [](const records::CaseEnd& result, bool isUnmet) {
-        return result.outcome == Ended::Failed ? (isUnmet ? 1 : 3)
-                                               : (result.outcome == Ended::Skipped ? 2 : 0);
+    // Of the processes of a case what failed weighs most, then what was left out.
+    const auto weight = [](const records::CaseEnd& result) {
+        return result.outcome == Ended::Failed ? 2 : result.outcome == Ended::Skipped ? 1 : 0;
     };
-    std::map<std::string, std::pair<int, records::CaseEnd>> results;
+    std::map<std::string, records::CaseEnd> results;
     std::vector<std::string> order;
     for (const Unit& unit : unitsOf(run.plan, run.records)) {
         const Case& item = *unit.item;
         const auto found = worst.find({item.id, unit.process});
-        const records::Record* row = found == worst.end() ? nullptr : found->second;
-        records::CaseEnd result = resultOf(item, row, expectations);
+        records::CaseEnd result = resultOf(item, found == worst.end() ? nullptr : found->second);
         result.where = files[item.experiment];
-        const int own = weight(result, row && hasValues(row->status));
-        const auto [known, isNew] = results.try_emplace(item.id, own, result);
+        const auto [known, isNew] = results.try_emplace(item.id, result);
         if (isNew) order.push_back(item.id);
-        if (own > known->second.first) known->second = {own, std::move(result)};
+        if (weight(result) > weight(known->second)) known->second = std::move(result);
     }
     std::vector<records::CaseEnd> ordered;
-    for (const std::string& id : order) ordered.push_back(std::move(results.at(id).second));
+    for (const std::string& id : order) ordered.push_back(std::move(results.at(id)));
     return ordered;
 }
 

@@ -10,7 +10,6 @@
 
 #include "runner/records/case_end.h"
 #include "runner/records/records.h"
-#include "runner/run/expectations.h"
 #include "runner/run/plan.h"
 #include "runner/run/rounds.h"
 #include "runner/run/run_directory.h"
@@ -42,26 +41,20 @@ struct StoredRun {
 /// (noteChanges), and that several machines measured (noteMachines).
 StoredRun readRun(const std::filesystem::path& runDir);
 
-/// What the lists of expectations that the run's plan froze say, on the day of the run.
-Expectations expectationsOf(const Plan& plan, const Json& manifest);
-
 /// What became of the units of the run's plan, or of its shard. Every exit code that says whether a
 /// run is complete is of this.
 struct Completeness {
     int units = 0;
-    int missing = 0;   // without a row of any kind
-    int failed = 0;    // did not end `ok` or `flaky`, and nobody expected it
-    int expected = 0;  // likewise, as a list of expectations says
+    int missing = 0;                               // without a row of any kind
+    int failed = 0;                                // did not end `ok` or `flaky`
     std::map<records::Status, int> failures = {};  // the failed ones
-    std::vector<std::string> complaints = {};      // about expectations
 
     bool isComplete() const { return missing + failed == 0; }
-    int measured() const { return units - missing - failed - expected; }
+    int measured() const { return units - missing - failed; }
 };
 Completeness completeness(const StoredRun& run);
 
-/// How every case of the run's plan, or of its shard, ended: by its worst process. What was
-/// expected to fail and did is skipped, with the reason; what was and did not is a failure.
+/// How every case of the run's plan, or of its shard, ended: by its worst process.
 std::vector<records::CaseEnd> caseResults(const StoredRun& run);
 
 }  // namespace gfxrepro::run

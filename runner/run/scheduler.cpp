@@ -55,9 +55,9 @@ class SignalWatch {
     int fd_;
 };
 
-CaseResult notRun(records::Status status, const std::string& why) {
+CaseResult notTried(const std::string& why) {
     CaseResult result;
-    result.status = status;
+    result.status = records::Status::Crash;
     result.message = why;
     return result;
 }
@@ -86,7 +86,6 @@ class Scheduler {
           options_(options),
           phases_(phases),
           observer_(observer),
-          expectations_(options.expectations),
           images_(directory.path()),
           records_(directory.recordsFile()) {
         std::set<const Case*> cases;
@@ -145,16 +144,9 @@ class Scheduler {
     /// Gives out units in order, as far as the lanes allow.
     void dispatch() {
         while (hasNext()) {
-            if (const Expectation* skip = expectations_.skipOf(*waiting_.front().item)) {
-                const std::string why = "skipped until " + skip->until + ": " + skip->reason;
-                finish(waiting_.front(), notRun(records::Status::Missing, why), "");
-                waiting_.pop_front();
-                continue;
-            }
             const auto givenUp = options_.givenUp.find(waiting_.front().item->id);
             if (givenUp != options_.givenUp.end()) {
-                finish(waiting_.front(), notRun(records::Status::Crash, givenUp->second), "",
-                       "given_up");
+                finish(waiting_.front(), notTried(givenUp->second), "", "given_up");
                 waiting_.pop_front();
                 continue;
             }
@@ -178,8 +170,7 @@ class Scheduler {
         for (auto other = waiting_.begin(); other != waiting_.end();) {
             const auto otherKey = workKeys_.find(other->item);
             const bool isTwin = otherKey != workKeys_.end() && otherKey->second == key->second &&
-                                other->process == unit.process &&
-                                !expectations_.skipOf(*other->item);
+                                other->process == unit.process;
             if (isTwin) unit.twins.push_back(other->item);
             other = isTwin ? waiting_.erase(other) : std::next(other);
         }
@@ -250,13 +241,9 @@ class Scheduler {
         std::erase_if(workers_, [](auto& w) { return w->isGone(); });
     }
 
-    bool isTriedAgain(const Unit& unit, const CaseResult& result) const {
-        const auto isExpected = [&](const Case* item) {
-            return expectations_.isExpected(*item, result.status);
-        };
+    static bool isTriedAgain(const Unit& unit, const CaseResult& result) {
         return !unit.firstTry && result.status != records::Status::Ok &&
-               result.status != records::Status::Unsupported &&
-               !(isExpected(unit.item) && std::ranges::all_of(unit.twins, isExpected));
+               result.status != records::Status::Unsupported;
     }
 
     /// What a technique, a loader or a driver warned of while the unit ran.
@@ -292,16 +279,16 @@ class Scheduler {
         for (const Case* twin : unit.twins) {
             record({twin, unit.process, {}, {}, unit.item}, result, "", event);
         }
-        noteFailure(unit, result.status);
+        noteFailure(result.status);
         outcome_.voided += result.voidReason.empty() ? 0 : 1;
         outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
         outcome_.programs.insert(result.programs.begin(), result.programs.end());
     }
 
     /// Stops the run where the machine cannot be trusted any more, or as often as was asked for.
-    void noteFailure(const Unit& unit, records::Status status) {
+    void noteFailure(records::Status status) {
         lostInARow_ = status == records::Status::DeviceLost ? lostInARow_ + 1 : 0;
-        if (lostInARow_ >= 2 && !expectations_.isExpected(*unit.item, status)) {
+        if (lostInARow_ >= 2) {
             outcome_.stopReason = "the device was lost in two cases in a row";
         } else if (options_.failuresAtMost > 0 && outcome_.failed >= options_.failuresAtMost) {
             outcome_.stopReason = std::to_string(outcome_.failed) + " failed";
@@ -333,7 +320,7 @@ class Scheduler {
             if (unit.measuredAs) ++outcome_.shared;
             if (status == records::Status::Flaky) ++outcome_.flaky;
         } else {
-            ++(expectations_.isExpected(*unit.item, status) ? outcome_.expected : outcome_.failed);
+            ++outcome_.failed;
         }
     }
 
@@ -345,7 +332,6 @@ class Scheduler {
     const SchedulerOptions& options_;
     PhaseClock& phases_;
     Observer& observer_;
-    Expectations expectations_;
     records::ImageWriter images_;
     records::RecordWriter records_;
     std::vector<std::unique_ptr<WorkerHandle>> workers_;

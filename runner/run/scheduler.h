@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "runner/run/expectations.h"
 #include "runner/run/phase_clock.h"
 #include "runner/run/protocol.h"
 #include "runner/run/rounds.h"
@@ -34,8 +33,7 @@ class Observer {
 struct SchedulerOptions {
     std::string device = "auto";  // passed through to the workers
     std::string assetsFolder;
-    int jobs = 1;  // quality units at once
-    Expectations expectations = {};
+    int jobs = 1;              // quality units at once
     std::string command = {};  // as typed: images say what measured them
     /// Cases, by id, that are not tried (again), and are recorded as crashes with this message.
     std::map<std::string, std::string> givenUp = {};
@@ -48,8 +46,7 @@ struct RunOutcome {
     int flaky = 0;     // of these
     int shared = 0;    // of these: recorded from a twin's measurement
     int voided = 0;    // likewise, but their times are void: blank pictures or unequal work
-    int failed = 0;    // others, but for those that were expected
-    int expected = 0;  // that failed or were skipped as a list of expectations says
+    int failed = 0;    // others
     std::vector<std::string> warnings;  // of units, each once; then about times
     bool isInterrupted = false;         // by SIGINT, SIGTERM or SIGHUP
     std::string stopReason;             // of a stop before the end that nobody asked for then
@@ -68,9 +65,9 @@ gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,
                            bool isBalanceMeasured = false);
 
 /// Runs `units` and the further rounds that `rounds` asks for, appending records, images and
-/// journal lines as each ends. Of units that are twins the first is run and recorded for each; one
-/// that is to be skipped is no twin. A failure that nobody expects is tried once more, in a fresh
-/// worker; what passes then is `flaky`, unless the first worker was killed from outside.
+/// journal lines as each ends. Of units that are twins the first is run and recorded for each. A
+/// failure is tried once more, in a fresh worker; what passes then is `flaky`, unless the first
+/// worker was killed from outside.
 RunOutcome runUnits(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
                     const SchedulerOptions& options, PhaseClock& phases, Observer& observer);
 

@@ -178,24 +178,6 @@ TEST(Twins, FailTogetherAndAreTriedAgainTogether) {
     EXPECT_EQ(lines[2], lines[3]);
 }
 
-TEST(Twins, WhatOneTableExpectsOrSkipsIsNotTheOthers) {
-    const TemporaryFolder folder;
-    const std::vector<std::string> configs = {
-        writeTable(folder, "1", "sweep: {behaviour: [ok, throw]}\n"),
-        writeTable(folder, "2", "sweep: {behaviour: [ok, throw]}\n")};
-    folder.write("expect-software.yaml",
-                 "skips:\n  - {table: demo2026/1, at: {behaviour: ok}, reason: slow, "
-                 "until: 2999-01-01}\n"
-                 "fails:\n  - {table: demo2026/1, at: {behaviour: throw}, reason: known, "
-                 "until: 2999-01-01}\n");
-    const std::string dir = folder.path() / "run";
-    const ProcessResult run = measure(configs, dir);
-    EXPECT_EQ(run.exitCode, 4) << run.err;
-    EXPECT_THAT(run.out, HasSubstr("1 of 4 finished, 1 failed, 2 failed or skipped as expected;"));
-    EXPECT_THAT(readFile(dir + "/journal.jsonl"), HasSubstr("\"event\":\"retry\""))
-        << "the second table does not expect it";
-}
-
 TEST(Twins, ShardsKeepThemTogetherAndMerge) {
     const TemporaryFolder folder;
     const std::vector<std::string> configs = writeTables(folder);

@@ -216,9 +216,8 @@ TEST(Usage, DescribeSaysWhatItCannot) {
     const TemporaryFolder folder;
     EXPECT_EQ(refusal({"describe"}, folder),
               "gfxrepro: describe: say what; see 'gfxrepro describe --help'\n");
-    EXPECT_EQ(
-        refusal({"describe", "--json-schema", "table"}, folder),
-        "gfxrepro: schema 'table'; allowed: experiment, preset, scene, expectations, documents\n");
+    EXPECT_EQ(refusal({"describe", "--json-schema", "table"}, folder),
+              "gfxrepro: schema 'table'; allowed: experiment, preset, scene, documents\n");
     EXPECT_EQ(refusal({"describe", "--markdown", "voxelization"}, folder),
               "gfxrepro: describe: --markdown is for 'config' alone\n");
     // The name of a command is not taken for one.

@@ -60,7 +60,6 @@ class JsonSchema {
 };
 
 std::string kindOf(const fs::path& config) {
-    if (config.filename().string().starts_with("expect-")) return "expectations";
     if (config.filename() == "documents.yaml") return "documents";
     const std::string folder = *config.lexically_relative(kConfigs).begin();
     return folder == "scenes" ? "scene" : folder == "presets" ? "preset" : "experiment";
@@ -68,7 +67,7 @@ std::string kindOf(const fs::path& config) {
 
 TEST(JsonSchema, TakesEveryShippedFile) {
     int count = 0;
-    for (const std::string kind : {"experiment", "preset", "scene", "expectations", "documents"}) {
+    for (const std::string kind : {"experiment", "preset", "scene", "documents"}) {
         const JsonSchema schema(kind);
         for (const auto& file : fs::recursive_directory_iterator(kConfigs)) {
             if (file.path().extension() != ".yaml" || kindOf(file.path()) != kind) continue;
@@ -136,7 +135,7 @@ TEST(Documents, SayWhereTheyAreWrong) {
 }
 
 TEST(JsonSchema, RefusesWhatIsNoDocumentAtAll) {
-    for (const char* kind : {"experiment", "preset", "scene", "expectations", "documents"}) {
+    for (const char* kind : {"experiment", "preset", "scene", "documents"}) {
         const JsonSchema schema(kind);
         for (const char* yaml : {"[]", "text", "12", "nonsense: 1"}) {
             EXPECT_NE(schema.complaintAbout(yaml), "") << kind << ": " << yaml;
@@ -220,7 +219,7 @@ TEST(JsonSchema, KnowsTheParametersOfEachTechnique) {
     EXPECT_EQ(schema.complaintAbout("table: p/1\nextends: x.yaml\nparams: {resolutoin: 1}"), "");
 }
 
-TEST(JsonSchema, RefusesWrongScenesAndExpectations) {
+TEST(JsonSchema, RefusesWrongScenes) {
     const JsonSchema scene("scene");
     const std::string head = "scene: a/b\ndoc: d\nsources: ";
     EXPECT_EQ(scene.complaintAbout(head + "[{file: a.ply}, {generator: terrain, seed: 1}]"), "");
@@ -231,16 +230,6 @@ TEST(JsonSchema, RefusesWrongScenesAndExpectations) {
           "[{height_map: a.png, spacing_m: 0}]", "[{height_map: a.png, spacing_m: 1, detail_m: 1}]",
           "[{file: a.ply, points: 0}]"}) {
         EXPECT_NE(scene.complaintAbout(head + bad), "") << bad;
-    }
-    const JsonSchema expectations("expectations");
-    const std::string entry = "{table: p/1, reason: r, until: 2027-01-31";
-    EXPECT_EQ(expectations.complaintAbout("fails: [" + entry + ", status: timeout, at: {a: [1]}}]"),
-              "");
-    for (const std::string& bad :
-         {std::string("failures: []"), "skips: [" + entry + ", status: timeout}]",
-          "fails: [" + entry + ", status: late}]", std::string("fails: [{table: p/1}]"),
-          std::string("flakes: [{table: p/1, reason: r, until: soon}]")}) {
-        EXPECT_NE(expectations.complaintAbout(bad), "") << bad;
     }
 }
 
@@ -395,7 +384,7 @@ TEST(Schema, DescribesEveryKeyInWordsAndInMarkdown) {
 
 TEST(Schema, UnknownKindIsAUsageError) {
     EXPECT_EQ(test::errorText([] { (void)jsonSchema("table", {}); }),
-              "schema 'table'; allowed: experiment, preset, scene, expectations, documents");
+              "schema 'table'; allowed: experiment, preset, scene, documents");
 }
 
 }  // namespace
