@@ -16,31 +16,25 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kImagesHeader = "case,table,frame,name,png,exr,title,truth_of";
-/// Of runs before truths were named.
-constexpr std::string_view kOldHeader = "case,table,frame,name,png,exr,title";
 
 fs::path indexOf(const fs::path& runDir) {
     return runDir / "images" / "index.csv";
 }
 
-/// How many columns the rows under a header have.
-std::size_t columnCount(const SourceLocation& where, const std::vector<std::string>& header) {
+void requireHeader(const SourceLocation& where, const std::vector<std::string>& header) {
     const std::string found = joined(header, ",");
-    if (found != kImagesHeader && found != kOldHeader) {
-        throw Error(where,
-                    "expected the columns " + std::string(kImagesHeader) + ", found " + found);
-    }
-    return header.size();
+    if (found == kImagesHeader) return;
+    throw Error(where, "expected the columns " + std::string(kImagesHeader) + ", found " + found);
 }
 
-ImageEntry entryFromFields(const SourceLocation& where, std::size_t columns,
-                           const std::vector<std::string>& fields) {
-    if (fields.size() != columns) {
-        throw Error(where, "expected " + std::to_string(columns) + " columns, found " +
+ImageEntry entryFromFields(const SourceLocation& where, const std::vector<std::string>& fields) {
+    constexpr std::size_t kColumns = 8;
+    if (fields.size() != kColumns) {
+        throw Error(where, "expected " + std::to_string(kColumns) + " columns, found " +
                                std::to_string(fields.size()));
     }
-    ImageEntry entry{fields[0], fields[1], 0, fields[3], fields[4], fields[5], fields[6]};
-    if (columns > 7) entry.truthOf = fields[7];
+    ImageEntry entry{fields[0], fields[1], 0,         fields[3],
+                     fields[4], fields[5], fields[6], fields[7]};
     const char* end = fields[2].data() + fields[2].size();
     const auto [stop, error] = std::from_chars(fields[2].data(), end, entry.frame);
     if (error != std::errc() || stop != end) {
@@ -118,9 +112,9 @@ std::vector<ImageEntry> readImages(const fs::path& runDir) {
     std::vector<ImageEntry> images;
     std::map<std::tuple<std::string, int, std::string>, std::size_t> indices;
     if (!reader.next(fields)) return {};
-    const std::size_t columns = columnCount(reader.location(), fields);
+    requireHeader(reader.location(), fields);
     while (reader.next(fields)) {
-        ImageEntry entry = entryFromFields(reader.location(), columns, fields);
+        ImageEntry entry = entryFromFields(reader.location(), fields);
         for (const std::string* file : {&entry.png, &entry.exr}) {
             requireInside(reader.location(), runDir, *file);
         }

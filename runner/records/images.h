@@ -46,8 +46,7 @@ class ImageWriter {
 
 /// The images of a run, in the order in which they were made; none when there is no list. Of two
 /// entries of one case, frame and name the last counts (a case that was run again). A torn last
-/// line is passed over; other malformed rows are an Error with file and line. Lists of older runs
-/// end with the title.
+/// line is passed over; other malformed rows are an Error with file and line.
 std::vector<ImageEntry> readImages(const std::filesystem::path& runDir);
 
 }  // namespace gfxrepro::records

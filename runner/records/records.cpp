@@ -24,12 +24,6 @@ constexpr std::string_view kHeader =
     "schema,case,table,technique,method,scene,frame,repeat,process,lane,pass,metric,unit,value,"
     "status,message,rows";
 
-/// Of schema 2, whose rows had the parameters of their case, too.
-constexpr std::string_view kOlderHeader =
-    "schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,metric,unit,"
-    "value,status,message,rows";
-constexpr std::size_t kOlderParams = 6;
-
 constexpr std::array<std::string_view, 10> kStatusNames = {
     "ok",  "ambiguous", "flaky",       "unsupported", "timeout",
     "oom", "crash",     "device-lost", "missing",     "error"};
@@ -76,20 +70,16 @@ double numberField(const SourceLocation& where, const std::string& text) {
     return value;
 }
 
-Record recordFromFields(const SourceLocation& where, std::string_view header,
-                        std::vector<std::string>& fields) {
-    const auto count = static_cast<std::size_t>(std::ranges::count(header, ',') + 1);
+Record recordFromFields(const SourceLocation& where, std::vector<std::string>& fields) {
+    static const auto count = static_cast<std::size_t>(std::ranges::count(kHeader, ',') + 1);
     if (fields.size() != count) {
         throw Error(where, "expected " + std::to_string(count) + " columns, found " +
                                std::to_string(fields.size()));
     }
-    const bool isOlder = header == kOlderHeader;
-    const int expected = isOlder ? Record::kSchema - 1 : Record::kSchema;
-    if (const int schema = integerField(where, "schema", fields[0]); schema != expected) {
-        throw Error(where, "expected records of schema " + std::to_string(expected) + ", found " +
-                               std::to_string(schema));
+    if (const int schema = integerField(where, "schema", fields[0]); schema != Record::kSchema) {
+        throw Error(where, "expected records of schema " + std::to_string(Record::kSchema) +
+                               ", found " + std::to_string(schema));
     }
-    if (isOlder) fields.erase(fields.begin() + kOlderParams);
     Record record;
     record.caseId = std::move(fields[1]);
     record.table = std::move(fields[2]);
@@ -118,10 +108,10 @@ Record recordFromFields(const SourceLocation& where, std::string_view header,
     return record;
 }
 
-void checkHeader(const fs::path& path, std::string_view text, std::string_view header) {
+void checkHeader(const fs::path& path, std::string_view text) {
     const std::string_view first = text.substr(0, text.find('\n'));
-    if (first != header) {
-        throw Error({path.string(), 1, 0}, "expected the header '" + std::string(header) +
+    if (first != kHeader) {
+        throw Error({path.string(), 1, 0}, "expected the header '" + std::string(kHeader) +
                                                "', found '" + std::string(first.substr(0, 200)) +
                                                "'");
     }
@@ -192,8 +182,8 @@ struct WholeUnits {
     std::vector<Record> records;
     std::size_t endBytes = 0;
 };
-WholeUnits readWholeUnits(const fs::path& path, std::string_view text, std::string_view header) {
-    checkHeader(path, text, header);
+WholeUnits readWholeUnits(const fs::path& path, std::string_view text) {
+    checkHeader(path, text);
     CsvReader reader(text, path.string());
     std::vector<std::string> fields;
     std::vector<Row> rows;
@@ -204,7 +194,7 @@ WholeUnits readWholeUnits(const fs::path& path, std::string_view text, std::stri
             continue;
         }
         const SourceLocation where = reader.location();
-        Record record = recordFromFields(where, header, fields);
+        Record record = recordFromFields(where, fields);
         rows.push_back({std::move(record), where.line, integerField(where, "rows", fields.back()),
                         reader.rowEnd()});
     }
@@ -240,7 +230,7 @@ RecordWriter::RecordWriter(const fs::path& path) : file_(inItsFolder(path)) {
     const std::string header = std::string(kHeader) + '\n';
     const MappedFile file(path);
     const bool isNew = header != file.text() && header.starts_with(file.text());
-    file_.cut(isNew ? 0 : readWholeUnits(path, file.text(), kHeader).endBytes);
+    file_.cut(isNew ? 0 : readWholeUnits(path, file.text()).endBytes);
     if (isNew) file_.append(header);
 }
 
@@ -255,8 +245,7 @@ void RecordWriter::append(const std::vector<Record>& rows) {
 std::vector<Record> readRecords(const fs::path& path) {
     const MappedFile file(path);
     if (std::string_view(kHeader).starts_with(file.text())) return {};  // killed while it was made
-    const bool isOlder = file.text().starts_with(kOlderHeader);
-    return readWholeUnits(path, file.text(), isOlder ? kOlderHeader : kHeader).records;
+    return readWholeUnits(path, file.text()).records;
 }
 
 }  // namespace gfxrepro::records

@@ -75,10 +75,9 @@ class RecordWriter {
     AppendedFile file_;
 };
 
-/// Reads records.csv, also of schema 2, whose rows had the parameters. A header or a last unit
-/// whose write was cut, be it at a line's end, is left out. Throws Error with file and line for any
-/// other unit without all of its rows, for a malformed row, and for a value (case, process, frame,
-/// repeat, pass, metric) that is there twice.
+/// Reads records.csv. A header or a last unit whose write was cut, be it at a line's end, is left
+/// out. Throws Error with file and line for any other unit without all of its rows, for a malformed
+/// row, and for a value (case, process, frame, repeat, pass, metric) that is there twice.
 std::vector<Record> readRecords(const std::filesystem::path& path);
 
 }  // namespace gfxrepro::records

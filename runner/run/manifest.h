@@ -29,7 +29,7 @@ void breakSeal(Json& manifest);
 /// Adds a note that every reader of the run's results is told; once.
 void addNote(Json& manifest, const std::string& note);
 /// Adds to the manifest's `notes` which of the sealed files are others than at the end of the run.
-/// Nothing for a run that is under way, was killed, or comes from a program that sealed none.
+/// Nothing for a run that is under way or was killed.
 void noteChanges(Json& manifest, const std::filesystem::path& runDir);
 /// Every machine that measured something of the run, or of the runs that were merged into it, the
 /// first first.

@@ -116,9 +116,6 @@ std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
         return "the run began on a " + plan.deviceClass + " device, this one is a " + deviceClass +
                " device";
     }
-    if (!plan.isVerified) {
-        return "its plan has no frozen_hash: that it is as it was made cannot be verified";
-    }
     for (const auto& [reference, key] : plan.sceneKeys) {
         if (catalog.contentKey(Node::scalar(reference)) != key) {
             return "the scene '" + reference + "' changed";

@@ -46,9 +46,6 @@ struct Plan {
     std::uint64_t seed = 1;
     /// Of everything that a result depends on; with --only that of the plan before.
     std::string hash;
-    /// Whether it was found to be as it was written: of older versions' plans, which have no
-    /// frozen_hash, that is not known; nor are they given one.
-    bool isVerified = true;
     std::string buildId;                           // of the program and its shaders
     std::map<std::string, std::string> sceneKeys;  // scene reference → identity of its content
     std::vector<Case> cases;

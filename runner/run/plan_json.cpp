@@ -98,12 +98,9 @@ config::Measure measureFrom(const Node& node) {
     measure.warmup = requiredInt(node, "warmup");
     measure.repeats = requiredInt(node, "repeats");
     measure.processes = requiredInt(node, "processes");
-    // Plans of older versions know of no further rounds.
-    if (node.find("relative_error")) {
-        measure.relativeError = required(node, "relative_error").asDouble();
-        measure.processesAtMost = requiredInt(node, "processes_at_most");
-        measure.timeBudgetS = required(node, "time_budget_s").asDouble();
-    }
+    measure.relativeError = required(node, "relative_error").asDouble();
+    measure.processesAtMost = requiredInt(node, "processes_at_most");
+    measure.timeBudgetS = required(node, "time_budget_s").asDouble();
     measure.frames = requiredInt(node, "frames");
     measure.timeLimitS = required(node, "time_limit_s").asDouble();
     measure.memoryLimitBytes = required(node, "memory_limit_bytes").asInteger();
@@ -189,11 +186,10 @@ config::Outputs outputsFrom(const Node& metrics) {
     return outputs;
 }
 
-/// Cases and hash are recomputed from what is written, so that plans of older versions pass, which
-/// had fewer entries and no hash of all of them. (The plan's own hash has neither assumptions nor
-/// published parameters, and with --only it is that of all cases, which the plan does not have.)
-/// Gives whether all could be verified.
-bool isAsPlanned(const fs::path& path, const Node& node, const Plan& plan) {
+/// Throws Error for a plan that is not as it was written. (The plan's own hash has neither
+/// assumptions nor published parameters, and with --only it is that of all cases, which the plan
+/// does not have.)
+void requireAsPlanned(const fs::path& path, const Node& node, const Plan& plan) {
     const auto fail = [&](const std::string& what) {
         throw Error(path.string() + ": " + what + " planned: " + path.filename().string() +
                     " was changed");
@@ -204,23 +200,12 @@ bool isAsPlanned(const fs::path& path, const Node& node, const Plan& plan) {
         if (caseId(item, cases[i].toJson(), plan) == item.id) continue;
         fail("the case " + item.id + ", " + item.title() + ", is not the one that was");
     }
-    bool isSame = true;
-    const Node* frozen = node.find(kFrozenHash);
-    if (frozen) {
-        Json head = Json::object();
-        for (const auto& [name, value] : node.entries()) {
-            if (name != "cases" && name != kFrozenHash) head[name] = value.toJson();
-        }
-        isSame = frozenHash(head, plan.cases) == frozen->text();
-    } else if (plan.request.only.empty()) {
-        std::vector<Json> documents;
-        for (const Node& item : required(node, "experiments").items()) {
-            documents.push_back(required(item, "document").toJson());
-        }
-        isSame = planHash(plan, documents) == plan.hash;
+    Json head = Json::object();
+    for (const auto& [name, value] : node.entries()) {
+        if (name != "cases" && name != kFrozenHash) head[name] = value.toJson();
     }
-    if (!isSame) fail("the experiments, their cases or the profile are not those that were");
-    return frozen != nullptr;
+    if (frozenHash(head, plan.cases) == requiredText(node, kFrozenHash)) return;
+    fail("the experiments, their cases or the profile are not those that were");
 }
 
 std::vector<std::string> textsFrom(const Node& list) {
@@ -337,7 +322,7 @@ void Plan::write(const std::function<void(std::string_view)>& to) const {
         json["shard"] = {
             {"index", shard->index}, {"count", shard->count}, {"cases", shard->caseIds}};
     }
-    if (isVerified) json[kFrozenHash] = frozenHash(json, cases);
+    json[kFrozenHash] = frozenHash(json, cases);
     std::string text = json.dump(1);
     text.resize(text.size() - 2);  // "\n}"
     to(text + ",\n \"cases\": [");
@@ -366,22 +351,17 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     plan.deviceClass = requiredText(node, "device_class");
     plan.seed = requiredSeed(node);
     const Node& request = required(node, "request");
-    plan.request = {textsFrom(required(request, "configs")),
-                    textsFrom(required(request, "sets")),
-                    textsFrom(required(request, "sweeps")),
-                    {},
+    plan.request = {textsFrom(required(request, "configs")), textsFrom(required(request, "sets")),
+                    textsFrom(required(request, "sweeps")), textsFrom(required(request, "only")),
                     requiredText(request, "device")};
-    if (const Node* only = request.find("only")) plan.request.only = textsFrom(*only);
     for (const auto& [reference, key] : required(node, "scenes").entries()) {
         plan.sceneKeys[reference] = key.text();
     }
     for (const Node& item : required(node, "experiments").items()) {
         plan.experiments.push_back(config::experimentFromDocument(
             requiredMap(item, "document"), fs::path(requiredText(item, "file"))));
-        if (const Node* assumed = item.find("assumed")) {
-            takeAssumed(*assumed, plan.experiments.back());
-        }
-        if (const Node* paper = item.find("paper")) {  // older plans have none
+        takeAssumed(required(item, "assumed"), plan.experiments.back());
+        if (const Node* paper = item.find("paper")) {
             readPaper(*paper, plan.experiments.back());
         }
         if (const Node* metrics = item.find("metrics")) {
@@ -397,7 +377,7 @@ Plan Plan::fromJsonFile(const fs::path& path) {
             plan.shard->caseIds.insert(id);
         }
     }
-    plan.isVerified = isAsPlanned(path, node, plan);
+    requireAsPlanned(path, node, plan);
     return plan;
 }
 

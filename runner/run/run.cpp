@@ -131,14 +131,6 @@ StoredRun readRun(const fs::path& runDir) {
     run.manifest = readManifest(runDir / "manifest.json");
     noteChanges(run.manifest, runDir);
     noteMachines(run.manifest);
-    if (!run.plan.isVerified) {
-        const bool isWhole = run.plan.request.only.empty();
-        addNote(run.manifest,
-                fmt::format("plan.json has no frozen_hash, as those of older versions have none: "
-                            "that its {} are those that were {} cannot be verified",
-                            isWhole ? "assumptions and published parameters" : "experiments",
-                            isWhole ? "planned" : "measured"));
-    }
     if (fs::exists(runDir / "records.csv")) {
         run.records = records::readRecords(runDir / "records.csv");
         requirePlanned(runDir / "records.csv", run.plan, run.records);

@@ -142,28 +142,6 @@ TEST(Run, TablesSayAtWhichParametersTheyWereMeasured) {
               "Measured at frames 3 (printed 500).");
 }
 
-/// A plan of before printed parameters were kept is read as before.
-TEST(Run, OlderPlansDoNotKnowThePrintedParameters) {
-    const TemporaryFolder folder;
-    const std::string dir = folder.path() / "run";
-    parametersOf(printedConfig(folder), dir, {});
-    auto plan = nlohmann::ordered_json::parse(readFile(dir + "/plan.json"));
-    ASSERT_EQ(plan["experiments"][0].erase("paper"), 1U);
-    ASSERT_EQ(plan.erase("frozen_hash"), 1U);
-    EXPECT_FALSE(plan["cases"][0].contains("paper")) << "what workers are told";
-    writeFileAtomic(dir + "/plan.json", plan.dump());
-    EXPECT_EQ(gfxrepro({"table", dir}).out,
-              "demo2026/2: tables/demo2026-2.csv .md .tex\n"
-              "Of 2 printed cells of tables 2 were measured again: 2 at parameters of which it is "
-              "not known.\n"
-              "warning: plan.json has no frozen_hash, as those of older versions have none: that "
-              "its assumptions and published parameters are those that were planned cannot be "
-              "verified\n");
-    EXPECT_NE(readFile(dir + "/tables/demo2026-2.md")
-                  .find("Whether it was measured at the printed parameters is not known"),
-              std::string::npos);
-}
-
 TEST(Run, PrintedParametersHaveToBeParameters) {
     const TemporaryFolder folder;
     const std::string config = printedConfig(folder, "  paper: {printed: {at: {pause_m: 500}}}\n");

@@ -203,31 +203,6 @@ TEST(Records, AUnitThatLacksRowsIsAnErrorUnlessItIsTheLast) {
               "DIR/records.csv:3: case c, process 1 has 2 of 3 rows");
 }
 
-/// Rows of schema 2 had the parameters of their case.
-TEST(Records, ThoseOfBeforeAreReadAndNotGoneOnWith) {
-    const TemporaryFolder folder;
-    const std::string header =
-        "schema,case,table,technique,method,scene,params,frame,repeat,process,lane,pass,metric,"
-        "unit,value,status,message,rows\n";
-    const std::string row =
-        "2,abc,zju2005/2.1,voxelization,worksheet,models/duck,\"{\"\"resolution\"\":256}\",1,2,3,"
-        "timing,rasterization,gpu_time_ms,ms,0.5,ok,,";
-    const auto path = folder.write("records.csv", header + row + "1\n");
-    EXPECT_EQ(readRecords(path), std::vector{sample("abc", 0.5)});
-    EXPECT_THAT(errorText([&] { RecordWriter writer(path); }, folder.path()),
-                testing::StartsWith("DIR/records.csv:1: expected the header 'schema,case,"));
-    EXPECT_EQ(readFile(path), header + row + "1\n");
-    const auto error = [&](const std::string& rows) {
-        folder.write("records.csv", header + rows);
-        return errorText([&] { readRecords(path); }, folder.path());
-    };
-    EXPECT_TRUE((folder.write("records.csv", header + row + "2\n"), readRecords(path)).empty())
-        << "a unit that was cut";
-    EXPECT_EQ(error("3" + row.substr(1) + "1\n"),
-              "DIR/records.csv:2: expected records of schema 2, found 3");
-    EXPECT_EQ(error("2,c,t\n"), "DIR/records.csv:2: expected 18 columns, found 3");
-}
-
 TEST(Records, WriterRefusesAnotherFile) {
     const TemporaryFolder folder;
     const auto path = folder.write("notes.txt", "my notes\n");
