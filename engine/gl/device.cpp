@@ -99,7 +99,6 @@ DeviceInfo readInfo(const egl::Candidate& candidate) {
     DeviceInfo info;
     info.index = candidate.index;
     info.platform = candidate.platform;
-    info.node = candidate.node;
     info.vendor = getString(GL_VENDOR);
     info.renderer = getString(GL_RENDERER);
     info.version = getString(GL_VERSION);

@@ -30,7 +30,6 @@ struct DeviceInfo {
     std::string vendor;       // GL_VENDOR
     std::string renderer;     // GL_RENDERER
     std::string uuid;         // "6d657361-…", of GL_EXT_memory_object; empty: not told
-    std::string node;         // "/dev/dri/renderD128", the kernel's; empty: not told
     std::string version;      // GL_VERSION
     std::string mesaVersion;  // "22.3.6"; empty elsewhere
     bool isSoftware = false;  // the processor's cores draw: llvmpipe and its like

@@ -61,20 +61,6 @@ const char* deviceString(EGLDeviceEXT device, EGLint name) {
     return query ? query(device, name) : nullptr;
 }
 
-/// Of the file that only draws, or of the one that also has the displays; empty where EGL tells
-/// neither.
-std::string nodeOf(EGLDeviceEXT device) {
-    const char* extensions = deviceString(device, EGL_EXTENSIONS);
-    const char* node = nullptr;
-    if (hasExtension(extensions, "EGL_EXT_device_drm_render_node")) {
-        node = deviceString(device, EGL_DRM_RENDER_NODE_FILE_EXT);
-    }
-    if (!node && hasExtension(extensions, "EGL_EXT_device_drm")) {
-        node = deviceString(device, EGL_DRM_DEVICE_FILE_EXT);
-    }
-    return node ? node : "";
-}
-
 EGLDisplay openDisplay(const Candidate& candidate) {
     const bool isDevice = candidate.platform == "device";
     const EGLenum platform = isDevice ? EGL_PLATFORM_DEVICE_EXT : EGL_PLATFORM_SURFACELESS_MESA;
@@ -151,8 +137,8 @@ Candidates findCandidates() {
         for (EGLDeviceEXT device : devices) {
             const bool isSoftware =
                 hasExtension(deviceString(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
-            found.all.push_back({static_cast<int>(found.all.size()), "device", device, !isSoftware,
-                                 nodeOf(device)});
+            found.all.push_back(
+                {static_cast<int>(found.all.size()), "device", device, !isSoftware});
         }
     }
     if (hasExtension(extensions, "EGL_MESA_platform_surfaceless")) {

@@ -17,7 +17,6 @@ struct Candidate {
     std::string platform;  // "device" | "surfaceless"
     EGLDeviceEXT device = EGL_NO_DEVICE_EXT;
     bool isGpu = false;  // a device that the driver does not call software
-    std::string node{};  // as DeviceInfo's
 
     std::string name() const { return "device " + std::to_string(index) + " (" + platform + ")"; }
 };

@@ -9,6 +9,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/processors.h"
+#include "engine/gl/nvml.h"
 #include "engine/scene/height_map.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/cli/annotations.h"
@@ -121,7 +122,6 @@ Prepared prepareNew(const Context& context, const RunOptions& options, const run
     run::SchedulerOptions scheduler{choice,
                                     fs::absolute(assetsFolder(selection.assets)),
                                     jobsOf(options),
-                                    {},
                                     context.commandLine};
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
     run::Plan plan = submitted ? std::move(*submitted)
@@ -206,7 +206,6 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
         deviceFor(context, stored.plan.request.device, stored.plan.experiments),
         fs::absolute(assetsFolder(options.selection.assets)),
         jobsOf(options),
-        {},
         context.commandLine};
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
     const std::string reason = run::whyNotResumable(stored.plan, deviceClassOf(device),
@@ -288,9 +287,9 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
     run.journal.clear();
     run.directory.note({{"event", "begin"}, {"command", context.commandLine}});
     Progress progress(units, forecast(options, run), run.scheduler.jobs, options.isQuiet);
-    run::MachineWatch watch(progress, run.directory, std::move(states), machineRoot(),
-                            run.manifest.at("gl").value("uuid", ""),
-                            run.manifest.at("gl").value("node", ""));
+    run::MachineWatch watch(
+        progress, run.directory, std::move(states), machineRoot(),
+        [uuid = run.manifest.at("gl").value("uuid", "")] { return gl::readGpu(uuid); });
     const run::RunOutcome outcome =
         run::runUnits(units, rounds, run.directory, run.scheduler, phases, watch);
     progress.clear();

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <numeric>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "engine/core/text.h"
-#include "runner/run/kernel_files.h"
 
 namespace gfxrepro::run {
 
@@ -22,6 +22,32 @@ namespace {
 constexpr double kBelowCriticalC = 5.0;
 constexpr double kHotC = 95.0;
 constexpr double kLeastTripC = 40.0;  // zones name trip points of 0 °C that mean none
+
+/// Empty for a file that cannot be read.
+std::vector<std::string> linesOf(const fs::path& path) {
+    std::ifstream file(path);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(file, line);) lines.push_back(line);
+    return lines;
+}
+
+/// The number that is the file's first line.
+std::optional<double> numberIn(const fs::path& path) {
+    const std::vector<std::string> lines = linesOf(path);
+    return lines.empty() ? std::nullopt : parseDouble(trimmed(lines.front()));
+}
+
+/// Entries of a folder whose names begin so, in the order of their names; none where there is no
+/// such folder.
+std::vector<fs::path> entriesOf(const fs::path& folder, std::string_view begin) {
+    std::error_code isAbsent;
+    std::vector<fs::path> entries;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, isAbsent)) {
+        if (entry.path().filename().string().starts_with(begin)) entries.push_back(entry.path());
+    }
+    std::ranges::sort(entries);
+    return entries;
+}
 
 std::vector<std::string> wordsOf(const std::string& line) {
     std::istringstream stream(line);

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include <unistd.h>
@@ -218,13 +217,7 @@ void MachineWatch::tick(std::string_view phase) {
 
 /// Right behind timed work its clock is still that of the work.
 void MachineWatch::readGpu(bool isTimed) {
-    std::optional<gl::GpuReading> reading;
-    if (!gpu_.empty()) reading = gl::readGpu(gpu_);
-    if (!reading) {
-        const auto now = std::chrono::steady_clock::now().time_since_epoch();
-        reading = kernelGpu_.read(std::chrono::duration<double>(now).count());
-    }
-    if (reading) {
+    if (const auto reading = gpu_()) {
         const std::vector<int> own = processTree(::getpid());
         gpuState_.add(*reading, {own.begin(), own.end()}, isTimed || wasTimed_);
     }

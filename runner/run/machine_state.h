@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,7 +12,6 @@
 #include <vector>
 
 #include "runner/run/gpu_state.h"
-#include "runner/run/kernel_gpu.h"
 #include "runner/run/machine_reading.h"
 #include "runner/run/protocol.h"
 #include "runner/run/run_directory.h"
@@ -65,16 +65,14 @@ class MachineState {
 class MachineWatch : public Observer {
   public:
     /// Of a run with these states so far (machineStatesIn). `next` and the folder must outlive it;
-    /// `root` as readMachine's; `gpu` is the UUID of the device and `node` its file, where it has
-    /// them (DeviceInfo).
+    /// `root` as readMachine's; `gpu` reads the GPU, where it can be read.
     MachineWatch(Observer& next, const RunDirectory& directory,
                  std::map<std::string, MachineState> states, std::filesystem::path root,
-                 std::string gpu, const std::string& node)
+                 std::function<std::optional<gl::GpuReading>()> gpu)
         : next_(next),
           directory_(directory),
           root_(std::move(root)),
           gpu_(std::move(gpu)),
-          kernelGpu_(root_, node),
           tables_(std::move(states)) {}
 
     void unitsAdded(const std::vector<Unit>& units) override { next_.unitsAdded(units); }
@@ -94,8 +92,7 @@ class MachineWatch : public Observer {
     Observer& next_;
     const RunDirectory& directory_;
     std::filesystem::path root_;
-    std::string gpu_;
-    KernelGpu kernelGpu_;
+    std::function<std::optional<gl::GpuReading>()> gpu_;
     std::optional<MachineReading> before_;
     GpuState gpuState_;      // of the unit that runs
     bool wasTimed_ = false;  // what ran when the GPU was read last

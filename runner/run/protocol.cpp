@@ -10,17 +10,12 @@ namespace gfxrepro::run {
 
 namespace {
 
-constexpr JsonMember kDevice[] = {{"/index", JsonKind::Int},
-                                  {"/platform", JsonKind::Text},
-                                  {"/vendor", JsonKind::Text},
-                                  {"/renderer", JsonKind::Text},
-                                  {"/version", JsonKind::Text},
-                                  {"/mesa_version", JsonKind::Text},
-                                  {"/uuid", JsonKind::Text},
-                                  {"/node", JsonKind::Text},
-                                  {"/is_software", JsonKind::Boolean},
-                                  {"/counts_work", JsonKind::Boolean},
-                                  {"/timer_resolution_ns", JsonKind::Number}};
+constexpr JsonMember kDevice[] = {
+    {"/index", JsonKind::Int},           {"/platform", JsonKind::Text},
+    {"/vendor", JsonKind::Text},         {"/renderer", JsonKind::Text},
+    {"/version", JsonKind::Text},        {"/mesa_version", JsonKind::Text},
+    {"/uuid", JsonKind::Text},           {"/is_software", JsonKind::Boolean},
+    {"/counts_work", JsonKind::Boolean}, {"/timer_resolution_ns", JsonKind::Number}};
 constexpr JsonMember kBalance[] = {{"/fragment_gflops", JsonKind::Number},
                                    {"/compute_gflops", JsonKind::Number},
                                    {"/fill_gpixels_per_s", JsonKind::Number},
@@ -87,7 +82,6 @@ Json toJson(const gl::DeviceInfo& info) {
                  {"version", info.version},
                  {"mesa_version", info.mesaVersion},
                  {"uuid", info.uuid},
-                 {"node", info.node},
                  {"is_software", info.isSoftware},
                  {"counts_work", info.countsWork},
                  {"timer_resolution_ns", info.timerResolutionNs}};
@@ -105,7 +99,6 @@ gl::DeviceInfo deviceInfoFromJson(const Json& json) {
     json.at("version").get_to(info.version);
     json.at("mesa_version").get_to(info.mesaVersion);
     json.at("uuid").get_to(info.uuid);
-    json.at("node").get_to(info.node);
     json.at("is_software").get_to(info.isSoftware);
     json.at("counts_work").get_to(info.countsWork);
     json.at("timer_resolution_ns").get_to(info.timerResolutionNs);

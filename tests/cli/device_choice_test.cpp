@@ -189,31 +189,6 @@ TEST_F(DeviceChoice, WhatTheGpuDidIsKeptWithItsTimes) {
                 HasSubstr("§ timed while the GPU's clock moved between 1.41 and 1.98 GHz.\n"));
 }
 
-/// By the file that EGL names for it, where there is no library of NVIDIA's.
-TEST_F(DeviceChoice, WhatTheKernelTellsOfTheGpuIsKeptWithItsTimes) {
-    if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: which the pretended one would stand behind";
-    config = writeMockConfig(folder,
-                             "params: {pause_ms: 20}\n"
-                             "measure: {lane: timing, warmup: 0, repeats: 2, frames: 1}\n");
-    const std::string device = "root/sys/class/drm/renderD128/device/";
-    folder.write(device + "gpu_busy_percent", "98\n");
-    folder.write(device + "hwmon/hwmon1/freq1_input", "2410000000\n");
-    folder.write(device + "hwmon/hwmon1/temp1_input", "64000\n");
-    const std::string root = "GFXREPRO_MACHINE_ROOT=" + (folder.path() / "root").string();
-    const ProcessResult run =
-        onPretended("gpu", "serves", {root, "PRETENDED_NODE=/dev/dri/renderD128"});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
-    EXPECT_EQ(lastManifest()["gl"]["node"], "/dev/dri/renderD128");
-    const auto gpu = lastManifest()["machine_states"].begin()->at("gpu");
-    EXPECT_EQ(gpu["lowest_clock_hz"], 2.41e9);
-    EXPECT_EQ(gpu["hottest_c"], 64.0);
-    EXPECT_GT(gpu["samples"], 1);
-
-    ASSERT_EQ(onPretended("gpu", "serves", {root}).exitCode, 0);
-    EXPECT_EQ(lastManifest()["gl"]["node"], "");
-    EXPECT_EQ(lastManifest()["machine_states"], nlohmann::json::object());
-}
-
 TEST_F(DeviceChoice, PlansForAGpuNeedNone) {
     const ProcessResult plan = mockGfxrepro({"plan", config, "--device", "gpu"});
     EXPECT_EQ(plan.exitCode, 0) << plan.err;

@@ -1,7 +1,7 @@
 // To be preloaded into the program (LD_PRELOAD): Mesa's software device among EGL's devices says
 // that it is a GPU, so that what is done on hardware alone runs without any. With
-// PRETENDED_GPU=refuses its display cannot be initialized, as where a driver fails. PRETENDED_NODE
-// is its file ("/dev/dri/renderD128"). The surfaceless platform stays what it is.
+// PRETENDED_GPU=refuses its display cannot be initialized, as where a driver fails. The
+// surfaceless platform stays what it is.
 #include <dlfcn.h>
 
 #define GL_GLEXT_PROTOTYPES
@@ -37,10 +37,8 @@ bool isSoftware(EGLDeviceEXT device) {
     return std::strstr(query(device, EGL_EXTENSIONS), kSoftware) != nullptr;
 }
 
-/// As the device has it, without the extension that tells of software, and with that of its file.
+/// As the device has it, without the extension that tells of software.
 const char* EGLAPIENTRY queryDeviceString(EGLDeviceEXT device, EGLint name) {
-    const char* node = std::getenv("PRETENDED_NODE");
-    if (node && name == EGL_DRM_RENDER_NODE_FILE_EXT) return node;
     const auto query = extension<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
     const char* told = query(device, name);
     if (!told) return nullptr;
@@ -48,7 +46,6 @@ const char* EGLAPIENTRY queryDeviceString(EGLDeviceEXT device, EGLint name) {
     text = told;
     const std::size_t at = text.find(kSoftware);
     if (at != std::string::npos) text.erase(at, std::strlen(kSoftware));
-    if (node && name == EGL_EXTENSIONS) text += " EGL_EXT_device_drm_render_node";
     return text.c_str();
 }
 

@@ -211,6 +211,10 @@ class Told : public run::Observer {
     void tick(std::string_view) override {}
 };
 
+std::optional<gl::GpuReading> noGpu() {
+    return std::nullopt;
+}
+
 TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
     using Lane = config::Measure::Lane;
     const TemporaryFolder runs;
@@ -218,7 +222,7 @@ TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
     Machine machine;
     machine.read();
     Told told;
-    run::MachineWatch watch(told, directory, {}, machine.root(), "", "");
+    run::MachineWatch watch(told, directory, {}, machine.root(), noGpu);
     const auto run = [&](const config::Case& item, double othersS) {
         const run::Unit unit{&item, 0, {}};
         watch.unitBegan(unit);
@@ -260,11 +264,10 @@ TEST(MachineWatch, TellsWhichCasesAreNotOfOneClock) {
     const auto directory = run::RunDirectory::create(runs.path() / "run");
     const Machine machine;
     Told told;
-    const std::string device = "sys/class/drm/renderD128/device/";
-    machine.write(device + "gpu_busy_percent", "98\n");
-    run::MachineWatch watch(told, directory, {}, machine.root(), "", "/dev/dri/renderD128");
+    gl::GpuReading gpu;
+    run::MachineWatch watch(told, directory, {}, machine.root(), [&] { return gpu; });
     const auto see = [&](const char* phase, int clockMHz) {
-        machine.write(device + "pp_dpm_sclk", fmt::format("0: {}Mhz *\n", clockMHz));
+        gpu.clockHz = 1e6 * clockMHz;
         watch.tick(phase);
     };
     const auto run = [&](const config::Case& item, int process, int first, int second) {
@@ -302,15 +305,14 @@ TEST(MachineWatch, SeesTheClockOfShortFrames) {
     const auto directory = run::RunDirectory::create(runs.path() / "run");
     const Machine machine;
     Told told;
-    const std::string device = "sys/class/drm/renderD128/device/";
-    machine.write(device + "gpu_busy_percent", "98\n");
-    machine.write(device + "pp_dpm_sclk", "0: 1980Mhz *\n");
-    run::MachineWatch watch(told, directory, {}, machine.root(), "", "/dev/dri/renderD128");
+    gl::GpuReading gpu;
+    gpu.clockHz = 1.98e9;
+    run::MachineWatch watch(told, directory, {}, machine.root(), [&] { return gpu; });
     const config::Case item = makeCase("t/1", "a", 1, config::Measure::Lane::Timing);
     const run::Unit unit{&item, 0, {}};
     watch.unitBegan(unit);
     watch.tick("render");
-    machine.write(device + "pp_dpm_sclk", "0: 1410Mhz *\n");
+    gpu.clockHz = 1.41e9;
     watch.unitEnded(unit, records::Status::Ok, "");
     EXPECT_EQ(run::movedClocks({{"machine_states", watch.states()}}).size(), 1U);
 }
