@@ -11,7 +11,7 @@ void addExport(CLI::App& app, const Context& context, ExportOptions& o,
     CLI::App* exportApp =
         app.add_subcommand("export", "write a run as an artifact with checksums, or as tables");
     exportApp->add_option("dir", o.runDir, "run directory")->required()->option_text("RUN");
-    exportApp->add_flag("--tidy", o.isTidy, "cases.csv, records.csv and run.sqlite instead");
+    exportApp->add_flag("--tidy", o.isTidy, "cases.csv, records.csv and run.csv instead");
     exportApp->add_option("--out", o.out, "folder (default RUN-artifact or RUN-tidy)")
         ->option_text("DIR");
     exportApp->add_option("--assets", o.assets, "folder of real models")->option_text("DIR");
@@ -55,8 +55,6 @@ void addHistory(CLI::App& app, HistoryOptions& o, std::function<int()>& command)
         ->required()
         ->option_text("FILE");
     historyApp->add_option("--out", o.out, "the page to write (default history.html)")
-        ->option_text("FILE");
-    historyApp->add_option("--sqlite", o.sqlite, "write the same as an SQLite file")
         ->option_text("FILE");
     historyApp->callback([&] { command = [&] { return historyPage(o); }; });
 }

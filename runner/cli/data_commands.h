@@ -37,7 +37,6 @@ struct ImportOptions {
 struct HistoryOptions {
     std::vector<std::string> files;
     std::string out = "history.html";
-    std::string sqlite;  // empty: none
 };
 
 struct DataOptions {

@@ -44,7 +44,7 @@ constexpr Place kPlaces[] = {
     {"export", "results", "gfxrepro export runs/my-run --out artifact"},
     {"import", "results", "gfxrepro import theirs.csv --metric render_time_ms=ms"},
     {"compare", "compare", "gfxrepro compare runs/before runs/after"},
-    {"history", "compare", "gfxrepro history runs/nightly/history.csv --sqlite nights.sqlite"},
+    {"history", "compare", "gfxrepro history runs/nightly/history.csv --out nights.html"},
     {"sensitivity", "compare", "gfxrepro sensitivity zju2005/2.1"},
     {"image", "compare", "gfxrepro image diff a.exr b.exr"},
     {"submit", "cluster", "gfxrepro submit zju2005 --shards 8 --gres gpu:1 --out whole"},

@@ -1,4 +1,4 @@
-// Many nights as a page, and as a file that answers queries.
+// Many nights as a page.
 #include <algorithm>
 #include <iterator>
 
@@ -19,7 +19,6 @@ int historyPage(const HistoryOptions& options) {
     requireReport(options.out);
     const std::vector<regression::MachineHistory> histories = regression::historiesOf(rows);
     regression::writeHistoryPage(options.out, "History", histories);
-    if (!options.sqlite.empty()) regression::writeHistorySqlite(options.sqlite, histories);
     for (const regression::MachineHistory& history : histories) {
         std::size_t changes = 0;
         for (const regression::SeriesHistory& series : history.series) {
@@ -29,7 +28,6 @@ int historyPage(const HistoryOptions& options) {
             history.series.size(), changes);
     }
     say("history: {}\n", options.out);
-    if (!options.sqlite.empty()) say("queries: {}\n", options.sqlite);
     return kExitOk;
 }
 

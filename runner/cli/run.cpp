@@ -119,10 +119,8 @@ Prepared prepareNew(const Context& context, const RunOptions& options, const run
     const std::string choice =
         deviceFor(context, request.device,
                   submitted ? submitted->experiments : loadExperiments(request, selection.profile));
-    run::SchedulerOptions scheduler{choice,
-                                    fs::absolute(assetsFolder(selection.assets)),
-                                    jobsOf(options),
-                                    context.commandLine};
+    run::SchedulerOptions scheduler{choice, fs::absolute(assetsFolder(selection.assets)),
+                                    jobsOf(options), context.commandLine};
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
     run::Plan plan = submitted ? std::move(*submitted)
                                : planFor(context, request, selection.profile,
@@ -204,9 +202,7 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     requireSameRequest(options, request, stored.plan);
     run::SchedulerOptions scheduler{
         deviceFor(context, stored.plan.request.device, stored.plan.experiments),
-        fs::absolute(assetsFolder(options.selection.assets)),
-        jobsOf(options),
-        context.commandLine};
+        fs::absolute(assetsFolder(options.selection.assets)), jobsOf(options), context.commandLine};
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
     const std::string reason = run::whyNotResumable(stored.plan, deviceClassOf(device),
                                                     openCatalog(context, options.selection.assets));

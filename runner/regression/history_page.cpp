@@ -7,15 +7,12 @@
 #include <utility>
 
 #include "engine/core/files.h"
-#include "runner/records/frame.h"
 #include "runner/regression/chart.h"
 #include "runner/report/markup.h"
 #include "runner/report/parts.h"
 
 namespace gfxrepro::regression {
 
-using records::Frame;
-using records::FrameValue;
 using report::escapeXml;
 
 namespace {
@@ -201,24 +198,6 @@ std::string machineHtml(const MachineHistory& history, std::size_t machine) {
     return html + nightsHtml(history) + "</section>\n";
 }
 
-std::vector<FrameValue> keyValues(const SeriesKey& key) {
-    return {key.table,  key.technique, key.method, key.scene,
-            key.params, key.pass,      key.metric, key.unit};
-}
-
-std::vector<std::string> keyColumns() {
-    return {"experiment", "technique", "method", "scene", "params", "pass", "metric", "unit"};
-}
-
-Frame frameOf(std::string name, std::vector<std::string> first, std::vector<std::string> last,
-              std::vector<std::vector<FrameValue>> rows) {
-    for (const auto& part : {keyColumns(), last})
-        first.insert(first.end(), part.begin(), part.end());
-    const std::size_t count = rows.size();
-    return {std::move(name), std::move(first), count,
-            [rows = std::move(rows)](std::size_t i) { return rows[i]; }};
-}
-
 }  // namespace
 
 std::vector<MachineHistory> historiesOf(std::span<const HistoryRow> rows) {
@@ -246,37 +225,6 @@ void writeHistoryPage(const std::filesystem::path& file, const std::string& titl
         escapeXml(title), report::kStyle);
     for (std::size_t i = 0; i < histories.size(); ++i) html += machineHtml(histories[i], i);
     writeFileAtomic(file, html + "</main>\n</body>\n</html>\n");
-}
-
-void writeHistorySqlite(const std::filesystem::path& file,
-                        std::span<const MachineHistory> histories) {
-    std::vector<std::vector<FrameValue>> numbers, changes;
-    for (const MachineHistory& history : histories) {
-        const auto rowOf = [&](const SeriesHistory& series, std::size_t night) {
-            const NightOf& at = history.nights[night];
-            std::vector<FrameValue> row = {at.time, at.commit, history.machine};
-            const std::vector<FrameValue> key = keyValues(series.key);
-            row.insert(row.end(), key.begin(), key.end());
-            return row;
-        };
-        for (const SeriesHistory& series : history.series) {
-            for (std::size_t i = 0; i < series.nights.size(); ++i) {
-                numbers.push_back(rowOf(series, series.nights[i]));
-                numbers.back().emplace_back(series.values[i]);
-            }
-            for (const SeriesChange& change : series.changes) {
-                changes.push_back(rowOf(series, change.night));
-                changes.back().emplace_back(history.nights[change.before].commit);
-                changes.back().emplace_back(change.ratio);
-                changes.back().emplace_back(change.chance);
-            }
-        }
-    }
-    const std::vector<std::string> first = {"time", "commit_id", "machine"};
-    const Frame frames[] = {
-        frameOf("history", first, {"value"}, std::move(numbers)),
-        frameOf("changes", first, {"commit_before", "ratio", "chance"}, std::move(changes))};
-    records::writeSqlite(file, frames);
 }
 
 }  // namespace gfxrepro::regression

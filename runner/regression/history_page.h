@@ -1,4 +1,4 @@
-// A history as a web page, and as a file that answers queries.
+// A history as a web page.
 #pragma once
 
 #include <cstddef>
@@ -46,10 +46,5 @@ std::vector<MachineHistory> historiesOf(std::span<const HistoryRow> rows);
 /// curve for each time and for each value that changed, and its nights. Throws Error.
 void writeHistoryPage(const std::filesystem::path& file, const std::string& title,
                       std::span<const MachineHistory> histories);
-
-/// `history` (a row a number) and `changes` (a row a change), with the columns of the CSV file;
-/// `table` and `commit`, which are words of SQL, are called `experiment` and `commit_id`.
-void writeHistorySqlite(const std::filesystem::path& file,
-                        std::span<const MachineHistory> histories);
 
 }  // namespace gfxrepro::regression

@@ -115,7 +115,7 @@ Results writeResults(const fs::path& runDir, const run::StoredRun& run, const Re
     const Experiments& experiments = run.plan.experiments;
     Results results = resultsOf(run);
     if (which.tables) {
-        records::writeFrameCsv(out / "cases.csv", caseFrame(run.plan.cases));
+        writeCases(out / "cases.csv", run.plan.cases);
         const std::vector<std::string> notes = run::notesOf(run.manifest);
         report::writeTables(out, withNotes(results.tables, notes), notes);
         tables::writeFits(out, experiments, results.tables);

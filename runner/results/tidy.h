@@ -3,13 +3,10 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "runner/records/frame.h"
 #include "runner/run/run.h"
 
 namespace gfxrepro::results {
@@ -22,17 +19,12 @@ inline constexpr std::string_view kParamPrefix = "params.";
 
 /// A case a row: kCaseColumns, then a column for each parameter of any case, empty where a case has
 /// not got it. What has parts is a column a part: "output.width", "offset.0".
-records::Frame caseFrame(std::span<const config::Case> cases);
+void writeCases(const std::filesystem::path& file, std::span<const config::Case> cases);
 
-/// A number a row: case_id, process, frame, repeat, lane, pass, metric, unit, value, status,
-/// message. `records` must outlive it. Of what belongs to the whole case, frame and repeat are −1.
-records::Frame recordFrame(const std::vector<records::Record>& records);
-
-/// Writes the folder `target`, which must not exist: cases.csv, records.csv, run.csv (key, value:
-/// of the manifest), programs.csv (file, sha256, version: of programs measured from outside; not
-/// written where there are none), and run.sqlite with these as tables, beside `axes` (experiment,
-/// place, axis: what is swept). Of more than records::kMostSqliteColumns the parameters stand there
-/// in `case_params` instead (case_id, param, value).
+/// Writes the folder `target`, which must not exist: cases.csv, records.csv (a number a row; of
+/// what belongs to the whole case, frame and repeat are −1), run.csv (key, value: of the manifest)
+/// and programs.csv (file, sha256, version: of programs measured from outside; not written where
+/// there are none).
 void writeTidy(const std::filesystem::path& runDir, const run::StoredRun& run,
                const std::filesystem::path& target);
 

@@ -108,7 +108,7 @@ TEST_F(Data, AnExportedRunThatIsImportedIsStillOfItsMachine) {
     EXPECT_EQ(machineOf("unknown", {}), "a machine that was not named");
 }
 
-TEST_F(Data, MoreParametersThanSqliteHasColumnsAreRowsThere) {
+TEST_F(Data, OfManyParametersEachIsAColumn) {
     std::string config =
         "sweep_of: wide\ntitle: T\ntechnique: external\nmeasure: {lane: quality}\n"
         "program:\n  command: \"true";
@@ -123,12 +123,6 @@ TEST_F(Data, MoreParametersThanSqliteHasColumnsAreRowsThere) {
     const ProcessResult exported = mockGfxrepro({"export", dir("run"), "--tidy"});
     ASSERT_EQ(exported.exitCode, 0) << exported.err;
     EXPECT_THAT(readFile(dir("run-tidy/cases.csv")), HasSubstr(",p2098,p2099,output.width"));
-    const ProcessResult asked = runProgram(
-        {"/usr/bin/env", "python3", "-c",
-         "import sqlite3; base = sqlite3.connect('" + dir("run-tidy/run.sqlite") +
-             "'); print(base.execute('select value from case_params join cases using (case_id) "
-             "where param = ?', ('p2099',)).fetchall())"});
-    EXPECT_EQ(asked.out, "[(2099,)]\n") << asked.err;
 }
 
 TEST_F(Data, AnImportedRunSaysSoEverywhere) {
@@ -275,7 +269,7 @@ TEST_F(Data, ExportGoesOverNothing) {
               "gfxrepro: DIR/there: is there already; give another folder\n");
 }
 
-TEST_F(Data, AHistoryBecomesAPageAndAFileForQueries) {
+TEST_F(Data, AHistoryBecomesAPage) {
     std::string csv =
         "time,commit,machine,table,technique,method,scene,params,pass,metric,unit,value\n";
     for (int night = 10; night < 40; ++night) {
@@ -284,13 +278,11 @@ TEST_F(Data, AHistoryBecomesAPageAndAFileForQueries) {
                std::to_string(night) + "\n";
     }
     const std::string file = folder_.write("history.csv", csv);
-    const ProcessResult made = mockGfxrepro(
-        {"history", file, "--out", dir("history.html"), "--sqlite", dir("history.sqlite")});
+    const ProcessResult made = mockGfxrepro({"history", file, "--out", dir("history.html")});
     EXPECT_EQ(made.exitCode, 0) << made.err;
-    EXPECT_EQ(made.out, "m: 30 nights, 1 series, 1 changes\nhistory: " + dir("history.html") +
-                            "\nqueries: " + dir("history.sqlite") + "\n");
+    EXPECT_EQ(made.out,
+              "m: 30 nights, 1 series, 1 changes\nhistory: " + dir("history.html") + "\n");
     EXPECT_THAT(readFile(dir("history.html")), HasSubstr("<td>c24</td><td>c25</td>"));
-    EXPECT_EQ(readFile(dir("history.sqlite")).substr(0, 15), "SQLite format 3");
     const std::string text = folder_.write("thesis.html", "four years");
     EXPECT_EQ(refusal({"history", file, "--out", text}),
               "gfxrepro: DIR/thesis.html: is there and is not a report; give another file\n");
