@@ -99,13 +99,6 @@ std::optional<Interval> medianInterval(std::span<const double> values) {
     return Interval{sorted[count - 1], sorted[sorted.size() - count]};
 }
 
-std::optional<double> relativeErrorOfMedian(std::span<const double> values) {
-    const auto interval = medianInterval(values);
-    const double middle = interval ? median(values) : 0.0;
-    if (middle == 0.0) return std::nullopt;
-    return 0.5 * (interval->high - interval->low) / std::abs(middle);
-}
-
 std::size_t medianIntervalDepth(std::size_t count) {
     // Of k outcomes left out, the interval ends at the k-th value from each end. Signs are scores
     // of one each.

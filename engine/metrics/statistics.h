@@ -35,8 +35,6 @@ inline constexpr std::size_t kFewestForInterval = 6;
 /// (sign test; Conover 1999, Practical Nonparametric Statistics, Sec. 3.2). None for fewer than
 /// kFewestForInterval values. Infinite values are values.
 std::optional<Interval> medianInterval(std::span<const double> values);
-/// Half of the medianInterval ÷ the median; none where there is no interval, or the median is 0.
-std::optional<double> relativeErrorOfMedian(std::span<const double> values);
 /// How far from either end of so many sorted values its ends stand: 1 of 6 to 8, 2 of 9 to 11.
 /// At least kFewestForInterval.
 std::size_t medianIntervalDepth(std::size_t count);

@@ -82,7 +82,6 @@ class FileReader {
         Node own = whole;
         own.erase("extends");
         own.erase("profiles");
-        spreadUntil(own);
         result.document = merged(result.document, own);
         open_.pop_back();
         return result;
@@ -139,7 +138,6 @@ class FileReader {
                 requireKeys(overlay, "profile '" + name + "'", sectionKeys());
             }
             result.profiles.emplace_back(name, overlay.isNull() ? Node::map({}) : overlay);
-            spreadUntil(result.profiles.back().second);
         }
     }
 
@@ -284,7 +282,6 @@ void applySets(const std::vector<Override>& sets, Node& document) {
         document.setPath(path, value);
         if (path.starts_with("params.")) dropFromScenes(parameterName(path), document);
     }
-    spreadUntil(document);
     // A key that is set to nothing goes.
     document = merged(Node::map({}, document.location()), document);
 }

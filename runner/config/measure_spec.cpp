@@ -2,9 +2,6 @@
 // `picture_tolerance`.
 #include "runner/config/measure_spec.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "engine/core/params.h"
 #include "runner/config/sections.h"
 
@@ -15,13 +12,8 @@ bool Measure::mayContinue() const {
            processes < processesAtMost;
 }
 
-bool Measure::mayRepeat() const {
-    return relativeError > 0.0 && lane == Lane::Timing && repeats < repeatsAtMost;
-}
-
 int Measure::certainRounds() const {
-    const bool isBounded = lane == Lane::Timing && processesAtLeast > 0;
-    return isBounded ? std::min(processesAtLeast, processes) : processes;
+    return lane == Lane::Timing && isWithinBudget ? 1 : processes;
 }
 
 std::pair<int, int> readOutput(Params& params) {
@@ -45,18 +37,13 @@ Measure readMeasure(Params& params, bool isOwn) {
         measure.lane = Measure::Lane::Timing;
         measure.warmup = 1;
         measure.processes = kFewestRounds;
-        measure.processesAtLeast = 1;
+        measure.isWithinBudget = true;
     }
     measure.lane = params.getEnum("lane", measure.lane, kLanes, {"how cases run"});
     measure.warmup = params.getInt("warmup", measure.warmup,
                                    {"iterations before the first measured one", "", 0, kMax});
     measure.repeats = params.getInt("repeats", measure.repeats,
                                     {"measured iterations in one process", "", 1, kMax});
-    measure.repeatsAtMost = params.getInt(
-        "repeats_at_most", measure.repeatsAtMost,
-        {"repeats of a frame go on in each process until half of the 95 % interval of their median "
-         "÷ it is no more than relative_error, or there are so many; timing lane; 0: they do not",
-         "", 0, kMax});
     measure.processes =
         params.getInt("processes", measure.processes,
                       {"rounds: in each every case is run, in a process of its own", "", 1, kMax});
@@ -74,11 +61,6 @@ Measure readMeasure(Params& params, bool isOwn) {
     measure.timeBudgetS = params.getDouble(
         "time_budget_s", measure.timeBudgetS,
         {"of all rounds of the file: none is begun to end later", "seconds", 0, 1e9});
-    measure.processesAtLeast = params.getInt(
-        "processes_at_least", measure.processesAtLeast,
-        {"rounds whatever they take, of a table of times; the others only within time_budget_s; "
-         "0: all",
-         "", 0, kMax});
     measure.frames = params.getInt("frames", measure.frames,
                                    {"frames of a path; each is repeated", "", 1, kMax});
     measure.sceneSeeds = params.getInt(
@@ -91,13 +73,9 @@ Measure readMeasure(Params& params, bool isOwn) {
     measure.timeLimitS =
         params.getDouble("time_limit_s", measure.timeLimitS,
                          {"of the whole case, scene loading included", "seconds", 1e-3, 1e9});
-    const double bytes = params.getDouble("memory_limit_bytes", 0.0,
-                                          {"resident memory; 0: no limit", "bytes", 0, 1e15});
-    measure.memoryLimitBytes = std::llround(bytes);
     params.finish();
     // Rounds go on from those that an interval takes.
-    const bool isOneRound =
-        measure.relativeError > 0.0 && measure.repeatsAtMost == 0 && !params.isGiven("processes");
+    const bool isOneRound = measure.relativeError > 0.0 && !params.isGiven("processes");
     if (isOneRound && measure.lane == Measure::Lane::Timing) measure.processes = kFewestRounds;
     return measure;
 }

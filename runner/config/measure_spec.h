@@ -10,12 +10,8 @@ inline constexpr int kFewestRounds = 6;
 struct Measure {
     enum class Lane { Quality, Timing };
     Lane lane = Lane::Quality;
-    int warmup = 0;   // iterations before the first measured one
-    int repeats = 1;  // measured iterations in one process; the fewest, where more may follow:
-    /// Timing lane with `relativeError`: iterations of a frame go on in each process until half of
-    /// the 95 % interval of their median ÷ it is no more than that, or there are so many. 0: they
-    /// do not.
-    int repeatsAtMost = 0;
+    int warmup = 0;     // iterations before the first measured one
+    int repeats = 1;    // measured iterations in one process
     int processes = 1;  // rounds, in each of which a case is run in a process of its own if more
                         // than 1; the fewest, where more may follow:
     /// Timing lane, from metrics::kFewestForInterval processes on: rounds go on until half of each
@@ -25,16 +21,13 @@ struct Measure {
     double timeBudgetS = 60.0;  // of all rounds of the experiment
     int frames = 1;             // frames of a path; each is repeated
     int sceneSeeds = 1;         // samples of a generated scene: its seed and those that follow it
-    /// Timing lane: rounds that are measured whatever they take; of `processes` the others are
-    /// begun only where they end within `timeBudgetS`. 0: all.
-    int processesAtLeast = 0;
-    double timeLimitS = 120.0;       // of the whole case, scene loading included
-    long long memoryLimitBytes = 0;  // resident; 0: none
+    /// Timing lane: of `processes` the first alone is measured whatever it takes; the others are
+    /// begun only where they end within `timeBudgetS`.
+    bool isWithinBudget = false;
+    double timeLimitS = 120.0;  // of the whole case, scene loading included
 
     /// Whether rounds may follow the first `processes`.
     bool mayContinue() const;
-    /// Whether iterations may follow the first `repeats`.
-    bool mayRepeat() const;
     /// Rounds that are measured whatever they take.
     int certainRounds() const;
 };

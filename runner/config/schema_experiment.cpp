@@ -288,26 +288,7 @@ SchemaSection output() {
 SchemaSection measure() {
     Params params(Node(), "measure");
     readMeasure(params, false);
-    SchemaSection section = declared("measure", params);
-    section.keys.push_back({"until", "{relative_error: 1 %, at_most_s: 60}", "none",
-                            "measures until times are known as well as that, in the words below; "
-                            "stands for keys above",
-                            refTo("until")});
-    return section;
-}
-
-SchemaSection until() {
-    return {"until",
-            "measure.until.",
-            "",
-            {{"relative_error", "1 % | fraction", "0",
-              "half of each 95 % interval ÷ time is no more: measure.relative_error", text()},
-             {"at_most_s", "number seconds", "60",
-              "measure.time_budget_s, where only the first round is measured whatever it takes "
-              "(processes_at_least)",
-              number()},
-             {"processes", "1 … 1000000", "20", "measure.processes_at_most", count()},
-             {"repeats", "0 … 1000000", "0", "measure.repeats_at_most", number()}}};
+    return declared("measure", params);
 }
 
 SchemaSection pictureTolerance() {
@@ -325,7 +306,7 @@ SchemaFile experimentSchema() {
         for (SchemaSection& section : sections) file.sections.push_back(std::move(section));
     };
     add(programSections());
-    add({output(), sweep(), axis(), measure(), until(), pictureTolerance(), profiles(), layout(),
+    add({output(), sweep(), axis(), measure(), pictureTolerance(), profiles(), layout(),
          selection(), against(), printed(), fit(), plot(), assumption()});
     add(claimSections());
     return file;

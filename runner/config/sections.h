@@ -66,10 +66,6 @@ const std::vector<std::string>& sectionKeys();
 /// table, figure, section, sweep_of.
 const std::vector<std::string>& identityKeys();
 
-/// Puts what `measure.until` stands for in its place, before files and profiles are laid over each
-/// other. Throws Error for what is wrong in it, and for a key that says the same in the same file.
-void spreadUntil(Node& document);
-
 /// Throws Error for a value (but of params_by_scene) of which no case would know, as its axis is
 /// swept in every one: it stands in the file of the sweep, in the experiment's own or on the
 /// command line. One of a file that is extended may be swept.

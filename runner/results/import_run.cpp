@@ -139,7 +139,7 @@ config::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
     item.measure = experiment.measure;
     item.measure.processes = 1;
     item.measure.relativeError = 0.0;
-    item.measure.processesAtLeast = 0;
+    item.measure.isWithinBudget = false;
     return item;
 }
 

@@ -14,7 +14,6 @@
 #include "runner/run/process_memory.h"
 #include "runner/run/recorder.h"
 #include "runner/run/run_directory.h"
-#include "runner/tables/frame_times.h"
 
 namespace gfxrepro::run {
 
@@ -217,13 +216,11 @@ class FrameLoop {
     }
     void repeat(technique::FrameContext& frame, RunRecorder& recorder) {
         double spentS = 0.0;
-        std::vector<double> timesMs;
-        for (int i = 0; tables::isRepeated(measure_, timesMs) ||
-                        (i < pacing_.repeatsAtMost && spentS < pacing_.repeatsS);
+        for (int i = 0;
+             i < measure_.repeats || (i < pacing_.repeatsAtMost && spentS < pacing_.repeatsS);
              ++i) {
             if (pacing_.inFlight(lastMs_) > 1) keepBusy(frame);
             lastMs_ = measureFrame(frame, i, recorder);
-            timesMs.push_back(lastMs_);
             spentS += 1e-3 * lastMs_ * atOnce_;
         }
     }

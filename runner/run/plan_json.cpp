@@ -28,10 +28,8 @@ Json measureJson(const config::Measure& measure) {
                  {"processes_at_most", measure.processesAtMost},
                  {"time_budget_s", measure.timeBudgetS},
                  {"frames", measure.frames},
-                 {"time_limit_s", measure.timeLimitS},
-                 {"memory_limit_bytes", measure.memoryLimitBytes}};
-    if (measure.repeatsAtMost > 0) json["repeats_at_most"] = measure.repeatsAtMost;
-    if (measure.processesAtLeast > 0) json["processes_at_least"] = measure.processesAtLeast;
+                 {"time_limit_s", measure.timeLimitS}};
+    if (measure.isWithinBudget) json["within_budget"] = true;
     return json;
 }
 
@@ -103,13 +101,8 @@ config::Measure measureFrom(const Node& node) {
     measure.timeBudgetS = required(node, "time_budget_s").asDouble();
     measure.frames = requiredInt(node, "frames");
     measure.timeLimitS = required(node, "time_limit_s").asDouble();
-    measure.memoryLimitBytes = required(node, "memory_limit_bytes").asInteger();
-    if (const Node* rounds = node.find("processes_at_least")) {
-        measure.processesAtLeast = intFrom(*rounds, "processes_at_least");
-    }
-    if (const Node* repeats = node.find("repeats_at_most")) {
-        measure.repeatsAtMost = intFrom(*repeats, "repeats_at_most");
-    }
+    const Node* isWithinBudget = node.find("within_budget");
+    measure.isWithinBudget = isWithinBudget && isWithinBudget->asBool();
     return measure;
 }
 

@@ -37,12 +37,6 @@ std::vector<pid_t> processTree(pid_t pid) {
     return all;
 }
 
-long long residentBytesOfTree(pid_t pid) {
-    long long bytes = 0;
-    for (const pid_t one : processTree(pid)) bytes += residentBytes(one);
-    return bytes;
-}
-
 long long peakResidentBytes() {
     std::ifstream file("/proc/self/status");
     std::string word;

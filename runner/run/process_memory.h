@@ -13,9 +13,6 @@ std::vector<pid_t> processTree(pid_t pid);
 /// Resident bytes of any process; 0 when it is gone.
 long long residentBytes(pid_t pid);
 
-/// The same of its tree.
-long long residentBytesOfTree(pid_t pid);
-
 /// Highest resident size of this process since the last reset.
 long long peakResidentBytes();
 /// Gives unused heap back and starts the peak at the present size.

@@ -52,13 +52,13 @@ void shareArtifacts(const fs::path& runDir, const Case& measured, const Case& tw
 std::string workKey(const Case& item) {
     const config::Measure& measure = item.measure;
     if (measure.lane == config::Measure::Lane::Timing) return "";
-    Json content = {{"technique", item.technique},
-                    {"scene", item.scene.toJson()},
-                    {"params", item.params.toJson()},
-                    {"output", {item.outputWidthPx, item.outputHeightPx}},
-                    {"measure",
-                     {measure.warmup, measure.repeats, measure.processes, measure.frames,
-                      measure.timeLimitS, measure.memoryLimitBytes}}};
+    Json content = {
+        {"technique", item.technique},
+        {"scene", item.scene.toJson()},
+        {"params", item.params.toJson()},
+        {"output", {item.outputWidthPx, item.outputHeightPx}},
+        {"measure",
+         {measure.warmup, measure.repeats, measure.processes, measure.frames, measure.timeLimitS}}};
     if (!item.program.isNull()) {
         content["program"] = {item.program.toJson(), item.programKey};
     }

@@ -17,8 +17,7 @@ namespace gfxrepro::run {
 
 namespace {
 
-constexpr std::chrono::seconds kEndLimit{10};  // for a worker that has closed its answers
-constexpr std::chrono::milliseconds kMemoryCheckInterval{20};
+constexpr std::chrono::seconds kEndLimit{10};           // for a worker that has closed its answers
 constexpr std::chrono::milliseconds kSendInterval{2};   // while a unit is not sent to its end
 constexpr std::chrono::seconds kLongestSuspension{60};  // of a worker alone, beyond its limit
 constexpr std::size_t kOutputTailBytes = 65536;
@@ -45,10 +44,6 @@ std::string secondsText(double seconds) {
     text.erase(text.find_last_not_of('0') + 1);
     if (text.back() == '.') text.pop_back();
     return text + " s";
-}
-
-std::string mebibytesText(long long sizeBytes) {
-    return std::to_string(sizeBytes >> 20) + " MiB";
 }
 
 std::chrono::nanoseconds nanoseconds(double seconds) {
@@ -234,14 +229,6 @@ std::optional<CaseResult> WorkerHandle::checkLimits(Clock::time_point now) {
                                        (phase_.empty() ? "" : " (in " + phase_ + ")")
                                  : "the worker was not ready after " +
                                        secondsText(static_cast<double>(startLimit_.count())));
-    } else if (measure.memoryLimitBytes > 0) {
-        const long long usedBytes = residentBytesOfTree(process_.pid());
-        if (usedBytes > measure.memoryLimitBytes) {
-            result =
-                failure(records::Status::Oom, "resident memory of " + mebibytesText(usedBytes) +
-                                                  " is over the limit of " +
-                                                  mebibytesText(measure.memoryLimitBytes));
-        }
     }
     if (result) {
         isAlive_ = false;
@@ -259,9 +246,6 @@ void WorkerHandle::postpone(Clock::duration gap) {
 WorkerHandle::Clock::time_point WorkerHandle::nextCheck(Clock::time_point now) const {
     if (!unit_) return Clock::time_point::max();
     if (!isSent_) return std::min(limit_, now + kSendInterval);
-    if (unit_->item->measure.memoryLimitBytes > 0) {
-        return std::min(limit_, now + kMemoryCheckInterval);
-    }
     return limit_;
 }
 

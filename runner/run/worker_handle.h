@@ -64,7 +64,7 @@ class WorkerHandle {
     /// Reads what has arrived. A result when the unit is over — done, or failed because the worker
     /// is gone.
     std::optional<CaseResult> receive();
-    /// Kills the worker when the unit broke its time or memory limit, and gives that result.
+    /// Kills the worker when the unit broke its time limit, and gives that result.
     std::optional<CaseResult> checkLimits(Clock::time_point now);
     /// For a time in which the runner itself did not run: nor, most likely, did the worker.
     void postpone(Clock::duration gap);

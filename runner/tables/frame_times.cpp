@@ -174,17 +174,6 @@ std::optional<double> FrameTimes::noise(Clock clock) const {
     return std::expm1(medianOf(widths));
 }
 
-std::vector<std::size_t> FrameTimes::repeatCounts() const {
-    std::vector<std::size_t> counts;
-    for (const CaseTimes& times : cases_) {
-        for (const auto& [process, frames] : times.wall) {
-            for (const auto& [frame, repeats] : frames) counts.push_back(repeats.size());
-        }
-    }
-    std::ranges::sort(counts);
-    return counts;
-}
-
 std::vector<Outlier> FrameTimes::outliers() const {
     std::vector<Outlier> outliers;
     for (const CaseTimes& times : cases_) {
@@ -222,14 +211,6 @@ std::vector<std::string> outlierTexts(const FrameTimes& times, const CaseNames& 
     return texts;
 }
 
-bool isRepeated(const config::Measure& measure, std::span<const double> timesMs) {
-    const auto count = static_cast<int>(timesMs.size());
-    if (count < measure.repeats) return true;
-    if (!measure.mayRepeat() || count >= measure.repeatsAtMost) return false;
-    const std::optional<double> error = metrics::relativeErrorOfMedian(timesMs);
-    return !error || *error > measure.relativeError;
-}
-
 namespace {
 
 /// "the CPU time of a frame", "the time of a frame, on the wall and of the CPU,".
@@ -237,21 +218,6 @@ std::string_view judgedName(const FrameTimes& times) {
     const std::vector<Clock> clocks = times.judgedClocks();
     if (clocks.size() > 1) return "the time of a frame, on the wall and of the CPU,";
     return clocks[0] == Clock::Process ? "the CPU time of a frame" : "the time of a frame";
-}
-
-/// How often frames were repeated, and what ended that.
-std::string repeatsNote(const FrameTimes& times, const config::Measure& measure) {
-    const std::vector<std::size_t> counts = times.repeatCounts();
-    const auto isMost = [&](std::size_t count) {
-        return count >= static_cast<std::size_t>(measure.repeatsAtMost);
-    };
-    const auto most = std::ranges::count_if(counts, isMost);
-    return fmt::format(
-        "Frames were repeated {} … {} times in a process: {} of {} ended by relative_error ({}), "
-        "{} "
-        "by repeats_at_most.",
-        counts.front(), counts.back(), static_cast<std::ptrdiff_t>(counts.size()) - most,
-        counts.size(), percentText(measure.relativeError), most);
 }
 
 }  // namespace
@@ -301,7 +267,6 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
                                     rounds, endInWords(endOfRounds(measure, times)),
                                     judgedName(times), percentText(*error), target));
     }
-    if (measure.mayRepeat()) notes.push_back(repeatsNote(times, measure));
     if (const auto noise = times.noise(Clock::Wall)) {
         const auto own = times.noise(Clock::Process);
         notes.push_back(fmt::format(

@@ -3,7 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -64,8 +63,6 @@ class FrameTimes {
     /// too few rounds.
     std::optional<double> noise(Clock clock) const;
 
-    /// How often each frame was repeated in each process, in ascending order.
-    std::vector<std::size_t> repeatCounts() const;
     /// Frames whose time on the wall is kOutlierFactor times the median of the same frame in other
     /// repeats and rounds, or, where these are fewer than three, of the other frames of their case.
     std::vector<Outlier> outliers() const;
@@ -89,12 +86,6 @@ class FrameTimes {
     std::map<std::string, std::size_t> indices_;
     bool isOfProgram_ = false;
 };
-
-/// Whether another repeat follows where a frame took these times in a process so far: while there
-/// are fewer than `repeats`, and, where more may follow, while their median is not known to
-/// `relative_error`. That the narrow intervals end them is no harm: what a process came to is one
-/// value of the interval over processes, which covers what it says (coverage_test.cpp).
-bool isRepeated(const config::Measure& measure, std::span<const double> timesMs);
 
 /// Which condition of `measure` ended the rounds: "processes" (as many as asked for, no more),
 /// "relative_error", "processes_at_most", or "time_budget_s".

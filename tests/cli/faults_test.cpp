@@ -36,23 +36,6 @@ TEST(Faults, EveryFailureBecomesARow) {
                             "number, or ∞ dB)"));
 }
 
-TEST(Faults, MemoryLimit) {
-    const TemporaryFolder folder;
-    const std::string config =
-        writeMockConfig(folder,
-                        "sweep:\n  allocate_mib: [0, 1024]\nparams: {pause_ms: 1000}\n"
-                        "measure: {lane: quality, memory_limit_bytes: 943718400}\n");
-    const std::string dir = folder.path() / "run";
-    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
-    const std::vector<records::Record> ok = rowsOf(dir, "number");
-    EXPECT_EQ(ok.size(), 1U);
-    const std::vector<records::Record> failed = rowsOf(dir, "");
-    ASSERT_EQ(failed.size(), 1U);
-    EXPECT_EQ(failed[0].status, records::Status::Oom);
-    EXPECT_THAT(failed[0].message,
-                testing::MatchesRegex("resident memory of .* MiB is over the limit of 900 MiB"));
-}
-
 TEST(Faults, WhatPassesAtTheSecondTryIsFlaky) {
     const TemporaryFolder folder;
     const std::string marker = folder.path() / "marker";
@@ -75,18 +58,6 @@ TEST(Faults, WhatPassesAtTheSecondTryIsFlaky) {
         << readFile(dir + "/tables/sweep-mock.md");
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
               "0 of 0 finished; records: " + dir + "/records.csv\n");
-}
-
-TEST(Faults, LeakEndsAtTheMemoryLimitAndCostsOneCase) {
-    const TemporaryFolder folder;
-    const std::string config = writeMockConfig(folder,
-                                               "sweep: {behaviour: [ok, leak]}\nmeasure: {lane: "
-                                               "quality, memory_limit_bytes: 943718400}\n");
-    const std::string dir = folder.path() / "run";
-    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
-    EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
-    ASSERT_EQ(rowsOf(dir, "").size(), 1U);
-    EXPECT_EQ(rowsOf(dir, "")[0].status, records::Status::Oom);
 }
 
 TEST(Faults, AMetricIsGivenOnce) {
@@ -167,19 +138,6 @@ TEST(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
     const ProcessResult cool =
         run({config, "--device", "software", "--out", folder.path() / "cool"});
     EXPECT_EQ(cool.err.find("not quiet"), std::string::npos) << cool.err;
-}
-
-TEST(Faults, RepeatsGoOnUntilATimeIsKnown) {
-    const TemporaryFolder folder;
-    const std::string config = writeMockConfig(
-        folder, "measure: {lane: timing, repeats: 2, repeats_at_most: 9, relative_error: 1e-9}\n");
-    const std::string dir = folder.path() / "run";
-    const ProcessResult run =
-        mockGfxrepro({"reproduce", config, "--device", "software", "--out", dir});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
-    EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 9U);
-    const std::string note = "Frames were repeated 9 … 9 times in a process: 0 of 1 ended by ";
-    EXPECT_NE(readFile(dir + "/tables/sweep-mock.md").find(note), std::string::npos);
 }
 
 TEST(Faults, SideBySideAndInFreshProcesses) {

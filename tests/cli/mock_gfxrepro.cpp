@@ -37,7 +37,6 @@ enum class Behaviour {
     NotANumber,
     Infinite,
     Twice,
-    Leak,
     Flake,
     Blank,
     Unequal
@@ -55,7 +54,6 @@ constexpr Choice<Behaviour> kBehaviours[] = {
     {Behaviour::NotANumber, "not_a_number"},
     {Behaviour::Infinite, "infinite", "its picture is perfect"},
     {Behaviour::Twice, "twice", "records a metric a second time"},
-    {Behaviour::Leak, "leak", "64 MiB more every millisecond"},
     {Behaviour::Flake, "flake", "crashes unless `marker` is there, and makes it"},
     {Behaviour::Blank, "blank", "shows nothing"},
     {Behaviour::Unequal, "unequal", "shows something else in every repeat"},
@@ -68,8 +66,7 @@ class Mock : public technique::Technique {
           number_(params.getInt("number", 0, {"given back as a metric"})),
           marker_(params.getText("marker", "/nonexistent", {"file that ends the flakes"})),
           pauseMs_(params.getInt("pause_ms", 0, {"length of an iteration", "ms", 0, 60000})),
-          busyMs_(params.getInt("busy_ms", 0, {"CPU time of an iteration", "ms", 0, 60000})),
-          allocateMib_(params.getInt("allocate_mib", 0, {"memory to touch", "MiB", 0, 4096})) {
+          busyMs_(params.getInt("busy_ms", 0, {"CPU time of an iteration", "ms", 0, 60000})) {
         params.finish();
     }
 
@@ -78,7 +75,6 @@ class Mock : public technique::Technique {
     }
 
     void setup(technique::SetupContext&) override {
-        memory_.assign(static_cast<std::size_t>(allocateMib_) << 20, 'x');
         image_ = gl::Texture::make2D(GL_R32F, {8, 8});
         if (const char* warning = std::getenv("GFXREPRO_MOCK_WARNING")) {
             std::fprintf(stderr, "warning: %s\n", warning);
@@ -103,11 +99,6 @@ class Mock : public technique::Technique {
             case Behaviour::Unequal:
                 show(++shown_);
                 return;
-            case Behaviour::Leak:
-                while (true) {
-                    memory_.resize(memory_.size() + (std::size_t{64} << 20), 'x');
-                    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-                }
             case Behaviour::Flake:
                 if (std::filesystem::exists(marker_)) return;
                 std::ofstream(marker_) << "seen";
@@ -177,8 +168,6 @@ class Mock : public technique::Technique {
     std::string marker_;
     int pauseMs_;
     int busyMs_;
-    int allocateMib_;
-    std::vector<char> memory_;
     gl::Texture image_;
     std::size_t shown_ = 0;
 };

@@ -47,7 +47,6 @@ case $1 in
     no_picture) say number "$2" 1; rm "$3/result.png" ;;
     half_picture) say number "$2" 1; head -c 200 "$here/picture.png" >"$3/result.png" ;;
     other_size) say number "$2" 1; cp "$here/small.png" "$3/result.png" ;;
-    leaks) x=$(head -c 700000000 /dev/zero | tr '\0' x); echo ${#x} ;;
 esac
 )";
 
@@ -155,16 +154,6 @@ TEST_F(ExternalProgram, ATimeBelowZeroIsNoneAndItsLastLinesAreKept) {
                            "talks: error (program '" + folder.path().string() +
                                "/renderer.sh' ended with exit code 3: two / three / "
                                "four)"));
-}
-
-TEST_F(ExternalProgram, MemoryOfWhatItStartedIsLimited) {
-    const std::string config = write(
-        "params: {behaviour: leaks}\n"
-        "measure: {lane: quality, memory_limit_bytes: 314572800}\n");
-    EXPECT_EQ(run(config).exitCode, 4);
-    EXPECT_THAT(statusLines(dir),
-                ElementsAre(testing::MatchesRegex("leaks: oom .resident memory of .* MiB is over "
-                                                  "the limit of 300 MiB.")));
 }
 
 TEST_F(ExternalProgram, RecordsWhatItSaysAndHowFarItsPictureIsFromTheTruth) {

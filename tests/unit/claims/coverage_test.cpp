@@ -108,38 +108,6 @@ TEST_P(Coverage, OfTheMedianOfACell) {
     }
 }
 
-/// Repeats that end as soon as they seem to be known harm no interval over processes; times are
-/// skewed, and one in twenty is disturbed.
-TEST_P(Coverage, OfTheMedianOfACellWhoseRepeatsEndByThemselves) {
-    config::Measure measure;
-    measure.lane = config::Measure::Lane::Timing;
-    measure.relativeError = 0.02;
-    measure.repeatsAtMost = 60;
-    std::size_t fewest = 60, most = 0;
-    const double share =
-        shareOf("cell, repeats by relative_error", GetParam(), [&](Random& random) {
-            tables::Samples samples;
-            for (int process = 0; process < GetParam(); ++process) {
-                const double own = std::exp(kBetween * normal(random));
-                std::vector<double>& times = samples.processes[process][0];
-                while (tables::isRepeated(measure, times)) {
-                    const double slow = random.index(20) == 0 ? 2.0 : 1.0;
-                    times.push_back(10.0 * own * slow * std::exp(kWithin * normal(random)));
-                }
-                fewest = std::min(fewest, times.size());
-                most = std::max(most, times.size());
-            }
-            // Of the median of disturbed times: 5 % of them above all others.
-            const double truth = 10.0 * std::exp(kWithin * 0.066);
-            const tables::Summary summary = tables::summarize(samples, metrics::Statistic::Median);
-            return summary.bounds == tables::Bounds::Interval && holds(summary.interval, truth);
-        });
-    EXPECT_GE(share, kRequired);
-    EXPECT_GE(fewest, metrics::kFewestForInterval);
-    EXPECT_LT(fewest, most);
-    EXPECT_LE(most, 60U);
-}
-
 TEST_P(Coverage, OfARatio) {
     const double share = shareOf("ratio", GetParam(), [&](Random& random) {
         const Group group = groupOf({{30.0}, {10.0}}, {}, GetParam(), random);

@@ -184,7 +184,7 @@ TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
               "Times of 2 processes: bounds are a range, no interval (which takes 6), and no claim "
               "about a time is decided.");
     config::Measure own = measureOf(6);  // of who names no lane
-    own.processesAtLeast = 1;
+    own.isWithinBudget = true;
     EXPECT_EQ(first({10, 11}, own),
               "Times of 2 processes: bounds are a range, no interval (which takes 6), and no claim "
               "about a time is decided. All rounds together have 60 s; `--set "
@@ -215,32 +215,6 @@ TEST(FrameTimes, NotesStandUnderTablesOfTimes) {
     EXPECT_EQ(table.rows.at(0).cells.at(0).low, "9");
     EXPECT_EQ(table.notes.size(), 2U);
     EXPECT_GT(table.noise(Clock::Process), 0.1);
-}
-
-TEST(FrameTimes, RepeatsGoOnUntilTheirMedianIsKnown) {
-    config::Measure measure;
-    measure.repeats = 3;
-    const std::vector<double> alike(20, 10.0);
-    const auto isRepeatedAfter = [&](std::size_t count, const std::vector<double>& times) {
-        return isRepeated(measure, std::span(times).first(count));
-    };
-    EXPECT_TRUE(isRepeatedAfter(2, alike));
-    EXPECT_FALSE(isRepeatedAfter(3, alike));
-    // More may follow in the timing lane with an error to reach, and only there.
-    measure.repeatsAtMost = 12;
-    EXPECT_FALSE(isRepeatedAfter(3, alike));
-    measure.relativeError = 0.1;
-    EXPECT_FALSE(isRepeatedAfter(3, alike));
-    measure.lane = config::Measure::Lane::Timing;
-    EXPECT_TRUE(isRepeatedAfter(5, alike)) << "no interval yet";
-    EXPECT_FALSE(isRepeatedAfter(6, alike));
-    // Of 6 to 8 values the interval is the range: 10 ± 1.5; of 9 it leaves out one at either end.
-    const std::vector<double> rough = {10, 13, 10, 10, 10, 10, 10, 10, 10, 13, 7, 7, 13};
-    EXPECT_TRUE(isRepeatedAfter(8, rough));
-    EXPECT_FALSE(isRepeatedAfter(9, rough));
-    const std::vector<double> rougher = {10, 20, 10, 20, 10, 20, 10, 20, 10, 20, 10, 20, 10};
-    EXPECT_TRUE(isRepeatedAfter(11, rougher));
-    EXPECT_FALSE(isRepeatedAfter(12, rougher)) << "repeats_at_most";
 }
 
 }  // namespace
