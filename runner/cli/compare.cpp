@@ -45,7 +45,6 @@ struct Measured {
     std::map<std::string, std::string> configs;  // absolute path by table
     std::vector<std::string> notes;
     regression::PictureMap pictures;
-    std::map<std::string, config::PictureTolerance> tolerances;  // by table that has one
     std::string buildId;
     std::string madeFrom;                              // its line of made-from.txt
     std::map<std::string, std::string> programs = {};  // hash and version by file
@@ -66,16 +65,11 @@ Measured readMeasured(const fs::path& runDir) {
                       {},
                       run::notesOf(run.manifest),
                       regression::picturesOf(runDir, run.records, params),
-                      {},
                       run.plan.buildId,
                       results::madeFromLine(runDir, run.manifest)};
     for (const run::ProgramUse& use : run::programsOf(run.manifest)) {
         measured.programs[use.file] =
             use.sha256.substr(0, 12) + (use.version.empty() ? "" : " (" + use.version + ")");
-    }
-    for (const config::Experiment& experiment : run.plan.experiments) {
-        if (!experiment.pictureTolerance) continue;
-        measured.tolerances[experiment.id] = *experiment.pictureTolerance;
     }
     const std::vector<std::string>& configs = run.plan.request.configs;
     for (std::size_t i = 0; i < std::min(configs.size(), run.plan.experiments.size()); ++i) {
@@ -92,10 +86,9 @@ void requireSameMachine(const Measured& a, const Measured& b) {
 
 std::vector<Difference> comparePictures(const Measured& older, const Measured& newer,
                                         const fs::path& folder) {
-    return regression::comparePictures(older.pictures, newer.pictures,
-                                       {.byTable = newer.tolerances,
-                                        .isOneBuild = older.buildId == newer.buildId,
-                                        .folder = folder});
+    return regression::comparePictures(
+        older.pictures, newer.pictures,
+        {.isOneBuild = older.buildId == newer.buildId, .folder = folder});
 }
 
 /// Runs a program to its end; its output is shown when it fails. Exit code 4 (a case did not

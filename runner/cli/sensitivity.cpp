@@ -195,7 +195,8 @@ std::optional<Study> studyOf(const Context& context, const std::string& file,
         return std::nullopt;
     }
     if (isTimed && !options.hasTimes) study.sets = kOnceForQuality;
-    study.variations = studies::variationsOf(experiment, study.plan.cases, options.points);
+    study.variations = studies::variationsOf(
+        experiment, study.plan.cases, openCatalog(context, selection.assets), options.points);
     study.basis = studies::basisOf(study.plan, experiment);
     study.folder = folder / experiment.slug();
     return study;

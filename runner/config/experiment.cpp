@@ -150,10 +150,9 @@ std::vector<Assumption> readAssumptions(const Node& node) {
 
 /// A file without a technique measures nothing: it holds what the paper printed.
 void requireOnlyPrinted(const Node& document) {
-    for (const char* key :
-         {"program", "scene", "scene_params", "scene_seed", "scene_instead", "params",
-          "params_by_scene", "params_instead", "output", "sweep", "measure", "picture_tolerance",
-          "shows", "layout", "fit", "claims", "plots"}) {
+    for (const char* key : {"program", "scene", "scene_params", "scene_instead", "params",
+                            "params_by_scene", "params_instead", "output", "sweep", "measure",
+                            "shows", "layout", "fit", "claims", "plots"}) {
         if (document.find(key)) {
             throw Error(document.keyLocation(key),
                         std::string("'") + key + "' without 'technique'");
@@ -163,12 +162,6 @@ void requireOnlyPrinted(const Node& document) {
         throw Error(document.location(),
                     "neither 'technique' nor 'printed'; allowed: either or both");
     }
-}
-
-long long sceneSeed(const Node& node) {
-    const auto seed = node.tryInteger();
-    if (!seed || *seed < 0) throwNotAllowed(node, "scene_seed", "a whole number, at least 0");
-    return *seed;
 }
 
 /// A map, empty where the section is not there.
@@ -233,11 +226,7 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     }
     experiment.scene = section("scene");
     experiment.sceneParams = mapAt(document, "scene_params");
-    if (const Node* seed = document.find("scene_seed")) experiment.sceneSeed = sceneSeed(*seed);
-    experiment.sceneInstead = section("scene_instead");
-    if (!experiment.sceneInstead.isNull() && !experiment.sceneInstead.isMap()) {
-        throwNotAllowed(experiment.sceneInstead, "scene_instead", "a map {scene: scene}");
-    }
+    experiment.sceneInstead = mapAt(document, "scene_instead");
     experiment.sweep = section("sweep");
     Params output(section("output"), "output");
     std::tie(experiment.outputWidthPx, experiment.outputHeightPx) = readOutput(output);
@@ -245,10 +234,6 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     experiment.measure =
         readMeasure(measure, experiment.kind == Kind::Sweep && !document.find("layout"));
     requireTold(document, experiment);
-    if (const Node* given = document.find("picture_tolerance")) {
-        Params tolerance(*given, "picture_tolerance");
-        experiment.pictureTolerance = readPictureTolerance(tolerance);
-    }
     if (const Node* shows = document.find("shows")) {
         if (!shows->isSequence()) throwNotAllowed(*shows, "shows", "a list of names of pictures");
         for (const Node& name : shows->items()) {

@@ -38,13 +38,6 @@ using AxisPoint = Node::Map;
 /// the place of what is wrong, and for more than 1,000,000 points.
 std::vector<AxisPoint> expandSweep(const Node& sweep);
 
-/// `picture_tolerance:` — how far apart the pictures of a case may be that two builds have
-/// recorded.
-struct PictureTolerance {
-    double flip = 1e-3;       // mean FLIP: a thousandth of the pixels is wholly another
-    double difference = 0.1;  // of any value; white is 1
-};
-
 /// Another metric, or another pass, of the same cases: what a cell is a share of, or what is taken
 /// away from it.
 struct Against {
@@ -216,15 +209,12 @@ struct Experiment {
     Node paramsByScene =
         Node::map({});  // a map: scene → a map, laid over `params` in the cases of that scene
     Node scene;         // null, or a reference
-    Node sceneParams = Node::map({});  // a map: of the generated scenes, laid over the catalogue's
-    std::optional<long long> sceneSeed;  // of generated scenes, instead of the catalogue's
-    Node sceneInstead;  // null, or a map: catalogued scene → the one that takes its place
+    Node sceneParams = Node::map({});   // a map: of the generated scenes, laid over the catalogue's
+    Node sceneInstead = Node::map({});  // a map: catalogued scene → the one that takes its place
     int outputWidthPx = 512;
     int outputHeightPx = 512;
     Node sweep;
     Measure measure;
-    /// Given or not: then PictureTolerance's own of two builds, and nothing of one.
-    std::optional<PictureTolerance> pictureTolerance;
     std::map<std::string, std::string> labels;  // what people read for a name
     std::vector<std::string> shows;  // names of the pictures that the document shows; or empty
     Layout layout;

@@ -1,5 +1,4 @@
-// The sections whose keys are declared where they are read: `output`, `measure`,
-// `picture_tolerance`.
+// The sections whose keys are declared where they are read: `output`, `measure`.
 #include "runner/config/measure_spec.h"
 
 #include "engine/core/params.h"
@@ -78,17 +77,6 @@ Measure readMeasure(Params& params, bool isOwn) {
     const bool isOneRound = measure.relativeError > 0.0 && !params.isGiven("processes");
     if (isOneRound && measure.lane == Measure::Lane::Timing) measure.processes = kFewestRounds;
     return measure;
-}
-
-PictureTolerance readPictureTolerance(Params& params) {
-    constexpr double kMax = 1e30;
-    PictureTolerance tolerance;
-    tolerance.flip = params.getDouble("flip", tolerance.flip, {"mean FLIP", "", 0, 1});
-    tolerance.difference =
-        params.getDouble("difference", tolerance.difference,
-                         {"largest difference of a value; white is 1", "", 0, kMax});
-    params.finish();
-    return tolerance;
 }
 
 }  // namespace gfxrepro::config

@@ -33,23 +33,9 @@ double optionalNumber(const Node& map, const char* key, double fallback) {
     return node ? node->asDouble() : fallback;
 }
 
-constexpr std::pair<std::string_view, ParamType> kTypes[] = {{"integer", ParamType::Integer},
-                                                             {"number", ParamType::Number},
-                                                             {"boolean", ParamType::Boolean},
-                                                             {"text", ParamType::Text}};
-
-/// As it is said, else as the default looks.
-ParamType typeOf(const Node& map, const Node& fallback, const std::string& what) {
-    const Node* choices = map.find("choices");
-    const Node* type = map.find("type");
-    if (type) {
-        for (const auto& [name, known] : kTypes) {
-            if (type->isScalar() && type->text() == name && !choices) return known;
-        }
-        throwNotAllowed(*type, what + ": type",
-                        choices ? "none beside 'choices'" : "integer, number, boolean, text");
-    }
-    if (choices) return ParamType::Choice;
+/// As the default looks.
+ParamType typeOf(const Node& map, const Node& fallback) {
+    if (map.find("choices")) return ParamType::Choice;
     if (fallback.tryBool()) return ParamType::Boolean;
     if (fallback.tryInteger()) return ParamType::Integer;
     return fallback.tryDouble() ? ParamType::Number : ParamType::Text;
@@ -111,7 +97,7 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
     param.fallback = *fallback;
     param.doc = optionalLine(map, "doc", what);
     param.unit = optionalLine(map, "unit", what);
-    param.type = typeOf(map, *fallback, what);
+    param.type = typeOf(map, *fallback);
     param.min = optionalNumber(map, "min", -kNoLimit);
     param.max = optionalNumber(map, "max", kNoLimit);
     const bool isNumber = param.type == ParamType::Integer || param.type == ParamType::Number;
@@ -130,11 +116,10 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
     const auto whole = fallback->tryInteger();
     if (param.type == ParamType::Integer && whole && !std::in_range<int>(*whole)) {
         throwNotAllowed(*fallback, what + ": default",
-                        "a whole number of 32 bits, or 'type: number' beside it");
+                        "a whole number of 32 bits, or one with a point, as 5000000000.0");
     }
-    const bool isWhole = param.type != ParamType::Integer || whole;
     const bool isLegal =
-        isNumber ? value && isWhole && *value >= param.min && *value <= param.max
+        isNumber                           ? *value >= param.min && *value <= param.max
         : param.type == ParamType::Boolean ? fallback->tryBool().has_value()
         : param.type == ParamType::Choice
             ? std::ranges::find(param.choices, fallback->text()) != param.choices.end()

@@ -61,11 +61,6 @@ SchemaSection content() {
           "of the generated scenes, laid over the catalogue's: `gfxrepro describe GENERATOR`; of a "
           "height map beside this file: spacing_m, height_scale_m, no_data",
           mapOf(anything())},
-         {"scene_seed",
-          "whole number",
-          "the catalogue's",
-          "of every generated scene",
-          {{"type", "integer"}, {"minimum", 0}}},
          {"scene_instead", "{scene: scene}", "{}",
           "takes the place of a scene, whose rows it fills: another catalogued one, or NAME@SEED",
           mapOf(text())},
@@ -82,11 +77,6 @@ SchemaSection content() {
          {"measure", "map",
           "once; of sweep_of without layout and lane: timed, six rounds or a minute",
           "lane, warm-up, repeats and processes", refTo("measure")},
-         {"picture_tolerance", "map", "none",
-          "what `gfxrepro compare` lets the pictures of two builds differ by: without it the "
-          "values "
-          "below, and of one build nothing",
-          refTo("picture_tolerance")},
          {"shows", "[name]", "those with a truth",
           "pictures that the document shows, by the names that the technique gives them "
           "(`classes` is also classes_0, …): the report folds the others",
@@ -291,12 +281,6 @@ SchemaSection measure() {
     return declared("measure", params);
 }
 
-SchemaSection pictureTolerance() {
-    Params params(Node(), "picture_tolerance");
-    readPictureTolerance(params);
-    return declared("picture_tolerance", params);
-}
-
 }  // namespace
 
 SchemaFile experimentSchema() {
@@ -306,8 +290,8 @@ SchemaFile experimentSchema() {
         for (SchemaSection& section : sections) file.sections.push_back(std::move(section));
     };
     add(programSections());
-    add({output(), sweep(), axis(), measure(), pictureTolerance(), profiles(), layout(),
-         selection(), against(), printed(), fit(), plot(), assumption()});
+    add({output(), sweep(), axis(), measure(), profiles(), layout(), selection(), against(),
+         printed(), fit(), plot(), assumption()});
     add(claimSections());
     return file;
 }

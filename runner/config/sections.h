@@ -82,11 +82,9 @@ inline constexpr int kMaxOutputPx = 16384;
 /// Throws Error unless `value` is a side of the image; `axis` begins the message.
 int outputSize(const Node& value, std::string_view axis);
 
-/// The `measure`, `output` and `picture_tolerance` sections; their declarations are part of the
-/// schema. `isOwn`: an experiment of one's own without a layout, which is timed unless it names a
-/// lane or seeds.
+/// The `measure` and `output` sections; their declarations are part of the schema. `isOwn`: an
+/// experiment of one's own without a layout, which is timed unless it names a lane or seeds.
 Measure readMeasure(Params& params, bool isOwn);
 std::pair<int, int> readOutput(Params& params);
-PictureTolerance readPictureTolerance(Params& params);
 
 }  // namespace gfxrepro::config

@@ -164,8 +164,7 @@ std::int64_t pixelsOf(const Pair& pair) {
 }
 
 /// What the two pictures are to each other, and the map of their differences.
-Difference compareOne(const Pair& pair, const config::PictureTolerance& allowed,
-                      std::optional<ImageF>& map) {
+Difference compareOne(const Pair& pair, bool isOneBuild, std::optional<ImageF>& map) {
     Difference result{.key = pair.key, .verdict = Verdict::Changed};
     try {
         const bool isExr = !pair.before.exr.empty() && !pair.after.exr.empty();
@@ -185,23 +184,21 @@ Difference compareOne(const Pair& pair, const config::PictureTolerance& allowed,
         return result;
     }
     const auto& [flip, largest] = *result.picture;
-    if (flip <= allowed.flip && largest <= allowed.difference) {
+    const double mostFlip = isOneBuild ? 0.0 : kPictureFlip;
+    const double mostDifference = isOneBuild ? 0.0 : kPictureDifference;
+    if (flip <= mostFlip && largest <= mostDifference) {
         result.verdict = Verdict::Same;
     } else {
         result.reason =
             fmt::format("FLIP {:.3g} ({:.3g} allowed), largest difference {:.3g} ({:.3g} allowed)",
-                        flip, allowed.flip, largest, allowed.difference);
+                        flip, mostFlip, largest, mostDifference);
     }
     return result;
 }
 
 Difference compareAndKeep(const Pair& pair, const PictureRules& rules) {
-    config::PictureTolerance allowed;
-    if (rules.isOneBuild) allowed = {.flip = 0.0, .difference = 0.0};
-    const auto own = rules.byTable.find(pair.key.table);
-    if (own != rules.byTable.end()) allowed = own->second;
     std::optional<ImageF> map;
-    Difference result = compareOne(pair, allowed, map);
+    Difference result = compareOne(pair, rules.isOneBuild, map);
     if (result.verdict == Verdict::Same) return result;
     result.evidence = evidenceName(pair.after.png.empty() ? pair.after.exr : pair.after.png);
     const fs::path target = rules.folder / result.evidence;

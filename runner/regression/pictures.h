@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "runner/config/experiment.h"
 #include "runner/records/records.h"
 #include "runner/regression/comparison.h"
 
@@ -24,10 +23,13 @@ using PictureMap = std::map<SeriesKey, PictureFiles>;
 PictureMap picturesOf(const std::filesystem::path& runDir,
                       const std::vector<records::Record>& records, const CaseParams& params);
 
+/// How far apart the pictures of a case may be that two builds have recorded.
+inline constexpr double kPictureFlip =
+    1e-3;  // mean FLIP: a thousandth of the pixels is wholly another
+inline constexpr double kPictureDifference = 0.1;  // of any value; white is 1
+
 struct PictureRules {
-    /// The tables that say themselves how far pictures may be apart.
-    std::map<std::string, config::PictureTolerance> byTable;
-    /// Both sides are of one program: then pictures are equal, where the table does not say else.
+    /// Both sides are of one program: then pictures are equal.
     bool isOneBuild = false;
     /// Where `pictures/` is made, with what changed.
     std::filesystem::path folder;

@@ -25,40 +25,26 @@ std::vector<Case> withScenes(const Case& item, const config::Experiment& experim
                              const scene::Catalog& catalog) {
     if (item.scene.isNull()) return {item};
     Case first = item;
-    const Node& instead = experiment.sceneInstead;
-    const Node* other = instead.isNull() ? nullptr : instead.find(item.scene.text());
-    if (other) first.scene = *other;
+    if (const Node* other = experiment.sceneInstead.find(item.scene.text())) first.scene = *other;
     scene::SceneSource source = catalog.resolve(first.scene);
     const Node params = item.sceneParams();
     if (!params.entries().empty()) {
         scene::takeParams(scene::sceneName(first.scene.text()), params, source);
         first.scene = scene::withSceneParams(first.scene, params);
     }
-    const std::uint64_t seed =
-        experiment.sceneSeed ? static_cast<std::uint64_t>(*experiment.sceneSeed) : source.seed;
     const int count = source.isSeeded() ? experiment.measure.sceneSeeds : 1;
     std::vector<Case> cases;
     for (int i = 0; i < count; ++i) {
         Case& taken = cases.emplace_back(first);
         if (count > 1) taken.sceneSample = i;
-        if (source.isSeeded() && (i > 0 || experiment.sceneSeed)) {
-            taken.scene = scene::withSeed(first.scene, seed + static_cast<std::uint64_t>(i));
-        }
+        if (i > 0)
+            taken.scene = scene::withSeed(first.scene, source.seed + static_cast<std::uint64_t>(i));
         if (taken.scene.text() != item.scene.text()) taken.standsFor = item.scene;
     }
     return cases;
 }
 
-void requireTaken(const config::Experiment& experiment, const std::vector<Case>& cases,
-                  const scene::Catalog& catalog) {
-    const auto isSeeded = [&](const Case& item) {
-        return !item.scene.isNull() && catalog.resolve(item.scene).isSeeded();
-    };
-    if (experiment.sceneSeed && std::ranges::none_of(cases, isSeeded)) {
-        throw Error(experiment.document.find("scene_seed")->location(),
-                    "'scene_seed': no scene of " + experiment.id + " is generated");
-    }
-    if (experiment.sceneInstead.isNull()) return;
+void requireTaken(const config::Experiment& experiment, const std::vector<Case>& cases) {
     for (const auto& [name, other] : experiment.sceneInstead.entries()) {
         const auto isTaken = [&name = name](const Case& item) {
             return !item.standsFor.isNull() && item.standsFor.text() == name;

@@ -1,4 +1,4 @@
-// What a case takes instead of what its config says: other parameters, seeds, scenes.
+// What a case takes instead of what its config says: other parameters and scenes.
 #pragma once
 
 #include <vector>
@@ -17,10 +17,9 @@ void takeInstead(const Node& instead, Case& item);
 std::vector<Case> withScenes(const Case& item, const config::Experiment& experiment,
                              const scene::Catalog& catalog);
 
-/// Throws Error for a `scene_seed` or an entry of `scene_instead` that no case takes: it would be
-/// ignored. `cases` are the experiment's.
-void requireTaken(const config::Experiment& experiment, const std::vector<Case>& cases,
-                  const scene::Catalog& catalog);
+/// Throws Error for an entry of `scene_instead` that no case takes: it would be ignored. `cases`
+/// are the experiment's.
+void requireTaken(const config::Experiment& experiment, const std::vector<Case>& cases);
 
 /// Throws Error for an entry of `params_by_scene` whose scene neither the catalogue nor a case has,
 /// or whose parameter no case has.

@@ -281,7 +281,7 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         std::ranges::move(withScenes(item, experiment, catalog), std::back_inserter(cases));
     });
     requireOutputs(experiment, techniques);
-    requireTaken(experiment, cases, catalog);
+    requireTaken(experiment, cases);
     requireSceneNames(experiment, cases, catalog);
     requireDistinct(experiment, cases);
     return cases;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/text.h"
+#include "engine/scene/scene_reference.h"
 #include "runner/records/csv.h"
 #include "runner/run/ledger.h"
 
@@ -44,12 +45,26 @@ std::vector<double> pointsOf(double low, double high, int points, bool isInteger
     return values;
 }
 
-std::vector<std::string> setsOf(const std::string& name, const std::string& value) {
+/// Each generated scene of the cases at another seed.
+std::string seedSet(const std::string& seed, const std::vector<config::Case>& cases,
+                    const scene::Catalog& catalog) {
+    std::vector<std::string> seeded;
+    for (const std::string& name : run::sceneNames(cases)) {
+        const Node scene = Node::scalar(name);
+        if (!catalog.resolve(scene).isSeeded()) continue;
+        const std::string other = scene::withSeed(scene, std::stoull(seed)).text();
+        seeded.push_back(fmt::format("{}: {}", name, other));
+    }
+    return fmt::format("scene_instead={{{}}}", joined(seeded));
+}
+
+std::vector<std::string> setsOf(const std::string& name, const std::string& value,
+                                const std::vector<config::Case>& cases,
+                                const scene::Catalog& catalog) {
     if (name == config::kOutputAssumption)
         return {"output.width=" + value, "output.height=" + value};
-    if (name == config::kSceneSeedAssumption || name == config::kFramesAssumption) {
-        return {name + "=" + value};
-    }
+    if (name == config::kSceneSeedAssumption) return {seedSet(value, cases, catalog)};
+    if (name == config::kFramesAssumption) return {name + "=" + value};
     return {"params_instead." + name + "=" + value};
 }
 
@@ -89,7 +104,8 @@ std::vector<Variation> sceneVariations(const config::Assumption& assumption,
 
 /// The values of the range but for the one that the cases take.
 std::vector<Variation> variationsOf(const config::Assumption& assumption,
-                                    const std::vector<config::Case>& cases, int points) {
+                                    const std::vector<config::Case>& cases,
+                                    const scene::Catalog& catalog, int points) {
     if (assumption.name == config::kSceneAssumption) return sceneVariations(assumption, cases);
     const Json range = assumption.range.toJson();
     const Node* current = cases.front().params.find(assumption.name);
@@ -108,7 +124,7 @@ std::vector<Variation> variationsOf(const config::Assumption& assumption,
         Variation variation{assumption.name, textOf(value), std::nullopt, {}};
         if (variation.value == assumption.value.text()) continue;
         if (value.is_number()) variation.number = value.get<double>();
-        variation.sets = setsOf(assumption.name, variation.value);
+        variation.sets = setsOf(assumption.name, variation.value, cases, catalog);
         variations.push_back(std::move(variation));
     }
     return variations;
@@ -172,7 +188,8 @@ std::string Variation::title() const {
 }
 
 Variations variationsOf(const config::Experiment& experiment,
-                        const std::vector<config::Case>& cases, int points) {
+                        const std::vector<config::Case>& cases, const scene::Catalog& catalog,
+                        int points) {
     Variations result;
     result.runs.push_back({});
     std::vector<std::vector<Variation>> byAssumption;
@@ -183,7 +200,7 @@ Variations variationsOf(const config::Experiment& experiment,
             result.fixed.emplace_back(assumption.name, why);
             continue;
         }
-        byAssumption.push_back(variationsOf(assumption, cases, points));
+        byAssumption.push_back(variationsOf(assumption, cases, catalog, points));
     }
     std::stable_partition(
         byAssumption.begin(), byAssumption.end(), [](const std::vector<Variation>& variations) {

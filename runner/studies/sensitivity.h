@@ -35,7 +35,8 @@ struct Variations {
 /// a range: two numbers are an interval, of which `points` values are taken, evenly by ratio where
 /// it spans more than a factor of ten; else the listed values are. `cases` are the experiment's.
 Variations variationsOf(const config::Experiment& experiment,
-                        const std::vector<config::Case>& cases, int points);
+                        const std::vector<config::Case>& cases, const scene::Catalog& catalog,
+                        int points);
 
 /// What a run with a variation gave: the claims in the order of the config, or why there are none.
 struct Outcome {

@@ -171,28 +171,6 @@ TEST_F(Compare, PicturesThatABuildNoLongerRecordsAreAnAlarm) {
         << result.out;
 }
 
-TEST_F(Compare, PicturesMayDifferByWhatTheTableAllows) {
-    const fs::path config =
-        writeMockConfig(folder, "picture_tolerance: {flip: 0.5, difference: 0.3}\n");
-    const std::string a = folder.path() / "a", b = folder.path() / "b";
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", a}).exitCode, 0);
-    const auto compared = [&](const std::string& shade) {
-        fs::remove_all(b);
-        const ProcessResult run = runProgram(
-            {program("other", 0, shade), "run", config, "--device", "software", "--out", b});
-        EXPECT_EQ(run.exitCode, 0) << run.err;
-        return mockGfxrepro({"compare", a, b, "--out", out + shade});
-    };
-    EXPECT_EQ(compared("0.75").exitCode, 0);
-    EXPECT_FALSE(fs::exists(out + "0.75/pictures"));
-    EXPECT_EQ(compared("0.875").exitCode, 1);
-    const ProcessResult notFinite = compared("nan");
-    EXPECT_EQ(notFinite.exitCode, 1);
-    EXPECT_NE(notFinite.out.find("channel B has a value of 0.5 before, nan after"),
-              std::string::npos)
-        << notFinite.out;
-}
-
 TEST_F(Compare, ARunThatLostItsPicturesIsAnAlarmAndOneThatNeverHadThemIsNot) {
     const fs::path config = writeMockConfig(folder, "params: {number: 1}\n");
     const std::string a = folder.path() / "a", b = folder.path() / "b";

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST(Judging, ACauseOfGeneratedScenesIsOfThoseThatWereLoaded) {
-    for (const char* lines : {"scene: models/duck\n", "scene: models/duck\nscene_seed: 3\n",
+    for (const char* lines : {"scene: models/duck\n", "scene: models/duck@3\n",
                               "scene: models/duck\nscene_params: {shape: hugo}\n",
                               "scene: models/duck\nscene_instead: {models/duck: shapes/cube}\n",
                               "scene: models/duck\nmeasure: {lane: quality, scene_seeds: 2}\n"}) {

@@ -91,7 +91,7 @@ TEST(Mutation, OfConfigs) {
         "measure: {repeats: 2, time_limit_s: 5}\n"
         "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n"
         "claims:\n  a: {says: b, trend: n, over: number, direction: increasing}\n"
-        "picture_tolerance: {flip: 0.1}\nprofiles:\n  quick: {measure: {repeats: 1}}\n");
+        "profiles:\n  quick: {measure: {repeats: 1}}\n");
     ASSERT_EQ(mockGfxrepro({"check", config}).exitCode, 0);
     expectAnswers(config, [&](std::mt19937&) {
         return Arguments{"check", config, "--device", "software"};

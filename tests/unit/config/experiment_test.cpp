@@ -365,18 +365,6 @@ TEST_F(ExperimentTest, WhatIsSetToNothingIsNoValue) {
               1U);
 }
 
-TEST_F(ExperimentTest, PictureTolerance) {
-    const std::string head = "table: p/1\ntitle: t\ntechnique: x\n";
-    EXPECT_FALSE(load(head).pictureTolerance.has_value());
-    const auto given = load(head + "picture_tolerance: {flip: 0.25}\n").pictureTolerance;
-    ASSERT_TRUE(given.has_value());
-    EXPECT_EQ(given->flip, 0.25);
-    EXPECT_EQ(given->difference, PictureTolerance{}.difference);
-    EXPECT_EQ(errorWith("picture_tolerance: {flip: 2}"),
-              "DIR/zju/a.yaml:4:27: picture_tolerance: flip is 2; allowed: 0 … 1");
-    EXPECT_NE(errorWith("picture_tolerance: {flap: 2}").find("unknown"), std::string::npos);
-}
-
 TEST_F(ExperimentTest, Overrides) {
     ExperimentOptions options;
     options.sets = {parseOverride("resolution=64"), parseOverride("output.width=100"),

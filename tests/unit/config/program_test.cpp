@@ -115,7 +115,7 @@ TEST(Program, TypesAreThoseOfTheDefaults) {
         "command: t {a} {b} {c} {d} {e} {f}\n"
         "params:\n"
         "  a: 4\n"
-        "  b: {default: 4, type: number, min: 0, max: 8, unit: m, doc: a length}\n"
+        "  b: {default: 4.0, min: 0, max: 8, unit: m, doc: a length}\n"
         "  c: true\n"
         "  d: some text\n"
         "  e: {default: x, choices: [x, y]}\n"
@@ -154,10 +154,8 @@ TEST(Program, RefusesValuesThatAParameterDoesNotTake) {
         "have");
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: 3000000000}"),
               "c.yaml:2:13: program: parameter 'n': default is 3000000000; allowed: a whole number "
-              "of 32 bits, or 'type: number' beside it");
-    EXPECT_EQ(programOf("command: t {n}\nparams: {n: {default: 3000000000, type: number}}")
-                  .params.at(0)
-                  .type,
+              "of 32 bits, or one with a point, as 5000000000.0");
+    EXPECT_EQ(programOf("command: t {n}\nparams: {n: 3000000000.0}").params.at(0).type,
               ProgramParam::Type::Number);
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: {default: text, min: 1}}"),
               "c.yaml:2:29: program: parameter 'n': 'min' is of numbers alone");

@@ -289,7 +289,6 @@ TEST_F(BadValues, EveryKeyOfTheSchemaIsRead) {
          {{"file", "n.png"}}},
         {"output", head + "output:\n", "  ", {}},
         {"measure", head + "measure:\n", "  ", {}},
-        {"picture_tolerance", head + "picture_tolerance:\n", "  ", {}},
         {"sweep", head + "sweep:\n", "  ", {}},
         {"axis", head + "sweep:\n  a:\n", "    ", {}},
         {"layout", table + "layout:\n", "  ", {{"rows", "scene"}, {"columns", "{aa: m}"}}},

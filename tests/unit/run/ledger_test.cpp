@@ -312,7 +312,7 @@ TEST(Cases, TakeSeedsAndOtherScenes) {
         return result;
     };
     const std::string swept = "sweep: {scene: [grass, scan]}\n";
-    EXPECT_THAT(scenes(swept + "scene_seed: 8\n"),
+    EXPECT_THAT(scenes(swept + "scene_instead: {grass: grass@8}\n"),
                 ElementsAre(Pair("grass@8", "grass"), Pair("scan", "")));
     EXPECT_THAT(scenes(swept + "scene_instead: {grass: tree}\n"),
                 ElementsAre(Pair("tree", "grass"), Pair("scan", "")));
@@ -322,12 +322,8 @@ TEST(Cases, TakeSeedsAndOtherScenes) {
     const auto errorOf = [&](const std::string& lines) {
         return test::errorText([&] { scenes(lines); }, ledger.folder.path());
     };
-    EXPECT_EQ(errorOf("scene: scan\nscene_seed: 8\n"),
-              "DIR/t.yaml:5:13: 'scene_seed': no scene of sweep/t is generated");
     EXPECT_EQ(errorOf("scene: scan\nscene_instead: {grass: tree}\n"),
               "DIR/t.yaml:5:17: 'scene_instead': no case of sweep/t has the scene 'grass'");
-    EXPECT_EQ(errorOf("scene: scan\nscene_seed: -1\n"),
-              "DIR/t.yaml:5:13: scene_seed is -1; allowed: a whole number, at least 0");
     EXPECT_EQ(
         errorOf("scene: grass\nmeasure: {lane: timing, scene_seeds: 5}\n"),
         "DIR/t.yaml:5:38: 'scene_seeds' needs the quality lane: a time varies by the process");
@@ -393,7 +389,7 @@ TEST(Cases, TakeParametersOfTheGeneratedScene) {
     EXPECT_THAT(scenes("scene: grass\nscene_params: {triangles: 40000}\n"),
                 ElementsAre(Pair("grass?triangles=40000 for grass", "40000")));
     EXPECT_THAT(scenes("sweep: {scene: [grass, tree], scene.triangles: [40000]}\n"
-                       "scene_seed: 8\n"),
+                       "scene_instead: {grass: grass@8, tree: tree@8}\n"),
                 ElementsAre(Pair("grass?triangles=40000@8 for grass", "40000"),
                             Pair("tree?triangles=40000@8 for tree", "40000")));
     const std::vector<Case> cases =

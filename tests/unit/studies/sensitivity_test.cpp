@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "engine/core/node.h"
+#include "scenes/registry.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::studies {
@@ -36,6 +37,24 @@ config::Case caseWith(const std::string& params, const std::string& axes = "{}")
     return item;
 }
 
+/// Two generated scenes and one of a file.
+struct Scenes {
+    test::TemporaryFolder folder;
+
+    Scenes() {
+        for (const char* name : {"city", "tree"}) {
+            folder.write(
+                std::string("scenes/") + name + ".yaml",
+                std::string("scene: ") + name + "\ndoc: d\nsources: [{generator: tree}]\n");
+        }
+        folder.write("scenes/scan.yaml", "scene: scan\ndoc: d\nsources: [{file: s.obj}]\n");
+        folder.write("assets/s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    }
+    scene::Catalog catalog() const {
+        return {folder.path() / "scenes", folder.path() / "assets", scene::registeredGenerators()};
+    }
+};
+
 std::vector<std::string> titles(const Variations& variations) {
     std::vector<std::string> all;
     for (const Variation& run : variations.runs) all.push_back(run.title());
@@ -59,7 +78,7 @@ TEST(Sensitivity, VariesWhatIsBoundByTurns) {
         {caseWith(
              "{bias: 0.02, size: 1024, gain: 1, kind: spot, method: a, view: top, box: [1, 2]}"),
          caseWith("{method: a}", "{method: a}")},
-        3);
+        Scenes().catalog(), 3);
     EXPECT_THAT(titles(variations),
                 ElementsAre("as configured", "bias = 0", "size = 16", "gain = 0.5", "kind = point",
                             "output = 256", "box = [3,4]", "measure.frames = 13", "bias = 0.04",
@@ -76,22 +95,25 @@ TEST(Sensitivity, VariesWhatIsBoundByTurns) {
 }
 
 TEST(Sensitivity, VariesScenesBySeedAndByAlternatives) {
-    config::Case city = caseWith("{}"), tree = caseWith("{}");
+    config::Case city = caseWith("{}"), tree = city, scan = city;
     city.scene = node("city");
     tree.scene = node("tree@2");
     tree.standsFor = node("tree");
+    scan.scene = node("scan");
+    const Scenes scenes;
+    const scene::Catalog catalog = scenes.catalog();
     config::Experiment experiment;
     experiment.assumptions = {assumption("scene", "city, tree@2", "{city: [deep], nest: [straw]}"),
                               assumption("scene_seed", "1, 2", "[4, 9]")};
-    const Variations variations = variationsOf(experiment, {city, tree}, 2);
+    const Variations variations = variationsOf(experiment, {city, tree, scan}, catalog, 2);
     EXPECT_THAT(titles(variations), ElementsAre("as configured", "scene = deep for city",
                                                 "scene_seed = 4", "scene_seed = 9"));
     EXPECT_THAT(variations.runs[1].sets, ElementsAre("scene_instead={city: deep}"));
-    EXPECT_THAT(variations.runs[2].sets, ElementsAre("scene_seed=4"));
+    EXPECT_THAT(variations.runs[2].sets, ElementsAre("scene_instead={city: city@4, tree: tree@4}"));
 
     experiment.assumptions = {assumption("scene", "city", "{nest: [straw]}"),
                               assumption("scene_seed", "none", "[4, 9]")};
-    EXPECT_THAT(variationsOf(experiment, {city}, 2).fixed,
+    EXPECT_THAT(variationsOf(experiment, {city}, catalog, 2).fixed,
                 ElementsAre(Pair("scene", "no other scene for those of the table"),
                             Pair("scene_seed", "no scene of the table is generated")));
 }
