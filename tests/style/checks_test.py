@@ -27,7 +27,7 @@ def expect(script, files, wanted):
 
 
 GOOD = {"engine/scene/a.h": '#pragma once\n#include "engine/image/image.h"\n',
-        "runner/README.md": "", "engine/scene/README.md": ""}
+        "runner/README.md": "", "engine/README.md": "", "engine/scene/README.md": ""}
 for name in ("check_layers", "check_style"):
     code, output = run(name, GOOD)
     if code != 0:
@@ -51,7 +51,7 @@ expect("check_layers",
        "techniques/clustered_reflections/a.cpp:1: techniques/clustered_reflections may not include "
        "techniques/reflection_reuse/b.h\n")
 expect("check_layers", {"techniques/marching/x.h": "", "engine/core/a.cpp": "// marching\n"},
-       "engine/core/a.cpp: runner/ names the technique 'marching'")
+       "engine/core/a.cpp: engine/ names the technique 'marching'")
 expect("check_layers", {"engine/core/a.cpp": '#include "error.h"\n'},
        'engine/core/a.cpp:1: includes are root-relative, not "error.h"')
 WORKFLOW = ".github/workflows/a.yml"
@@ -73,6 +73,9 @@ TABLE = "configs/x/a.yaml"
 for says in ("… too", '"and so on"', "nor this", '"and, unlike it, that"'):
     expect("check_style", {TABLE: f"  A: {{says: {says}, origin: ours}}\n"},
            f"{TABLE}:1: a claim is read alone: say of what it goes on")
+expect("check_style", {TABLE: "  A:\n    says: >-\n      and so on\n"}, f"{TABLE}:2: a claim is read alone: say of what it goes on")
+expect("check_style", {TABLE: "printed:\n  values: |\n    a\nclaims:\n  A: {says: " + "x" * 150 + "}\n"},
+       f"{TABLE}:5: 163 characters, at most 160\n")
 expect("check_style", {TABLE: 'printed: {remark: "text. full_ewa_ms is ours"}\n'},
        f"{TABLE}:1: 'full_ewa_ms' in a remark, which people read: say it in words")
 expect("check_style", {TABLE: "printed:\n  remark: >-\n    text.\n\n    ray_traced is theirs\n  values: a_b\n"},
@@ -80,7 +83,8 @@ expect("check_style", {TABLE: "printed:\n  remark: >-\n    text.\n\n    ray_trac
 expect("check_style", {TABLE: "title: What c_min decides\n"}, f"{TABLE}:1: 'c_min' in a title, which")
 expect("check_style", {TABLE: "  A: {says: full_ewa is fast, ratio: a_b / c_d}\n"}, f"{TABLE}:1: 'full_ewa' in a says, which")
 code, output = run("check_style", {**GOOD, "configs/README.md": "", "configs/x/README.md": "", TABLE:
-    "  A: {says: soft shadows do, ratio: a_b / c_d}\n  remark: see sweeps/soft_shadows-light.yaml, a D3DFMT_32F\n"})
+    "  A: {says: soft shadows do, ratio: a_b / c_d}\n  remark: see sweeps/soft_shadows-light.yaml, a D3DFMT_32F\n"
+    "printed:\n  values: |\n    " + "a," * 90 + "\n"})
 if code != 0:
     sys.exit(f"check_style found something in good words:\n{output}")
 expect("check_style", {"engine/core/a.h": "int x;\n"}, "engine/core/a.h: no #pragma once")
@@ -125,7 +129,7 @@ for (int i = random.index(2); i < 9; i += random.index(3))
   g(i, random.index(4));
 f([&] { return random.uniform(); }, [&]() { return random.uniform(); });
 """
-code, output = run("check_style", {"runner/README.md": "", "engine/core/README.md": "", "engine/core/a.cpp": DRAWS})
+code, output = run("check_style", {"engine/README.md": "", "engine/core/README.md": "", "engine/core/a.cpp": DRAWS})
 if code != 0:
     sys.exit(f"check_style found something in draws in their order:\n{output}")
 expect("check_style", {"engine/core/a.cpp": ""}, "engine/core: no README.md")

@@ -22,13 +22,30 @@ CLAIMS = [  # claim, verdict, the run's reason, the config's, what the page says
      ". Why: The interval of what was measured lies on both sides of the bound."),
     ("F", "fails", "worst at n 1", "Another.", ". Why: Another."),
     ("G", "holds", "worst at n 1", "", ""),
+    ("I", "fails", "worst at n 1", "an earlier cause", ". Why: It is so: in a config."),
 ]
+CONFIG = """claims:
+  I:
+    says: it is so
+    because:
+      - verdict: fails
+        device: gpu
+        reason: "of another: device"
+      - verdict: fails
+        profile: quick
+        reason: >-
+          It is so:
+          in a config.
+  J:
+    says: next
+"""
 
 with tempfile.TemporaryDirectory() as folder:
     root = pathlib.Path(folder)
     kept = root / "results" / "reference" / "machine" / "run"
     kept.mkdir(parents=True)
-    (root / "configs").mkdir()
+    (root / "configs" / "p").mkdir(parents=True)
+    (root / "configs" / "p" / "table-1.yaml").write_text(CONFIG)
     (root / "README.md").write_text(MARKERS)
     (root / "results" / "README.md").write_text(MARKERS)
     with open(kept / "claims.csv", "w", newline="", encoding="utf-8") as file:
