@@ -2,17 +2,37 @@
 // assertion.
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "engine/core/kept_text.h"
-
 namespace gfxrepro {
+
+/// The name of a file, which the places in it share.
+class FileName {
+  public:
+    FileName() = default;
+    FileName(const std::string& text) {
+        if (!text.empty()) text_ = std::make_shared<const std::string>(text);
+    }
+    FileName(const char* text) : FileName(std::string(text)) {}
+
+    const std::string& text() const {
+        static const std::string kNone;
+        return text_ ? *text_ : kNone;
+    }
+    operator const std::string&() const { return text(); }
+    bool empty() const { return text_ == nullptr; }
+    bool operator==(const FileName& other) const { return text() == other.text(); }
+
+  private:
+    std::shared_ptr<const std::string> text_;  // null: empty
+};
 
 /// A place in a text file. Lines and columns count from 1; 0 means that it is not known.
 struct SourceLocation {
-    KeptText file;
+    FileName file;
     int line = 0;
     int column = 0;
 

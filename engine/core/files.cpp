@@ -11,10 +11,9 @@
 #include <cstring>
 #include <vector>
 
-#include "engine/core/atomic_file.h"
 #include "engine/core/descriptor.h"
 #include "engine/core/error.h"
-#include "engine/core/temporary.h"
+#include "engine/core/output_files.h"
 
 namespace gfxrepro {
 

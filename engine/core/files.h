@@ -39,7 +39,7 @@ class MappedFile {
 bool isStillAt(const std::filesystem::path& path, int fd);
 
 /// Copies a file, or a folder with all that is in it, over what is there. Leaves out what is
-/// temporary (isTemporary() in temporary.h) and what goes away meanwhile. Throws Error for a link,
+/// temporary (isTemporary()) and what goes away meanwhile. Throws Error for a link,
 /// a pipe or a device, and for a file of 4 GiB or more: one of holes would fill the disk.
 void copyTree(const std::filesystem::path& from, const std::filesystem::path& to);
 

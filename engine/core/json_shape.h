@@ -38,6 +38,11 @@ struct JsonMember {
     bool isRequired = true;
 };
 
+/// How deep JSON may be nested: the library's copies and texts recurse, and a file of brackets
+/// alone would take the whole stack. More than anything that the program writes has.
+constexpr int kMostJsonLevels = 200;
+/// Whether brackets outside of strings are open deeper than that, at any place of the text.
+bool isTooDeepJson(std::string_view text);
 /// Throws Error(where, …) for what is nested deeper than kMostJsonLevels.
 void requireShallowJson(std::string_view text, const SourceLocation& where);
 /// The text as an object. Throws Error(where, …) for any other, and as requireShallowJson().

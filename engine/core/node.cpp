@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,9 +13,6 @@
 namespace gfxrepro {
 
 namespace {
-
-/// A map of so many keys is searched one after another.
-constexpr std::size_t kFewKeys = 64;
 
 [[noreturn]] void throwExpected(const char* wanted, const Node& found) {
     std::string what = found.kindName();
@@ -40,79 +35,16 @@ bool needsQuotes(const std::string& text) {
 
 }  // namespace
 
-std::optional<std::size_t> Node::MapContent::placeOf(std::string_view key) const {
-    if (slots.empty()) {
-        const auto at = std::ranges::find(entries, key, &Entry::key);
-        if (at == entries.end()) return std::nullopt;
-        return static_cast<std::size_t>(at - entries.begin());
-    }
-    const std::size_t mask = slots.size() - 1;
-    for (std::size_t i = std::hash<std::string_view>()(key) & mask; slots[i] != 0;
-         i = (i + 1) & mask) {
-        if (entries[slots[i] - 1].key() == key) return slots[i] - 1;
-    }
-    return std::nullopt;
-}
-
-void Node::MapContent::add(const std::string& key, Node value) {
-    entries.emplace_back(key, std::move(value));
-    if (entries.size() <= kFewKeys) return;
-    if (slots.size() < 2 * entries.size()) {
-        enterSlots();
-    } else {
-        enterSlot(entries.size() - 1);
-    }
-}
-
-void Node::MapContent::enterSlot(std::size_t place) {
-    const std::size_t mask = slots.size() - 1;
-    std::size_t i = std::hash<std::string>()(entries[place].key()) & mask;
-    while (slots[i] != 0) i = (i + 1) & mask;
-    slots[i] = static_cast<std::uint32_t>(place + 1);
-}
-
-void Node::MapContent::enterSlots() {
-    slots.clear();
-    if (entries.size() <= kFewKeys) return;
-    slots.resize(std::bit_ceil(4 * entries.size()), 0);
-    for (std::size_t place = 0; place < entries.size(); ++place) enterSlot(place);
-}
-
-Node::OwnMap::OwnMap(MapContent content)
-    : content_(std::make_unique<MapContent>(std::move(content))) {}
-Node::OwnMap::OwnMap(const OwnMap& other)
-    : content_(other.content_ ? std::make_unique<MapContent>(*other.content_) : nullptr) {}
-Node::OwnMap::OwnMap(OwnMap&& other) noexcept = default;
-Node::OwnMap& Node::OwnMap::operator=(OwnMap other) noexcept {
-    content_ = std::move(other.content_);
-    return *this;
-}
-Node::OwnMap::~OwnMap() = default;
-
-const Node::MapContent& Node::OwnMap::get() const {
-    static const MapContent kEmpty;
-    return content_ ? *content_ : kEmpty;
-}
-
-Node::MapContent& Node::OwnMap::get() {
-    if (!content_) content_ = std::make_unique<MapContent>();
-    return *content_;
-}
-
 Node Node::scalar(std::string text, SourceLocation where, bool quoted) {
     Node node;
-    if (quoted) {
-        node.value_ = Quoted{std::move(text)};
-    } else {
-        node.value_ = Plain{std::move(text)};
-    }
+    node.value_ = Scalar{std::move(text), quoted ? Scalar::Style::Quoted : Scalar::Style::Plain};
     node.location_ = std::move(where);
     return node;
 }
 
 Node Node::block(std::string text, SourceLocation where) {
     Node node;
-    node.value_ = Block{std::move(text)};
+    node.value_ = Scalar{std::move(text), Scalar::Style::Block};
     node.location_ = std::move(where);
     return node;
 }
@@ -142,17 +74,18 @@ Node Node::sequence(Sequence items, SourceLocation where) {
 }
 
 Node Node::map(Map entries, SourceLocation where) {
-    MapContent content;
-    content.entries.reserve(entries.size());
-    for (auto& [key, value] : entries) {
-        if (const auto place = content.placeOf(key)) {
-            content.entries[*place].value = std::move(value);
+    Map different;
+    different.reserve(entries.size());
+    for (Entry& entry : entries) {
+        const auto known = std::ranges::find(different, entry.key(), &Entry::key);
+        if (known == different.end()) {
+            different.push_back(std::move(entry));
         } else {
-            content.add(key, std::move(value));
+            known->value = std::move(entry.value);
         }
     }
     Node node;
-    node.value_ = OwnMap(std::move(content));
+    node.value_ = std::move(different);
     node.location_ = std::move(where);
     return node;
 }
@@ -165,17 +98,14 @@ std::string Node::kindName() const {
     return tryBool() ? "a boolean" : "text";
 }
 
-const std::string* Node::scalarText() const {
-    if (const auto* plain = std::get_if<Plain>(&value_)) return &plain->text;
-    if (const auto* quoted = std::get_if<Quoted>(&value_)) return &quoted->text;
-    if (const auto* block = std::get_if<Block>(&value_)) return &block->text;
-    return nullptr;
+const Node::Scalar* Node::plain() const {
+    const auto* scalar = std::get_if<Scalar>(&value_);
+    return scalar && scalar->style == Scalar::Style::Plain ? scalar : nullptr;
 }
 
 const std::string& Node::text() const {
-    const std::string* text = scalarText();
-    if (!text) throwExpected("text", *this);
-    return *text;
+    if (!isScalar()) throwExpected("text", *this);
+    return std::get<Scalar>(value_).text;
 }
 
 double Node::asDouble() const {
@@ -203,26 +133,26 @@ const Node::Sequence& Node::items() const {
 
 const Node::Map& Node::entries() const {
     if (!isMap()) throwExpected("a map", *this);
-    return mapContent().entries;
+    return std::get<Map>(value_);
 }
 
 std::span<Node::Entry> Node::entries() {
     if (!isMap()) throwExpected("a map", *this);
-    return std::get<OwnMap>(value_).get().entries;
+    return std::get<Map>(value_);
 }
 
 std::optional<double> Node::tryDouble() const {
-    const auto* value = std::get_if<Plain>(&value_);
+    const Scalar* value = plain();
     return value ? parseDouble(value->text) : std::nullopt;
 }
 
 std::optional<long long> Node::tryInteger() const {
-    const auto* value = std::get_if<Plain>(&value_);
+    const Scalar* value = plain();
     return value ? parseInteger(value->text) : std::nullopt;
 }
 
 std::optional<bool> Node::tryBool() const {
-    const auto* value = std::get_if<Plain>(&value_);
+    const Scalar* value = plain();
     if (!value) return std::nullopt;
     if (value->text == "true") return true;
     if (value->text == "false") return false;
@@ -231,8 +161,8 @@ std::optional<bool> Node::tryBool() const {
 
 const Node* Node::find(std::string_view key) const {
     GFXREPRO_ASSERT(isMap());
-    const std::optional<std::size_t> place = mapContent().placeOf(key);
-    return place ? &mapContent().entries[*place].value : nullptr;
+    const auto found = std::ranges::find(std::get<Map>(value_), key, &Entry::key);
+    return found == std::get<Map>(value_).end() ? nullptr : &found->value;
 }
 
 Node* Node::find(std::string_view key) {
@@ -241,9 +171,9 @@ Node* Node::find(std::string_view key) {
 
 const SourceLocation& Node::keyLocation(std::string_view key) const {
     if (!isMap()) return location_;
-    const MapContent& content = mapContent();
-    const std::optional<std::size_t> place = content.placeOf(key);
-    return place && *place < content.keyLocations.size() ? content.keyLocations[*place] : location_;
+    const auto found = std::ranges::find(std::get<Map>(value_), key, &Entry::key);
+    const bool isKnown = found != std::get<Map>(value_).end() && !found->keyWhere_.file.empty();
+    return isKnown ? found->keyWhere_ : location_;
 }
 
 void Node::set(const std::string& key, Node value) {
@@ -252,32 +182,22 @@ void Node::set(const std::string& key, Node value) {
 }
 
 void Node::set(const std::string& key, Node value, SourceLocation keyWhere) {
-    if (isNull()) value_ = OwnMap();
+    if (isNull()) value_ = Map();
     if (!isMap()) throwExpected("a map", *this);
-    MapContent& content = std::get<OwnMap>(value_).get();
-    const std::optional<std::size_t> found = content.placeOf(key);
-    const std::size_t place = found.value_or(content.entries.size());
-    if (content.keyLocations.size() <= place) content.keyLocations.resize(place + 1, location_);
-    content.keyLocations[place] = std::move(keyWhere);
-    if (found) {
-        content.entries[place].value = std::move(value);
+    auto& map = std::get<Map>(value_);
+    const auto found = std::ranges::find(map, key, &Entry::key);
+    if (found == map.end()) {
+        map.emplace_back(key, std::move(value), std::move(keyWhere));
     } else {
-        content.add(key, std::move(value));
+        found->value = std::move(value);
+        found->keyWhere_ = std::move(keyWhere);
     }
 }
 
 bool Node::erase(std::string_view key) {
     if (!isMap()) throwExpected("a map", *this);
-    MapContent& content = std::get<OwnMap>(value_).get();
-    const std::optional<std::size_t> place = content.placeOf(key);
-    if (!place) return false;
-    const auto offset = static_cast<std::ptrdiff_t>(*place);
-    content.entries.erase(content.entries.begin() + offset);
-    if (*place < content.keyLocations.size()) {
-        content.keyLocations.erase(content.keyLocations.begin() + offset);
-    }
-    content.enterSlots();
-    return true;
+    return std::erase_if(std::get<Map>(value_),
+                         [&](const Entry& entry) { return entry.key() == key; }) > 0;
 }
 
 void Node::setPath(std::string_view dottedPath, Node value) {
@@ -350,14 +270,14 @@ std::string Node::toFlowText() const {
         for (const auto& [key, value] : entries()) parts.push_back(key + ": " + value.toFlowText());
         return fmt::format("{{{}}}", joined(parts));
     }
-    const std::string& text = *scalarText();
-    const bool misread = !std::holds_alternative<Plain>(value_) &&
-                         (parseDouble(text) || text == "true" || text == "false");
-    return misread || needsQuotes(text) ? toJson().dump() : text;
+    const bool misread = !plain() && (parseDouble(text()) || text() == "true" || text() == "false");
+    return misread || needsQuotes(text()) ? toJson().dump() : text();
 }
 
 SourceLocation Node::lineLocation(std::size_t lineIndex) const {
-    if (!std::holds_alternative<Block>(value_) || location_.line == 0) return location_;
+    const auto* scalar = std::get_if<Scalar>(&value_);
+    const bool isBlock = scalar && scalar->style == Scalar::Style::Block;
+    if (!isBlock || location_.line == 0) return location_;
     return {location_.file, location_.line + 1 + static_cast<int>(lineIndex), 0};
 }
 

@@ -1,9 +1,7 @@
 // A YAML value that remembers where it stands.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,7 +13,6 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "engine/core/error.h"
-#include "engine/core/kept_text.h"
 
 namespace gfxrepro {
 
@@ -48,9 +45,9 @@ class Node {
     std::string kindName() const;
 
     bool isNull() const { return std::holds_alternative<std::monostate>(value_); }
-    bool isScalar() const { return scalarText() != nullptr; }
+    bool isScalar() const { return std::holds_alternative<Scalar>(value_); }
     bool isSequence() const { return std::holds_alternative<Sequence>(value_); }
-    bool isMap() const { return std::holds_alternative<OwnMap>(value_); }
+    bool isMap() const { return std::holds_alternative<Map>(value_); }
 
     // Typed reads. Each throws Error with the location, what was found and what was allowed.
     const std::string& text() const;
@@ -67,8 +64,7 @@ class Node {
     std::optional<long long> tryInteger() const;
     std::optional<bool> tryBool() const;
 
-    /// The entry of a map, or null, in a time that does not grow with the map. `this` must be a
-    /// map.
+    /// The entry of a map, or null. `this` must be a map.
     const Node* find(std::string_view key) const;
     Node* find(std::string_view key);
     /// Where the key itself stands (for "unknown key" messages); the map's place when not known.
@@ -88,54 +84,21 @@ class Node {
     std::string toFlowText() const;
 
   private:
-    // How a scalar was written: kinds of their own, as a plan of 100,000 cases has millions.
-    struct Plain {
+    struct Scalar {
         std::string text;
+        enum class Style { Plain, Quoted, Block } style;  // "12" is text, not a number
     };
-    struct Quoted {  // "12" is text, not a number
-        std::string text;
-    };
-    struct Block {  // written below a bar
-        std::string text;
-    };
-    struct MapContent {
-        Map entries;
-        std::vector<SourceLocation> keyLocations;  // of the first entries
-        /// Of a map of many keys: 1 + the place of an entry, or 0, by the hash of its key; what
-        /// finds its slot taken has the next that is free.
-        std::vector<std::uint32_t> slots;
+    const Scalar* plain() const;  // null: none, or one that is text
 
-        std::optional<std::size_t> placeOf(std::string_view key) const;
-        void add(const std::string& key, Node value);
-        void enterSlot(std::size_t place);
-        void enterSlots();
-    };
-    /// Apart from the node, which is as small as its text; one that was moved from is empty.
-    class OwnMap {
-      public:
-        OwnMap() = default;
-        explicit OwnMap(MapContent content);
-        OwnMap(const OwnMap& other);
-        OwnMap(OwnMap&& other) noexcept;
-        OwnMap& operator=(OwnMap other) noexcept;
-        ~OwnMap();
-        const MapContent& get() const;
-        MapContent& get();
-
-      private:
-        std::unique_ptr<MapContent> content_;
-    };
-    const MapContent& mapContent() const { return std::get<OwnMap>(value_).get(); }
-    const std::string* scalarText() const;  // null: no scalar
-
-    std::variant<std::monostate, Plain, Quoted, Block, Sequence, OwnMap> value_;
+    std::variant<std::monostate, Scalar, Sequence, Map> value_;
     SourceLocation location_;
 };
 
 /// An entry of a map: `for (const auto& [key, value] : node.entries())`.
 class Node::Entry {
   public:
-    Entry(const std::string& key, Node given) : value(std::move(given)), key_(key) {}
+    Entry(std::string key, Node given, SourceLocation keyWhere = {})
+        : value(std::move(given)), key_(std::move(key)), keyWhere_(std::move(keyWhere)) {}
     const std::string& key() const { return key_; }
 
     template <std::size_t index>
@@ -158,7 +121,9 @@ class Node::Entry {
     Node value;
 
   private:
-    KeptText key_;
+    friend class Node;
+    std::string key_;
+    SourceLocation keyWhere_;
 };
 
 /// Parses one YAML document (JSON is YAML); an empty one is null. Throws Error with
@@ -167,8 +132,9 @@ class Node::Entry {
 Node parseYaml(std::string_view text, const std::string& fileName);
 Node parseYamlFile(const std::filesystem::path& path);
 
-/// Parses JSON that a program wrote; every node has the file as its place. Throws Error with
-/// file:line:column where it is none, and where it is nested deeper than 200.
+/// Parses JSON that a program wrote, where control characters in texts and keys of any length are
+/// allowed; every node has the file as its place. Throws Error with file:line:column where it is
+/// none, and where it is nested deeper than 200.
 Node parseJson(std::string_view text, const std::string& fileName);
 Node parseJsonFile(const std::filesystem::path& path);
 

@@ -198,7 +198,7 @@ class Builder : public YAML::EventHandler {
     }
 
     std::vector<std::string> lines_;
-    KeptText fileName_;
+    FileName fileName_;
     std::vector<Open> open_;
     std::map<YAML::anchor_t, Node> anchors_;
     std::size_t aliasedNodes_ = 0;

@@ -1,7 +1,7 @@
 // The keys of a scene of the catalogue.
 #pragma once
 
-#include "engine/core/schema.h"
+#include "engine/core/key_schema.h"
 
 namespace gfxrepro::scene {
 

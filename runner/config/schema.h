@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/key_schema.h"
 #include "engine/core/params.h"
-#include "engine/core/schema.h"
 #include "runner/config/outputs.h"
 
 namespace gfxrepro::config {

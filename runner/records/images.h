@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/appended_file.h"
+#include "engine/core/output_files.h"
 
 namespace gfxrepro::records {
 

@@ -6,8 +6,8 @@
 #include <climits>
 #include <nlohmann/json.hpp>
 
-#include "engine/core/atomic_file.h"
 #include "engine/core/hash.h"
+#include "engine/core/output_files.h"
 
 namespace gfxrepro::run {
 

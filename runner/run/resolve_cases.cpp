@@ -243,7 +243,7 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         }
         params.finish();
         item.scene = absoluteReference(item.scene, catalog);
-        Node resolved = Node::map(params.resolved().entries());  // without places of keys
+        Node resolved = params.resolved();
         for (const auto& [name, value] : item.params.entries()) {
             resolved.set(name, value, item.params.keyLocation(name));
         }

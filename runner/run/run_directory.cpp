@@ -17,7 +17,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "engine/core/temporary.h"
+#include "engine/core/output_files.h"
 #include "runner/run/run_files.h"
 
 namespace gfxrepro::run {

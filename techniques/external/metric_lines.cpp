@@ -7,7 +7,7 @@
 #include <regex>
 
 #include "engine/core/files.h"
-#include "engine/core/json_depth.h"
+#include "engine/core/json_shape.h"
 #include "engine/core/text.h"
 
 namespace gfxrepro::external {

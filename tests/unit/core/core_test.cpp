@@ -8,28 +8,17 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
-#include "engine/core/json_depth.h"
-#include "engine/core/kept_text.h"
+#include "engine/core/json_shape.h"
+#include "engine/core/output_files.h"
 #include "engine/core/random.h"
 #include "engine/core/text.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro {
 namespace {
-
-TEST(KeptText, IsKeptOnce) {
-    const KeptText a("resolution"), b(std::string("reso") + "lution");
-    EXPECT_EQ(&a.text(), &b.text());
-    EXPECT_EQ(a, b);
-    EXPECT_NE(a, KeptText("padding"));
-    EXPECT_TRUE(KeptText("").empty());
-    EXPECT_EQ(KeptText(), KeptText(""));
-    EXPECT_EQ(KeptText().text(), "");
-}
 
 TEST(Error, SaysWhere) {
     EXPECT_STREQ(Error({"a.yaml", 3, 7}, "unknown key 'x'").what(), "a.yaml:3:7: unknown key 'x'");

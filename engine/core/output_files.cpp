@@ -1,4 +1,4 @@
-#include "engine/core/atomic_file.h"
+#include "engine/core/output_files.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 
 namespace gfxrepro {
 
@@ -20,6 +21,13 @@ constexpr std::size_t kMostUnwrittenBytes = std::size_t{1} << 20;
 [[noreturn]] void failToWrite(const char* what, const fs::path& path) {
     throw Error(std::string("cannot ") + what + ' ' + path.string() + ": " + std::strerror(errno));
 }
+
+[[noreturn]] void failWriting(const fs::path& path, int reason) {
+    throw Error("cannot write " + path.string() + ": " + std::strerror(reason));
+}
+
+/// No link, no pipe's reader.
+constexpr int kSafe = O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
 
 /// A name that is a device, a pipe or a link would be one no more: a rename takes its place.
 void requireReplaceable(const fs::path& path) {
@@ -42,7 +50,6 @@ AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
     requireReplaceable(path_);
     temporary_ = path_;
     temporary_ += ".tmp" + std::to_string(::getpid());
-    constexpr int kSafe = O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // no link, no pipe's reader
     file_ = Descriptor(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | kSafe, 0644));
     if (file_.get() < 0) failToWrite("write", temporary_);
 }
@@ -76,6 +83,40 @@ void AtomicFile::commit() {
     if (::fsync(file_.get()) != 0) failToWrite("flush", temporary_);
     if (::rename(temporary_.c_str(), path_.c_str()) != 0) failToWrite("rename to", path_);
     temporary_.clear();
+}
+
+AppendedFile::AppendedFile(const fs::path& path) : path_(path) {
+    file_ = Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | kSafe, 0644));
+    if (file_.get() < 0) failWriting(path, errno);
+    endBytes_ = ::lseek(file_.get(), 0, SEEK_END);
+}
+
+void AppendedFile::cut(std::size_t sizeBytes) {
+    endBytes_ = static_cast<off_t>(sizeBytes);
+    if (::ftruncate(file_.get(), endBytes_) != 0) failWriting(path_, errno);
+}
+
+void AppendedFile::requireOurs() const {
+    if (isStillAt(path_, file_.get()) && ::lseek(file_.get(), 0, SEEK_END) == endBytes_) return;
+    throw Error(path_.string() +
+                ": was removed, replaced or changed while a run wrote to it: rows are lost; "
+                "nothing more is measured into it");
+}
+
+void AppendedFile::append(std::string_view block) {
+    requireOurs();
+    ssize_t written = 0;
+    do {
+        written = ::write(file_.get(), block.data(), block.size());
+    } while (written < 0 && errno == EINTR);
+    if (written != static_cast<ssize_t>(block.size())) {
+        // A full disk takes a part of the block: give it back, so that no half case stays.
+        const int reason = written < 0 ? errno : ENOSPC;
+        if (::ftruncate(file_.get(), endBytes_) != 0) failWriting(path_, errno);
+        failWriting(path_, reason);
+    }
+    endBytes_ += written;
+    if (::fdatasync(file_.get()) != 0) failWriting(path_, errno);
 }
 
 }  // namespace gfxrepro

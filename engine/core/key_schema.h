@@ -3,6 +3,7 @@
 // schema for editors and configs/README.md.
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -34,7 +35,11 @@ struct SchemaSection {
     Json others = nullptr;      // the type of all further keys; null: there are none
     Json conditions = nullptr;  // further JSON schema: which keys go together
 
-    std::vector<std::string> keyNames() const;
+    std::vector<std::string> keyNames() const {
+        std::vector<std::string> names;
+        for (const SchemaKey& key : keys) names.push_back(key.name);
+        return names;
+    }
 };
 
 /// A kind of file and its sections, the top of the file first.
@@ -44,7 +49,10 @@ struct SchemaFile {
     std::vector<SchemaSection> sections;
 
     /// The section of that name, or null.
-    const SchemaSection* find(std::string_view section) const;
+    const SchemaSection* find(std::string_view section) const {
+        const auto found = std::ranges::find(sections, section, &SchemaSection::name);
+        return found == sections.end() ? nullptr : &*found;
+    }
 };
 
 }  // namespace gfxrepro

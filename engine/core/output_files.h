@@ -1,0 +1,68 @@
+// Files that are written in pieces: one that appears as a whole, and one that grows by whole
+// blocks.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "engine/core/descriptor.h"
+
+namespace gfxrepro {
+
+/// Goes to a temporary name beside its path until commit() puts it in its place: a reader sees the
+/// old file or the new one, never a part.
+class AtomicFile {
+  public:
+    /// Creates missing folders. Throws Error, also where `path` is a link, a pipe or a device.
+    explicit AtomicFile(std::filesystem::path path);
+    /// Without commit(), what was there stays.
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    /// Throws Error when the disk is full.
+    void write(std::string_view text);
+    /// Flushes it to the disk and renames it. Throws Error. Once.
+    void commit();
+
+  private:
+    void put(std::string_view text);
+
+    std::filesystem::path path_;
+    std::filesystem::path temporary_;  // empty once it is in its place
+    std::string unwritten_;
+    Descriptor file_;
+};
+
+/// Whether it is the name of a file that is being written: "a.exr.tmp123", "records.csv.tmp".
+inline bool isTemporary(const std::filesystem::path& file) {
+    const std::string name = file.filename();
+    const std::size_t at = name.rfind(".tmp");
+    return at != name.npos && name.find_first_not_of("0123456789", at + 4) == name.npos;
+}
+
+/// A file that nobody else may touch meanwhile.
+class AppendedFile {
+  public:
+    /// Opens it, or makes an empty one. Throws Error, also for a link.
+    explicit AppendedFile(const std::filesystem::path& path);
+
+    /// Leaves the first `sizeBytes`: what follows them was torn.
+    void cut(std::size_t sizeBytes);
+    /// One write, then flushed to the disk. Throws Error, leaving the file as it was; also as
+    /// requireOurs().
+    void append(std::string_view block);
+    /// Throws Error where the file is not what was written: somebody removed, replaced or changed
+    /// it.
+    void requireOurs() const;
+
+  private:
+    std::filesystem::path path_;
+    Descriptor file_;
+    off_t endBytes_ = 0;
+};
+
+}  // namespace gfxrepro
