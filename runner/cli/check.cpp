@@ -15,7 +15,6 @@
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/config/program.h"
-#include "runner/config/program_files.h"
 #include "runner/config/schema.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/ledger.h"

@@ -10,7 +10,7 @@
 #include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/cli/console.h"
-#include "runner/config/imported.h"
+#include "runner/config/experiment.h"
 #include "runner/results/report_runs.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/scheduler.h"

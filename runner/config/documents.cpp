@@ -7,6 +7,7 @@
 #include "engine/core/checks.h"
 #include "engine/core/node.h"
 #include "runner/config/schema.h"
+#include "runner/config/sections.h"
 
 namespace gfxrepro::config {
 
@@ -54,6 +55,32 @@ std::vector<Document> readDocuments(const std::filesystem::path& file) {
     if (whole.isNull()) return documents;
     for (const auto& [id, node] : whole.entries()) documents.push_back(readDocument(id, node));
     return documents;
+}
+
+SchemaFile documentsSchema() {
+    using namespace types;
+    SchemaSection documents{
+        "documents", "", "A key is a document: the folder of its configs.", {}, false};
+    documents.others = refTo("document");
+    return {"documents",
+            "`documents.yaml`: which table belongs to which chapter",
+            {std::move(documents),
+             SchemaSection{"document",
+                           "ID.",
+                           "",
+                           {{"title", "line", "required", "what it is about, for reports", text()},
+                            {"chapters", "[chapter]", "required", "in the document's order",
+                             listOf(refTo("chapter"))}},
+                           false},
+             SchemaSection{
+                 "chapter",
+                 "ID.chapters[].",
+                 "",
+                 {{"title", "line", "required", "its number and subject, for reports", text()},
+                  {"has", "[name]", "required",
+                   "its tables, figures and sections, as in their ids: 2.1, figure-2.6, 2.5.3",
+                   listOf(text())}},
+                 false}}};
 }
 
 }  // namespace gfxrepro::config

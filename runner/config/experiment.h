@@ -13,7 +13,6 @@
 
 #include "engine/core/node.h"
 #include "runner/config/case.h"
-#include "runner/config/measure_spec.h"
 #include "runner/config/outputs.h"
 
 namespace gfxrepro::config {
@@ -37,6 +36,9 @@ using AxisPoint = Node::Map;
 /// A pair's value may be a list: any of these. Points made equal by `when` are one. Throws Error at
 /// the place of what is wrong, and for more than 1,000,000 points.
 std::vector<AxisPoint> expandSweep(const Node& sweep);
+
+/// Leaves out the axes whose condition in `when` is false. That may make further conditions false.
+void applyWhen(const Node& when, AxisPoint& point);
 
 /// Another metric, or another pass, of the same cases: what a cell is a share of, or what is taken
 /// away from it.
@@ -240,6 +242,19 @@ struct Experiment {
     /// "Table 2.1", "Figure 2.6", "Section 2.5.3".
     std::string label() const;
 };
+
+/// What an experiment whose numbers were measured elsewhere has in place of a technique.
+inline constexpr const char* kImported = "imported";
+
+/// Whether this program measures it: it is neither only printed nor imported.
+inline bool isMeasuredHere(const Experiment& experiment) {
+    return !experiment.technique.empty() && experiment.technique != kImported;
+}
+
+/// `slope` of a plot: the exponent of x that its curves are expected to have, drawn as a dashed
+/// line; both axes of such a plot are logarithmic. `plot`: its place in experiment.plots. None
+/// where it says none.
+std::optional<double> referenceSlope(const Experiment& experiment, std::size_t plot);
 
 /// `key=value` from the command line; the value is YAML. Keys without a section (`resolution=64`)
 /// mean params.

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "engine/core/node.h"
-#include "runner/config/imported.h"
-#include "runner/config/schema_files.h"
+#include "runner/config/schema.h"
+#include "runner/config/sections.h"
 
 namespace gfxrepro::config {
 

@@ -297,4 +297,44 @@ const std::string& lineOf(const Node& node, std::string_view what) {
     return node.text();
 }
 
+std::vector<SchemaSection> layoutKeys() {
+    using namespace types;
+    const Json selectionType =
+        anyOf({text(), refTo("selection")});  // the text of a cell, or what it shows
+    const Json axesType = anyOf({text(), listOf(text()), mapOf(selectionType)});
+    return {
+        {"layout",
+         "layout.",
+         "",
+         {{"axes", "{axis: {label: selection}}", "{}", "axes of labels, for rows and columns",
+           mapOf(mapOf(selectionType))},
+          {"rows", "axis | [axes] | {label: selection}", "one row", "what the rows stand for",
+           axesType},
+          {"columns", "axis | [axes] | {label: selection}", "one column",
+           "axes: declared above, or swept, a parameter, scene, frame", axesType},
+          {"cell", "format | selection", "{median:.4g}", "what every cell shows", selectionType}}},
+        {"selection",
+         "selection.",
+         "A selection is a metric, or a map of these; the column's part wins over the row's, "
+         "the row's over the cell's.",
+         {{"metric", "name", "none", "of the technique's metrics", text()},
+          {"pass", "name", "whole case", "step of the algorithm", text()},
+          {"format", "text", "none", "median mean min max sum count rate in braces: {mean:.2f}",
+           text()},
+          {"scale", "number", "1", "multiplies every value", number()},
+          {"share_of", "metric | against", "none",
+           "shows the statistic ÷ the same statistic of that metric in the same cases, in %",
+           anyOf({text(), refTo("against")})},
+          {"minus", "metric | against", "none",
+           "shows the statistic less the same statistic of that metric in the same cases",
+           anyOf({text(), refTo("against")})},
+          {"where", "{axis: value}", "{}", "only these cases", pairs()}}},
+        {"against",
+         "share_of., minus.",
+         "Per process, as its interval; frames without a part count in the whole alone.",
+         {{"metric", "name", "required", "what is the whole, or taken away", text()},
+          {"pass", "name", "whole case", "step of the algorithm", text()}},
+         false}};
+}
+
 }  // namespace gfxrepro::config

@@ -4,7 +4,6 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
-#include "runner/config/reference_slope.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 
@@ -198,6 +197,28 @@ std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names) {
         plots.push_back(PlotReader(plots.size() + 1, plot, names).read());
     }
     return plots;
+}
+
+SchemaSection plotKeys() {
+    using namespace types;
+    return {"plot",
+            "plot.",
+            "",
+            {{"x", "row axis | column", "required", "a row axis has to be of numbers", text()},
+             {"y", "column | [columns]", "required", "a curve each; the first statistic of a cell",
+              oneOrMore(text())},
+             {"by", "row axis", "none", "of each y a curve a value", text()},
+             {"panels", "row axis | [axes]", "none", "a panel for each combination of values",
+              oneOrMore(text())},
+             {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
+             {"log", "x | y | [x, y]", "[]", "axes that are logarithmic",
+              oneOrMore(choice({"x", "y"}))},
+             {"slope", "number", "none",
+              "exponent of x that is expected: a dashed line through the mean of each curve's "
+              "points, on two logarithmic axes",
+              number()},
+             {"title", "line", "the file's", "above the curves", text()}},
+            false};
 }
 
 }  // namespace gfxrepro::config

@@ -1,7 +1,10 @@
-#include <algorithm>
-#include <set>
+#include "runner/config/printed.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
@@ -164,6 +167,260 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
     }
     if (printed.rows.empty()) throw Error(values->location(), "printed: values has no rows");
     return printed;
+}
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// What a cell selects: `cell`, then the labels of its row, then those of its column.
+Selection laidOver(const Selection& under, const Selection& over) {
+    Selection result = under;
+    if (over.metric) result.metric = over.metric;
+    if (over.pass) result.pass = over.pass;
+    result.where.insert(result.where.end(), over.where.begin(), over.where.end());
+    return result;
+}
+
+Selection selectionOf(const LayoutAxis& axis, const std::string& value) {
+    Selection selection;
+    if (axis.isSweepAxis()) selection.where.emplace_back(axis.name, Node::scalar(value));
+    for (const auto& [label, chosen] : axis.labels) {
+        if (label == value) selection = chosen;
+    }
+    return selection;
+}
+
+/// The labels of an axis: its own, or the values that a sweep gives it.
+Names axisLabels(const LayoutAxis& axis, const std::vector<AxisPoint>& sweep) {
+    Names labels;
+    for (const auto& [label, selection] : axis.labels) labels.push_back(label);
+    if (!axis.isSweepAxis()) return labels;
+    for (const AxisPoint& point : sweep) {
+        for (const auto& [name, value] : point) {
+            const bool isValue = name == axis.name && value.isScalar();
+            if (isValue && std::ranges::count(labels, value.text()) == 0) {
+                labels.push_back(value.text());
+            }
+        }
+    }
+    return labels;
+}
+
+/// The cell at `row` (beside the row axes) and a column, which the labels of the column axes name.
+Selection cellSelection(const Experiment& experiment, const Names& row, const std::string& column) {
+    const Layout& layout = experiment.layout;
+    Selection cell = layout.cell;
+    for (std::size_t i = 0; i < layout.rows.size(); ++i) {
+        cell = laidOver(cell, selectionOf(layout.rows[i], row[i]));
+    }
+    const std::vector<AxisPoint> sweep = expandSweep(experiment.sweep);
+    std::map<std::string, Selection> columns{{"", cell}};
+    for (const LayoutAxis& axis : layout.columns) {
+        std::map<std::string, Selection> finer;
+        for (const auto& [name, above] : columns) {
+            for (const std::string& label : axisLabels(axis, sweep)) {
+                const std::string own = name.empty() ? label : name + "_" + label;
+                finer.emplace(own, laidOver(above, selectionOf(axis, label)));
+            }
+        }
+        columns = std::move(finer);
+    }
+    const auto found = columns.find(column);
+    return found == columns.end() ? cell : found->second;
+}
+
+/// The one method of a cell's cases; empty where it is not one or not said.
+std::string methodOf(const Experiment& experiment, const Selection& cell) {
+    std::string method;
+    for (const auto& [axis, value] : cell.where) {
+        if (axis == "method") method = value.isScalar() ? value.text() : "";
+    }
+    if (!method.empty()) return method;
+    for (const AxisPoint& point : expandSweep(experiment.sweep)) {
+        for (const auto& [axis, value] : point) {
+            if (axis == "method") return "";
+        }
+    }
+    const Node* fixed = experiment.params.find("method");
+    return fixed && fixed->isScalar() ? fixed->text() : "";
+}
+
+/// Whether a value of a filter is the label of a row or column.
+bool isLabel(const Node& value, const std::string& label) {
+    const std::string text = value.isScalar() ? value.text() : value.toFlowText();
+    const auto number = parseDouble(text), other = parseDouble(label);
+    return text == label || (number && other && *number == *other);
+}
+
+/// Whether the paper holds the method against a usual one, as the table says.
+bool isCompared(const Experiment& table, const std::string& method) {
+    const Node* printed = table.document.find("printed");
+    const Node* compared = printed ? printed->find("compared") : nullptr;
+    if (!compared) return false;
+    return std::ranges::any_of(compared->items(),
+                               [&](const Node& name) { return name.text() == method; });
+}
+
+const Node& requiredText(const Node& entry, const std::string& what, std::string_view key) {
+    const Node* value = entry.find(key);
+    if (!value) throw Error(entry.location(), fmt::format("{} needs '{}'", what, key));
+    return *value;
+}
+
+/// The labels of `row` beside the table's row axes.
+Names rowLabels(const Node& row, const Layout& layout, const std::string& what) {
+    Names axes, labels;
+    for (const LayoutAxis& axis : layout.rows) axes.push_back(axis.name);
+    requireKeys(row, what + ": row", axes);
+    for (const std::string& axis : axes) labels.push_back(requiredText(row, what, axis).text());
+    return labels;
+}
+
+double printedValue(const Printed& printed, const Layout& layout, const Names& row,
+                    const Node& column, const std::string& what) {
+    const auto at = std::ranges::find(printed.header, column.text());
+    if (at == printed.header.end()) {
+        throw Error(column.location(),
+                    fmt::format("{}: no column '{}' is printed{}", what, column.text(),
+                                suggestion(column.text(), printed.header)));
+    }
+    for (const Names& cells : printed.rows) {
+        bool isRow = true;
+        for (std::size_t i = 0; i < layout.rows.size(); ++i) {
+            const auto axis = std::ranges::find(printed.header, layout.rows[i].name);
+            isRow =
+                isRow && cells[static_cast<std::size_t>(axis - printed.header.begin())] == row[i];
+        }
+        if (!isRow) continue;
+        const std::string& text = cells[static_cast<std::size_t>(at - printed.header.begin())];
+        if (const auto value = parseDouble(text)) return *value;
+        throw Error(column.location(),
+                    fmt::format("{}: what is printed there is no number: '{}'", what, text));
+    }
+    throw Error(column.location(), fmt::format("{}: no row {} is printed", what, joined(row)));
+}
+
+void requireSameMeasure(const Selection& ours, const Selection& theirs, const std::string& what,
+                        const SourceLocation& where) {
+    if (ours.metric == theirs.metric && ours.pass == theirs.pass) return;
+    const auto name = [](const Selection& cell) {
+        return cell.metric.value_or("nothing") + (cell.pass ? " of " + *cell.pass : "");
+    };
+    throw Error(where, fmt::format("{}: the column is {}, the printed cell {}", what, name(ours),
+                                   name(theirs)));
+}
+
+}  // namespace
+
+bool isCalibrated(const Experiment& table, const std::vector<std::string>& row,
+                  const std::string& column) {
+    const Node* printed = table.document.find("printed");
+    const Node* calibrated = printed ? printed->find("calibrated") : nullptr;
+    if (!calibrated) return false;
+    const auto labelOf = [&](const std::string& axis) -> const std::string* {
+        for (std::size_t i = 0; i < table.layout.rows.size(); ++i) {
+            if (table.layout.rows[i].name == axis) return &row[i];
+        }
+        return axis == kColumnAxis ? &column : nullptr;
+    };
+    return std::ranges::any_of(calibrated->items(), [&](const Node& cells) {
+        return std::ranges::all_of(cells.entries(), [&](const auto& entry) {
+            const std::string* label = labelOf(entry.key());
+            if (!label) return false;
+            const Node& values = entry.value;
+            if (!values.isSequence()) return isLabel(values, *label);
+            return std::ranges::any_of(values.items(),
+                                       [&](const Node& one) { return isLabel(one, *label); });
+        });
+    });
+}
+
+Node withPrintedCell(const Node& entry, const std::string& column, const Experiment& fit,
+                     const Experiment& table) {
+    const std::string what = "fit: '" + column + "'";
+    const Node& place = requiredText(entry, what, "table");
+    if (table.technique != fit.technique || !table.layout.isGiven) {
+        throw Error(place.location(), fmt::format("{}: {} is not measured by technique '{}'", what,
+                                                  table.id, fit.technique));
+    }
+    const Names row = rowLabels(requiredText(entry, what, "row"), table.layout, what);
+    const Node& theirs = requiredText(entry, what, "column");
+    const Selection cell = cellSelection(table, row, lineOf(theirs, what + ": column"));
+    const Selection own = cellSelection(fit, Names(fit.layout.rows.size()), column);
+    // What a fit may read compares no methods: that is how the other rows stay blind.
+    const std::string method = methodOf(fit, own), printedMethod = methodOf(table, cell);
+    if (method.empty()) {
+        throw Error(entry.location(), what + ": the cases are not all of one method in 'params'");
+    }
+    if (method != printedMethod) {
+        throw Error(theirs.location(),
+                    fmt::format("{}: the printed cell is of method '{}', the cases of '{}'; a fit "
+                                "sees what compares no methods",
+                                what, printedMethod, method));
+    }
+    if (isCompared(table, method)) {
+        throw Error(theirs.location(),
+                    fmt::format("{}: {} compares method '{}' with a usual one ('compared'); a fit "
+                                "sees what compares no methods",
+                                what, table.id, method));
+    }
+    requireSameMeasure(own, cell, what, theirs.location());
+    if (!isCalibrated(table, row, theirs.text())) {
+        throw Error(theirs.location(),
+                    fmt::format("{}: {} does not mark the cell as one that was fitted "
+                                "('printed.calibrated')",
+                                what, table.id));
+    }
+    Node result = entry;
+    result.set("printed", Node::number(printedValue(table.printed, table.layout, row, theirs, what),
+                                       theirs.location()));
+    result.set("id", Node::scalar(table.id, place.location(), true));
+    return result;
+}
+
+std::vector<FitTarget> fitTargets(const Experiment& experiment) {
+    const Node* fit = experiment.document.find("fit");
+    if (!fit || fit->isNull()) return {};
+    std::vector<FitTarget> targets;
+    for (const auto& [column, entry] : fit->entries()) {
+        targets.push_back({column, requiredText(entry, "fit", "id").text(),
+                           requiredText(entry, "fit", "printed").asDouble()});
+    }
+    return targets;
+}
+
+std::vector<SchemaSection> printedKeys() {
+    using namespace types;
+    return {
+        {"printed",
+         "printed.",
+         "",
+         {{"hardware", "text", "\"\"", "what the paper measured on", text()},
+          {"remark", "text", "\"\"", "misprints and the like", text()},
+          {"values",
+           "CSV block",
+           "none",
+           "a header of row axes and columns, then the rows",
+           {{"type", "string"}}},
+          {"compared", "[method]", "[]",
+           "methods that the paper compares with a usual one: no fit reads their cells",
+           listOf(text())},
+          {"calibrated", "[{row axis: value, column: name}]", "[]",
+           "cells for which an input of ours was fitted, so that they come out: marked in every "
+           "form of the table. Each value may be a list; what is left out is any",
+           listOf(pairs())},
+          {"at", "{parameter: value}", "{}",
+           "what the paper measured at, where the profile paper departs from it: a parameter, "
+           "scene, output.width, output.height, measure.frames",
+           pairs()}}},
+        {"fit",
+         "fit.COLUMN.",
+         "Only the cells that are named are read, and none of another method.",
+         {{"table", "file", "required", "of the table, in configs/", text()},
+          {"row", "{row axis: value}", "required", "all row axes of that table", pairs()},
+          {"column", "name", "required", "of that table", text()}},
+         false}};
 }
 
 }  // namespace gfxrepro::config

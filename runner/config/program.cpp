@@ -3,20 +3,123 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <limits>
 #include <regex>
+#include <utility>
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
-#include "runner/config/program_parts.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
-#include "runner/config/time_names.h"
 
 namespace gfxrepro::config {
 
 namespace {
 
 using Names = std::vector<std::string>;
+using ParamType = ProgramParam::Type;
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+bool isSnakeCase(std::string_view name) {
+    return !name.empty() && std::islower(static_cast<unsigned char>(name.front())) &&
+           std::ranges::all_of(name, [](unsigned char c) {
+               return std::islower(c) || std::isdigit(c) || c == '_';
+           });
+}
+
+double optionalNumber(const Node& map, const char* key, double fallback) {
+    const Node* node = map.find(key);
+    return node ? node->asDouble() : fallback;
+}
+
+/// As the default looks.
+ParamType typeOf(const Node& map, const Node& fallback) {
+    if (map.find("choices")) return ParamType::Choice;
+    if (fallback.tryBool()) return ParamType::Boolean;
+    if (fallback.tryInteger()) return ParamType::Integer;
+    return fallback.tryDouble() ? ParamType::Number : ParamType::Text;
+}
+
+/// The placeholders that every program has.
+const Names& reservedNames() {
+    static const Names names = {placeholder::kHere,  placeholder::kOut,    placeholder::kScene,
+                                placeholder::kWidth, placeholder::kHeight, placeholder::kSeed,
+                                placeholder::kFrame, placeholder::kFrames};
+    return names;
+}
+
+/// Throws Error for a key that is no name in small letters, digits and _; `what` it names.
+void requireSnakeCase(const Node& map, const std::string& name, std::string_view what) {
+    if (isSnakeCase(name)) return;
+    throw Error(map.keyLocation(name), fmt::format("program: {} '{}'; allowed: small letters, "
+                                                   "digits and _, a letter first",
+                                                   what, name));
+}
+
+/// "" where the key is not there.
+std::string optionalLine(const Node& map, const char* key, const std::string& what) {
+    const Node* node = map.find(key);
+    return node ? lineOf(*node, what + ": " + key) : "";
+}
+
+/// An entry of `program.params`.
+ProgramParam readProgramParam(const Node& params, const std::string& name) {
+    const Node& given = *params.find(name);
+    const std::string what = "program: parameter '" + name + "'";
+    requireSnakeCase(params, name, "parameter");
+    if (std::ranges::find(reservedNames(), name) != reservedNames().end()) {
+        throw Error(params.keyLocation(name),
+                    what + ": every program has that placeholder; give it another name");
+    }
+    static const Names kOfCases = {"output", "scene_sample", "stands_for"};
+    if (std::ranges::find(kOfCases, name) != kOfCases.end()) {
+        throw Error(params.keyLocation(name),
+                    what + ": plans and tables have that of every case; give it another name");
+    }
+    // A value alone is its default.
+    const Node map = given.isMap() ? given : Node::map({{"default", given}}, given.location());
+    requireKeys(map, what, keysOf("program_param"));
+    const Node* fallback = map.find("default");
+    if (!fallback || !fallback->isScalar()) {
+        throw Error(given.location(), what + " needs 'default', a number, a boolean or text");
+    }
+    ProgramParam param;
+    param.name = name;
+    param.fallback = *fallback;
+    param.doc = optionalLine(map, "doc", what);
+    param.unit = optionalLine(map, "unit", what);
+    param.type = typeOf(map, *fallback);
+    param.min = optionalNumber(map, "min", -kNoLimit);
+    param.max = optionalNumber(map, "max", kNoLimit);
+    const bool isNumber = param.type == ParamType::Integer || param.type == ParamType::Number;
+    for (const char* key : {"min", "max"}) {
+        if (map.find(key) && !isNumber) {
+            throw Error(map.keyLocation(key), what + ": '" + key + "' is of numbers alone");
+        }
+    }
+    if (const Node* choices = map.find("choices")) {
+        if (!choices->isSequence() || choices->items().empty()) {
+            throwNotAllowed(*choices, what + ": choices", "a list of values");
+        }
+        for (const Node& choice : choices->items()) param.choices.push_back(choice.text());
+    }
+    const auto value = fallback->tryDouble();
+    const auto whole = fallback->tryInteger();
+    if (param.type == ParamType::Integer && whole && !std::in_range<int>(*whole)) {
+        throwNotAllowed(*fallback, what + ": default",
+                        "a whole number of 32 bits, or one with a point, as 5000000000.0");
+    }
+    const bool isLegal =
+        isNumber                           ? *value >= param.min && *value <= param.max
+        : param.type == ParamType::Boolean ? fallback->tryBool().has_value()
+        : param.type == ParamType::Choice
+            ? std::ranges::find(param.choices, fallback->text()) != param.choices.end()
+            : true;
+    if (!isLegal) throwNotAllowed(*fallback, what + ": default", "one of the values it may have");
+    return param;
+}
 
 /// Calls `text` and `name` for the parts of a text outside and inside of braces.
 template <class OnText, class OnName>
@@ -346,6 +449,85 @@ Program readProgram(const Node& node) {
                         param.name));
     }
     return program;
+}
+
+std::vector<SchemaSection> programKeys() {
+    using namespace types;
+    return {
+        {"program",
+         "program.",
+         "Texts may have placeholders: {NAME} of a parameter, {here} (folder of this file), {out} "
+         "(an "
+         "empty folder, in which the program runs), {scene} (the case's scene as a .glb file), "
+         "{width}, {height}, {seed} (a parameter of every program that takes it), {frame} (from "
+         "0), "
+         "{frames} (how many). No shell sees them. The program says what "
+         "it "
+         "measured by lines of JSON, {\"metric\": …, \"value\": …, \"unit\": …} with \"pass\" and "
+         "\"frame\" where there are such, on the descriptor whose number is in "
+         "GFXREPRO_METRICS_FD, "
+         "or in the file that GFXREPRO_METRICS_FILE names.",
+         {{"command", "line | [arguments]", "required",
+           "the program and its arguments; a line is cut at its blanks", oneOrMore(text())},
+          {"params", "{name: default | parameter}", "{}", "what `params` and `sweep` may have",
+           mapOf(anyOf({text(), refTo("program_param")}))},
+          {"metrics", "{name: unit | metric}", "{}", "what it says of itself",
+           mapOf(anyOf({text(), refTo("program_metric")}))},
+          {"passes", "{name: meaning}", "{}", "what tells values of a metric apart", mapOf(text())},
+          {"images", "{name: file | image}", "{}", "pictures that it leaves in {out}, .exr or .png",
+           mapOf(anyOf({text(), refTo("program_image")}))},
+          {"env", "{NAME: text}", "{}", "variables of its environment", mapOf(text())},
+          {"version", "line | [arguments]", "none", "what prints its version", oneOrMore(text())},
+          {"starts", "[program]", "[]", "programs that it starts in turn", listOf(text())},
+          {"files", "[file]", "[]",
+           "what else its outcome depends on, beside what arguments name from {here} on",
+           listOf(text())},
+          {"frames", "one | all", "one",
+           "what a run of it gives: one frame, {frame}; or all {frames} of the case, each line and "
+           "picture with its own; the run's time is then shared out among them",
+           choice({"one", "all"})},
+          {"seeds", "case | process", "case",
+           "of which {seed} is: the same in all processes of a case; or another in each, greater "
+           "by "
+           "1000, for rounds of independent random numbers",
+           choice({"case", "process"})},
+          {"gpu", "boolean", "false", "whether it works on the GPU: then a run asks which that is",
+           boolean()},
+          {"here", "folder", "that of this file", "what {here} is", text()}}},
+        {"program_param",
+         "program.params.NAME.",
+         "A value alone is the default.",
+         {{"default", "value", "required",
+           "in cases that do not say: 4 is a whole number, 4.0 any number, \"4\" text", text()},
+          {"unit", "text", "\"\"", "spelt out", text()},
+          {"min", "number", "none", "the least that is allowed", number()},
+          {"max", "number", "none", "the most that is allowed", number()},
+          {"choices", "[values]", "none", "all that is allowed", listOf(text(), 1)},
+          {"doc", "line", "\"\"", "what it means", text()}}},
+        {"program_metric",
+         "program.metrics.NAME.",
+         "A text alone is the unit. A value is given once a pass in each run of the program.",
+         {{"unit", "text", "required", "spelt out: byte, ms, triangle; 1 for none", text()},
+          {"better", "lower | higher", "none", "which way is better", choice({"lower", "higher"})},
+          {"pattern", "regular expression", "none",
+           "reads it off what the program prints: the number is its first group, the last match "
+           "counts",
+           text()},
+          {"optional", "boolean", "false", "whether a run may be without it", boolean()},
+          {"doc", "line", "\"\"", "what it means", text()}}},
+        {"program_image",
+         "program.images.NAME.",
+         "With a truth its errors are recorded, under the image's name as pass: `gfxrepro "
+         "describe` "
+         "of the technique lists them. An EXR file is linear, a PNG file sRGB, as is its truth.",
+         {{"file", "file", "required", "in {out}", text()},
+          {"truth", "file | {parameter: value}", "none",
+           "a file, or parameters (seed and frame, too) laid over the case's, with which the "
+           "program "
+           "makes it: once for all cases that agree on the others. With frames (2 or more) it is "
+           "made of so many seeds, from frame on, and same_mean_p says whether the case's frames "
+           "have its expectation",
+           anyOf({text(), mapOf(anything())})}}}};
 }
 
 }  // namespace gfxrepro::config

@@ -1,5 +1,6 @@
 // The keys of claims: what all have, and what each type has.
-#include "runner/config/schema_files.h"
+#include "runner/config/schema.h"
+#include "runner/config/sections.h"
 
 namespace gfxrepro::config {
 

@@ -8,12 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/key_schema.h"
 #include "engine/core/node.h"
 #include "runner/config/experiment.h"
 
 namespace gfxrepro {
 class Params;
-}
+struct ParamInfo;
+}  // namespace gfxrepro
 
 namespace gfxrepro::config {
 
@@ -81,6 +83,22 @@ inline constexpr const char* kCommandLine = "command line, ";
 inline constexpr int kMaxOutputPx = 16384;
 /// Throws Error unless `value` is a side of the image; `axis` begins the message.
 int outputSize(const Node& value, std::string_view axis);
+
+// The keys of the sections, each declared where it is read.
+std::vector<SchemaSection> programKeys();
+SchemaSection outputKeys();
+std::vector<SchemaSection> sweepKeys();
+SchemaSection measureKeys();
+std::vector<SchemaSection> layoutKeys();
+std::vector<SchemaSection> printedKeys();
+SchemaSection plotKeys();
+std::vector<SchemaSection> claimSections();
+/// All of them, with those of no section of their own.
+SchemaFile experimentSchema();
+SchemaFile documentsSchema();
+
+/// The JSON schema of a declared parameter's values.
+Json jsonTypeOf(const ParamInfo& info);
 
 /// The `measure` and `output` sections; their declarations are part of the schema. `isOwn`: an
 /// experiment of one's own without a layout, which is timed unless it names a lane or seeds.

@@ -9,7 +9,6 @@
 #include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
 #include "runner/config/sections.h"
-#include "runner/config/when.h"
 
 namespace gfxrepro::config {
 
@@ -206,6 +205,23 @@ void requireConditions(const Node& conditions, std::string_view what,
     if (conditions.entries().empty()) throwNotAllowed(conditions, what, "a map {axis: value}");
 }
 
+/// Null where the point does not have the axis.
+const Node* valueAt(const AxisPoint& point, std::string_view axis) {
+    for (const auto& [name, value] : point) {
+        if (name == axis) return &value;
+    }
+    return nullptr;
+}
+
+/// Whether the point has each axis that `conditions` names, with a value that matches.
+bool matchesAll(const AxisPoint& point, const Node& conditions) {
+    return std::all_of(conditions.entries().begin(), conditions.entries().end(),
+                       [&](const auto& condition) {
+                           const Node* value = valueAt(point, condition.key());
+                           return value && matchesAny(*value, condition.value);
+                       });
+}
+
 void dropDuplicates(std::vector<AxisPoint>& points) {
     std::set<std::string> seen;
     std::erase_if(points, [&](const AxisPoint& point) {
@@ -259,6 +275,16 @@ std::vector<Fixed> fixedOf(const Experiment& experiment) {
 }
 
 }  // namespace
+
+void applyWhen(const Node& when, AxisPoint& point) {
+    for (std::size_t before = point.size() + 1; before != point.size();) {
+        before = point.size();
+        std::erase_if(point, [&, whole = point](const auto& axis) {
+            const Node* conditions = when.find(axis.key());
+            return conditions && !matchesAll(whole, *conditions);
+        });
+    }
+}
 
 void requireNotFixed(const Experiment& experiment) {
     if (!experiment.sweep.isMap()) return;
@@ -314,6 +340,42 @@ std::vector<AxisPoint> expandSweep(const Node& sweep) {
             throw Error(exclude->location(), "exclude leaves no point of the sweep");
     }
     return points;
+}
+
+std::vector<SchemaSection> sweepKeys() {
+    using namespace types;
+    const Json axisType = anyOf({listOf(anything(), 1), refTo("axis")});
+    return {
+        {"sweep",
+         "sweep.",
+         "Any other key is a parameter of the technique, or as `scene.NAME` one of the generated "
+         "scenes: it is an axis too. A condition's value may be a list: any of these.",
+         {{"scene", "values", "none", "scenes", axisType},
+          {"output.width", "values", "none", "widths of the image", axisType},
+          {"output.height", "values", "none", "heights of the image", axisType},
+          {"zip", "[{axis: values}]", "[]", "each block: axes that go together",
+           listOf(mapOf(axisType))},
+          {"list", "[[{axis: value}]]", "[]", "each block: points spelt out; keys may differ",
+           listOf(listOf(pairs(), 1))},
+          {"exclude", "[{axis: value}]", "[]", "drops points that match all pairs",
+           listOf(pairs())},
+          {"when", "{axis: {other: value}}", "{}",
+           "the axis applies only there: elsewhere tables show no value of it", mapOf(pairs())}},
+         true,
+         axisType},
+        {"axis",
+         "values.",
+         "Values are a list, or a map with one of these keys.",
+         {{"range",
+           "[first, last, step]",
+           "none",
+           "both ends included; step 1 may be left out",
+           {{"type", "array"}, {"items", number()}, {"minItems", 2}, {"maxItems", 3}}},
+          {"log2", "[first, last]", "none", "powers of two, both ends included",
+           tupleOf(number(), 2)}},
+         false,
+         nullptr,
+         {{"minProperties", 1}, {"maxProperties", 1}}}};
 }
 
 }  // namespace gfxrepro::config

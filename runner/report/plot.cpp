@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "engine/core/files.h"
-#include "runner/config/reference_slope.h"
+#include "runner/config/experiment.h"
 #include "runner/report/figure_svg.h"
 #include "runner/report/svg.h"
 #include "runner/tables/default_layout.h"

@@ -7,7 +7,6 @@
 
 #include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
-#include "runner/config/imported.h"
 #include "runner/run/case_variation.h"
 #include "runner/tables/case_records.h"
 

@@ -6,7 +6,6 @@
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "engine/scene/scene_reference.h"
-#include "runner/config/imported.h"
 #include "runner/run/ledger.h"
 #include "runner/run/plan_json.h"
 

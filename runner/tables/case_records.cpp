@@ -7,7 +7,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "runner/config/when.h"
+#include "runner/config/experiment.h"
 #include "runner/records/csv.h"
 
 namespace gfxrepro::tables {

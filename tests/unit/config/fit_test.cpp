@@ -1,4 +1,4 @@
-#include "runner/config/fit.h"
+#include "runner/config/printed.h"
 
 #include <gmock/gmock.h>
 

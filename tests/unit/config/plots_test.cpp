@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "runner/config/experiment.h"
-#include "runner/config/reference_slope.h"
 #include "tests/unit/config/experiment_fixture.h"
 
 namespace gfxrepro::config {

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runner/config/program_files.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::config {

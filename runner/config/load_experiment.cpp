@@ -7,7 +7,7 @@
 #include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
-#include "runner/config/fit.h"
+#include "runner/config/printed.h"
 #include "runner/config/program.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"

@@ -1,19 +1,59 @@
-// Which files decide what a program does.
-#include "runner/config/program_files.h"
+// What a program is run with: the values of its parameters, and the files that decide what it does.
+#include "runner/config/program.h"
 
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
 
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
-#include "runner/config/program.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// One of a list that is known only now.
+void readChoice(const ProgramParam& param, Params& values) {
+    const std::string allowed = joined(param.choices, " | ");
+    const std::string doc = param.doc.empty() ? allowed : param.doc + " (" + allowed + ")";
+    const std::string value = values.getText(param.name, param.fallback.text(), {doc, param.unit});
+    if (std::ranges::find(param.choices, value) != param.choices.end()) return;
+    throw Error(values.locationOf(param.name),
+                fmt::format("{} is '{}'; allowed: {}", param.name, value, allowed));
+}
+
+}  // namespace
+
+void Program::declare(Params& values) const {
+    for (const ProgramParam& param : params) {
+        const ParamSpec spec{param.doc, param.unit, param.min, param.max};
+        switch (param.type) {
+            case ProgramParam::Type::Integer:
+                values.getInt(param.name, static_cast<int>(param.fallback.asInteger()), spec);
+                break;
+            case ProgramParam::Type::Number:
+                values.getDouble(param.name, param.fallback.asDouble(), spec);
+                break;
+            case ProgramParam::Type::Boolean:
+                values.getBool(param.name, param.fallback.asBool(), spec);
+                break;
+            case ProgramParam::Type::Text:
+                values.getText(param.name, param.fallback.text(), spec);
+                break;
+            case ProgramParam::Type::Choice:
+                readChoice(param, values);
+                break;
+        }
+    }
+    if (uses(placeholder::kSeed)) {
+        values.getInt(placeholder::kSeed, 1, {"{seed}, of its random numbers", "", 0, 1e9});
+    }
+}
 
 fs::path findExecutable(const std::string& name, const fs::path& here) {
     const auto isProgram = [](const fs::path& path) {
