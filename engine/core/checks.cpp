@@ -13,10 +13,8 @@ void requireKeys(const Node& map, std::string_view what, std::span<const std::st
     if (!map.isMap()) throwNotAllowed(map, what, "a map of " + joined(allowed));
     for (const auto& [key, value] : map.entries()) {
         if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
-        const std::string near = suggestion(key, allowed);
-        throw Error(map.keyLocation(key),
-                    std::string(what) + ": unknown key '" + key + "'" +
-                        (near.empty() ? "; allowed: " + joined(allowed) : near));
+        throw Error(map.keyLocation(key), std::string(what) + ": unknown key '" + key + "'" +
+                                              suggestionOrAll(key, allowed));
     }
 }
 

@@ -70,6 +70,11 @@ std::string suggestion(std::string_view name, std::span<const std::string> candi
     return nearest ? "; did you mean '" + *nearest + "'?" : "";
 }
 
+std::string suggestionOrAll(std::string_view name, std::span<const std::string> candidates) {
+    const std::string near = suggestion(name, candidates);
+    return near.empty() ? "; allowed: " + joined(candidates) : near;
+}
+
 std::string joined(std::span<const std::string> items, std::string_view separator) {
     std::string text;
     for (std::size_t i = 0; i < items.size(); ++i) {

@@ -17,6 +17,9 @@ std::optional<std::string> nearestName(std::string_view name,
 /// "; did you mean 'x'?" or "" — ready to be appended to a message.
 std::string suggestion(std::string_view name, std::span<const std::string> candidates);
 
+/// The same, or where none is near "; allowed: a, b, c".
+std::string suggestionOrAll(std::string_view name, std::span<const std::string> candidates);
+
 /// "a, b, c".
 std::string joined(std::span<const std::string> items, std::string_view separator = ", ");
 

@@ -142,7 +142,7 @@ std::vector<Assumption> readAssumptions(const Node& node) {
         assumption.location = node.keyLocation(name);
         if (const Node* value = entry.find("value")) assumption.value = *value;
         if (const Node* range = entry.find("range")) assumption.range = *range;
-        if (const Node* unit = entry.find("unit")) assumption.unit = lineOf(*unit, what + ": unit");
+        assumption.unit = optionalLine(entry, "unit", what);
         assumptions.push_back(std::move(assumption));
     }
     return assumptions;

@@ -134,9 +134,8 @@ class AxisReader {
             known.push_back(axis.name);
         }
         if (std::find(known.begin(), known.end(), name) == known.end()) {
-            const std::string near = suggestion(name, known);
-            throw Error(node.location(), "layout: unknown axis '" + name + "'" +
-                                             (near.empty() ? "; allowed: " + joined(known) : near));
+            throw Error(node.location(),
+                        "layout: unknown axis '" + name + "'" + suggestionOrAll(name, known));
         }
         return {name, {}};
     }
@@ -295,6 +294,17 @@ const std::string& lineOf(const Node& node, std::string_view what) {
         throwNotAllowed(node, what, "one line of text");
     }
     return node.text();
+}
+
+std::string optionalLine(const Node& map, std::string_view key, const std::string& what) {
+    const Node* node = map.find(key);
+    return node ? lineOf(*node, fmt::format("{}: {}", what, key)) : "";
+}
+
+const Node& requiredAt(const Node& map, std::string_view key, std::string_view what) {
+    const Node* value = map.find(key);
+    if (!value) throw Error(map.location(), fmt::format("{} needs '{}'", what, key));
+    return *value;
 }
 
 std::vector<SchemaSection> layoutKeys() {

@@ -36,10 +36,9 @@ class PlotReader {
     PlotSpec read() {
         requireKeys(node_, what_, keysOf("plot"));
         plot_.location = node_.location();
-        if (const Node* title = node_.find("title"))
-            plot_.title = lineOf(*title, what_ + ": title");
-        readX(require("x"));
-        readY(require("y"));
+        plot_.title = optionalLine(node_, "title", what_);
+        readX(requiredAt(node_, "x", what_));
+        readY(requiredAt(node_, "y", what_));
         if (const Node* by = node_.find("by")) plot_.by = readAxis(*by, "by");
         if (const Node* panels = node_.find("panels")) {
             for (const Node& axis : listed(*panels)) {
@@ -55,12 +54,6 @@ class PlotReader {
     }
 
   private:
-    const Node& require(const char* key) const {
-        const Node* value = node_.find(key);
-        if (!value) throw Error(node_.location(), fmt::format("{} needs '{}'", what_, key));
-        return *value;
-    }
-
     static Node::Sequence listed(const Node& node) {
         return node.isSequence() ? node.items() : Node::Sequence{node};
     }
@@ -90,11 +83,9 @@ class PlotReader {
             }
             use(name, node);
         } else if (!isColumn(name)) {
-            const Names known = abscissae();
-            const std::string near = suggestion(name, known);
             throw Error(node.location(),
                         fmt::format("{}: x is '{}', neither a row axis nor a column{}", what_, name,
-                                    near.empty() ? "; allowed: " + joined(known) : near));
+                                    suggestionOrAll(name, abscissae())));
         }
         plot_.x = name;
     }
@@ -103,11 +94,8 @@ class PlotReader {
         for (const Node& item : listed(node)) {
             const std::string& name = lineOf(item, what_ + ": y");
             if (!isColumn(name)) {
-                const std::string near = suggestion(name, names_.columns);
-                throw Error(
-                    item.location(),
-                    fmt::format("{}: unknown column '{}'{}", what_, name,
-                                near.empty() ? "; allowed: " + joined(names_.columns) : near));
+                throw Error(item.location(), fmt::format("{}: unknown column '{}'{}", what_, name,
+                                                         suggestionOrAll(name, names_.columns)));
             }
             if (contains(plot_.y, name)) {
                 throw Error(item.location(),

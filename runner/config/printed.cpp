@@ -39,9 +39,8 @@ void requireHeader(const std::vector<std::string>& header, const TableNames* nam
         std::vector<std::string> known = names->rowAxes;
         known.insert(known.end(), names->columns.begin(), names->columns.end());
         if (rangeContains(known, name)) continue;
-        const std::string near = suggestion(name, known);
         throw Error(where, "printed: '" + name + "' is neither a row axis nor a column" +
-                               (near.empty() ? "; allowed: " + joined(known) : near));
+                               suggestionOrAll(name, known));
     }
     if (!names) return;
     for (const std::string& axis : names->rowAxes) {
@@ -262,18 +261,12 @@ bool isCompared(const Experiment& table, const std::string& method) {
                                [&](const Node& name) { return name.text() == method; });
 }
 
-const Node& requiredText(const Node& entry, const std::string& what, std::string_view key) {
-    const Node* value = entry.find(key);
-    if (!value) throw Error(entry.location(), fmt::format("{} needs '{}'", what, key));
-    return *value;
-}
-
 /// The labels of `row` beside the table's row axes.
 Names rowLabels(const Node& row, const Layout& layout, const std::string& what) {
     Names axes, labels;
     for (const LayoutAxis& axis : layout.rows) axes.push_back(axis.name);
     requireKeys(row, what + ": row", axes);
-    for (const std::string& axis : axes) labels.push_back(requiredText(row, what, axis).text());
+    for (const std::string& axis : axes) labels.push_back(requiredAt(row, axis, what).text());
     return labels;
 }
 
@@ -339,13 +332,13 @@ bool isCalibrated(const Experiment& table, const std::vector<std::string>& row,
 Node withPrintedCell(const Node& entry, const std::string& column, const Experiment& fit,
                      const Experiment& table) {
     const std::string what = "fit: '" + column + "'";
-    const Node& place = requiredText(entry, what, "table");
+    const Node& place = requiredAt(entry, "table", what);
     if (table.technique != fit.technique || !table.layout.isGiven) {
         throw Error(place.location(), fmt::format("{}: {} is not measured by technique '{}'", what,
                                                   table.id, fit.technique));
     }
-    const Names row = rowLabels(requiredText(entry, what, "row"), table.layout, what);
-    const Node& theirs = requiredText(entry, what, "column");
+    const Names row = rowLabels(requiredAt(entry, "row", what), table.layout, what);
+    const Node& theirs = requiredAt(entry, "column", what);
     const Selection cell = cellSelection(table, row, lineOf(theirs, what + ": column"));
     const Selection own = cellSelection(fit, Names(fit.layout.rows.size()), column);
     // What a fit may read compares no methods: that is how the other rows stay blind.
@@ -384,8 +377,8 @@ std::vector<FitTarget> fitTargets(const Experiment& experiment) {
     if (!fit || fit->isNull()) return {};
     std::vector<FitTarget> targets;
     for (const auto& [column, entry] : fit->entries()) {
-        targets.push_back({column, requiredText(entry, "fit", "id").text(),
-                           requiredText(entry, "fit", "printed").asDouble()});
+        targets.push_back({column, requiredAt(entry, "id", "fit").text(),
+                           requiredAt(entry, "printed", "fit").asDouble()});
     }
     return targets;
 }

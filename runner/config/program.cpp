@@ -58,12 +58,6 @@ void requireSnakeCase(const Node& map, const std::string& name, std::string_view
                                                    what, name));
 }
 
-/// "" where the key is not there.
-std::string optionalLine(const Node& map, const char* key, const std::string& what) {
-    const Node* node = map.find(key);
-    return node ? lineOf(*node, what + ": " + key) : "";
-}
-
 /// An entry of `program.params`.
 ProgramParam readProgramParam(const Node& params, const std::string& name) {
     const Node& given = *params.find(name);
@@ -176,12 +170,10 @@ std::string templateOf(const Node& node, std::string_view what, const Names& kno
         node.text(), [](std::string_view) {},
         [&](std::string_view name) {
             if (std::ranges::find(known, name) != known.end()) return;
-            const std::string near = suggestion(name, known);
-            throw Error(
-                node.location(),
-                fmt::format("{}: '{{{}}}' stands for nothing{}; braces as such are "
-                            "{{{{ and }}}}",
-                            what, name, near.empty() ? "; allowed: " + joined(known) : near));
+            throw Error(node.location(),
+                        fmt::format("{}: '{{{}}}' stands for nothing{}; braces as such are "
+                                    "{{{{ and }}}}",
+                                    what, name, suggestionOrAll(name, known)));
         });
     return node.text();
 }

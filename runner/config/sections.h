@@ -62,6 +62,10 @@ void requireStatistic(const Node& name);
 
 /// `text` of one line that is not empty.
 const std::string& lineOf(const Node& node, std::string_view what);
+/// The same of a key of `map`; "" where it is not there.
+std::string optionalLine(const Node& map, std::string_view key, const std::string& what);
+/// Throws Error "WHAT needs 'KEY'" where it is not there.
+const Node& requiredAt(const Node& map, std::string_view key, std::string_view what);
 
 /// The keys of a config that a profile may change.
 const std::vector<std::string>& sectionKeys();

@@ -1,13 +1,16 @@
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -19,11 +22,76 @@
 #include "runner/config/experiment.h"
 #include "runner/records/images.h"
 #include "runner/records/records.h"
-#include "tests/fuzz/memory_meter.h"
 #include "tests/support/support.h"
+
+// operator new has no other place to keep its count.
+namespace {
+std::atomic<std::size_t> usedBytes = 0;
+std::atomic<std::size_t> peakBytes = 0;
+std::atomic<std::size_t> startBytes = 0;
+}  // namespace
+
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    void* memory = std::malloc(size);
+    if (memory == nullptr) return nullptr;
+    const std::size_t used = usedBytes += ::malloc_usable_size(memory);
+    std::size_t peak = peakBytes;
+    while (used > peak && !peakBytes.compare_exchange_weak(peak, used)) {
+    }
+    return memory;
+}
+
+void* operator new(std::size_t size) {
+    if (void* memory = ::operator new(size, std::nothrow)) return memory;
+    throw std::bad_alloc();
+}
+
+void* operator new[](std::size_t size) {
+    return ::operator new(size);
+}
+
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+    return ::operator new(size, std::nothrow);
+}
+
+void operator delete(void* memory) noexcept {
+    if (memory != nullptr) usedBytes -= ::malloc_usable_size(memory);
+    std::free(memory);
+}
+
+void operator delete[](void* memory) noexcept {
+    ::operator delete(memory);
+}
+
+void operator delete(void* memory, std::size_t) noexcept {
+    ::operator delete(memory);
+}
+
+void operator delete[](void* memory, std::size_t) noexcept {
+    ::operator delete(memory);
+}
+
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
+    ::operator delete(memory);
+}
+
+void operator delete[](void* memory, const std::nothrow_t&) noexcept {
+    ::operator delete(memory);
+}
 
 namespace gfxrepro {
 namespace {
+
+/// Begins to measure: the peak becomes what is in use now.
+void resetPeakMemory() {
+    startBytes = usedBytes.load();
+    peakBytes = usedBytes.load();
+}
+
+/// The most bytes in use since, above what was in use then.
+std::size_t peakMemoryBytes() {
+    return peakBytes - startBytes;
+}
 
 namespace fs = std::filesystem;
 using Load = std::function<void(const fs::path&)>;
@@ -101,7 +169,7 @@ const Load kReadImages = [](const fs::path& path) {
 /// decoders stop at 128 MiB or 500 times the file (and hold it twice where they convert).
 void expectRefusedOrLoaded(const Load& load, const fs::path& path, std::uintmax_t folderBytes) {
     SCOPED_TRACE(path.string());
-    test::resetPeakMemory();
+    resetPeakMemory();
     try {
         load(path);
     } catch (const Error& error) {
@@ -113,7 +181,7 @@ void expectRefusedOrLoaded(const Load& load, const fs::path& path, std::uintmax_
         ADD_FAILURE() << "not an Error: " << error.what();
     }
     constexpr std::size_t kAlwaysAllowedBytes = std::size_t{320} << 20;
-    EXPECT_LE(test::peakMemoryBytes(), kAlwaysAllowedBytes + 1000 * folderBytes);
+    EXPECT_LE(peakMemoryBytes(), kAlwaysAllowedBytes + 1000 * folderBytes);
 }
 
 std::string mutated(std::string content, Random& random) {
@@ -356,9 +424,9 @@ TEST(LoaderFuzz, FacesWithoutCornersTakeNoMemory) {
                      "property float y\nproperty float z\nelement face 19000000\n"
                      "property list uchar int vertex_indices\nend_header\n");
     std::filesystem::resize_file(path, kBytes);  // nearly all of it a hole
-    test::resetPeakMemory();
+    resetPeakMemory();
     EXPECT_TRUE(scene::loadPly(path).meshes.empty());
-    EXPECT_LE(test::peakMemoryBytes(), kBytes);
+    EXPECT_LE(peakMemoryBytes(), kBytes);
 }
 
 }  // namespace
