@@ -43,12 +43,8 @@ ImageLayers& ImageLayers::depths(std::span<const float> depthM) {
 }
 
 ImageLayers& ImageLayers::windowDepths(std::span<const float> windowZ) {
-    const double n = view_.nearM, f = view_.farM;
-    std::vector<float> depthM;
-    depthM.reserve(windowZ.size());
-    for (const float z : windowZ) {
-        depthM.push_back(z == 1.0F ? 0.0F : static_cast<float>(n * f / (f - double{z} * (f - n))));
-    }
+    std::vector<float> depthM(windowZ.begin(), windowZ.end());
+    for (float& z : depthM) z = depthOfWindow(view_, z);
     return depths(depthM);
 }
 

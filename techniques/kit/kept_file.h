@@ -2,9 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
 
 namespace gfxrepro::kit {
 
@@ -15,12 +19,25 @@ struct FileStamp {
     char key[64];           // a sha256 of what the content is made of
 
     FileStamp() = default;
-    FileStamp(std::string_view magic, std::uint32_t version, std::string_view key);
+    FileStamp(std::string_view fileMagic, std::uint32_t fileVersion, std::string_view fileKey)
+        : version(fileVersion) {
+        GFXREPRO_ASSERT_EQ(fileMagic.size(), sizeof magic);
+        GFXREPRO_ASSERT_EQ(fileKey.size(), sizeof key);
+        std::memcpy(magic, fileMagic.data(), sizeof magic);
+        std::memcpy(key, fileKey.data(), sizeof key);
+    }
     bool operator==(const FileStamp&) const = default;
 };
 
 /// Writes a file whole under a temporary name and renames it, so that several processes may do so
 /// at once. False where the folder cannot be written: that costs the next run its time, no more.
-bool keepFile(const std::filesystem::path& path, const std::string& bytes);
+inline bool keepFile(const std::filesystem::path& path, const std::string& bytes) {
+    try {
+        writeFileAtomic(path, bytes);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
 
 }  // namespace gfxrepro::kit

@@ -1,6 +1,8 @@
 // Prefix sums on the device.
 #pragma once
 
+#include <string>
+
 #include "engine/gl/objects.h"
 #include "engine/gl/pass.h"
 
@@ -13,10 +15,17 @@ class PrefixSum {
     enum class Total { None, Behind };
 
     /// Of values of the GLSL type `type` ("uint", "uvec4").
-    PrefixSum(const gl::ShaderLibrary& shaders, const char* type, Total total);
+    PrefixSum(const gl::ShaderLibrary& shaders, const char* type, Total total)
+        : pass_(shaders, {"kit/prefix_sum.comp.glsl"},
+                {{"GROUP_SIZE", 256U},
+                 {"TYPE", std::string(type)},
+                 {"TOTAL", total == Total::Behind ? 1 : 0}}) {}
     /// Of the first `count` values. With Total::Behind the sum of all follows them, for which the
     /// buffer must have room.
-    void run(const gl::Buffer& values, unsigned count) const;
+    void run(const gl::Buffer& values, unsigned count) const {
+        pass_.set("count", count);
+        pass_.dispatch({1, 1, 1}, {{"Values", values}});
+    }
 
   private:
     gl::Pass pass_;

@@ -49,6 +49,12 @@ glm::vec3 rayThrough(const View& view, const glm::vec2& positionPx);
 /// The point seen at a position in pixel coordinates at `depthM`, the distance along the view axis.
 glm::vec3 unproject(const View& view, const glm::vec2& positionPx, float depthM);
 
+/// The distance along the view axis of a window z, 0 where it is 1: nothing is there.
+inline float depthOfWindow(const View& view, float windowZ) {
+    const double n = view.nearM, f = view.farM;
+    return windowZ == 1.0F ? 0.0F : static_cast<float>(n * f / (f - double{windowZ} * (f - n)));
+}
+
 /// Takes (x·d, y·d, d, 1) to the point of the world that is seen at pixel coordinates (x, y) and
 /// the distance d along the view axis.
 glm::mat4 worldFromPixels(const View& view);

@@ -1,4 +1,4 @@
-// A model's points on the device, and where a frame's drawn points lie in them.
+// A model's points on the device, where a frame's drawn points lie in them, and what draws them.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "engine/gl/pass.h"
-#include "techniques/point_splatting/model_file.h"
+#include "engine/gl/profiler.h"
 #include "techniques/point_splatting/patch_selection.h"
+#include "techniques/point_splatting/point_model.h"
 
 namespace gfxrepro::point_splatting {
 
@@ -80,6 +81,21 @@ struct DrawList {
     /// Ranges have at most `maxRange` points, batches begin none beyond `maxBatch`.
     void assign(const DevicePoints& points, std::span<const DrawnPatch> drawn,
                 std::uint32_t maxRange, std::uint32_t maxBatch);
+};
+
+/// Towards the light.
+inline constexpr glm::vec3 kLightDirectionView{0.3F, 0.5F, 0.8F};
+
+/// Draws a model, each method in its way and passes.
+class PointRenderer {
+  public:
+    virtual ~PointRenderer() = default;
+    virtual void render(std::span<const DrawnPatch> drawn, const PatchView& view,
+                        gl::Profiler& profiler) = 0;
+    /// RGBA8, linear; alpha is the coverage.
+    virtual const gl::Texture& output() const = 0;
+    virtual std::size_t pointBytes() const = 0;   // of what holds the points
+    virtual std::size_t targetBytes() const = 0;  // of images
 };
 
 /// What a pass needs of the view, set where the program uses it.

@@ -60,21 +60,6 @@ std::uint32_t levelFor(const Patch& patch, std::span<const Level> levels, float 
     return patch.levelCount - 1;
 }
 
-SplatMode fixedMode(SplatMethod method) {
-    switch (method) {
-        case SplatMethod::Reconstruction:
-            return SplatMode::Reconstruction;
-        case SplatMethod::LowPass:
-            return SplatMode::LowPass;
-        case SplatMethod::Sprites:
-            return SplatMode::Sprite;
-        case SplatMethod::Adaptive:
-        case SplatMethod::FullEwa:
-            break;
-    }
-    return SplatMode::FullEwa;
-}
-
 }  // namespace
 
 float nearestDepth(const scene::Box& box, const PatchView& view) {
@@ -145,8 +130,8 @@ SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Le
             item.level = std::min(item.level, levelFor(patch, levels, distance, target, view));
         }
         const Level& level = levels[patch.firstLevel + item.level];
-        item.mode = fixedMode(settings.method);
-        if (settings.method == SplatMethod::Adaptive && !isSilhouette) {
+        item.mode = settings.mode.value_or(SplatMode::FullEwa);
+        if (!settings.mode && !isSilhouette) {
             // S_proj of the level's mean radius, as it faces the eye, by S_h.
             const float radii =
                 level.meanRadius * view.focalPx / (distance * settings.lowPassRadiusPx);

@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "techniques/kit/view.h"
-#include "techniques/point_splatting/linear_tree.h"
+#include "techniques/point_splatting/point_model.h"
 
 namespace gfxrepro::point_splatting {
 
@@ -18,11 +19,8 @@ enum class SplatMode : std::uint8_t {
     Sprite,          // an opaque square
 };
 
-/// How a whole model is drawn.
-enum class SplatMethod { Adaptive, FullEwa, Reconstruction, LowPass, Sprites };
-
 struct SelectionSettings {
-    SplatMethod method = SplatMethod::Adaptive;
+    std::optional<SplatMode> mode;  // of all patches; none: adaptive, by each one's size
     bool cullsFrustum = true, cullsCones = true, choosesLevels = true;
     float cMin = 0.3F, cMax = 3.0F;
     float lowPassRadiusPx = 1.0F;  // r_h: the distance between pixels
@@ -72,8 +70,8 @@ struct SelectionCounts {
 
 /// The visible patches in the model's order, into `drawn` (cleared). A patch is as far as the
 /// nearest of its box's eight corners (Sec. 3.3.1.2); one at the silhouette, by the angle between
-/// the view ray and the mean normal (Sec. 3.2.1), is always drawn by full EWA where the method is
-/// Adaptive (Sec. 3.3.1.3).
+/// the view ray and the mean normal (Sec. 3.2.1), is always drawn by full EWA where modes are
+/// adaptive (Sec. 3.3.1.3).
 SelectionCounts selectPatches(std::span<const Patch> patches, std::span<const Level> levels,
                               const PatchView& view, const SelectionSettings& settings,
                               std::vector<DrawnPatch>& drawn);

@@ -1,15 +1,192 @@
 #include "techniques/point_splatting/point_splatting.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/trigonometric.hpp>
+#include <string>
 
 #include "engine/core/files.h"
 #include "techniques/kit/requirements.h"
-#include "techniques/point_splatting/outputs.h"
 
 namespace gfxrepro::point_splatting {
+namespace {
+
+constexpr Choice<Method> kMethods[] = {
+    {Method::Adaptive, "adaptive",
+     "a filter per patch, by its points' size on the screen (Eq. 13)"},
+    {Method::FullEwa, "full_ewa", "H = J V^r Jᵀ + V^h everywhere (Eq. 3)"},
+    {Method::Reconstruction, "reconstruction", "the reconstruction filter alone everywhere"},
+    {Method::LowPass, "low_pass", "the low-pass filter alone everywhere"},
+    {Method::Sprites, "sprites", "opaque squares, as QSplat"},
+    {Method::Compute, "compute", "one pixel per point, by compute shaders"},
+    {Method::GlPoints, "gl_points", "one white pixel per point, by a plain draw of positions"},
+};
+constexpr Choice<PointStorage> kStorages[] = {
+    {PointStorage::Compressed, "compressed", "8 bytes per point (table 3.1)"},
+    {PointStorage::Uncompressed, "uncompressed", "60 bytes per point"},
+};
+enum class LevelChoice { BySize, All };
+constexpr Choice<LevelChoice> kLevels[] = {
+    {LevelChoice::BySize, "by_size", "the coarsest whose splats are small enough on the screen"},
+    {LevelChoice::All, "all", "all points of a patch"},
+};
+
+float number(Params& params, const char* name, float fallback, const ParamSpec& spec) {
+    // 0.7, not what a float makes of it, goes into manifests.
+    const double written = std::stod(fmt::format("{:g}", fallback));
+    return static_cast<float>(params.getDouble(name, written, spec));
+}
+
+/// That all patches are drawn in; none: by each one's size.
+std::optional<SplatMode> fixedMode(Method method) {
+    switch (method) {
+        case Method::Adaptive:
+            break;
+        case Method::FullEwa:
+            return SplatMode::FullEwa;
+        case Method::Reconstruction:
+            return SplatMode::Reconstruction;
+        case Method::LowPass:
+            return SplatMode::LowPass;
+        case Method::Sprites:
+        case Method::Compute:
+        case Method::GlPoints:
+            return SplatMode::Sprite;
+    }
+    return std::nullopt;
+}
+
+SplatSettings readSplats(Params& params) {
+    SplatSettings settings;
+    settings.storage = params.getEnum("storage", PointStorage::Compressed, kStorages,
+                                      {"how points lie on the device"});
+    settings.lowPassRadiusPx =
+        number(params, "low_pass_radius_px", 1.0F,
+               {"r_h: the low-pass filter's standard deviation", "pixels", 0.1, 8.0});
+    settings.cutoff =
+        number(params, "cutoff", 1.5F, {"where a splat ends", "standard deviations", 0.5, 4.0});
+    settings.visibilityOffset =
+        number(params, "visibility_offset", settings.visibilityOffset,
+               {"ε: how far splats behind the front one are blended in", "radii", 0.0, 16.0});
+    return settings;
+}
+
+SelectionSettings readSelection(Params& params, Method method) {
+    SelectionSettings settings;
+    settings.mode = fixedMode(method);
+    settings.cullsFrustum =
+        params.getBool("cull_frustum", true, {"leaves patches outside of the view out"});
+    settings.cullsCones = params.getBool("cull_cones", true, {"leaves patches that face away out"});
+    settings.choosesLevels =
+        params.getEnum("level", LevelChoice::BySize, kLevels, {"how much of a patch is drawn"}) ==
+        LevelChoice::BySize;
+    settings.targetRadiusPx =
+        number(params, "target_radius_px", settings.targetRadiusPx,
+               {"largest radius of a level on the screen", "pixels", 0.05, 64.0});
+    settings.fineRadiusPx = number(
+        params, "fine_radius_px", settings.fineRadiusPx,
+        {"the same of patches that are curved, wide or at the silhouette", "pixels", 0.05, 64.0});
+    settings.cMin = number(params, "c_min", settings.cMin,
+                           {"below it C_η·S_proj / S_h is low-pass alone", "1", 0.0, 1e6});
+    settings.cMax = number(params, "c_max", settings.cMax,
+                           {"above it S_proj / S_h is reconstruction alone", "1", 0.0, 1e6});
+    settings.curvedAbove = number(params, "curved_above", settings.curvedAbove,
+                                  {"λ₀ / Σλ of patches that are curved", "1", 0.0, 1.0});
+    settings.wideAboveRad =
+        glm::radians(number(params, "wide_above_deg", glm::degrees(settings.wideAboveRad),
+                            {"normal cone of patches that are wide", "°", 0.0, 180.0}));
+    settings.silhouetteRad = glm::radians(
+        number(params, "silhouette_deg", 20.0F,
+               {"at the silhouette the view ray is so near to a right angle to the mean normal",
+                "°", 0.0, 90.0}));
+    settings.prefixShare = number(
+        params, "progressive_share", 1.0F,
+        {"of each patch's points, what has arrived: progressive transmission", "1", 0.0, 1.0});
+    settings.lowPassRadiusPx = 0.0F;  // the splats'; see below
+    return settings;
+}
+
+TreeSettings readTree(Params& params) {
+    TreeSettings settings;
+    settings.maxPatchPoints = static_cast<std::uint32_t>(
+        params.getInt("patch_points_max", static_cast<int>(settings.maxPatchPoints),
+                      {"a patch's most points", "points", 1, 1 << 20}));
+    settings.minPatchPoints = static_cast<std::uint32_t>(
+        params.getInt("patch_points_min", static_cast<int>(settings.minPatchPoints),
+                      {"a subtree of so few is not cut", "points", 1, 1 << 20}));
+    settings.patchConeRad =
+        glm::radians(number(params, "patch_cone_deg", glm::degrees(settings.patchConeRad),
+                            {"a subtree whose normals lie within is not cut", "°", 0.0, 180.0}));
+    return settings;
+}
+
+ViewSettings readView(Params& params) {
+    ViewSettings view;
+    view.distance =
+        number(params, "distance", view.distance,
+               {"of the eye from the point looked at", "of the framing distance", 0.01, 1000.0});
+    view.rotationRad = glm::radians(
+        number(params, "rotation_deg", 0.0F,
+               {"of the turntable, to which frames add up to 360°", "°", -360.0, 360.0}));
+    constexpr double kCentre[] = {0.5, 0.5, 0.5};
+    const std::vector<double> lookAt =
+        params.getVector("look_at", kCentre, {"in the model's box", "of its size", -1.0, 2.0});
+    view.lookAt = glm::vec3(glm::dvec3(lookAt[0], lookAt[1], lookAt[2]));
+    return view;
+}
+
+}  // namespace
+
+PointSplattingParams::PointSplattingParams(Params& params)
+    : method(params.getEnum("method", Method::Adaptive, kMethods, {"what is measured"})),
+      splats(readSplats(params)),
+      selection(readSelection(params, method)),
+      tree(readTree(params)),
+      view(readView(params)),
+      points(
+          params.getInt("points", 1'000'000,
+                        {"taken of a scene without points of its own", "points", 1, 100'000'000})),
+      keepsModel(params.getBool("cache", true,
+                                {"keeps the preprocessed model for later runs, and takes it"})),
+      measuresErrors(
+          params.getBool("errors", false,
+                         {"compares with a supersampled image, full EWA and uncompressed points"})),
+      measuresCompression(params.getBool("compression_errors", false,
+                                         {"what 8 bytes per point lose, over all points"})),
+      measuresSpeed(params.getBool("points_per_second", false, {"draws five more frames"})),
+      showsPictures(
+          params.getBool("pictures", false, {"the image, and what it is compared with"})) {
+    params.finish();
+    selection.lowPassRadiusPx = splats.lowPassRadiusPx;
+    if (method != Method::Adaptive) {
+        params.refuseGiven({"c_min", "c_max"}, "'method: adaptive'");
+    }
+    if (method == Method::GlPoints) {
+        params.refuseGiven({"storage"}, "a method that reads compressed points");
+    }
+    if (method == Method::Compute || method == Method::GlPoints) {
+        params.refuseGiven({"low_pass_radius_px", "cutoff", "visibility_offset"},
+                           "a method of splats");
+    }
+    if (!selection.choosesLevels) {
+        params.refuseGiven({"target_radius_px", "fine_radius_px", "curved_above", "wide_above_deg"},
+                           "'level: by_size'");
+    }
+    if (selection.cMin > selection.cMax) {
+        throw Error(params.locationOf("c_min"),
+                    fmt::format("c_min {:g} is above c_max {:g}", selection.cMin, selection.cMax));
+    }
+    if (tree.minPatchPoints > tree.maxPatchPoints) {
+        throw Error(params.locationOf("patch_points_min"),
+                    fmt::format("patch_points_min {} is above patch_points_max {}",
+                                tree.minPatchPoints, tree.maxPatchPoints));
+    }
+}
+
 namespace {
 
 /// The points' box; grown by a splat where all of it is not larger than one.
@@ -78,13 +255,15 @@ void PointSplatting::setup(technique::SetupContext& context) {
     preprocessMs_ = elapsed.count();
     framedBox_ = framedBox(*model_);
     if (params_.method == Method::Compute) {
-        ComputeSplatSettings settings;
-        settings.storage = params_.splats.storage;
-        splatter_.emplace(context.shaders, *model_, settings, sizePx_);
+        renderer_ = std::make_unique<ComputeSplatter>(context.shaders, *model_,
+                                                      params_.splats.storage, sizePx_);
     } else if (params_.method == Method::GlPoints) {
-        plain_.emplace(context.shaders, *model_, sizePx_);
+        renderer_ = std::make_unique<PlainPoints>(context.shaders, *model_, sizePx_);
     } else {
-        renderer_.emplace(context.shaders, *model_, params_.splats, sizePx_);
+        auto splats =
+            std::make_unique<SplatRenderer>(context.shaders, *model_, params_.splats, sizePx_);
+        splats_ = splats.get();
+        renderer_ = std::move(splats);
     }
 }
 
@@ -108,26 +287,7 @@ void PointSplatting::draw(gl::Profiler& profiler) {
         counts_ =
             selectPatches(model_->patches(), model_->levels(), view_, params_.selection, drawn_);
     }
-    if (splatter_) {
-        splatter_->render(drawn_, view_, profiler);
-    } else if (plain_) {
-        plain_->render(drawn_, view_, profiler);
-    } else {
-        renderer_->render(drawn_, view_, profiler);
-    }
-}
-
-const gl::Texture& PointSplatting::output() const {
-    if (plain_) return plain_->output();
-    return splatter_ ? splatter_->output() : renderer_->output();
-}
-std::size_t PointSplatting::pointBytes() const {
-    if (plain_) return plain_->pointBytes();
-    return splatter_ ? splatter_->pointBytes() : renderer_->pointBytes();
-}
-std::size_t PointSplatting::targetBytes() const {
-    if (plain_) return plain_->targetBytes();
-    return splatter_ ? splatter_->targetBytes() : renderer_->targetBytes();
+    renderer_->render(drawn_, view_, profiler);
 }
 
 image::ImageF PointSplatting::drawnWith(const SplatSettings& splats,
@@ -143,9 +303,97 @@ image::ImageF PointSplatting::drawnWith(const SplatSettings& splats,
 }
 
 namespace {
+
 std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<PointSplatting>(params);
 }
+
+config::Outputs outputs() {
+    using config::Better;
+    const auto detail = [](const char* name, const char* unit, const char* doc,
+                           Better better = Better::Neither) {
+        return config::MetricInfo{name, unit, doc, better, true};
+    };
+    return {
+        {
+            {"points", "point", "points of the model"},
+            {"drawn_points", "point", "points drawn in a frame"},
+            {"drawn_pct", "%", "points drawn in a frame, as a share of the model's"},
+            {"psnr_db", "dB",
+             "peak signal-to-noise ratio to the truth that the pass names, over the model's "
+             "pixels; 100 for equal pictures",
+             Better::Higher},
+            {"ssim", "1", "structural similarity to the truth that the pass names", Better::Higher},
+            {"flip_mean", "1",
+             "mean FLIP error to the truth that the pass names, over the model's pixels",
+             Better::Lower},
+            {"mode_pct", "%",
+             "share of the drawn points that are drawn in the mode that the pass names"},
+            {"selection_ms", "ms", "time to choose patches and levels", Better::Lower},
+            {"drawn_points_per_second", "point/s",
+             "points drawn per second, in frames that do not wait between passes", Better::Higher},
+            {"model_points_per_second", "point/s",
+             "points of the whole model per second, drawn or not, in the same frames",
+             Better::Higher},
+            detail("preprocess_ms", "ms",
+                   "time to make patches and levels, or to map them from a file", Better::Lower),
+            {"patches", "patch", "patches of the model"},
+            detail("patches_drawn", "patch", "patches drawn in a frame"),
+            detail("patches_outside", "patch", "patches outside the view"),
+            detail("patches_turned_away", "patch",
+                   "patches left out because all their normals turn away"),
+            detail("facing_pct", "%", "share of the model's points that face the eye"),
+            detail("normals_estimated", "point", "points that came without a normal"),
+            detail("radii_estimated", "point", "points that came without a radius"),
+            detail("points_dropped", "point",
+                   "points that are left out: doubles, and those of which no splat can be made"),
+            {"point_bytes", "byte", "memory of all points on the device", Better::Lower},
+            {"bytes_per_point", "byte", "memory of a point", Better::Lower},
+            detail("target_bytes", "byte", "memory of the images that are drawn to", Better::Lower),
+            {"arrived_bytes", "byte",
+             "bytes of a stream that have arrived when the frame is drawn"},
+            detail("bits_before", "bit", "bits of an attribute before compression"),
+            detail("bits_after", "bit", "bits of an attribute after compression", Better::Lower),
+            detail("bits_stored", "bit", "bits that an attribute takes as records are laid out",
+                   Better::Lower),
+            {"compression_error_mean", "%",
+             "mean error by compression: of a position as a share of its patch's diagonal, of a "
+             "radius as a share of itself",
+             Better::Lower},
+            {"compression_error_max", "%", "largest error by compression, as above", Better::Lower},
+            {"compression_angle_mean", "degree",
+             "mean angle by which compression turns a normal or a tangent", Better::Lower},
+            {"compression_angle_max", "degree",
+             "largest angle by which compression turns a normal or a tangent", Better::Lower},
+            {"compression_error_of_bound", "1",
+             "largest error by compression ÷ what the grid of values allows", Better::Lower},
+        },
+        {
+            {"selection", "choosing patches and levels for the view"},
+            {"points", "drawing plain points, the baseline"},
+            {"sprites", "drawing a textured square for each point, the fastest mode"},
+            {"visibility", "drawing the depths of the splats"},
+            {"splats", "blending the splats"},
+            {"normalization", "dividing sums by weights"},
+            {"full_ewa", "full EWA: points in that mode, or as the truth of the same points"},
+            {"reconstruction", "the mode without the low-pass filter"},
+            {"low_pass", "the mode of the low-pass filter alone"},
+            {"sprite", "the mode of sprites"},
+            {"supersampled", "a truth with many samples per pixel"},
+            {"filtered", "a truth with many samples per pixel, filtered as splats are"},
+            {"uncompressed", "a truth from uncompressed points"},
+            {"built", "where patches and levels were made"},
+            {"mapped", "where they were mapped from a file"},
+            {"position", "of positions"},
+            {"normal", "of normals"},
+            {"tangents", "of the two tangents"},
+            {"corner", "of the splat's corner"},
+            {"radius", "of radii"},
+            {"total", "of the whole point"},
+            {"device", "of a point on the device, with what all points share"},
+        }};
+}
+
 }  // namespace
 
 const technique::TechniqueInfo kPointSplatting{

@@ -6,14 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "engine/image/image.h"
 #include "engine/scene/point_sampling.h"
 #include "runner/technique/technique.h"
-#include "techniques/point_splatting/compute_splatter.h"
-#include "techniques/point_splatting/model_file.h"
-#include "techniques/point_splatting/model_picture.h"
-#include "techniques/point_splatting/patch_selection.h"
-#include "techniques/point_splatting/plain_points.h"
 #include "techniques/point_splatting/splat_renderer.h"
+#include "techniques/point_splatting/yardsticks.h"
 
 namespace gfxrepro::point_splatting {
 
@@ -54,6 +51,27 @@ struct PointSplattingParams {
 /// The box seen from `settings.distance` times as far as frames it at no rotation.
 scene::Camera turntableCamera(const scene::Box& box, float aspect, const ViewSettings& settings);
 
+/// Linear, multiplied by how much of each pixel is covered.
+struct ModelPicture {
+    image::ImageF color, coverage;  // of 3 channels and 1
+
+    explicit ModelPicture(const image::ImageF& rgba);
+    /// The middle, as much of it as holds what there is, a whole number of times as large: pictures
+    /// of one view show the same part. None where twice as large is too large.
+    std::optional<image::ImageF> enlarged() const;
+};
+
+/// The pixels that one of two pictures covers: means over black would say how much of it there is.
+class ModelPixels {
+  public:
+    ModelPixels(const ModelPicture& a, const ModelPicture& b);
+    /// These of an image, in a row; one of black where there are none.
+    image::ImageF of(const image::ImageF& image) const;
+
+  private:
+    std::vector<std::size_t> pixels_;
+};
+
 class PointSplatting final : public technique::Technique {
   public:
     explicit PointSplatting(Params& params);
@@ -63,16 +81,13 @@ class PointSplatting final : public technique::Technique {
     void requireScene(const scene::Scene& scene) const override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
-    const gl::Texture* frameImage() const override { return &output(); }
+    const gl::Texture* frameImage() const override { return &renderer_->output(); }
 
   private:
     /// The scene's points, or points of its surface.
     scene::PointCloud takePoints(const scene::Scene& scene);
     scene::Camera cameraAt(int frame, int frameCount) const;
     void draw(gl::Profiler& profiler);
-    const gl::Texture& output() const;
-    std::size_t pointBytes() const;
-    std::size_t targetBytes() const;
     /// What another way of drawing shows of the last view, `scale` times as large: RGBA.
     image::ImageF drawnWith(const SplatSettings& splats, const SelectionSettings& selection,
                             int scale) const;
@@ -98,9 +113,8 @@ class PointSplatting final : public technique::Technique {
     std::optional<ModelFile> model_;
     double preprocessMs_ = 0.0;
     scene::Box framedBox_;
-    std::optional<SplatRenderer> renderer_;
-    std::optional<ComputeSplatter> splatter_;  // in its place by Method::Compute
-    std::optional<PlainPoints> plain_;         // or by Method::GlPoints
+    std::unique_ptr<PointRenderer> renderer_;
+    const SplatRenderer* splats_ = nullptr;  // the same; not of Method::Compute and GlPoints
 
     PatchView view_;  // of the last frame
     scene::Camera camera_;

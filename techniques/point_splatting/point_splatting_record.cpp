@@ -1,11 +1,18 @@
+// What is recorded of a frame: the model, what was drawn of it, how far it is from the truth,
+// pictures.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <glm/glm.hpp>
+#include <glm/trigonometric.hpp>
 #include <span>
+#include <vector>
 
+#include "engine/core/error.h"
 #include "engine/gl/gl.h"
 #include "engine/image/resample.h"
 #include "engine/metrics/flip.h"
@@ -13,11 +20,57 @@
 #include "engine/metrics/statistics.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
-#include "techniques/point_splatting/compression_errors.h"
-#include "techniques/point_splatting/model_picture.h"
 #include "techniques/point_splatting/point_splatting.h"
 
 namespace gfxrepro::point_splatting {
+
+ModelPicture::ModelPicture(const image::ImageF& rgba)
+    : color(rgba.width(), rgba.height(), 3), coverage(rgba.width(), rgba.height(), 1) {
+    GFXREPRO_ASSERT_EQ(rgba.channels(), 4);
+    for (int y = 0; y < rgba.height(); ++y) {
+        for (int x = 0; x < rgba.width(); ++x) {
+            for (int c = 0; c < 3; ++c) color.at(x, y, c) = rgba.at(x, y, c);
+            coverage.at(x, y) = rgba.at(x, y, 3);
+        }
+    }
+}
+
+std::optional<image::ImageF> ModelPicture::enlarged() const {
+    const glm::ivec2 whole(color.width(), color.height());
+    glm::ivec2 needed(0);  // of a part in the middle
+    for (int y = 0; y < whole.y; ++y) {
+        for (int x = 0; x < whole.x; ++x) {
+            if (coverage.at(x, y) <= 0.0F) continue;
+            const glm::ivec2 pixel(x, y);
+            needed = glm::max(needed, glm::max(whole - 2 * pixel, 2 * pixel + 2 - whole));
+        }
+    }
+    if (needed.x == 0) return std::nullopt;
+    const int scale = std::min(whole.x / needed.x, whole.y / needed.y);
+    if (scale < 2) return std::nullopt;
+    const glm::ivec2 size = whole / scale, first = (whole - size) / 2;
+    return image::cropped(color, {first.x, first.y, size.x, size.y}, scale);
+}
+
+ModelPixels::ModelPixels(const ModelPicture& a, const ModelPicture& b) {
+    const std::span<const float> inA = a.coverage.values(), inB = b.coverage.values();
+    GFXREPRO_ASSERT_EQ(inA.size(), inB.size());
+    for (std::size_t i = 0; i < inA.size(); ++i) {
+        if (inA[i] > 0.0F || inB[i] > 0.0F) pixels_.push_back(i);
+    }
+}
+
+image::ImageF ModelPixels::of(const image::ImageF& image) const {
+    const auto channels = static_cast<std::size_t>(image.channels());
+    image::ImageF row(std::max(static_cast<int>(pixels_.size()), 1), 1, image.channels());
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        const std::span<const float> pixel =
+            image.values().subspan(pixels_[i] * channels, channels);
+        std::copy(pixel.begin(), pixel.end(), row.values().subspan(i * channels).begin());
+    }
+    return row;
+}
+
 namespace {
 
 /// Samples a pixel along each axis of the reference.
@@ -68,6 +121,73 @@ std::vector<glm::vec3> blendedNormals(const gl::Texture& accumulated, const Patc
     return normals;
 }
 
+/// What the 8 bytes of a point lose (Table 3.1): decoded against original.
+struct ErrorStatistics {
+    double mean = 0.0, max = 0.0;  // the sum until all are together
+    double ofBound = 0.0;          // the largest error : the largest that the grid allows
+
+    void add(double error, double errorOfBound) { add({error, error, errorOfBound}); }
+    void add(const ErrorStatistics& other) {
+        mean += other.mean;
+        max = std::max(max, other.max);
+        ofBound = std::max(ofBound, other.ofBound);
+    }
+};
+enum ErrorKind {
+    kPositionError,  // distance, % of the diagonal of the patch's box
+    kNormalError,    // degrees
+    /// Degrees between the decoded tangent and the plane across the true normal: at most the
+    /// normal's error.
+    kTangentError,
+    kRadiusError,  // %; ofBound: 0, a table has none
+};
+using CompressionErrors = std::array<ErrorStatistics, 4>;
+
+double angleDeg(const glm::vec3& a, const glm::vec3& b) {
+    // By the tangent: the cosine of small angles is 1 in floats.
+    const glm::dvec3 u(a), v(b);
+    return glm::degrees(std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v)));
+}
+
+CompressionErrors errorsOf(const ModelFile& model, const Patch& patch) {
+    CompressionErrors sums;
+    const glm::dvec3 bound(positionErrorBound(patch.bounds));
+    const double diagonal = glm::length(glm::dvec3(patch.bounds.size()));
+    const double normalBoundDeg = glm::degrees(static_cast<double>(normalErrorBoundRad()));
+    for (std::size_t i = patch.firstPoint; i < patch.firstPoint + patch.pointCount; ++i) {
+        const DecodedPoint point =
+            decoded(model.compressed()[i], patch.bounds, model.radiusTable());
+        const glm::dvec3 away =
+            glm::abs(glm::dvec3(point.position) - glm::dvec3(model.positions()[i]));
+        double share = 0.0;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (bound[axis] > 0.0) share = std::max(share, away[axis] / bound[axis]);
+        }
+        sums[kPositionError].add(diagonal > 0.0 ? 100.0 * glm::length(away) / diagonal : 0.0,
+                                 share);
+        const double normal = angleDeg(point.normal, model.normals()[i]);
+        sums[kNormalError].add(normal, normal / normalBoundDeg);
+        const double tangent = std::abs(90.0 - angleDeg(point.tangent, model.normals()[i]));
+        sums[kTangentError].add(tangent, tangent / normalBoundDeg);
+        const auto radius = static_cast<double>(model.radii()[i]);
+        sums[kRadiusError].add(
+            100.0 * std::abs(static_cast<double>(point.radius) - radius) / radius, 0.0);
+    }
+    return sums;
+}
+
+CompressionErrors compressionErrors(const ModelFile& model) {
+    std::vector<CompressionErrors> patches(model.patches().size());
+    tbb::parallel_for(std::size_t{0}, patches.size(),
+                      [&](std::size_t p) { patches[p] = errorsOf(model, model.patches()[p]); });
+    CompressionErrors all;
+    for (std::size_t kind = 0; kind < all.size(); ++kind) {
+        for (const CompressionErrors& patch : patches) all[kind].add(patch[kind]);
+        all[kind].mean /= static_cast<double>(model.positions().size());
+    }
+    return all;
+}
+
 }  // namespace
 
 void PointSplatting::record(technique::Recorder& recorder) {
@@ -76,13 +196,13 @@ void PointSplatting::record(technique::Recorder& recorder) {
     if (params_.measuresCompression) recordCompression(recorder);
     if (params_.measuresSpeed) recordSpeed(recorder);
     if (!params_.showsPictures && !params_.measuresErrors) return;
-    const ModelPicture picture(output().readImage(4));
+    const ModelPicture picture(renderer_->output().readImage(4));
     std::optional<image::ImageF> samples;
     if (params_.measuresErrors) samples = supersampled();
     if (params_.showsPictures) {
         kit::ImageLayers layers(view_);
-        const bool hasNormals = renderer_ && params_.method != Method::Sprites;
-        if (hasNormals) layers.normals(blendedNormals(renderer_->accumulated(), view_));
+        const bool hasNormals = splats_ && params_.method != Method::Sprites;
+        if (hasNormals) layers.normals(blendedNormals(splats_->accumulated(), view_));
         if (samples) {
             const ModelPicture truth(image::averaged(*samples, kSupersampling));
             layers.errors(picture.color, truth.color, "supersampled");
@@ -113,10 +233,11 @@ void PointSplatting::recordModel(technique::Recorder& recorder) const {
     count("radii_estimated", repairs_.radii, "point");
     count("points_dropped", repairs_.dropped + repairs_.duplicates, "point");
     recorder.metric("preprocess_ms", preprocessMs_, "ms", model_->wasBuilt() ? "built" : "mapped");
-    count("point_bytes", pointBytes(), "byte");
-    count("target_bytes", targetBytes(), "byte");
+    count("point_bytes", renderer_->pointBytes(), "byte");
+    count("target_bytes", renderer_->targetBytes(), "byte");
     recorder.metric("bytes_per_point",
-                    static_cast<double>(pointBytes()) / static_cast<double>(points), "byte");
+                    static_cast<double>(renderer_->pointBytes()) / static_cast<double>(points),
+                    "byte");
     if (params_.selection.prefixShare >= 1.0F) return;
     std::size_t arrived = 0;
     for (const Patch& patch : model_->patches()) {
@@ -192,25 +313,23 @@ void PointSplatting::recordCompression(technique::Recorder& recorder) const {
     GFXREPRO_ASSERT_EQ(static_cast<std::size_t>(total.stored), 8 * sizeof(CompressedPoint));
     bits(total);
     // What the device holds, with the radius table and colours where there are any.
-    recorder.metric(
-        "bits_stored",
-        8.0 * static_cast<double>(pointBytes()) / static_cast<double>(model_->positions().size()),
-        "bit", "device");
+    recorder.metric("bits_stored",
+                    8.0 * static_cast<double>(renderer_->pointBytes()) /
+                        static_cast<double>(model_->positions().size()),
+                    "bit", "device");
 
     const CompressionErrors errors = compressionErrors(*model_);
-    const auto record = [&](const char* name, const ErrorStatistics& error, bool isAngle) {
+    constexpr std::array kNames{"position", "normal", "tangents", "radius"};
+    for (std::size_t kind = 0; kind < errors.size(); ++kind) {
+        const bool isAngle = kind == kNormalError || kind == kTangentError;
         const std::string metric = isAngle ? "compression_angle" : "compression_error";
         const char* unit = isAngle ? "degree" : "%";
-        recorder.metric(metric + "_mean", error.mean, unit, name);
-        recorder.metric(metric + "_max", error.max, unit, name);
-        if (error.ofBound > 0.0) {
-            recorder.metric("compression_error_of_bound", error.ofBound, "1", name);
+        recorder.metric(metric + "_mean", errors[kind].mean, unit, kNames[kind]);
+        recorder.metric(metric + "_max", errors[kind].max, unit, kNames[kind]);
+        if (errors[kind].ofBound > 0.0) {
+            recorder.metric("compression_error_of_bound", errors[kind].ofBound, "1", kNames[kind]);
         }
-    };
-    record("position", errors.positionPct, false);
-    record("normal", errors.normalDeg, true);
-    record("tangents", errors.tangentDeg, true);
-    record("radius", errors.radiusPct, false);
+    }
 }
 
 double PointSplatting::selectionMs() const {
@@ -252,7 +371,7 @@ image::ImageF PointSplatting::supersampled() const {
     SplatSettings splats = params_.splats;
     splats.storage = PointStorage::Uncompressed;
     SelectionSettings all = params_.selection;
-    all.method = SplatMethod::FullEwa;
+    all.mode = SplatMode::FullEwa;
     all.choosesLevels = false;
     all.prefixShare = 1.0F;
     return drawnWith(splats, all, kSupersampling);
@@ -286,7 +405,7 @@ void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPict
     // The same levels and bytes by full EWA.
     if (params_.method != Method::FullEwa) {
         SelectionSettings fullEwa = params_.selection;
-        fullEwa.method = SplatMethod::FullEwa;
+        fullEwa.mode = SplatMode::FullEwa;
         compareDrawn(params_.splats, fullEwa, "full_ewa");
     }
     // The same levels and filters of 60 bytes per point.

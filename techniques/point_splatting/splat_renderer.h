@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/gl/profiler.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/point_splatting/device_points.h"
 
@@ -16,26 +15,27 @@ struct SplatSettings {
     float lowPassRadiusPx = 0.7F;   // r_h: the pixel spacing's filter
     float cutoff = 2.0F;            // a splat ends where its exponent is −½·cutoff²
     float visibilityOffset = 1.0F;  // ε, in radii of the splat, along the view ray
-    glm::vec3 lightDirectionView{0.3F, 0.5F, 0.8F};
+    glm::vec3 lightDirectionView = kLightDirectionView;
     bool showsModes = false;  // colours by SplatMode instead of the model's
 };
 
 /// A model on the device. Each mode has passes of its own, so that it does its own work only.
 /// Splats turned away from the eye are not drawn.
-class SplatRenderer {
+class SplatRenderer final : public PointRenderer {
   public:
     SplatRenderer(const gl::ShaderLibrary& shaders, const ModelFile& model,
                   const SplatSettings& settings, glm::ivec2 sizePx);
     /// Passes: `visibility`, `splats`, `normalization` (sprites: `sprites` alone). Either all
     /// patches are drawn as sprites or none.
-    void render(std::span<const DrawnPatch> drawn, const PatchView& view, gl::Profiler& profiler);
-    /// RGBA8, linear. Alpha is the coverage, 1 but at edges (sprites: everywhere); the colour is
-    /// multiplied by it, as over black.
-    const gl::Texture& output() const { return output_; }
+    void render(std::span<const DrawnPatch> drawn, const PatchView& view,
+                gl::Profiler& profiler) override;
+    /// Alpha is 1 but at edges (sprites: everywhere); the colour is multiplied by it, as over
+    /// black.
+    const gl::Texture& output() const override { return output_; }
     /// RGBA16F before normalization: Σ w n in view space, and Σ w in alpha. Not of sprites.
     const gl::Texture& accumulated() const { return normalSums_; }
-    std::size_t pointBytes() const { return points_.sizeBytes(); }  // what holds the points
-    std::size_t targetBytes() const;                                // images
+    std::size_t pointBytes() const override { return points_.sizeBytes(); }
+    std::size_t targetBytes() const override;
 
   private:
     /// Of one mode; ellipses are quads, the others GL points.

@@ -206,10 +206,6 @@ void checkSettings(const MetadataSettings& settings) {
     }
 }
 
-std::span<const std::byte> bytesOf(std::span<const Block> blocks) {
-    return std::as_bytes(blocks);
-}
-
 /// The blocks of a file of this version and key; nothing when it is another's or damaged.
 std::optional<std::vector<Block>> blocksIn(const std::filesystem::path& path,
                                            const std::string& key, std::size_t count) {
@@ -232,7 +228,7 @@ std::optional<std::vector<Block>> blocksIn(const std::filesystem::path& path,
 std::string serialized(std::span<const Block> blocks, const std::string& key) {
     Header header{};
     header.stamp = {kMagic, kVersion, key};
-    const std::string checksum = sha256(bytesOf(blocks));
+    const std::string checksum = sha256(std::as_bytes(blocks));
     std::memcpy(header.checksum, checksum.data(), sizeof header.checksum);
     std::string file(sizeof header + blocks.size_bytes(), '\0');
     std::memcpy(file.data(), &header, sizeof header);
@@ -249,21 +245,19 @@ TerrainMetadata::TerrainMetadata(const scene::HeightMap& map, const MetadataSett
     const int segments = std::max(map.sizeSamples.x, map.sizeSamples.y) - 1;
     levelCount_ = 1 + std::bit_width(static_cast<unsigned>(settings.tileBlocks)) - 1;
     while (treeSizeSamples() < segments) ++levelCount_;
-    std::size_t count = 0;
+    int count = 0;
     for (int level = 0; level < levelCount_; ++level) {
-        firstBlock_.push_back(count);
-        const auto side = static_cast<std::size_t>(blocksPerSide(level));
-        count += side * side;
+        firstBlocks_.push_back(count);
+        count += blocksPerSide(level) * blocksPerSide(level);
     }
-    blocks_.resize(count);
+    blocks_.resize(static_cast<std::size_t>(count));
 }
 
 std::size_t TerrainMetadata::blockIndex(int level, int column, int row) const {
     const int side = blocksPerSide(level);
     GFXREPRO_ASSERT(column >= 0 && column < side && row >= 0 && row < side);
-    return firstBlock_[static_cast<std::size_t>(level)] +
-           static_cast<std::size_t>(row) * static_cast<std::size_t>(side) +
-           static_cast<std::size_t>(column);
+    return static_cast<std::size_t>(firstBlocks_[static_cast<std::size_t>(level)] + row * side +
+                                    column);
 }
 
 TerrainMetadata TerrainMetadata::build(const scene::HeightMap& map,

@@ -81,6 +81,8 @@ class TerrainMetadata {
 
     /// All levels one after the other, the finest first, each row by row from the north.
     std::span<const Block> blocks() const { return blocks_; }
+    /// Where each level begins in them.
+    std::span<const int> firstBlocks() const { return firstBlocks_; }
     std::size_t blockIndex(int level, int column, int row) const;
     const Block& block(int level, int column, int row) const {
         return blocks_[blockIndex(level, column, row)];
@@ -94,7 +96,7 @@ class TerrainMetadata {
     glm::ivec2 sizeSamples_{0};
     float spacingM_ = 1.0F;
     int levelCount_ = 1;
-    std::vector<std::size_t> firstBlock_;  // by level
+    std::vector<int> firstBlocks_;  // by level
     std::vector<Block> blocks_;
     bool wasBuilt_ = true;
 };

@@ -19,14 +19,6 @@ const char* spacingName(Spacing spacing) {
 
 }  // namespace
 
-void DrawCounts::add(const DrawCounts& other) {
-    triangles += other.triangles;
-    tiles += other.tiles;
-    patches += other.patches;
-    culledPatches += other.culledPatches;
-    drawCalls += other.drawCalls;
-}
-
 gl::Defines terrainDefines(const DeviceTerrain& terrain, const RenderSettings& settings) {
     const FactorSettings& factors = settings.factors;
     return {{"PAGE_BORDER", HeightPages::kBorder},
@@ -135,7 +127,9 @@ void TerrainRenderer::drawInTurns(const gl::Pass& pass, std::span<const Tile> ti
     drawn_ = {};
     primitives_.begin();
     inTurns(pass, tiles, [&](std::span<const Tile> some) {
-        drawn_.add(draw(some));
+        const DrawCounts counts = draw(some);
+        drawn_.patches += counts.patches;
+        drawn_.drawCalls += counts.drawCalls;
         drawn_.tiles += static_cast<int>(some.size());
     });
     primitives_.end();
@@ -279,31 +273,20 @@ int TerrainRenderer::drawGridTile(const gl::Pass& pass, int tile) const {
 }
 
 void TerrainRenderer::drawGrid(std::span<const Tile> tiles, const kit::View& view,
-                               const gl::Framebuffer& target) {
+                               const gl::Framebuffer& target, const MorphRanges* morph) {
+    const gl::Pass& pass = morph ? morphed_ : grid_;
     target.bind();
-    setShading(grid_);
-    setTerrain(grid_, *terrain_, view);
-    drawInTurns(grid_, tiles, [&](std::span<const Tile> some) {
-        DrawCounts counts;
-        for (int i = 0; i < static_cast<int>(some.size()); ++i) {
-            counts.drawCalls += drawGridTile(grid_, i);
-        }
-        return counts;
-    });
-}
-
-void TerrainRenderer::drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges,
-                                  const kit::View& view, const gl::Framebuffer& target) {
-    target.bind();
-    setShading(morphed_);
-    setTerrain(morphed_, *terrain_, view);
-    morphed_.set("eye", view.eyeWorld);
-    drawInTurns(morphed_, tiles, [&](std::span<const Tile> some) {
+    setShading(pass);
+    setTerrain(pass, *terrain_, view);
+    if (morph) pass.set("eye", view.eyeWorld);
+    drawInTurns(pass, tiles, [&](std::span<const Tile> some) {
         DrawCounts counts;
         for (std::size_t i = 0; i < some.size(); ++i) {
-            const float range = ranges.rangesM.at(static_cast<std::size_t>(some[i].level));
-            morphed_.set("morphRange", glm::vec2(ranges.startShare, 1.0F) * range);
-            counts.drawCalls += drawGridTile(morphed_, static_cast<int>(i));
+            if (morph) {
+                const float range = morph->rangesM.at(static_cast<std::size_t>(some[i].level));
+                pass.set("morphRange", glm::vec2(morph->startShare, 1.0F) * range);
+            }
+            counts.drawCalls += drawGridTile(pass, static_cast<int>(i));
         }
         return counts;
     });

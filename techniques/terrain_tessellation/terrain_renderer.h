@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "engine/gl/pass.h"
-#include "techniques/terrain_tessellation/edge_factors.h"
-#include "techniques/terrain_tessellation/height_textures.h"
-#include "techniques/terrain_tessellation/patch_batches.h"
+#include "techniques/terrain_tessellation/device_terrain.h"
+#include "techniques/terrain_tessellation/patches.h"
 
 namespace gfxrepro::terrain_tessellation {
 
@@ -49,8 +48,6 @@ struct DrawCounts {
     int patches = 0;        // given to the control stage, without skirts
     int culledPatches = 0;  // of these, dropped by it
     int drawCalls = 0;
-
-    void add(const DrawCounts& other);
 };
 
 /// A vertex of a triangle of a tessellated patch, as the rasterizer gets it.
@@ -86,11 +83,10 @@ class TerrainRenderer {
     /// [zhang2012] Sec. 3.2, 4.2 and 5.
     void drawTessellated(std::span<const Tile> tiles, const kit::View& view,
                          const gl::Framebuffer& target);
-    /// Every sample of each tile's level: of level 0, the full resolution (the truth).
-    void drawGrid(std::span<const Tile> tiles, const kit::View& view,
-                  const gl::Framebuffer& target);
-    void drawMorphed(std::span<const Tile> tiles, const MorphRanges& ranges, const kit::View& view,
-                     const gl::Framebuffer& target);
+    /// Every sample of each tile's level: of level 0, the full resolution (the truth). Morphed
+    /// where ranges are given.
+    void drawGrid(std::span<const Tile> tiles, const kit::View& view, const gl::Framebuffer& target,
+                  const MorphRanges* morph = nullptr);
     /// Of the last draw; waits for the device.
     DrawCounts counts() const;
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runner/technique/technique.h"
-#include "techniques/terrain_tessellation/factor_check.h"
+#include "techniques/terrain_tessellation/patch_checks.h"
 #include "techniques/terrain_tessellation/terrain_measures.h"
 #include "techniques/terrain_tessellation/terrain_renderer.h"
 #include "techniques/terrain_tessellation/terrain_views.h"

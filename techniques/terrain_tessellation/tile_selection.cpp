@@ -28,14 +28,6 @@ bool mayBeVisible(const scene::Box& box, const glm::mat4& clipFromWorld) {
     return !glm::any(isAllBelow) && !glm::any(isAllAbove);
 }
 
-namespace {
-/// The nearest first: hidden fragments fail the depth test before they are shaded.
-void sortByDistance(std::vector<Tile>& tiles) {
-    std::stable_sort(tiles.begin(), tiles.end(),
-                     [](const Tile& a, const Tile& b) { return a.distanceM < b.distanceM; });
-}
-}  // namespace
-
 TileTree::TileTree(const TerrainMetadata& metadata, const TileSettings& settings)
     : settings_(settings),
       blockSegments_(metadata.settings().blockSegments),
@@ -108,26 +100,27 @@ void TileTree::walk(int level, glm::ivec2 place, const TileView& view, bool isCu
     }
 }
 
-TileSelection TileTree::select(const TileView& view, float maxErrorPx, bool isCulling) const {
+template <class IsFineEnough>
+TileSelection TileTree::selectWhere(const TileView& view, bool isCulling,
+                                    const IsFineEnough& isFineEnough) const {
     TileSelection selection;
-    walk(
-        levelCount() - 1, {0, 0}, view, isCulling,
-        [&](const Tile& tile) { return tile.screenErrorPx < maxErrorPx; }, selection);
-    sortByDistance(selection.tiles);
+    walk(levelCount() - 1, {0, 0}, view, isCulling, isFineEnough, selection);
+    // The nearest first: hidden fragments fail the depth test before they are shaded.
+    std::stable_sort(selection.tiles.begin(), selection.tiles.end(),
+                     [](const Tile& a, const Tile& b) { return a.distanceM < b.distanceM; });
     return selection;
+}
+
+TileSelection TileTree::select(const TileView& view, float maxErrorPx, bool isCulling) const {
+    return selectWhere(view, isCulling,
+                       [&](const Tile& tile) { return tile.screenErrorPx < maxErrorPx; });
 }
 
 TileSelection TileTree::selectByDistance(const TileView& view, float finestRangeM,
                                          bool isCulling) const {
-    TileSelection selection;
-    walk(
-        levelCount() - 1, {0, 0}, view, isCulling,
-        [&](const Tile& tile) {
-            return tile.distanceM >= std::ldexp(finestRangeM, tile.level - 1);
-        },
-        selection);
-    sortByDistance(selection.tiles);
-    return selection;
+    return selectWhere(view, isCulling, [&](const Tile& tile) {
+        return tile.distanceM >= std::ldexp(finestRangeM, tile.level - 1);
+    });
 }
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -74,6 +74,9 @@ class TileTree {
     template <class IsFineEnough>
     void walk(int level, glm::ivec2 place, const TileView& view, bool isCulling,
               const IsFineEnough& isFineEnough, TileSelection& selection) const;
+    template <class IsFineEnough>
+    TileSelection selectWhere(const TileView& view, bool isCulling,
+                              const IsFineEnough& isFineEnough) const;
 
     TileSettings settings_;
     int blockSegments_ = 32;

@@ -2,15 +2,58 @@
 // [zju2005] Sec. 2.4.1 (3), 2.4.3.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
-#include "techniques/voxelization/collision.h"
-#include "techniques/voxelization/csg.h"
+#include "engine/gl/pass.h"
 #include "techniques/voxelization/mesh_input.h"
 #include "techniques/voxelization/mesh_voxelizer.h"
+#include "techniques/voxelization/worksheet.h"
 
 namespace gfxrepro::voxelization {
+
+enum class CsgOperation { Union, Intersection, Difference };
+
+/// Constructive solid geometry on worksheets, [zju2005] Sec. 2.4.1 (3).
+/// Combines grids of one layout and box, voxel by voxel. A voxel is full when its value is not 0;
+/// where both grids have one, the left grid's value stays.
+class CsgPass {
+  public:
+    CsgPass(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout,
+            CsgOperation operation);
+    /// Writes all of `result`, which may be `left` or `right`.
+    void run(const gl::Texture& left, const gl::Texture& right, const gl::Texture& result) const;
+
+  private:
+    WorksheetLayout layout_;
+    gl::Pass pass_;
+};
+
+/// The full voxels of a grid: of an intersection, what a collision test answers. [zju2005]
+/// Sec. 2.4.3.
+struct GridExtent {
+    std::uint32_t count = 0;
+    glm::ivec3 lowest{0};   // voxels, inclusive; meaningless when there is none
+    glm::ivec3 highest{0};  // voxels, inclusive
+
+    /// World space; empty when there is no full voxel.
+    scene::Box bounds(const VoxelGrid& grid) const;
+};
+
+/// Finds the extent of a grid, on the device.
+class ExtentPass {
+  public:
+    ExtentPass(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout);
+    void run(const gl::Texture& sheets);
+    /// Of the last run; waits for the device.
+    GridExtent read() const;
+
+  private:
+    WorksheetLayout layout_;
+    gl::Pass pass_;
+    gl::Buffer extent_;
+};
 
 struct CombinationSettings {
     std::optional<CsgOperation> csg;

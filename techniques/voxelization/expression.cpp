@@ -1,7 +1,6 @@
 #include "techniques/voxelization/expression.h"
 
 #include <fmt/format.h>
-#include <muParser.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "engine/core/text.h"
@@ -27,7 +27,7 @@ struct Function {
     std::string_view name;
     int arguments;
 };
-// The names are the same in muParser and in GLSL.
+// The names are those of GLSL.
 constexpr std::array<Function, 9> kFunctions{{{"abs", 1},
                                               {"cos", 1},
                                               {"exp", 1},
@@ -48,48 +48,6 @@ constexpr std::array<Function, 9> kFunctions{{{"abs", 1},
                                    formula, index + 1, problem, joined(names)));
 }
 
-/// The grammar's own operators and functions only: muParser's comparisons, assignment and the rest
-/// mean nothing in a formula for a surface.
-void defineGrammar(mu::Parser& parser) {
-    parser.ClearFun();
-    parser.ClearConst();
-    parser.ClearOprt();
-    parser.ClearInfixOprt();
-    parser.EnableBuiltInOprt(false);
-    using Real = double;
-    parser.DefineOprt(
-        "+", +[](Real a, Real b) { return a + b; }, mu::prADD_SUB);
-    parser.DefineOprt(
-        "-", +[](Real a, Real b) { return a - b; }, mu::prADD_SUB);
-    parser.DefineOprt(
-        "*", +[](Real a, Real b) { return a * b; }, mu::prMUL_DIV);
-    parser.DefineOprt(
-        "/", +[](Real a, Real b) { return a / b; }, mu::prMUL_DIV);
-    parser.DefineOprt(
-        "^", +[](Real a, Real b) { return std::pow(a, b); }, mu::prPOW, mu::oaRIGHT);
-    parser.DefineInfixOprt(
-        "-", +[](Real a) { return -a; });
-    parser.DefineConst("pi", std::numbers::pi);
-    parser.DefineFun(
-        "abs", +[](Real a) { return std::abs(a); });
-    parser.DefineFun(
-        "cos", +[](Real a) { return std::cos(a); });
-    parser.DefineFun(
-        "exp", +[](Real a) { return std::exp(a); });
-    parser.DefineFun(
-        "log", +[](Real a) { return std::log(a); });
-    parser.DefineFun(
-        "max", +[](Real a, Real b) { return std::max(a, b); });
-    parser.DefineFun(
-        "min", +[](Real a, Real b) { return std::min(a, b); });
-    parser.DefineFun(
-        "sin", +[](Real a) { return std::sin(a); });
-    parser.DefineFun(
-        "sqrt", +[](Real a) { return std::sqrt(a); });
-    parser.DefineFun(
-        "tan", +[](Real a) { return std::tan(a); });
-}
-
 /// What went wrong in a formula, with the index of the character.
 struct Problem {
     std::size_t index;
@@ -99,8 +57,8 @@ struct Problem {
 /// Recursive descent over
 ///     sum = product (("+" | "-") product)*          product = factor (("*" | "/") factor)*
 ///     factor = "-" power | power                    power = atom ("^" factor)?
-///     atom = number | name | name "(" sum ("," sum)* ")" | "(" sum ")"
-/// which is muParser's with the operators above. Throws Problem.
+///     atom = number | name | name "(" sum ("," sum)* ")" | "(" sum ")".
+/// Throws Problem.
 class Translator {
   public:
     Translator(std::string_view text, std::span<const std::string> variables)
@@ -245,61 +203,25 @@ class Translator {
 
 }  // namespace
 
-struct Expression::Impl {
-    std::string formula;
-    std::vector<std::string> variables;
-    std::vector<double> values;  // what the parser's variables point to
-    mu::Parser parser;
-    std::string glsl;
-};
-
 Expression::Expression(const std::string& formula, std::vector<std::string> variables,
                        const SourceLocation& where)
-    : impl_(std::make_unique<Impl>()) {
-    impl_->formula = formula;
-    impl_->variables = std::move(variables);
-    impl_->values.resize(impl_->variables.size());
+    : formula_(formula), variables_(std::move(variables)) {
     if (formula.size() > kMaxLength) {
         throw Error(where, fmt::format("a formula of {} characters; at most {} are allowed",
                                        formula.size(), kMaxLength));
     }
     try {
-        // First, because its messages do not depend on the library's version; what it passes and
-        // muParser refuses (none is known) is still an Error.
-        impl_->glsl = Translator(formula, impl_->variables).translate();
-        defineGrammar(impl_->parser);
-        for (std::size_t i = 0; i < impl_->variables.size(); ++i) {
-            impl_->parser.DefineVar(impl_->variables[i], &impl_->values[i]);
-        }
-        impl_->parser.SetExpr(formula);
-        impl_->parser.Eval();
+        glsl_ = Translator(formula, variables_).translate();
     } catch (const Problem& problem) {
-        fail(where, formula, problem.index, problem.text, impl_->variables);
-    } catch (const mu::Parser::exception_type& error) {
-        fail(where, formula, static_cast<std::size_t>(std::max(error.GetPos(), 0)), error.GetMsg(),
-             impl_->variables);
+        fail(where, formula, problem.index, problem.text, variables_);
     }
-}
-
-Expression::Expression(Expression&&) noexcept = default;
-Expression& Expression::operator=(Expression&&) noexcept = default;
-Expression::~Expression() = default;
-
-const std::string& Expression::formula() const {
-    return impl_->formula;
-}
-
-double Expression::evaluate(std::span<const double> values) const {
-    GFXREPRO_ASSERT_EQ(values.size(), impl_->values.size());
-    std::ranges::copy(values, impl_->values.begin());
-    return impl_->parser.Eval();
 }
 
 std::string Expression::glslFunction(const std::string& name) const {
     std::vector<std::string> parameters;
-    for (const std::string& variable : impl_->variables) parameters.push_back("float " + variable);
+    for (const std::string& variable : variables_) parameters.push_back("float " + variable);
     return fmt::format("float {}({}) {{ precise float value = {}; return value; }}", name,
-                       joined(parameters), impl_->glsl);
+                       joined(parameters), glsl_);
 }
 
 }  // namespace gfxrepro::voxelization

@@ -1,10 +1,14 @@
 #include "techniques/voxelization/mesh_input.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/error.h"
+#include "engine/gpu_scene/gpu_mesh.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::voxelization {
 namespace {
@@ -23,14 +27,6 @@ scene::Scene coloured(scene::Scene scene) {
 }
 
 }  // namespace
-
-scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels) {
-    const glm::vec3 size = bounds.size();
-    const float longest = std::max({size.x, size.y, size.z});
-    const float half = 0.5F * longest * static_cast<float>(resolution) /
-                       static_cast<float>(resolution - 2 * paddingVoxels);
-    return {bounds.centre() - half, bounds.centre() + half};
-}
 
 void requireVoxelizable(const scene::Scene& scene) {
     const auto refuse = [&](const std::string& found) {
@@ -63,6 +59,213 @@ MeshInput::MeshInput(const scene::Scene& scene, VoxelValue value) {
     if (!original_ || (needsColors && original_->colors.empty())) {
         original_ = nullptr;
         copy_ = scene::flattened(needsColors ? coloured(scene) : scene);
+    }
+}
+
+LatticeMesh snapped(const scene::Mesh& mesh, const scene::Box& box, int resolution) {
+    const glm::dvec3 origin(box.min);
+    const double unitsPerMetre = static_cast<double>(resolution) * kLatticePerVoxel /
+                                 (static_cast<double>(box.max.x) - static_cast<double>(box.min.x));
+    const double limit = static_cast<double>(kMaxExtentVoxels) * kLatticePerVoxel;
+    LatticeMesh result{.positions = {}, .triangles = mesh.triangles};
+    result.positions.reserve(mesh.positions.size());
+    for (const glm::vec3& position : mesh.positions) {
+        const glm::dvec3 p = glm::floor((glm::dvec3(position) - origin) * unitsPerMetre + 0.5);
+        const double farthest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        if (!(farthest <= limit)) {
+            throw Error(fmt::format(
+                "vertex {} lies {:.0f} voxels from the grid's corner; the exact rules allow {}",
+                result.positions.size(), farthest / kLatticePerVoxel, kMaxExtentVoxels));
+        }
+        result.positions.emplace_back(p);
+    }
+    return result;
+}
+
+bool isWide(const scene::Mesh& mesh, const scene::Box& box, int resolution) {
+    const glm::vec3 size = mesh.bounds().size();
+    const float voxels = static_cast<float>(resolution) / box.size().x;
+    const float margin = 1.0F;  // corners are rounded to the lattice
+    return voxels * std::max({size.x, size.y, size.z}) + margin > kIntegerExtentVoxels;
+}
+
+namespace {
+
+constexpr std::size_t kTrianglesPerChunk = 1 << 15;
+
+/// A run of triangles: the axis of each, and how many there are of each axis.
+struct Chunk {
+    std::array<std::size_t, 3> counts{};
+    std::array<std::uint8_t, kTrianglesPerChunk> axes;
+};
+
+}  // namespace
+
+Axis dominantAxis(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const glm::vec3 area = glm::abs(glm::cross(b - a, c - a));
+    if (area.z >= area.x && area.z >= area.y) return Axis::Z;
+    return area.y >= area.x ? Axis::Y : Axis::X;
+}
+
+void splitByAxis(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+                 AxisSplit& split) {
+    std::vector<Chunk> chunks((triangles.size() + kTrianglesPerChunk - 1) / kTrianglesPerChunk);
+    const auto trianglesOf = [&](std::size_t chunk) {
+        const std::size_t first = chunk * kTrianglesPerChunk;
+        return triangles.subspan(first, std::min(kTrianglesPerChunk, triangles.size() - first));
+    };
+    tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
+        Chunk& chunk = chunks[c];
+        std::size_t i = 0;
+        for (const glm::uvec3& t : trianglesOf(c)) {
+            const Axis axis = dominantAxis(positions[t.x], positions[t.y], positions[t.z]);
+            chunk.axes[i++] = static_cast<std::uint8_t>(axis);
+            ++chunk.counts[static_cast<std::size_t>(axis)];
+        }
+    });
+
+    // Turn the counts into the place of each chunk's first triangle of an axis.
+    std::size_t next = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t first = next;
+        for (Chunk& chunk : chunks) next += std::exchange(chunk.counts[axis], next);
+        split.ranges[axis] = {static_cast<int>(first), static_cast<int>(next - first)};
+    }
+
+    split.triangles.resize(triangles.size());
+    tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
+        Chunk& chunk = chunks[c];
+        std::size_t i = 0;
+        for (const glm::uvec3& t : trianglesOf(c)) {
+            split.triangles[chunk.counts[chunk.axes[i++]]++] = t;
+        }
+    });
+}
+
+namespace {
+
+void checkFits(const char* what, std::size_t sizeBytes, const gl::DeviceLimits& limits) {
+    if (static_cast<long long>(sizeBytes) > limits.maxStorageBlockBytes) {
+        throw UnsupportedError(
+            fmt::format("the mesh's {} take {} bytes; the device's storage "
+                        "blocks hold {}",
+                        what, sizeBytes, limits.maxStorageBlockBytes));
+    }
+}
+
+gl::Buffer attributesOf(const MeshRequest& request) {
+    if (request.settings.grid.value == VoxelValue::Color)
+        return gl::Buffer::of(request.mesh.colors);
+    if (request.settings.grid.value == VoxelValue::Occupancy) return gl::Buffer(1);
+    if (!request.mesh.normals.empty()) return gl::Buffer::of(request.mesh.normals);
+    return gl::Buffer::of(scene::vertexNormals(request.mesh));
+}
+
+}  // namespace
+
+DeviceMesh::DeviceMesh(const MeshRequest& request, const AxisSplit& split,
+                       const gl::DeviceLimits& limits)
+    : attributes(attributesOf(request)),
+      triangles(gl::Buffer::of(split.triangles)),
+      ranges(split.ranges) {
+    if (request.isExact()) {
+        checkFits("positions", request.mesh.positions.size() * sizeof(glm::ivec3), limits);
+        checkFits("triangles", request.mesh.triangles.size() * sizeof(glm::uvec3), limits);
+        const int resolution = request.layout().resolution();
+        positions = gl::Buffer::of(snapped(request.mesh, request.box, resolution).positions);
+        return;
+    }
+    positions = gl::Buffer::of(request.mesh.positions);
+    vertexArray.setAttribute(gpu_scene::kPosition, positions, 3);
+    if (request.hasValues()) vertexArray.setAttribute(gpu_scene::kNormal, attributes, 3);
+    vertexArray.setIndices(triangles);
+}
+
+void DeviceMesh::update(const AxisSplit& split) {
+    triangles.write(std::span<const glm::uvec3>(split.triangles));
+    ranges = split.ranges;
+}
+
+gl::Resources DeviceMesh::resources() const {
+    return {{"Positions", positions}, {"Attributes", attributes}, {"Triangles", triangles}};
+}
+
+void DeviceMesh::drawIndexed(TriangleRange range) const {
+    vertexArray.bind();
+    kit::FlushedDraws().draw(static_cast<std::uint32_t>(range.first),
+                             static_cast<std::uint32_t>(range.count), kit::drawTriangles);
+}
+
+std::size_t DeviceMesh::sizeBytes() const {
+    return positions.sizeBytes() + attributes.sizeBytes() + triangles.sizeBytes();
+}
+
+namespace {
+
+gl::Defines drawDefines(const MeshRequest& request, DrawTarget target) {
+    gl::Defines defines = request.layout().defines();
+    defines.merge(gpu_scene::attributeDefines());
+    defines["VALUE"] = static_cast<int>(request.settings.grid.value);
+    defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
+    if (request.isExact()) {
+        defines[request.fillsByCrossings()            ? "RULE_TOGGLE"
+                : request.settings.rule == Rule::Thin ? "RULE_THIN"
+                                                      : "RULE_CONSERVATIVE"] = 1;
+        if (isWide(request.mesh, request.box, request.layout().resolution())) {
+            defines["WIDE_LATTICE"] = 1;
+        }
+    }
+    if (target != DrawTarget::FragmentList) {
+        defines["EMIT_INTO_GRID"] = 1;
+        defines[request.hasValues() ? "ACCUMULATE_MAX" : "ACCUMULATE_OR"] = 1;
+    }
+    if (target == DrawTarget::GridSlice) defines["SLICED"] = 1;
+    return defines;
+}
+
+std::vector<std::string> drawFiles(bool isExact) {
+    const std::string name = isExact ? "voxelization/exact" : "voxelization/rasterized";
+    return {name + ".vert.glsl", name + ".frag.glsl"};
+}
+
+}  // namespace
+
+MeshDraw::MeshDraw(const gl::ShaderLibrary& shaders, const MeshRequest& request, DrawTarget target)
+    : pass_(shaders, drawFiles(request.isExact()), drawDefines(request, target)),
+      framebuffer_(gl::Framebuffer::withoutAttachments(glm::ivec2(request.layout().resolution()))),
+      boxCentreWorld_(request.box.centre()),
+      clipFromWorldScale_(2.0F / request.box.size().x),
+      isExact_(request.isExact()),
+      drawsAllAxes_(request.drawsAllAxes()) {}
+
+void MeshDraw::use(const DeviceMesh& mesh, const gl::Resources& target) const {
+    pass_.use(target.with(mesh.resources()));
+}
+
+void MeshDraw::draw(const DeviceMesh& mesh, Axis axis) const {
+    framebuffer_.bind();
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    pass_.set("axis", static_cast<int>(axis));
+    if (isExact_) {
+        drawExact(mesh, axis);
+        return;
+    }
+    pass_.set("boxCentreWorld", boxCentreWorld_);
+    pass_.set("clipFromWorldScale", clipFromWorldScale_);
+    mesh.drawIndexed(drawsAllAxes_ ? mesh.allTriangles()
+                                   : mesh.ranges[static_cast<std::size_t>(axis)]);
+}
+
+void MeshDraw::drawExact(const DeviceMesh& mesh, Axis axis) const {
+    TriangleRange range = mesh.ranges[static_cast<std::size_t>(axis)];
+    if (drawsAllAxes_) range = mesh.allTriangles();
+    noAttributes_.bind();
+    // gl_VertexID must not pass 2³¹: 6 vertices a triangle.
+    constexpr int kTrianglesPerDraw = 1 << 26;
+    for (int first = 0; first < range.count; first += kTrianglesPerDraw) {
+        pass_.set("firstTriangle", range.first + first);
+        glDrawArrays(GL_TRIANGLES, 0, std::min(range.count - first, kTrianglesPerDraw) * 6);
     }
 }
 

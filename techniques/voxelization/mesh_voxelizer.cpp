@@ -1,96 +1,95 @@
 #include "techniques/voxelization/mesh_voxelizer.h"
 
-#include <fmt/format.h>
+#include "engine/gpu_scene/gpu_mesh.h"
 
 namespace gfxrepro::voxelization {
 namespace {
 
-/// [zju2005] Sec. 2.2.1: three stages over three directional sheets.
-class WorksheetMethod : public MeshMethod {
+/// Image atomics straight into the grid, no directional sheets: the modern comparator in one pass,
+/// or, as [zju2005] Sec. 2.5.3 has it, the whole mesh drawn once per slice, N times in all.
+/// Departure [zju2005] Sec. 2.5.3: triangles outside the slice are culled, not clipped, and a
+/// fragment's depth decides; clipping would move the edges, and each triangle keeps its own axis,
+/// so that the result is the same grid.
+class GridMethod : public MeshMethod {
   public:
-    WorksheetMethod(technique::SetupContext& context, const MeshRequest& request,
-                    const DeviceMesh& mesh, OpenMesh openMesh)
-        : rasterization_(context, request, mesh),
-          texelization_(context.shaders, request, rasterization_.fragments()),
-          synthesis_(context.shaders, request),
-          sheets_(request.settings.layout),
-          grid_{makeSheets(request.settings.layout), request.settings.layout, request.box},
-          openMesh_(openMesh),
-          takesMajority_(request.fillsByCrossings()) {
-        if (request.addressing == Addressing::Tables) tables_.emplace(request.settings.layout);
-        if (request.isSolid()) solidFill_.emplace(context.shaders, request);
-    }
+    GridMethod(technique::SetupContext& context, const MeshRequest& request, DrawTarget target)
+        : draw_(context.shaders, request, target),
+          drawCount_(target == DrawTarget::GridSlice ? request.layout().resolution() : 1),
+          grid_{makeSheets(request.layout()), request.layout(), request.box} {}
 
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
-        gl::GpuScope whole(profiler, "voxelization");
-        const gl::Resources tables = tables_ ? tables_->resources() : gl::Resources{};
-        {
-            gl::GpuScope scope(profiler, "rasterization");
-            rasterization_.run(mesh);
+        gl::GpuScope scope(profiler, "voxelization");
+        grid_.sheets.clearToZero();
+        draw_.use(mesh, {{"sheet", grid_.sheets}});
+        for (int slice = 0; slice < drawCount_; ++slice) {
+            draw_.pass().setIfActive("slice", slice);
+            for (Axis axis : kAxes) draw_.draw(mesh, axis);
         }
-        {
-            gl::GpuScope scope(profiler, "texelization");
-            texelization_.run(rasterization_.fragments(), sheets_, grid_, tables);
-        }
-        if (solidFill_) {
-            gl::GpuScope scope(profiler, "fill");
-            solidFill_->run(texelization_, sheets_, grid_, statistics_);
-        }
-        gl::GpuScope scope(profiler, "synthesis");
-        synthesis_.run(sheets_, grid_, texelization_.tiles(), statistics_, tables);
     }
-
     const VoxelGrid* grid() const override { return &grid_; }
-
-    void record(technique::Recorder& recorder) override {
-        const std::size_t fragments = rasterization_.checkedCount();
-        recorder.metric("fragments", static_cast<double>(fragments), "fragment");
-        if (!solidFill_) return;
-        const SolidStatistics found = statistics_.read<SolidStatistics>(1).front();
-        if (openMesh_ == OpenMesh::Refuse && found.ambiguousScanLines > 0) {
-            throw Error(
-                fmt::format("the mesh is not closed: {} of {} scan lines end inside; "
-                            "'open_mesh: report' fills what two of three axes agree on",
-                            found.ambiguousScanLines,
-                            3 * grid_.layout.resolution() * grid_.layout.resolution()));
-        }
-        recorder.metric("ambiguous_scan_lines", found.ambiguousScanLines, "scan line");
-        if (takesMajority_) {
-            recorder.metric("disagreeing_voxels", found.disagreeingVoxels, "voxel");
-        }
-    }
-
-    std::size_t sizeBytes() const override {
-        return 3 * grid_.layout.sizeBytes() + rasterization_.fragments().sizeBytes() +
-               texelization_.sizeBytes() + statistics_.sizeBytes() +
-               (tables_ ? tables_->sizeBytes() : 0);
-    }
+    std::size_t sizeBytes() const override { return grid_.sheets.sizeBytes(); }
 
   private:
-    Rasterization rasterization_;
-    Texelization texelization_;
-    std::optional<LookupTables> tables_;
-    std::optional<SolidFill> solidFill_;
-    Synthesis synthesis_;
-    DirectionalSheets sheets_;
+    MeshDraw draw_;
+    int drawCount_;
     VoxelGrid grid_;
-    gl::Buffer statistics_ = gl::Buffer(sizeof(SolidStatistics));
-    OpenMesh openMesh_;
-    bool takesMajority_;
 };
+
+/// The yardstick of speed: the mesh's depth along z in N × N pixels.
+class DepthOnlyMethod : public MeshMethod {
+  public:
+    DepthOnlyMethod(technique::SetupContext& context, const MeshRequest& request)
+        : pass_(context.shaders, {"voxelization/depth_only.vert.glsl"},
+                gpu_scene::attributeDefines()),
+          depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F,
+                                     glm::ivec2(request.layout().resolution()))),
+          framebuffer_({}, &depth_),
+          boxCentreWorld_(request.box.centre()),
+          clipFromWorldScale_(2.0F / request.box.size().x) {}
+
+    void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
+        gl::GpuScope scope(profiler, "draw_depth");
+        framebuffer_.bind();
+        glEnable(GL_DEPTH_TEST);
+        glDepthFunc(GL_LESS);
+        glDepthMask(GL_TRUE);
+        glDisable(GL_CULL_FACE);
+        framebuffer_.clearDepth(1.0F);
+        pass_.set("boxCentreWorld", boxCentreWorld_);
+        pass_.set("clipFromWorldScale", clipFromWorldScale_);
+        pass_.use({});
+        mesh.drawIndexed(mesh.allTriangles());
+    }
+    std::size_t sizeBytes() const override { return depth_.sizeBytes(); }
+
+  private:
+    gl::Pass pass_;
+    gl::Texture depth_;
+    gl::Framebuffer framebuffer_;
+    glm::vec3 boxCentreWorld_;
+    float clipFromWorldScale_;
+};
+
+std::unique_ptr<MeshMethod> makeMethod(technique::SetupContext& context, const MeshRequest& request,
+                                       const DeviceMesh& mesh) {
+    switch (request.settings.method) {
+        case Method::Worksheet:
+            break;
+        case Method::Direct:
+            return std::make_unique<GridMethod>(context, request, DrawTarget::Grid);
+        case Method::Slices:
+            return std::make_unique<GridMethod>(context, request, DrawTarget::GridSlice);
+        case Method::DepthOnly:
+            return std::make_unique<DepthOnlyMethod>(context, request);
+    }
+    return makeWorksheetMethod(context, request, mesh);
+}
 
 }  // namespace
 
 MeshVoxelizer::MeshVoxelizer(const MeshVoxelizerSettings& settings, const scene::Mesh& mesh,
                              const scene::Box& box)
-    : settings_(settings),
-      request_{.mesh = mesh,
-               .box = box,
-               .settings = settings.grid,
-               .rule = settings.rule,
-               .merging = settings.merging,
-               .addressing = settings.addressing,
-               .fillRule = settings.fillRule} {}
+    : request_{mesh, box, settings} {}
 
 void MeshVoxelizer::setup(technique::SetupContext& context) {
     {
@@ -98,17 +97,12 @@ void MeshVoxelizer::setup(technique::SetupContext& context) {
         splitByAxis(request_.mesh.positions, request_.mesh.triangles, split_);
     }
     deviceMesh_.emplace(request_, split_, context.device.limits());
-    if (settings_.split == Split::Once) split_.triangles = {};
-    if (settings_.method == Method::Worksheet) {
-        method_ =
-            std::make_unique<WorksheetMethod>(context, request_, *deviceMesh_, settings_.openMesh);
-    } else {
-        method_ = makeBaseline(context, request_, settings_.method);
-    }
+    if (request_.settings.split == Split::Once) split_.triangles = {};
+    method_ = makeMethod(context, request_, *deviceMesh_);
 }
 
 void MeshVoxelizer::render(gl::Profiler& profiler) {
-    if (settings_.split == Split::EveryFrame) {
+    if (request_.settings.split == Split::EveryFrame) {
         gl::CpuScope scope(profiler, "preprocess");
         splitByAxis(request_.mesh.positions, request_.mesh.triangles, split_);
         deviceMesh_->update(split_);

@@ -2,7 +2,7 @@
 // snapped mesh (lattice.h) and visits every voxel or scan line of a triangle's box.
 #pragma once
 
-#include "techniques/voxelization/lattice.h"
+#include "techniques/voxelization/mesh_input.h"
 #include "techniques/voxelization/worksheet.h"
 
 namespace gfxrepro::voxelization::reference {

@@ -3,21 +3,260 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
 
-#include "techniques/kit/requirements.h"
-#include "techniques/voxelization/binvox.h"
-#include "techniques/voxelization/implicit.h"
-#include "techniques/voxelization/outputs.h"
-#include "techniques/voxelization/parametric.h"
+#include "techniques/voxelization/combination.h"
+#include "techniques/voxelization/formula_surface.h"
+#include "techniques/voxelization/mesh_input.h"
+#include "techniques/voxelization/mesh_voxelizer.h"
 #include "techniques/voxelization/phantom.h"
 #include "techniques/voxelization/reference.h"
+#include "techniques/voxelization/volume_renderer.h"
 
 namespace gfxrepro::voxelization {
 namespace {
 
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<Voxelization>(params);
+/// What is voxelized.
+enum class InputKind { Mesh, Implicit, Parametric };
+
+constexpr Choice<InputKind> kInputs[] = {
+    {InputKind::Mesh, "mesh", "the case's scene"},
+    {InputKind::Implicit, "implicit", "a surface f(x, y, z) = 0 (section 2.4.1)"},
+    {InputKind::Parametric, "parametric", "a surface (x, y, z)(u, v) (section 2.4.1)"},
+};
+constexpr Choice<Method> kMethods[] = {
+    {Method::Worksheet, "worksheet", "rasterization, texelization and synthesis of worksheets"},
+    {Method::Direct, "direct", "one pass with image atomics into the grid"},
+    {Method::Slices, "slices", "the mesh is drawn once per slice (section 2.5.3)"},
+    {Method::DepthOnly, "depth_only", "no grid: a depth-only draw, the yardstick of speed"},
+};
+constexpr Choice<Rule> kRules[] = {
+    {Rule::Rasterized, "rasterized", "pixels that the hardware samples, as the thesis"},
+    {Rule::Thin, "thin", "6-separating: no path over faces leaks through"},
+    {Rule::Conservative, "conservative", "every voxel whose closed cube meets a triangle"},
+};
+constexpr Choice<Fill> kFills[] = {
+    {Fill::Surface, "surface", "voxels of the surface"},
+    {Fill::Solid, "solid", "voxels whose centre lies inside, by scan-line parity on three axes"},
+};
+constexpr Choice<FillRule> kFillRules[] = {
+    {FillRule::Crossings, "crossings", "exact crossings of the surface; two of three axes decide"},
+    {FillRule::SurfaceVoxels, "surface_voxels",
+     "rasterized voxels of the surface, as the thesis: leaves streaks"},
+};
+constexpr Choice<VoxelValue> kValues[] = {
+    {VoxelValue::Occupancy, "occupancy", "full or empty"},
+    {VoxelValue::Normal, "normal", "octahedral normal"},
+    {VoxelValue::Color, "color", "the vertices' or the material's colour"},
+};
+constexpr Choice<Split> kSplits[] = {
+    {Split::Once, "once", "a static model: split at set-up"},
+    {Split::EveryFrame, "every_frame", "a deforming model: split and uploaded every frame"},
+};
+constexpr Choice<OpenMesh> kOpenMeshes[] = {
+    {OpenMesh::Refuse, "refuse", "an error with the number of ambiguous scan lines"},
+    {OpenMesh::Report, "report", "filled by the majority of three axes, and counted"},
+};
+constexpr Choice<Merging> kMergings[] = {
+    {Merging::PerVoxel, "per_voxel", "a fetch per voxel, as the thesis"},
+    {Merging::Transposed, "transposed", "tiles of voxels, a fetch per texel"},
+    {Merging::Sparse, "sparse",
+     "as transposed, and only tiles that hold fragments; not for solids"},
+};
+constexpr Choice<Addressing> kAddressings[] = {
+    {Addressing::Instructions, "instructions", "shifts and masks"},
+    {Addressing::Tables, "tables", "look-up textures, as the thesis; with synthesis: per_voxel"},
+};
+
+/// An integer that is one of `allowed`.
+template <std::size_t N>
+int getOneOf(Params& params, std::string_view name, int fallback, const std::array<int, N>& allowed,
+             const ParamSpec& spec) {
+    const int value = params.getInt(name, fallback, spec);
+    std::string list;
+    for (int candidate : allowed) {
+        if (candidate == value) return value;
+        list += fmt::format("{}{}", list.empty() ? "" : ", ", candidate);
+    }
+    throw Error(params.locationOf(name),
+                fmt::format("{}: {} is not allowed; allowed: {}", name, value, list));
 }
+
+std::optional<scene::Box> readBox(Params& params) {
+    const auto low = params.getOptionalVector(
+        "box_min", 3, {"lowest corner of the grid; with box_max", "scene units"});
+    const auto high = params.getOptionalVector(
+        "box_max", 3, {"highest corner of the grid, which must be cubic", "scene units"});
+    if (!low && !high) return std::nullopt;
+    if (!low || !high) {
+        throw Error(params.locationOf(low ? "box_min" : "box_max"),
+                    "box_min and box_max must be given together");
+    }
+    const auto vector = [](const std::vector<double>& v) { return glm::dvec3(v[0], v[1], v[2]); };
+    const glm::dvec3 size = vector(*high) - vector(*low);
+    const double longest = std::max({size.x, size.y, size.z});
+    const double shortest = std::min({size.x, size.y, size.z});
+    // A millionth: what decimal fractions lose as floats.
+    if (!(shortest > 0.0) || longest - shortest > 1e-6 * longest) {
+        throw Error(params.locationOf("box_max"),
+                    fmt::format("the box must be cubic and not empty; it is {:g} × {:g} × {:g}",
+                                size.x, size.y, size.z));
+    }
+    const glm::vec3 minimum(vector(*low));
+    return scene::Box{minimum, minimum + static_cast<float>(longest)};
+}
+
+/// Solids are decided along scan lines, in the worksheets, and say occupancy only.
+void checkSolid(const Params& params, const MeshVoxelizerSettings& settings) {
+    if (settings.grid.fill != Fill::Solid) {
+        params.refuseGiven({"fill_rule"}, "'fill: solid'");
+        return;
+    }
+    const bool isByCrossings = settings.fillRule == FillRule::Crossings;
+    if (params.isGiven("rule") &&
+        settings.rule != (isByCrossings ? Rule::Thin : Rule::Rasterized)) {
+        throw Error(params.locationOf("rule"),
+                    isByCrossings
+                        ? "'fill: solid' decides by crossings of scan lines; leave 'rule' "
+                          "out or give 'thin'"
+                        : "'fill_rule: surface_voxels' flips at rasterized voxels; leave "
+                          "'rule' out or give 'rasterized'");
+    }
+    if (!isByCrossings && settings.openMesh == OpenMesh::Refuse) {
+        throw Error(
+            params.locationOf("open_mesh"),
+            "'open_mesh: refuse' needs 'fill_rule: crossings'; flags that flip at voxels end "
+            "inside closed meshes, too");
+    }
+    if (settings.method != Method::Worksheet) {
+        throw Error(params.locationOf("method"), "'fill: solid' needs 'method: worksheet'");
+    }
+    if (settings.grid.value != VoxelValue::Occupancy) {
+        throw Error(params.locationOf("value"), "'fill: solid' needs 'value: occupancy'");
+    }
+}
+
+/// How the stages of the worksheet method address voxels; every way makes the same grid.
+void readStages(Params& params, MeshVoxelizerSettings& settings) {
+    const bool isSolid = settings.grid.fill == Fill::Solid;
+    settings.merging =
+        params.getEnum("synthesis", isSolid ? Merging::Transposed : Merging::Sparse, kMergings,
+                       {"how the sheets of x and y are read, for the same grid"});
+    settings.addressing = params.getEnum("addressing", Addressing::Instructions, kAddressings,
+                                         {"how texelization and synthesis find a voxel's bits"});
+    if (settings.method != Method::Worksheet) {
+        params.refuseGiven({"synthesis", "addressing"}, "'method: worksheet'");
+    }
+    if (isSolid && settings.merging == Merging::Sparse) {
+        throw Error(params.locationOf("synthesis"),
+                    "'synthesis: sparse' skips tiles without a surface, which solids fill; allowed "
+                    "with 'fill: solid': per_voxel, transposed");
+    }
+    if (settings.addressing == Addressing::Instructions) return;
+    if (settings.merging != Merging::PerVoxel) {
+        throw Error(params.locationOf("addressing"),
+                    "'addressing: tables' needs 'synthesis: per_voxel'");
+    }
+    if (settings.grid.layout.layers() > 1) {
+        throw Error(params.locationOf("addressing"),
+                    fmt::format("'addressing: tables' needs a grid of one worksheet; {}³ voxels of "
+                                "{} bits take {}",
+                                settings.grid.layout.resolution(), settings.grid.layout.voxelBits(),
+                                settings.grid.layout.layers()));
+    }
+}
+
+MeshVoxelizerSettings readVoxelizer(Params& params) {
+    MeshVoxelizerSettings settings;
+    const int resolution =
+        getOneOf(params, "resolution", 256, std::array{32, 64, 128, 256, 512, 1024},
+                 {"voxels along each axis, a power of two", "voxels", 32, 1024});
+    const int voxelBits = getOneOf(params, "voxel_bits", 1, std::array{1, 8, 16, 32},
+                                   {"bits of each voxel: 1, 8, 16 or 32", "bits", 1, 32});
+    settings.grid.layout = WorksheetLayout(resolution, voxelBits);
+    settings.grid.value = params.getEnum("value", VoxelValue::Occupancy, kValues,
+                                         {"what a voxel says; more than occupancy needs 8 bits"});
+    settings.grid.fill = params.getEnum("fill", Fill::Surface, kFills, {"which voxels are full"});
+    settings.fillRule = params.getEnum("fill_rule", FillRule::Crossings, kFillRules,
+                                       {"what flips the inside flag along a solid's scan lines"});
+    settings.method = params.getEnum("method", Method::Worksheet, kMethods, {"what is measured"});
+    const bool isRasterizedOnly =
+        settings.method == Method::Slices || settings.method == Method::DepthOnly;
+    settings.rule = params.getEnum("rule", isRasterizedOnly ? Rule::Rasterized : Rule::Thin, kRules,
+                                   {"which voxels a triangle fills (surface)"});
+    settings.split =
+        params.getEnum("split", Split::Once, kSplits, {"when the index buffer is split by axis"});
+    settings.openMesh = params.getEnum("open_mesh", OpenMesh::Report, kOpenMeshes,
+                                       {"solids of meshes that are not closed"});
+    if (settings.grid.value != VoxelValue::Occupancy && voxelBits == 1) {
+        throw Error(params.locationOf("value"),
+                    "a voxel of 1 bit says occupancy only; allowed with 'value: normal' and "
+                    "'value: color': voxel_bits 8, 16 or 32");
+    }
+    if (isRasterizedOnly && settings.rule != Rule::Rasterized) {
+        throw Error(params.locationOf("rule"),
+                    "'method: slices' and 'method: depth_only' need 'rule: rasterized'");
+    }
+    checkSolid(params, settings);
+    readStages(params, settings);
+    return settings;
+}
+
+/// Everything that a config may say of the grid and of the way to it.
+struct VoxelizationParams {
+    InputKind input = InputKind::Mesh;
+    MeshVoxelizerSettings voxelizer;
+    CombinationSettings combination;
+    DrawingSettings drawing;
+    int paddingVoxels = 1;
+    std::optional<scene::Box> box;  // cubic; empty: around the mesh
+    bool readsBack = false;
+    bool comparesWithReference = false;
+    bool exportsBinvox = false;
+    bool showsSlices = false;
+
+    /// Declares the parameters. Throws Error for combinations that mean nothing.
+    explicit VoxelizationParams(Params& params)
+        : input(params.getEnum("input", InputKind::Mesh, kInputs, {"what is voxelized"})),
+          voxelizer(readVoxelizer(params)),
+          combination(params),
+          drawing(params, voxelizer.grid.value),
+          paddingVoxels(params.getInt(
+              "padding", 1, {"free voxels around the mesh where no box is given", "voxels", 0, 8})),
+          box(readBox(params)),
+          readsBack(
+              params.getBool("read_back", false,
+                             {"copy the worksheet to the CPU each frame, timed as read_back"})),
+          comparesWithReference(params.getBool("compare", false,
+                                               {"count what the rule misses, against the CPU "
+                                                "references of thin and conservative"})),
+          exportsBinvox(params.getBool("export_binvox", false, {"write grid.binvox"})),
+          showsSlices(params.getBool("show_slices", false, {"save the three middle slices"})) {
+        checkInput(params);
+    }
+
+    /// Formulas know neither triangles nor the ways to them.
+    void checkInput(const Params& params) const {
+        if (input == InputKind::Mesh) {
+            if (voxelizer.method != Method::DepthOnly) return;
+            for (const char* name : {"collision", "csg", "draw", "pictures"}) {
+                if (!params.isGiven(name)) continue;
+                throw Error(params.locationOf(name),
+                            fmt::format("'method: depth_only' makes no grid for '{}'", name));
+            }
+            return;
+        }
+        params.refuseGiven(
+            {"addressing", "collision", "compare", "csg", "fill_rule", "method", "offset_b",
+             "open_mesh", "padding", "rule", "scene_b", "split", "synthesis"},
+            "'input: mesh'");
+        if (drawing.draw.mode == DrawMode::Mixed) {
+            throw Error(params.locationOf("draw"), "'draw: mixed' needs 'input: mesh'");
+        }
+    }
+};
 
 /// Formulas are read with the parameters; a mesh comes at set-up, with the scene.
 std::unique_ptr<GridSource> makeFormulaSource(const VoxelizationParams& read, Params& params) {
@@ -39,149 +278,7 @@ DenseGrid together(const DenseGrid& a, const DenseGrid& b) {
     return {a.layout(), std::move(words)};
 }
 
-}  // namespace
-
-Voxelization::Voxelization(Params& params)
-    : params_(params),
-      source_(makeFormulaSource(params_, params)),
-      combination_(params_.combination),
-      drawing_(params_.drawing) {
-    params.finish();
-}
-
-void Voxelization::setup(technique::SetupContext& context) {
-    const WorksheetLayout& layout = params_.voxelizer.grid.layout;
-    checkFitsDevice(layout, context.device.limits());
-    if (params_.input == InputKind::Mesh) {
-        setupMesh(context);
-        return;
-    }
-    source_->setup(context);
-    box_ = source_->grid()->box;
-    if (params_.drawing.isOn()) drawing_.setup(context, layout, box_, box_, false);
-}
-
-void Voxelization::requireScene(const scene::Scene& scene) const {
-    if (params_.input == InputKind::Mesh) requireVoxelizable(scene);
-}
-
-void Voxelization::setupMesh(technique::SetupContext& context) {
-    const MeshVoxelizerSettings& settings = params_.voxelizer;
-    const WorksheetLayout& layout = settings.grid.layout;
-    input_.emplace(*context.scene, settings.grid.value);
-    scene::Box bounds = input_->mesh().bounds();
-    if (params_.combination.needsSecond()) {
-        bounds.add(combination_.loadSecond(context, settings.grid.value, bounds));
-    }
-    const bool isInHead = params_.drawing.draw.mode == DrawMode::Mixed;
-    box_ = params_.box ? *params_.box
-           : isInHead  ? headBoxAround(bounds)
-                       : cubicBox(bounds, layout.resolution(), params_.paddingVoxels);
-    source_ = std::make_unique<MeshVoxelizer>(settings, input_->mesh(), box_);
-    source_->setup(context);
-    if (params_.combination.needsSecond()) combination_.setup(context, settings, box_);
-    if (params_.drawing.isOn()) {
-        const bool showsBoth =
-            params_.combination.findsCollision && !params_.combination.csg.has_value();
-        const scene::Box shown = isInHead ? headBounds(box_) : params_.box ? *params_.box : bounds;
-        drawing_.setup(context, layout, box_, shown, showsBoth);
-    }
-}
-
-const VoxelGrid* Voxelization::grid() const {
-    return combination_.result() ? combination_.result() : source_->grid();
-}
-
-void Voxelization::render(technique::FrameContext& context) {
-    source_->render(context.profiler);
-    if (params_.combination.needsSecond()) {
-        combination_.render(context.profiler, *source_->grid());
-    }
-    if (!grid()) return;
-    if (params_.readsBack) {
-        gl::CpuScope scope(context.profiler, "read_back");
-        readSheets(grid()->sheets);
-    }
-    if (params_.drawing.isPass()) draw(context.profiler);
-}
-
-void Voxelization::draw(gl::Profiler& profiler) {
-    const bool showsBoth = params_.combination.findsCollision && !combination_.result();
-    drawing_.render(profiler, *grid(), showsBoth ? &combination_.second() : nullptr);
-}
-
-void Voxelization::record(technique::Recorder& recorder) {
-    const auto count = [&](const char* name, std::size_t value, const char* unit) {
-        recorder.metric(name, static_cast<double>(value), unit);
-    };
-    if (input_) {
-        count("triangles", input_->mesh().triangles.size(), "triangle");
-        count("vertices", input_->mesh().positions.size(), "vertex");
-    }
-    source_->record(recorder);
-    combination_.record(recorder);
-    if (!grid()) return;
-    recordGrid(recorder, grid()->read());
-    if (!params_.drawing.isOn()) return;
-    if (params_.drawing.isBeside) {
-        gl::Profiler unread(false);
-        draw(unread);
-    }
-    drawing_.record(recorder);
-}
-
-void Voxelization::recordGrid(technique::Recorder& recorder, const DenseGrid& grid) const {
-    const WorksheetLayout& layout = grid.layout();
-    recorder.metric("voxels", static_cast<double>(grid.countFull()), "voxel");
-    recorder.metric("voxel_bits", layout.voxelBits(), "bit");
-    recorder.metric("worksheet_bytes", static_cast<double>(layout.sizeBytes()), "byte");
-    recorder.metric("digest", digestOf(grid.words()), "1");
-    if (params_.comparesWithReference) recordMisses(recorder, grid);
-    if (params_.exportsBinvox) writeBinvox(recorder.artifact("grid.binvox"), grid, box_);
-    if (params_.showsSlices) recorder.image("slices", middleSlices(grid));
-}
-
-void Voxelization::recordMisses(technique::Recorder& recorder, const DenseGrid& grid) const {
-    const int resolution = grid.resolution();
-    const LatticeMesh mesh = snapped(input_->mesh(), box_, resolution);
-    const auto count = [&](const char* name, const DenseGrid& a, const DenseGrid& b) {
-        recorder.metric(name, static_cast<double>(reference::countMissing(a, b)), "voxel");
-    };
-    if (params_.voxelizer.grid.fill == Fill::Solid) {
-        const DenseGrid expected = reference::solid(mesh, resolution).grid;
-        count("missed_solid_voxels", expected, grid);
-        count("added_solid_voxels", grid, expected);
-        if (params_.voxelizer.fillRule == FillRule::SurfaceVoxels) {
-            count("stray_voxels", grid,
-                  together(expected, reference::conservative(mesh, resolution)));
-        }
-        return;
-    }
-    count("missed_thin_voxels", reference::thin(mesh, resolution), grid);
-    const DenseGrid conservative = reference::conservative(mesh, resolution);
-    count("missed_conservative_voxels", conservative, grid);
-    count("added_conservative_voxels", grid, conservative);
-}
-
-void checkFitsDevice(const WorksheetLayout& layout, const gl::DeviceLimits& limits) {
-    const glm::ivec2 size = layout.sheetSizePx();
-    if (std::max(size.x, size.y) > limits.maxTextureSizePx ||
-        layout.layers() > limits.maxArrayLayers) {
-        throw UnsupportedError(fmt::format(
-            "{}³ voxels of {} bits take {} worksheets of {} × {} texels; the device holds {} of "
-            "{} × {}",
-            layout.resolution(), layout.voxelBits(), layout.layers(), size.x, size.y,
-            limits.maxArrayLayers, limits.maxTextureSizePx, limits.maxTextureSizePx));
-    }
-    // What Mesa's software rasterizer holds, and a third of what three axes would take elsewhere.
-    constexpr std::size_t kMaxSheetsBytes = std::size_t{1} << 30;
-    if (layout.sizeBytes() > kMaxSheetsBytes) {
-        throw UnsupportedError(fmt::format(
-            "{}³ voxels of {} bits take {} bytes an axis; allowed: {}", layout.resolution(),
-            layout.voxelBits(), layout.sizeBytes(), kMaxSheetsBytes));
-    }
-}
-
+/// A number that differs (but for chance, 1 in 2⁴⁸) when any word differs.
 double digestOf(std::span<const std::uint32_t> words) {
     // FNV-1a over words, folded to 48 bits: exact as a double.
     std::uint64_t hash = 0xCBF29CE484222325ULL;
@@ -189,6 +286,7 @@ double digestOf(std::span<const std::uint32_t> words) {
     return static_cast<double>((hash ^ (hash >> 48)) & 0xFFFFFFFFFFFFULL);
 }
 
+/// The middle slices across z, y and x side by side, voxels that are full white.
 image::ImageF middleSlices(const DenseGrid& grid) {
     const int n = grid.resolution();
     image::ImageF image(3 * n, n, 1);
@@ -202,9 +300,221 @@ image::ImageF middleSlices(const DenseGrid& grid) {
     return image;
 }
 
+class Voxelization final : public technique::Technique {
+  public:
+    explicit Voxelization(Params& params)
+        : params_(params),
+          source_(makeFormulaSource(params_, params)),
+          combination_(params_.combination),
+          drawing_(params_.drawing) {
+        params.finish();
+    }
+
+    void setup(technique::SetupContext& context) override {
+        const WorksheetLayout& layout = params_.voxelizer.grid.layout;
+        checkFitsDevice(layout, context.device.limits());
+        if (params_.input == InputKind::Mesh) {
+            setupMesh(context);
+            return;
+        }
+        source_->setup(context);
+        box_ = source_->grid()->box;
+        if (params_.drawing.isOn()) drawing_.setup(context, layout, box_, box_, false);
+    }
+
+    technique::SceneNeed sceneNeed() const override {
+        return params_.input == InputKind::Mesh ? technique::SceneNeed::Model
+                                                : technique::SceneNeed::Nothing;
+    }
+    void requireScene(const scene::Scene& scene) const override {
+        if (params_.input == InputKind::Mesh) requireVoxelizable(scene);
+    }
+
+    void render(technique::FrameContext& context) override {
+        source_->render(context.profiler);
+        if (params_.combination.needsSecond()) {
+            combination_.render(context.profiler, *source_->grid());
+        }
+        if (!grid()) return;
+        if (params_.readsBack) {
+            gl::CpuScope scope(context.profiler, "read_back");
+            readSheets(grid()->sheets);
+        }
+        if (params_.drawing.isPass()) draw(context.profiler);
+    }
+
+    void record(technique::Recorder& recorder) override {
+        const auto count = [&](const char* name, std::size_t value, const char* unit) {
+            recorder.metric(name, static_cast<double>(value), unit);
+        };
+        if (input_) {
+            count("triangles", input_->mesh().triangles.size(), "triangle");
+            count("vertices", input_->mesh().positions.size(), "vertex");
+        }
+        source_->record(recorder);
+        combination_.record(recorder);
+        if (!grid()) return;
+        recordGrid(recorder, grid()->read());
+        if (!params_.drawing.isOn()) return;
+        if (params_.drawing.isBeside) {
+            gl::Profiler unread(false);
+            draw(unread);
+        }
+        drawing_.record(recorder);
+    }
+
+  private:
+    void setupMesh(technique::SetupContext& context) {
+        const MeshVoxelizerSettings& settings = params_.voxelizer;
+        const WorksheetLayout& layout = settings.grid.layout;
+        input_.emplace(*context.scene, settings.grid.value);
+        scene::Box bounds = input_->mesh().bounds();
+        if (params_.combination.needsSecond()) {
+            bounds.add(combination_.loadSecond(context, settings.grid.value, bounds));
+        }
+        const bool isInHead = params_.drawing.draw.mode == DrawMode::Mixed;
+        box_ = params_.box ? *params_.box
+               : isInHead  ? headBoxAround(bounds)
+                           : cubicBox(bounds, layout.resolution(), params_.paddingVoxels);
+        source_ = std::make_unique<MeshVoxelizer>(settings, input_->mesh(), box_);
+        source_->setup(context);
+        if (params_.combination.needsSecond()) combination_.setup(context, settings, box_);
+        if (params_.drawing.isOn()) {
+            const bool showsBoth =
+                params_.combination.findsCollision && !params_.combination.csg.has_value();
+            const scene::Box shown = isInHead      ? headBounds(box_)
+                                     : params_.box ? *params_.box
+                                                   : bounds;
+            drawing_.setup(context, layout, box_, shown, showsBoth);
+        }
+    }
+
+    const VoxelGrid* grid() const {
+        return combination_.result() ? combination_.result() : source_->grid();
+    }
+
+    void draw(gl::Profiler& profiler) {
+        const bool showsBoth = params_.combination.findsCollision && !combination_.result();
+        drawing_.render(profiler, *grid(), showsBoth ? &combination_.second() : nullptr);
+    }
+
+    void recordGrid(technique::Recorder& recorder, const DenseGrid& grid) const {
+        const WorksheetLayout& layout = grid.layout();
+        recorder.metric("voxels", static_cast<double>(grid.countFull()), "voxel");
+        recorder.metric("voxel_bits", layout.voxelBits(), "bit");
+        recorder.metric("worksheet_bytes", static_cast<double>(layout.sizeBytes()), "byte");
+        recorder.metric("digest", digestOf(grid.words()), "1");
+        if (params_.comparesWithReference) recordMisses(recorder, grid);
+        if (params_.exportsBinvox) writeBinvox(recorder.artifact("grid.binvox"), grid, box_);
+        if (params_.showsSlices) recorder.image("slices", middleSlices(grid));
+    }
+
+    /// `stray_voxels` (fill_rule: surface_voxels) neither lie inside nor touch the surface.
+    void recordMisses(technique::Recorder& recorder, const DenseGrid& grid) const {
+        const int resolution = grid.resolution();
+        const LatticeMesh mesh = snapped(input_->mesh(), box_, resolution);
+        const auto count = [&](const char* name, const DenseGrid& a, const DenseGrid& b) {
+            recorder.metric(name, static_cast<double>(reference::countMissing(a, b)), "voxel");
+        };
+        if (params_.voxelizer.grid.fill == Fill::Solid) {
+            const DenseGrid expected = reference::solid(mesh, resolution).grid;
+            count("missed_solid_voxels", expected, grid);
+            count("added_solid_voxels", grid, expected);
+            if (params_.voxelizer.fillRule == FillRule::SurfaceVoxels) {
+                count("stray_voxels", grid,
+                      together(expected, reference::conservative(mesh, resolution)));
+            }
+            return;
+        }
+        count("missed_thin_voxels", reference::thin(mesh, resolution), grid);
+        const DenseGrid conservative = reference::conservative(mesh, resolution);
+        count("missed_conservative_voxels", conservative, grid);
+        count("added_conservative_voxels", grid, conservative);
+    }
+
+    VoxelizationParams params_;
+    std::optional<MeshInput> input_;
+    scene::Box box_;
+    std::unique_ptr<GridSource> source_;
+    Combination combination_;
+    Drawing drawing_;
+};
+
+std::unique_ptr<technique::Technique> create(Params& params) {
+    return std::make_unique<Voxelization>(params);
+}
+
+config::Outputs outputs() {
+    using config::Better;
+    const auto detail = [](const char* name, const char* unit, const char* doc,
+                           Better better = Better::Neither) {
+        return config::MetricInfo{name, unit, doc, better, true};
+    };
+    return {
+        {
+            {"voxels", "voxel", "full voxels of the grid"},
+            {"triangles", "triangle", "triangles of the mesh"},
+            {"vertices", "vertex", "vertices of the mesh"},
+            {"fragments", "fragment",
+             "fragments that the triangles were rasterized to, over the three axes"},
+            {"memory_bytes", "byte", "memory of mesh, fragments and worksheets on the device",
+             Better::Lower},
+            detail("worksheet_bytes", "byte", "size of a worksheet"),
+            detail("voxel_bits", "bit", "bits of a voxel"),
+            detail("digest", "1", "hash of all voxels: equal for equal grids"),
+            {"ambiguous_scan_lines", "scan line",
+             "scan lines that end inside the model, because its mesh is not closed", Better::Lower},
+            {"disagreeing_voxels", "voxel",
+             "voxels that one axis finds inside the model and another outside", Better::Lower},
+            {"missed_solid_voxels", "voxel", "voxels of the exact solid that the grid lacks",
+             Better::Lower},
+            {"added_solid_voxels", "voxel", "voxels of the grid that are not in the exact solid",
+             Better::Lower},
+            {"stray_voxels", "voxel",
+             "voxels of the grid that are neither in the solid nor on the surface", Better::Lower},
+            {"missed_thin_voxels", "voxel", "voxels of the exact thin surface that the grid lacks",
+             Better::Lower},
+            {"missed_conservative_voxels", "voxel",
+             "voxels that the surface touches and the grid lacks", Better::Lower},
+            {"added_conservative_voxels", "voxel",
+             "voxels of the grid that the surface does not touch", Better::Lower},
+            detail("planes", "plane",
+                   "planes of voxels that were blended or searched for the picture"),
+            {"samples", "sample", "samples of a parametric surface"},
+            {"samples_outside", "sample", "samples of it that fell outside the grid",
+             Better::Lower},
+            {"sample_gap_voxels", "1", "largest distance between neighbouring samples, in voxels",
+             Better::Lower},
+            {"collision_voxels", "voxel", "voxels that both solids fill"},
+            detail("collision_min_x", "scene unit", "least x of the box around the collision"),
+            detail("collision_max_x", "scene unit", "greatest x of the box around the collision"),
+            detail("collision_min_y", "scene unit", "least y of the box around the collision"),
+            detail("collision_max_y", "scene unit", "greatest y of the box around the collision"),
+            detail("collision_min_z", "scene unit", "least z of the box around the collision"),
+            detail("collision_max_z", "scene unit", "greatest z of the box around the collision"),
+        },
+        {
+            {"preprocess", "sorting triangles by their main axis"},
+            {"voxelization", "the whole method, without drawing"},
+            {"rasterization", "turning triangles into fragments"},
+            {"texelization", "writing fragments into the worksheets of the three axes"},
+            {"fill", "filling solids along scan lines"},
+            {"synthesis", "joining the three worksheets into one"},
+            {"implicit", "voxelizing an implicit surface by its formula"},
+            {"parametric", "voxelizing a parametric surface by its samples"},
+            {"csg", "union, intersection or difference of two grids"},
+            {"collision", "finding the voxels that two grids share"},
+            {"read_back", "copying the grid to the host"},
+            {"draw", "drawing the grid"},
+            {"draw_depth", "drawing depth images alone, the baseline"},
+        }};
+}
+
+}  // namespace
+
 const technique::TechniqueInfo kVoxelization = {
     "voxelization",
-    "real-time voxelization of triangle meshes with worksheets (zju2005, chapter 2)", &create,
-    &outputs};
+    "real-time voxelization of triangle meshes with worksheets (zju2005, chapter 2)", create,
+    outputs};
 
 }  // namespace gfxrepro::voxelization

@@ -1,9 +1,12 @@
 #include "techniques/voxelization/worksheet.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 
 namespace gfxrepro::voxelization {
 
@@ -94,6 +97,60 @@ DenseGrid VoxelGrid::read() const {
 
 std::vector<std::uint32_t> readSheets(const gl::Texture& sheets) {
     return sheets.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+}
+
+scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels) {
+    const glm::vec3 size = bounds.size();
+    const float longest = std::max({size.x, size.y, size.z});
+    const float half = 0.5F * longest * static_cast<float>(resolution) /
+                       static_cast<float>(resolution - 2 * paddingVoxels);
+    return {bounds.centre() - half, bounds.centre() + half};
+}
+
+void checkFitsDevice(const WorksheetLayout& layout, const gl::DeviceLimits& limits) {
+    const glm::ivec2 size = layout.sheetSizePx();
+    if (std::max(size.x, size.y) > limits.maxTextureSizePx ||
+        layout.layers() > limits.maxArrayLayers) {
+        throw UnsupportedError(fmt::format(
+            "{}³ voxels of {} bits take {} worksheets of {} × {} texels; the device holds {} of "
+            "{} × {}",
+            layout.resolution(), layout.voxelBits(), layout.layers(), size.x, size.y,
+            limits.maxArrayLayers, limits.maxTextureSizePx, limits.maxTextureSizePx));
+    }
+    // What Mesa's software rasterizer holds, and a third of what three axes would take elsewhere.
+    constexpr std::size_t kMaxSheetsBytes = std::size_t{1} << 30;
+    if (layout.sizeBytes() > kMaxSheetsBytes) {
+        throw UnsupportedError(fmt::format(
+            "{}³ voxels of {} bits take {} bytes an axis; allowed: {}", layout.resolution(),
+            layout.voxelBits(), layout.sizeBytes(), kMaxSheetsBytes));
+    }
+}
+
+void writeBinvox(const std::filesystem::path& path, const DenseGrid& grid, const scene::Box& box) {
+    const int n = grid.resolution();
+    std::string content =
+        fmt::format("#binvox 1\ndim {} {} {}\ntranslate {} {} {}\nscale {}\ndata\n", n, n, n,
+                    box.min.x, box.min.y, box.min.z, box.max.x - box.min.x);
+    std::size_t run = 0;
+    bool value = false;
+    const auto flush = [&] {
+        if (run == 0) return;
+        content += static_cast<char>(value);
+        content += static_cast<char>(run);
+        run = 0;
+    };
+    for (int x = 0; x < n; ++x) {
+        for (int z = 0; z < n; ++z) {
+            for (int y = 0; y < n; ++y) {
+                const bool isFull = grid.isFull({x, y, z});
+                if (isFull != value || run == 255) flush();
+                value = isFull;
+                ++run;
+            }
+        }
+    }
+    flush();
+    writeFileAtomic(path, content);
 }
 
 }  // namespace gfxrepro::voxelization

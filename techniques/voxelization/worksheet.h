@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "engine/gl/objects.h"
 #include "engine/gl/program.h"
 #include "engine/scene/scene.h"
+#include "runner/technique/technique.h"
 
 namespace gfxrepro::voxelization {
 
@@ -126,5 +128,42 @@ struct VoxelGrid {
 
 /// The sheets' words as wordIndex() counts them; waits for the device.
 std::vector<std::uint32_t> readSheets(const gl::Texture& sheets);
+
+/// Throws UnsupportedError, with the numbers, when the sheets do not fit the device.
+void checkFitsDevice(const WorksheetLayout& layout, const gl::DeviceLimits& limits);
+
+/// The .binvox exchange format, a grid of bits, run-length encoded: header `#binvox 1`, dim,
+/// translate, scale, then pairs of value and count; y runs fastest, then z, then x. Every voxel
+/// that is not 0 is written as 1.
+void writeBinvox(const std::filesystem::path& path, const DenseGrid& grid, const scene::Box& box);
+
+/// Cubic, about the centre of `bounds`, with `paddingVoxels` free voxels at both ends of its
+/// longest side, which has a length.
+scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels);
+
+/// What a voxel's value says.
+enum class VoxelValue { Occupancy, Normal, Color };
+enum class Fill { Surface, Solid };
+
+/// What every source has to know of the grid that is asked for.
+struct GridSettings {
+    WorksheetLayout layout;
+    VoxelValue value = VoxelValue::Occupancy;
+    Fill fill = Fill::Surface;
+};
+
+/// Life: setup → render, repeatedly → grid, record.
+class GridSource {
+  public:
+    virtual ~GridSource() = default;
+    virtual void setup(technique::SetupContext& context) = 0;
+    /// Makes the grid anew, each stage in a scope of the profiler.
+    virtual void render(gl::Profiler& profiler) = 0;
+    /// The grid of the last render; null when the method under measurement makes none.
+    virtual const VoxelGrid* grid() const = 0;
+    /// Metrics of the source's own (the grid's are the technique's). Throws Error when the last
+    /// render failed.
+    virtual void record(technique::Recorder& /*recorder*/) {}
+};
 
 }  // namespace gfxrepro::voxelization

@@ -31,7 +31,7 @@ class MetricRecorder final : public technique::Recorder {
                const technique::ImageOptions&) override {
         images.emplace(name, image);
     }
-    std::filesystem::path artifact(std::string_view) override { return {}; }
+    std::filesystem::path artifact(std::string_view name) override { return folder / name; }
 
     /// Every metric, unit and pass is one that the technique declares.
     void expectDeclared(const config::Outputs& outputs) const {
@@ -49,6 +49,7 @@ class MetricRecorder final : public technique::Recorder {
     std::vector<Given> given;
     std::map<std::string, double> metrics;
     std::map<std::string, image::ImageF> images;
+    std::filesystem::path folder;  // of artifacts
 };
 
 class NoScenes final : public technique::SceneProvider {

@@ -2,12 +2,8 @@
 // The reconstruction filter alone, H = J V^r Jᵀ: a disc in space, a GL point that holds it on the
 // screen, whose fragments find the disc by their view rays. One vertex a point.
 #define VARYING out
-#include "point_splatting/decode_point.glsl"
 #include "point_splatting/disc.glsl"
-#include "point_splatting/splat_view.glsl"
-
-layout(location = BOX_MIN_LOCATION) in vec4 boxMinScale;  // of the drawn patch; w: radiusScale
-layout(location = BOX_SIZE_LOCATION) in vec3 boxSize;
+#include "point_splatting/drawn_point.glsl"
 
 uniform float cutoff;
 uniform float focalPx;
@@ -32,15 +28,14 @@ float halfSidePx(vec3 centre, vec3 normal, float reach) {
 
 void main() {
     uint index = uint(gl_VertexID);
-    SplatPoint point = pointAt(index, boxMinScale.xyz, boxSize);
-    vec3 centre = (eyeFromModel * vec4(point.position, 1.0)).xyz;
-    vec3 normal = mat3(eyeFromModel) * point.normal;
+    SplatPoint point = eyePointAt(index);
+    vec3 centre = point.position, normal = point.normal;
     float towards = dot(normal, centre);
     gl_PointSize = 1.0;
     gl_Position = kNowhere;
     // Edge-on it has no area.
     if (!(centre.z > nearM) || isTurnedAway(normal, centre) || towards == 0.0) return;
-    float radius = point.radius * boxMinScale.w;
+    float radius = point.radius;
 #ifdef VISIBILITY
     float reach = kInscribed * cutoff;
     float depth = visibilityDepth(1.0 / centre.z, centre, radius, 0.0);

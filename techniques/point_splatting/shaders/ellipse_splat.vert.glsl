@@ -2,12 +2,8 @@
 // A corner of the parallelogram around a splat's ellipse on the screen: full EWA (Eq. 3). Four
 // vertices a point; the corner is the vertex's number. With VISIBILITY the parallelogram within the ellipse, at the splat's depth plus ε and
 // without a fragment shader: where it hides what lies behind, the splat itself has weight.
-#include "point_splatting/decode_point.glsl"
+#include "point_splatting/drawn_point.glsl"
 #include "point_splatting/splat_shape.glsl"
-#include "point_splatting/splat_view.glsl"
-
-layout(location = BOX_MIN_LOCATION) in vec4 boxMinScale;  // of the drawn patch; w: radiusScale
-layout(location = BOX_SIZE_LOCATION) in vec3 boxSize;
 
 uniform float cutoff;
 
@@ -33,15 +29,11 @@ float inverseZAt(EyeSplat splat, vec2 offsetPx, float footprint) {
 void main() {
     uint index = uint(gl_VertexID) >> 2;
     vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1) * 2.0 - 1.0;
-    SplatPoint point = pointAt(index, boxMinScale.xyz, boxSize);
-    mat3 turn = mat3(eyeFromModel);
-    EyeSplat splat = EyeSplat((eyeFromModel * vec4(point.position, 1.0)).xyz, turn * point.tangent,
-                              turn * point.bitangent, turn * point.normal,
-                              point.radius * boxMinScale.w);
-    if (!(splat.centre.z > nearM) || isTurnedAway(splat.normal, splat.centre)) {
-        gl_Position = kNowhere;
-        return;
-    }
+    SplatPoint point = eyePointAt(index);
+    EyeSplat splat =
+        EyeSplat(point.position, point.tangent, point.bitangent, point.normal, point.radius);
+    gl_Position = kNowhere;
+    if (!(splat.centre.z > nearM) || isTurnedAway(splat.normal, splat.centre)) return;
     SplatShape shape = fullEwaShape(splat);
     float footprint = lowPassRadiusPx * splat.centre.z / focalPx;
 #ifdef VISIBILITY

@@ -5,14 +5,6 @@
 
 layout(std430) restrict buffer Pixels { uint pixels[]; };
 
-void main() {
-    Chunk chunk = chunks[firstChunk + gl_WorkGroupID.x];
-    for (uint i = gl_LocalInvocationID.x; i < chunk.count; i += uint(GROUP_SIZE)) {
-        SplatPoint point = pointAt(chunk.first + i, chunk.boxMin.xyz, chunk.boxSize.xyz);
-        vec3 centre = (eyeFromModel * vec4(point.position, 1.0)).xyz;
-        vec3 normal = mat3(eyeFromModel) * point.normal;
-        int pixel = pixelOf(centre, normal);
-        if (pixel == kOutside) continue;
-        atomicMin(pixels[pixel * PIXEL_WORDS], floatBitsToUint(centre.z));
-    }
+void takePoint(uint index, vec3 centre, vec3 normal, int pixel) {
+    atomicMin(pixels[pixel * PIXEL_WORDS], floatBitsToUint(centre.z));
 }

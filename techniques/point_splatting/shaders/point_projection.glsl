@@ -26,3 +26,17 @@ int pixelOf(vec3 centre, vec3 normal) {
     ivec2 pixel = ivec2(position);
     return pixel.y * int(sizePx.x) + pixel.x;
 }
+
+/// What a pass does with a point that falls into a pixel.
+void takePoint(uint index, vec3 centre, vec3 normal, int pixel);
+
+void main() {
+    Chunk chunk = chunks[firstChunk + gl_WorkGroupID.x];
+    for (uint i = gl_LocalInvocationID.x; i < chunk.count; i += uint(GROUP_SIZE)) {
+        SplatPoint point = pointAt(chunk.first + i, chunk.boxMin.xyz, chunk.boxSize.xyz);
+        vec3 centre = (eyeFromModel * vec4(point.position, 1.0)).xyz;
+        vec3 normal = mat3(eyeFromModel) * point.normal;
+        int pixel = pixelOf(centre, normal);
+        if (pixel != kOutside) takePoint(chunk.first + i, centre, normal, pixel);
+    }
+}

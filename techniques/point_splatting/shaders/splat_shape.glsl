@@ -1,5 +1,5 @@
 // A splat's shape on the screen ([zju2005] Eq. 3, 8), the readable form of which is
-// tests/techniques/point_splatting/splat_math.cpp.
+// tests/techniques/point_splatting/splat_math.h.
 // Eye space has z the distance along the view axis; screen vectors are in pixels.
 
 struct EyeSplat {

@@ -1,5 +1,5 @@
 // [zhang2012] Eq. (2) to (4): the tessellation factor of an edge; Sec. 4.2: the culling of patches. Used
-// by the control stage and by its replay; edge_factors.cpp has it in double precision.
+// by the control stage and by its replay; patches.cpp has it in double precision.
 layout(std430) readonly buffer Blocks {
     // A block has BLOCK_FLOATS: (h_min, h_max, ε) whole and of its west, north, east and south
     // edge, then the heights of its corners: north-west, north-east, south-west, south-east.

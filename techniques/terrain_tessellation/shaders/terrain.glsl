@@ -24,21 +24,10 @@ vec2 pagePlace(ivec4 tile, vec2 at) {
     return place;
 }
 
-// Bilinear between the samples of the tile's level. Not the sampler's filter, whose weights have
-// 8 bits on many devices: a step of 1/256 between samples shows as terraces.
-float heightAt(ivec4 tile, vec2 at) {
-    vec2 place = pagePlace(tile, at);
-    ivec2 cell = ivec2(floor(place));
-    vec2 part = place - vec2(cell);
-    precise float height =
-        mix(mix(heightOfPage(cell, tile.w), heightOfPage(cell + ivec2(1, 0), tile.w), part.x),
-            mix(heightOfPage(cell + ivec2(0, 1), tile.w), heightOfPage(cell + 1, tile.w), part.x),
-            part.y);
-    return height;
-}
-
-// The same height, and the normal from its central differences over one step: bilinear means of
-// the differences at the four samples around, which have twelve samples between them.
+// The height, bilinear between the samples of the tile's level. Not by the sampler's filter, whose
+// weights have 8 bits on many devices: a step of 1/256 between samples shows as terraces. The normal
+// is from its central differences over one step: bilinear means of the differences at the four
+// samples around, which have twelve samples between them.
 //        n0  n1
 //    w0  a   b   e0
 //    w1  c   d   e1

@@ -2,6 +2,9 @@
 //  COMBINE_OR        surface, one value
 //  COMBINE_MAX       surface, values: the largest
 //  COMBINE_MAJORITY  solid: what two axes of the three say; voxels on which they differ are counted
+layout(r32ui) uniform restrict readonly uimage2DArray sheetX;
+layout(r32ui) uniform restrict readonly uimage2DArray sheetY;
+layout(r32ui) uniform restrict uimage2DArray sheet;
 #ifdef COMBINE_MAJORITY
 layout(std430) restrict buffer Statistics {
     uint ambiguousScanLines;

@@ -1,4 +1,4 @@
-// A parametric surface evaluated at the points of a grid over its domain (parametric.h).
+// A parametric surface evaluated at the points of a grid over its domain (formula_surface.h).
 
 #include "voxelization/expression.glsl"
 

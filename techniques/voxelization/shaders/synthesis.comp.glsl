@@ -15,10 +15,6 @@
 
 layout(local_size_x = VOXELS_PER_TEXEL, local_size_y = TILES) in;
 
-layout(r32ui) uniform restrict readonly uimage2DArray sheetX;
-layout(r32ui) uniform restrict readonly uimage2DArray sheetY;
-layout(r32ui) uniform restrict uimage2DArray sheet;
-
 const int C = VOXELS_PER_TEXEL;
 
 shared uint tileOfX[TILES][C][C];  // [tile][x][y]: texels of the z layout

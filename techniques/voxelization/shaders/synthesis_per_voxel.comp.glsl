@@ -11,10 +11,6 @@
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-layout(r32ui) uniform restrict readonly uimage2DArray sheetX;
-layout(r32ui) uniform restrict readonly uimage2DArray sheetY;
-layout(r32ui) uniform restrict uimage2DArray sheet;
-
 // Where a sheet has a texel's first voxel: the texel, and in its word the byte and bit of a byte.
 struct Place {
     ivec3 texel;

@@ -1,7 +1,7 @@
 #version 450 core
 // Shades the voxels that volume_opaque found. Reads the hits and the worksheet; writes linear colour.
 
-#include "voxelization/volume_lighting.glsl"
+#include "voxelization/volume_voxels.glsl"
 
 uniform usampler2D hits;
 

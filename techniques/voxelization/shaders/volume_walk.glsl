@@ -4,7 +4,7 @@
 // voxels between this plane and the next (three at most at the angles of an orthographic view)
 // nothing is missed, and neighbouring planes meet without a crack.
 
-#include "voxelization/volume_occupancy.glsl"
+#include "voxelization/volume_voxels.glsl"
 
 uniform vec3 eye;        // local to the axis, in voxels
 uniform vec3 rayOrigin;  // direction through the window's lower left corner, local to the axis …

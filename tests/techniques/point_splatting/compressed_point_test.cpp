@@ -6,20 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/core/random.h"
+#include "tests/techniques/point_splatting/point_clouds.h"
 
 namespace gfxrepro::point_splatting {
 namespace {
 
 const scene::Box kBox{{-1.0F, 2.0F, 10.0F}, {3.0F, 2.5F, 11.0F}};
-
-glm::vec3 randomUnit(Random& random) {
-    glm::vec3 v;
-    do {
-        v = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-    } while (glm::dot(v, v) > 1.0F || glm::dot(v, v) < 1e-3F);
-    return glm::normalize(v);
-}
 
 TEST(CompressedPoint, ErrorsStayWithinTheGridsBounds) {
     Random random(3);

@@ -1,7 +1,6 @@
 // The compute splatter against the same two traversals on the host.
-#include "techniques/point_splatting/compute_splatter.h"
+#include "techniques/point_splatting/yardsticks.h"
 
-#include "engine/core/random.h"
 #include "tests/techniques/point_splatting/splat_fixture.h"
 
 namespace gfxrepro::point_splatting {
@@ -35,7 +34,7 @@ scene::PointCloud pointsInPixels(const PatchView& view) {
 TEST_F(SplatTest, ComputeSplatterAveragesWhatIsNearest) {
     const PatchView view = viewFrom(kDistance, kSize);
     const ModelFile model = modelOf(pointsInPixels(view));
-    ComputeSplatter splatter(shaders, model, {.storage = PointStorage::Uncompressed}, kSize);
+    ComputeSplatter splatter(shaders, model, PointStorage::Uncompressed, kSize);
     gl::Profiler profiler(true);
     // Twice: nothing of the first frame may be left.
     for (int frame = 0; frame < 2; ++frame) {
@@ -75,7 +74,7 @@ TEST_F(SplatTest, ComputeSplatterAveragesWhatIsNearest) {
     }
     EXPECT_GT(averaged, 300);
     EXPECT_GT(behind, 1000);
-    const glm::dvec3 light = glm::normalize(glm::dvec3(ComputeSplatSettings{}.lightDirectionView));
+    const glm::dvec3 light = glm::normalize(glm::dvec3(kLightDirectionView));
     for (std::size_t p = 0; p < count; ++p) {
         const glm::ivec4 found(picture.pixels[p]);
         ASSERT_EQ(found.a, counts[p] > 0 ? 255 : 0);
@@ -97,7 +96,7 @@ TEST_F(SplatTest, ComputeSplatterLeavesOutWhatIsNotSeen) {
     for (glm::vec3& p : points.positions) p = 0.05F * p + glm::vec3(0.0F, 0.0F, 5.0F);
     const PatchView view = viewFrom(kDistance, kSize);  // looks away from them
     const ModelFile model = modelOf(points);
-    ComputeSplatter splatter(shaders, model, {}, kSize);
+    ComputeSplatter splatter(shaders, model, PointStorage::Compressed, kSize);
     gl::Profiler profiler(true);
     splatter.render(everything(model, SplatMode::FullEwa), view, profiler);
     for (const glm::u8vec4& pixel : pictureOf(splatter.output()).pixels) ASSERT_EQ(pixel.a, 0);

@@ -1,4 +1,4 @@
-#include "techniques/point_splatting/linear_tree.h"
+#include "techniques/point_splatting/point_model.h"
 
 #include <gtest/gtest.h>
 
@@ -7,24 +7,11 @@
 #include <glm/gtc/constants.hpp>
 #include <set>
 
-#include "engine/core/error.h"
-#include "engine/core/random.h"
+#include "tests/support/support.h"
+#include "tests/techniques/point_splatting/point_clouds.h"
 
 namespace gfxrepro::point_splatting {
 namespace {
-
-/// A Fibonacci sphere: evenly spread.
-scene::PointCloud sphere(int count) {
-    scene::PointCloud points;
-    for (int i = 0; i < count; ++i) {
-        const double z = 1.0 - 2.0 * (i + 0.5) / count, angle = 2.399963229728653 * i;
-        const double r = std::sqrt(1.0 - z * z);
-        points.positions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
-    }
-    points.normals = points.positions;
-    points.radii.assign(points.positions.size(), static_cast<float>(1.5 * std::sqrt(4.0 / count)));
-    return points;
-}
 
 scene::PointCloud plane(int side) {
     scene::PointCloud points;
@@ -124,12 +111,7 @@ TEST(LinearTree, TakesOnePointEqualPointsAndRefusesNone) {
     equal.normals.assign(1000, {0, 1, 0});
     equal.radii.assign(1000, 0.5F);
     EXPECT_EQ(buildModel(equal, {}).positions.size(), 1000U);
-    try {
-        buildModel({}, {});
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_STREQ(error.what(), "a point model of no points");
-    }
+    EXPECT_EQ(test::errorText([] { buildModel({}, {}); }), "a point model of no points");
 }
 
 TEST(LinearTree, OppositeNormalsGiveAConeOfAnyDirection) {

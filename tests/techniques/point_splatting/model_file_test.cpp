@@ -1,4 +1,4 @@
-#include "techniques/point_splatting/model_file.h"
+#include "techniques/point_splatting/point_model.h"
 
 #include <gtest/gtest.h>
 

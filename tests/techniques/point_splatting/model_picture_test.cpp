@@ -1,4 +1,4 @@
-#include "techniques/point_splatting/model_picture.h"
+#include "techniques/point_splatting/point_splatting.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "engine/core/files.h"
-#include "engine/core/random.h"
+#include "tests/techniques/point_splatting/point_clouds.h"
 
 namespace gfxrepro::point_splatting {
 namespace {
@@ -18,15 +18,7 @@ namespace {
 constexpr double kSilhouetteDeg = 15.0;
 
 PointModel sphereModel(int count) {
-    scene::PointCloud points;
-    for (int i = 0; i < count; ++i) {
-        const double z = 1.0 - 2.0 * (i + 0.5) / count, angle = 2.399963229728653 * i;
-        const double r = std::sqrt(1.0 - z * z);
-        points.positions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
-    }
-    points.normals = points.positions;
-    points.radii.assign(points.positions.size(), static_cast<float>(1.5 * std::sqrt(4.0 / count)));
-    return buildModel(points, {});
+    return buildModel(sphere(count), {});
 }
 
 scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "scenes/shared/mesh_builder.h"
-#include "techniques/point_splatting/compression_errors.h"
+#include "tests/techniques/point_splatting/point_clouds.h"
 #include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::point_splatting {
@@ -21,14 +21,9 @@ using test::errorText;
 /// A sphere with bumps: patches of every orientation, some curved.
 scene::Scene bumpySphere(int count) {
     scene::Scene scene;
-    for (int i = 0; i < count; ++i) {
-        const double z = 1.0 - 2.0 * (i + 0.5) / count, angle = 2.399963229728653 * i;
-        const double r = std::sqrt(1.0 - z * z);
-        const glm::dvec3 direction(r * std::cos(angle), r * std::sin(angle), z);
-        const double bump = 1.0 + 0.04 * std::sin(9.0 * direction.x) * std::sin(7.0 * direction.y);
-        scene.points.positions.emplace_back(bump * direction);
-        scene.points.normals.emplace_back(direction);
-        scene.points.radii.push_back(static_cast<float>(1.5 * std::sqrt(4.0 / count)));
+    scene.points = sphere(count);
+    for (glm::vec3& p : scene.points.positions) {
+        p *= 1.0F + 0.04F * std::sin(9.0F * p.x) * std::sin(7.0F * p.y);
     }
     return scene;
 }

@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "engine/core/files.h"
-#include "techniques/point_splatting/compute_splatter.h"
 #include "techniques/point_splatting/splat_renderer.h"
+#include "techniques/point_splatting/yardsticks.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/techniques/point_splatting/point_clouds.h"
 
 namespace gfxrepro::point_splatting {
 
@@ -43,20 +44,6 @@ inline scene::PointCloud sheet(int n, float half, float z, float turnRad,
             points.radii.push_back(0.85F * spacing);
             points.colors.push_back(color);
         }
-    }
-    return points;
-}
-
-/// Points of the unit sphere on a spiral, discs overlapping.
-inline scene::PointCloud sphere(int n) {
-    scene::PointCloud points;
-    for (int i = 0; i < n; ++i) {
-        const double y = 1.0 - 2.0 * (i + 0.5) / n;
-        const double across = std::sqrt(1.0 - y * y), turn = i * 2.39996322972865332;
-        const glm::vec3 at(across * std::cos(turn), y, across * std::sin(turn));
-        points.positions.push_back(at);
-        points.normals.push_back(at);
-        points.radii.push_back(static_cast<float>(3.0 / std::sqrt(n)));
     }
     return points;
 }

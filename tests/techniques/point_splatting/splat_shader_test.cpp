@@ -1,7 +1,6 @@
 // Decoding and screen covariance on the device against the host.
 #include <filesystem>
 
-#include "engine/core/random.h"
 #include "tests/techniques/point_splatting/splat_fixture.h"
 #include "tests/techniques/point_splatting/splat_math.h"
 
@@ -16,14 +15,6 @@ class SplatShaderTest : public SplatTest {
     }
 };
 
-glm::vec3 randomDirection(Random& random) {
-    for (;;) {
-        const glm::vec3 v{random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
-                          random.uniform(-1.0F, 1.0F)};
-        if (glm::length(v) > 0.1F && glm::length(v) < 1.0F) return glm::normalize(v);
-    }
-}
-
 TEST_F(SplatShaderTest, DecodesAsTheHostDoes) {
     constexpr int kCount = 4096;
     Random random(3);
@@ -35,7 +26,7 @@ TEST_F(SplatShaderTest, DecodesAsTheHostDoes) {
     std::vector<CompressedPoint> points;
     for (int i = 0; i < kCount; ++i) {
         const glm::vec3 share{random.uniform(), random.uniform(), random.uniform()};
-        const glm::vec3 direction = randomDirection(random);
+        const glm::vec3 direction = randomUnit(random);
         points.push_back(compressed(glm::mix(box.min, box.max, share), direction,
                                     random.uniform(0.01F, 2.56F), box, table));
     }
@@ -83,7 +74,7 @@ TEST_F(SplatShaderTest, ScreenCovarianceIsThatOfTheHost) {
     Random random(11);
     std::vector<Splat> splats;
     for (int i = 0; i < kCount; ++i) {
-        const glm::vec3 normal = randomDirection(random);
+        const glm::vec3 normal = randomUnit(random);
         const glm::vec3 tangent = tangentOf(normal, tangentChoice(normal));
         const float z = random.uniform(0.5F, 20.0F);
         const float radius = std::exp(random.uniform(-8.0F, 0.0F));

@@ -1,12 +1,12 @@
 // Draw calls for a software rasterizer: nothing is left out, and only small calls are clipped.
-#include "techniques/terrain_tessellation/patch_batches.h"
+#include "techniques/terrain_tessellation/patches.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 
-#include "tests/techniques/terrain_tessellation/terrain_views_fixture.h"
+#include "tests/techniques/terrain_tessellation/terrain_fixture.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {

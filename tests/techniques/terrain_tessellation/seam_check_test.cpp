@@ -1,5 +1,5 @@
 // Captured triangles fit together, to the last bit, unless factors differ.
-#include "techniques/terrain_tessellation/seam_check.h"
+#include "techniques/terrain_tessellation/patch_checks.h"
 
 #include <algorithm>
 

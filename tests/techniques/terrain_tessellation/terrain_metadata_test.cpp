@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/random.h"
 #include "tests/support/support.h"
@@ -122,12 +121,7 @@ TEST(TerrainMetadata, APlaneHasNoErrorAndOneSampleHasATree) {
 
 TEST(TerrainMetadata, RefusesEmptyMapsAndOddBlocks) {
     const auto messageOf = [](const scene::HeightMap& map, const MetadataSettings& settings) {
-        try {
-            TerrainMetadata::build(map, settings);
-        } catch (const Error& error) {
-            return std::string(error.what());
-        }
-        return std::string("none");
+        return test::errorText([&] { TerrainMetadata::build(map, settings); });
     };
     EXPECT_EQ(messageOf({}, {}), "terrain: the height map has no samples; allowed: at least one");
     EXPECT_EQ(messageOf(randomMap(2, 2), {12, 4}),

@@ -8,35 +8,12 @@
 #include <limits>
 
 #include "engine/core/random.h"
-#include "engine/gl/pass.h"
-#include "tests/support/support.h"
-#include "tests/techniques/voxelization/gl_fixture.h"
+#include "tests/techniques/voxelization/voxelizer_fixture.h"
 
 namespace gfxrepro::voxelization {
 namespace {
 
 constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
-
-double evaluate(const std::string& formula, double x = 3, double y = 2, double z = 5) {
-    return Expression(formula, {"x", "y", "z"}, {}).evaluate(std::array{x, y, z});
-}
-
-TEST(Expression, HasThePrecedenceOfMathematics) {
-    EXPECT_DOUBLE_EQ(evaluate("-x^2"), -9);
-    EXPECT_DOUBLE_EQ(evaluate("2^3^2"), 512);
-    EXPECT_DOUBLE_EQ(evaluate("2^-x"), 0.125);
-    EXPECT_DOUBLE_EQ(evaluate("x--y^2"), 7);
-    EXPECT_DOUBLE_EQ(evaluate("x/-y*z"), -7.5);
-    EXPECT_DOUBLE_EQ(evaluate("8/4/2"), 1);
-    EXPECT_DOUBLE_EQ(evaluate("x-y-z"), -4);
-    EXPECT_DOUBLE_EQ(evaluate("max(x, min(y, z)) + .5e1"), 8);
-    EXPECT_DOUBLE_EQ(evaluate("sin(pi/2)"), 1);
-}
-
-TEST(Expression, EvaluatesTheQuarticOfTheThesis) {
-    EXPECT_NEAR(evaluate("x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8", 0, 0, 0), 11.8, 1e-12);
-    EXPECT_NEAR(evaluate("x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8", 1, -1, 2), -0.2, 1e-12);
-}
 
 std::string errorOf(const std::string& formula) {
     return test::errorText([&] {
@@ -147,8 +124,7 @@ Sample randomFormula(Random& random, const std::array<double, 3>& at, int depth)
 }
 
 /// One invocation a formula: out[i] = formula i at the given point.
-std::vector<float> evaluateOnDevice(const gl::ShaderLibrary& shaders,
-                                    const std::vector<std::string>& formulas,
+std::vector<float> evaluateOnDevice(const std::vector<std::string>& formulas,
                                     const std::array<double, 3>& at) {
     std::string functions;
     std::string cases;
@@ -157,20 +133,37 @@ std::vector<float> evaluateOnDevice(const gl::ShaderLibrary& shaders,
         functions += expression.glslFunction("f" + std::to_string(i)) + "\n";
         cases += fmt::format("values[{0}] = f{0}(point.x, point.y, point.z);\n", i);
     }
-    const test::TemporaryFolder folder;
-    folder.write("test/expression.glsl",
-                 readFile(shaders.folder() / "voxelization" / "expression.glsl"));
-    folder.write("test/evaluate.comp.glsl",
-                 "#version 450 core\nlayout(local_size_x = 1) in;\n"
-                 "#include \"test/expression.glsl\"\n#pragma snippet functions\n"
-                 "layout(std430) writeonly buffer Values { float values[]; };\n"
-                 "uniform vec3 point;\nvoid main() {\n#pragma snippet cases\n}\n");
-    const gl::Pass pass(gl::ShaderLibrary(folder.path()), {"test/evaluate.comp.glsl"}, {},
-                        {{"functions", functions}, {"cases", cases}});
+    const gl::Pass pass =
+        ShaderFolder(
+            "#version 450 core\nlayout(local_size_x = 1) in;\n"
+            "#include \"voxelization/expression.glsl\"\n#pragma snippet functions\n"
+            "layout(std430) writeonly buffer Values { float values[]; };\n"
+            "uniform vec3 point;\nvoid main() {\n#pragma snippet cases\n}\n")
+            .pass({}, {{"functions", functions}, {"cases", cases}});
     const gl::Buffer values(formulas.size() * sizeof(float));
     pass.set("point", glm::vec3(at[0], at[1], at[2]));
     pass.dispatch({1, 1, 1}, {{"Values", values}});
     return values.read<float>(formulas.size());
+}
+
+TEST_F(GlTest, FormulasHaveThePrecedenceOfMathematics) {
+    const std::vector<std::pair<std::string, float>> formulas{
+        {"-x^2", -9.0F},    {"2^3^2", 512.0F}, {"2^-x", 0.125F}, {"x--y^2", 7.0F},
+        {"x/-y*z", -7.5F},  {"8/4/2", 1.0F},   {"x-y-z", -4.0F}, {"max(x, min(y, z)) + .5e1", 8.0F},
+        {"sin(pi/2)", 1.0F}};
+    std::vector<std::string> texts;
+    for (const auto& [text, value] : formulas) texts.push_back(text);
+    const std::vector<float> values = evaluateOnDevice(texts, {3.0, 2.0, 5.0});
+    for (std::size_t i = 0; i < formulas.size(); ++i) {
+        EXPECT_NEAR(values[i], formulas[i].second, 4e-6F * std::abs(formulas[i].second))
+            << formulas[i].first;
+    }
+}
+
+TEST_F(GlTest, TheQuarticOfTheThesisHasItsValues) {
+    const std::vector<std::string> quartic{"x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8"};
+    EXPECT_NEAR(evaluateOnDevice(quartic, {0.0, 0.0, 0.0})[0], 11.8F, 1e-5F);
+    EXPECT_NEAR(evaluateOnDevice(quartic, {1.0, -1.0, 2.0})[0], -0.2F, 1e-5F);
 }
 
 TEST_F(GlTest, RandomFormulasHaveTheSameValueInShadersAsInMuParser) {
@@ -186,9 +179,9 @@ TEST_F(GlTest, RandomFormulasHaveTheSameValueInShadersAsInMuParser) {
     }
     std::vector<std::string> formulas;
     for (const Sample& sample : samples) formulas.push_back(sample.text);
-    const std::vector<float> values = evaluateOnDevice(shaders(), formulas, at);
+    const std::vector<float> values = evaluateOnDevice(formulas, at);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const double cpu = evaluate(formulas[i], at[0], at[1], at[2]);
+        const double cpu = HostFormula(formulas[i])({at[0], at[1], at[2]});
         EXPECT_NEAR(cpu, samples[i].value, 1e-9 * (1 + std::abs(samples[i].value))) << formulas[i];
         EXPECT_NEAR(values[i], cpu, samples[i].error + 1e-6) << formulas[i];
     }
@@ -202,9 +195,9 @@ TEST_F(GlTest, PowersOfNegativeBasesAndOtherFunctionsAgreeWithMuParser) {
         "-y^2",         "2^3^0.5", "-x^-y^2", "pi*x",        "1e-3*x",
         "12345678 + x", "y^64",    "y^65",    "2*-x^2/-4-1", "x^4-5*x^2+y^4-5*y^2+z^4-5*z^2+11.8"};
     const std::array<double, 3> at{1.25, -0.75, 2.5};
-    const std::vector<float> values = evaluateOnDevice(shaders(), formulas, at);
+    const std::vector<float> values = evaluateOnDevice(formulas, at);
     for (std::size_t i = 0; i < formulas.size(); ++i) {
-        const double cpu = evaluate(formulas[i], at[0], at[1], at[2]);
+        const double cpu = HostFormula(formulas[i])({at[0], at[1], at[2]});
         // pow() is exp2(exponent * log2(base)) on devices: its error grows with the exponent.
         EXPECT_NEAR(values[i], cpu, 3e-5 * std::abs(cpu) + 1e-6) << formulas[i];
     }

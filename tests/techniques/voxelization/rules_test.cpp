@@ -8,39 +8,6 @@
 namespace gfxrepro::voxelization {
 namespace {
 
-/// Empty voxels that a path over faces of empty voxels joins to the grid's boundary.
-DenseGrid outsideOf(const DenseGrid& surface) {
-    const int n = surface.resolution();
-    DenseGrid result(WorksheetLayout(n, 1));
-    std::vector<glm::ivec3> open;
-    const auto reach = [&](const glm::ivec3& voxel) {
-        if (surface.isFull(voxel) || result.isFull(voxel)) return;
-        result.set(voxel, 1);
-        open.push_back(voxel);
-    };
-    for (int a = 0; a < n; ++a) {
-        for (int b = 0; b < n; ++b) {
-            for (const int side : {0, n - 1}) {
-                for (Axis axis : kAxes) reach(volumeFromLocal(axis, glm::ivec3(a, b, side)));
-            }
-        }
-    }
-    while (!open.empty()) {
-        const glm::ivec3 voxel = open.back();
-        open.pop_back();
-        for (int axis = 0; axis < 3; ++axis) {
-            for (const int step : {-1, 1}) {
-                glm::ivec3 next = voxel;
-                next[axis] += step;
-                if (next[axis] >= 0 && next[axis] < n) reach(next);
-            }
-        }
-    }
-    return result;
-}
-
-using RulesTest = VoxelizerTest;
-
 struct NamedMesh {
     const char* name;
     scene::Mesh mesh;
@@ -70,17 +37,30 @@ std::vector<NamedMesh> allMeshes() {
     return meshes;
 }
 
-TEST_F(RulesTest, ConservativeIsTheExactSet) {
-    for (const NamedMesh& shape : allMeshes()) {
-        for (const int n : {32, 64}) {
-            const auto s = settings(n, Rule::Conservative);
-            const DenseGrid expected = reference::conservative(lattice(shape.mesh, s), n);
-            EXPECT_GT(expected.countFull(), 0U);
+class RulesTest : public VoxelizerTest {
+  protected:
+    /// By the CPU.
+    static DenseGrid exact(Rule rule, const LatticeMesh& mesh, int n) {
+        return rule == Rule::Thin ? reference::thin(mesh, n) : reference::conservative(mesh, n);
+    }
+    void expectExact(Rule rule, int n) {
+        for (const NamedMesh& shape : allMeshes()) {
+            const auto s = settings(n, rule);
+            const DenseGrid expected = exact(rule, lattice(shape.mesh, s), n);
+            if (rule == Rule::Conservative) EXPECT_GT(expected.countFull(), 0U);
             const DenseGrid grid = voxelize(shape.mesh, s).grid;
             EXPECT_EQ(reference::countMissing(expected, grid), 0U) << shape.name << " " << n;
             EXPECT_EQ(reference::countMissing(grid, expected), 0U) << shape.name << " " << n;
         }
     }
+};
+
+TEST_F(RulesTest, ConservativeIsTheExactSet) {
+    for (const int n : {32, 64}) expectExact(Rule::Conservative, n);
+}
+
+TEST_F(RulesTest, ThinIsTheExactSet) {
+    for (const int n : {32, 128}) expectExact(Rule::Thin, n);
 }
 
 // 6 · 30² + … : a cube of 30 voxels' edge touches the two layers of voxels at each of its faces.
@@ -88,18 +68,6 @@ TEST_F(RulesTest, ConservativeTakesBothSidesOfAVoxelFace) {
     const scene::Mesh mesh = shapes::cube(glm::vec3(0.0F), glm::vec3(30.0F));
     const DenseGrid grid = voxelize(mesh, settings(32, Rule::Conservative)).grid;
     EXPECT_EQ(grid.countFull(), 32U * 32U * 32U - 28U * 28U * 28U);
-}
-
-TEST_F(RulesTest, ThinIsTheExactSet) {
-    for (const NamedMesh& shape : allMeshes()) {
-        for (const int n : {32, 128}) {
-            const auto s = settings(n, Rule::Thin);
-            const DenseGrid expected = reference::thin(lattice(shape.mesh, s), n);
-            const DenseGrid grid = voxelize(shape.mesh, s).grid;
-            EXPECT_EQ(reference::countMissing(expected, grid), 0U) << shape.name << " " << n;
-            EXPECT_EQ(reference::countMissing(grid, expected), 0U) << shape.name << " " << n;
-        }
-    }
 }
 
 TEST_F(RulesTest, ThinLeaksNowhere) {
@@ -111,15 +79,11 @@ TEST_F(RulesTest, ThinLeaksNowhere) {
             const DenseGrid outside = outsideOf(surface);
             std::size_t leaked = 0;
             std::size_t enclosed = 0;
-            for (int z = 0; z < n; ++z) {
-                for (int y = 0; y < n; ++y) {
-                    for (int x = 0; x < n; ++x) {
-                        const bool isInside = inside.isFull({x, y, z});
-                        if (isInside && outside.isFull({x, y, z})) ++leaked;
-                        if (isInside && !surface.isFull({x, y, z})) ++enclosed;
-                    }
-                }
-            }
+            forEachVoxel(n, [&](const glm::ivec3& voxel) {
+                const bool isInside = inside.isFull(voxel);
+                if (isInside && outside.isFull(voxel)) ++leaked;
+                if (isInside && !surface.isFull(voxel)) ++enclosed;
+            });
             EXPECT_EQ(leaked, 0U) << shape.name << " " << n;
             EXPECT_GT(enclosed, 0U) << shape.name << " " << n;
         }
@@ -256,17 +220,12 @@ TEST_F(RulesTest, NormalsPointOutwards) {
     s.grid.value = VoxelValue::Normal;
     const DenseGrid grid = voxelize(mesh, s).grid;
     double worst = 1.0;
-    for (int z = 0; z < 64; ++z) {
-        for (int y = 0; y < 64; ++y) {
-            for (int x = 0; x < 64; ++x) {
-                const std::uint32_t code = grid.value({x, y, z});
-                if (code == 0) continue;
-                const glm::vec3 centre = glm::vec3(x, y, z) + 0.5F - 32.0F;
-                worst = std::min<double>(worst,
-                                         glm::dot(decodeNormal(code, 32), glm::normalize(centre)));
-            }
-        }
-    }
+    forEachVoxel(64, [&](const glm::ivec3& voxel) {
+        const std::uint32_t code = grid.value(voxel);
+        if (code == 0) return;
+        const glm::vec3 centre = glm::vec3(voxel) + 0.5F - 32.0F;
+        worst = std::min<double>(worst, glm::dot(decodeNormal(code, 32), glm::normalize(centre)));
+    });
     EXPECT_GT(worst, 0.99);  // a voxel is 1/31 of the radius
 }
 
@@ -286,9 +245,7 @@ TEST_F(RulesTest, AGivenBoxCutsTheMesh) {
     const scene::Box box{glm::vec3(0.0F), glm::vec3(0.75F)};
     for (const Rule rule : {Rule::Thin, Rule::Conservative}) {
         const DenseGrid grid = voxelize(mesh, settings(64, rule), box).grid;
-        const LatticeMesh snappedMesh = snapped(mesh, box, 64);
-        EXPECT_EQ(grid, rule == Rule::Thin ? reference::thin(snappedMesh, 64)
-                                           : reference::conservative(snappedMesh, 64));
+        EXPECT_EQ(grid, exact(rule, snapped(mesh, box, 64), 64));
         EXPECT_GT(grid.countFull(), 0U);
     }
     const DenseGrid rasterized = voxelize(mesh, settings(64, Rule::Rasterized), box).grid;
@@ -312,10 +269,7 @@ TEST_F(RulesTest, WideTrianglesAreDecidedAsOnTheCpu) {
         EXPECT_EQ(isWide(mesh, box, 32), reach > 100.0F) << reach;
         for (const Rule rule : {Rule::Thin, Rule::Conservative}) {
             const DenseGrid grid = voxelize(mesh, settings(32, rule), box).grid;
-            const LatticeMesh snappedMesh = snapped(mesh, box, 32);
-            EXPECT_EQ(grid, rule == Rule::Thin ? reference::thin(snappedMesh, 32)
-                                               : reference::conservative(snappedMesh, 32))
-                << reach;
+            EXPECT_EQ(grid, exact(rule, snapped(mesh, box, 32), 32)) << reach;
             EXPECT_GT(grid.countFull(), 0U) << reach;
         }
     }

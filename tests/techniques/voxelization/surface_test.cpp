@@ -2,13 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <deque>
 
-#include "techniques/voxelization/implicit.h"
-#include "techniques/voxelization/parametric.h"
-#include "tests/support/support.h"
-#include "tests/techniques/voxelization/gl_fixture.h"
+#include "techniques/voxelization/formula_surface.h"
 #include "tests/techniques/voxelization/voxel_value.h"
+#include "tests/techniques/voxelization/voxelizer_fixture.h"
 
 namespace gfxrepro::voxelization {
 namespace {
@@ -28,66 +25,29 @@ glm::dvec3 centreOf(const VoxelGrid& grid, const glm::ivec3& voxel) {
     return glm::dvec3(grid.box.min) + (glm::dvec3(voxel) + 0.5) * size;
 }
 
-double evaluateAt(const Expression& formula, const glm::dvec3& p) {
-    return formula.evaluate(std::array{p.x, p.y, p.z});
-}
-
-template <class Visit>
-void forEachVoxel(int resolution, Visit&& visit) {
-    for (int z = 0; z < resolution; ++z)
-        for (int y = 0; y < resolution; ++y)
-            for (int x = 0; x < resolution; ++x) visit(glm::ivec3(x, y, z));
-}
-
 constexpr glm::ivec3 kFaceNeighbours[] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                                           {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
 
-bool isInGrid(const glm::ivec3& voxel, int resolution) {
-    return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) &&
-           glm::all(glm::lessThan(voxel, glm::ivec3(resolution)));
-}
-
-/// Empty voxels that a path through faces reaches from the grid's corner.
-DenseGrid outsideOf(const DenseGrid& grid) {
-    DenseGrid outside(grid.layout());
-    std::deque<glm::ivec3> open{glm::ivec3(0)};
-    outside.set(glm::ivec3(0), 1);
-    while (!open.empty()) {
-        const glm::ivec3 voxel = open.front();
-        open.pop_front();
-        for (const glm::ivec3& step : kFaceNeighbours) {
-            const glm::ivec3 next = voxel + step;
-            if (!isInGrid(next, grid.resolution()) || outside.isFull(next) || grid.isFull(next)) {
-                continue;
-            }
-            outside.set(next, 1);
-            open.push_back(next);
-        }
-    }
-    return outside;
-}
-
 class SurfaceTest : public GlTest {
   protected:
-    ImplicitSource implicitOf(const std::string& yaml, const GridSettings& settings,
-                              const std::optional<scene::Box>& box = std::nullopt) {
+    template <class Source>
+    Source sourceOf(const std::string& yaml, const GridSettings& settings,
+                    const std::optional<scene::Box>& box) {
         Params params = paramsOf(yaml);
-        ImplicitSource source(params, settings, box);
+        Source source(params, settings, box);
         params.finish();
         technique::SetupContext context = setupContext();
         source.setup(context);
         source.render(profiler());
         return source;
+    }
+    ImplicitSource implicitOf(const std::string& yaml, const GridSettings& settings,
+                              const std::optional<scene::Box>& box = std::nullopt) {
+        return sourceOf<ImplicitSource>(yaml, settings, box);
     }
     ParametricSource parametricOf(const std::string& yaml, const GridSettings& settings,
                                   const std::optional<scene::Box>& box = std::nullopt) {
-        Params params = paramsOf(yaml);
-        ParametricSource source(params, settings, box);
-        params.finish();
-        technique::SetupContext context = setupContext();
-        source.setup(context);
-        source.render(profiler());
-        return source;
+        return sourceOf<ParametricSource>(yaml, settings, box);
     }
 };
 
@@ -99,9 +59,10 @@ TEST_P(ImplicitLayouts, SolidIsTheSignOfTheFormulaAtEachCentre) {
                                 Fill::Solid};
     const ImplicitSource source = implicitOf("{}", settings);
     const DenseGrid grid = source.grid()->read();
+    HostFormula formula(source.formula().formula());
     int wrong = 0;
     forEachVoxel(64, [&](const glm::ivec3& voxel) {
-        const double f = evaluateAt(source.formula(), centreOf(*source.grid(), voxel));
+        const double f = formula(centreOf(*source.grid(), voxel));
         // Nearer to 0 the sign in floats is a matter of rounding.
         if (std::abs(f) > 1e-4 && grid.isFull(voxel) != (f < 0)) ++wrong;
     });
@@ -114,10 +75,11 @@ TEST_P(ImplicitLayouts, SurfaceSeparatesInsideFromOutside) {
     const ImplicitSource source = implicitOf("{}", settings);
     const DenseGrid grid = source.grid()->read();
     const DenseGrid outside = outsideOf(grid);
+    HostFormula formula(source.formula().formula());
     int leaks = 0;
     int insideVoxels = 0;
     forEachVoxel(64, [&](const glm::ivec3& voxel) {
-        const double f = evaluateAt(source.formula(), centreOf(*source.grid(), voxel));
+        const double f = formula(centreOf(*source.grid(), voxel));
         if (f < -1e-4) ++insideVoxels;
         if (f < -1e-4 && outside.isFull(voxel)) ++leaks;
     });
@@ -131,13 +93,14 @@ TEST_F(SurfaceTest, SurfaceVoxelsAreThoseWhoseCrosshairMeetsTheSurface) {
         implicitOf("{formula: x^2 + y^2 + z^2 - 1}", settings, cube(1.25F));
     const DenseGrid grid = source.grid()->read();
     const double half = 0.5 * static_cast<double>(source.grid()->voxelSize());
+    HostFormula formula(source.formula().formula());
     int wrong = 0;
     forEachVoxel(32, [&](const glm::ivec3& voxel) {
         const glm::dvec3 centre = centreOf(*source.grid(), voxel);
-        double lowest = evaluateAt(source.formula(), centre);
+        double lowest = formula(centre);
         double highest = lowest;
         for (const glm::ivec3& step : kFaceNeighbours) {
-            const double f = evaluateAt(source.formula(), centre + half * glm::dvec3(step));
+            const double f = formula(centre + half * glm::dvec3(step));
             lowest = std::min(lowest, f);
             highest = std::max(highest, f);
         }

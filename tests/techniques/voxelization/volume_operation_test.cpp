@@ -5,25 +5,11 @@
 #include <numbers>
 
 #include "engine/core/random.h"
-#include "techniques/voxelization/collision.h"
-#include "techniques/voxelization/csg.h"
-#include "tests/techniques/voxelization/gl_fixture.h"
+#include "techniques/voxelization/combination.h"
+#include "tests/techniques/voxelization/voxelizer_fixture.h"
 
 namespace gfxrepro::voxelization {
 namespace {
-
-template <class Visit>
-void forEachVoxel(int resolution, Visit&& visit) {
-    for (int z = 0; z < resolution; ++z)
-        for (int y = 0; y < resolution; ++y)
-            for (int x = 0; x < resolution; ++x) visit(glm::ivec3(x, y, z));
-}
-
-gl::Texture uploaded(const DenseGrid& grid) {
-    gl::Texture sheets = makeSheets(grid.layout());
-    sheets.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, grid.words().data());
-    return sheets;
-}
 
 /// Solid; the grid's box is [-1, 1]³.
 DenseGrid sphere(const WorksheetLayout& layout, const glm::vec3& centre, float radius) {

@@ -7,19 +7,13 @@
 
 #include "engine/core/random.h"
 #include "techniques/voxelization/phantom.h"
-#include "tests/techniques/voxelization/gl_fixture.h"
+#include "tests/techniques/voxelization/voxelizer_fixture.h"
 
 namespace gfxrepro::voxelization {
 namespace {
 
 constexpr glm::ivec2 kSizePx{96, 64};
 const scene::Box kBox{glm::vec3(-2.0F, 1.0F, 3.0F), glm::vec3(2.0F, 5.0F, 7.0F)};
-
-gl::Texture uploaded(const DenseGrid& grid) {
-    gl::Texture sheets = makeSheets(grid.layout());
-    sheets.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, grid.words().data());
-    return sheets;
-}
 
 std::vector<std::uint32_t> hitsOf(const VolumeRenderer& renderer) {
     return renderer.hits().read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
@@ -101,19 +95,15 @@ DenseGrid shell(const WorksheetLayout& layout) {
         return glm::length(glm::vec3(v) + 0.5F - 0.5F * static_cast<float>(n)) <
                0.45F * static_cast<float>(n);
     };
-    for (int z = 1; z < n - 1; ++z) {
-        for (int y = 1; y < n - 1; ++y) {
-            for (int x = 1; x < n - 1; ++x) {
-                const glm::ivec3 v(x, y, z);
-                const bool isBorder =
-                    isInside(v) &&
-                    (!isInside(v + glm::ivec3(1, 0, 0)) || !isInside(v - glm::ivec3(1, 0, 0)) ||
-                     !isInside(v + glm::ivec3(0, 1, 0)) || !isInside(v - glm::ivec3(0, 1, 0)) ||
-                     !isInside(v + glm::ivec3(0, 0, 1)) || !isInside(v - glm::ivec3(0, 0, 1)));
-                if (isBorder) grid.set(v, 1);
-            }
+    forEachVoxel(n, [&](const glm::ivec3& v) {
+        bool isBorder = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::ivec3 step(0);
+            step[axis] = 1;
+            isBorder = isBorder || !isInside(v + step) || !isInside(v - step);
         }
-    }
+        if (isInside(v) && isBorder) grid.set(v, 1);
+    });
     Random random(3);
     for (int i = 0; i < n; ++i) {
         const auto side = static_cast<std::uint32_t>(n);
@@ -194,9 +184,7 @@ TEST_P(VolumeRendering, TransparencyIsTheLengthOfTheRayInFullVoxels) {
 TEST_F(GlTest, CutVoxelsAreNotDrawn) {
     const WorksheetLayout layout(32, 1);
     DenseGrid grid(layout);
-    for (int z = 0; z < 32; ++z)
-        for (int y = 0; y < 32; ++y)
-            for (int x = 0; x < 32; ++x) grid.set({x, y, z}, 1);
+    forEachVoxel(32, [&](const glm::ivec3& voxel) { grid.set(voxel, 1); });
     DrawSettings settings;
     settings.cut = scene::Box{glm::vec3(0.0F, 0.0F, 0.5F), glm::vec3(1.0F)};
     const scene::Camera camera = orbitCamera(kBox, 10, 5, 1.5F);

@@ -3,7 +3,6 @@
 
 #include <fstream>
 
-#include "techniques/voxelization/binvox.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
 
 namespace gfxrepro::voxelization {
@@ -27,7 +26,8 @@ class VoxelizationTest : public VoxelizerTest {
         technique::FrameContext frame{0, 1, profiler()};
         technique->render(frame);
         passes_ = profiler().collect();
-        MetricRecorder recorder(folder);
+        test::MetricRecorder recorder;
+        recorder.folder = folder;
         technique->record(recorder);
         return recorder.metrics;
     }
@@ -46,7 +46,7 @@ TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
             Params params = paramsOf(yaml);
-            Voxelization technique(params);
+            kVoxelization.create(params);
         });
     };
     EXPECT_EQ(message("{}"), "no error");

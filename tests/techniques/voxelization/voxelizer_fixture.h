@@ -1,39 +1,133 @@
-// Voxelizes a mesh on the device and hands back the grid and the metrics.
+// Grids on the device and off it, and meshes voxelized into them, with the metrics.
 #pragma once
 
-#include <map>
-#include <string>
+#include <muParser.h>
 
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "engine/gl/pass.h"
+#include "engine/gl/profiler.h"
 #include "techniques/voxelization/mesh_input.h"
 #include "techniques/voxelization/mesh_voxelizer.h"
 #include "techniques/voxelization/reference.h"
+#include "tests/gl/suite_device.h"
 #include "tests/support/support.h"
-#include "tests/techniques/voxelization/gl_fixture.h"
+#include "tests/techniques/technique_recorder.h"
 #include "tests/techniques/voxelization/shapes.h"
 
 namespace gfxrepro::voxelization {
 
-/// Keeps what a technique records.
-class MetricRecorder final : public technique::Recorder {
-  public:
-    explicit MetricRecorder(std::filesystem::path folder = {}) : folder_(std::move(folder)) {}
-    void metric(std::string_view metric, double value, std::string_view,
-                std::string_view) override {
-        metrics[std::string(metric)] = value;
-    }
-    void image(std::string_view name, const image::ImageF& image,
-               const technique::ImageOptions&) override {
-        images.emplace(name, image);
-    }
-    std::filesystem::path artifact(std::string_view fileName) override {
-        return folder_ / fileName;
-    }
+/// Calls visit(voxel) for all of a grid, x fastest.
+template <class Visit>
+void forEachVoxel(int resolution, Visit&& visit) {
+    for (int z = 0; z < resolution; ++z)
+        for (int y = 0; y < resolution; ++y)
+            for (int x = 0; x < resolution; ++x) visit(glm::ivec3(x, y, z));
+}
 
-    std::map<std::string, double> metrics;
-    std::map<std::string, image::ImageF> images;
+inline bool isInGrid(const glm::ivec3& voxel, int resolution) {
+    return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) &&
+           glm::all(glm::lessThan(voxel, glm::ivec3(resolution)));
+}
+
+/// Empty voxels that a path over faces of empty voxels joins to the grid's boundary.
+inline DenseGrid outsideOf(const DenseGrid& surface) {
+    const int n = surface.resolution();
+    DenseGrid result(WorksheetLayout(n, 1));
+    std::vector<glm::ivec3> open;
+    const auto reach = [&](const glm::ivec3& voxel) {
+        if (!isInGrid(voxel, n) || surface.isFull(voxel) || result.isFull(voxel)) return;
+        result.set(voxel, 1);
+        open.push_back(voxel);
+    };
+    for (int a = 0; a < n; ++a) {
+        for (int b = 0; b < n; ++b) {
+            for (const int side : {0, n - 1}) {
+                for (Axis axis : kAxes) reach(volumeFromLocal(axis, glm::ivec3(a, b, side)));
+            }
+        }
+    }
+    while (!open.empty()) {
+        const glm::ivec3 voxel = open.back();
+        open.pop_back();
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const int step : {-1, 1}) {
+                glm::ivec3 next = voxel;
+                next[axis] += step;
+                reach(next);
+            }
+        }
+    }
+    return result;
+}
+
+/// The voxels that are full in `grid`, 1 bit each.
+inline DenseGrid occupancyOf(const DenseGrid& grid) {
+    DenseGrid bits(WorksheetLayout(grid.resolution(), 1));
+    forEachVoxel(grid.resolution(), [&](const glm::ivec3& voxel) {
+        if (grid.isFull(voxel)) bits.set(voxel, 1);
+    });
+    return bits;
+}
+
+inline gl::Texture uploaded(const DenseGrid& grid) {
+    gl::Texture sheets = makeSheets(grid.layout());
+    sheets.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, grid.words().data());
+    return sheets;
+}
+
+/// A formula in x, y and z on the host, by muParser.
+class HostFormula {
+  public:
+    explicit HostFormula(const std::string& formula) {
+        parser_.DefineConst("pi", std::numbers::pi);
+        for (int i = 0; i < 3; ++i) parser_.DefineVar(std::string(1, "xyz"[i]), &at_[i]);
+        parser_.SetExpr(formula);
+    }
+    HostFormula(const HostFormula&) = delete;
+    double operator()(const glm::dvec3& at) {
+        at_ = at;
+        return parser_.Eval();
+    }
 
   private:
-    std::filesystem::path folder_;
+    glm::dvec3 at_{0.0};
+    mu::Parser parser_;
+};
+
+/// The shaders of the technique with one of the test's own beside them.
+class ShaderFolder {
+  public:
+    explicit ShaderFolder(const std::string& text) {
+        std::filesystem::copy(dataFolder("shaders") / "voxelization",
+                              folder_.path() / "voxelization");
+        folder_.write("test.comp.glsl", text);
+    }
+    gl::Pass pass(const gl::Defines& defines,
+                  const std::map<std::string, std::string>& snippets = {}) const {
+        return gl::Pass(gl::ShaderLibrary(folder_.path()), {"test.comp.glsl"}, defines, snippets);
+    }
+
+  private:
+    test::TemporaryFolder folder_;
+};
+
+/// A device and the shaders.
+class GlTest : public test::SuiteDeviceTest {
+  protected:
+    /// For sources that need no scene.
+    technique::SetupContext setupContext() {
+        return {device(), shaders(), scenes_, nullptr, {64, 64}, 1, profiler_};
+    }
+    gl::Profiler& profiler() { return profiler_; }
+
+  private:
+    test::NoScenes scenes_;
+    gl::Profiler profiler_{true};
 };
 
 struct Voxelized {
@@ -61,7 +155,7 @@ class VoxelizerTest : public GlTest {
         technique::SetupContext context = setupContext();
         voxelizer.setup(context);
         voxelizer.render(profiler());
-        MetricRecorder recorder;
+        test::MetricRecorder recorder;
         voxelizer.record(recorder);
         profiler().collect();
         return {voxelizer.grid()->read(), recorder.metrics};
@@ -76,19 +170,5 @@ class VoxelizerTest : public GlTest {
         return snapped(mesh, boxOf(mesh, settings), settings.grid.layout.resolution());
     }
 };
-
-/// The voxels that are full in `grid`, 1 bit each.
-inline DenseGrid occupancyOf(const DenseGrid& grid) {
-    const int n = grid.resolution();
-    DenseGrid bits(WorksheetLayout(n, 1));
-    for (int z = 0; z < n; ++z) {
-        for (int y = 0; y < n; ++y) {
-            for (int x = 0; x < n; ++x) {
-                if (grid.isFull({x, y, z})) bits.set({x, y, z}, 1);
-            }
-        }
-    }
-    return bits;
-}
 
 }  // namespace gfxrepro::voxelization

@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "engine/gl/pass.h"
-#include "techniques/voxelization/axis_split.h"
+#include "techniques/voxelization/mesh_input.h"
 #include "techniques/voxelization/voxelization.h"
 #include "tests/techniques/voxelization/voxel_value.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
@@ -13,37 +13,17 @@ namespace {
 
 constexpr int kVoxelBits[] = {1, 8, 16, 32};
 
-/// The shaders of the technique with one of the test's own beside them.
-class ShaderFolder {
-  public:
-    explicit ShaderFolder(const std::string& text) {
-        std::filesystem::copy(dataFolder("shaders") / "voxelization",
-                              folder_.path() / "voxelization");
-        folder_.write("test.comp.glsl", text);
-    }
-    gl::Pass pass(const gl::Defines& defines) const {
-        return gl::Pass(gl::ShaderLibrary(folder_.path()), {"test.comp.glsl"}, defines);
-    }
-
-  private:
-    test::TemporaryFolder folder_;
-};
-
 TEST(WorksheetTest, EveryVoxelHasItsOwnBits) {
     for (const int bits : kVoxelBits) {
         for (const int n : {32, 64}) {
             const WorksheetLayout layout(n, bits);
             std::vector<std::uint32_t> words(layout.wordCount());
-            for (int w = 0; w < n; ++w) {
-                for (int v = 0; v < n; ++v) {
-                    for (int u = 0; u < n; ++u) {
-                        const std::uint32_t mask = layout.laneMask() << layout.shift(w);
-                        std::uint32_t& word = words.at(layout.wordIndex({u, v, w}));
-                        ASSERT_EQ(word & mask, 0U) << u << " " << v << " " << w;
-                        word |= mask;
-                    }
-                }
-            }
+            forEachVoxel(n, [&](const glm::ivec3& local) {
+                const std::uint32_t mask = layout.laneMask() << layout.shift(local.z);
+                std::uint32_t& word = words.at(layout.wordIndex(local));
+                ASSERT_EQ(word & mask, 0U) << local.x << " " << local.y << " " << local.z;
+                word |= mask;
+            });
             for (const std::uint32_t word : words) ASSERT_EQ(word, ~0U);
         }
     }

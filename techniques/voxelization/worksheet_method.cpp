@@ -1,0 +1,403 @@
+// The method of the thesis: three stages over three directional sheets. [zju2005] Sec. 2.2.1.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "techniques/kit/draws.h"
+#include "techniques/voxelization/mesh_voxelizer.h"
+
+namespace gfxrepro::voxelization {
+namespace {
+
+constexpr int kGroupSize = 64;               // texelize.comp.glsl
+constexpr unsigned kMaxGroups = 4096;        // beyond it an invocation takes several fragments
+constexpr int kFillGroupSize = 8;            // fill.comp.glsl: 8 × 8 columns
+constexpr int kGroupEdge = 8;                // synthesis_per_voxel.comp.glsl: 8 × 8 texels
+constexpr int kInvocationsPerGroup = 64;     // synthesis.comp.glsl
+constexpr unsigned kMaxSparseGroups = 1024;  // beyond it a group takes several sets of tiles
+
+std::size_t indexOf(Axis axis) {
+    return static_cast<std::size_t>(axis);
+}
+
+/// The sheets of the three axes; synthesis merges those of x and y into the third, the grid's own.
+struct DirectionalSheets {
+    gl::Texture x, y;
+    VoxelGrid grid;
+
+    explicit DirectionalSheets(const MeshRequest& request)
+        : x(makeSheets(request.layout())),
+          y(makeSheets(request.layout())),
+          grid{makeSheets(request.layout()), request.layout(), request.box} {}
+    gl::Texture& of(Axis axis) { return axis == Axis::X ? x : axis == Axis::Y ? y : grid.sheets; }
+};
+
+/// The look-up textures of [zju2005] Sec. 2.3.2, beside the integer instructions of worksheet.glsl:
+/// integers, read without filtering.
+class LookupTables {
+  public:
+    /// Asserts that the layout is one sheet, as the thesis's.
+    explicit LookupTables(const WorksheetLayout& layout)
+        : xFromZ_(fromZ(layout, Axis::X)), yFromZ_(fromZ(layout, Axis::Y)) {
+        GFXREPRO_ASSERT_EQ(layout.layers(), 1);
+        std::vector<std::uint8_t> bits;
+        for (unsigned bit = 0; bit < 8; ++bit) {
+            for (unsigned byte = 0; byte < 256; ++byte) bits.push_back((byte >> bit) & 1U);
+        }
+        bitOfByte_.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, bits.data());
+        constexpr std::uint8_t kPowers[] = {1, 2, 4, 8, 16, 32, 64, 128};
+        powerOfTwo_.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, kPowers);
+    }
+
+    /// Of lookup_tables.glsl.
+    gl::Resources resources() const {
+        return {{"bitOfByte", bitOfByte_},
+                {"powerOfTwo", powerOfTwo_},
+                {"xFromZ", xFromZ_},
+                {"yFromZ", yFromZ_}};
+    }
+    std::size_t sizeBytes() const {
+        return bitOfByte_.sizeBytes() + powerOfTwo_.sizeBytes() + xFromZ_.sizeBytes() +
+               yFromZ_.sizeBytes();
+    }
+
+  private:
+    static gl::Texture fromZ(const WorksheetLayout& layout, Axis axis) {
+        using Texel = glm::u16vec4;
+        const int n = layout.resolution();
+        std::vector<glm::ivec3> slabCorners;  // by w
+        for (int w = 0; w < n; ++w) slabCorners.push_back(layout.texel({0, 0, w}));
+        std::vector<Texel> texels(layout.wordCount());
+        for (int z = 0; z < n; z += layout.voxelsPerTexel()) {
+            for (int y = 0; y < n; ++y) {
+                Texel* row = &texels[layout.wordIndex({0, y, z})];
+                for (int x = 0; x < n; ++x) {
+                    const glm::ivec3 local = localFromVolume(axis, glm::ivec3(x, y, z));
+                    const glm::ivec3& corner = slabCorners[static_cast<std::size_t>(local.z)];
+                    const int shift = layout.shift(local.z);
+                    row[x] = Texel(corner.x + local.x, corner.y + local.y, shift / 8, shift % 8);
+                }
+            }
+        }
+        gl::Texture table = gl::Texture::make2D(GL_RGBA16UI, layout.sheetSizePx());
+        table.upload(GL_RGBA_INTEGER, GL_UNSIGNED_SHORT, texels.data());
+        return table;
+    }
+
+    // (1) Texel (s, t) is bit t of the byte s; (2) texel s is 2^s.
+    gl::Texture bitOfByte_ = gl::Texture::make2D(GL_R8UI, {256, 8});
+    gl::Texture powerOfTwo_ = gl::Texture::make2D(GL_R8UI, {8, 1});
+    // (3) The size of the sheet: for the first voxel of a texel of the z sheet where the sheet of x
+    // (of y) has it: column, row, byte of the texel (0 … 3) and bit of the byte.
+    gl::Texture xFromZ_, yFromZ_;
+};
+
+/// The fragments of each axis, appended in any order; see shaders/emit_voxel.glsl.
+struct FragmentList {
+    std::array<gl::Buffer, 3> records;
+    gl::Buffer counters = gl::Buffer(3 * sizeof(std::uint32_t));
+    std::array<std::uint32_t, 3> capacities{};
+
+    /// Fragments of each axis, those beyond the capacity too; waits for the device.
+    std::array<std::uint32_t, 3> counts() const {
+        const auto read = counters.read<std::uint32_t>(3);
+        return {read[0], read[1], read[2]};
+    }
+    std::size_t sizeBytes() const {
+        return records[0].sizeBytes() + records[1].sizeBytes() + records[2].sizeBytes() +
+               counters.sizeBytes();
+    }
+};
+
+/// Stage 1: every triangle, once, becomes fragments with a voxel position. [zju2005] Sec. 2.2.1.
+class Rasterization {
+  public:
+    /// Makes the list as long as a counting draw finds necessary. Throws UnsupportedError when a
+    /// list would not fit a storage block.
+    Rasterization(technique::SetupContext& context, const MeshRequest& request,
+                  const DeviceMesh& mesh)
+        : draw_(context.shaders, request, DrawTarget::FragmentList) {
+        for (gl::Buffer& records : fragments_.records) records = gl::Buffer(sizeof(std::uint32_t));
+        run(mesh);  // capacity 0: counts only
+        const std::size_t recordBytes = (request.hasValues() ? 2 : 1) * sizeof(std::uint32_t);
+        fragments_.capacities = fragments_.counts();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t bytes = fragments_.capacities[axis] * recordBytes;
+            if (static_cast<long long>(bytes) > context.device.limits().maxStorageBlockBytes) {
+                throw UnsupportedError(fmt::format(
+                    "{} fragments along {} take {} bytes; the device's storage blocks hold {}",
+                    fragments_.capacities[axis], "xyz"[axis], bytes,
+                    context.device.limits().maxStorageBlockBytes));
+            }
+            fragments_.records[axis] = gl::Buffer(std::max(bytes, recordBytes));
+        }
+    }
+
+    /// Draws the mesh once, in three parts (thin and solid: once an axis).
+    void run(const DeviceMesh& mesh) {
+        fragments_.counters.clear();
+        for (Axis axis : kAxes) {
+            draw_.pass().set("fragmentCapacity", fragments_.capacities[indexOf(axis)]);
+            draw_.use(mesh, {{"Records", fragments_.records[indexOf(axis)]},
+                             gl::Resource("Counters", fragments_.counters).unordered()});
+            draw_.draw(mesh, axis);
+        }
+    }
+    const FragmentList& fragments() const { return fragments_; }
+    /// Fragments of the last run. Throws Error when they were more than the list holds.
+    std::size_t checkedCount() const {
+        const std::array<std::uint32_t, 3> counts = fragments_.counts();
+        std::size_t total = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (counts[axis] > fragments_.capacities[axis]) {
+                throw Error(
+                    fmt::format("{} fragments along {}, but the list holds the {} of set-up",
+                                counts[axis], "xyz"[axis], fragments_.capacities[axis]));
+            }
+            total += counts[axis];
+        }
+        return total;
+    }
+
+  private:
+    MeshDraw draw_;
+    FragmentList fragments_;
+};
+
+/// The tiles of C³ voxels that hold fragments (tiles.glsl): how many, a flag each, their indices.
+/// Empty unless synthesis is sparse.
+struct TileList {
+    gl::Buffer buffer;
+    std::size_t capacity = 0;
+
+    TileList() = default;
+    /// A tile is listed by one of its fragments.
+    TileList(const WorksheetLayout& layout, const FragmentList& fragments) {
+        const auto across = static_cast<std::size_t>(layout.slabCount());
+        const std::size_t tiles = across * across * across;
+        for (std::uint32_t listed : fragments.capacities) capacity += listed;
+        capacity = std::max<std::size_t>(std::min(tiles, capacity), 1);
+        const std::size_t flagWords = (tiles + 31) / 32;
+        buffer = gl::Buffer((1 + flagWords + capacity) * sizeof(std::uint32_t));
+    }
+};
+
+/// What texelization and synthesis have in common: the layout, and how voxels are addressed.
+gl::Defines stageDefines(const MeshRequest& request) {
+    gl::Defines defines = request.layout().defines();
+    if (request.settings.addressing == Addressing::Tables) defines["TABLES"] = 1;
+    return defines;
+}
+
+/// Stage 2: fragments become bits of the directional sheets. [zju2005] Sec. 2.2.1, 2.2.2.
+class Texelization {
+  public:
+    /// `fragments` holds what rasterization can make of the mesh.
+    Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request,
+                 const FragmentList& fragments) {
+        gl::Defines defines = stageDefines(request);
+        defines["GROUP_SIZE"] = kGroupSize;
+        defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
+        defines[request.fillsByCrossings() ? "ACCUMULATE_XOR"
+                : request.hasValues()      ? "ACCUMULATE_MAX"
+                                           : "ACCUMULATE_OR"] = 1;
+        if (request.settings.merging == Merging::Sparse) {
+            defines["LIST_TILES"] = 1;
+            tiles_ = TileList(request.layout(), fragments);
+        }
+        pass_ = gl::Pass(shaders, {"voxelization/texelize.comp.glsl"}, defines);
+        const auto n = static_cast<std::size_t>(request.layout().resolution());
+        for (gl::Buffer& lines : behind_) lines = gl::Buffer(request.isSolid() ? n * n / 8 : 4);
+    }
+
+    /// Clears the three sheets and writes every fragment's voxel. `tables`:
+    /// LookupTables::resources(), of Addressing::Tables only.
+    void run(const FragmentList& fragments, DirectionalSheets& sheets,
+             const gl::Resources& tables) {
+        if (tiles_.capacity > 0) tiles_.buffer.clear();
+        for (Axis axis : kAxes) {
+            sheets.of(axis).clearToZero();
+            behind_[indexOf(axis)].clear();
+            const std::uint32_t capacity = fragments.capacities[indexOf(axis)];
+            pass_.set("axis", static_cast<int>(axis));
+            pass_.set("fragmentCapacity", capacity);
+            pass_.dispatch({std::min(kit::groupsFor(capacity, kGroupSize), kMaxGroups), 1, 1},
+                           gl::Resources{{"sheet", sheets.of(axis)},
+                                         {"Records", fragments.records[indexOf(axis)]},
+                                         {"Counters", fragments.counters},
+                                         {"Behind", behind_[indexOf(axis)]},
+                                         gl::Resource("Tiles", tiles_.buffer).unordered()}
+                               .with(tables));
+        }
+    }
+    /// Solid: scan lines whose crossing lies behind the grid, one bit each, for each axis.
+    const gl::Buffer& behind(Axis axis) const { return behind_[indexOf(axis)]; }
+    const TileList& tiles() const { return tiles_; }
+    std::size_t sizeBytes() const { return 3 * behind_[0].sizeBytes() + tiles_.buffer.sizeBytes(); }
+
+  private:
+    gl::Pass pass_;
+    std::array<gl::Buffer, 3> behind_;
+    TileList tiles_;
+};
+
+/// What solid filling found; on the device.
+struct SolidStatistics {
+    std::uint32_t ambiguousScanLines = 0;  // over the three axes
+    std::uint32_t disagreeingVoxels = 0;   // where the three axes differ
+};
+
+/// Solid only: turns the crossings (or surface voxels) in the sheets into inside flags, scan line
+/// by scan line. [zju2005] Sec. 2.2.3.
+class SolidFill {
+  public:
+    SolidFill(const gl::ShaderLibrary& shaders, const MeshRequest& request)
+        : groupsAcross_(static_cast<unsigned>(request.layout().resolution() / kFillGroupSize)) {
+        gl::Defines defines = request.layout().defines();
+        if (!request.fillsByCrossings()) defines["FLIP_AT_VOXELS"] = 1;
+        pass_ = gl::Pass(shaders, {"voxelization/fill.comp.glsl"}, defines);
+    }
+    void run(const Texelization& texelization, DirectionalSheets& sheets, gl::Buffer& statistics) {
+        statistics.clear();
+        for (Axis axis : kAxes) {
+            pass_.dispatch({groupsAcross_, groupsAcross_, 1},
+                           {{"sheet", sheets.of(axis)},
+                            {"Behind", texelization.behind(axis)},
+                            gl::Resource("Statistics", statistics).unordered()});
+        }
+    }
+
+  private:
+    gl::Pass pass_;
+    unsigned groupsAcross_;
+};
+
+/// Stage 3: merges the sheets of x and y into the grid's: OR, the largest value, or the majority
+/// (solid by crossings). [zju2005] Sec. 2.2.1.
+class Synthesis {
+  public:
+    Synthesis(const gl::ShaderLibrary& shaders, const MeshRequest& request)
+        : merging_(request.settings.merging),
+          tilesPerGroup_(static_cast<unsigned>(
+              std::min(kInvocationsPerGroup / request.layout().voxelsPerTexel(),
+                       request.layout().slabCount()))) {
+        gl::Defines defines = stageDefines(request);
+        defines["TILES"] = static_cast<int>(tilesPerGroup_);
+        defines["GROUP_EDGE"] = kGroupEdge;
+        if (merging_ == Merging::Sparse) defines["SPARSE"] = 1;
+        defines[request.fillsByCrossings() ? "COMBINE_MAJORITY"
+                : request.hasValues()      ? "COMBINE_MAX"
+                                           : "COMBINE_OR"] = 1;
+        pass_ =
+            gl::Pass(shaders,
+                     {merging_ == Merging::PerVoxel ? "voxelization/synthesis_per_voxel.comp.glsl"
+                                                    : "voxelization/synthesis.comp.glsl"},
+                     defines);
+    }
+    /// `tiles` are texelization's (used by Merging::Sparse only), `statistics` holds
+    /// SolidStatistics (used by solid only), `tables` are as Texelization::run() takes them.
+    void run(const DirectionalSheets& sheets, const TileList& tiles, const gl::Buffer& statistics,
+             const gl::Resources& tables) {
+        const WorksheetLayout& layout = sheets.grid.layout;
+        const auto slabs = static_cast<unsigned>(layout.slabCount());
+        glm::uvec3 groups(slabs, slabs, slabs / tilesPerGroup_);
+        if (merging_ == Merging::PerVoxel) {
+            groups = {layout.sheetSizePx() / kGroupEdge, layout.layers()};
+        } else if (merging_ == Merging::Sparse) {
+            groups = {std::min(kit::groupsFor(tiles.capacity, tilesPerGroup_), kMaxSparseGroups), 1,
+                      1};
+        }
+        pass_.dispatch(groups, gl::Resources{{"sheetX", sheets.x},
+                                             {"sheetY", sheets.y},
+                                             {"sheet", sheets.grid.sheets},
+                                             {"Statistics", statistics}}
+                                   .with({{"Tiles", tiles.buffer}})
+                                   .with(tables));
+    }
+
+  private:
+    gl::Pass pass_;
+    Merging merging_;
+    unsigned tilesPerGroup_;
+};
+
+class WorksheetMethod : public MeshMethod {
+  public:
+    WorksheetMethod(technique::SetupContext& context, const MeshRequest& request,
+                    const DeviceMesh& mesh)
+        : rasterization_(context, request, mesh),
+          texelization_(context.shaders, request, rasterization_.fragments()),
+          synthesis_(context.shaders, request),
+          sheets_(request),
+          openMesh_(request.settings.openMesh),
+          takesMajority_(request.fillsByCrossings()) {
+        if (request.settings.addressing == Addressing::Tables) tables_.emplace(request.layout());
+        if (request.isSolid()) solidFill_.emplace(context.shaders, request);
+    }
+
+    void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
+        gl::GpuScope whole(profiler, "voxelization");
+        const gl::Resources tables = tables_ ? tables_->resources() : gl::Resources{};
+        {
+            gl::GpuScope scope(profiler, "rasterization");
+            rasterization_.run(mesh);
+        }
+        {
+            gl::GpuScope scope(profiler, "texelization");
+            texelization_.run(rasterization_.fragments(), sheets_, tables);
+        }
+        if (solidFill_) {
+            gl::GpuScope scope(profiler, "fill");
+            solidFill_->run(texelization_, sheets_, statistics_);
+        }
+        gl::GpuScope scope(profiler, "synthesis");
+        synthesis_.run(sheets_, texelization_.tiles(), statistics_, tables);
+    }
+
+    const VoxelGrid* grid() const override { return &sheets_.grid; }
+
+    void record(technique::Recorder& recorder) override {
+        const std::size_t fragments = rasterization_.checkedCount();
+        recorder.metric("fragments", static_cast<double>(fragments), "fragment");
+        if (!solidFill_) return;
+        const SolidStatistics found = statistics_.read<SolidStatistics>(1).front();
+        if (openMesh_ == OpenMesh::Refuse && found.ambiguousScanLines > 0) {
+            const int n = sheets_.grid.layout.resolution();
+            throw Error(
+                fmt::format("the mesh is not closed: {} of {} scan lines end inside; "
+                            "'open_mesh: report' fills what two of three axes agree on",
+                            found.ambiguousScanLines, 3 * n * n));
+        }
+        recorder.metric("ambiguous_scan_lines", found.ambiguousScanLines, "scan line");
+        if (takesMajority_) {
+            recorder.metric("disagreeing_voxels", found.disagreeingVoxels, "voxel");
+        }
+    }
+
+    std::size_t sizeBytes() const override {
+        return 3 * sheets_.grid.layout.sizeBytes() + rasterization_.fragments().sizeBytes() +
+               texelization_.sizeBytes() + statistics_.sizeBytes() +
+               (tables_ ? tables_->sizeBytes() : 0);
+    }
+
+  private:
+    Rasterization rasterization_;
+    Texelization texelization_;
+    std::optional<LookupTables> tables_;
+    std::optional<SolidFill> solidFill_;
+    Synthesis synthesis_;
+    DirectionalSheets sheets_;
+    gl::Buffer statistics_ = gl::Buffer(sizeof(SolidStatistics));
+    OpenMesh openMesh_;
+    bool takesMajority_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshMethod> makeWorksheetMethod(technique::SetupContext& context,
+                                                const MeshRequest& request,
+                                                const DeviceMesh& mesh) {
+    return std::make_unique<WorksheetMethod>(context, request, mesh);
+}
+
+}  // namespace gfxrepro::voxelization
