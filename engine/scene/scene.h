@@ -30,6 +30,10 @@ struct Box {
     }
     glm::vec3 centre() const { return 0.5F * (min + max); }
     glm::vec3 size() const { return isEmpty() ? glm::vec3(0) : max - min; }
+    /// 0 … 7: bits 0, 1 and 2 take the larger x, y and z.
+    glm::vec3 corner(int index) const {
+        return {index & 1 ? max.x : min.x, index & 2 ? max.y : min.y, index & 4 ? max.z : min.z};
+    }
 };
 
 /// Triangles over shared vertices, counter-clockwise seen from outside. Attributes are empty or one

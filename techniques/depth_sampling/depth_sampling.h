@@ -7,7 +7,6 @@
 
 #include "runner/technique/technique.h"
 #include "techniques/depth_sampling/experiment.h"
-#include "techniques/depth_sampling/pixel_experiment.h"
 #include "techniques/depth_sampling/reference_views.h"
 #include "techniques/depth_sampling/visibility.h"
 

@@ -3,14 +3,17 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/gl/profiler.h"
+#include "engine/image/image.h"
 #include "engine/raycast/ray_tracer.h"
 #include "techniques/depth_sampling/pixel_measures.h"
+#include "techniques/depth_sampling/visibility.h"
+#include "techniques/kit/depth_image.h"
 #include "techniques/kit/depth_image_renderer.h"
 
 namespace gfxrepro::depth_sampling {
@@ -24,18 +27,6 @@ struct Views {
     std::vector<kit::View> conventional;  // V₀ … Vₙ₋₁, what "occluded" refers to
     std::vector<kit::View> frames;        // output frames
 };
-
-/// Counts of samples of one reference image ([xie2017] Sec. 2.3.2).
-struct ImageCounts {
-    std::uint64_t samples = 0;
-    std::uint64_t redundant = 0;          // measure 1
-    std::uint64_t occluded = 0;           // measure 2, as figure 9's text reads it
-    std::uint64_t occludedLiterally = 0;  // measure 2, as Sec. 2.3.2 prints it
-    std::uint64_t useful = 0;             // measure 3
-};
-
-/// Measure 4 of one output frame.
-using FrameCounts = PixelMeasures::Availability;
 
 struct Measures {
     std::vector<ImageCounts> images;
@@ -72,5 +63,89 @@ class Experiment {
 inline std::string imageName(std::size_t index) {
     return "image_" + std::to_string(index);
 }
+
+// The experiment under the pixel definition: images are drawn, samples are tested on the device.
+
+class PixelExperiment final : public Experiment {
+  public:
+    /// `shaders` must outlive this.
+    PixelExperiment(const gl::ShaderLibrary& shaders, const scene::Scene& scene, Method method,
+                    kit::TriangleIds ids, kit::DepthFormat format, Views views);
+
+    void makeReferenceImages(gl::Profiler& profiler) override;
+    Measures measure(const MeasureSettings& settings) override;
+    MarkedImage markedImage(std::size_t index) const override;
+    MarkedImage markedFrame(std::size_t index) override;
+    std::size_t referenceImageBytes() const override;
+
+    /// Draws one output frame ("output_frame") and counts what the reference images have of it
+    /// ("availability_test").
+    void drawOutputFrame(gl::Profiler& profiler, std::size_t index);
+    /// Of the frame drawn last.
+    FrameCounts outputFrameCounts() { return measures_.finishAvailability(); }
+
+  private:
+    void drawConventionalImages();
+    void drawFrame(std::size_t index);
+    std::vector<const kit::DepthImage*> first(const std::vector<kit::DepthImage>& images,
+                                              std::size_t count) const;
+    const std::vector<kit::DepthImage>& conventional() const {
+        return method_ == Method::Conventional ? images_ : conventional_;
+    }
+    void markImage(std::size_t index);
+
+    Method method_;
+    Views views_;
+    kit::DrawableScene scene_;
+    kit::DepthImageRenderer renderer_;
+    PixelMeasures measures_;
+    std::vector<kit::DepthImage> images_;
+    std::vector<kit::DepthImage> conventional_;   // unless these are the images
+    std::vector<gl::Texture> marks_;              // of images_
+    std::optional<kit::DepthImage> outputFrame_;  // one for all of views_.frames
+};
+
+// The experiment under the visibility definition: images are ray cast, samples are tested by rays.
+
+class VisibilityExperiment final : public Experiment {
+  public:
+    VisibilityExperiment(const scene::Scene& scene, raycast::RayTracer tracer, Method method,
+                         const Views& views, Earlier earlier);
+
+    void makeReferenceImages(gl::Profiler& profiler) override;
+    Measures measure(const MeasureSettings& settings) override;
+    MarkedImage markedImage(std::size_t index) const override;
+    MarkedImage markedFrame(std::size_t index) override;
+    std::size_t referenceImageBytes() const override;
+
+  private:
+    Method method_;
+    raycast::RayTracer tracer_;
+    SurfaceShading shading_;
+    VisibilitySequence sequence_;
+    VisibilitySequence conventional_;
+    VisibilitySequence frames_;
+    VisibilitySequence neededBy_;  // frames_ when usefulness is measured, else none
+    std::vector<kit::HostDepthImage> images_;
+};
+
+// Depth images as pictures that show what the measures found: rows from the top, 3 linear channels.
+
+/// Where there is no sample.
+constexpr glm::vec3 kPictureBackground{0.020F, 0.022F, 0.030F};
+/// The legend's colours, of fully lit white surfaces.
+constexpr glm::vec3 kOccludedColor{0.06F, 0.62F, 0.10F};
+constexpr glm::vec3 kUsefulColor{1.00F, 0.78F, 0.03F};
+constexpr glm::vec3 kUnavailableColor{0.85F, 0.03F, 0.03F};
+
+/// A reference image: useful samples yellow, other occluded ones green, the rest grey ([xie2017]
+/// Table 3, Fig. 9). `marks` (Mark) one a pixel in the order of HostDepthImage.
+image::ImageF occludedPicture(const kit::HostDepthImage& image,
+                              std::span<const std::uint32_t> marks);
+
+/// An output frame: samples without kAvailable red, the others in their shading ([xie2017] Fig.
+/// 12).
+image::ImageF availabilityPicture(const kit::HostDepthImage& frame,
+                                  std::span<const std::uint32_t> marks);
 
 }  // namespace gfxrepro::depth_sampling

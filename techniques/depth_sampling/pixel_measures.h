@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <vector>
 
-#include "engine/gl/device.h"
 #include "engine/gl/pass.h"
+#include "techniques/depth_sampling/visibility.h"
 #include "techniques/kit/depth_image.h"
+#include "techniques/kit/depth_image_renderer.h"
 #include "techniques/kit/whole_image.h"
 
 namespace gfxrepro::depth_sampling {
@@ -48,17 +50,11 @@ class PixelMeasures {
     /// Pixels whose marks hold all of `bits`; waits for the device.
     std::uint64_t count(const gl::Texture& marks, std::uint32_t bits);
 
-    /// Of the samples of an output frame, how many there are and how many are redundant with at
-    /// least one of `images` (measure 4).
-    struct Availability {
-        std::uint64_t samples = 0;
-        std::uint64_t available = 0;
-        bool operator==(const Availability&) const = default;
-    };
-    /// Enqueues the test of one frame: the pass that is timed. Forgets the frame before.
+    /// Enqueues the test which samples of a frame are redundant with at least one of `images`: the
+    /// pass that is timed. Forgets the frame before.
     void beginAvailability(const kit::DepthImage& frame, ImageSpan images);
     /// Waits for the test of the last frame.
-    Availability finishAvailability();
+    FrameCounts finishAvailability();
 
   private:
     /// One variant for each number of images, so that the shader's loop over them is unrolled.
@@ -70,6 +66,35 @@ class PixelMeasures {
     gl::Pass countPass_, samplesPass_;
     kit::WholeImage wholeImage_;
     gl::SampleQuery countQuery_, samplesQuery_, availableQuery_;
+};
+
+// Where to put the next reference image, ahead of [xie2017], whose views are given.
+
+/// Greedy: of candidate views, the one whose non-redundant image makes the most samples of the
+/// output frames available (pixel definition) that no image so far holds. Ties go to the first
+/// candidate.
+class NextView {
+  public:
+    /// Draws the output frames, `sizePx` each; references must outlive this.
+    NextView(const gl::ShaderLibrary& shaders, kit::DepthImageRenderer& renderer,
+             const kit::DrawableScene& scene, std::vector<scene::Camera> candidates,
+             const std::vector<scene::Camera>& outputCameras, glm::ivec2 sizePx);
+
+    struct Choice {
+        scene::Camera camera;
+        std::size_t candidate = 0;
+        std::uint64_t gainedSamples = 0;  // of all output frames; 0: no candidate gains anything
+    };
+    /// `imagesSoFar`, of any size, at most kit::kMaxEarlierImages. Waits for the device.
+    Choice next(ImageSpan imagesSoFar);
+
+  private:
+    PixelMeasures measures_;
+    kit::DepthImageRenderer& renderer_;
+    const kit::DrawableScene& scene_;
+    std::vector<scene::Camera> candidates_;
+    std::vector<kit::DepthImage> outputs_;
+    glm::ivec2 sizePx_;
 };
 
 }  // namespace gfxrepro::depth_sampling

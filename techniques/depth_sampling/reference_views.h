@@ -1,9 +1,12 @@
 // Where the reference images are taken from, and the output frames between them.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "engine/raycast/ray_tracer.h"
 #include "engine/scene/scene.h"
+#include "techniques/kit/view.h"
 
 namespace gfxrepro::depth_sampling {
 
@@ -47,5 +50,13 @@ std::vector<scene::Camera> candidateCameras(const ViewTriangle& triangle, int re
 /// evenly (point, segment or triangle; the R₂ sequence, folded).
 std::vector<scene::Camera> outputCameras(const ViewTriangle& triangle, int referenceCount,
                                          int count);
+
+// Whether reference views stand where a depth image can be taken.
+
+/// Throws Error, naming the view and what to change, for the first view more than half of whose
+/// rays that meet anything first meet the back of a single-sided triangle. The eye is then inside
+/// of a closed surface, or looks at an open one from behind: culling would show the scene without
+/// what is nearest, and no measure would mean anything. A view without any hit passes.
+void checkViews(const raycast::RayTracer& tracer, std::span<const kit::View> views);
 
 }  // namespace gfxrepro::depth_sampling

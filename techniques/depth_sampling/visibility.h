@@ -3,13 +3,36 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "engine/raycast/ray_tracer.h"
+#include "engine/scene/scene.h"
+#include "techniques/kit/depth_image.h"
 #include "techniques/kit/view.h"
 
 namespace gfxrepro::depth_sampling {
+
+/// Counts of samples of one reference image ([xie2017] Sec. 2.3.2). Plain counts; shares are the
+/// caller's.
+struct ImageCounts {
+    std::uint64_t samples = 0;
+    std::uint64_t redundant = 0;  // held by an earlier image of its own sequence (measure 1)
+    std::uint64_t occluded = 0;  // held by none of the conventional images V₀ … Vₙ₋₁ (measure 2)
+    std::uint64_t occludedLiterally = 0;  // by none of V₀ … Vᵢ₋₁, as printed; all of image 0
+    std::uint64_t useful = 0;             // occluded, and needed by an output frame (measure 3)
+
+    ImageCounts& operator+=(const ImageCounts& other);
+    bool operator==(const ImageCounts&) const = default;
+};
+
+/// Of an output frame's samples, how many there are and how many at least one image has (measure
+/// 4).
+struct FrameCounts {
+    std::uint64_t samples = 0;
+    std::uint64_t available = 0;
+
+    bool operator==(const FrameCounts&) const = default;
+};
 
 /// A point of the scene on a known triangle.
 struct SurfacePoint {
@@ -76,5 +99,39 @@ class VisibilitySequence {
     Earlier earlier_;
     bool isPeeling_;  // all images have one view
 };
+
+// Depth images sampled by ray casting: the pictures of visibility redundancy.
+
+/// What DepthImageRenderer shades with, on the CPU: interpolated normals (the triangle's where the
+/// mesh has none) and the material's base colour times the vertex's. Textures are left out.
+class SurfaceShading {
+  public:
+    explicit SurfaceShading(const scene::Scene& scene);
+
+    /// Direct light that goes from the point towards the eye: the formula at kLightDirectionWorld.
+    glm::vec3 radiance(const SurfacePoint& point, const glm::vec3& eyeWorld) const;
+
+  private:
+    std::vector<glm::vec3> positions_, normals_, colors_;  // normals: zero where there are none
+    std::vector<glm::uvec3> triangles_;
+    std::vector<bool> isDoubleSided_;  // by triangle
+};
+
+/// Image `index` of the sequence, all its pixels.
+kit::HostDepthImage rayCastImage(const VisibilitySequence& sequence, std::size_t index,
+                                 const SurfaceShading& shading);
+
+// The measures of [xie2017] Sec. 2.3.2 under the visibility definition, on the CPU.
+
+/// Of the samples of image `index` of `sequence`; V₀ … Vₙ₋₁ are the views of `conventional`, and
+/// the output frames those of `outputs` (both are conventional sequences; `outputs` may be empty).
+/// Measure 1 is the conventional sequence measured against itself; of a non-redundant or peeled
+/// sequence no sample is redundant. With fewer views than `index` all of them count literally.
+ImageCounts countSamples(const VisibilitySequence& sequence, std::size_t index,
+                         const VisibilitySequence& conventional, const VisibilitySequence& outputs);
+
+/// For every image of `outputs` (a conventional sequence: the output frames).
+std::vector<FrameCounts> countAvailable(const VisibilitySequence& sequence,
+                                        const VisibilitySequence& outputs);
 
 }  // namespace gfxrepro::depth_sampling

@@ -15,12 +15,10 @@
 #include "engine/metrics/mean_test.h"
 #include "engine/scene/load.h"
 #include "runner/config/program.h"
-#include "techniques/external/metric_lines.h"
-#include "techniques/external/pictures.h"
 #include "techniques/external/process.h"
+#include "techniques/external/results.h"
 
 namespace gfxrepro::external {
-
 namespace {
 
 namespace fs = std::filesystem;

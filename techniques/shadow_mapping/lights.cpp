@@ -77,11 +77,9 @@ LightView directionalView(const Light& light, const scene::Box& bounds, int size
     const glm::vec3 centre = bounds.centre();
     const glm::mat4 lightFromWorld = glm::lookAt(centre, centre + forward, upFor(forward));
     glm::vec3 half(0.0F);  // of the box in the light's frame, about its centre
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::vec3 at(corner & 1 ? bounds.max.x : bounds.min.x,
-                           corner & 2 ? bounds.max.y : bounds.min.y,
-                           corner & 4 ? bounds.max.z : bounds.min.z);
-        half = glm::max(half, glm::abs(glm::vec3(lightFromWorld * glm::vec4(at, 1.0F))));
+    for (int i = 0; i < 8; ++i) {
+        const glm::vec4 corner = lightFromWorld * glm::vec4(bounds.corner(i), 1.0F);
+        half = glm::max(half, glm::abs(glm::vec3(corner)));
     }
     // Two texels around the box, so that its outline is not cut off; 1 % before and behind it, so
     // that surfaces on its sides are not at the planes. A box without extent gets some.

@@ -3,13 +3,77 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
+#include "engine/gl/program.h"
 #include "techniques/kit/drawable_scene.h"
 #include "techniques/kit/whole_image.h"
 #include "techniques/shadow_mapping/lights.h"
-#include "techniques/shadow_mapping/shadow_steps.h"
 
 namespace gfxrepro::shadow_mapping {
+
+// What the two steps of shadow mapping do, as data: sets the GL state and the shaders' defines, and
+// is [zju2005] Table 4.3.
+
+/// [zju2005] Sec. 4.2 and 4.3.
+enum class Storage {
+    Standard,  // a 32-bit float colour target holds window z; compared in the shader
+    Hardware,  // a depth texture in compare mode; nothing but depth is written
+};
+
+enum class DepthFormat { Unorm16, Unorm24, Float32 };
+
+enum class Filter {
+    Nearest,
+    Bilinear,  // Standard: four comparisons in the shader; Hardware: one filtered fetch
+    Pcf3,      // the mean of n × n comparisons of texels
+    Pcf5,
+    Pcf7,
+    Pcss,      // [Fernando 2005], percentage-closer soft shadows
+    Variance,  // [Donnelly and Lauritzen 2006]
+};
+
+/// What hides the difference between a surface and its own texels in the map.
+struct Bias {
+    float constant = 0.0F;            // ε of [zju2005] Sec. 4.3, in window z (0 … 1)
+    float slopeScale = 0.0F;          // times the caster's steepest change of window z a texel
+    float normalOffsetTexels = 0.0F;  // the receiver is moved along its normal
+};
+
+struct ShadowMapSettings {
+    Storage storage = Storage::Hardware;
+    Filter filter = Filter::Nearest;
+    int sizePx = 1024;                          // of a view; a point light's map is 3 × 2 of them
+    DepthFormat format = DepthFormat::Unorm24;  // of the depth test; Hardware: of the map
+    Bias bias = {};
+    int blurTexels = 5;  // Variance: odd
+};
+
+/// One step of a method. Fetches and comparisons are those of one light and fragment, in the
+/// shader's code: a comparison that a fetch makes by itself is none.
+struct StepDeclaration {
+    std::string step;    // "depth map", "blur", "shading"
+    std::string target;  // "R32F", "DEPTH24", …
+    bool colourWrites = false;
+    bool depthWrites = false;
+    bool fragmentWork = false;  // the program has a fragment stage
+    int fetches = 0;
+    int comparisons = 0;
+
+    bool operator==(const StepDeclaration&) const = default;
+};
+
+/// The steps in order; the first draws the map, the last shades. Throws Error for settings that
+/// contradict each other: Variance in Hardware storage, an even blur, sizes below 1, bias values
+/// that are negative or not finite.
+std::vector<StepDeclaration> declaredSteps(const ShadowMapSettings& settings);
+
+/// Masks of colour and depth writes as declared; the depth test is on where depth is written.
+void applyState(const StepDeclaration& step);
+
+/// Side of the square of texels that a filter compares: the root of the declared fetches.
+int kernelSizeOf(Filter filter);
 
 /// A light's map. Standard: window z in R32F. Hardware: a depth texture (compare mode unless the
 /// filter reads depths). Variance: mean depth and mean square, RG32F, depth as a share of near …

@@ -1,8 +1,266 @@
 #include "techniques/shadow_mapping/shadow_mapping.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
+#include "techniques/kit/picture.h"
 #include "techniques/kit/requirements.h"
 
 namespace gfxrepro::shadow_mapping {
+namespace {
+
+constexpr Choice<Storage> kMethods[] = {
+    {Storage::Standard, "standard", "depths in a float colour texture, compared in the shader"},
+    {Storage::Hardware, "hardware", "a depth texture, compared by the texture unit"},
+};
+constexpr Choice<FilterKind> kFilters[] = {
+    {FilterKind::Nearest, "nearest", "one comparison"},
+    {FilterKind::Bilinear, "bilinear", "four comparisons, weighted"},
+    {FilterKind::Pcf, "pcf", "the mean of filter_size² comparisons"},
+    {FilterKind::Pcss, "pcss", "percentage-closer soft shadows"},
+    {FilterKind::Variance, "variance", "variance shadow maps, blurred"},
+};
+constexpr Choice<LightKind> kLightKinds[] = {
+    {LightKind::Spot, "spot", "one perspective map around the scene"},
+    {LightKind::Directional, "directional", "one orthographic map around the scene"},
+    {LightKind::Point, "point", "six maps, the sides of a cube"},
+};
+constexpr Choice<LightPlace> kLightPlaces[] = {
+    {LightPlace::Orbit, "orbit", "around the scene's box, evenly over the azimuth"},
+    {LightPlace::Scene, "scene", "the scene's own lights, in their order"},
+};
+constexpr Choice<DepthFormat> kFormats[] = {
+    {DepthFormat::Unorm16, "unorm16", "D16"},
+    {DepthFormat::Unorm24, "unorm24", "D24"},
+    {DepthFormat::Float32, "float32", "32-bit float"},
+};
+
+float number(Params& params, const char* name, double fallback, const ParamSpec& spec) {
+    return static_cast<float>(params.getDouble(name, fallback, spec));
+}
+
+Filter filterOf(FilterKind kind, int size) {
+    switch (kind) {
+        case FilterKind::Nearest:
+            return Filter::Nearest;
+        case FilterKind::Bilinear:
+            return Filter::Bilinear;
+        case FilterKind::Pcf:
+            return size == 3 ? Filter::Pcf3 : size == 5 ? Filter::Pcf5 : Filter::Pcf7;
+        case FilterKind::Pcss:
+            return Filter::Pcss;
+        case FilterKind::Variance:
+            break;
+    }
+    return Filter::Variance;
+}
+
+void readLights(Params& params, ShadowMappingParams& p) {
+    p.lightKind = params.getEnum("light_kind", LightKind::Spot, kLightKinds, {"of all lights"});
+    p.lightPlace =
+        params.getEnum("light_place", LightPlace::Orbit, kLightPlaces, {"where lights stand"});
+    p.lightCount = params.getInt("lights", 1, {"number of lights", "lights", 1, kMaxLights});
+    p.lightDistance = number(params, "light_distance", 1.2,
+                             {"from the centre of the scene's box", "diagonals", 0.0, 100.0});
+    p.azimuthRad = glm::radians(
+        number(params, "light_azimuth_deg", -40.0,
+               {"direction to the first light about y, from +z towards +x", "°", -360.0, 360.0}));
+    p.elevationRad = glm::radians(
+        number(params, "light_elevation_deg", 50.0, {"… above the horizon", "°", -90.0, 90.0}));
+    p.lightSize = number(params, "light_size", 0.02,
+                         {"diameter of the lights, for pcss", "diagonals", 0.0, 10.0});
+}
+
+void refuseUnread(const Params& params, FilterKind filter, const ShadowMappingParams& p) {
+    if (filter != FilterKind::Pcf && filter != FilterKind::Variance) {
+        params.refuseGiven({"filter_size"}, "'filter: pcf' or 'filter: variance'");
+    }
+    if (filter != FilterKind::Pcss) params.refuseGiven({"light_size"}, "'filter: pcss'");
+    if (p.lightPlace == LightPlace::Scene) {
+        params.refuseGiven({"light_distance", "light_azimuth_deg", "light_elevation_deg"},
+                           "'light_place: orbit'");
+    }
+    if (p.lightKind == LightKind::Directional) {
+        params.refuseGiven({"light_distance"}, "'light_kind: spot' or 'light_kind: point'");
+    }
+    if (p.isStatic) params.refuseGiven({"yardstick"}, "'static: false'");
+    if (!p.measuresErrors) params.refuseGiven({"edge_texels"}, "'errors: true'");
+    if (filter == FilterKind::Variance) {
+        if (p.maps.storage == Storage::Hardware) {
+            throw Error(params.locationOf("filter"),
+                        "'filter: variance' needs 'method: standard': moments are colours");
+        }
+        params.refuseGiven({"compare_methods"}, "a filter that both methods have");
+    }
+}
+
+}  // namespace
+
+ShadowMappingParams::ShadowMappingParams(Params& params) {
+    maps.storage =
+        params.getEnum("method", Storage::Hardware, kMethods, {"how depths are compared"});
+    const FilterKind filter =
+        params.getEnum("filter", FilterKind::Nearest, kFilters, {"how comparisons are filtered"});
+    const int filterSize = params.getInt(
+        "filter_size", 5, {"side of the square of texels; 3, 5 or 7", "texels", 3, 7});
+    if (filterSize % 2 == 0) {
+        throw Error(params.locationOf("filter_size"),
+                    "filter_size: " + std::to_string(filterSize) + " is even; allowed: 3, 5 or 7");
+    }
+    maps.filter = filterOf(filter, filterSize);
+    maps.blurTexels = filterSize;
+    maps.sizePx =
+        params.getInt("shadow_map_size", 1024,
+                      {"side of a shadow map; a point light has six of them", "pixels", 16, 16384});
+    maps.format = params.getEnum("depth_format", DepthFormat::Unorm24, kFormats,
+                                 {"of the depth test; of the map where it is hardware's"});
+    maps.bias.constant =
+        number(params, "bias", 0.0005,
+               {"ε: how much is taken from the receiver's window depth", "1", 0.0, 1.0});
+    maps.bias.slopeScale = number(
+        params, "slope_bias", 1.0,
+        {"how many times the caster's change of depth from texel to texel is added to the bias",
+         "1", 0.0, 100.0});
+    maps.bias.normalOffsetTexels =
+        number(params, "normal_bias", 0.0,
+               {"how far the receiver is moved along its normal", "texels", 0.0, 100.0});
+    readLights(params, *this);
+    isStatic = params.getBool("static", false, {"the maps are drawn once and used again"});
+    measuresErrors = params.getBool("errors", false, {"compares with shadow rays"});
+    edgeTexels = number(
+        params, "edge_texels", 1.5,
+        {"an error so near a true edge, and half the filter, is the edge's", "texels", 0.0, 100.0});
+    comparesMethods =
+        params.getBool("compare_methods", false, {"compares with the other method's shadows"});
+    drawsYardstick =
+        params.getBool("yardstick", false,
+                       {"draws the maps again, depth alone and without a bias: yardstick_pass"});
+    showsPictures = params.getBool("pictures", false, {"the image, the truth, classes of errors"});
+    params.finish();
+    refuseUnread(params, filter, *this);
+}
+
+float ShadowMappingParams::edgeReachTexels() const {
+    const int size = maps.filter == Filter::Variance ? maps.blurTexels : kernelSizeOf(maps.filter);
+    return edgeTexels + 0.5F * static_cast<float>(size - 1);
+}
+
+// Lights for a scene, and what can be wrong with them.
+
+namespace {
+
+/// Lights of several get their share of the brightness.
+Light lightAt(const ShadowMappingParams& params, const scene::Box& box, const glm::vec3& position,
+              const glm::vec3& color) {
+    const float diagonal = glm::length(box.size());
+    const float radius = 0.5F * diagonal;
+    const glm::vec3 towards = box.centre() - position;
+    const float distance = glm::length(towards);
+    Light light;
+    light.kind = params.lightKind;
+    light.positionWorld = position;
+    light.targetWorld = box.centre();
+    light.directionWorld = towards;
+    light.color = color / static_cast<float>(params.lightCount);
+    const bool isDirectional = params.lightKind == LightKind::Directional;
+    light.size = params.lightSize * (isDirectional ? 1.0F : diagonal);
+    // The planes hold the ball around the box, the near one at least 1/500 of its diagonal away:
+    // window depth is spent near the light.
+    light.nearM = std::max(distance - radius, 0.002F * diagonal);
+    light.farM = distance + radius;
+    // As wide as the ball; where the light stands near it, no wider than 120°, and what lies
+    // outside of the cone is lit.
+    constexpr float kWidestRad = glm::pi<float>() * 2.0F / 3.0F;
+    light.fovRad =
+        distance > radius ? std::min(2.0F * std::asin(radius / distance), kWidestRad) : kWidestRad;
+    return light;
+}
+
+}  // namespace
+
+std::vector<Light> makeLights(const ShadowMappingParams& params, const scene::Scene& scene) {
+    const scene::Box box = scene.bounds();
+    const float diagonal = glm::length(box.size());
+    std::vector<Light> lights;
+    if (params.lightPlace == LightPlace::Scene) {
+        if (scene.lights.size() < static_cast<std::size_t>(params.lightCount)) {
+            throw Error(fmt::format("'light_place: scene' with {} lights: the scene has {}",
+                                    params.lightCount, scene.lights.size()));
+        }
+        for (int i = 0; i < params.lightCount; ++i) {
+            const scene::PointLight& light = scene.lights[static_cast<std::size_t>(i)];
+            lights.push_back(lightAt(params, box, light.position, light.intensity));
+        }
+        return lights;
+    }
+    for (int i = 0; i < params.lightCount; ++i) {
+        const float azimuth = params.azimuthRad + glm::two_pi<float>() * static_cast<float>(i) /
+                                                      static_cast<float>(params.lightCount);
+        const float flat = std::cos(params.elevationRad);
+        const glm::vec3 direction(flat * std::sin(azimuth), std::sin(params.elevationRad),
+                                  flat * std::cos(azimuth));
+        // Of a directional light only the direction counts.
+        const float distance =
+            (params.lightKind == LightKind::Directional ? 1.0F : params.lightDistance) * diagonal;
+        lights.push_back(
+            lightAt(params, box, box.centre() + distance * direction, glm::vec3(1.0F)));
+    }
+    return lights;
+}
+
+void requireOutside(const raycast::RayTracer& tracer, const std::vector<Light>& lights) {
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        if (lights[i].kind == LightKind::Directional) continue;
+        // The 26 neighbours of a cube: a light over an open floor escapes by some of them.
+        bool isInside = true;
+        for (int n = 0; n < 27 && isInside; ++n) {
+            const glm::vec3 direction(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            if (direction == glm::vec3(0.0F)) continue;
+            const auto hit = tracer.closestHit(lights[i].positionWorld, direction);
+            isInside = hit && glm::dot(hit->geometricNormal, direction) > 0.0F;
+        }
+        if (!isInside) continue;
+        const glm::vec3 p = lights[i].positionWorld;
+        throw Error(
+            fmt::format("light {} at ({:.3f}, {:.3f}, {:.3f}) lies inside of geometry: every ray "
+                        "from it meets a surface from behind",
+                        i, p.x, p.y, p.z));
+    }
+}
+
+int lightsWithoutCaster(const std::vector<Light>& lights, const scene::Scene& scene, int sizePx) {
+    const scene::Mesh mesh = scene::flattened(scene);
+    const scene::Box bounds = scene.bounds();
+    return static_cast<int>(std::count_if(lights.begin(), lights.end(), [&](const Light& light) {
+        const std::vector<LightView> views = viewsOf(light, bounds, sizePx);
+        return std::none_of(views.begin(), views.end(), [&](const LightView& view) {
+            return std::any_of(
+                mesh.positions.begin(), mesh.positions.end(), [&](const glm::vec3& p) {
+                    const glm::vec4 clip = view.clipFromWorld * glm::vec4(p, 1.0F);
+                    return glm::all(
+                        glm::lessThanEqual(glm::abs(glm::vec3(clip)), glm::vec3(clip.w)));
+                });
+        });
+    }));
+}
+
+TruthLight truthLight(const Light& light, const scene::Box& bounds, int sizePx) {
+    TruthLight truth;
+    truth.isDirectional = light.kind == LightKind::Directional;
+    truth.position = light.positionWorld;
+    if (truth.isDirectional) truth.toLight = -glm::normalize(light.directionWorld);
+    truth.texel = viewsOf(light, bounds, sizePx).front().texelPerDistance;
+    if (light.kind == LightKind::Spot) {
+        truth.forward = glm::normalize(light.targetWorld - light.positionWorld);
+    }
+    return truth;
+}
 
 ShadowMapping::ShadowMapping(Params& params) : params_(params) {}
 
@@ -50,5 +308,179 @@ void ShadowMapping::render(technique::FrameContext& context) {
     const gl::GpuScope scope(context.profiler, "shading_pass");
     shadedView_->render(*drawable_, *maps_, *image_);
 }
+
+namespace {
+
+/// Light `light` of the four channels.
+std::vector<float> channelOf(const std::vector<float>& terms, std::size_t light) {
+    std::vector<float> channel(terms.size() / 4);
+    for (std::size_t i = 0; i < channel.size(); ++i) channel[i] = terms[4 * i + light];
+    return channel;
+}
+
+/// White where lit, grey where in shadow, dark where it is not asked: by the truth, or by `terms`
+/// of the map.
+image::ImageF shadowPicture(const ShadowErrors& errors, const std::vector<float>* terms,
+                            glm::ivec2 sizePx) {
+    return kit::pictureOf(sizePx, [&](std::size_t i) {
+        const float lit = terms ? (*terms)[i] : static_cast<float>(errors.truth[i]);
+        return errors.classes[i] != PixelClass::NotCompared ? 0.2F + 0.7F * lit : 0.02F;
+    });
+}
+
+/// With the normals that only an image with terms has.
+kit::ImageLayers layersOf(const ShadedImage& image) {
+    const std::vector<float> normals = image.normals.read<float>(GL_RGB, GL_FLOAT, 3);
+    std::vector<glm::vec3> normalWorld;
+    for (std::size_t i = 0; i < normals.size(); i += 3) {
+        normalWorld.emplace_back(normals[i], normals[i + 1], normals[i + 2]);
+    }
+    kit::ImageLayers layers(image.view);
+    layers.windowDepths(image.depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1));
+    layers.normals(normalWorld);
+    return layers;
+}
+
+}  // namespace
+
+void ShadowMapping::record(technique::Recorder& recorder) {
+    recordSteps(recorder);
+    recorder.metric("lights_without_caster", lightsWithoutCaster_, "light");
+    recorder.metric("memory_bytes", static_cast<double>(maps_->sizeBytes()), "byte");
+    if (params_.showsPictures) recordPicture(recorder);
+    if (!params_.measuresErrors && !params_.comparesMethods) return;
+    // Once more with the terms that the measured frame does not write.
+    ShadedImage image = makeShadedImage(image_->view, true);
+    shadedView_->render(*drawable_, *maps_, image);
+    if (params_.measuresErrors) recordErrors(recorder, image);
+    if (params_.comparesMethods) recordDifference(recorder, image);
+}
+
+void ShadowMapping::recordPicture(technique::Recorder& recorder) const {
+    const std::vector<float> depths = image_->depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+    recorder.image("result", image_->colour.readImage(3),
+                   kit::ImageLayers(image_->view).windowDepths(depths).options());
+}
+
+// [zju2005] Table 4.3
+void ShadowMapping::recordSteps(technique::Recorder& recorder) const {
+    for (const StepDeclaration& step : maps_->steps()) {
+        std::string pass = step.step == "depth map" ? "depth_pass"
+                           : step.step == "shading" ? "shading_pass"
+                                                    : step.step;
+        std::replace(pass.begin(), pass.end(), ' ', '_');
+        recorder.metric("colour_writes", step.colourWrites ? 1.0 : 0.0, "1", pass);
+        recorder.metric("depth_writes", step.depthWrites ? 1.0 : 0.0, "1", pass);
+        recorder.metric("fragment_work", step.fragmentWork ? 1.0 : 0.0, "1", pass);
+        recorder.metric("fetches", step.fetches, "1", pass);
+        recorder.metric("comparisons", step.comparisons, "1", pass);
+    }
+}
+
+void ShadowMapping::recordErrors(technique::Recorder& recorder, const ShadedImage& image) {
+    const std::vector<float> terms = image.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+    const std::vector<VisiblePoint> points = visiblePoints(*tracer_, image.view);
+    const scene::Box& bounds = drawable_->bounds();
+    const ShadowTruth truth(*tracer_, glm::length(bounds.size()));
+    std::uint64_t compared = 0, edge = 0, acne = 0, leak = 0;
+    const glm::ivec2 sizePx = image.view.sizePx;
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        const std::vector<float> ofLight = channelOf(terms, i);
+        const ShadowErrors errors =
+            truth.compare(points, truthLight(lights_[i], bounds, params_.maps.sizePx), ofLight,
+                          params_.edgeReachTexels());
+        compared += errors.compared;
+        edge += errors.edge;
+        acne += errors.acne;
+        leak += errors.leak;
+        if (!params_.showsPictures) continue;
+        const std::string name = fmt::format("shadow_{}", i);
+        const image::ImageF picture = shadowPicture(errors, &ofLight, sizePx);
+        const image::ImageF truthPicture = shadowPicture(errors, nullptr, sizePx);
+        const std::string truthName = fmt::format("truth_{}", i);
+        recorder.image(name, picture,
+                       layersOf(image).errors(picture, truthPicture, truthName).options());
+        recorder.image(truthName, truthPicture, kit::seenFrom(image.view, name));
+        recorder.image(fmt::format("errors_{}", i), classPicture(errors, sizePx),
+                       kit::seenFrom(image.view));
+    }
+    recorder.metric("compared_points", static_cast<double>(compared), "pixel");
+    recorder.metric("wrong_pct", kit::percent(edge + acne + leak, compared), "%");
+    recorder.metric("acne_pct", kit::percent(acne, compared), "%");
+    recorder.metric("leak_pct", kit::percent(leak, compared), "%");
+    recorder.metric("edge_pct", kit::percent(edge, compared), "%");
+}
+
+// S4: pixels whose shadow differs from that of the other method by more than a filtered fetch may:
+// texture units weigh with 8 bits on each axis.
+void ShadowMapping::recordDifference(technique::Recorder& recorder, const ShadedImage& image) {
+    ShadowMapSettings settings = params_.maps;
+    settings.storage =
+        settings.storage == Storage::Standard ? Storage::Hardware : Storage::Standard;
+    ShadowMapRenderer maps(*shaders_, settings);
+    ShadedView view(*shaders_, settings);
+    ShadedImage other = makeShadedImage(image.view, true);
+    maps.render(*drawable_, lights_);
+    view.render(*drawable_, maps, other);
+    const std::vector<float> here = image.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+    const std::vector<float> there = other.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+    std::uint64_t differing = 0;
+    for (std::size_t pixel = 0; pixel < here.size() / 4; ++pixel) {
+        bool differs = false;
+        for (std::size_t i = 4 * pixel; i < 4 * pixel + lights_.size(); ++i) {
+            differs = differs || std::abs(here[i] - there[i]) > 1.0F / 64.0F;
+        }
+        differing += differs ? 1 : 0;
+    }
+    recorder.metric("methods_differ_pct", kit::percent(differing, here.size() / 4), "%");
+}
+
+namespace {
+
+std::unique_ptr<technique::Technique> create(Params& params) {
+    return std::make_unique<ShadowMapping>(params);
+}
+
+config::Outputs outputs() {
+    using config::Better;
+    constexpr bool kIsDetail = true;
+    return {
+        {
+            {"wrong_pct", "%", "share of the compared points that are lit or shadowed wrongly",
+             Better::Lower},
+            {"acne_pct", "%", "share of the compared points that are shadowed by their own surface",
+             Better::Lower},
+            {"leak_pct", "%",
+             "share of the compared points that are lit although a caster hides the light",
+             Better::Lower},
+            {"edge_pct", "%",
+             "share of the compared points that are wrong within edge_texels of the shadow's edge",
+             Better::Lower},
+            {"compared_points", "pixel", "points that were compared, of all lights"},
+            {"methods_differ_pct", "%",
+             "share of the pixels where the other method shows another shadow", Better::Lower},
+            {"memory_bytes", "byte", "memory of the shadow maps", Better::Lower},
+            {"lights_without_caster", "light", "lights without anything before them", Better::Lower,
+             kIsDetail},
+            {"colour_writes", "1", "1 where the step writes colours", Better::Neither, kIsDetail},
+            {"depth_writes", "1", "1 where the step writes depths", Better::Neither, kIsDetail},
+            {"fragment_work", "1", "1 where the step runs a fragment program", Better::Neither,
+             kIsDetail},
+            {"fetches", "1", "texels that the step fetches", Better::Lower, kIsDetail},
+            {"comparisons", "1", "comparisons in the step's program", Better::Lower, kIsDetail},
+        },
+        {
+            {"depth_pass", "drawing the shadow maps"},
+            {"shading_pass", "drawing the picture with shadows"},
+            {"yardstick_pass", "drawing the same geometry without shadows"},
+            {"blur_along_x", "blurring the maps' variances along x"},
+            {"blur_along_y", "blurring the maps' variances along y"},
+        }};
+}
+
+}  // namespace
+
+const technique::TechniqueInfo kShadowMapping{
+    "shadow_mapping", "shadow maps compared in the shader or by the texture unit", create, outputs};
 
 }  // namespace gfxrepro::shadow_mapping

@@ -1,7 +1,6 @@
 // The technique `shadow_mapping`: chapter 4 of zju2005. See README.md.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 

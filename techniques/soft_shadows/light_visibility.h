@@ -7,10 +7,38 @@
 
 #include "engine/gl/pass.h"
 #include "techniques/kit/drawable_scene.h"
+#include "techniques/kit/view.h"
 #include "techniques/kit/whole_image.h"
-#include "techniques/soft_shadows/area_light.h"
 
 namespace gfxrepro::soft_shadows {
+
+// A rectangular light and the views from its points.
+
+struct AreaLightSettings {
+    float sizeRatio = 1.0F;     // diagonal of the light : diagonal of the scene's box; 0: a point
+    float height = 1.5F;        // distance of its centre from the box's centre, in box diagonals
+    float azimuthRad = 0.6F;    // of the direction to the light, about y, from +z towards +x
+    float elevationRad = 1.0F;  // of that direction above the horizon
+};
+
+/// A square in space that faces the centre of the scene's box. Corner order: around the square.
+struct AreaLight {
+    glm::vec3 centre;
+    glm::vec3 right;  // half an edge each
+    glm::vec3 up;
+    scene::Box casters;  // what its views must hold
+
+    glm::vec3 corner(int index) const;  // 0 … 3
+    /// Point (i, j) of an n × n grid: the middle of its cell.
+    glm::vec3 sample(int i, int j, int n) const;
+};
+
+AreaLight makeAreaLight(const scene::Box& casters, const AreaLightSettings& settings);
+
+/// The view from a point on the light towards the centre of the casters; its frustum is as narrow
+/// as holds their box (square image, a margin of two pixels). Throws Error when the point lies
+/// inside the box: the frustum would have to be wider than half of space.
+kit::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx);
 
 /// The output samples: what each pixel of the output image shows.
 struct Receivers {
@@ -93,6 +121,39 @@ class LightVisibility {
     gl::Pass test_;
     gl::Program plainPass_;
     kit::WholeImage wholeImage_;
+};
+
+// Modern comparators: soft shadows by filtering one shadow map from the light's centre.
+
+enum class ShadowFilter {
+    Pcss,      // percentage-closer soft shadows: blocker search, penumbra estimate, filter
+    Variance,  // variance soft shadow mapping: the same with Chebyshev's bound over moments
+};
+
+/// One shadow map from the light's centre and a filter as wide as the penumbra that similar
+/// triangles give: w = w_light · (d_receiver − d_blocker) / d_blocker.
+class FilteredShadows {
+  public:
+    FilteredShadows(const gl::ShaderLibrary& shaders, ShadowFilter filter,
+                    const ShadowMapSettings& settings);
+
+    /// The share of the light that each output sample sees: R32F of the receivers' size, 1 where
+    /// there is no surface.
+    void render(const Receivers& receivers, const AreaLight& light,
+                std::span<const ShadowCaster* const> casters, const gl::Texture& litShares);
+
+    static gl::Texture makeShares(glm::ivec2 sizePx) {
+        return gl::Texture::make2D(GL_R32F, sizePx);
+    }
+
+  private:
+    void makeMoments(const kit::View& view);
+
+    ShadowMapSettings settings_;
+    LightVisibility shadowMap_;
+    gl::Pass filter_;
+    gl::Pass moments_;           // variance only
+    gl::Texture momentPyramid_;  // RG32F, all levels; variance only
 };
 
 }  // namespace gfxrepro::soft_shadows

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "engine/gl/device.h"
 #include "engine/gl/pass.h"

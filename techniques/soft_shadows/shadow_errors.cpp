@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "techniques/kit/depth_image_renderer.h"
 #include "techniques/kit/picture.h"
 
 namespace gfxrepro::soft_shadows {
@@ -20,6 +21,29 @@ std::uint32_t validBits(int sampleCount, std::size_t layer) {
 
 std::size_t layersOf(const HostVisibilityMask& mask) {
     return static_cast<std::size_t>((mask.sampleCount + 31) / 32);
+}
+
+/// Distance along the view's axis from window depth.
+float eyeDepth(const kit::View& view, float windowDepth) {
+    const float ndc = 2.0F * windowDepth - 1.0F;
+    return 2.0F * view.nearM * view.farM /
+           (view.farM + view.nearM - ndc * (view.farM - view.nearM));
+}
+
+/// Whether what a pixel shows lies in the casters' box: no view has to hold the floor.
+bool isOfCasters(const kit::View& view, const scene::Box& casters, std::size_t pixel, float depth) {
+    const auto width = static_cast<std::size_t>(view.sizePx.x);
+    const glm::vec2 position(static_cast<float>(pixel % width), static_cast<float>(pixel / width));
+    const glm::vec3 point = kit::unproject(view, position + 0.5F, depth);
+    // Half the way down to the floor: window depths are rounded.
+    const float margin = 5e-4F * glm::length(casters.size());
+    return glm::all(glm::greaterThan(point, casters.min - margin)) &&
+           glm::all(glm::lessThan(point, casters.max + margin));
+}
+
+/// Two texels of distance: less is the resolution of the reference images.
+float toleranceAt(const kit::View& view, float depth, int referenceSizePx) {
+    return 2.0F * 2.0F * depth / (view.clipFromView[0].x * static_cast<float>(referenceSizePx));
 }
 
 }  // namespace
@@ -125,6 +149,19 @@ ShadowErrors compareMasks(const HostVisibilityMask& measured, const HostVisibili
     return errors;
 }
 
+ShadowErrors compareShares(const std::vector<float>& measured, const HostVisibilityMask& truth) {
+    const std::vector<float> shares = litShares(truth);
+    ShadowErrors errors;
+    errors.signedIntensity.resize(shares.size());
+    for (std::size_t pixel = 0; pixel < shares.size(); ++pixel) {
+        errors.signedIntensity[pixel] = 256.0F * (measured[pixel] - shares[pixel]);
+        const double magnitude = std::abs(errors.signedIntensity[pixel]);
+        errors.intensityMean += magnitude / static_cast<double>(shares.size());
+        errors.intensityMax = std::max(errors.intensityMax, magnitude);
+    }
+    return errors;
+}
+
 std::vector<float> litShares(const HostVisibilityMask& mask) {
     std::vector<float> shares(mask.pixelCount());
     for (std::size_t pixel = 0; pixel < shares.size(); ++pixel) {
@@ -153,6 +190,45 @@ image::ImageF errorPicture(const HostReceivers& receivers,
         const float error = std::clamp(signedIntensity[pixel] / 64.0F, -1.0F, 1.0F);
         const glm::vec3 color = error > 0.0F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
         return glm::mix(glm::vec3(grey), color, std::abs(error));
+    });
+}
+
+LightViewAgreement compareDepths(const kit::View& view, const scene::Box& casters,
+                                 const std::vector<float>& truth,
+                                 const std::vector<float>& measured, int referenceSizePx) {
+    LightViewAgreement agreement;
+    for (std::size_t pixel = 0; pixel < truth.size(); ++pixel) {
+        if (truth[pixel] == 1.0F) continue;
+        const float depth = eyeDepth(view, truth[pixel]);
+        if (!isOfCasters(view, casters, pixel, depth)) continue;
+        ++agreement.covered;
+        const float difference = eyeDepth(view, measured[pixel]) - depth;
+        const float tolerance = toleranceAt(view, depth, referenceSizePx);
+        agreement.missing += measured[pixel] == 1.0F || difference > tolerance ? 1 : 0;
+        agreement.nearer += difference < -tolerance ? 1 : 0;
+    }
+    return agreement;
+}
+
+image::ImageF depthPicture(const kit::View& view, const std::vector<float>& windowDepths) {
+    const glm::ivec2 size = view.sizePx;
+    const auto depthAt = [&](int x, int y) {
+        x = std::min(x, size.x - 1);
+        y = std::min(y, size.y - 1);
+        return windowDepths[static_cast<std::size_t>(y * size.x + x)];
+    };
+    const auto pointAt = [&](int x, int y) {
+        return kit::unproject(view, glm::vec2(x, y) + 0.5F, eyeDepth(view, depthAt(x, y)));
+    };
+    return kit::pictureOf(size, [&](std::size_t pixel) {
+        const int x = static_cast<int>(pixel) % size.x, y = static_cast<int>(pixel) / size.x;
+        if (depthAt(x, y) >= 1.0F) return kit::kBackground;
+        const glm::vec3 normal =
+            glm::cross(pointAt(x + 1, y) - pointAt(x, y), pointAt(x, y + 1) - pointAt(x, y));
+        const float length = glm::length(normal);
+        const float lit =
+            length > 0.0F ? std::abs(glm::dot(normal, kit::kLightDirectionWorld)) / length : 0.0F;
+        return glm::vec3(0.15F + 0.7F * lit);
     });
 }
 

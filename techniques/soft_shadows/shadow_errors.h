@@ -49,6 +49,8 @@ struct ShadowErrors {
     std::vector<float> signedIntensity;  // a pixel: wrongly lit − wrongly dark
 };
 ShadowErrors compareMasks(const HostVisibilityMask& measured, const HostVisibilityMask& truth);
+/// Shares of the light against samples of it. Only the sum of a pixel's errors is known.
+ShadowErrors compareShares(const std::vector<float>& measured, const HostVisibilityMask& truth);
 
 /// The share of the light that each pixel sees, 0 … 1.
 std::vector<float> litShares(const HostVisibilityMask& mask);
@@ -61,5 +63,21 @@ image::ImageF shadowPicture(const HostReceivers& receivers, const std::vector<fl
 /// 64 light samples has the full colour.
 image::ImageF errorPicture(const HostReceivers& receivers,
                            const std::vector<float>& signedIntensity);
+
+/// Window depths as seen from the light: how much of what the geometry shows the casters show, too.
+struct LightViewAgreement {
+    std::size_t covered = 0;  // pixels where the geometry is
+    std::size_t missing = 0;  // … and the casters are farther away or nothing
+    std::size_t nearer = 0;   // … and they are nearer
+};
+
+/// Of the geometry and the casters, where the geometry lies in the casters' box. Casters count as
+/// off by more than two texels of reference images of `referenceSizePx`².
+LightViewAgreement compareDepths(const kit::View& view, const scene::Box& casters,
+                                 const std::vector<float>& truth,
+                                 const std::vector<float>& measured, int referenceSizePx);
+
+/// Depths lit by the slope of the depth, rows from the top; background where there is nothing.
+image::ImageF depthPicture(const kit::View& view, const std::vector<float>& windowDepths);
 
 }  // namespace gfxrepro::soft_shadows

@@ -3,11 +3,163 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <glm/trigonometric.hpp>
 
 #include "engine/core/error.h"
+#include "engine/scene/load.h"
+#include "techniques/kit/image_layers.h"
+#include "techniques/kit/percent.h"
+#include "techniques/kit/picture.h"
 #include "techniques/kit/requirements.h"
 
 namespace gfxrepro::soft_shadows {
+namespace {
+
+constexpr Choice<Method> kMethods[] = {
+    {Method::Geometry, "geometry", "shadow maps of the original geometry"},
+    {Method::NonRedundant, "non_redundant",
+     "meshes from non-redundant depth images of the light's corners (algorithm 5)"},
+    {Method::Conventional, "conventional", "meshes from conventional depth images of the corners"},
+    {Method::DepthPeeling, "depth_peeling", "meshes from layers seen from the light's centre"},
+    {Method::RayTraced, "ray_traced", "a shadow ray to each light sample, on the CPU"},
+    {Method::Pcss, "pcss", "percentage-closer soft shadows from the light's centre"},
+    {Method::Variance, "variance", "variance soft shadows from the light's centre"},
+};
+constexpr Choice<Reconstruction> kReconstructions[] = {
+    {Reconstruction::Hybrid, "hybrid", "a quad per sample (algorithm 4)"},
+    {Reconstruction::Classic, "classic", "triangles between neighbouring samples"},
+};
+
+constexpr Choice<kit::Redundancy> kRedundancies[] = {
+    {kit::Redundancy::Pixel, "pixel",
+     "an earlier image holds the triangle where the sample lands (algorithm 3)"},
+    {kit::Redundancy::Visibility, "visibility",
+     "an earlier view sees the sample (algorithm 2), by a shadow map's test"},
+};
+constexpr Choice<Measured> kMeasured[] = {
+    {Measured::SoftShadow, "soft_shadow", "the light's visibility"},
+    {Measured::DepthAndPass, "depth_and_pass",
+     "a yardstick: for each light sample a depth-only draw of the casters and a pass over the "
+     "image that only writes"},
+};
+
+float number(Params& params, const char* name, double fallback, const ParamSpec& spec) {
+    return static_cast<float>(params.getDouble(name, fallback, spec));
+}
+
+AreaLightSettings readLight(Params& params) {
+    AreaLightSettings light;
+    light.sizeRatio =
+        number(params, "light_ratio", 1.0,
+               {"diagonal of the square light : diagonal of the scene's box; 0 is a point", "1",
+                0.0, 16.0});
+    light.height =
+        number(params, "light_height", 1.5,
+               {"distance of the light from the centre of the box", "diagonals", 0.01, 100.0});
+    light.azimuthRad = glm::radians(
+        number(params, "light_azimuth_deg", 35.0,
+               {"direction to the light about y, from +z towards +x", "°", -360.0, 360.0}));
+    light.elevationRad = glm::radians(
+        number(params, "light_elevation_deg", 60.0, {"… above the horizon", "°", -90.0, 90.0}));
+    return light;
+}
+
+ReconstructionSettings readReconstruction(Params& params) {
+    ReconstructionSettings settings;
+    settings.method = params.getEnum("reconstruction", Reconstruction::Hybrid, kReconstructions,
+                                     {"how depth images become meshes"});
+    settings.discontinuityPx = number(
+        params, "discontinuity", static_cast<double>(settings.discontinuityPx),
+        {"depth off a sample's plane at which a corner is another surface's", "pixels", 0.0, 1e6});
+    settings.grazingLimitPx = number(
+        params, "grazing_limit", static_cast<double>(settings.grazingLimitPx),
+        {"how far a plane-fitted corner may lie before or behind its sample", "pixels", 0.0, 1e6});
+    settings.mergesRows = params.getBool("merge_rows", false,
+                                         {"samples of one triangle side by side become one quad"});
+    return settings;
+}
+
+}  // namespace
+
+SoftShadowsParams::SoftShadowsParams(Params& params)
+    : method(params.getEnum("method", Method::NonRedundant, kMethods, {"where shadows come from"})),
+      redundancy(params.getEnum("redundancy", kit::Redundancy::Pixel, kRedundancies,
+                                {"which samples non-redundant images leave out"})),
+      referenceImages(params.getInt("reference_images", 4,
+                                    {"depth images, or layers of depth_peeling", "images", 1, 16})),
+      referenceSizePx(
+          params.getInt("reference_size", 512,
+                        {"side of a depth image; the thesis has 1024", "pixels", 1, 32768})),
+      reconstruction(readReconstruction(params)),
+      simplifyTo(number(params, "simplify_to", 1.0,
+                        {"share of a mesh's triangles that simplification keeps; 1 leaves it as "
+                         "reconstructed",
+                         "1", 0.001, 1.0})),
+      simplificationError(
+          number(params, "simplification_error", 0.001,
+                 {"bound on how far simplification moves the surface", "diagonals", 0.0, 1.0})),
+      light(readLight(params)),
+      lightGrid(params.getInt("light_grid", 8,
+                              {"light samples along each edge; the thesis has 16", "1", 1, 64})),
+      hasGround(params.getBool("ground", true, {"a square floor under the scene"})),
+      groundSize(
+          number(params, "ground_size", 1.5, {"side of the floor", "diagonals", 0.0, 100.0})),
+      measured(params.getEnum("measured", Measured::SoftShadow, kMeasured, {"what is timed"})),
+      measuresErrors(
+          params.getBool("errors", true, {"compare with shadow maps of the original geometry"})),
+      tracesTruth(params.getBool("traced_truth", false, {"compares with shadow rays, too"})),
+      seesFromLight(params.getBool(
+          "light_views", false,
+          {"compares the casters with the geometry as seen from the light and from beside it"})),
+      showsPictures(
+          params.getBool("pictures", false, {"shadows, errors, and what light_views compares"})),
+      exportsMesh(params.getBool("export_mesh", false, {"writes the meshes as PLY files"})) {
+    shadowMap.sizePx =
+        // As a depth image: the bias of one texel covers a quad that stands a pixel before its
+        // surface.
+        params.getInt("shadow_map_size", 512, {"side of a shadow map", "pixels", 1, 16384});
+    shadowMap.biasTexels =
+        number(params, "shadow_bias", 1.0,
+               {"how far a receiver is moved before the test", "texels", 0.0, 1000.0});
+    params.finish();
+    if (!reconstructs()) {
+        params.refuseGiven(
+            {"reference_images", "reference_size", "reconstruction", "discontinuity",
+             "grazing_limit", "merge_rows", "simplify_to", "simplification_error", "export_mesh"},
+            "a method that takes depth images: non_redundant, conventional or "
+            "depth_peeling");
+    }
+    if (method != Method::NonRedundant) {
+        params.refuseGiven({"redundancy"}, "'method: non_redundant'");
+    }
+    if (reconstruction.method == Reconstruction::Classic) {
+        params.refuseGiven({"grazing_limit", "merge_rows"}, "'reconstruction: hybrid'");
+    }
+    if (measured == Measured::DepthAndPass) {
+        if (method == Method::RayTraced || isFiltered()) {
+            throw Error(params.locationOf("measured"),
+                        "'measured: depth_and_pass' needs a method that draws a shadow map for "
+                        "each light sample");
+        }
+        params.refuseGiven({"errors", "traced_truth", "light_views", "pictures"},
+                           "'measured: soft_shadow'");
+        measuresErrors = false;
+    }
+    if (method == Method::RayTraced || isFiltered()) {
+        params.refuseGiven({"light_views"},
+                           "a method that draws a shadow map for each light sample");
+    }
+    if (method == Method::RayTraced && !measuresErrors) {
+        params.refuseGiven({"shadow_map_size", "shadow_bias"},
+                           "a method that draws shadow maps, or 'errors: true'");
+    }
+}
+
+bool SoftShadowsParams::reconstructs() const {
+    return method == Method::NonRedundant || method == Method::Conventional ||
+           method == Method::DepthPeeling;
+}
+
 namespace {
 
 /// Where the receivers are seen from: the scene's own camera or one that frames it.
@@ -220,5 +372,213 @@ std::unique_ptr<ShadowCaster> SoftShadows::makeCaster(std::vector<ReconstructedM
     }
     return std::make_unique<MeshCaster>(*shaders_, scene::flattened(simplifiedScene));
 }
+
+HostVisibilityMask SoftShadows::measuredMask() const {
+    return params_.method == Method::RayTraced ? *tracedMask_ : readMask(mask_);
+}
+
+const HostVisibilityMask& SoftShadows::geometryTruth() {
+    if (!geometryTruth_) {
+        VisibilityMask mask = LightVisibility::makeMask(receivers_.view.sizePx, params_.lightGrid);
+        const ShadowCaster* casters[] = {&*geometry_};
+        visibility_->accumulate(mask, receivers_, light_, params_.lightGrid, casters);
+        geometryTruth_ = readMask(mask);
+    }
+    return *geometryTruth_;
+}
+
+const HostVisibilityMask& SoftShadows::tracedTruth() {
+    if (!tracedTruth_) {
+        tracedTruth_ = traceVisibility(*tracer_, hostReceivers_, light_, params_.lightGrid);
+    }
+    return *tracedTruth_;
+}
+
+void SoftShadows::record(technique::Recorder& recorder) {
+    recorder.metric("coverage_pct",
+                    kit::percent(hostReceivers_.covered(), hostReceivers_.positions.size()), "%");
+    if (params_.measuresErrors) recordErrors(recorder, "geometry", geometryTruth());
+    if (params_.tracesTruth) recordErrors(recorder, "ray_traced", tracedTruth());
+    if (params_.method != Method::RayTraced) {
+        const ShadowCaster& caster = caster_ ? *caster_ : *geometry_;
+        recorder.metric("caster_triangles", static_cast<double>(caster.triangleCount()),
+                        "triangle");
+    }
+    if (params_.reconstructs()) recordMeshes(recorder);
+    if (params_.showsPictures) recordPicture(recorder);
+    if (!params_.seesFromLight) return;
+    recordLightView(recorder, "inside", light_.centre);
+    // As far beyond the edge as the edge is from the centre, seen from there.
+    recordLightView(recorder, "outside", light_.centre + 2.0F * light_.right);
+}
+
+void SoftShadows::recordPicture(technique::Recorder& recorder) {
+    const std::vector<float> shares = params_.isFiltered()
+                                          ? litShares_.read<float>(GL_RED, GL_FLOAT, 1)
+                                          : litShares(measuredMask());
+    const image::ImageF picture = shadowPicture(hostReceivers_, shares);
+    const std::vector<glm::vec3> normals(hostReceivers_.normals.begin(),
+                                         hostReceivers_.normals.end());
+    kit::ImageLayers layers(receivers_.view);
+    layers.pointDepths(hostReceivers_.positions).normals(normals);
+    const auto addErrors = [&](const HostVisibilityMask& truth, const char* name) {
+        layers.errors(picture, shadowPicture(hostReceivers_, litShares(truth)), name);
+    };
+    if (params_.tracesTruth) {
+        addErrors(tracedTruth(), "truth_ray_traced");
+    } else if (params_.measuresErrors) {
+        addErrors(geometryTruth(), "truth_geometry");
+    }
+    recorder.image("shadow", picture, layers.options());
+}
+
+void SoftShadows::recordErrors(technique::Recorder& recorder, const char* truthName,
+                               const HostVisibilityMask& truth) {
+    const ShadowErrors errors =
+        params_.isFiltered() ? compareShares(litShares_.read<float>(GL_RED, GL_FLOAT, 1), truth)
+                             : compareMasks(measuredMask(), truth);
+    recorder.metric("intensity_error_mean", errors.intensityMean, "light sample", truthName);
+    recorder.metric("intensity_error_max", errors.intensityMax, "light sample", truthName);
+    if (!params_.isFiltered()) {
+        recorder.metric("visibility_error_mean", errors.visibilityMean, "light sample", truthName);
+        recorder.metric("visibility_error_max", errors.visibilityMax, "light sample", truthName);
+        recorder.metric("wrongly_lit_mean", errors.wronglyLitMean, "light sample", truthName);
+        recorder.metric("wrongly_dark_mean", errors.wronglyDarkMean, "light sample", truthName);
+    }
+    if (params_.showsPictures) {
+        recorder.image(fmt::format("error_{}", truthName),
+                       errorPicture(hostReceivers_, errors.signedIntensity),
+                       kit::seenFrom(receivers_.view));
+        recorder.image(fmt::format("truth_{}", truthName),
+                       shadowPicture(hostReceivers_, litShares(truth)),
+                       kit::seenFrom(receivers_.view, "shadow"));
+    }
+}
+
+void SoftShadows::recordMeshes(technique::Recorder& recorder) const {
+    MeshCounts total;
+    for (const MeshCounts& mesh : meshCounts_) {
+        total.samples += mesh.samples;
+        total.triangles += mesh.triangles;
+        total.bytes += mesh.bytes;
+        total.fittedCorners += mesh.fittedCorners;
+        total.sharedCorners += mesh.sharedCorners;
+    }
+    const auto ratio = [](std::uint64_t part, std::uint64_t whole) {
+        return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+    };
+    recorder.metric("reference_samples", static_cast<double>(total.samples), "sample");
+    recorder.metric("mesh_triangles", static_cast<double>(total.triangles), "triangle");
+    recorder.metric("mesh_bytes", static_cast<double>(total.bytes), "byte");
+    recorder.metric("bytes_per_sample", ratio(total.bytes, total.samples), "byte");
+    recorder.metric("fitted_corners_pct",
+                    100.0 * ratio(total.fittedCorners, total.fittedCorners + total.sharedCorners),
+                    "%");
+    if (params_.simplifyTo < 1.0F) {
+        recorder.metric("simplification_error", simplificationErrorM_, "m");
+    }
+    if (!params_.exportsMesh) return;
+    const auto* caster = dynamic_cast<const ReconstructedCaster*>(caster_.get());
+    if (!caster) return;
+    for (std::size_t i = 0; i < caster->meshes().size(); ++i) {
+        scene::savePly(recorder.artifact(fmt::format("mesh_{}.ply", i)),
+                       scene::sceneOf(toWorldMesh(caster->meshes()[i])));
+    }
+}
+
+// Figures 18 and 19: the casters against the geometry, seen from a point of the light and from one
+// outside of it.
+void SoftShadows::recordLightView(technique::Recorder& recorder, const char* name,
+                                  const glm::vec3& point) const {
+    const kit::View view = lightView(light_, point, params_.shadowMap.sizePx);
+    const auto depthsOf = [&](const ShadowCaster& caster) {
+        const ShadowCaster* casters[] = {&caster};
+        visibility_->drawShadowMap(view, casters);
+        return visibility_->shadowMap().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+    };
+    const std::vector<float> truth = depthsOf(*geometry_);
+    const std::vector<float> measured = caster_ ? depthsOf(*caster_) : truth;
+    const LightViewAgreement agreement =
+        compareDepths(view, light_.casters, truth, measured, params_.referenceSizePx);
+    const auto ofCovered = [&](const char* metric, std::size_t part) {
+        recorder.share(metric, static_cast<double>(part), static_cast<double>(agreement.covered),
+                       "pixel", name);
+    };
+    ofCovered("missing_pct", agreement.missing);
+    ofCovered("nearer_pct", agreement.nearer);
+    if (!params_.showsPictures) return;
+    const std::string casters = fmt::format("casters_{}", name);
+    const auto record = [&](const std::string& imageName, const std::vector<float>& windowDepths,
+                            const std::string& truthOf) {
+        recorder.image(imageName, depthPicture(view, windowDepths),
+                       kit::ImageLayers(view).windowDepths(windowDepths).options(truthOf));
+    };
+    record(casters, measured, "");
+    record(fmt::format("geometry_{}", name), truth, casters);
+}
+
+namespace {
+
+std::unique_ptr<technique::Technique> create(Params& params) {
+    return std::make_unique<SoftShadows>(params);
+}
+
+config::Outputs outputs() {
+    using config::Better;
+    constexpr bool kIsDetail = true;
+    return {
+        {
+            {"intensity_error_mean", "light sample",
+             "how many light samples too many or too few light a pixel, mean of all pixels",
+             Better::Lower},
+            {"intensity_error_max", "light sample", "intensity error of the worst pixel",
+             Better::Lower},
+            {"visibility_error_mean", "light sample",
+             "light samples that a pixel sees wrongly either way, mean of all pixels",
+             Better::Lower},
+            {"wrongly_lit_mean", "light sample",
+             "of these, samples that light a pixel and should not", Better::Lower, kIsDetail},
+            {"wrongly_dark_mean", "light sample",
+             "of these, samples that should light a pixel and do not", Better::Lower, kIsDetail},
+            {"visibility_error_max", "light sample", "visibility error of the worst pixel",
+             Better::Lower},
+            {"coverage_pct", "%", "share of the picture's pixels that show a surface",
+             Better::Neither, kIsDetail},
+            {"caster_triangles", "triangle", "triangles that cast the shadows"},
+            {"mesh_triangles", "triangle", "triangles of the meshes made of depth images"},
+            {"mesh_bytes", "byte", "memory of these meshes", Better::Lower},
+            {"reference_samples", "sample", "samples of the depth images"},
+            {"bytes_per_sample", "byte", "memory of the meshes for each sample of the depth images",
+             Better::Lower, kIsDetail},
+            {"fitted_corners_pct", "%",
+             "share of a mesh's corners that were fitted and are not shared", Better::Neither,
+             kIsDetail},
+            {"simplification_error", "m", "largest distance by which simplification moved a mesh",
+             Better::Lower},
+            {"missing_pct", "%", "share of the casters seen from the light that the meshes lack",
+             Better::Lower},
+            {"nearer_pct", "%",
+             "share of the casters seen from the light that the meshes stand before",
+             Better::Lower},
+        },
+        {
+            {"depth_and_pass", "drawing the receivers' points as the eye sees them"},
+            {"reference_images", "drawing depth images of the casters"},
+            {"reconstruction", "making meshes of the depth images"},
+            {"offset_images", "of that: finding which samples neighbouring images have"},
+            {"simplification", "reducing the triangles of the meshes"},
+            {"soft_shadow", "testing the visibility of all light samples"},
+            {"geometry", "errors against shadow maps of the geometry"},
+            {"ray_traced", "errors against traced rays"},
+            {"inside", "as seen from the light's centre"},
+            {"outside", "as seen from beyond the light's edge"},
+        }};
+}
+
+}  // namespace
+
+const technique::TechniqueInfo kSoftShadows{
+    "soft_shadows", "soft shadows of a rectangular light from reconstructed depth images", create,
+    outputs};
 
 }  // namespace gfxrepro::soft_shadows

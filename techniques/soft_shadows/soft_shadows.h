@@ -7,10 +7,9 @@
 
 #include "runner/technique/technique.h"
 #include "techniques/kit/depth_image_renderer.h"
-#include "techniques/soft_shadows/filtered_shadows.h"
+#include "techniques/soft_shadows/light_visibility.h"
 #include "techniques/soft_shadows/shadow_casters.h"
 #include "techniques/soft_shadows/shadow_errors.h"
-#include "techniques/soft_shadows/simplified.h"
 
 namespace gfxrepro::soft_shadows {
 

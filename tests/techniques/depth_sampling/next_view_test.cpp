@@ -1,4 +1,4 @@
-#include "techniques/depth_sampling/next_view.h"
+#include "techniques/depth_sampling/pixel_measures.h"
 
 #include <gtest/gtest.h>
 

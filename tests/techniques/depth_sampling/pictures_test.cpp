@@ -1,4 +1,4 @@
-#include "techniques/depth_sampling/pictures.h"
+#include "techniques/depth_sampling/experiment.h"
 
 #include <gtest/gtest.h>
 

@@ -201,7 +201,7 @@ TEST_F(PixelMeasuresTest, AvailabilityIsThatOfDoubleLoops) {
             const std::uint64_t undecided = countOf(expected.borderline, kAvailable);
 
             measures.beginAvailability(outputs.images[frame], references.span());
-            const PixelMeasures::Availability found = measures.finishAvailability();
+            const FrameCounts found = measures.finishAvailability();
             EXPECT_EQ(found.samples, samples);
             EXPECT_NEAR(static_cast<double>(found.available), static_cast<double>(sure),
                         static_cast<double>(undecided));
@@ -289,11 +289,11 @@ TEST_F(PixelMeasuresTest, EmptyImagesAndEmptyLists) {
     measures.mark(empty.images[0], none, empty.span(), true, 0, kRedundant);
     EXPECT_EQ(read(none), std::vector<std::uint32_t>(19 * 70, 0));
     measures.beginAvailability(empty.images[0], empty.span());
-    EXPECT_EQ(measures.finishAvailability(), (PixelMeasures::Availability{0, 0}));
+    EXPECT_EQ(measures.finishAvailability(), (FrameCounts{0, 0}));
     measures.beginAvailability(full.images[0], empty.span());
-    EXPECT_EQ(measures.finishAvailability(), (PixelMeasures::Availability{19 * 70, 0}));
+    EXPECT_EQ(measures.finishAvailability(), (FrameCounts{19 * 70, 0}));
     measures.beginAvailability(full.images[0], {});
-    EXPECT_EQ(measures.finishAvailability(), (PixelMeasures::Availability{19 * 70, 0}));
+    EXPECT_EQ(measures.finishAvailability(), (FrameCounts{19 * 70, 0}));
 
     gl::Texture marks = measures.makeMarks(full.images[0]);
     measures.mark(full.images[0], marks, {}, true, kSample, kRedundant);

@@ -1,10 +1,9 @@
-#include "techniques/depth_sampling/visibility_measures.h"
+#include "techniques/depth_sampling/visibility.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "techniques/depth_sampling/ray_cast_image.h"
 #include "tests/techniques/depth_sampling/brute_visibility.h"
 #include "tests/techniques/depth_sampling/visibility_scenes.h"
 
@@ -43,20 +42,19 @@ TEST(VisibilityMeasures, CountTwoSquares) {
     // 32 pixels for 4 m: the front square fills 16². The back one, a metre further, is seen at
     // 0.5 · 4/5 = 0.4 m of half size: samples at 0.125 · (k + 0.5) m, so 2 · 3 = 6 a side.
     EXPECT_EQ(countSamples(conventional, 0, conventional, before),
-              (VisibilityCounts{.samples = 256, .occludedLiterally = 256}));
+              (ImageCounts{.samples = 256, .occludedLiterally = 256}));
     EXPECT_EQ(countSamples(conventional, 1, conventional, before),
-              (VisibilityCounts{.samples = 256, .redundant = 256}));
+              (ImageCounts{.samples = 256, .redundant = 256}));
     EXPECT_EQ(
         countSamples(layers, 1, conventional, before),
-        (VisibilityCounts{.samples = 36, .redundant = 0, .occluded = 36, .occludedLiterally = 36}));
+        (ImageCounts{.samples = 36, .redundant = 0, .occluded = 36, .occludedLiterally = 36}));
     // From far aside the gap between the squares shows all of the back one.
-    EXPECT_EQ(
-        countSamples(layers, 1, conventional, aside),
-        (VisibilityCounts{.samples = 36, .occluded = 36, .occludedLiterally = 36, .useful = 36}));
-    EXPECT_EQ(countSamples(layers, 2, conventional, aside), VisibilityCounts{});
+    EXPECT_EQ(countSamples(layers, 1, conventional, aside),
+              (ImageCounts{.samples = 36, .occluded = 36, .occludedLiterally = 36, .useful = 36}));
+    EXPECT_EQ(countSamples(layers, 2, conventional, aside), ImageCounts{});
     // V₁ has what V₀ has not: occluded in the literal reading alone.
     EXPECT_EQ(countSamples(layers, 1, aside, aside),
-              (VisibilityCounts{.samples = 36, .occludedLiterally = 36}));
+              (ImageCounts{.samples = 36, .occludedLiterally = 36}));
 }
 
 TEST(VisibilityMeasures, AvailabilityOfTwoSquares) {
@@ -70,7 +68,7 @@ TEST(VisibilityMeasures, AvailabilityOfTwoSquares) {
     }
     EXPECT_GT(front, 100U);
     EXPECT_GT(back, 10U);
-    using Frames = std::vector<VisibilityAvailability>;
+    using Frames = std::vector<FrameCounts>;
     const auto available = [&](const std::vector<View>& views, bool isNonRedundant) {
         return countAvailable(VisibilitySequence(tracer, views, isNonRedundant), outputs);
     };
@@ -101,7 +99,7 @@ TEST(VisibilityMeasures, CountsAgreeWithALoopOverTriangles) {
     };
     std::uint64_t useful = 0;
     for (std::size_t j = 0; j < 3; ++j) {
-        VisibilityCounts expected;
+        ImageCounts expected;
         for (int pixel = 0; pixel < 24 * 24; ++pixel) {
             const glm::vec2 at(pixel % 24, pixel / 24);
             const auto point = bruteSequence.sample(j, rayThrough(views[j], at + 0.5F));
@@ -113,7 +111,7 @@ TEST(VisibilityMeasures, CountsAgreeWithALoopOverTriangles) {
             ++expected.occluded;
             expected.useful += isHeld(bruteOutputs, 3, *point);
         }
-        const VisibilityCounts counts = countSamples(sequence, j, conventional, outputs);
+        const ImageCounts counts = countSamples(sequence, j, conventional, outputs);
         EXPECT_EQ(counts.redundant, 0U);
         // A few samples lie so near to an edge that rounding decides.
         constexpr double kFew = 3.0;

@@ -1,4 +1,4 @@
-#include "techniques/external/metric_lines.h"
+#include "techniques/external/results.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -7,7 +7,7 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
-#include "techniques/shadow_mapping/shadow_steps.h"
+#include "techniques/shadow_mapping/shadow_map.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::shadow_mapping {

@@ -1,5 +1,6 @@
 // The classic depth-image mesh on the device against the CPU and known answers.
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 

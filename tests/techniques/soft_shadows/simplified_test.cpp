@@ -1,5 +1,5 @@
 // Fewer triangles, the surface within the error, borders untouched.
-#include "techniques/soft_shadows/simplified.h"
+#include "techniques/soft_shadows/shadow_casters.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,11 @@
-#include "techniques/depth_sampling/pixel_experiment.h"
+#include "techniques/depth_sampling/experiment.h"
+
+#include <tbb/parallel_for.h>
 
 #include <utility>
+
+#include "techniques/depth_sampling/pixel_measures.h"
+#include "techniques/depth_sampling/visibility.h"
 
 namespace gfxrepro::depth_sampling {
 
@@ -129,6 +134,137 @@ std::size_t PixelExperiment::referenceImageBytes() const {
     std::size_t bytes = 0;
     for (const DepthImage& image : images_) bytes += image.sizeBytes();
     return bytes;
+}
+
+namespace {
+
+/// Calls markOf(point) for the sample of each pixel that has one.
+template <class MarkOf>
+std::vector<std::uint32_t> marksOf(const VisibilitySequence& sequence, std::size_t index,
+                                   const MarkOf& markOf) {
+    const glm::ivec2 size = sequence.views()[index].sizePx;
+    const auto width = static_cast<std::size_t>(size.x);
+    std::vector<std::uint32_t> marks(width * static_cast<std::size_t>(size.y), 0);
+    tbb::parallel_for(0, size.y, [&](int y) {
+        for (int x = 0; x < size.x; ++x) {
+            const std::optional<SurfacePoint> point = sequence.sample(index, {x, y});
+            if (!point) continue;
+            marks[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] =
+                kSample | markOf(*point);
+        }
+    });
+    return marks;
+}
+
+}  // namespace
+
+VisibilityExperiment::VisibilityExperiment(const scene::Scene& scene, raycast::RayTracer tracer,
+                                           Method method, const Views& views, Earlier earlier)
+    : method_(method),
+      tracer_(std::move(tracer)),
+      shading_(scene),
+      sequence_(tracer_, views.images, method != Method::Conventional, earlier),
+      conventional_(tracer_, views.conventional, false),
+      frames_(tracer_, views.frames, false),
+      neededBy_(tracer_, {}, false) {}
+
+// [xie2017] Algorithm 1
+void VisibilityExperiment::makeReferenceImages(gl::Profiler& profiler) {
+    const gl::CpuScope all(profiler, "reference_images");
+    images_.clear();
+    for (std::size_t i = 0; i < sequence_.views().size(); ++i) {
+        const gl::CpuScope one(profiler, imageName(i));
+        images_.push_back(rayCastImage(sequence_, i, shading_));
+    }
+}
+
+Measures VisibilityExperiment::measure(const MeasureSettings& settings) {
+    if (settings.usefulness) neededBy_ = frames_;
+    Measures result;
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+        ImageCounts counts = countSamples(sequence_, i, conventional_, neededBy_);
+        // Departure [xie2017] Sec. 2.3.2: see PixelExperiment::markImage().
+        if (method_ == Method::Conventional) counts.occludedLiterally = 0;
+        if (method_ == Method::DepthPeeling) counts.occludedLiterally = counts.occluded;
+        result.images.push_back(counts);
+    }
+    if (settings.availability) result.frames = countAvailable(sequence_, frames_);
+    return result;
+}
+
+MarkedImage VisibilityExperiment::markedImage(std::size_t index) const {
+    const auto markOf = [&](const SurfacePoint& point) -> std::uint32_t {
+        if (conventional_.anyHolds(conventional_.views().size(), point)) return 0;
+        std::uint32_t marks = kOccluded;
+        if (neededBy_.anyHolds(neededBy_.views().size(), point)) marks |= kUseful;
+        return marks;
+    };
+    return {images_[index], marksOf(sequence_, index, markOf)};
+}
+
+MarkedImage VisibilityExperiment::markedFrame(std::size_t index) {
+    const auto markOf = [&](const SurfacePoint& point) -> std::uint32_t {
+        if (!sequence_.anyHolds(sequence_.views().size(), point)) return 0;
+        return kAvailable;
+    };
+    return {rayCastImage(frames_, index, shading_), marksOf(frames_, index, markOf)};
+}
+
+std::size_t VisibilityExperiment::referenceImageBytes() const {
+    std::size_t bytes = 0;
+    for (const kit::HostDepthImage& image : images_) {
+        bytes += image.shading.size() * sizeof(glm::u8vec4) + image.depthM.size() * sizeof(float) +
+                 image.triangleId.size() * sizeof(std::uint32_t);
+    }
+    return bytes;
+}
+
+using kit::HostDepthImage;
+
+namespace {
+
+glm::vec3 shadingOf(const HostDepthImage& image, std::size_t index) {
+    return glm::vec3(image.shading[index]) / 255.0F;
+}
+
+/// Luminance of linear Rec. 709.
+float brightness(const glm::vec3& color) {
+    return glm::dot(color, glm::vec3(0.2126F, 0.7152F, 0.0722F));
+}
+
+/// The legend's colour, darkened by the shading so that shapes stay visible, but never below 0.3 of
+/// it, so that a dark leaf can still be told green from yellow.
+glm::vec3 tinted(const glm::vec3& color, const glm::vec3& shading) {
+    return color * (0.3F + 0.7F * brightness(shading));
+}
+
+/// `colorOf(index)` of all samples.
+template <class ColorOf>
+image::ImageF picture(const HostDepthImage& image, std::span<const std::uint32_t> marks,
+                      ColorOf&& colorOf) {
+    GFXREPRO_ASSERT_EQ(marks.size(), image.triangleId.size());
+    return kit::pictureOf(image.view.sizePx, [&](std::size_t index) {
+        return (marks[index] & kSample) != 0 ? colorOf(index) : kPictureBackground;
+    });
+}
+
+}  // namespace
+
+image::ImageF occludedPicture(const HostDepthImage& image, std::span<const std::uint32_t> marks) {
+    return picture(image, marks, [&](std::size_t index) {
+        const glm::vec3 shading = shadingOf(image, index);
+        if ((marks[index] & kUseful) != 0) return tinted(kUsefulColor, shading);
+        if ((marks[index] & kOccluded) != 0) return tinted(kOccludedColor, shading);
+        return glm::vec3(brightness(shading));
+    });
+}
+
+image::ImageF availabilityPicture(const HostDepthImage& frame,
+                                  std::span<const std::uint32_t> marks) {
+    return picture(frame, marks, [&](std::size_t index) {
+        const glm::vec3 shading = shadingOf(frame, index);
+        return (marks[index] & kAvailable) != 0 ? shading : tinted(kUnavailableColor, shading);
+    });
 }
 
 }  // namespace gfxrepro::depth_sampling
