@@ -9,7 +9,6 @@
 #include "engine/gl/pass.h"
 
 namespace gfxrepro::gl {
-
 namespace {
 
 constexpr glm::ivec2 kSize{512, 512};

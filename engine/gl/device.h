@@ -73,6 +73,10 @@ struct DeviceChoice {
     int processes = 1;  // that draw at once, this one among them: they share the cores (llvmpipe)
 };
 
+/// Throws UsageError unless `name`, of a command line, is auto, gpu, software, none, an index or a
+/// UUID.
+void requireDeviceName(const std::string& name);
+
 /// An EGL display with a current OpenGL 4.5 core context, without a surface. One a process is the
 /// rule.
 class Device {

@@ -8,7 +8,6 @@
 #include "engine/core/text.h"
 
 namespace gfxrepro::gl::egl {
-
 namespace {
 
 std::string lastError() {

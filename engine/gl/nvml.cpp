@@ -7,7 +7,6 @@
 #include <cctype>
 
 namespace gfxrepro::gl {
-
 namespace {
 
 // What is used of nvml.h, whose binary interface is stable: functions by their versioned names.

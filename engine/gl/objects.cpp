@@ -10,6 +10,32 @@
 
 namespace gfxrepro::gl {
 
+void orderAllMemory() {
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+GLbitfield ShaderAccesses::note(GLbitfield barrier, bool isWrite) {
+    const GLbitfield needed = isWrite && isReadSince_ ? barrier : noteCommand(barrier);
+    if (isWrite) noteUnorderedWrite();
+    if (!isWrite) isReadSince_ = true;
+    return needed;
+}
+
+void ShaderAccesses::noteUnorderedWrite() {
+    unseenBy_ = GL_ALL_BARRIER_BITS;
+    isReadSince_ = false;
+}
+
+GLbitfield ShaderAccesses::noteCommand(GLbitfield barrier) {
+    const GLbitfield needed = unseenBy_ & barrier;
+    unseenBy_ &= ~barrier;
+    return needed;
+}
+
+void ShaderAccesses::await(GLbitfield barrier) {
+    if (noteCommand(barrier) != 0) glMemoryBarrier(barrier);
+}
+
 namespace detail {
 void deleteBuffer(GLuint id) {
     glDeleteBuffers(1, &id);
@@ -310,44 +336,172 @@ void Texture::bindImageLayer(GLuint unit, int layer, GLenum access) const {
     glBindImageTexture(unit, id(), 0, GL_FALSE, layer, access, format_);
 }
 
-SampleQuery::SampleQuery() {
+namespace {
+
+std::string statusName(GLenum status) {
+    switch (status) {
+        case GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT:
+            return "GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT";
+        case GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT:
+            return "GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT";
+        case GL_FRAMEBUFFER_INCOMPLETE_DRAW_BUFFER:
+            return "GL_FRAMEBUFFER_INCOMPLETE_DRAW_BUFFER";
+        case GL_FRAMEBUFFER_INCOMPLETE_MULTISAMPLE:
+            return "GL_FRAMEBUFFER_INCOMPLETE_MULTISAMPLE";
+        case GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS:
+            return "GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS";
+        case GL_FRAMEBUFFER_UNSUPPORTED:
+            return "GL_FRAMEBUFFER_UNSUPPORTED";
+        default:
+            return errorName(status);
+    }
+}
+
+void checkComplete(GLuint framebuffer) {
+    const GLenum status = glCheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER);
+    if (status == GL_FRAMEBUFFER_COMPLETE) return;
+    throw Error(fmt::format("framebuffer is not complete: {}", statusName(status)));
+}
+
+GLuint createFramebuffer() {
     GLuint id = 0;
-    glCreateQueries(GL_SAMPLES_PASSED, 1, &id);
-    name_ = detail::Name<detail::deleteQuery>(id);
+    glCreateFramebuffers(1, &id);
+    return id;
 }
 
-void SampleQuery::begin() const {
-    glBeginQuery(GL_SAMPLES_PASSED, name_.get());
+void attachDepth(GLuint framebuffer, const Texture& depth) {
+    const bool hasStencil =
+        depth.format() == GL_DEPTH24_STENCIL8 || depth.format() == GL_DEPTH32F_STENCIL8;
+    glNamedFramebufferTexture(
+        framebuffer, hasStencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth.id(), 0);
 }
 
-void SampleQuery::end() const {
-    glEndQuery(GL_SAMPLES_PASSED);
-}
-
-std::uint64_t SampleQuery::result() const {
-    GLuint64 count = 0;
-    glGetQueryObjectui64v(name_.get(), GL_QUERY_RESULT, &count);
-    return count;
-}
-
-PrimitiveQuery::PrimitiveQuery() {
+GLuint createVertexArray() {
     GLuint id = 0;
-    glCreateQueries(GL_PRIMITIVES_GENERATED, 1, &id);
-    name_ = detail::Name<detail::deleteQuery>(id);
+    glCreateVertexArrays(1, &id);
+    return id;
 }
 
-void PrimitiveQuery::begin() const {
-    glBeginQuery(GL_PRIMITIVES_GENERATED, name_.get());
+}  // namespace
+
+Framebuffer::Framebuffer(std::span<const Texture* const> colours, const Texture* depth)
+    : name_(createFramebuffer()) {
+    GFXREPRO_ASSERT(!colours.empty() || depth != nullptr);
+    std::vector<GLenum> drawBuffers;
+    for (const Texture* colour : colours) {
+        const auto attachment = static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + drawBuffers.size());
+        glNamedFramebufferTexture(id(), attachment, colour->id(), 0);
+        drawBuffers.push_back(attachment);
+    }
+    glNamedFramebufferDrawBuffers(id(), static_cast<GLsizei>(drawBuffers.size()),
+                                  drawBuffers.data());
+    if (depth != nullptr) attachDepth(id(), *depth);
+    size_ = (colours.empty() ? depth : colours.front())->size();
+    checkComplete(id());
 }
 
-void PrimitiveQuery::end() const {
-    glEndQuery(GL_PRIMITIVES_GENERATED);
+Framebuffer Framebuffer::ofLayer(const Texture& colour, int layer, const Texture* depth) {
+    Framebuffer framebuffer;
+    framebuffer.name_ = detail::Name<detail::deleteFramebuffer>(createFramebuffer());
+    framebuffer.size_ = colour.size();
+    glNamedFramebufferTextureLayer(framebuffer.id(), GL_COLOR_ATTACHMENT0, colour.id(), 0, layer);
+    if (depth != nullptr) attachDepth(framebuffer.id(), *depth);
+    checkComplete(framebuffer.id());
+    return framebuffer;
 }
 
-std::uint64_t PrimitiveQuery::result() const {
-    GLuint64 count = 0;
-    glGetQueryObjectui64v(name_.get(), GL_QUERY_RESULT, &count);
-    return count;
+Framebuffer Framebuffer::withoutAttachments(glm::ivec2 size, int samples) {
+    const glm::ivec3 wanted(size, samples);
+    const glm::ivec3 limit(getInteger(GL_MAX_FRAMEBUFFER_WIDTH),
+                           getInteger(GL_MAX_FRAMEBUFFER_HEIGHT),
+                           getInteger(GL_MAX_FRAMEBUFFER_SAMPLES));
+    if (glm::any(glm::greaterThan(wanted, limit))) {
+        throw UnsupportedError(fmt::format(
+            "a framebuffer of {} × {} pixels with {} samples is beyond this device's {} × {} with "
+            "{} (GL_MAX_FRAMEBUFFER_WIDTH, _HEIGHT, _SAMPLES)",
+            wanted.x, wanted.y, wanted.z, limit.x, limit.y, limit.z));
+    }
+    Framebuffer framebuffer;
+    framebuffer.name_ = detail::Name<detail::deleteFramebuffer>(createFramebuffer());
+    framebuffer.size_ = size;
+    glNamedFramebufferParameteri(framebuffer.id(), GL_FRAMEBUFFER_DEFAULT_WIDTH, size.x);
+    glNamedFramebufferParameteri(framebuffer.id(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, size.y);
+    glNamedFramebufferParameteri(framebuffer.id(), GL_FRAMEBUFFER_DEFAULT_SAMPLES, samples);
+    checkComplete(framebuffer.id());
+    return framebuffer;
+}
+
+void Framebuffer::bind() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, id());
+    glViewport(0, 0, size_.x, size_.y);
+}
+
+void Framebuffer::clearColour(int attachment, const glm::vec4& value) const {
+    glClearNamedFramebufferfv(id(), GL_COLOR, attachment, &value.x);
+}
+
+void Framebuffer::clearDepth(float depth) const {
+    glClearNamedFramebufferfv(id(), GL_DEPTH, 0, &depth);
+}
+
+VertexArray::VertexArray() : name_(createVertexArray()) {}
+
+void VertexArray::setAttribute(GLuint location, const Buffer& buffer, int components) {
+    const auto strideBytes = static_cast<GLsizei>(sizeof(float)) * components;
+    glVertexArrayVertexBuffer(id(), location, buffer.id(), 0, strideBytes);
+    glVertexArrayAttribFormat(id(), location, components, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(id(), location, location);
+    glEnableVertexArrayAttrib(id(), location);
+}
+
+void VertexArray::setInstanceIndex(GLuint location, const Buffer& buffer) {
+    glVertexArrayVertexBuffer(id(), location, buffer.id(), 0, sizeof(GLuint));
+    glVertexArrayAttribIFormat(id(), location, 1, GL_UNSIGNED_INT, 0);
+    glVertexArrayAttribBinding(id(), location, location);
+    glVertexArrayBindingDivisor(id(), location, 1);
+    glEnableVertexArrayAttrib(id(), location);
+}
+
+void VertexArray::setIndices(const Buffer& indices) {
+    glVertexArrayElementBuffer(id(), indices.id());
+}
+
+void VertexArray::bind() const {
+    glBindVertexArray(id());
+}
+
+namespace {
+constexpr GLenum kWorkTargets[] = {GL_PRIMITIVES_SUBMITTED, GL_FRAGMENT_SHADER_INVOCATIONS,
+                                   GL_COMPUTE_SHADER_INVOCATIONS};
+}  // namespace
+
+WorkQuery::WorkQuery(bool isSupported) {
+    for (std::size_t i = 0; isSupported && i < names_.size(); ++i) {
+        GLuint id = 0;
+        glGenQueries(1, &id);  // Mesa 22.3's glCreateQueries does not know these targets
+        names_[i] = detail::Name<detail::deleteQuery>(id);
+    }
+}
+
+void WorkQuery::begin() const {
+    for (std::size_t i = 0; names_[0].get() != 0 && i < names_.size(); ++i) {
+        glBeginQuery(kWorkTargets[i], names_[i].get());
+    }
+}
+
+void WorkQuery::end() const {
+    for (std::size_t i = 0; names_[0].get() != 0 && i < names_.size(); ++i) {
+        glEndQuery(kWorkTargets[i]);
+    }
+}
+
+std::optional<Work> WorkQuery::result() const {
+    if (names_[0].get() == 0) return std::nullopt;
+    GLuint64 counts[3] = {};
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+        glGetQueryObjectui64v(names_[i].get(), GL_QUERY_RESULT, &counts[i]);
+    }
+    return Work{counts[0], counts[1], counts[2]};
 }
 
 }  // namespace gfxrepro::gl

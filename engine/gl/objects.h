@@ -2,18 +2,44 @@
 // empty. Every constructor and function needs the device's context to be current.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "engine/gl/barrier.h"
 #include "engine/gl/gl.h"
 #include "engine/image/image.h"
 
 namespace gfxrepro::gl {
+
+/// What was written so far is seen by all that follows (GL_ALL_BARRIER_BITS); nothing waits for it
+/// on the CPU. Between frames that are not finished one by one.
+void orderAllMemory();
+
+/// What the passes did last to a buffer or a texture, and so the barriers that its next use needs
+/// (OpenGL 4.5, 7.12.2): GL orders no use after a shader's write, and no shader's write after an
+/// earlier shader's read.
+class ShaderAccesses {
+  public:
+    /// Notes a use by a pass. `barrier` is the bit of glMemoryBarrier for that kind of use. Returns
+    /// the bit where the use must wait for earlier ones, or 0.
+    GLbitfield note(GLbitfield barrier, bool isWrite);
+    /// A write by a pass that waits for none of the earlier uses.
+    void noteUnorderedWrite();
+    /// As note(), for a use by a command (a copy, a clear, a draw's arguments), which GL orders
+    /// before what follows it.
+    GLbitfield noteCommand(GLbitfield barrier);
+    /// noteCommand(), and the barrier where one is needed.
+    void await(GLbitfield barrier);
+
+  private:
+    GLbitfield unseenBy_ = 0;  // kinds of use that no barrier lets see the last write yet
+    bool isReadSince_ = false;
+};
 
 namespace detail {
 /// A GL name and the function that deletes it.
@@ -185,32 +211,31 @@ class Framebuffer {
     glm::ivec2 size_{0};
 };
 
-/// Counts the samples that pass all tests of the draws between begin() and end().
-class SampleQuery {
+/// Counts what the draws between begin() and end() do.
+template <GLenum Target>
+class Query {
   public:
-    SampleQuery();
-    void begin() const;
-    void end() const;
+    Query() {
+        GLuint id = 0;
+        glCreateQueries(Target, 1, &id);
+        name_ = detail::Name<detail::deleteQuery>(id);
+    }
+    void begin() const { glBeginQuery(Target, name_.get()); }
+    void end() const { glEndQuery(Target); }
     /// Of the last begin() … end(); waits for the device.
-    std::uint64_t result() const;
+    std::uint64_t result() const {
+        GLuint64 count = 0;
+        glGetQueryObjectui64v(name_.get(), GL_QUERY_RESULT, &count);
+        return count;
+    }
 
   private:
     detail::Name<detail::deleteQuery> name_;
 };
-
-/// Counts the primitives that the draws between begin() and end() hand to the rasterizer
-/// (GL_PRIMITIVES_GENERATED), before clipping.
-class PrimitiveQuery {
-  public:
-    PrimitiveQuery();
-    void begin() const;
-    void end() const;
-    /// Of the last begin() … end(); waits for the device.
-    std::uint64_t result() const;
-
-  private:
-    detail::Name<detail::deleteQuery> name_;
-};
+/// Of samples that pass all tests.
+using SampleQuery = Query<GL_SAMPLES_PASSED>;
+/// Of primitives that are handed to the rasterizer, before clipping.
+using PrimitiveQuery = Query<GL_PRIMITIVES_GENERATED>;
 
 class VertexArray {
   public:
@@ -230,6 +255,31 @@ class VertexArray {
   private:
     explicit VertexArray(std::nullptr_t) {}
     detail::Name<detail::deleteVertexArray> name_;
+};
+
+// How much work a stretch of commands is, for guarding times against unequal work.
+
+/// What the commands between begin() and end() made the device do.
+struct Work {
+    std::uint64_t primitives = 0;   // handed to the pipeline by draws
+    std::uint64_t fragments = 0;    // fragment shader invocations
+    std::uint64_t invocations = 0;  // of compute shaders
+
+    bool operator==(const Work&) const = default;
+};
+
+/// Counts Work by pipeline statistics, which no SampleQuery or PrimitiveQuery inside disturbs.
+/// Devices without ARB_pipeline_statistics_query count nothing.
+class WorkQuery {
+  public:
+    explicit WorkQuery(bool isSupported);
+    void begin() const;
+    void end() const;
+    /// Of the last begin() … end(); waits for the device. Null where it is not supported.
+    std::optional<Work> result() const;
+
+  private:
+    std::array<detail::Name<detail::deleteQuery>, 3> names_;
 };
 
 }  // namespace gfxrepro::gl

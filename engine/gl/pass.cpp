@@ -11,7 +11,6 @@
 #include "engine/core/text.h"
 
 namespace gfxrepro::gl {
-
 namespace {
 
 struct Words {

@@ -7,7 +7,6 @@
 #include "engine/core/error.h"
 
 namespace gfxrepro::gl {
-
 namespace {
 
 detail::Name<detail::deleteQuery> stamp(bool isSoftwareDevice) {

@@ -7,7 +7,6 @@
 #include <span>
 
 namespace gfxrepro::image {
-
 namespace {
 
 using Colour = std::array<std::uint8_t, 3>;

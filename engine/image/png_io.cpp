@@ -16,7 +16,6 @@
 #include "engine/core/files.h"
 
 namespace gfxrepro::image {
-
 namespace {
 
 constexpr bool kSwapBytes = std::endian::native == std::endian::little;  // PNG is big-endian

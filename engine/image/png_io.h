@@ -9,13 +9,12 @@
 #include <string>
 
 #include "engine/image/image.h"
-#include "engine/image/limits.h"
 
 namespace gfxrepro::image {
 
 /// 8-bit values, 1 to 4 channels; palettes and lower depths are expanded, 16-bit is an Error.
 /// Throws Error with the path and the decoder's reason; the memory stays bounded by what the header
-/// declares, and that as limits.h says of pictures.
+/// declares, and that as checkDeclaredSize() says of pictures.
 Image8 readPng8(const std::filesystem::path& path);
 /// 16-bit values; 8-bit files are widened (v·257).
 Image16 readPng16(const std::filesystem::path& path);

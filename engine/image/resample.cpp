@@ -7,11 +7,10 @@
 #include <cmath>
 
 #include "engine/core/error.h"
-#include "engine/image/limits.h"
+#include "engine/image/image.h"
 #include "engine/image/srgb.h"
 
 namespace gfxrepro::image {
-
 namespace {
 
 void check(int width, int height, const Rectangle& part, int scale) {

@@ -1,10 +1,12 @@
 #include "engine/image/srgb.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <span>
 
 namespace gfxrepro::image {
-
 namespace {
 
 double decodedSrgb(double srgb) {
@@ -27,6 +29,42 @@ std::array<float, 256> srgbDecoding() {
         table[i] = static_cast<float>(decodedSrgb(static_cast<double>(i) / 255.0));
     }
     return table;
+}
+
+namespace {
+
+float aces(float value) {
+    constexpr AcesCurve c;
+    const double x = double{value};
+    return static_cast<float>((c.n2 * x * x + c.n1 * x) / (c.d2 * x * x + c.d1 * x + c.d0));
+}
+
+/// Of linear Rec. 709, or of one channel.
+float luminanceOf(std::span<const float> colour) {
+    if (colour.size() < 3) return colour[0];
+    return 0.2126F * colour[0] + 0.7152F * colour[1] + 0.0722F * colour[2];
+}
+
+}  // namespace
+
+ImageF toneMapped(const ImageF& linear, float exposureStops, ToneMap toneMap) {
+    const float scale = std::exp2(exposureStops);
+    const auto channels = static_cast<std::size_t>(linear.channels());
+    const std::size_t colours = std::min(channels, std::size_t{3});
+    ImageF result = linear;
+    for (std::size_t i = 0; i < result.values().size(); i += channels) {
+        const std::span<float> colour = result.values().subspan(i, colours);
+        for (float& value : colour) {  // not-a-number becomes 0
+            value = std::min(std::max(0.0F, scale * value), std::numeric_limits<float>::max());
+        }
+        const float luminance = toneMap == ToneMap::Reinhard ? luminanceOf(colour) : 0.0F;
+        for (float& value : colour) {
+            if (toneMap == ToneMap::Aces) value = aces(value);
+            if (toneMap == ToneMap::Reinhard) value /= 1.0F + luminance;
+            value = std::min(value, 1.0F);
+        }
+    }
+    return result;
 }
 
 }  // namespace gfxrepro::image

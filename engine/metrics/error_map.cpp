@@ -10,7 +10,6 @@
 #include "engine/metrics/image_error.h"
 
 namespace gfxrepro::metrics {
-
 namespace {
 
 using image::Image8;

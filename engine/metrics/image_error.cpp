@@ -8,7 +8,6 @@
 #include "engine/core/error.h"
 
 namespace gfxrepro::metrics {
-
 namespace {
 
 using image::ImageF;

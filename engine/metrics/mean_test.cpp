@@ -11,7 +11,6 @@
 #include "engine/core/random.h"
 
 namespace gfxrepro::metrics {
-
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -10,7 +10,6 @@
 #include "engine/core/error.h"
 
 namespace gfxrepro::metrics {
-
 namespace {
 
 constexpr std::array<std::pair<std::string_view, Statistic>, 7> kStatistics = {{

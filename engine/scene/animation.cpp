@@ -8,7 +8,6 @@
 #include "engine/core/error.h"
 
 namespace gfxrepro::scene {
-
 namespace {
 
 /// The uniform Catmull-Rom spline between p1 and p2.

@@ -1,7 +1,6 @@
 #include "engine/scene/catalog_schema.h"
 
 namespace gfxrepro::scene {
-
 namespace {
 
 using namespace types;

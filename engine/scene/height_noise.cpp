@@ -3,7 +3,6 @@
 #include <cmath>
 
 namespace gfxrepro::scene {
-
 namespace {
 
 float fade(float t) {

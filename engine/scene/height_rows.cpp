@@ -1,19 +1,27 @@
-// Rows of PNG, SRTM and raw files; TIFF has a file of its own.
+// Rows of PNG, SRTM, raw and TIFF files; samples without data.
 #include "engine/scene/height_rows.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tiffio.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
 #include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <string_view>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/node.h"
+#include "engine/image/image.h"
 #include "engine/image/png_io.h"
 #include "engine/scene/height_map.h"
 
@@ -199,8 +207,170 @@ std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
     return rows;
 }
 
-std::unique_ptr<HeightRows> openPngRows(const fs::path& path) {
-    return std::make_unique<PngHeightRows>(path);
+constexpr std::uint32_t kGdalNoData = 42113;
+/// Tiles of 1,024² of floats across the widest map.
+constexpr std::size_t kMostTileRowBytes = std::size_t{260} << 20;
+
+int keepFirstMessage(TIFF*, void* to, const char*, const char* format, va_list arguments) {
+    auto& message = *static_cast<std::string*>(to);
+    if (!message.empty()) return 1;
+    char text[256];
+    std::vsnprintf(text, sizeof text, format, arguments);
+    message = text;
+    return 1;
+}
+
+/// Unknown tags, which GeoTIFF is full of, are no harm. A tag that lies beyond the end of the file
+/// is: it may be the one that says which values are none.
+int keepReadWarning(TIFF* tiff, void* to, const char* module, const char* format,
+                    va_list arguments) {
+    if (std::strstr(format, "IO error") == nullptr) return 1;
+    return keepFirstMessage(tiff, to, module, format, arguments);
+}
+
+/// Grey TIFF of 8 or 16 bit integers or 32 bit floats, in strips or tiles, with GDAL's no-data tag
+/// (libtiff).
+class TiffRows : public HeightRows {
+  public:
+    explicit TiffRows(const fs::path& path) : name_(path.string()) {
+        const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(
+            TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
+        TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keepFirstMessage, &message_);
+        TIFFOpenOptionsSetWarningHandlerExtR(options.get(), keepReadWarning, &message_);
+        // Not mapped ("m"): what is read of a file need not stay.
+        tiff_.reset(TIFFOpenExt(name_.c_str(), "rm", options.get()));
+        if (!tiff_ || !message_.empty()) fail();
+        fileBytes_ = fs::file_size(path);
+        readHeader();
+        sizeSamples = {static_cast<int>(width_), static_cast<int>(height_)};
+        isEightBit = bits_ == 8;
+        canBeNan = format_ == SAMPLEFORMAT_IEEEFP;
+        if (TIFFIsTiled(tiff_.get()) != 0) {
+            prepareTiles();
+        } else {
+            band_.resize(static_cast<std::size_t>(TIFFScanlineSize(tiff_.get())));
+            if (band_.size() < rowBytes()) fail();
+        }
+        findNoData();
+    }
+
+    void read(float* values) override {
+        const std::byte* row = band_.data();
+        if (tileHeight_ == 0) {
+            if (TIFFReadScanline(tiff_.get(), band_.data(), row_, 0) != 1) fail();
+        } else {
+            if (row_ % tileHeight_ == 0) readTiles();
+            row += std::size_t{row_ % tileHeight_} * width_ * (bits_ / 8U);
+        }
+        for (std::uint32_t x = 0; x < width_; ++x) values[x] = valueAt(row + x * (bits_ / 8U));
+        ++row_;
+    }
+
+  private:
+    [[noreturn]] void fail() const {
+        throw Error(
+            fmt::format("{}: {}", name_, message_.empty() ? "not a whole TIFF file" : message_));
+    }
+
+    void readHeader() {
+        TIFFGetField(tiff_.get(), TIFFTAG_IMAGEWIDTH, &width_);
+        TIFFGetField(tiff_.get(), TIFFTAG_IMAGELENGTH, &height_);
+        TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_BITSPERSAMPLE, &bits_);
+        TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLEFORMAT, &format_);
+        std::uint16_t channels = 1;
+        TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, &channels);
+        const bool isInteger = format_ == SAMPLEFORMAT_UINT || format_ == SAMPLEFORMAT_INT;
+        if (channels != 1 || !((isInteger && (bits_ == 8 || bits_ == 16)) ||
+                               (format_ == SAMPLEFORMAT_IEEEFP && bits_ == 32))) {
+            throw Error(
+                fmt::format("{}: {} channels of {} bits (sample format {}); allowed: one "
+                            "of 8 or 16 bit integers or 32 bit floats",
+                            name_, channels, bits_, format_));
+        }
+        checkHeightMapSize(width_, height_, name_);
+        image::checkDeclaredSize(width_, height_, bits_ / 8U, fileBytes_, name_,
+                                 kMaxHeightFileSide);
+    }
+
+    std::size_t rowBytes() const { return std::size_t{width_} * (bits_ / 8U); }
+
+    float valueAt(const std::byte* at) const {
+        if (bits_ == 32) {
+            float value = 0.0F;
+            std::memcpy(&value, at, sizeof value);
+            return value;
+        }
+        std::uint16_t value = 0;
+        std::memcpy(&value, at, bits_ / 8U);
+        if (bits_ == 8) {
+            value = static_cast<std::uint16_t>(*at);
+            return format_ == SAMPLEFORMAT_INT ? static_cast<float>(static_cast<std::int8_t>(value))
+                                               : static_cast<float>(value);
+        }
+        return format_ == SAMPLEFORMAT_INT ? static_cast<float>(static_cast<std::int16_t>(value))
+                                           : static_cast<float>(value);
+    }
+
+    void prepareTiles() {
+        TIFFGetField(tiff_.get(), TIFFTAG_TILEWIDTH, &tileWidth_);
+        TIFFGetField(tiff_.get(), TIFFTAG_TILELENGTH, &tileHeight_);
+        image::checkDeclaredSize(tileWidth_, tileHeight_, bits_ / 8U, fileBytes_,
+                                 name_ + ": a tile", kMaxHeightFileSide);
+        // The last tile may reach beyond the map.
+        const std::size_t bytes = std::size_t{width_ + tileWidth_} * tileHeight_ * (bits_ / 8U);
+        if (bytes > kMostTileRowBytes) {
+            throw Error(fmt::format(
+                "{}: a row of tiles of {} x {} samples has {} MiB; allowed: at most {}, as it is "
+                "read whole",
+                name_, tileWidth_, tileHeight_, (bytes >> 20) + 1, kMostTileRowBytes >> 20));
+        }
+        band_.resize(rowBytes() * tileHeight_);
+        tile_.resize(static_cast<std::size_t>(TIFFTileSize(tiff_.get())));
+        if (tile_.size() < std::size_t{tileWidth_} * tileHeight_ * (bits_ / 8U)) fail();
+    }
+
+    /// The row of tiles that begins with the next row.
+    void readTiles() {
+        const std::size_t valueBytes = bits_ / 8U;
+        const std::uint32_t rows = std::min(tileHeight_, height_ - row_);
+        for (std::uint32_t left = 0; left < width_; left += tileWidth_) {
+            if (TIFFReadTile(tiff_.get(), tile_.data(), left, row_, 0, 0) < 0) fail();
+            const std::size_t columns = std::min(tileWidth_, width_ - left);
+            for (std::size_t y = 0; y < rows; ++y) {
+                std::memcpy(&band_[y * rowBytes() + left * valueBytes],
+                            &tile_[y * tileWidth_ * valueBytes], columns * valueBytes);
+            }
+        }
+    }
+
+    void findNoData() {
+        if (format_ != SAMPLEFORMAT_UINT) noData.push_back(-32768.0F);
+        std::uint32_t count = 0;
+        const char* text = nullptr;
+        if (TIFFGetField(tiff_.get(), kGdalNoData, &count, &text) != 1 || text == nullptr) return;
+        const std::string number(text, strnlen(text, count));
+        char* end = nullptr;
+        const float value = std::strtof(number.c_str(), &end);
+        if (end != number.c_str()) noData.push_back(value);
+    }
+
+    std::string name_;
+    std::string message_;
+    std::unique_ptr<TIFF, void (*)(TIFF*)> tiff_{nullptr, TIFFClose};
+    std::uintmax_t fileBytes_ = 0;
+    std::uint32_t width_ = 0;
+    std::uint32_t height_ = 0;
+    std::uint16_t bits_ = 1;
+    std::uint16_t format_ = SAMPLEFORMAT_UINT;
+    std::uint32_t tileWidth_ = 0, tileHeight_ = 0;  // 0: strips
+    std::vector<std::byte> band_;                   // a row, or a row of tiles
+    std::vector<std::byte> tile_;
+    std::uint32_t row_ = 0;
+};
+
+template <class Rows>
+std::unique_ptr<HeightRows> openRows(const fs::path& path) {
+    return std::make_unique<Rows>(path);
 }
 
 struct HeightFormat {
@@ -209,9 +379,9 @@ struct HeightFormat {
 };
 
 constexpr HeightFormat kHeightFormats[] = {
-    {".bin", &openRawRows},   {".hgt", &openSrtmRows}, {".png", &openPngRows},
-    {".r16", &openRawRows},   {".raw", &openRawRows},  {".tif", &openTiffRows},
-    {".tiff", &openTiffRows},
+    {".bin", &openRawRows},         {".hgt", &openSrtmRows}, {".png", &openRows<PngHeightRows>},
+    {".r16", &openRawRows},         {".raw", &openRawRows},  {".tif", &openRows<TiffRows>},
+    {".tiff", &openRows<TiffRows>},
 };
 
 const HeightFormat* heightFormatOf(const fs::path& path) {
@@ -237,6 +407,142 @@ std::unique_ptr<HeightRows> openHeightRows(const fs::path& path) {
         fmt::format("{}: unknown kind of height map; allowed: .png .tif .tiff .hgt "
                     ".raw .r16 .bin",
                     path.string()));
+}
+
+namespace {
+
+/// Steps of the pyramid from the map to the levels that are kept.
+constexpr int kFineLevels = std::bit_width(unsigned{HoleFilling::kBandRows}) - 1;
+
+std::size_t valueCount(glm::ivec2 size) {
+    return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+}
+
+/// Each value the mean of those of the four below it that have data. The fine rows begin at an even
+/// one, and end at one or with the map.
+HoleLevel pushed(HoleLevel& fine) {
+    HoleLevel coarse{(fine.sizeSamples + 1) / 2, fine.firstRow / 2, {}};
+    const int end = (fine.endRow() + 1) / 2;
+    coarse.values.resize(valueCount({coarse.sizeSamples.x, end - coarse.firstRow}));
+    tbb::parallel_for(coarse.firstRow, end, [&](int y) {
+        for (int x = 0; x < coarse.sizeSamples.x; ++x) {
+            float sum = 0.0F;
+            int count = 0;
+            for (int i = 0; i < 4; ++i) {
+                const int fineX = 2 * x + i % 2;
+                const int fineY = 2 * y + i / 2;
+                if (fineX >= fine.sizeSamples.x || fineY >= fine.sizeSamples.y) continue;
+                const float value = fine.at(fineX, fineY);
+                if (!std::isfinite(value)) continue;
+                sum += value;
+                ++count;
+            }
+            coarse.at(x, y) = count > 0 ? sum / static_cast<float>(count) : NAN;
+        }
+    });
+    return coarse;
+}
+
+/// Holes of rows [from, end) take the bilinear value of the level above, which has none there.
+void pull(HoleLevel& coarse, HoleLevel& fine, int from, int end) {
+    tbb::parallel_for(from, end, [&](int y) {
+        for (int x = 0; x < fine.sizeSamples.x; ++x) {
+            float& value = fine.at(x, y);
+            if (std::isfinite(value)) continue;
+            // A coarse value stands between its four: the nearest weighs 3/4 a direction.
+            const int nearX = x / 2;
+            const int nearY = y / 2;
+            const int farX = nearX + (x % 2 == 0 ? -1 : 1);
+            const int farY = nearY + (y % 2 == 0 ? -1 : 1);
+            value = 0.5625F * coarse.clamped(nearX, nearY) + 0.1875F * coarse.clamped(farX, nearY) +
+                    0.1875F * coarse.clamped(nearX, farY) + 0.0625F * coarse.clamped(farX, farY);
+        }
+    });
+}
+
+}  // namespace
+
+int HoleLevel::endRow() const {
+    return firstRow + static_cast<int>(values.size() / static_cast<std::size_t>(sizeSamples.x));
+}
+
+float& HoleLevel::at(int x, int y) {
+    return values[static_cast<std::size_t>(y - firstRow) * static_cast<std::size_t>(sizeSamples.x) +
+                  static_cast<std::size_t>(x)];
+}
+
+float HoleLevel::clamped(int x, int y) {
+    return at(std::clamp(x, 0, sizeSamples.x - 1), std::clamp(y, 0, sizeSamples.y - 1));
+}
+
+HoleFilling::HoleFilling(glm::ivec2 sizeSamples, const Reader& read) : sizeSamples_(sizeSamples) {
+    HoleLevel kept;
+    for (int row = 0; row < sizeSamples.y; row += kBandRows) {
+        HoleLevel band{sizeSamples, row, {}};
+        const int count = std::min(kBandRows, sizeSamples.y - row);
+        band.values.resize(valueCount({sizeSamples.x, count}));
+        read(count, band.values.data());
+        holeCount_ += static_cast<std::size_t>(
+            std::count_if(band.values.begin(), band.values.end(),
+                          [](float value) { return !std::isfinite(value); }));
+        for (int level = 0; level < kFineLevels; ++level) band = pushed(band);
+        kept.sizeSamples = band.sizeSamples;
+        kept.values.insert(kept.values.end(), band.values.begin(), band.values.end());
+    }
+    coarse_.push_back(std::move(kept));
+    while (coarse_.back().sizeSamples != glm::ivec2(1)) {
+        HoleLevel coarser = pushed(coarse_.back());
+        coarse_.push_back(std::move(coarser));
+    }
+    for (std::size_t i = coarse_.size() - 1; i > 0; --i) {
+        pull(coarse_[i], coarse_[i - 1], 0, coarse_[i - 1].sizeSamples.y);
+    }
+}
+
+void HoleFilling::restart(Reader read) {
+    if (holeCount_ == valueCount(sizeSamples_)) {
+        throw Error("no sample has data; allowed: at least one");
+    }
+    read_ = std::move(read);
+    window_ = {sizeSamples_, 0, {}};
+    nextRow_ = 0;
+    readBand();
+}
+
+void HoleFilling::readBand() {
+    const int count = std::min(kBandRows, sizeSamples_.y - window_.endRow());
+    if (count <= 0) return;
+    const std::size_t before = window_.values.size();
+    window_.values.resize(before + valueCount({sizeSamples_.x, count}));
+    read_(count, &window_.values[before]);
+}
+
+void HoleFilling::next(float* values) {
+    GFXREPRO_ASSERT(nextRow_ < sizeSamples_.y);
+    if (nextRow_ - window_.firstRow > kBandRows) {
+        window_.values.erase(window_.values.begin(),
+                             window_.values.begin() + std::ptrdiff_t{kBandRows} * sizeSamples_.x);
+        window_.firstRow += kBandRows;
+    }
+    readBand();
+    const int end = std::min(nextRow_ + kBandRows, sizeSamples_.y);
+    std::vector<HoleLevel> fine{window_};
+    for (int level = 1; level < kFineLevels; ++level) fine.push_back(pushed(fine.back()));
+    // Rows of each level that holes of the band reach: the one before, and the one after.
+    std::vector<glm::ivec2> rows{{nextRow_, end}};
+    for (int level = 1; level < kFineLevels; ++level) {
+        const glm::ivec2 below = rows.back();
+        rows.emplace_back(
+            std::max(below.x / 2 - 1, 0),
+            std::min((below.y - 1) / 2 + 2, fine[static_cast<std::size_t>(level)].sizeSamples.y));
+    }
+    for (std::size_t level = fine.size(); level > 0; --level) {
+        HoleLevel& coarser = level == fine.size() ? coarse_.front() : fine[level];
+        pull(coarser, fine[level - 1], rows[level - 1].x, rows[level - 1].y);
+    }
+    std::copy_n(&fine.front().at(0, nextRow_), valueCount({sizeSamples_.x, end - nextRow_}),
+                values);
+    nextRow_ = end;
 }
 
 }  // namespace gfxrepro::scene

@@ -9,7 +9,6 @@
 #include "engine/scene/model_files.h"
 
 namespace gfxrepro::scene {
-
 namespace {
 
 struct Format {

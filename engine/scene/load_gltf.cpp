@@ -10,13 +10,11 @@
 #include <utility>
 
 #include "engine/scene/load.h"
-#include "engine/scene/load_gltf_accessor.h"
-#include "engine/scene/load_gltf_lights.h"
+#include "engine/scene/load_gltf_file.h"
 #include "engine/scene/load_gltf_material.h"
 #include "engine/scene/load_text.h"
 
 namespace gfxrepro::scene {
-
 namespace {
 
 /// What a glTF mesh became.
@@ -106,10 +104,9 @@ class SceneBuilder {
     Mesh meshOf(const tinygltf::Primitive& primitive, const std::string& where) {
         Mesh mesh;
         mesh.material = primitive.material;
-        const auto materialCount = static_cast<int>(scene_.materials.size());
-        if (mesh.material < -1 || mesh.material >= materialCount) {
-            fail(fmt::format("{}: material {} does not exist; there are {}", where, mesh.material,
-                             materialCount));
+        if (mesh.material != -1) {
+            gltf::elementOf(scene_.materials, mesh.material, "{}: {}: material {}", file_.name,
+                            where, mesh.material);
         }
         mesh.positions = accessors_.vectors<3>(primitive.attributes.at("POSITION"));
         const std::size_t count = mesh.positions.size();
@@ -171,11 +168,7 @@ class SceneBuilder {
     std::vector<int> roots() const {
         if (!model().scenes.empty()) {
             const int scene = std::max(model().defaultScene, 0);
-            if (static_cast<std::size_t>(scene) >= model().scenes.size()) {
-                fail(fmt::format("scene {} does not exist; there are {}", scene,
-                                 model().scenes.size()));
-            }
-            return model().scenes[static_cast<std::size_t>(scene)].nodes;
+            return gltf::elementOf(model().scenes, scene, "{}: scene {}", file_.name, scene).nodes;
         }
         std::vector<bool> isChild(model().nodes.size(), false);
         for (const tinygltf::Node& node : model().nodes) {
@@ -198,15 +191,12 @@ class SceneBuilder {
         while (!open.empty()) {
             const auto [index, worldFromParent] = open.back();
             open.pop_back();
-            if (index < 0 || static_cast<std::size_t>(index) >= model().nodes.size()) {
-                fail(fmt::format("node {} does not exist; there are {}", index,
-                                 model().nodes.size()));
-            }
+            const tinygltf::Node& node =
+                gltf::elementOf(model().nodes, index, "{}: node {}", file_.name, index);
             if (wasVisited_[static_cast<std::size_t>(index)]) {
                 fail(fmt::format("node {} has two parents or is its own ancestor", index));
             }
             wasVisited_[static_cast<std::size_t>(index)] = true;
-            const tinygltf::Node& node = model().nodes[static_cast<std::size_t>(index)];
             const glm::mat4 worldFromNode = worldFromParent * localMatrix(node, index);
             checkFinite(worldFromNode, index);
             addContent(node, index, worldFromNode);
@@ -226,8 +216,7 @@ class SceneBuilder {
     /// No corner of the box of a node's or a primitive's coordinates may lie too far away.
     void checkReach(const glm::mat4& matrix, const Box& box, const std::string& where) const {
         for (int corner = 0; corner < 8 && !box.isEmpty(); ++corner) {
-            const glm::bvec3 isMax(corner & 1, corner & 2, corner & 4);
-            const glm::vec3 at(matrix * glm::vec4(glm::mix(box.min, box.max, isMax), 1.0F));
+            const glm::vec3 at(matrix * glm::vec4(box.corner(corner), 1.0F));
             if (glm::all(glm::lessThanEqual(glm::abs(at), glm::vec3(kMaxCoordinate)))) continue;
             fail(fmt::format("{}: its box reaches to ({}, {}, {}); {:g} to {:g} are allowed", where,
                              at.x, at.y, at.z, -kMaxCoordinate, kMaxCoordinate));
@@ -262,11 +251,8 @@ class SceneBuilder {
         if (node.camera >= 0) addCamera(node, index, worldFromNode);
         lights_.add(node, index, worldFromNode);
         if (node.mesh < 0) return;
-        if (static_cast<std::size_t>(node.mesh) >= parts_.size()) {
-            fail(fmt::format("node {}: mesh {} does not exist; there are {}", index, node.mesh,
-                             parts_.size()));
-        }
-        const Parts& parts = parts_[static_cast<std::size_t>(node.mesh)];
+        const Parts& parts = gltf::elementOf(parts_, node.mesh, "{}: node {}: mesh {}", file_.name,
+                                             index, node.mesh);
         for (const glm::mat4& nodeFromInstance : instanceMatrices(node)) {
             const glm::mat4 worldFromMesh = worldFromNode * nodeFromInstance;
             checkFinite(worldFromMesh, index);
@@ -343,11 +329,8 @@ class SceneBuilder {
 
     /// Perspective cameras only. Without a far plane, a thousand times the default one.
     void addCamera(const tinygltf::Node& node, int index, const glm::mat4& worldFromNode) {
-        if (static_cast<std::size_t>(node.camera) >= model().cameras.size()) {
-            fail(fmt::format("node {}: camera {} does not exist; there are {}", index, node.camera,
-                             model().cameras.size()));
-        }
-        const tinygltf::Camera& from = model().cameras[static_cast<std::size_t>(node.camera)];
+        const tinygltf::Camera& from = gltf::elementOf(
+            model().cameras, node.camera, "{}: node {}: camera {}", file_.name, index, node.camera);
         if (from.type != "perspective") return;
         const tinygltf::PerspectiveCamera& perspective = from.perspective;
         constexpr double kPi = 3.14159265358979323846;

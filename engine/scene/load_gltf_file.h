@@ -1,11 +1,18 @@
 // A glTF file and its buffers in memory, as tinygltf parses them.
 #pragma once
 
+#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
+#include <span>
 #include <string>
+#include <vector>
+
+#include "engine/core/error.h"
 
 namespace gfxrepro::scene::gltf {
 
@@ -21,8 +28,46 @@ struct File {
     std::size_t sizeBytes = 0;  // of the file and its buffers
 };
 
+/// Of `all`, that with this number. Throws Error where there is none; `what` and the arguments name
+/// it.
+template <class T, class... Arguments>
+const T& elementOf(const std::vector<T>& all, int number,
+                   fmt::format_string<const Arguments&...> what, const Arguments&... arguments) {
+    if (number >= 0 && static_cast<std::size_t>(number) < all.size()) {
+        return all[static_cast<std::size_t>(number)];
+    }
+    throw Error(fmt::format("{} does not exist; there are {}", fmt::format(what, arguments...),
+                            all.size()));
+}
+
 /// Reads text or binary glTF with its buffers; URIs must stay inside the file's folder. Throws
 /// Error for what is not glTF 2.0 or requires an extension that the loader does not know.
 File readFile(const std::filesystem::path& path);
+
+/// Numbers out of glTF accessors, every range checked before it is read. Any component type,
+/// normalized or not, with strides and sparse values. Errors begin with the file and the accessor.
+class Accessors {
+  public:
+    explicit Accessors(const File& file);
+
+    /// Values of exactly N components; VEC4 is allowed for N = 3 with `mayHaveAlpha`, which is
+    /// dropped. All are finite.
+    template <int N>
+    std::vector<glm::vec<N, float>> vectors(int accessor, bool mayHaveAlpha = false);
+
+    /// Unsigned integers of a SCALAR accessor.
+    std::vector<std::uint32_t> indices(int accessor);
+
+    /// The bytes of a buffer view.
+    std::span<const unsigned char> view(int bufferView) const;
+
+    /// Counts what the scene takes; Error when that is out of all proportion to the file's size (an
+    /// accessor without data, or one used thousands of times).
+    void charge(std::uint64_t count, std::size_t bytesEach);
+
+  private:
+    const File& file_;
+    std::uint64_t budgetBytes_;
+};
 
 }  // namespace gfxrepro::scene::gltf

@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
-#include "engine/scene/load_texture.h"
+#include "engine/scene/model_files.h"
 
 namespace gfxrepro::scene::gltf {
-
 namespace {
 
 using Value = tinygltf::Value;
@@ -63,13 +64,8 @@ class TextureTable {
     /// Into Scene::textures; −1 when the material has none, or one that only an extension gives.
     int find(int texture) {
         if (texture < 0) return -1;
-        const auto& textures = file_.model.textures;
-        const auto index = static_cast<std::size_t>(texture);
-        if (index >= textures.size()) {
-            throw Error(fmt::format("{}: texture {} does not exist; there are {}", file_.name,
-                                    texture, textures.size()));
-        }
-        const int image = textures[index].source;
+        const int image =
+            elementOf(file_.model.textures, texture, "{}: texture {}", file_.name, texture).source;
         if (image < 0) return -1;
         const auto [found, isNew] =
             textureOf_.try_emplace(image, static_cast<int>(scene_.textures.size()));
@@ -79,12 +75,8 @@ class TextureTable {
 
   private:
     image::Image8 decoded(int index) const {
-        const auto& images = file_.model.images;
         const std::string where = fmt::format("{}: image {}", file_.name, index);
-        if (static_cast<std::size_t>(index) >= images.size()) {
-            throw Error(fmt::format("{} does not exist; there are {}", where, images.size()));
-        }
-        const tinygltf::Image& image = images[static_cast<std::size_t>(index)];
+        const tinygltf::Image& image = elementOf(file_.model.images, index, "{}", where);
         std::span<const unsigned char> bytes = image.image;
         if (image.bufferView >= 0) bytes = accessors_.view(image.bufferView);
         if (bytes.empty()) throw Error(fmt::format("{}: '{}' cannot be read", where, image.uri));
@@ -170,6 +162,51 @@ std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessor
         uses.push_back(addTextures(from, textures, scene.materials.back(), scene.warnings));
     }
     return uses;
+}
+
+void Lights::add(const tinygltf::Node& node, int index, const glm::mat4& worldFromNode) {
+    const auto extension = node.extensions.find("KHR_lights_punctual");
+    if (extension == node.extensions.end() || !extension->second.Has("light")) return;
+    const tinygltf::Value& number = extension->second.Get("light");
+    const int light = number.IsInt() ? number.Get<int>() : -1;
+    const tinygltf::Light& from =
+        elementOf(file_.model.lights, light, "{}: node {}: light {}", file_.name, index, light);
+    if (from.type == "directional") {
+        ++directional_;
+        return;
+    }
+    spots_ += from.type == "spot" ? 1 : 0;
+    glm::vec3 candela(static_cast<float>(from.intensity));
+    for (int channel = 0; channel < 3 && from.color.size() == 3; ++channel) {
+        candela[channel] *= static_cast<float>(from.color[static_cast<std::size_t>(channel)]);
+    }
+    for (int channel = 0; channel < 3; ++channel) {
+        if (candela[channel] >= 0.0F && std::isfinite(candela[channel])) continue;
+        throw Error(fmt::format("{}: light {}: intensity {} of a channel; 0 and more is allowed",
+                                file_.name, light, candela[channel]));
+    }
+    lights_.push_back({glm::vec3(worldFromNode[3]), candela});
+}
+
+void Lights::moveTo(Scene& scene) {
+    if (spots_ > 0) {
+        scene.warnings.push_back(fmt::format("{} spot lights shine in all directions", spots_));
+    }
+    if (directional_ > 0) {
+        scene.warnings.push_back(fmt::format("{} directional lights are left out", directional_));
+    }
+    double sum = 0.0;
+    for (const PointLight& light : lights_) {
+        const glm::vec3& candela = light.intensity;
+        sum += double{std::max({candela.r, candela.g, candela.b})};
+    }
+    if (sum == 0.0) return;
+    const float radiusM = 0.5F * glm::length(scene.bounds().size());
+    for (PointLight& light : lights_) {
+        light.intensity *= static_cast<float>(double{kAllLights} / sum);
+        light.radiusM = std::max(radiusM, 1e-6F);  // one point: no 0 / 0
+    }
+    scene.lights = std::move(lights_);
 }
 
 }  // namespace gfxrepro::scene::gltf

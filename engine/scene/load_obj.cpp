@@ -1,20 +1,183 @@
 // Wavefront OBJ. First the lists and the corners of all triangles are read, then each material's
 // corners become a mesh whose vertices are the different (position, texcoord, normal) triples.
+#include "engine/scene/load_obj.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 
+#include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/scene/load.h"
-#include "engine/scene/load_lines.h"
-#include "engine/scene/load_mtl.h"
-#include "engine/scene/load_texture.h"
+#include "engine/scene/load_text.h"
+#include "engine/scene/model_files.h"
 
 namespace gfxrepro::scene {
+namespace {
+
+/// Goes through a text line by line and through a line word by word. A backslash at the end of a
+/// line continues it; '#' begins a comment.
+class LineReader {
+  public:
+    LineReader(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
+
+    /// False at the end of the text.
+    bool nextLine() {
+        line_ = nextLine_;
+        if (text_.empty()) return false;
+        rest_ = takeLine();
+        if (endsWithBackslash(rest_)) joinContinuations();
+        if (const std::size_t comment = rest_.find('#'); comment != rest_.npos) {
+            rest_ = rest_.substr(0, comment);
+        }
+        return true;
+    }
+
+    /// Empty at the end of the line.
+    std::string_view word() {
+        skipBlanks();
+        std::size_t end = 0;
+        while (end < rest_.size() && !isBlank(rest_[end])) ++end;
+        const std::string_view result = rest_.substr(0, end);
+        rest_.remove_prefix(end);
+        return result;
+    }
+
+    /// What is left of the line, without blanks around it.
+    std::string_view rest() {
+        skipBlanks();
+        while (!rest_.empty() && isBlank(rest_.back())) rest_.remove_suffix(1);
+        return rest_;
+    }
+
+    /// The next word as a finite number; empty at the end of the line.
+    std::optional<float> optionalNumber() {
+        const std::string_view text = word();
+        if (text.empty()) return std::nullopt;
+        const auto value = parsedNumber<float>(text);
+        if (!value || !std::isfinite(*value)) {
+            fail(fmt::format("{} is not a finite number", inQuotes(text)));
+        }
+        return value;
+    }
+
+    float number() {
+        const auto value = optionalNumber();
+        if (!value) fail("the line lacks a number");
+        return *value;
+    }
+
+    [[noreturn]] void fail(const std::string& message) const {
+        throw Error({file_, line_, 0}, message);
+    }
+
+  private:
+    static constexpr std::size_t kMostLineBytes = std::size_t{64} << 20;
+
+    static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+    static bool endsWithBackslash(std::string_view line) {
+        while (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+        return !line.empty() && line.back() == '\\';
+    }
+
+    void skipBlanks() {
+        while (!rest_.empty() && isBlank(rest_.front())) rest_.remove_prefix(1);
+    }
+
+    std::string_view takeLine() {
+        ++nextLine_;
+        const std::size_t end = text_.find('\n');
+        const std::string_view line = text_.substr(0, end);
+        if (line.size() > kMostLineBytes) {
+            line_ = nextLine_ - 1;
+            fail(fmt::format("a line of {} bytes; at most {} are read", line.size(),
+                             kMostLineBytes));
+        }
+        text_.remove_prefix(end == text_.npos ? text_.size() : end + 1);
+        return line;
+    }
+
+    void joinContinuations() {
+        joined_.clear();
+        while (endsWithBackslash(rest_)) {
+            joined_ += rest_.substr(0, rest_.rfind('\\'));
+            joined_ += ' ';
+            rest_ = text_.empty() ? std::string_view{} : takeLine();
+        }
+        joined_ += rest_;
+        rest_ = joined_;
+    }
+
+    std::string_view text_;
+    std::string file_;
+    std::string_view rest_;
+    std::string joined_;
+    int line_ = 1;
+    int nextLine_ = 1;
+};
+
+/// "Kd r g b", or "Kd grey".
+glm::vec3 colour(LineReader& lines) {
+    const float red = lines.number();
+    const auto green = lines.optionalNumber();
+    const auto blue = green ? lines.optionalNumber() : std::nullopt;
+    return blue ? glm::vec3(red, *green, *blue) : glm::vec3(red);
+}
+
+/// The GGX roughness whose lobe is as wide as that of a Blinn-Phong exponent: α² = 2 / (Ns + 2),
+/// and glTF's roughness is √α.
+float roughnessOf(float exponent) {
+    return std::pow(2.0F / (std::max(exponent, 0.0F) + 2.0F), 0.25F);
+}
+
+/// The file name may hold blanks; with options ("-s 1 1 1 wood.png") it is the last word.
+std::string textureName(std::string_view rest) {
+    if (rest.starts_with('-')) rest.remove_prefix(rest.find_last_of(" \t") + 1);
+    return std::string(rest);
+}
+
+}  // namespace
+
+std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path) {
+    requireReadAtOnce(path);
+    const MappedFile file(path);
+    LineReader lines(file.text(), path.string());
+    std::map<std::string, MtlMaterial> materials;
+    MtlMaterial ignored;  // what stands before the first newmtl
+    MtlMaterial* current = &ignored;
+    while (lines.nextLine()) {
+        const std::string_view key = lines.word();
+        Material& material = current->material;
+        if (key == "newmtl") {
+            const std::string name(lines.rest());
+            current = &materials[name];
+            current->material.name = name;
+        } else if (key == "Kd") {
+            material.baseColor = glm::vec4(colour(lines), material.baseColor.a);
+        } else if (key == "Ke") {
+            material.emissive = colour(lines);
+        } else if (key == "Ns") {
+            material.roughness = roughnessOf(lines.number());
+        } else if (key == "Ni") {
+            material.indexOfRefraction = lines.number();
+        } else if (key == "d") {
+            material.baseColor.a = lines.number();
+        } else if (key == "Tr") {
+            material.baseColor.a = 1.0F - lines.number();
+        } else if (key == "map_Kd") {
+            current->colourFile = textureName(lines.rest());
+        }
+    }
+    return materials;
+}
 
 namespace {
 

@@ -11,7 +11,6 @@
 #include "engine/scene/load_text.h"
 
 namespace gfxrepro::scene::ply {
-
 namespace {
 
 struct TypeNames {

@@ -1,8 +1,13 @@
 #include "engine/scene/model_files.h"
 
+#include <stb/stb_image.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstring>
+#include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -12,10 +17,77 @@
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
-#include "engine/scene/load_mtl.h"
-#include "engine/scene/load_texture.h"
+#include "engine/image/image.h"
+#include "engine/image/png_io.h"
+#include "engine/scene/load_obj.h"
 
 namespace gfxrepro::scene {
+namespace {
+
+bool beginsWith(std::span<const std::byte> bytes, std::span<const unsigned char> magic) {
+    return bytes.size() >= magic.size() &&
+           std::equal(magic.begin(), magic.end(), bytes.begin(),
+                      [](unsigned char a, std::byte b) { return std::byte{a} == b; });
+}
+
+constexpr std::array<unsigned char, 4> kPng{0x89, 'P', 'N', 'G'};
+constexpr std::array<unsigned char, 3> kJpeg{0xFF, 0xD8, 0xFF};
+
+/// JPEG, and PNG with 16 bits a channel, which stb rounds to 8.
+image::Image8 decodedByStb(std::span<const std::byte> bytes, const std::string& name) {
+    if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+        throw Error(name + ": an image of more than 2 GiB");
+    }
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    const auto size = static_cast<int>(bytes.size());
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
+        throw Error(name + ": " + stbi_failure_reason());
+    }
+    image::checkDeclaredSize(width, height, 4, bytes.size(), name);
+    const int wanted = channels % 2 == 0 ? 4 : 3;
+    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+        stbi_load_from_memory(data, size, &width, &height, &channels, wanted), stbi_image_free);
+    if (pixels == nullptr) throw Error(name + ": " + stbi_failure_reason());
+    image::Image8 image(width, height, wanted);
+    std::copy_n(pixels.get(), image.values().size(), image.values().begin());
+    return image;
+}
+
+/// Grey becomes three equal channels; alpha stays.
+image::Image8 asColour(const image::Image8& image) {
+    if (image.channels() >= 3) return image;
+    const bool hasAlpha = image.channels() == 2;
+    image::Image8 result(image.width(), image.height(), hasAlpha ? 4 : 3);
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            for (int c = 0; c < 3; ++c) result.at(x, y, c) = image.at(x, y);
+            if (hasAlpha) result.at(x, y, 3) = image.at(x, y, 1);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string& name) {
+    if (beginsWith(bytes, kPng)) {
+        constexpr std::size_t kBitDepthAt = 24;  // signature, length, "IHDR", width, height
+        const bool isDeep = bytes.size() > kBitDepthAt && bytes[kBitDepthAt] == std::byte{16};
+        return isDeep ? decodedByStb(bytes, name) : asColour(image::decodePng8(bytes, name));
+    }
+    if (beginsWith(bytes, kJpeg)) return decodedByStb(bytes, name);
+    throw Error(name + ": neither a PNG nor a JPEG image");
+}
+
+std::optional<std::filesystem::path> pathInside(const std::filesystem::path& folder,
+                                                const std::filesystem::path& name) {
+    const std::filesystem::path relative = name.lexically_normal();
+    if (name.empty() || name.is_absolute() || *relative.begin() == "..") return std::nullopt;
+    return folder / relative;
+}
 
 namespace fs = std::filesystem;
 

@@ -1,12 +1,27 @@
 // The files that a model's own file draws in: buffers, textures, material files.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "engine/image/image.h"
+
 namespace gfxrepro::scene {
+
+// Textures and other files that a scene file names.
+
+/// A PNG or JPEG file in memory as 3 or 4 channels of 8 bits. Throws Error; `name` stands in the
+/// message. Memory is bounded as in engine/image/png_io.h.
+image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string& name);
+
+/// folder/name; empty when `name` is absolute or leaves the folder.
+std::optional<std::filesystem::path> pathInside(const std::filesystem::path& folder,
+                                                const std::filesystem::path& name);
 
 /// Those that are there, by their names: of a glTF its buffers and images, of an OBJ its material
 /// files and their textures. A broken file draws in none here: its loader says what is wrong.

@@ -8,7 +8,6 @@
 #include "engine/scene/topology.h"
 
 namespace gfxrepro::scene {
-
 namespace {
 
 /// Halves edges one after the other and keeps the edge table up to date.

@@ -14,7 +14,6 @@
 #include "engine/scene/load_gltf_file.h"
 
 namespace gfxrepro::scene {
-
 namespace {
 
 template <class T>

@@ -5,7 +5,6 @@
 #include <utility>
 
 namespace gfxrepro::scene {
-
 namespace {
 
 glm::vec3 transformedPoint(const glm::mat4& matrix, const glm::vec3& point) {

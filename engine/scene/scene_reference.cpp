@@ -10,7 +10,6 @@
 #include "engine/core/text.h"
 
 namespace gfxrepro::scene {
-
 namespace {
 
 constexpr char kParamsMark = '?';

@@ -1,7 +1,5 @@
 #include "engine/scene/topology.h"
 
-#include "engine/scene/key_table.h"
-
 namespace gfxrepro::scene {
 
 Welding weldedByPosition(std::span<const glm::vec3> positions) {

@@ -9,7 +9,7 @@
 #include "engine/image/exr_io.h"
 #include "engine/image/image_file.h"
 #include "engine/image/png_io.h"
-#include "engine/image/tone_map.h"
+#include "engine/image/srgb.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/image_commands.h"

@@ -10,7 +10,7 @@
 #include "engine/image/image_file.h"
 #include "engine/image/png_io.h"
 #include "engine/metrics/error_map.h"
-#include "engine/metrics/hdr_flip.h"
+#include "engine/metrics/flip.h"
 #include "engine/metrics/image_error.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/image_commands.h"

@@ -10,7 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
-#include "engine/gl/device_name.h"
+#include "engine/gl/device.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
 #include "runner/config/schema.h"

@@ -13,12 +13,11 @@
 
 #include "engine/core/text.h"
 #include "engine/image/exr_io.h"
+#include "engine/image/image.h"
 #include "engine/image/image_file.h"
-#include "engine/image/limits.h"
 #include "engine/image/png_io.h"
 #include "engine/metrics/error_map.h"
 #include "engine/metrics/flip.h"
-#include "engine/metrics/hdr_flip.h"
 #include "runner/records/images.h"
 
 namespace gfxrepro::regression {

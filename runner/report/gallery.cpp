@@ -14,7 +14,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
-#include "engine/image/limits.h"
+#include "engine/image/image.h"
 #include "engine/image/png_io.h"
 #include "engine/image/resample.h"
 #include "engine/image/srgb.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/gl/work_query.h"
+#include "engine/gl/objects.h"
 #include "engine/image/image.h"
 
 namespace gfxrepro::run {

@@ -7,8 +7,8 @@
 #include <map>
 #include <vector>
 
-#include "engine/gl/barrier.h"
-#include "engine/gl/debug_group.h"
+#include "engine/gl/objects.h"
+#include "engine/gl/profiler.h"
 #include "runner/run/equal_work.h"
 #include "runner/run/pacing.h"
 #include "runner/run/process_memory.h"

@@ -9,7 +9,6 @@
 #include "scenes/shared/fitted_camera.h"
 
 namespace gfxrepro::scene {
-
 namespace {
 
 using namespace city_parts;

@@ -4,7 +4,6 @@
 #include "scenes/shared/sdf.h"
 
 namespace gfxrepro::scene::city_parts {
-
 namespace {
 
 /// The octahedron with each edge halved and pushed out: 32 triangles, smooth normals.

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/scene/key_table.h"
+#include "engine/scene/topology.h"
 #include "scenes/shared/sdf.h"
 
 namespace gfxrepro::scene::sdf {

@@ -11,7 +11,7 @@
 #include "engine/core/json_shape.h"
 #include "engine/core/text.h"
 #include "engine/image/image_file.h"
-#include "engine/metrics/hdr_flip.h"
+#include "engine/metrics/flip.h"
 #include "engine/metrics/image_error.h"
 #include "engine/metrics/mean_test.h"
 

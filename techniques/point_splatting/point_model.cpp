@@ -16,7 +16,7 @@
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "engine/image/srgb.h"
-#include "engine/scene/covariance.h"
+#include "engine/scene/point_sampling.h"
 #include "techniques/kit/kept_file.h"
 
 namespace gfxrepro::point_splatting {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "engine/gl/vendor_libraries.h"
+#include "engine/gl/unused_gpus.h"
 #include "runner/cli/advice.h"
 #include "runner/cli/cpp_library.h"
 #include "tests/support/support.h"

@@ -7,7 +7,6 @@
 #include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
 #include "engine/metrics/flip.h"
-#include "engine/metrics/hdr_flip.h"
 #include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "engine/gl/gl.h"
-#include "engine/gl/gpu_nodes.h"
+#include "engine/gl/unused_gpus.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {

@@ -3,7 +3,6 @@
 #include <array>
 #include <numeric>
 
-#include "engine/gl/work_query.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {

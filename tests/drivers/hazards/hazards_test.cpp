@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "engine/gl/debug_group.h"
+#include "engine/gl/profiler.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "engine/image/contact_sheet.h"
-#include "engine/image/text.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::image {

@@ -1,4 +1,4 @@
-#include "engine/image/tone_map.h"
+#include "engine/image/srgb.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/metrics/hdr_flip.h"
+#include "engine/metrics/flip.h"
 
 #include <gtest/gtest.h>
 

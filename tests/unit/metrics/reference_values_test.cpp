@@ -15,7 +15,6 @@
 #include "engine/core/files.h"
 #include "engine/image/exr_io.h"
 #include "engine/metrics/flip.h"
-#include "engine/metrics/hdr_flip.h"
 #include "engine/metrics/image_error.h"
 #include "tests/support/support.h"
 #include "tests/unit/metrics/pairs.h"

@@ -13,7 +13,6 @@
 
 #include "engine/core/files.h"
 #include "engine/image/png_io.h"
-#include "engine/scene/height_holes.h"
 #include "engine/scene/height_map.h"
 #include "tests/support/support.h"
 

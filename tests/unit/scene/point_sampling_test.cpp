@@ -9,7 +9,6 @@
 
 #include "engine/core/error.h"
 #include "engine/core/random.h"
-#include "engine/scene/covariance.h"
 #include "scenes/shared/mesh_builder.h"
 
 namespace gfxrepro::scene {

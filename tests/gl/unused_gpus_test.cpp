@@ -1,4 +1,4 @@
-#include "engine/gl/gpu_nodes.h"
+#include "engine/gl/unused_gpus.h"
 
 #include <gmock/gmock.h>
 

@@ -14,4 +14,10 @@ namespace gfxrepro::gl {
 std::vector<std::string> unusedGpus(const std::filesystem::path& devices = "/dev",
                                     const std::filesystem::path& drivers = "/sys/class/drm");
 
+// The GL drivers that GLVND, the loader of EGL, would take.
+
+/// Of each driver that a JSON file names to GLVND and that cannot be loaded, a sentence with the
+/// file, the library, and the reason that the system's loader gives. Loads each for a moment.
+std::vector<std::string> vendorLibraryProblems();
+
 }  // namespace gfxrepro::gl
