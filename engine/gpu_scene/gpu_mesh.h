@@ -32,10 +32,17 @@ struct GpuMesh {
     void draw() const { draw(0, triangleCount); }
 };
 
-/// The rasterized look at a scene, by the formula of raycast::renderPreview, vertex colours
-/// included: one sample at each pixel's centre, 3 linear channels, rows from the top. Points are
-/// not drawn. `shaders` holds gpu_scene/preview.*.glsl. Throws Error for shaders, UnsupportedError
-/// for sizes beyond limits.
+/// A look at a scene: one sample at the centre of each pixel, 3 channels, linear, rows from the
+/// top.
+///
+///     radiance = baseColor.rgb · color · texture(u, v).rgb · (0.15 + 0.85·|N·V|) + emissive
+///
+/// `color` is the interpolated vertex colour (linear), 1 where the mesh has none. N is the
+/// interpolated vertex normal, the triangle's where that is missing or zero; V is the unit
+/// direction to the camera (a headlight). The texture is decoded from sRGB texel by texel, filtered
+/// bilinearly, repeated, v downwards. Where baseColor.a · texture.a < alphaCutoff what is behind
+/// shows. Background: (0.18, 0.20, 0.24). Points are not drawn. `shaders` holds
+/// gpu_scene/preview.*.glsl. Throws Error for shaders, UnsupportedError for sizes beyond limits.
 image::ImageF renderPreview(const scene::Scene& scene, const scene::Camera& camera, int width,
                             int height, const gl::ShaderLibrary& shaders);
 

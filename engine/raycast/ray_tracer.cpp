@@ -6,7 +6,6 @@
 #include "engine/raycast/embree.h"
 
 namespace gfxrepro::raycast {
-
 namespace {
 
 template <class T, void (*release)(T)>

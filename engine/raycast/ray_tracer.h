@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "engine/image/image.h"
 #include "engine/scene/scene.h"
 
 namespace gfxrepro::raycast {
@@ -81,20 +80,5 @@ class RayTracer {
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
-
-/// A look at a scene, ray traced: one sample at the centre of each pixel, 3 channels, linear, rows
-/// from the top.
-///
-///     radiance = baseColor.rgb · color · texture(u, v).rgb · (0.15 + 0.85·|N·V|) + emissive
-///
-/// `color` is the interpolated vertex colour (linear), 1 where the mesh has none.
-/// N is the interpolated vertex normal where the mesh has normals, else the geometric normal; V is
-/// the unit direction to the camera (a headlight). The texture is decoded from sRGB texel by texel,
-/// filtered bilinearly, repeated, v downwards. Where baseColor.a · texture.a < alphaCutoff the ray
-/// goes on. Background: (0.18, 0.20, 0.24). Points are not drawn. Hits nearer than the camera's
-/// near plane or beyond its far plane (measured along its view direction) do not count. The
-/// rasterized look of gpu_scene uses the same formula, so that the two agree.
-image::ImageF renderPreview(const scene::Scene& scene, const scene::Camera& camera, int width,
-                            int height);
 
 }  // namespace gfxrepro::raycast

@@ -297,8 +297,7 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
         ->option_text("SCENE");
     sceneApp->add_option("--export", o.scene.exportFile, "write it as .glb or .ply")
         ->option_text("FILE");
-    sceneApp
-        ->add_option("--render", o.scene.renderFile, "write f.png (rasterized) and f-raytraced.png")
+    sceneApp->add_option("--render", o.scene.renderFile, "draw it into a .png file")
         ->option_text("FILE");
     sceneApp->add_option("--size", o.scene.sizePx, "pixels per side of the render")
         ->check(CLI::Range(16, 8192))

@@ -3,8 +3,6 @@
 #include "engine/core/files.h"
 #include "engine/gpu_scene/gpu_mesh.h"
 #include "engine/image/png_io.h"
-#include "engine/metrics/image_error.h"
-#include "engine/raycast/ray_tracer.h"
 #include "engine/scene/height_map.h"
 #include "engine/scene/load.h"
 #include "engine/scene/scene_reference.h"
@@ -61,7 +59,6 @@ gl::Device openDevice(const std::string& name) {
     return gl::Device::open({name, gl::DebugOutput::Log});
 }
 
-/// f.png rasterized and f-raytraced.png ray traced, and how far they are apart.
 void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOptions& options) {
     if (path.extension() != ".png") {
         throw UsageError("--render " + path.string() + ": .png is allowed");
@@ -78,19 +75,9 @@ void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOption
     const gl::ShaderLibrary shaders(dataFolder("shaders"));
     const scene::Camera camera =
         scene.cameras.empty() ? scene::framingCamera(scene.bounds(), 1.0F) : scene.cameras.front();
-    const image::ImageF rasterized =
-        gpu_scene::renderPreview(scene, camera, options.sizePx, options.sizePx, shaders);
-    const image::ImageF traced =
-        raycast::renderPreview(scene, camera, options.sizePx, options.sizePx);
-    fs::path tracedPath = path;
-    tracedPath.replace_filename(path.stem().string() + "-raytraced.png");
-    image::writePng(path, image::toSrgb8(rasterized));
-    image::writePng(tracedPath, image::toSrgb8(traced));
-    say("rendered   {} and {}\n", path.string(), tracedPath.string());
-    say("difference mse {:.3g}, ssim {:.4g}, max {:.3g}\n",
-        metrics::meanSquaredError(rasterized, traced),
-        metrics::structuralSimilarity(rasterized, traced),
-        metrics::maxAbsoluteError(rasterized, traced));
+    image::writePng(path, image::toSrgb8(gpu_scene::renderPreview(scene, camera, options.sizePx,
+                                                                  options.sizePx, shaders)));
+    say("rendered   {}\n", path.string());
 }
 
 }  // namespace

@@ -108,6 +108,69 @@ TEST_F(PreviewTest, SamplesTexturesWithTheirFirstRowOnTopAndCutsOut) {
     EXPECT_GT(image.at(20, 20, 1), 0.4F);
 }
 
+TEST_F(PreviewTest, TexturesAreDecodedFromSrgb) {
+    Scene scene = scene::sceneOf(square());
+    scene.meshes[0].texcoords.assign(4, glm::vec2(0.5F));
+    scene.meshes[0].material = 0;
+    scene.textures = {image::Image8(1, 1, 3, 188)};
+    scene.materials.push_back({.baseColor = glm::vec4(1.0F), .baseColorTexture = 0});
+    const image::ImageF image = gpu_scene::renderPreview(scene, frontCamera(), 32, 32, shaders);
+    EXPECT_NEAR(image.at(12, 20), 0.502886F * facingAt(12, 20), 1e-3F);
+}
+
+TEST_F(PreviewTest, CutOutsShowWhatIsBehind) {
+    Scene scene = scene::sceneOf(square());
+    scene.meshes[0].material = 0;
+    scene.meshes.push_back(square());
+    scene.meshes[1].material = 1;
+    scene.instances.push_back({1, glm::mat4(1.0F)});
+    scene.instances[1].worldFromMesh[3] = {0, 0, -0.5F, 1};
+    scene.materials.push_back({.baseColor = {1, 0, 0, 0.25F}, .alphaCutoff = 0.5F});
+    scene.materials.push_back({.baseColor = {0, 1, 0, 1}});
+    const image::ImageF through = gpu_scene::renderPreview(scene, frontCamera(), 32, 32, shaders);
+    EXPECT_EQ(through.at(15, 15, 0), 0.0F);
+    EXPECT_GT(through.at(15, 15, 1), 0.9F);
+    scene.materials[0].alphaCutoff = 0.25F;  // not below: it stays
+    const image::ImageF stays = gpu_scene::renderPreview(scene, frontCamera(), 32, 32, shaders);
+    expectPixel(stays, 15, 15, {facingAt(15, 15), 0.0F, 0.0F});
+}
+
+TEST_F(PreviewTest, VertexNormalsShadeAndZeroOnesAreTheTriangles) {
+    scene::Mesh mesh = square();
+    mesh.normals.assign(4, glm::vec3(0.6F, 0, 0.8F));
+    const image::ImageF turned =
+        gpu_scene::renderPreview(scene::sceneOf(mesh), frontCamera(), 31, 31, shaders);
+    expectPixel(turned, 15, 15, glm::vec3(0.8F * (0.15F + 0.85F * 0.8F)));
+    mesh.normals.assign(4, glm::vec3(0));
+    const image::ImageF flat =
+        gpu_scene::renderPreview(scene::sceneOf(mesh), frontCamera(), 32, 32, shaders);
+    expectPixel(flat, 12, 20, glm::vec3(0.8F * facingAt(12, 20)));
+}
+
+TEST_F(PreviewTest, VertexColoursAreAFactorOfTheirMeshAlone) {
+    Scene scene = scene::sceneOf(square());
+    scene.meshes[0].colors.assign(4, {0.5F, 0.25F, 1.0F});
+    scene.meshes.push_back(square());  // without colours, behind the first and wider
+    scene.instances.push_back({1, glm::mat4(1.0F)});
+    scene.instances[1].worldFromMesh[0][0] = 1.5F;
+    scene.instances[1].worldFromMesh[3] = {0, 0, -1e-3F, 1};
+    const image::ImageF image = gpu_scene::renderPreview(scene, frontCamera(), 32, 32, shaders);
+    const float shade = 0.8F * facingAt(12, 20);
+    expectPixel(image, 12, 20, {0.5F * shade, 0.25F * shade, shade});
+    EXPECT_NEAR(image.at(5, 16, 0), 0.8F * facingAt(5, 16), 1e-3F);
+}
+
+TEST_F(PreviewTest, FacetsFarFromTheOriginKeepTheirShade) {
+    Scene scene = scene::sceneOf(square());
+    const glm::vec3 far(1000.0F, 2000.0F, -1500.0F);
+    scene.instances[0].worldFromMesh[3] = {far, 1};
+    scene::Camera camera = frontCamera();
+    camera.position += far;
+    camera.target += far;
+    const image::ImageF image = gpu_scene::renderPreview(scene, camera, 32, 32, shaders);
+    EXPECT_NEAR(image.at(12, 20), 0.8F * facingAt(12, 20), 1e-3F);
+}
+
 TEST_F(PreviewTest, AnEmptySceneIsBackground) {
     const image::ImageF image = gpu_scene::renderPreview(Scene{}, scene::Camera{}, 3, 2, shaders);
     expectPixel(image, 2, 1, kBackground);

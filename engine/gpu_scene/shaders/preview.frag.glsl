@@ -1,6 +1,6 @@
 #version 450 core
 // The look at a scene, pixels: base colour under a headlight. Reads the material and vertex colours,
-// writes linear radiance; raycast::renderPreview evaluates the same formula on the CPU.
+// writes linear radiance; the formula stands at gpu_scene::renderPreview.
 
 in vec3 normalWorld;
 in vec3 toCameraWorld;
@@ -23,7 +23,7 @@ void main() {
     vec3 normal = normalWorld == vec3(0.0) ? triangleNormal : normalWorld;
 
     vec4 base = baseColor * vec4(vertexColor, 1.0);
-    // One level without mipmaps: the ray traced look has no footprint to choose a level by.
+    // One level without mipmaps.
     base *= textureLod(baseColorTexture, uv, 0.0);
     if (base.a < alphaCutoff) discard;
     float facing = abs(dot(normalize(normal), normalize(toCameraWorld)));
