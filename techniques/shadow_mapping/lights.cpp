@@ -149,4 +149,40 @@ std::vector<LightView> viewsOf(const Light& light, const scene::Box& bounds, int
     return views;
 }
 
+void requireOutside(const raycast::RayTracer& tracer, const std::vector<Light>& lights) {
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        if (lights[i].kind == LightKind::Directional) continue;
+        // The 26 neighbours of a cube: a light over an open floor escapes by some of them.
+        bool isInside = true;
+        for (int n = 0; n < 27 && isInside; ++n) {
+            const glm::vec3 direction(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            if (direction == glm::vec3(0.0F)) continue;
+            const auto hit = tracer.closestHit(lights[i].positionWorld, direction);
+            isInside = hit && glm::dot(hit->geometricNormal, direction) > 0.0F;
+        }
+        if (!isInside) continue;
+        const glm::vec3 p = lights[i].positionWorld;
+        throw Error(
+            fmt::format("light {} at ({:.3f}, {:.3f}, {:.3f}) lies inside of geometry: every ray "
+                        "from it meets a surface from behind",
+                        i, p.x, p.y, p.z));
+    }
+}
+
+int lightsWithoutCaster(const std::vector<Light>& lights, const scene::Scene& scene, int sizePx) {
+    const scene::Mesh mesh = scene::flattened(scene);
+    const scene::Box bounds = scene.bounds();
+    return static_cast<int>(std::count_if(lights.begin(), lights.end(), [&](const Light& light) {
+        const std::vector<LightView> views = viewsOf(light, bounds, sizePx);
+        return std::none_of(views.begin(), views.end(), [&](const LightView& view) {
+            return std::any_of(
+                mesh.positions.begin(), mesh.positions.end(), [&](const glm::vec3& p) {
+                    const glm::vec4 clip = view.clipFromWorld * glm::vec4(p, 1.0F);
+                    return glm::all(
+                        glm::lessThanEqual(glm::abs(glm::vec3(clip)), glm::vec3(clip.w)));
+                });
+        });
+    }));
+}
+
 }  // namespace gfxrepro::shadow_mapping

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/raycast/ray_tracer.h"
 #include "engine/scene/scene.h"
 
 namespace gfxrepro::shadow_mapping {
@@ -58,5 +59,11 @@ glm::ivec2 tileCountOf(LightKind kind);
 /// equal to target, an angle outside of (0°, 180°), planes out of order, no direction, values that
 /// are not finite, an empty scene, faces too small for their border.
 std::vector<LightView> viewsOf(const Light& light, const scene::Box& bounds, int sizePx);
+
+/// Throws Error for a light inside of geometry: every ray from it meets a surface from behind.
+void requireOutside(const raycast::RayTracer& tracer, const std::vector<Light>& lights);
+
+/// Lights whose maps hold no vertex of the scene.
+int lightsWithoutCaster(const std::vector<Light>& lights, const scene::Scene& scene, int sizePx);
 
 }  // namespace gfxrepro::shadow_mapping

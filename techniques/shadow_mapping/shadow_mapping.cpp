@@ -6,14 +6,48 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/trigonometric.hpp>
+#include <optional>
+#include <vector>
 
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
 #include "techniques/kit/picture.h"
 #include "techniques/kit/requirements.h"
+#include "techniques/shadow_mapping/shaded_view.h"
+#include "techniques/shadow_mapping/shadow_truth.h"
 
 namespace gfxrepro::shadow_mapping {
 namespace {
+
+enum class FilterKind { Nearest, Bilinear, Pcf, Pcss, Variance };
+
+enum class LightPlace {
+    Orbit,  // around the scene's box
+    Scene,  // the scene's own lights
+};
+
+struct ShadowMappingParams {
+    ShadowMapSettings maps;
+    LightKind lightKind = LightKind::Spot;
+    LightPlace lightPlace = LightPlace::Orbit;
+    int lightCount = 1;
+    float lightDistance = 1.2F;  // from the box's centre, in its diagonals
+    float azimuthRad = 0.0F;
+    float elevationRad = 0.0F;
+    float lightSize = 0.0F;  // diameter, in the box's diagonals
+    bool isStatic = false;
+    bool measuresErrors = false;
+    float edgeTexels = 1.5F;
+    bool comparesMethods = false;
+    bool drawsYardstick = false;
+    bool showsPictures = false;
+
+    /// Declares the parameters. Throws Error for combinations that mean nothing.
+    explicit ShadowMappingParams(Params& params);
+
+    /// How near a true edge an error counts as one of the edge: edgeTexels and half the filter.
+    float edgeReachTexels() const;
+};
 
 constexpr Choice<Storage> kMethods[] = {
     {Storage::Standard, "standard", "depths in a float colour texture, compared in the shader"},
@@ -100,8 +134,6 @@ void refuseUnread(const Params& params, FilterKind filter, const ShadowMappingPa
     }
 }
 
-}  // namespace
-
 ShadowMappingParams::ShadowMappingParams(Params& params) {
     maps.storage =
         params.getEnum("method", Storage::Hardware, kMethods, {"how depths are compared"});
@@ -151,10 +183,6 @@ float ShadowMappingParams::edgeReachTexels() const {
     return edgeTexels + 0.5F * static_cast<float>(size - 1);
 }
 
-// Lights for a scene, and what can be wrong with them.
-
-namespace {
-
 /// Lights of several get their share of the brightness.
 Light lightAt(const ShadowMappingParams& params, const scene::Box& box, const glm::vec3& position,
               const glm::vec3& color) {
@@ -182,8 +210,7 @@ Light lightAt(const ShadowMappingParams& params, const scene::Box& box, const gl
     return light;
 }
 
-}  // namespace
-
+/// The lights of the parameters for a scene. Throws Error where the scene has too few.
 std::vector<Light> makeLights(const ShadowMappingParams& params, const scene::Scene& scene) {
     const scene::Box box = scene.bounds();
     const float diagonal = glm::length(box.size());
@@ -214,42 +241,7 @@ std::vector<Light> makeLights(const ShadowMappingParams& params, const scene::Sc
     return lights;
 }
 
-void requireOutside(const raycast::RayTracer& tracer, const std::vector<Light>& lights) {
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-        if (lights[i].kind == LightKind::Directional) continue;
-        // The 26 neighbours of a cube: a light over an open floor escapes by some of them.
-        bool isInside = true;
-        for (int n = 0; n < 27 && isInside; ++n) {
-            const glm::vec3 direction(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-            if (direction == glm::vec3(0.0F)) continue;
-            const auto hit = tracer.closestHit(lights[i].positionWorld, direction);
-            isInside = hit && glm::dot(hit->geometricNormal, direction) > 0.0F;
-        }
-        if (!isInside) continue;
-        const glm::vec3 p = lights[i].positionWorld;
-        throw Error(
-            fmt::format("light {} at ({:.3f}, {:.3f}, {:.3f}) lies inside of geometry: every ray "
-                        "from it meets a surface from behind",
-                        i, p.x, p.y, p.z));
-    }
-}
-
-int lightsWithoutCaster(const std::vector<Light>& lights, const scene::Scene& scene, int sizePx) {
-    const scene::Mesh mesh = scene::flattened(scene);
-    const scene::Box bounds = scene.bounds();
-    return static_cast<int>(std::count_if(lights.begin(), lights.end(), [&](const Light& light) {
-        const std::vector<LightView> views = viewsOf(light, bounds, sizePx);
-        return std::none_of(views.begin(), views.end(), [&](const LightView& view) {
-            return std::any_of(
-                mesh.positions.begin(), mesh.positions.end(), [&](const glm::vec3& p) {
-                    const glm::vec4 clip = view.clipFromWorld * glm::vec4(p, 1.0F);
-                    return glm::all(
-                        glm::lessThanEqual(glm::abs(glm::vec3(clip)), glm::vec3(clip.w)));
-                });
-        });
-    }));
-}
-
+/// What shadow rays need to know of a light and its map.
 TruthLight truthLight(const Light& light, const scene::Box& bounds, int sizePx) {
     TruthLight truth;
     truth.isDirectional = light.kind == LightKind::Directional;
@@ -261,55 +253,6 @@ TruthLight truthLight(const Light& light, const scene::Box& bounds, int sizePx) 
     }
     return truth;
 }
-
-ShadowMapping::ShadowMapping(Params& params) : params_(params) {}
-
-void ShadowMapping::requireScene(const scene::Scene& scene) const {
-    kit::requireTriangles(scene, "shadow_mapping");
-    makeLights(params_, scene);  // refuses a scene with fewer lights than are asked for
-}
-
-void ShadowMapping::setup(technique::SetupContext& context) {
-    const scene::Scene& scene = *context.scene;
-    shaders_ = &context.shaders;
-    lights_ = makeLights(params_, scene);
-    tracer_.emplace(scene);
-    requireOutside(*tracer_, lights_);
-    lightsWithoutCaster_ = lightsWithoutCaster(lights_, scene, params_.maps.sizePx);
-
-    drawable_.emplace(scene);
-    maps_.emplace(context.shaders, params_.maps);
-    if (params_.drawsYardstick) {
-        ShadowMapSettings depthAlone;
-        depthAlone.sizePx = params_.maps.sizePx;
-        depthAlone.format = params_.maps.format;
-        yardstick_.emplace(context.shaders, depthAlone);
-    }
-    shadedView_.emplace(context.shaders, params_.maps);
-    const glm::vec2 size(context.outputSizePx);
-    const scene::Camera camera = scene.cameras.empty()
-                                     ? scene::framingCamera(scene.bounds(), size.x / size.y)
-                                     : scene.cameras.front();
-    image_.emplace(makeShadedImage(kit::viewOf(camera, context.outputSizePx), false));
-    // [zju2005] Sec. 4.1: the map is used again while the light and the objects stand still.
-    if (params_.isStatic) maps_->render(*drawable_, lights_);
-}
-
-// [zju2005] Sec. 4.1
-void ShadowMapping::render(technique::FrameContext& context) {
-    if (!params_.isStatic) {
-        const gl::GpuScope scope(context.profiler, "depth_pass");
-        maps_->render(*drawable_, lights_);
-    }
-    if (yardstick_) {
-        const gl::GpuScope scope(context.profiler, "yardstick_pass");
-        yardstick_->render(*drawable_, lights_);
-    }
-    const gl::GpuScope scope(context.profiler, "shading_pass");
-    shadedView_->render(*drawable_, *maps_, *image_);
-}
-
-namespace {
 
 /// Light `light` of the four channels.
 std::vector<float> channelOf(const std::vector<float>& terms, std::size_t light) {
@@ -341,101 +284,164 @@ kit::ImageLayers layersOf(const ShadedImage& image) {
     return layers;
 }
 
-}  // namespace
+class ShadowMapping final : public technique::Technique {
+  public:
+    explicit ShadowMapping(Params& params) : params_(params) {}
 
-void ShadowMapping::record(technique::Recorder& recorder) {
-    recordSteps(recorder);
-    recorder.metric("lights_without_caster", lightsWithoutCaster_, "light");
-    recorder.metric("memory_bytes", static_cast<double>(maps_->sizeBytes()), "byte");
-    if (params_.showsPictures) recordPicture(recorder);
-    if (!params_.measuresErrors && !params_.comparesMethods) return;
-    // Once more with the terms that the measured frame does not write.
-    ShadedImage image = makeShadedImage(image_->view, true);
-    shadedView_->render(*drawable_, *maps_, image);
-    if (params_.measuresErrors) recordErrors(recorder, image);
-    if (params_.comparesMethods) recordDifference(recorder, image);
-}
+    void setup(technique::SetupContext& context) override {
+        const scene::Scene& scene = *context.scene;
+        shaders_ = &context.shaders;
+        lights_ = makeLights(params_, scene);
+        tracer_.emplace(scene);
+        requireOutside(*tracer_, lights_);
+        lightsWithoutCaster_ = lightsWithoutCaster(lights_, scene, params_.maps.sizePx);
 
-void ShadowMapping::recordPicture(technique::Recorder& recorder) const {
-    const std::vector<float> depths = image_->depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
-    recorder.image("result", image_->colour.readImage(3),
-                   kit::ImageLayers(image_->view).windowDepths(depths).options());
-}
-
-// [zju2005] Table 4.3
-void ShadowMapping::recordSteps(technique::Recorder& recorder) const {
-    for (const StepDeclaration& step : maps_->steps()) {
-        std::string pass = step.step == "depth map" ? "depth_pass"
-                           : step.step == "shading" ? "shading_pass"
-                                                    : step.step;
-        std::replace(pass.begin(), pass.end(), ' ', '_');
-        recorder.metric("colour_writes", step.colourWrites ? 1.0 : 0.0, "1", pass);
-        recorder.metric("depth_writes", step.depthWrites ? 1.0 : 0.0, "1", pass);
-        recorder.metric("fragment_work", step.fragmentWork ? 1.0 : 0.0, "1", pass);
-        recorder.metric("fetches", step.fetches, "1", pass);
-        recorder.metric("comparisons", step.comparisons, "1", pass);
-    }
-}
-
-void ShadowMapping::recordErrors(technique::Recorder& recorder, const ShadedImage& image) {
-    const std::vector<float> terms = image.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
-    const std::vector<VisiblePoint> points = visiblePoints(*tracer_, image.view);
-    const scene::Box& bounds = drawable_->bounds();
-    const ShadowTruth truth(*tracer_, glm::length(bounds.size()));
-    std::uint64_t compared = 0, edge = 0, acne = 0, leak = 0;
-    const glm::ivec2 sizePx = image.view.sizePx;
-    for (std::size_t i = 0; i < lights_.size(); ++i) {
-        const std::vector<float> ofLight = channelOf(terms, i);
-        const ShadowErrors errors =
-            truth.compare(points, truthLight(lights_[i], bounds, params_.maps.sizePx), ofLight,
-                          params_.edgeReachTexels());
-        compared += errors.compared;
-        edge += errors.edge;
-        acne += errors.acne;
-        leak += errors.leak;
-        if (!params_.showsPictures) continue;
-        const std::string name = fmt::format("shadow_{}", i);
-        const image::ImageF picture = shadowPicture(errors, &ofLight, sizePx);
-        const image::ImageF truthPicture = shadowPicture(errors, nullptr, sizePx);
-        const std::string truthName = fmt::format("truth_{}", i);
-        recorder.image(name, picture,
-                       layersOf(image).errors(picture, truthPicture, truthName).options());
-        recorder.image(truthName, truthPicture, kit::seenFrom(image.view, name));
-        recorder.image(fmt::format("errors_{}", i), classPicture(errors, sizePx),
-                       kit::seenFrom(image.view));
-    }
-    recorder.metric("compared_points", static_cast<double>(compared), "pixel");
-    recorder.metric("wrong_pct", kit::percent(edge + acne + leak, compared), "%");
-    recorder.metric("acne_pct", kit::percent(acne, compared), "%");
-    recorder.metric("leak_pct", kit::percent(leak, compared), "%");
-    recorder.metric("edge_pct", kit::percent(edge, compared), "%");
-}
-
-// S4: pixels whose shadow differs from that of the other method by more than a filtered fetch may:
-// texture units weigh with 8 bits on each axis.
-void ShadowMapping::recordDifference(technique::Recorder& recorder, const ShadedImage& image) {
-    ShadowMapSettings settings = params_.maps;
-    settings.storage =
-        settings.storage == Storage::Standard ? Storage::Hardware : Storage::Standard;
-    ShadowMapRenderer maps(*shaders_, settings);
-    ShadedView view(*shaders_, settings);
-    ShadedImage other = makeShadedImage(image.view, true);
-    maps.render(*drawable_, lights_);
-    view.render(*drawable_, maps, other);
-    const std::vector<float> here = image.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
-    const std::vector<float> there = other.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
-    std::uint64_t differing = 0;
-    for (std::size_t pixel = 0; pixel < here.size() / 4; ++pixel) {
-        bool differs = false;
-        for (std::size_t i = 4 * pixel; i < 4 * pixel + lights_.size(); ++i) {
-            differs = differs || std::abs(here[i] - there[i]) > 1.0F / 64.0F;
+        drawable_.emplace(scene);
+        maps_.emplace(context.shaders, params_.maps);
+        if (params_.drawsYardstick) {
+            ShadowMapSettings depthAlone;
+            depthAlone.sizePx = params_.maps.sizePx;
+            depthAlone.format = params_.maps.format;
+            yardstick_.emplace(context.shaders, depthAlone);
         }
-        differing += differs ? 1 : 0;
+        shadedView_.emplace(context.shaders, params_.maps);
+        const glm::vec2 size(context.outputSizePx);
+        const scene::Camera camera = scene.cameras.empty()
+                                         ? scene::framingCamera(scene.bounds(), size.x / size.y)
+                                         : scene.cameras.front();
+        image_.emplace(makeShadedImage(kit::viewOf(camera, context.outputSizePx), false));
+        // [zju2005] Sec. 4.1: the map is used again while the light and the objects stand still.
+        if (params_.isStatic) maps_->render(*drawable_, lights_);
     }
-    recorder.metric("methods_differ_pct", kit::percent(differing, here.size() / 4), "%");
-}
 
-namespace {
+    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
+
+    void requireScene(const scene::Scene& scene) const override {
+        kit::requireTriangles(scene, "shadow_mapping");
+        makeLights(params_, scene);  // refuses a scene with fewer lights than are asked for
+    }
+
+    // [zju2005] Sec. 4.1
+    void render(technique::FrameContext& context) override {
+        if (!params_.isStatic) {
+            const gl::GpuScope scope(context.profiler, "depth_pass");
+            maps_->render(*drawable_, lights_);
+        }
+        if (yardstick_) {
+            const gl::GpuScope scope(context.profiler, "yardstick_pass");
+            yardstick_->render(*drawable_, lights_);
+        }
+        const gl::GpuScope scope(context.profiler, "shading_pass");
+        shadedView_->render(*drawable_, *maps_, *image_);
+    }
+
+    void record(technique::Recorder& recorder) override {
+        recordSteps(recorder);
+        recorder.metric("lights_without_caster", lightsWithoutCaster_, "light");
+        recorder.metric("memory_bytes", static_cast<double>(maps_->sizeBytes()), "byte");
+        if (params_.showsPictures) recordPicture(recorder);
+        if (!params_.measuresErrors && !params_.comparesMethods) return;
+        // Once more with the terms that the measured frame does not write.
+        ShadedImage image = makeShadedImage(image_->view, true);
+        shadedView_->render(*drawable_, *maps_, image);
+        if (params_.measuresErrors) recordErrors(recorder, image);
+        if (params_.comparesMethods) recordDifference(recorder, image);
+    }
+
+    const gl::Texture* frameImage() const override { return &image_->colour; }
+
+  private:
+    // [zju2005] Table 4.3
+    void recordSteps(technique::Recorder& recorder) const {
+        for (const StepDeclaration& step : maps_->steps()) {
+            std::string pass = step.step == "depth map" ? "depth_pass"
+                               : step.step == "shading" ? "shading_pass"
+                                                        : step.step;
+            std::replace(pass.begin(), pass.end(), ' ', '_');
+            recorder.metric("colour_writes", step.colourWrites ? 1.0 : 0.0, "1", pass);
+            recorder.metric("depth_writes", step.depthWrites ? 1.0 : 0.0, "1", pass);
+            recorder.metric("fragment_work", step.fragmentWork ? 1.0 : 0.0, "1", pass);
+            recorder.metric("fetches", step.fetches, "1", pass);
+            recorder.metric("comparisons", step.comparisons, "1", pass);
+        }
+    }
+
+    void recordPicture(technique::Recorder& recorder) const {
+        const std::vector<float> depths =
+            image_->depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+        recorder.image("result", image_->colour.readImage(3),
+                       kit::ImageLayers(image_->view).windowDepths(depths).options());
+    }
+
+    void recordErrors(technique::Recorder& recorder, const ShadedImage& image) {
+        const std::vector<float> terms = image.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+        const std::vector<VisiblePoint> points = visiblePoints(*tracer_, image.view);
+        const scene::Box& bounds = drawable_->bounds();
+        const ShadowTruth truth(*tracer_, glm::length(bounds.size()));
+        std::uint64_t compared = 0, edge = 0, acne = 0, leak = 0;
+        const glm::ivec2 sizePx = image.view.sizePx;
+        for (std::size_t i = 0; i < lights_.size(); ++i) {
+            const std::vector<float> ofLight = channelOf(terms, i);
+            const ShadowErrors errors =
+                truth.compare(points, truthLight(lights_[i], bounds, params_.maps.sizePx), ofLight,
+                              params_.edgeReachTexels());
+            compared += errors.compared;
+            edge += errors.edge;
+            acne += errors.acne;
+            leak += errors.leak;
+            if (!params_.showsPictures) continue;
+            const std::string name = fmt::format("shadow_{}", i);
+            const image::ImageF picture = shadowPicture(errors, &ofLight, sizePx);
+            const image::ImageF truthPicture = shadowPicture(errors, nullptr, sizePx);
+            const std::string truthName = fmt::format("truth_{}", i);
+            recorder.image(name, picture,
+                           layersOf(image).errors(picture, truthPicture, truthName).options());
+            recorder.image(truthName, truthPicture, kit::seenFrom(image.view, name));
+            recorder.image(fmt::format("errors_{}", i), classPicture(errors, sizePx),
+                           kit::seenFrom(image.view));
+        }
+        recorder.metric("compared_points", static_cast<double>(compared), "pixel");
+        recorder.metric("wrong_pct", kit::percent(edge + acne + leak, compared), "%");
+        recorder.metric("acne_pct", kit::percent(acne, compared), "%");
+        recorder.metric("leak_pct", kit::percent(leak, compared), "%");
+        recorder.metric("edge_pct", kit::percent(edge, compared), "%");
+    }
+
+    // S4: pixels whose shadow differs from that of the other method by more than a filtered fetch
+    // may: texture units weigh with 8 bits on each axis.
+    void recordDifference(technique::Recorder& recorder, const ShadedImage& image) {
+        ShadowMapSettings settings = params_.maps;
+        settings.storage =
+            settings.storage == Storage::Standard ? Storage::Hardware : Storage::Standard;
+        ShadowMapRenderer maps(*shaders_, settings);
+        ShadedView view(*shaders_, settings);
+        ShadedImage other = makeShadedImage(image.view, true);
+        maps.render(*drawable_, lights_);
+        view.render(*drawable_, maps, other);
+        const std::vector<float> here = image.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+        const std::vector<float> there = other.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+        std::uint64_t differing = 0;
+        for (std::size_t pixel = 0; pixel < here.size() / 4; ++pixel) {
+            bool differs = false;
+            for (std::size_t i = 4 * pixel; i < 4 * pixel + lights_.size(); ++i) {
+                differs = differs || std::abs(here[i] - there[i]) > 1.0F / 64.0F;
+            }
+            differing += differs ? 1 : 0;
+        }
+        recorder.metric("methods_differ_pct", kit::percent(differing, here.size() / 4), "%");
+    }
+
+    ShadowMappingParams params_;
+    const gl::ShaderLibrary* shaders_ = nullptr;
+    std::optional<raycast::RayTracer> tracer_;
+    std::optional<kit::DrawableScene> drawable_;
+    std::vector<Light> lights_;
+    int lightsWithoutCaster_ = 0;
+    std::optional<ShadowMapRenderer> maps_;
+    std::optional<ShadowMapRenderer> yardstick_;  // depth alone, no bias
+    std::optional<ShadedView> shadedView_;
+    std::optional<ShadedImage> image_;
+};
 
 std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<ShadowMapping>(params);

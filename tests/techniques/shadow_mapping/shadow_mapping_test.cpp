@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "scenes/shared/mesh_builder.h"
+#include "techniques/shadow_mapping/lights.h"
 #include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::shadow_mapping {
