@@ -5,17 +5,59 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/trigonometric.hpp>
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "techniques/depth_sampling/experiment.h"
 #include "techniques/depth_sampling/pixel_measures.h"
 #include "techniques/depth_sampling/reference_views.h"
+#include "techniques/depth_sampling/visibility.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
 #include "techniques/kit/requirements.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {
+
+using kit::Redundancy;  // which definition makes the images and measures them
+
+/// Where reference images are taken.
+enum class Placement {
+    Fixed,
+    Automatic,  // the next view is chosen by what the images so far lack
+};
+
+/// The one view of depth peeling.
+enum class PeeledFrom {
+    Centre,     // of the triangle (or segment) of views: the tables
+    FirstView,  // V₀: figures 11 and 12
+};
+
+/// What render() does, and is timed.
+enum class Measured { ReferenceImages, OutputFrame };
+
+struct DepthSamplingParams {
+    Method method = Method::Conventional;
+    Redundancy redundancy = Redundancy::Pixel;
+    Earlier earlier = Earlier::Views;  // by visibility
+    int views = 3;
+    Placement placement = Placement::Fixed;
+    int candidates = 16;
+    PeeledFrom peeledFrom = PeeledFrom::Centre;
+    ViewTriangleSettings triangle;  // all but the aspect
+    kit::TriangleIds triangleIds = kit::TriangleIds::PrimitiveId;
+    kit::DepthFormat depthFormat = kit::DepthFormat::Float32;
+    MeasureSettings measures;
+    int outputFrames = 1000;
+    int frameSizePx = 0;  // 0: as the reference images
+    bool showsPictures = false;
+    Measured measured = Measured::ReferenceImages;
+
+    /// Declares the parameters. Throws Error for combinations that mean nothing.
+    explicit DepthSamplingParams(Params& params);
+};
 
 constexpr Choice<Method> kMethods[] = {
     {Method::Conventional, "conventional", "ordinary depth images: the nearest sample of a pixel"},
@@ -123,8 +165,6 @@ void checkFrames(const Params& params, const DepthSamplingParams& read) {
                        "'usefulness', 'availability', 'pictures' or 'measured: output_frame'");
 }
 
-}  // namespace
-
 DepthSamplingParams::DepthSamplingParams(Params& params)
     : method(params.getEnum("method", Method::Conventional, kMethods, {"which images are taken"})),
       redundancy(params.getEnum("redundancy", Redundancy::Pixel, kRedundancies,
@@ -161,8 +201,6 @@ DepthSamplingParams::DepthSamplingParams(Params& params)
     checkVisibility(params, *this);
     checkFrames(params, *this);
 }
-
-namespace {
 
 std::vector<kit::View> viewsOf(const std::vector<scene::Camera>& cameras, glm::ivec2 sizePx) {
     std::vector<kit::View> views;
@@ -223,140 +261,9 @@ void requireSamples(const Measures& measures, Method method, const Views& views,
     }
 }
 
-}  // namespace
-
-DepthSampling::DepthSampling(Params& params) : params_(params) {
-    params.finish();
-}
-
-std::vector<scene::Camera> DepthSampling::chooseCameras(technique::SetupContext& context,
-                                                        const ViewTriangle& triangle) const {
-    if (params_.placement == Placement::Fixed) return referenceCameras(triangle, params_.views);
-    // Every candidate is tried against every frame: fewer and smaller ones than are measured.
-    constexpr int kFrames = 24;
-    constexpr int kLongestSidePx = 256;
-    const glm::ivec2 size = context.outputSizePx;
-    const int longestPx = std::max(size.x, size.y);
-    const glm::ivec2 trialSize =
-        longestPx > kLongestSidePx ? glm::max(size * kLongestSidePx / longestPx, 1) : size;
-
-    const kit::DrawableScene drawable(*context.scene);
-    kit::DepthImageRenderer renderer(context.shaders, params_.triangleIds, params_.depthFormat);
-    NextView nextView(context.shaders, renderer, drawable,
-                      candidateCameras(triangle, params_.views, params_.candidates),
-                      outputCameras(triangle, params_.views, kFrames), trialSize);
-    std::vector<scene::Camera> cameras;
-    std::vector<kit::DepthImage> images;
-    images.reserve(static_cast<std::size_t>(params_.views));
-    std::vector<const kit::DepthImage*> imagesSoFar;
-    for (int i = 0; i < params_.views; ++i) {
-        cameras.push_back(nextView.next(imagesSoFar).camera);
-        images.push_back(renderer.makeImage(kit::viewOf(cameras.back(), trialSize)));
-        renderer.render(drawable, images.back(), imagesSoFar);
-        imagesSoFar.push_back(&images.back());
-    }
-    return cameras;
-}
-
-Views DepthSampling::makeViews(technique::SetupContext& context) const {
-    const glm::ivec2 size = context.outputSizePx;
-    ViewTriangleSettings settings = params_.triangle;
-    settings.aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
-    const ViewTriangle triangle = makeViewTriangle(*context.scene, settings);
-
-    Views views;
-    views.conventional = viewsOf(chooseCameras(context, triangle), size);
-    views.images = views.conventional;
-    if (params_.method == Method::DepthPeeling) {
-        const kit::View view = params_.peeledFrom == PeeledFrom::FirstView
-                                   ? views.conventional.front()
-                                   : kit::viewOf(triangle.centre, size);
-        views.images.assign(static_cast<std::size_t>(params_.views), view);
-    }
-    const glm::ivec2 frameSize = params_.frameSizePx > 0 ? glm::ivec2(params_.frameSizePx) : size;
-    views.frames = viewsOf(outputCameras(triangle, params_.views, params_.outputFrames), frameSize);
-    return views;
-}
-
-void DepthSampling::requireScene(const scene::Scene& scene) const {
-    kit::requireTriangles(scene, "depth_sampling");
-}
-
-void DepthSampling::setup(technique::SetupContext& context) {
-    const scene::Scene& scene = *context.scene;
-    kit::requireIdsFor(scene.triangleCount());
-    const Views views = makeViews(context);
-    views_ = views;
-    sceneName_ = scene.name;
-    raycast::RayTracer tracer(scene);
-    checkViews(tracer, views.conventional);
-    if (params_.method == Method::DepthPeeling) checkViews(tracer, {&views.images[0], 1});
-
-    if (params_.redundancy == Redundancy::Visibility) {
-        experiment_ = std::make_unique<VisibilityExperiment>(
-            scene, std::move(tracer), params_.method, views, params_.earlier);
-        return;
-    }
-    auto experiment = std::make_unique<PixelExperiment>(
-        context.shaders, scene, params_.method, params_.triangleIds, params_.depthFormat, views);
-    pixelExperiment_ = experiment.get();
-    experiment_ = std::move(experiment);
-    if (params_.measured == Measured::OutputFrame) {
-        gl::Profiler untimed(context.device.info().isSoftware);
-        experiment_->makeReferenceImages(untimed);
-    }
-}
-
-void DepthSampling::render(technique::FrameContext& context) {
-    if (params_.measured == Measured::ReferenceImages) {
-        experiment_->makeReferenceImages(context.profiler);
-        return;
-    }
-    // Measured frames spread over the output frames.
-    const auto frame = static_cast<std::int64_t>(context.frame) * params_.outputFrames /
-                       std::max(context.frameCount, 1);
-    pixelExperiment_->drawOutputFrame(context.profiler, static_cast<std::size_t>(frame));
-}
-
-void DepthSampling::record(technique::Recorder& recorder) {
-    if (params_.measured == Measured::OutputFrame) {
-        const FrameCounts counts = pixelExperiment_->outputFrameCounts();
-        if (counts.samples > 0) {
-            recorder.share("available_pct", static_cast<double>(counts.available),
-                           static_cast<double>(counts.samples), "sample", "output_frame");
-        }
-    }
-    // The reference images are the same in each frame.
-    if (!measures_) {
-        measures_ = experiment_->measure(params_.measures);
-        requireSamples(*measures_, params_.method, views_, sceneName_);
-        if (params_.showsPictures) recordPictures(recorder);
-    }
-    const glm::ivec2 size = views_.images.front().sizePx;
-    recordMeasures(recorder, *measures_, params_.measures.usefulness,
-                   static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y));
-    recorder.metric("reference_image_bytes",
-                    static_cast<double>(experiment_->referenceImageBytes()), "byte");
-    const bool usesFrames = params_.measures.usefulness || params_.measures.availability;
-    recorder.metric("output_frames", usesFrames ? params_.outputFrames : 0, "frame");
-}
-
-void DepthSampling::recordPictures(technique::Recorder& recorder) const {
-    for (std::size_t i = 0; i < measures_->images.size(); ++i) {
-        const MarkedImage marked = experiment_->markedImage(i);
-        recorder.image(imageName(i), kit::shadingPicture(marked.image),
-                       kit::layersOf(marked.image).options());
-        recorder.image(fmt::format("classes_{}", i), occludedPicture(marked.image, marked.marks),
-                       kit::seenFrom(marked.image.view));
-    }
-    const MarkedImage frame =
-        experiment_->markedFrame(static_cast<std::size_t>(params_.outputFrames) / 2);
-    recorder.image("output_frame", kit::shadingPicture(frame.image),
-                   kit::layersOf(frame.image).options());
-    recorder.image("unavailable", availabilityPicture(frame.image, frame.marks),
-                   kit::seenFrom(frame.image.view));
-}
-
+/// Records `measures` of images of so many pixels as metrics. An image without samples has no
+/// shares but its coverage; frames without samples have no availability; nothing is said of useful
+/// samples that nobody counted.
 void recordMeasures(technique::Recorder& recorder, const Measures& measures, bool hasUsefulness,
                     std::uint64_t pixels) {
     double occludedSumPct = 0.0;
@@ -393,7 +300,152 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, boo
     if (!measures.frames.empty()) recordAvailability(recorder, measures.frames);
 }
 
-namespace {
+class DepthSampling final : public technique::Technique {
+  public:
+    explicit DepthSampling(Params& params) : params_(params) { params.finish(); }
+
+    void setup(technique::SetupContext& context) override {
+        const scene::Scene& scene = *context.scene;
+        kit::requireIdsFor(scene.triangleCount());
+        const Views views = makeViews(context);
+        views_ = views;
+        sceneName_ = scene.name;
+        raycast::RayTracer tracer(scene);
+        checkViews(tracer, views.conventional);
+        if (params_.method == Method::DepthPeeling) checkViews(tracer, {&views.images[0], 1});
+
+        if (params_.redundancy == Redundancy::Visibility) {
+            experiment_ = std::make_unique<VisibilityExperiment>(
+                scene, std::move(tracer), params_.method, views, params_.earlier);
+            return;
+        }
+        auto experiment =
+            std::make_unique<PixelExperiment>(context.shaders, scene, params_.method,
+                                              params_.triangleIds, params_.depthFormat, views);
+        pixelExperiment_ = experiment.get();
+        experiment_ = std::move(experiment);
+        if (params_.measured == Measured::OutputFrame) {
+            gl::Profiler untimed(context.device.info().isSoftware);
+            experiment_->makeReferenceImages(untimed);
+        }
+    }
+
+    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
+
+    void requireScene(const scene::Scene& scene) const override {
+        kit::requireTriangles(scene, "depth_sampling");
+    }
+
+    void render(technique::FrameContext& context) override {
+        if (params_.measured == Measured::ReferenceImages) {
+            experiment_->makeReferenceImages(context.profiler);
+            return;
+        }
+        // Measured frames spread over the output frames.
+        const auto frame = static_cast<std::int64_t>(context.frame) * params_.outputFrames /
+                           std::max(context.frameCount, 1);
+        pixelExperiment_->drawOutputFrame(context.profiler, static_cast<std::size_t>(frame));
+    }
+
+    void record(technique::Recorder& recorder) override {
+        if (params_.measured == Measured::OutputFrame) {
+            const FrameCounts counts = pixelExperiment_->outputFrameCounts();
+            if (counts.samples > 0) {
+                recorder.share("available_pct", static_cast<double>(counts.available),
+                               static_cast<double>(counts.samples), "sample", "output_frame");
+            }
+        }
+        // The reference images are the same in each frame.
+        if (!measures_) {
+            measures_ = experiment_->measure(params_.measures);
+            requireSamples(*measures_, params_.method, views_, sceneName_);
+            if (params_.showsPictures) recordPictures(recorder);
+        }
+        const glm::ivec2 size = views_.images.front().sizePx;
+        recordMeasures(recorder, *measures_, params_.measures.usefulness,
+                       static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y));
+        recorder.metric("reference_image_bytes",
+                        static_cast<double>(experiment_->referenceImageBytes()), "byte");
+        const bool usesFrames = params_.measures.usefulness || params_.measures.availability;
+        recorder.metric("output_frames", usesFrames ? params_.outputFrames : 0, "frame");
+    }
+
+  private:
+    std::vector<scene::Camera> chooseCameras(technique::SetupContext& context,
+                                             const ViewTriangle& triangle) const {
+        if (params_.placement == Placement::Fixed) return referenceCameras(triangle, params_.views);
+        // Every candidate is tried against every frame: fewer and smaller ones than are measured.
+        constexpr int kFrames = 24;
+        constexpr int kLongestSidePx = 256;
+        const glm::ivec2 size = context.outputSizePx;
+        const int longestPx = std::max(size.x, size.y);
+        const glm::ivec2 trialSize =
+            longestPx > kLongestSidePx ? glm::max(size * kLongestSidePx / longestPx, 1) : size;
+
+        const kit::DrawableScene drawable(*context.scene);
+        kit::DepthImageRenderer renderer(context.shaders, params_.triangleIds, params_.depthFormat);
+        NextView nextView(context.shaders, renderer, drawable,
+                          candidateCameras(triangle, params_.views, params_.candidates),
+                          outputCameras(triangle, params_.views, kFrames), trialSize);
+        std::vector<scene::Camera> cameras;
+        std::vector<kit::DepthImage> images;
+        images.reserve(static_cast<std::size_t>(params_.views));
+        std::vector<const kit::DepthImage*> imagesSoFar;
+        for (int i = 0; i < params_.views; ++i) {
+            cameras.push_back(nextView.next(imagesSoFar).camera);
+            images.push_back(renderer.makeImage(kit::viewOf(cameras.back(), trialSize)));
+            renderer.render(drawable, images.back(), imagesSoFar);
+            imagesSoFar.push_back(&images.back());
+        }
+        return cameras;
+    }
+
+    Views makeViews(technique::SetupContext& context) const {
+        const glm::ivec2 size = context.outputSizePx;
+        ViewTriangleSettings settings = params_.triangle;
+        settings.aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
+        const ViewTriangle triangle = makeViewTriangle(*context.scene, settings);
+
+        Views views;
+        views.conventional = viewsOf(chooseCameras(context, triangle), size);
+        views.images = views.conventional;
+        if (params_.method == Method::DepthPeeling) {
+            const kit::View view = params_.peeledFrom == PeeledFrom::FirstView
+                                       ? views.conventional.front()
+                                       : kit::viewOf(triangle.centre, size);
+            views.images.assign(static_cast<std::size_t>(params_.views), view);
+        }
+        const glm::ivec2 frameSize =
+            params_.frameSizePx > 0 ? glm::ivec2(params_.frameSizePx) : size;
+        views.frames =
+            viewsOf(outputCameras(triangle, params_.views, params_.outputFrames), frameSize);
+        return views;
+    }
+
+    void recordPictures(technique::Recorder& recorder) const {
+        for (std::size_t i = 0; i < measures_->images.size(); ++i) {
+            const MarkedImage marked = experiment_->markedImage(i);
+            recorder.image(imageName(i), kit::shadingPicture(marked.image),
+                           kit::layersOf(marked.image).options());
+            recorder.image(fmt::format("classes_{}", i),
+                           occludedPicture(marked.image, marked.marks),
+                           kit::seenFrom(marked.image.view));
+        }
+        const MarkedImage frame =
+            experiment_->markedFrame(static_cast<std::size_t>(params_.outputFrames) / 2);
+        recorder.image("output_frame", kit::shadingPicture(frame.image),
+                       kit::layersOf(frame.image).options());
+        recorder.image("unavailable", availabilityPicture(frame.image, frame.marks),
+                       kit::seenFrom(frame.image.view));
+    }
+
+    DepthSamplingParams params_;
+    Views views_;
+    std::string sceneName_;
+    std::unique_ptr<Experiment> experiment_;
+    PixelExperiment* pixelExperiment_ = nullptr;  // the same, under the pixel definition
+    std::optional<Measures> measures_;            // of all frames alike: taken once
+};
 
 std::unique_ptr<technique::Technique> create(Params& params) {
     return std::make_unique<DepthSampling>(params);

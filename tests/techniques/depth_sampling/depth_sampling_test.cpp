@@ -88,7 +88,7 @@ TEST(DepthSamplingParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
             Params params = paramsOf(yaml);
-            DepthSampling technique(params);
+            kDepthSampling.create(params);
         });
     };
     EXPECT_EQ(message("{}"), "no error");
