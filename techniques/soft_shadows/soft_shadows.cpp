@@ -342,13 +342,16 @@ void SoftShadows::renderOffsetImages() {
 // [xie2017] Algorithm 5, step 2
 std::vector<ReconstructedMesh> SoftShadows::reconstructMeshes() {
     std::vector<ReconstructedMesh> meshes;
-    meshCounts_.clear();
+    meshCounts_ = {};
     for (std::size_t i = 0; i < images_.size(); ++i) {
         const kit::DepthImage* offsetImage = offsetImages_.empty() ? nullptr : &offsetImages_[i];
         meshes.push_back(reconstructor_->reconstruct(images_[i], offsetImage, triangleNormals_));
         const ReconstructedMesh& mesh = meshes.back();
-        meshCounts_.push_back({mesh.sampleCount, mesh.triangleCount, mesh.sizeBytes(),
-                               mesh.sharedCorners, mesh.fittedCorners});
+        meshCounts_.samples += mesh.sampleCount;
+        meshCounts_.triangles += mesh.triangleCount;
+        meshCounts_.bytes += mesh.sizeBytes();
+        meshCounts_.sharedCorners += mesh.sharedCorners;
+        meshCounts_.fittedCorners += mesh.fittedCorners;
     }
     return meshes;
 }
@@ -456,14 +459,7 @@ void SoftShadows::recordErrors(technique::Recorder& recorder, const char* truthN
 }
 
 void SoftShadows::recordMeshes(technique::Recorder& recorder) const {
-    MeshCounts total;
-    for (const MeshCounts& mesh : meshCounts_) {
-        total.samples += mesh.samples;
-        total.triangles += mesh.triangles;
-        total.bytes += mesh.bytes;
-        total.fittedCorners += mesh.fittedCorners;
-        total.sharedCorners += mesh.sharedCorners;
-    }
+    const MeshCounts& total = meshCounts_;
     const auto ratio = [](std::uint64_t part, std::uint64_t whole) {
         return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
     };

@@ -13,7 +13,7 @@
 
 namespace gfxrepro::soft_shadows {
 
-/// What is recorded of a reconstructed mesh.
+/// What is recorded of the reconstructed meshes.
 struct MeshCounts {
     std::uint64_t samples = 0, triangles = 0, bytes = 0, sharedCorners = 0, fittedCorners = 0;
 };
@@ -117,7 +117,7 @@ class SoftShadows final : public technique::Technique {
     std::vector<kit::DepthImage> seen_;          // conventional ones, for redundancy by visibility
     std::vector<kit::DepthImage> offsetImages_;  // H, hybrid only
     std::unique_ptr<ShadowCaster> caster_;       // what casts in this method
-    std::vector<MeshCounts> meshCounts_;
+    MeshCounts meshCounts_;
     float simplificationErrorM_ = 0.0F;
 };
 
