@@ -56,13 +56,6 @@ TEST(CityAndTree, EverySeedMeetsTheCount) {
     }
 }
 
-const Mesh& meshNamed(const Scene& scene, const std::string& name) {
-    for (const Mesh& mesh : scene.meshes) {
-        if (mesh.name == name) return mesh;
-    }
-    throw Error("no mesh '" + name + "'");
-}
-
 /// Height of the highest surface above the origin, or a hand's breadth from it: edges may run
 /// through the origin itself.
 float heightOverCentre(const Scene& scene) {

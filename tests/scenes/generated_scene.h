@@ -23,6 +23,13 @@ inline Scene generated(const std::string& name, const std::string& yaml, std::ui
     return findGenerator(registeredGenerators(), name, {}).generate(params, seed);
 }
 
+inline const Mesh& meshNamed(const Scene& scene, const std::string& name) {
+    for (const Mesh& mesh : scene.meshes) {
+        if (mesh.name == name) return mesh;
+    }
+    throw Error("no mesh '" + name + "'");
+}
+
 template <class T>
 std::string digestOf(const std::vector<T>& values) {
     return sha256(std::as_bytes(std::span(values)));

@@ -15,13 +15,6 @@ Scene sized(const std::string& generator, int triangles, std::uint64_t seed = 1)
     return generated(generator, "{triangles: " + std::to_string(triangles) + "}", seed);
 }
 
-const Mesh& meshNamed(const Scene& scene, const std::string& name) {
-    for (const Mesh& mesh : scene.meshes) {
-        if (mesh.name == name) return mesh;
-    }
-    throw Error("no mesh '" + name + "'");
-}
-
 glm::vec3 areaVector(const Mesh& mesh, const glm::uvec3& t) {
     const glm::vec3 a = mesh.positions[t.x];
     return 0.5F * glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);

@@ -6,13 +6,6 @@
 namespace gfxrepro::scene {
 namespace {
 
-const Mesh& meshNamed(const Scene& scene, const std::string& name) {
-    for (const Mesh& mesh : scene.meshes) {
-        if (mesh.name == name) return mesh;
-    }
-    throw Error("no mesh '" + name + "'");
-}
-
 TEST(ShadowScenes, MeshesAreSound) {
     for (const char* name : {"object_on_plane", "town_square"}) {
         for (const Mesh& mesh : generated(name, "{}").meshes) {
