@@ -24,6 +24,12 @@ void throwNotAllowed(const Node& value, std::string_view what, std::string_view 
                                       "; allowed: " + std::string(allowed));
 }
 
+const Node& requiredEntry(const Node& map, std::string_view key, std::string_view what) {
+    if (const Node* value = map.find(key)) return *value;
+    throw Error(map.location(),
+                fmt::format("{}{}'{}' is missing", what, what.empty() ? "" : ": ", key));
+}
+
 std::optional<double> fractionOf(const Node& node) {
     const std::string text = node.isScalar() ? node.text() : "";
     std::optional<double> fraction = node.tryDouble();

@@ -19,6 +19,10 @@ void requireKeys(const Node& map, std::string_view what, std::span<const std::st
 [[noreturn]] void throwNotAllowed(const Node& value, std::string_view what,
                                   std::string_view allowed);
 
+/// The entry of a map. Throws Error "WHAT: 'KEY' is missing" at the map's place; without `what`
+/// "'KEY' is missing".
+const Node& requiredEntry(const Node& map, std::string_view key, std::string_view what = "");
+
 /// A share, as a percentage ("25%", "25 %") or a fraction; none for another text, and for a
 /// fraction beyond 1, where the sign is likely forgotten.
 std::optional<double> fractionOf(const Node& node);

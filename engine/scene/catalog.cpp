@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/core/checks.h"
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
@@ -36,14 +37,6 @@ void requireKeys(const Node& map, const std::string& what, std::string_view sect
     }
 }
 
-// Literals, not strings: a reference from a call with a temporary is one that GCC 14 takes for
-// dangling.
-const Node& requiredMember(const Node& map, const char* what, const char* key) {
-    const Node* value = map.find(key);
-    if (!value) throw Error(map.location(), std::string(what) + ": '" + key + "' is missing");
-    return *value;
-}
-
 std::optional<long long> readCount(const Node& source, const std::string& key,
                                    const std::string& of) {
     const Node* node = source.find(key);
@@ -66,7 +59,7 @@ std::string assetPathOf(const Node& node, const char* key) {
 SceneSource readFileSource(const Node& node) {
     requireKeys(node, "source", "file_source");
     SceneSource source;
-    const Node& file = requiredMember(node, "source", "file");
+    const Node& file = requiredEntry(node, "file", "source");
     source.file = assetPathOf(file, "file");
     try {
         requireKnownExtension(source.file);
@@ -95,9 +88,9 @@ float readPositive(const Node& node, const std::string& key) {
 SceneSource readHeightMapSource(const Node& node) {
     requireKeys(node, "source", "height_map_source");
     SceneSource source;
-    source.file = assetPathOf(requiredMember(node, "source", "height_map"), "height_map");
+    source.file = assetPathOf(requiredEntry(node, "height_map", "source"), "height_map");
     HeightMapSource map;
-    map.units.spacingM = readPositive(requiredMember(node, "source", "spacing_m"), "spacing_m");
+    map.units.spacingM = readPositive(requiredEntry(node, "spacing_m", "source"), "spacing_m");
     if (const Node* scale = node.find("height_scale_m")) {
         map.units.heightScaleM = readPositive(*scale, "height_scale_m");
     }
@@ -133,7 +126,7 @@ SceneSource readGeneratorSource(const Node& node, bool isGenerated,
                                 std::span<const GeneratorInfo> generators) {
     requireKeys(node, "source", "generator_source");
     SceneSource source;
-    const Node& generator = requiredMember(node, "source", "generator");
+    const Node& generator = requiredEntry(node, "generator", "source");
     source.generator = &findGenerator(generators, generator.text(), generator.location());
     if (const Node* params = node.find("params")) source.params = *params;
     if (const Node* seed = node.find("seed")) {
@@ -176,18 +169,18 @@ SceneEntry readEntry(const fs::path& path, const std::string& expectedName,
     requireKeys(root, "scene entry", "scene");
     SceneEntry entry;
     entry.path = path;
-    const Node& name = requiredMember(root, "scene entry", "scene");
+    const Node& name = requiredEntry(root, "scene", "scene entry");
     entry.name = name.text();
     if (entry.name != expectedName) {
         throw Error(name.location(), "scene is '" + entry.name +
                                          "', but the file's place names it '" + expectedName + "'");
     }
-    entry.doc = requiredMember(root, "scene entry", "doc").text();
+    entry.doc = requiredEntry(root, "doc", "scene entry").text();
     if (const Node* canonical = root.find("canonical")) entry.canonical = canonical->text();
     if (const Node* licence = root.find("licence")) entry.licence = licence->text();
     const Node* generated = root.find("generated");
     const bool isGenerated = generated && generated->asBool();
-    const Node& sources = requiredMember(root, "scene entry", "sources");
+    const Node& sources = requiredEntry(root, "sources", "scene entry");
     for (const Node& source : sources.items()) {
         entry.sources.push_back(readSource(source, isGenerated, generators));
     }

@@ -19,6 +19,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/core/checks.h"
 #include "engine/core/error.h"
 #include "engine/core/node.h"
 #include "engine/image/image.h"
@@ -148,12 +149,6 @@ std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path) {
                     path.string(), bytes));
 }
 
-const Node& required(const Node& map, std::string_view key) {
-    const Node* value = map.find(key);
-    if (value == nullptr) throw Error(map.location(), fmt::format("'{}' is missing", key));
-    return *value;
-}
-
 ValueType typeOf(const Node& node) {
     const std::string& text = node.text();
     if (text == "u16") return ValueType::U16;
@@ -188,10 +183,10 @@ std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
                                     key));
         }
     }
-    const long long width = required(root, "width").asInteger();
-    const long long height = required(root, "height").asInteger();
+    const long long width = requiredEntry(root, "width").asInteger();
+    const long long height = requiredEntry(root, "height").asInteger();
     checkHeightMapSize(width, height, sidecar.string());
-    const ValueType type = typeOf(required(root, "type"));
+    const ValueType type = typeOf(requiredEntry(root, "type"));
     const std::uintmax_t bytes = bytesOfFile(path);
     const auto wanted =
         static_cast<std::uintmax_t>(width) * static_cast<std::uintmax_t>(height) * valueBytes(type);
