@@ -26,7 +26,7 @@ void addFramed(MeshBuilder& builder, const glm::mat4& frame, std::vector<glm::ve
                std::vector<glm::vec3> normals, std::span<const glm::uvec3> triangles,
                std::span<const glm::vec2> texcoords);
 
-// --- surfaces (surfaces.cpp; boxes.cpp: what is flat) ---
+// --- surfaces (surfaces.cpp; furnishings.cpp: what is flat) ---
 
 /// A surface of revolution is described by its outline: (radius, height), from the bottom outwards
 /// and up, and down again on the inside. A point that stands there twice is a sharp edge.
@@ -103,7 +103,7 @@ void addBroadLeaves(MeshBuilder& builder, float heightM, int leaves, int leafCel
 void addCurtain(MeshBuilder& builder, float widthM, float heightM, int folds, int cellsPerFold,
                 int cellsDown, Random& random, const glm::mat4& frame);
 
-// --- textures (textures.cpp): 512², RGB, sRGB, repeating ---
+// --- textures (surfaces.cpp): 512², RGB, sRGB, repeating ---
 
 image::Image8 planksTexture(const glm::vec3& darkSrgb, const glm::vec3& lightSrgb, int rows,
                             std::uint64_t seed);  // rows of planks along u

@@ -8,7 +8,6 @@
 #include "scenes/models/shapes.h"
 
 namespace gfxrepro::scene {
-
 namespace {
 
 enum class ModelShape {
