@@ -24,8 +24,6 @@
 namespace gfxrepro::gl {
 namespace {
 
-constexpr const char* kVariable = "CUDA_VISIBLE_DEVICES";
-
 /// The GPU that an entry means; empty for none.
 std::string gpuOf(std::string entry, const std::vector<std::string>& gpus) {
     if (const auto index = parseInteger(entry)) {
@@ -39,44 +37,21 @@ std::string gpuOf(std::string entry, const std::vector<std::string>& gpus) {
     return found == gpus.end() ? "" : *found;
 }
 
-/// The GPUs that a cluster gave to this task, as it says by CUDA_VISIBLE_DEVICES: EGL lists all.
-class GrantedGpus {
-  public:
-    /// `visible` as CUDA reads it: numbers in the order of `gpus` (UUIDs, as nvidiaGpus()) or
-    /// beginnings of UUIDs, up to the first that is neither; nothing where it is not set.
-    GrantedGpus(std::optional<std::string> visible, std::vector<std::string> gpus);
-    static GrantedGpus fromEnvironment();
-
-    /// Why a device of that UUID is not to be used; empty where it may be. Nothing is said of
-    /// devices that are not among the GPUs.
-    std::string whyNot(const std::string& uuid) const;
-
-  private:
-    std::optional<std::string> visible_;
-    std::vector<std::string> gpus_, granted_;
-};
-
-GrantedGpus::GrantedGpus(std::optional<std::string> visible, std::vector<std::string> gpus)
-    : visible_(std::move(visible)), gpus_(std::move(gpus)) {
-    if (!visible_) return;
-    for (const std::string& entry : split(*visible_, ',')) {
-        const std::string gpu = gpuOf(std::string(trimmed(entry)), gpus_);
+/// Why a device of that UUID is not to be used: it is not among the GPUs that a cluster gave to
+/// this task by CUDA_VISIBLE_DEVICES, as EGL lists all. That has, as CUDA reads it, numbers in the
+/// order of nvidiaGpus() or beginnings of UUIDs, up to the first that is neither. Empty where it
+/// may be used; nothing is said of devices that are no GPUs of NVIDIA's.
+std::string whyNotGranted(const std::string& uuid) {
+    const char* visible = std::getenv("CUDA_VISIBLE_DEVICES");
+    if (!visible) return "";
+    const std::vector<std::string> gpus = nvidiaGpus();
+    if (std::ranges::find(gpus, uuid) == gpus.end()) return "";
+    for (const std::string& entry : split(visible, ',')) {
+        const std::string gpu = gpuOf(std::string(trimmed(entry)), gpus);
+        if (gpu == uuid) return "";
         if (gpu.empty()) break;
-        granted_.push_back(gpu);
     }
-}
-
-GrantedGpus GrantedGpus::fromEnvironment() {
-    const char* visible = std::getenv(kVariable);
-    return visible ? GrantedGpus(visible, nvidiaGpus()) : GrantedGpus(std::nullopt, {});
-}
-
-std::string GrantedGpus::whyNot(const std::string& uuid) const {
-    const auto has = [&](const std::vector<std::string>& uuids) {
-        return std::ranges::find(uuids, uuid) != uuids.end();
-    };
-    if (!visible_ || !has(gpus_) || has(granted_)) return "";
-    return fmt::format("is not among those that {} gives: '{}'", kVariable, *visible_);
+    return fmt::format("is not among those that CUDA_VISIBLE_DEVICES gives: '{}'", visible);
 }
 
 }  // namespace
@@ -333,7 +308,6 @@ Device Device::open(const DeviceChoice& choice) {
     }
 
     const bool isAnyGpu = wanted.kind == Wanted::Kind::Auto || wanted.kind == Wanted::Kind::Gpu;
-    const GrantedGpus granted = GrantedGpus::fromEnvironment();
     std::optional<Device> software;  // what auto falls back on where there is no GPU
     bool isGpuThere = false;
     for (const egl::Candidate& candidate : candidates) {
@@ -344,7 +318,7 @@ Device Device::open(const DeviceChoice& choice) {
             Device device = openCandidate(candidate, choice.debug);
             std::string why = wanted.whyNot(device.info());
             if (why.empty() && isAnyGpu) {
-                why = granted.whyNot(device.info().uuid);
+                why = whyNotGranted(device.info().uuid);
                 if (!why.empty()) why = device.info().renderer + " " + why;
                 isGpuThere |= !why.empty();
             }

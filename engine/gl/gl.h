@@ -9,7 +9,8 @@
 
 namespace gfxrepro::gl {
 
-/// "GL_INVALID_ENUM"; "0x1234" for what is no error of OpenGL 4.5.
+/// "GL_INVALID_ENUM"; also of what a framebuffer lacks; "0x1234" for what is no error of OpenGL
+/// 4.5.
 std::string errorName(GLenum error);
 
 /// glGetError: std::bad_alloc for GL_OUT_OF_MEMORY, Error("CALL: GL_INVALID_ENUM") for the others.

@@ -338,29 +338,10 @@ void Texture::bindImageLayer(GLuint unit, int layer, GLenum access) const {
 
 namespace {
 
-std::string statusName(GLenum status) {
-    switch (status) {
-        case GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT:
-            return "GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT";
-        case GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT:
-            return "GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT";
-        case GL_FRAMEBUFFER_INCOMPLETE_DRAW_BUFFER:
-            return "GL_FRAMEBUFFER_INCOMPLETE_DRAW_BUFFER";
-        case GL_FRAMEBUFFER_INCOMPLETE_MULTISAMPLE:
-            return "GL_FRAMEBUFFER_INCOMPLETE_MULTISAMPLE";
-        case GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS:
-            return "GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS";
-        case GL_FRAMEBUFFER_UNSUPPORTED:
-            return "GL_FRAMEBUFFER_UNSUPPORTED";
-        default:
-            return errorName(status);
-    }
-}
-
 void checkComplete(GLuint framebuffer) {
     const GLenum status = glCheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER);
     if (status == GL_FRAMEBUFFER_COMPLETE) return;
-    throw Error(fmt::format("framebuffer is not complete: {}", statusName(status)));
+    throw Error(fmt::format("framebuffer is not complete: {}", errorName(status)));
 }
 
 GLuint createFramebuffer() {

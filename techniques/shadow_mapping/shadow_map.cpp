@@ -10,6 +10,15 @@
 namespace gfxrepro::shadow_mapping {
 namespace {
 
+struct DepthFormatInfo {
+    GLenum glFormat;
+    const char* name;
+};
+/// Of each DepthFormat.
+constexpr DepthFormatInfo kDepthFormats[] = {{GL_DEPTH_COMPONENT16, "DEPTH16"},
+                                             {GL_DEPTH_COMPONENT24, "DEPTH24"},
+                                             {GL_DEPTH_COMPONENT32F, "DEPTH32F"}};
+
 void check(const ShadowMapSettings& settings) {
     constexpr int kLargestPx = 1 << 20;  // three of them fit into an int; the device allows fewer
     if (settings.sizePx < 1 || settings.sizePx > kLargestPx) {
@@ -32,21 +41,10 @@ void check(const ShadowMapSettings& settings) {
     }
 }
 
-std::string nameOf(DepthFormat format) {
-    switch (format) {
-        case DepthFormat::Unorm16:
-            return "DEPTH16";
-        case DepthFormat::Unorm24:
-            return "DEPTH24";
-        case DepthFormat::Float32:
-            return "DEPTH32F";
-    }
-    return "";
-}
-
 StepDeclaration depthMapStep(const ShadowMapSettings& settings) {
-    StepDeclaration step{
-        .step = "depth map", .target = nameOf(settings.format), .depthWrites = true};
+    StepDeclaration step{.step = "depth map",
+                         .target = kDepthFormats[static_cast<std::size_t>(settings.format)].name,
+                         .depthWrites = true};
     if (settings.storage == Storage::Standard) {
         step.target = settings.filter == Filter::Variance ? "RG32F" : "R32F";
         step.colourWrites = true;
@@ -76,21 +74,8 @@ StepDeclaration shadingStep(const ShadowMapSettings& settings) {
 }  // namespace
 
 int kernelSizeOf(Filter filter) {
-    switch (filter) {
-        case Filter::Nearest:
-        case Filter::Variance:
-            return 1;
-        case Filter::Bilinear:
-            return 2;
-        case Filter::Pcf3:
-            return 3;
-        case Filter::Pcf5:
-            return 5;
-        case Filter::Pcf7:
-        case Filter::Pcss:
-            return 7;
-    }
-    return 1;
+    static constexpr int kSizes[] = {1, 2, 3, 5, 7, 7, 1};
+    return kSizes[static_cast<std::size_t>(filter)];
 }
 
 std::vector<StepDeclaration> declaredSteps(const ShadowMapSettings& settings) {
@@ -126,18 +111,6 @@ void applyState(const StepDeclaration& step) {
 }
 
 namespace {
-
-GLenum glFormatOf(DepthFormat format) {
-    switch (format) {
-        case DepthFormat::Unorm16:
-            return GL_DEPTH_COMPONENT16;
-        case DepthFormat::Unorm24:
-            return GL_DEPTH_COMPONENT24;
-        case DepthFormat::Float32:
-            return GL_DEPTH_COMPONENT32F;
-    }
-    return GL_DEPTH_COMPONENT24;
-}
 
 gl::Program makeDepthProgram(const gl::ShaderLibrary& shaders, const StepDeclaration& step,
                              const ShadowMapSettings& settings) {
@@ -176,7 +149,8 @@ ShadowMapRenderer::ShadowMapRenderer(const gl::ShaderLibrary& shaders,
 
 ShadowMap ShadowMapRenderer::makeMap(glm::ivec2 sizePx) const {
     ShadowMap map;
-    map.depth = gl::Texture::make2D(glFormatOf(settings_.format), sizePx);
+    map.depth = gl::Texture::make2D(
+        kDepthFormats[static_cast<std::size_t>(settings_.format)].glFormat, sizePx);
     if (!steps_.front().colourWrites) {
         if (steps_.back().comparisons == 0) {
             // [zju2005] Sec. 4.3: a fetch compares, and gives 0 where the map is less.

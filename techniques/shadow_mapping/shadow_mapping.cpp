@@ -19,8 +19,6 @@
 namespace gfxrepro::shadow_mapping {
 namespace {
 
-enum class FilterKind { Nearest, Bilinear, Pcf, Pcss, Variance };
-
 enum class LightPlace {
     Orbit,  // around the scene's box
     Scene,  // the scene's own lights
@@ -53,12 +51,13 @@ constexpr Choice<Storage> kMethods[] = {
     {Storage::Standard, "standard", "depths in a float colour texture, compared in the shader"},
     {Storage::Hardware, "hardware", "a depth texture, compared by the texture unit"},
 };
-constexpr Choice<FilterKind> kFilters[] = {
-    {FilterKind::Nearest, "nearest", "one comparison"},
-    {FilterKind::Bilinear, "bilinear", "four comparisons, weighted"},
-    {FilterKind::Pcf, "pcf", "the mean of filter_size² comparisons"},
-    {FilterKind::Pcss, "pcss", "percentage-closer soft shadows"},
-    {FilterKind::Variance, "variance", "variance shadow maps, blurred"},
+/// Pcf5 stands for percentage-closer filtering of any size.
+constexpr Choice<Filter> kFilters[] = {
+    {Filter::Nearest, "nearest", "one comparison"},
+    {Filter::Bilinear, "bilinear", "four comparisons, weighted"},
+    {Filter::Pcf5, "pcf", "the mean of filter_size² comparisons"},
+    {Filter::Pcss, "pcss", "percentage-closer soft shadows"},
+    {Filter::Variance, "variance", "variance shadow maps, blurred"},
 };
 constexpr Choice<LightKind> kLightKinds[] = {
     {LightKind::Spot, "spot", "one perspective map around the scene"},
@@ -79,22 +78,6 @@ float number(Params& params, const char* name, double fallback, const ParamSpec&
     return static_cast<float>(params.getDouble(name, fallback, spec));
 }
 
-Filter filterOf(FilterKind kind, int size) {
-    switch (kind) {
-        case FilterKind::Nearest:
-            return Filter::Nearest;
-        case FilterKind::Bilinear:
-            return Filter::Bilinear;
-        case FilterKind::Pcf:
-            return size == 3 ? Filter::Pcf3 : size == 5 ? Filter::Pcf5 : Filter::Pcf7;
-        case FilterKind::Pcss:
-            return Filter::Pcss;
-        case FilterKind::Variance:
-            break;
-    }
-    return Filter::Variance;
-}
-
 void readLights(Params& params, ShadowMappingParams& p) {
     p.lightKind = params.getEnum("light_kind", LightKind::Spot, kLightKinds, {"of all lights"});
     p.lightPlace =
@@ -111,11 +94,11 @@ void readLights(Params& params, ShadowMappingParams& p) {
                          {"diameter of the lights, for pcss", "diagonals", 0.0, 10.0});
 }
 
-void refuseUnread(const Params& params, FilterKind filter, const ShadowMappingParams& p) {
-    if (filter != FilterKind::Pcf && filter != FilterKind::Variance) {
+void refuseUnread(const Params& params, Filter filter, const ShadowMappingParams& p) {
+    if (filter != Filter::Pcf5 && filter != Filter::Variance) {
         params.refuseGiven({"filter_size"}, "'filter: pcf' or 'filter: variance'");
     }
-    if (filter != FilterKind::Pcss) params.refuseGiven({"light_size"}, "'filter: pcss'");
+    if (filter != Filter::Pcss) params.refuseGiven({"light_size"}, "'filter: pcss'");
     if (p.lightPlace == LightPlace::Scene) {
         params.refuseGiven({"light_distance", "light_azimuth_deg", "light_elevation_deg"},
                            "'light_place: orbit'");
@@ -125,7 +108,7 @@ void refuseUnread(const Params& params, FilterKind filter, const ShadowMappingPa
     }
     if (p.isStatic) params.refuseGiven({"yardstick"}, "'static: false'");
     if (!p.measuresErrors) params.refuseGiven({"edge_texels"}, "'errors: true'");
-    if (filter == FilterKind::Variance) {
+    if (filter == Filter::Variance) {
         if (p.maps.storage == Storage::Hardware) {
             throw Error(params.locationOf("filter"),
                         "'filter: variance' needs 'method: standard': moments are colours");
@@ -137,15 +120,17 @@ void refuseUnread(const Params& params, FilterKind filter, const ShadowMappingPa
 ShadowMappingParams::ShadowMappingParams(Params& params) {
     maps.storage =
         params.getEnum("method", Storage::Hardware, kMethods, {"how depths are compared"});
-    const FilterKind filter =
-        params.getEnum("filter", FilterKind::Nearest, kFilters, {"how comparisons are filtered"});
+    const Filter filter =
+        params.getEnum("filter", Filter::Nearest, kFilters, {"how comparisons are filtered"});
     const int filterSize = params.getInt(
         "filter_size", 5, {"side of the square of texels; 3, 5 or 7", "texels", 3, 7});
     if (filterSize % 2 == 0) {
         throw Error(params.locationOf("filter_size"),
                     "filter_size: " + std::to_string(filterSize) + " is even; allowed: 3, 5 or 7");
     }
-    maps.filter = filterOf(filter, filterSize);
+    maps.filter = filter;
+    if (filter == Filter::Pcf5 && filterSize == 3) maps.filter = Filter::Pcf3;
+    if (filter == Filter::Pcf5 && filterSize == 7) maps.filter = Filter::Pcf7;
     maps.blurTexels = filterSize;
     maps.sizePx =
         params.getInt("shadow_map_size", 1024,
