@@ -25,6 +25,7 @@
 #include "engine/image/image.h"
 #include "engine/image/png_io.h"
 #include "engine/scene/height_map.h"
+#include "engine/scene/model_files.h"
 
 namespace gfxrepro::scene {
 
@@ -380,10 +381,7 @@ constexpr HeightFormat kHeightFormats[] = {
 };
 
 const HeightFormat* heightFormatOf(const fs::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
+    const std::string extension = lowerCaseExtension(path);
     for (const HeightFormat& format : kHeightFormats) {
         if (format.extension == extension) return &format;
     }

@@ -1,7 +1,6 @@
 #include "engine/scene/load.h"
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <string_view>
 
@@ -24,9 +23,7 @@ constexpr Format kFormats[] = {
 };
 
 const Format& formatOf(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowerCaseExtension(path);
     const auto found = std::ranges::find(kFormats, extension, &Format::extension);
     if (found != std::end(kFormats)) return *found;
     throw Error(path.string() + ": unknown extension '" + extension +

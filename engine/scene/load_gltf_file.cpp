@@ -11,7 +11,6 @@
 #include <optional>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -101,16 +100,6 @@ bool keepEncoded(tinygltf::Image* image, int, std::string*, std::string*, int, i
     return true;
 }
 
-/// The JSON of either kind of file; empty when a binary file is too short for any.
-std::string_view jsonText(std::string_view content, bool isBinary) {
-    if (!isBinary) return content;
-    constexpr std::size_t kHeaderBytes = 20;
-    std::uint32_t length = 0;
-    if (content.size() < kHeaderBytes) return {};
-    std::memcpy(&length, content.data() + 12, sizeof(length));
-    return content.substr(kHeaderBytes, length);
-}
-
 /// The parser recurses over nested values; a deep enough file would overflow its stack.
 void checkNesting(std::string_view json, const std::string& name) {
     constexpr int kMaxDepth = 256;
@@ -191,7 +180,7 @@ File readFile(const std::filesystem::path& path) {
                         "'glTF'",
                         file.name, content.empty() ? "is empty" : "is no glTF"));
     }
-    checkNesting(jsonText(content, isBinary), file.name);
+    checkNesting(isBinary ? jsonOfGlb(content) : content, file.name);
 
     Folder folder{path.parent_path(), ""};
     std::string message;

@@ -82,6 +82,21 @@ image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string&
     throw Error(name + ": neither a PNG nor a JPEG image");
 }
 
+std::string lowerCaseExtension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+std::string_view jsonOfGlb(std::string_view file) {
+    constexpr std::size_t kHead = 20;
+    std::uint32_t length = 0;
+    if (file.size() < kHead) return {};
+    std::memcpy(&length, file.data() + 12, sizeof(length));
+    return file.substr(kHead, length);
+}
+
 std::optional<std::filesystem::path> pathInside(const std::filesystem::path& folder,
                                                 const std::filesystem::path& name) {
     const std::filesystem::path relative = name.lexically_normal();
@@ -99,15 +114,6 @@ std::optional<fs::path> existing(const fs::path& folder, std::string name) {
     const auto path = pathInside(folder, name);
     std::error_code ignored;
     return path && fs::is_regular_file(*path, ignored) ? path : std::nullopt;
-}
-
-/// The JSON of a .glb: its first chunk, behind a head of 12 bytes and the chunk's own of 8.
-std::string_view jsonOfGlb(std::string_view file) {
-    constexpr std::size_t kHead = 20;
-    std::uint32_t length = 0;
-    if (file.size() < kHead) return {};
-    std::memcpy(&length, file.data() + 12, sizeof(length));
-    return file.substr(kHead, length);
 }
 
 std::vector<std::string> namesInGltf(std::string_view text) {
@@ -150,9 +156,7 @@ std::vector<std::string> namesInObj(std::string_view text, const fs::path& folde
 }  // namespace
 
 std::vector<fs::path> filesBeside(const fs::path& model) {
-    std::string extension = model.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowerCaseExtension(model);
     std::vector<std::string> names;
     try {
         const MappedFile file(model);

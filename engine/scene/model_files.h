@@ -7,17 +7,23 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/image/image.h"
 
 namespace gfxrepro::scene {
 
-// Textures and other files that a scene file names.
-
 /// A PNG or JPEG file in memory as 3 or 4 channels of 8 bits. Throws Error; `name` stands in the
 /// message. Memory is bounded as in engine/image/png_io.h.
 image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string& name);
+
+/// ".ply" of "A.PLY".
+std::string lowerCaseExtension(const std::filesystem::path& path);
+
+/// The JSON of a .glb: its first chunk, behind a head of 12 bytes and the chunk's own of 8. Empty
+/// where the file is too short for any.
+std::string_view jsonOfGlb(std::string_view file);
 
 /// folder/name; empty when `name` is absolute or leaves the folder.
 std::optional<std::filesystem::path> pathInside(const std::filesystem::path& folder,

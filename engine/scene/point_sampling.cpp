@@ -166,10 +166,8 @@ PointCloud sampledPoints(const Scene& scene, std::size_t count) {
         while (points.positions.size() < count &&
                (static_cast<double>(points.positions.size()) + 0.5) * step < passed) {
             const glm::vec2 weights = barycentricsAt(points.positions.size());
-            const glm::vec3 normal = blended(surfel.normals, weights);
-            const float length = glm::length(normal);
             points.positions.push_back(blended(surfel.positions, weights));
-            points.normals.push_back(length > 0.0F ? normal / length : glm::vec3(0.0F));
+            points.normals.push_back(unitOrZero(blended(surfel.normals, weights)));
             points.colors.push_back(blended(surfel.colors, weights));
             isColored = isColored || surfel.isColored;
         }

@@ -183,9 +183,7 @@ Camera framingCamera(const Box& box, float aspect) {
     float distance = 0.0F;
     float reach = 0.0F;  // half the box's depth along the view
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::vec3 offset((corner & 1) != 0 ? half.x : -half.x,
-                               (corner & 2) != 0 ? half.y : -half.y,
-                               (corner & 4) != 0 ? half.z : -half.z);
+        const glm::vec3 offset = Box{-half, half}.corner(corner);
         const float towardsEye = glm::dot(offset, back);
         const float side = std::max(std::abs(glm::dot(offset, right)) / slopeX,
                                     std::abs(glm::dot(offset, above)) / slopeY);
