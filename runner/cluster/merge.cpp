@@ -161,51 +161,17 @@ void copyImages(const run::RunDirectory& directory, const std::vector<ShardRun>&
     records::ImageWriter(directory.path()).append(images);
 }
 
-/// A line of a journal without what its worker printed, or in short.
-std::string reduced(std::string_view line, bool isInShort) {
-    if (!isInShort && line.find("\"output\":") == line.npos) return std::string(line);
-    const run::Json event = run::Json::parse(line, nullptr, false);
-    if (!event.is_object()) return isInShort ? "" : std::string(line);
-    if (isInShort) return run::inShort(event).dump();
-    run::Json kept = run::Json::object();
-    for (const auto& [name, value] : event.items()) {  // of anybody's: nothing deep is copied
-        const bool isFlat =
-            std::ranges::all_of(value, [](const run::Json& v) { return v.is_primitive(); });
-        if (isFlat) kept[name] = value;
-    }
-    kept["output"] = "[left out: the logs of the shards are large]";
-    return kept.dump();
-}
-
-}  // namespace
-
-std::string mergedJournal(const std::vector<ShardRun>& shards, std::size_t mostBytesWithOutput,
-                          std::size_t mostWholeBytes) {
-    const std::size_t part = mostBytesWithOutput / shards.size();
+/// The journals of the shards one after another; a torn last line ends.
+std::string mergedJournal(const std::vector<ShardRun>& shards) {
     std::string text;
     for (const ShardRun& shard : shards) {
         const fs::path file = shard.path / "journal.jsonl";
-        if (!fs::exists(file)) continue;
-        run::requireModestJournal(file);
-        const MappedFile mapped(file);
-        const std::size_t begin = text.size();
-        for (std::string_view rest = mapped.text(); !rest.empty();) {
-            const std::string_view line = rest.substr(0, rest.find('\n'));
-            rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-            const bool isInShort = text.size() + line.size() > mostWholeBytes;
-            const bool isFull = text.size() - begin + line.size() > part;
-            text += isInShort || isFull ? reduced(line, isInShort) : std::string(line);
-            text += '\n';
-            if (text.size() > run::kMostJournalBytes) {
-                throw Error(
-                    fmt::format("the logs of the shards have more than {} MiB, even in "
-                                "short: a larger log is not read again",
-                                run::kMostJournalBytes >> 20));
-            }
-        }
+        if (fs::exists(file)) text += readFile(file) + '\n';
     }
     return text;
 }
+
+}  // namespace
 
 run::StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string& commandLine) {
     GFXREPRO_ASSERT(!shards.empty());

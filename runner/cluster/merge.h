@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runner/run/run.h"
-#include "runner/run/run_files.h"
+#include "runner/run/run_directory.h"
 
 namespace gfxrepro::cluster {
 
@@ -26,13 +26,6 @@ run::StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string&
 std::vector<std::string> missingUnits(const run::StoredRun& run);
 /// Which of the cut's shards are not there: "2/4".
 std::vector<std::string> missingShards(const std::vector<ShardRun>& shards);
-
-/// The journals of the shards one after another; each with what workers printed as far as its part
-/// of `mostBytesWithOutput`, and in short beyond `mostWholeBytes`: all of it may be more than is
-/// read again. Throws Error where even that is.
-std::string mergedJournal(const std::vector<ShardRun>& shards,
-                          std::size_t mostBytesWithOutput = std::size_t{256} << 20,
-                          std::size_t mostWholeBytes = run::kMostWholeJournalBytes);
 
 /// Writes plan, manifest, records, journal, images and artifacts into `directory`, the plan last.
 void writeMerged(const run::RunDirectory& directory, const std::vector<ShardRun>& shards,

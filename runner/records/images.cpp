@@ -43,20 +43,11 @@ ImageEntry entryFromFields(const SourceLocation& where, const std::vector<std::s
     return entry;
 }
 
-/// The list may be anybody's: it names files of the run, below images/.
-void requireInside(const SourceLocation& where, const fs::path& runDir, const std::string& file) {
-    if (file.empty()) return;
+/// A merge copies what is named to the same place below its own folder.
+void requireInside(const SourceLocation& where, const std::string& file) {
     const fs::path plain = fs::path(file).lexically_normal();
-    const bool isBelow = plain.is_relative() && plain.begin() != plain.end() &&
-                         *plain.begin() == "images" && plain == fs::path(file);
-    const auto isLink = [&](fs::path path) {
-        for (; !path.empty(); path = path.parent_path()) {
-            if (fs::is_symlink(runDir / path)) return true;
-        }
-        return false;
-    };
-    if (isBelow && !isLink(plain)) return;
-    throw Error(where, "'" + file + "' is no file of the run, below images/ and without a link");
+    if (file.empty() || (plain == fs::path(file) && *plain.begin() == "images")) return;
+    throw Error(where, "'" + file + "' is no file of the run, below images/");
 }
 
 }  // namespace
@@ -116,7 +107,7 @@ std::vector<ImageEntry> readImages(const fs::path& runDir) {
     while (reader.next(fields)) {
         ImageEntry entry = entryFromFields(reader.location(), fields);
         for (const std::string* file : {&entry.png, &entry.exr}) {
-            requireInside(reader.location(), runDir, *file);
+            requireInside(reader.location(), *file);
         }
         const auto [found, isNew] =
             indices.try_emplace({entry.caseId, entry.frame, entry.name}, images.size());

@@ -38,7 +38,6 @@ std::uintmax_t sizeOf(const fs::path& path) {
 
 /// What was measured; what is made of it is made again there.
 void copyMeasured(const fs::path& runDir, const fs::path& target) {
-    run::requireModestJournal(runDir / "journal.jsonl");  // the others were read
     for (const char* name :
          {"plan.json", "manifest.json", "records.csv", "journal.jsonl", "images", "artifacts"}) {
         copyTree(runDir / name, target / name);
@@ -175,15 +174,6 @@ std::string scriptText(const run::Plan& plan, const config::Experiment& experime
         experiment.label(), experiment.title, command, experiment.slug());
 }
 
-/// The plan may be anybody's: what it names is taken for a config only when it is that config.
-void requireExperiment(const config::Experiment& experiment) {
-    const Node whole = parseYamlFile(experiment.file);
-    for (const char* key : {"table", "section", "figure", "sweep_of", "technique", "extends"}) {
-        if (whole.isMap() && whole.find(key)) return;
-    }
-    throw Error(experiment.file.string() + ": is no config");
-}
-
 void writeScripts(const run::Plan& plan, const fs::path& target) {
     const fs::path configs = dataFolder("configs");
     for (const char* folder : {"presets", "scenes"}) {
@@ -193,7 +183,6 @@ void writeScripts(const run::Plan& plan, const fs::path& target) {
     }
     for (const config::Experiment& experiment : plan.experiments) {
         const fs::path place = target / configPlace(experiment);
-        requireExperiment(experiment);
         copyTree(experiment.file, place);
         const fs::path script = target / "scripts" / (experiment.slug() + ".sh");
         writeFileAtomic(script, scriptText(plan, experiment));

@@ -62,15 +62,6 @@ std::uint64_t requiredSeed(const Node& map) {
     return seed;
 }
 
-/// Twelve hexadecimal digits: files have it in their names.
-std::string requiredId(const Node& map) {
-    const Node& node = required(map, "id");
-    const std::string& id = node.text();
-    const bool isId = id.size() == 12 && id.find_first_not_of("0123456789abcdef") == id.npos;
-    if (!isId) throw Error(node.location(), "'" + id + "' is no id of a case");
-    return id;
-}
-
 int intFrom(const Node& node, const char* what, int most = INT_MAX) {
     const auto value = node.tryInteger();
     if (value && *value >= 0 && *value <= most) return static_cast<int>(*value);
@@ -261,7 +252,7 @@ Case caseFromJson(const Node& node) {
     const Node::Sequence& output = required(node, "output").items();
     if (output.size() != 2) throw Error(node.location(), "'output' is not [width, height]");
     Case item;
-    item.id = requiredId(node);
+    item.id = requiredText(node, "id");
     item.experiment = requiredText(node, "experiment");
     item.technique = requiredText(node, "technique");
     item.scene = required(node, "scene");

@@ -26,14 +26,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A line stays below the 1 MiB that are read again (run_files.h) were each byte of its texts, at
-// most four of them long, escaped with six.
 constexpr std::size_t kMostTextBytes = std::size_t{32} << 10;
-// In a journal of this size what drivers print is left out: one of 512 MiB is not read again.
+// In a journal of this size what drivers print is left out: one of kMostFileBytes is not read.
 constexpr off_t kMostBytesWithOutput = off_t{64} << 20;
-constexpr auto kMostWholeBytes = static_cast<off_t>(kMostWholeJournalBytes);
-constexpr auto kMostBytes =
-    static_cast<off_t>(kMostJournalBytes - (std::size_t{1} << 20));  // a line
 
 /// A worker that its runner began when it was killed has the lock until it is its own program.
 constexpr std::chrono::seconds kLockPatience{2};
@@ -198,19 +193,6 @@ void RunDirectory::requireOurs() const {
 
 void RunDirectory::note(const nlohmann::ordered_json& event) const {
     requireOurs();
-    const off_t bytes = sizeOf(journal_.get());
-    if (bytes > kMostBytes) {
-        throw Error(
-            fmt::format("{}: has {} MiB, and a larger one is not read again: nothing more "
-                        "is measured into this folder",
-                        (path_ / "journal.jsonl").string(), bytes >> 20));
-    }
-    if (bytes > kMostWholeBytes) return appendToJournal(inShort(event));
-    appendToJournal(event);
-    if (sizeOf(journal_.get()) > kMostWholeBytes) appendToJournal(inShortFromHere());
-}
-
-void RunDirectory::appendToJournal(const nlohmann::ordered_json& event) const {
     nlohmann::ordered_json line = {{"time", utcTime()}};
     line.update(shortened(event, sizeOf(journal_.get())));
     const std::string text =

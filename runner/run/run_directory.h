@@ -29,9 +29,7 @@ class RunDirectory {
     void removeScratch() const;
 
     /// Appends one line to journal.jsonl: "time" and the members of `event`; texts over 32 KiB are
-    /// cut, outputs left out once it has 64 MiB, and all of it written in short beyond
-    /// kMostWholeJournalBytes. Throws as requireOurs(), and where the journal would not be read
-    /// again: what began is known of every run.
+    /// cut, and outputs left out once it has 64 MiB. Throws as requireOurs().
     void note(const nlohmann::ordered_json& event) const;
     /// … and waits until it is on the disk.
     void noteFlushed(const nlohmann::ordered_json& event) const;
@@ -42,7 +40,6 @@ class RunDirectory {
 
   private:
     explicit RunDirectory(const std::filesystem::path& path);
-    void appendToJournal(const nlohmann::ordered_json& event) const;
 
     std::filesystem::path path_;
     Descriptor lock_, journal_;

@@ -18,16 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uintmax_t kMiB = std::uintmax_t{1} << 20;
-constexpr std::pair<const char*, std::uintmax_t> kMostFileBytes[] = {
-    {"plan.json", 512 * kMiB},
-    {"manifest.json", 64 * kMiB},
-    {"records.csv", 1024 * kMiB},
-    {"images/index.csv", 256 * kMiB}};
-constexpr std::string_view kLeftOutInShort[] = {"as", "command", "message", "output", "title"};
-constexpr std::size_t kMostLineBytes = kMiB;  // RunDirectory::log writes no longer ones
-constexpr std::size_t kMostEvents = 4'000'000;
-
 constexpr JsonMember kManifest[] = {{"/commit", JsonKind::Line},
                                     {"/plan", JsonKind::Line, false},
                                     {"/profile", JsonKind::Line},
@@ -79,22 +69,18 @@ constexpr JsonMember kCost[] = {{"/load_s", JsonKind::Number},
                                 {"/record_s", JsonKind::Number},
                                 {"/peak_bytes", JsonKind::Whole}};
 
-void requireModest(const fs::path& file, std::uintmax_t mostBytes) {
-    std::error_code isAbsent;
-    const std::uintmax_t size = fs::file_size(file, isAbsent);
-    if (isAbsent || size <= mostBytes) return;
-    throw Error({file.string(), 0, 0},
-                fmt::format("{} bytes; at most {} are read", size, mostBytes));
-}
-
 }  // namespace
 
 void requireModestFiles(const fs::path& runDir) {
-    for (const auto& [name, mostBytes] : kMostFileBytes) requireModest(runDir / name, mostBytes);
-}
-
-void requireModestJournal(const fs::path& file) {
-    requireModest(file, kMostJournalBytes);
+    for (const char* name :
+         {"plan.json", "manifest.json", "records.csv", "journal.jsonl", "images/index.csv"}) {
+        const fs::path file = runDir / name;
+        std::error_code isAbsent;
+        const std::uintmax_t size = fs::file_size(file, isAbsent);
+        if (isAbsent || size <= kMostFileBytes) continue;
+        throw Error({file.string(), 0, 0},
+                    fmt::format("{} bytes; at most {} are read", size, kMostFileBytes));
+    }
 }
 
 Json readManifest(const fs::path& file) {
@@ -112,25 +98,9 @@ Json readManifest(const fs::path& file) {
     return manifest;
 }
 
-Json inShortFromHere() {
-    return {{"event", "in_short"},
-            {"message", fmt::format("the journal has {} MiB: what follows is without its texts",
-                                    kMostWholeJournalBytes >> 20)}};
-}
-
-Json inShort(const Json& event) {
-    Json kept = Json::object();
-    for (const auto& [name, value] : event.items()) {
-        const bool isText = std::ranges::find(kLeftOutInShort, name) != std::end(kLeftOutInShort);
-        if (value.is_primitive() && !isText) kept[name] = value;
-    }
-    return kept;
-}
-
 std::vector<Json> readJournal(const fs::path& file) {
     std::vector<Json> events;
     if (!fs::exists(file)) return events;
-    requireModestJournal(file);
     const std::string name = file.string();
     const MappedFile mapped(file);
     std::string_view rest = mapped.text();
@@ -138,14 +108,6 @@ std::vector<Json> readJournal(const fs::path& file) {
         const std::string_view text = rest.substr(0, rest.find('\n'));
         rest.remove_prefix(std::min(text.size() + 1, rest.size()));
         if (text.empty()) continue;
-        if (text.size() > kMostLineBytes) {
-            throw Error({name, line, 0}, fmt::format("a line of {} bytes; at most {} are read",
-                                                     text.size(), kMostLineBytes));
-        }
-        if (events.size() == kMostEvents) {
-            throw Error({name, line, 0},
-                        fmt::format("more than {} events, which are not read", kMostEvents));
-        }
         requireShallowJson(text, {name, line, 0});
         Json event = Json::parse(text, nullptr, false);
         if (!event.is_object()) continue;

@@ -150,41 +150,25 @@ TEST_F(Untrusted, RecordsAreOfThePlansCases) {
 }
 
 TEST_F(Untrusted, FilesLargerThanThoseOfAnyRunAreRefused) {
-    for (const auto& [name, mostMib] : {std::pair{"plan.json", 512},
-                                        {"manifest.json", 64},
-                                        {"records.csv", 1024},
-                                        {"journal.jsonl", 512},
-                                        {"images/index.csv", 256}}) {
+    for (const char* name :
+         {"plan.json", "manifest.json", "records.csv", "journal.jsonl", "images/index.csv"}) {
         const fs::path path = fs::path(dir) / name;
-        const std::uintmax_t size = fs::file_size(path), most = std::uintmax_t(mostMib) << 20;
+        const std::uintmax_t size = fs::file_size(path), most = std::uintmax_t{1} << 30;
         fs::resize_file(path, most + 1);  // of which the disk has the beginning alone
         const std::string why = path.string() + ": " + std::to_string(most + 1) +
                                 " bytes; at most " + std::to_string(most) + " are read\n";
-        expectRefused({"report", dir}, why);
-        expectRefused({"run", "--resume", dir}, why);
-        expectRefused({"plan", (folder.path() / "mock.yaml").string(), "--from", dir}, why);
-        expectRefused({"export", dir, "--out", out}, why);
-        expectRefused({"merge", "--out", out, dir}, why);
-        fs::remove_all(out);
-        // Nor need what does not read the log be without its tables.
-        const bool isLog = name == std::string_view("journal.jsonl");
-        for (const char* command : {"table", "claims"}) {
-            EXPECT_EQ(mockGfxrepro({command, dir}).exitCode, isLog ? 0 : 2) << name;
+        for (const std::vector<std::string>& command :
+             {std::vector<std::string>{"report", dir},
+              {"table", dir},
+              {"run", "--resume", dir},
+              {"plan", (folder.path() / "mock.yaml").string(), "--from", dir},
+              {"export", dir, "--out", out},
+              {"merge", "--out", out, dir}}) {
+            expectRefused(command, why);
         }
         fs::resize_file(path, size);
     }
     EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
-}
-
-TEST_F(Untrusted, LinesOfALogTakeLittleMemory) {
-    const std::string log = readFile(dir + "/journal.jsonl");
-    folder.write("run/journal.jsonl", log + std::string(60'000'000, '\n'));
-    const ProcessResult report = runProgram(
-        {"/bin/sh", "-c", "ulimit -v 1500000; exec " GFXREPRO_MOCK_PROGRAM " report " + dir});
-    EXPECT_EQ(report.exitCode, 0) << report.err;
-    folder.write("run/journal.jsonl", "{}\n" + std::string((1 << 20) + 1, 'x') + "\n");
-    expectRefused({"report", dir},
-                  dir + "/journal.jsonl:2: a line of 1048577 bytes; at most 1048576 are read\n");
 }
 
 TEST_F(Untrusted, WhatHasAnotherShapeIsSaidWithItsPlace) {

@@ -151,31 +151,6 @@ TEST(Merge, AShardThatMovedTellsTheMachineOfItsTimes) {
               "on another node");
 }
 
-TEST(Merge, LogsAreNotLargerThanWhatIsRead) {
-    const TemporaryFolder folder;
-    std::vector<cluster::ShardRun> shards;
-    std::string expected;
-    for (const char* name : {"a", "b"}) {
-        const std::string line = R"({"event":"case","cost":{"load_s":1.5},"deep":[[1]],"output":")";
-        const std::string whole = line + std::string(100, name[0]) + "\"}\n";
-        const std::string cut = R"({"event":"case","cost":{"load_s":1.5},"output":")"
-                                "[left out: the logs of the shards are large]\"}\n";
-        folder.write(std::string(name) + "/journal.jsonl", whole + "{\"event\":\"x\"}\n" + whole);
-        shards.push_back({folder.path() / name, {}});
-        expected += whole + "{\"event\":\"x\"}\n" + cut;
-    }
-    EXPECT_EQ(cluster::mergedJournal(shards, 600), expected);
-    EXPECT_EQ(cluster::mergedJournal(shards).size(), expected.size() + 2 * (100 - 44 + 13));
-}
-
-TEST(Merge, WhatBeganIsInALogOfAnyLength) {
-    const TemporaryFolder folder;
-    const std::string line = R"({"event":"start","case":"a","deep":[[1]],"message":"many words"})";
-    folder.write("a/journal.jsonl", line + '\n' + line + "\ntorn");
-    EXPECT_EQ(cluster::mergedJournal({{folder.path() / "a", {}}}, 1000, line.size()),
-              line + '\n' + R"({"event":"start","case":"a"})" + "\n\n");
-}
-
 /// A run directory with these rows.
 run::RunDirectory directoryWith(const TemporaryFolder& folder, const cluster::ShardRun& shard) {
     run::RunDirectory directory = run::RunDirectory::create(folder.path());

@@ -69,56 +69,5 @@ TEST(RunDirectory, OutputsAreLeftOutOfALargeLog) {
     EXPECT_EQ(beyond["message"], "no end");
 }
 
-TEST(RunDirectory, WhatBeganIsInALogOfAnyLength) {
-    const TemporaryFolder folder;
-    const run::RunDirectory directory = run::RunDirectory::create(folder.path() / "run");
-    const fs::path log = folder.path() / "run/journal.jsonl";
-    constexpr std::uintmax_t kMost = std::uintmax_t{384} << 20;
-    fs::resize_file(log, kMost);  // of which the disk has nothing
-    const auto end = [&](int process) {
-        directory.note({{"event", "case"},
-                        {"case", "a"},
-                        {"title", "t"},
-                        {"process", process},
-                        {"status", "crash"},
-                        {"cost", {{"load_s", 1}}},
-                        {"message", "m"},
-                        {"output", "o"}});
-    };
-    for (int i = 0; i < 3; ++i) {
-        directory.note({{"event", "start"}, {"case", "a"}, {"process", i}});
-        end(i);
-    }
-    const MappedFile whole(log);
-    std::vector<std::string> lines;
-    for (const std::string& line : split(std::string(whole.text().substr(kMost)), '\n')) {
-        if (line.empty()) continue;
-        run::Json event = run::Json::parse(line);
-        event.erase("time");
-        lines.push_back(event.dump());
-    }
-    EXPECT_THAT(
-        lines,
-        testing::ElementsAre(
-            R"({"event":"start","case":"a","process":0})",
-            R"({"event":"in_short","message":"the journal has 384 MiB: what follows is without its texts"})",
-            R"({"event":"case","case":"a","process":0,"status":"crash"})",
-            R"({"event":"start","case":"a","process":1})",
-            R"({"event":"case","case":"a","process":1,"status":"crash"})",
-            R"({"event":"start","case":"a","process":2})",
-            R"({"event":"case","case":"a","process":2,"status":"crash"})"));
-}
-
-TEST(RunDirectory, NothingIsMeasuredWhoseBeginningWouldNotBeRead) {
-    const TemporaryFolder folder;
-    const run::RunDirectory directory = run::RunDirectory::create(folder.path() / "run");
-    fs::resize_file(folder.path() / "run/journal.jsonl", (std::uintmax_t{511} << 20) + 1);
-    const auto start = [&] { directory.note({{"event", "start"}, {"process", 0}}); };
-    EXPECT_EQ(
-        errorText(start, folder.path()),
-        "DIR/run/journal.jsonl: has 511 MiB, and a larger one is not read again: nothing more is "
-        "measured into this folder");
-}
-
 }  // namespace
 }  // namespace gfxrepro::test
