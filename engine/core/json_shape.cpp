@@ -6,7 +6,6 @@
 #include <array>
 #include <climits>
 
-#include "engine/core/files.h"
 #include "engine/core/node.h"
 
 namespace gfxrepro {
@@ -81,33 +80,6 @@ void requireKind(const Json& value, JsonKind kind, const SourceLocation& where,
                 fmt::format("'{}' is {}; expected {}", place, value.type_name(), nameOf(kind)));
 }
 
-/// Every node has the file as its place.
-Node nodeOf(const Json& json, const SourceLocation& where) {
-    if (json.is_object()) {
-        Node::Map entries;
-        for (const auto& [key, value] : json.items()) {
-            entries.emplace_back(key, nodeOf(value, where));
-        }
-        return Node::map(std::move(entries), where);
-    }
-    if (json.is_array()) {
-        Node::Sequence items;
-        items.reserve(json.size());
-        for (const Json& item : json) items.push_back(nodeOf(item, where));
-        return Node::sequence(std::move(items), where);
-    }
-    if (json.is_null()) return Node::null(where);
-    if (json.is_string()) return Node::scalar(json.get<std::string>(), where, true);
-    return Node::scalar(json.dump(), where);
-}
-
-SourceLocation placeOf(std::string_view text, std::size_t byte, const std::string& fileName) {
-    const std::string_view before = text.substr(0, std::min(byte, text.size()));
-    const std::size_t lineBegin = before.rfind('\n') + 1;  // npos + 1: 0
-    return {fileName, static_cast<int>(std::ranges::count(before, '\n')) + 1,
-            static_cast<int>(before.size() - lineBegin)};
-}
-
 }  // namespace
 
 bool isTooDeepJson(std::string_view text) {
@@ -127,20 +99,23 @@ bool isTooDeepJson(std::string_view text) {
     return false;
 }
 
-Node parseJson(std::string_view text, const std::string& fileName) {
-    requireShallowJson(text, {fileName, 1, 0});
-    try {
-        return nodeOf(Json::parse(text), {fileName, 0, 0});
-    } catch (const Json::parse_error& error) {
-        throw Error(placeOf(text, error.byte, fileName), "this is no JSON");
-    } catch (const Json::out_of_range&) {
-        throw Error({fileName, 0, 0}, "this is no JSON");
+Node nodeFromJson(const Json& json, const SourceLocation& where) {
+    if (json.is_object()) {
+        Node::Map entries;
+        for (const auto& [key, value] : json.items()) {
+            entries.emplace_back(key, nodeFromJson(value, where));
+        }
+        return Node::map(std::move(entries), where);
     }
-}
-
-Node parseJsonFile(const std::filesystem::path& path) {
-    const MappedFile file(path);
-    return parseJson(file.text(), path.string());
+    if (json.is_array()) {
+        Node::Sequence items;
+        items.reserve(json.size());
+        for (const Json& item : json) items.push_back(nodeFromJson(item, where));
+        return Node::sequence(std::move(items), where);
+    }
+    if (json.is_null()) return Node::null(where);
+    if (json.is_string()) return Node::scalar(json.get<std::string>(), where, true);
+    return Node::scalar(json.dump(), where);
 }
 
 void requireShallowJson(std::string_view text, const SourceLocation& where) {

@@ -132,11 +132,8 @@ class Node::Entry {
 Node parseYaml(std::string_view text, const std::string& fileName);
 Node parseYamlFile(const std::filesystem::path& path);
 
-/// Parses JSON that a program wrote, where control characters in texts and keys of any length are
-/// allowed; every node has the file as its place. Throws Error with file:line:column where it is
-/// none, and where it is nested deeper than 200.
-Node parseJson(std::string_view text, const std::string& fileName);
-Node parseJsonFile(const std::filesystem::path& path);
+/// The same of JSON (json_shape.h parses it); every node has `where` as its place.
+Node nodeFromJson(const nlohmann::ordered_json& json, const SourceLocation& where = {});
 
 /// `over` laid on `base`: maps merge key by key, everything else is replaced. An explicit null
 /// removes.

@@ -3,21 +3,73 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <climits>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/core/json_shape.h"
 #include "engine/core/output_files.h"
 
 namespace gfxrepro::run {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 namespace {
 
 constexpr int kPlanSchema = 1;
-constexpr const char* kFrozenHash = "frozen_hash";
+constexpr const char* kFrozenHash = "/frozen_hash";
+
+constexpr JsonMember kPlan[] = {
+    {"/schema", JsonKind::Int},         {"/hash", JsonKind::Text},
+    {"/build", JsonKind::Text},         {"/profile", JsonKind::Text},
+    {"/device_class", JsonKind::Text},  {"/seed", JsonKind::Text},
+    {"/request", JsonKind::Object},     {"/request/configs", JsonKind::Texts},
+    {"/request/sets", JsonKind::Texts}, {"/request/sweeps", JsonKind::Texts},
+    {"/request/only", JsonKind::Texts}, {"/request/device", JsonKind::Text},
+    {"/scenes", JsonKind::Texts},       {"/experiments", JsonKind::Objects},
+    {"/cases", JsonKind::List},         {"/cases", JsonKind::Objects},
+    {kFrozenHash, JsonKind::Text},      {"/shard", JsonKind::Object, false}};
+constexpr JsonMember kExperiment[] = {{"/file", JsonKind::Text},
+                                      {"/document", JsonKind::Object},
+                                      {"/assumed", JsonKind::Objects},
+                                      {"/paper", JsonKind::Object, false},
+                                      {"/metrics", JsonKind::Objects, false}};
+constexpr JsonMember kAssumed[] = {{"/value", JsonKind::Text}, {"/unit", JsonKind::Text}};
+constexpr JsonMember kPaper[] = {{"/document", JsonKind::Object}, {"/cases", JsonKind::Objects}};
+constexpr JsonMember kPaperCase[] = {{"/scene", JsonKind::Text},
+                                     {"/params", JsonKind::Object},
+                                     {"/params/output/width", JsonKind::Int},
+                                     {"/params/output/height", JsonKind::Int}};
+constexpr JsonMember kMetric[] = {{"/name", JsonKind::Text},
+                                  {"/unit", JsonKind::Text},
+                                  {"/doc", JsonKind::Text},
+                                  {"/better", JsonKind::Text},
+                                  {"/detail", JsonKind::Boolean}};
+constexpr JsonMember kShard[] = {
+    {"/index", JsonKind::Int}, {"/count", JsonKind::Int}, {"/cases", JsonKind::Texts}};
+constexpr JsonMember kCase[] = {{"/id", JsonKind::Text},
+                                {"/experiment", JsonKind::Text},
+                                {"/technique", JsonKind::Text},
+                                {"/given", JsonKind::Object},
+                                {"/params", JsonKind::Object},
+                                {"/axes", JsonKind::Object},
+                                {"/output", JsonKind::List},
+                                {"/output/0", JsonKind::Int},
+                                {"/output/1", JsonKind::Int},
+                                {"/measure", JsonKind::Object},
+                                {"/seed", JsonKind::Text},
+                                {"/program_key", JsonKind::Text, false},
+                                {"/scene_sample", JsonKind::Int, false}};
+constexpr JsonMember kMeasure[] = {{"/lane", JsonKind::Text},
+                                   {"/warmup", JsonKind::Int},
+                                   {"/repeats", JsonKind::Int},
+                                   {"/processes", JsonKind::Int},
+                                   {"/relative_error", JsonKind::Number},
+                                   {"/processes_at_most", JsonKind::Int},
+                                   {"/time_budget_s", JsonKind::Number},
+                                   {"/frames", JsonKind::Int},
+                                   {"/time_limit_s", JsonKind::Number},
+                                   {"/within_budget", JsonKind::Boolean, false}};
 
 Json measureJson(const config::Measure& measure) {
     Json json = {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"},
@@ -33,67 +85,19 @@ Json measureJson(const config::Measure& measure) {
     return json;
 }
 
-void requireMap(const Node& node, const char* what) {
-    if (node.isMap()) return;
-    throw Error(node.location(), std::string(what) + " is not a map but " + node.kindName());
-}
-
-const Node& required(const Node& map, const char* key) {
-    requireMap(map, ("what should hold '" + std::string(key) + "'").c_str());
-    const Node* value = map.find(key);
-    if (!value) throw Error(map.location(), "the entry '" + std::string(key) + "' is missing");
-    return *value;
-}
-
-const Node& requiredMap(const Node& map, const char* key) {
-    const Node& value = required(map, key);
-    requireMap(value, key);
-    return value;
-}
-
-std::uint64_t requiredSeed(const Node& map) {
-    const Node& node = required(map, "seed");
-    const std::string& text = node.text();
-    std::uint64_t seed = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
-    if (problem != std::errc() || end != text.data() + text.size()) {
-        throw Error(node.location(), "the seed '" + text + "' is no number");
-    }
-    return seed;
-}
-
-int intFrom(const Node& node, const char* what, int most = INT_MAX) {
-    const auto value = node.tryInteger();
-    if (value && *value >= 0 && *value <= most) return static_cast<int>(*value);
-    throw Error(node.location(),
-                fmt::format("'{}' is {}; expected a whole number from 0 to {}", what,
-                            node.isScalar() ? node.text() : node.kindName(), most));
-}
-
-int requiredInt(const Node& map, const char* key) {
-    return intFrom(required(map, key), key);
-}
-
-const std::string& requiredText(const Node& map, const char* key) {
-    const Node& node = required(map, key);
-    if (node.isScalar()) return node.text();
-    throw Error(node.location(), fmt::format("'{}' is {}; expected text", key, node.kindName()));
-}
-
-config::Measure measureFrom(const Node& node) {
+config::Measure measureFrom(const Json& json) {
     config::Measure measure;
-    measure.lane = requiredText(node, "lane") == "timing" ? config::Measure::Lane::Timing
-                                                          : config::Measure::Lane::Quality;
-    measure.warmup = requiredInt(node, "warmup");
-    measure.repeats = requiredInt(node, "repeats");
-    measure.processes = requiredInt(node, "processes");
-    measure.relativeError = required(node, "relative_error").asDouble();
-    measure.processesAtMost = requiredInt(node, "processes_at_most");
-    measure.timeBudgetS = required(node, "time_budget_s").asDouble();
-    measure.frames = requiredInt(node, "frames");
-    measure.timeLimitS = required(node, "time_limit_s").asDouble();
-    const Node* isWithinBudget = node.find("within_budget");
-    measure.isWithinBudget = isWithinBudget && isWithinBudget->asBool();
+    measure.lane = json.at("lane") == "timing" ? config::Measure::Lane::Timing
+                                               : config::Measure::Lane::Quality;
+    json.at("warmup").get_to(measure.warmup);
+    json.at("repeats").get_to(measure.repeats);
+    json.at("processes").get_to(measure.processes);
+    json.at("relative_error").get_to(measure.relativeError);
+    json.at("processes_at_most").get_to(measure.processesAtMost);
+    json.at("time_budget_s").get_to(measure.timeBudgetS);
+    json.at("frames").get_to(measure.frames);
+    json.at("time_limit_s").get_to(measure.timeLimitS);
+    measure.isWithinBudget = json.value("within_budget", false);
     return measure;
 }
 
@@ -107,17 +111,6 @@ Json assumedJson(const config::Experiment& experiment) {
     return json;
 }
 
-void takeAssumed(const Node& assumed, config::Experiment& experiment) {
-    requireMap(assumed, "assumed");
-    for (config::Assumption& assumption : experiment.assumptions) {
-        const Node* bound = assumed.find(assumption.name);
-        if (!bound) continue;
-        assumption.isBound = true;
-        assumption.value = required(*bound, "value");
-        assumption.unit = requiredText(*bound, "unit");
-    }
-}
-
 Json paperToJson(const config::Experiment& experiment) {
     Json cases = Json::array();
     for (const Case& item : experiment.paperCases) {
@@ -125,23 +118,6 @@ Json paperToJson(const config::Experiment& experiment) {
             {{"scene", item.recordedScene()}, {"params", item.recordedParams().toJson()}});
     }
     return {{"document", experiment.paperDocument.toJson()}, {"cases", std::move(cases)}};
-}
-
-void readPaper(const Node& node, config::Experiment& experiment) {
-    experiment.paperDocument = requiredMap(node, "document");
-    for (const Node& item : required(node, "cases").items()) {
-        Case& paper = experiment.paperCases.emplace_back();
-        paper.experiment = experiment.id;
-        if (const std::string& scene = requiredText(item, "scene"); !scene.empty()) {
-            paper.scene = Node::scalar(scene);
-        }
-        paper.axes = Node::map({});
-        paper.params = requiredMap(item, "params");
-        const Node output = requiredMap(paper.params, "output");
-        paper.outputWidthPx = requiredInt(output, "width");
-        paper.outputHeightPx = requiredInt(output, "height");
-        paper.params.erase("output");
-    }
 }
 
 Json outputsToJson(const config::Outputs& outputs) {
@@ -156,46 +132,105 @@ Json outputsToJson(const config::Outputs& outputs) {
     return metrics;
 }
 
-config::Outputs outputsFrom(const Node& metrics) {
-    config::Outputs outputs;
-    for (const Node& item : metrics.items()) {
-        config::MetricInfo info{requiredText(item, "name"), requiredText(item, "unit"),
-                                requiredText(item, "doc")};
-        for (const config::Better better : {config::Better::Lower, config::Better::Higher}) {
-            if (requiredText(item, "better") == config::betterText(better)) info.better = better;
-        }
-        info.isDetail = required(item, "detail").asBool();
-        outputs.metrics.push_back(std::move(info));
+/// The experiments of a plan, read one after another.
+class ExperimentReader {
+  public:
+    ExperimentReader(const Json& json, const SourceLocation& where, std::string prefix)
+        : json_(json), where_(where), prefix_(std::move(prefix)) {
+        requireMembers(json, kExperiment, where, prefix_);
+        requireEach(json, "/assumed", kAssumed, where, prefix_);
+        requireEach(json, "/metrics", kMetric, where, prefix_);
     }
-    return outputs;
-}
+
+    config::Experiment read() const {
+        config::Experiment experiment = config::experimentFromDocument(
+            nodeFromJson(json_.at("document"), where_), json_.at("file").get<std::string>());
+        takeAssumed(experiment);
+        if (json_.contains("paper")) takePaper(json_.at("paper"), experiment);
+        if (json_.contains("metrics")) takeOutputs(json_.at("metrics"), experiment.outputs);
+        return experiment;
+    }
+
+  private:
+    void takeAssumed(config::Experiment& experiment) const {
+        const Json& assumed = json_.at("assumed");
+        for (config::Assumption& assumption : experiment.assumptions) {
+            const auto bound = assumed.find(assumption.name);
+            if (bound == assumed.end()) continue;
+            assumption.isBound = true;
+            assumption.value = nodeFromJson(bound->at("value"), where_);
+            bound->at("unit").get_to(assumption.unit);
+        }
+    }
+
+    void takePaper(const Json& paper, config::Experiment& experiment) const {
+        requireMembers(paper, kPaper, where_, prefix_ + "/paper");
+        requireEach(paper, "/cases", kPaperCase, where_, prefix_ + "/paper");
+        experiment.paperDocument = nodeFromJson(paper.at("document"), where_);
+        for (const Json& json : paper.at("cases")) {
+            Case& item = experiment.paperCases.emplace_back();
+            item.experiment = experiment.id;
+            if (const auto scene = json.at("scene").get<std::string>(); !scene.empty()) {
+                item.scene = Node::scalar(scene);
+            }
+            item.axes = Node::map({});
+            item.params = nodeFromJson(json.at("params"), where_);
+            json.at("params").at("output").at("width").get_to(item.outputWidthPx);
+            json.at("params").at("output").at("height").get_to(item.outputHeightPx);
+            item.params.erase("output");
+        }
+    }
+
+    static void takeOutputs(const Json& metrics, config::Outputs& outputs) {
+        for (const Json& json : metrics) {
+            config::MetricInfo info{json.at("name"), json.at("unit"), json.at("doc")};
+            for (const config::Better better : {config::Better::Lower, config::Better::Higher}) {
+                if (json.at("better") == config::betterText(better)) info.better = better;
+            }
+            json.at("detail").get_to(info.isDetail);
+            outputs.metrics.push_back(std::move(info));
+        }
+    }
+
+    const Json& json_;
+    const SourceLocation& where_;
+    std::string prefix_;
+};
 
 /// Throws Error for a plan that is not as it was written. (The plan's own hash has neither
 /// assumptions nor published parameters, and with --only it is that of all cases, which the plan
 /// does not have.)
-void requireAsPlanned(const fs::path& path, const Node& node, const Plan& plan) {
+void requireAsPlanned(const SourceLocation& where, Json json, const Plan& plan) {
     const auto fail = [&](const std::string& what) {
-        throw Error(path.string() + ": " + what + " planned: " + path.filename().string() +
-                    " was changed");
+        throw Error(where,
+                    what + " planned: " + fs::path(std::string(where.file)).filename().string() +
+                        " was changed");
     };
-    const Node::Sequence& cases = required(node, "cases").items();
-    for (std::size_t i = 0; i < cases.size(); ++i) {
+    for (std::size_t i = 0; i < plan.cases.size(); ++i) {
         const Case& item = plan.cases[i];
-        if (caseId(item, cases[i].toJson(), plan) == item.id) continue;
+        if (caseId(item, json.at("cases").at(i), plan) == item.id) continue;
         fail("the case " + item.id + ", " + item.title() + ", is not the one that was");
     }
-    Json head = Json::object();
-    for (const auto& [name, value] : node.entries()) {
-        if (name != "cases" && name != kFrozenHash) head[name] = value.toJson();
-    }
-    if (frozenHash(head, plan.cases) == requiredText(node, kFrozenHash)) return;
+    const Json::json_pointer frozen(kFrozenHash);
+    const auto hash = json.at(frozen).get<std::string>();
+    json.erase(frozen.back());
+    json.erase("cases");
+    if (frozenHash(json, plan.cases) == hash) return;
     fail("the experiments, their cases or the profile are not those that were");
 }
 
-std::vector<std::string> textsFrom(const Node& list) {
+std::vector<std::string> textsFrom(const Json& list) {
     std::vector<std::string> texts;
-    for (const Node& item : list.items()) texts.push_back(item.text());
+    for (const Json& text : list) texts.push_back(text.get<std::string>());
     return texts;
+}
+
+/// Of what is no number 0: the hashes tell that.
+std::uint64_t seedFrom(const Json& text) {
+    const auto& digits = text.get_ref<const std::string&>();
+    std::uint64_t seed = 0;
+    std::from_chars(digits.data(), digits.data() + digits.size(), seed);
+    return seed;
 }
 
 }  // namespace
@@ -248,29 +283,31 @@ Json toJson(const Case& item) {
     return json;
 }
 
-Case caseFromJson(const Node& node) {
-    const Node::Sequence& output = required(node, "output").items();
-    if (output.size() != 2) throw Error(node.location(), "'output' is not [width, height]");
+Case caseFromJson(const Json& json, const SourceLocation& where, const std::string& prefix) {
+    requireMembers(json, kCase, where, prefix);
+    requireMembers(json.at("measure"), kMeasure, where, prefix + "/measure");
+    const auto node = [&](const char* key) {
+        const auto found = json.find(key);
+        return found == json.end() ? Node() : nodeFromJson(*found, where);
+    };
     Case item;
-    item.id = requiredText(node, "id");
-    item.experiment = requiredText(node, "experiment");
-    item.technique = requiredText(node, "technique");
-    item.scene = required(node, "scene");
-    item.given = requiredMap(node, "given");
-    item.params = requiredMap(node, "params");
-    item.axes = requiredMap(node, "axes");
-    item.outputWidthPx = intFrom(output[0], "output");
-    item.outputHeightPx = intFrom(output[1], "output");
-    item.measure = measureFrom(required(node, "measure"));
-    item.seed = requiredSeed(node);
-    if (const Node* offered = node.find("offered")) item.offered = *offered;
-    if (const Node* program = node.find("program")) {
-        item.program = *program;
-        item.programKey = requiredText(node, "program_key");
-    }
-    if (const Node* name = node.find(config::kStandsFor)) item.standsFor = *name;
-    if (const Node* sample = node.find(config::kSceneSample)) {
-        item.sceneSample = intFrom(*sample, config::kSceneSample, config::kMostSceneSample);
+    json.at("id").get_to(item.id);
+    json.at("experiment").get_to(item.experiment);
+    json.at("technique").get_to(item.technique);
+    item.scene = node("scene");
+    item.given = node("given");
+    item.params = node("params");
+    item.axes = node("axes");
+    json.at("output").at(0).get_to(item.outputWidthPx);
+    json.at("output").at(1).get_to(item.outputHeightPx);
+    item.measure = measureFrom(json.at("measure"));
+    item.seed = seedFrom(json.at("seed"));
+    item.offered = node("offered");
+    item.program = node("program");
+    item.programKey = json.value("program_key", "");
+    item.standsFor = node(config::kStandsFor);
+    if (const auto sample = json.find(config::kSceneSample); sample != json.end()) {
+        item.sceneSample = sample->get<int>();
     }
     return item;
 }
@@ -306,7 +343,7 @@ void Plan::write(const std::function<void(std::string_view)>& to) const {
         json["shard"] = {
             {"index", shard->index}, {"count", shard->count}, {"cases", shard->caseIds}};
     }
-    json[kFrozenHash] = frozenHash(json, cases);
+    json[Json::json_pointer(kFrozenHash)] = frozenHash(json, cases);
     std::string text = json.dump(1);
     text.resize(text.size() - 2);  // "\n}"
     to(text + ",\n \"cases\": [");
@@ -323,45 +360,38 @@ void Plan::writeFile(const fs::path& path) const {
 }
 
 Plan Plan::fromJsonFile(const fs::path& path) {
-    const Node node = parseJsonFile(path);
-    if (required(node, "schema").asInteger() != kPlanSchema) {
-        throw Error(path.string() + ": schema " + requiredText(node, "schema") +
-                    "; this program reads schema " + std::to_string(kPlanSchema));
+    const SourceLocation where{path.string(), 0, 0};
+    Json json = parseJsonObject(MappedFile(path).text(), where);
+    requireMembers(json, kPlan, where);
+    if (json.at("schema") != kPlanSchema) {
+        throw Error(where, fmt::format("schema {}; this program reads schema {}",
+                                       json.at("schema").get<int>(), kPlanSchema));
     }
     Plan plan;
-    plan.hash = requiredText(node, "hash");
-    plan.buildId = requiredText(node, "build");
-    plan.profile = requiredText(node, "profile");
-    plan.deviceClass = requiredText(node, "device_class");
-    plan.seed = requiredSeed(node);
-    const Node& request = required(node, "request");
-    plan.request = {textsFrom(required(request, "configs")), textsFrom(required(request, "sets")),
-                    textsFrom(required(request, "sweeps")), textsFrom(required(request, "only")),
-                    requiredText(request, "device")};
-    for (const auto& [reference, key] : required(node, "scenes").entries()) {
-        plan.sceneKeys[reference] = key.text();
+    json.at("hash").get_to(plan.hash);
+    json.at("build").get_to(plan.buildId);
+    json.at("profile").get_to(plan.profile);
+    json.at("device_class").get_to(plan.deviceClass);
+    plan.seed = seedFrom(json.at("seed"));
+    const Json& request = json.at("request");
+    plan.request = {textsFrom(request.at("configs")), textsFrom(request.at("sets")),
+                    textsFrom(request.at("sweeps")), textsFrom(request.at("only")),
+                    request.at("device")};
+    for (const auto& [reference, key] : json.at("scenes").items()) {
+        plan.sceneKeys[reference] = key.get<std::string>();
     }
-    for (const Node& item : required(node, "experiments").items()) {
-        plan.experiments.push_back(config::experimentFromDocument(
-            requiredMap(item, "document"), fs::path(requiredText(item, "file"))));
-        takeAssumed(required(item, "assumed"), plan.experiments.back());
-        if (const Node* paper = item.find("paper")) {
-            readPaper(*paper, plan.experiments.back());
-        }
-        if (const Node* metrics = item.find("metrics")) {
-            plan.experiments.back().outputs = outputsFrom(*metrics);
-        }
+    for (const auto& [place, item] : json.at("experiments").items()) {
+        plan.experiments.push_back(ExperimentReader(item, where, "/experiments/" + place).read());
     }
-    for (const Node& item : required(node, "cases").items()) {
-        plan.cases.push_back(caseFromJson(item));
+    for (const auto& [place, item] : json.at("cases").items()) {
+        plan.cases.push_back(caseFromJson(item, where, "/cases/" + place));
     }
-    if (const Node* shard = node.find("shard")) {
-        plan.shard = Shard{requiredInt(*shard, "index"), requiredInt(*shard, "count")};
-        for (const std::string& id : textsFrom(required(*shard, "cases"))) {
-            plan.shard->caseIds.insert(id);
-        }
+    if (const auto shard = json.find("shard"); shard != json.end()) {
+        requireMembers(*shard, kShard, where, "/shard");
+        const std::vector<std::string> ids = textsFrom(shard->at("cases"));
+        plan.shard = Shard{shard->at("index"), shard->at("count"), {ids.begin(), ids.end()}};
     }
-    requireAsPlanned(path, node, plan);
+    requireAsPlanned(where, std::move(json), plan);
     return plan;
 }
 

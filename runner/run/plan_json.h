@@ -10,8 +10,9 @@ namespace gfxrepro::run {
 
 /// A case as plan.json and a worker have it.
 nlohmann::ordered_json toJson(const Case& item);
-/// Throws Error for what is missing or of another kind.
-Case caseFromJson(const Node& node);
+/// Throws Error(where, …) for what is missing or of another kind; `prefix` stands before its place.
+Case caseFromJson(const nlohmann::ordered_json& json, const SourceLocation& where,
+                  const std::string& prefix);
 
 /// The first 12 digits of the hash of everything that the case's results depend on: `written` is
 /// the case as plan.json has it, whatever its id.

@@ -10,6 +10,7 @@
 #include <new>
 
 #include "engine/core/files.h"
+#include "engine/core/json_shape.h"
 #include "engine/gl/balance.h"
 #include "runner/run/child_process.h"
 #include "runner/run/measure.h"
@@ -93,14 +94,15 @@ void serve(gl::Device& device, const WorkerOptions& options,
     send({{"ready", toJson(info)}});
     std::string line;
     while (std::getline(std::cin, line)) {
-        const Node request = parseJson(line, "what the runner sent");
-        const Node* asked = request.isMap() ? request.find("case") : nullptr;
-        if (!asked) throw Error("what the runner sent: '/case' is missing");
-        Case item = caseFromJson(*asked);
-        const Node* process = request.find("process");
-        if (process && isSeededByProcess(item)) {
-            item.seed +=
-                static_cast<std::uint64_t>(process->asInteger() * config::kSeedsOfAProcess);
+        const SourceLocation where{"what the runner sent", 0, 0};
+        const Json request = parseJsonObject(line, where);
+        constexpr JsonMember kRequest[] = {{"/case", JsonKind::Object},
+                                           {"/process", JsonKind::Int, false}};
+        requireMembers(request, kRequest, where);
+        Case item = caseFromJson(request.at("case"), where, "/case");
+        if (isSeededByProcess(item)) {
+            item.seed += static_cast<std::uint64_t>(request.value("process", 0LL) *
+                                                    config::kSeedsOfAProcess);
         }
         const CaseResult result = measuredResult(item, context);
         std::cout.flush();

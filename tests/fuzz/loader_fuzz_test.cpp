@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/core/files.h"
+#include "engine/core/json_shape.h"
 #include "engine/core/random.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
@@ -159,7 +160,9 @@ const Load kLoadConfig = [](const fs::path& path) {
     config::experimentFromDocument(experiment.document, path);
     config::expandCases(experiment);
 };
-const Load kParseJson = [](const fs::path& path) { parseJsonFile(path); };
+const Load kParseJson = [](const fs::path& path) {
+    nodeFromJson(parseJsonObject(readFile(path), {path.string(), 0, 0}));
+};
 const Load kReadRecords = [](const fs::path& path) { records::readRecords(path); };
 const Load kReadImages = [](const fs::path& path) {
     records::readImages(path.parent_path().parent_path());

@@ -105,10 +105,10 @@ RecordMaker& RecordMaker::beginCase(const std::string& scene, const std::string&
     current_.caseId = "case:" + scene + params;
     current_.table = "zju2005/9.9";
     current_.technique = "voxelization";
-    const auto json = nlohmann::json::parse(params);
+    const auto json = nlohmann::ordered_json::parse(params);
     if (json.contains("method")) current_.method = json["method"].get<std::string>();
     current_.scene = scene;
-    records_.cases.push_back(caseOf(current_.table, scene, parseJson(params, "params")));
+    records_.cases.push_back(caseOf(current_.table, scene, nodeFromJson(json)));
     records_.cases.back().id = current_.caseId;
     current_.lane = "timing";
     return *this;
