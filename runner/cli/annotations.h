@@ -9,7 +9,7 @@
 
 #include "engine/core/error.h"
 #include "runner/claims/claims.h"
-#include "runner/records/case_end.h"
+#include "runner/records/records.h"
 
 namespace gfxrepro::cli {
 

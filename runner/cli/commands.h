@@ -2,12 +2,18 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/scene/generators.h"
 #include "runner/technique/technique.h"
+
+namespace CLI {
+class App;
+}
 
 namespace gfxrepro::cli {
 
@@ -133,5 +139,104 @@ int submit(const Context& context, const SubmitOptions& options);
 int compare(const CompareOptions& options);
 int sensitivity(const Context& context, const SensitivityOptions& options);
 int scene(const Context& context, const SceneOptions& options);
+
+struct ExportOptions {
+    std::string runDir;
+    std::string out;  // folder; empty: DIR-artifact, or DIR-tidy
+    std::string assets;
+    bool isTidy = false;  // tables for other programs in place of an artifact
+};
+
+/// Numbers that were measured elsewhere.
+struct ImportOptions {
+    std::string file;
+    std::string cases;                 // file that says what `case_id` is; empty: none
+    std::vector<std::string> metrics;  // "COLUMN=UNIT": columns of numbers
+    std::vector<std::string> configs;  // how they are shown, and what must follow
+    std::string profile = "full";
+    std::string machine;
+    std::string out;
+    std::string assets;
+    bool isOfGpu = false;
+};
+
+/// Histories that `compare --history` has kept.
+struct HistoryOptions {
+    std::vector<std::string> files;
+    std::string out = "history.html";
+};
+
+struct DataOptions {
+    ExportOptions exported;
+    ImportOptions imported;
+    HistoryOptions history;
+};
+
+int exportRun(const Context& context, const ExportOptions& options);
+int importRun(const Context& context, const ImportOptions& options);
+int historyPage(const HistoryOptions& options);
+
+/// Adds them to the program's; `command` becomes the one that was chosen.
+void addDataCommands(CLI::App& app, const Context& context, DataOptions& options,
+                     std::function<int()>& command);
+
+struct ImageDiffOptions {
+    std::string reference;
+    std::string test;
+    std::vector<std::string> metrics;  // mse, psnr, ssim, flip, max; none: all that apply
+    std::string flip = "auto";         // auto | ldr | hdr
+    std::string out;
+    std::string map = "abs";  // abs | signed | flip
+    double gain = 1.0;
+    bool asJson = false;
+};
+
+struct ImageConvertOptions {
+    std::string in;
+    std::string out;
+    double exposureStops = 0.0;
+    std::string toneMap = "none";  // none | reinhard | aces
+    std::string channels;          // "Z" or "N.X,N.Y,N.Z"; empty: the colours
+    std::string range;             // "low,high" of one channel
+    std::string colours = "auto";  // auto | magma | grey | cool_warm
+};
+
+struct ImageCropOptions {
+    std::string in;
+    std::string out;
+    int left = 0;
+    int top = 0;
+    int width = 0;
+    int height = 0;
+    int scale = 1;
+};
+
+struct ImageSheetOptions {
+    std::string out;
+    std::vector<std::string> files;
+    int columns = 4;
+    int widthPx = 256;
+};
+
+struct ImageCommandOptions {
+    ImageDiffOptions diff;
+    ImageConvertOptions convert;
+    ImageCropOptions crop;
+    ImageSheetOptions sheet;
+    std::string file;  // of info
+};
+
+int imageDiff(const ImageDiffOptions& options);
+int imageConvert(const ImageConvertOptions& options);
+int imageCrop(const ImageCropOptions& options);
+int imageSheet(const ImageSheetOptions& options);
+int imageInfo(const std::string& file);
+
+/// Adds them to the program's; `command` becomes the one that was chosen.
+void addImageCommands(CLI::App& app, ImageCommandOptions& options, std::function<int()>& command);
+
+/// Throws UsageError where `out` is one of the files that are read.
+void requireNoInput(const std::string& out, std::span<const std::string> inputs,
+                    std::string_view option = "--out");
 
 }  // namespace gfxrepro::cli

@@ -17,7 +17,7 @@
 #include "runner/regression/history.h"
 #include "runner/regression/pictures.h"
 #include "runner/regression/summary.h"
-#include "runner/results/made_from.h"
+#include "runner/results/results.h"
 #include "runner/run/child_process.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run.h"

@@ -1,4 +1,3 @@
-#include "runner/cli/completion.h"
 
 #include <algorithm>
 #include <cctype>

@@ -21,7 +21,6 @@
 #include "runner/cli/console.h"
 #include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
-#include "runner/cli/scene_state.h"
 #include "runner/run/manifest.h"
 #include "runner/run/protocol.h"
 

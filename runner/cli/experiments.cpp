@@ -1,9 +1,9 @@
 #include "runner/cli/experiments.h"
 
 #include <fnmatch.h>
-
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <set>
 
 #include "engine/core/files.h"
@@ -11,7 +11,7 @@
 #include "runner/claims/claims.h"
 #include "runner/cli/console.h"
 #include "runner/config/experiment.h"
-#include "runner/results/report_runs.h"
+#include "runner/results/results.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/scheduler.h"
 
@@ -286,6 +286,16 @@ std::string alignedColumns(const std::vector<std::vector<std::string>>& rows) {
     std::string text;
     for (const auto& row : rows) text += columns.line(row);
     return text;
+}
+
+std::string sceneState(const scene::Catalog& catalog, const std::string& name) {
+    const scene::SceneEntry& entry = catalog.entries().at(name);
+    for (const scene::SceneSource& source : entry.sources) {
+        const bool isThere =
+            source.file.empty() || std::filesystem::exists(catalog.assetsFolder() / source.file);
+        if (isThere) return std::string(scene::kindName(source.kind));
+    }
+    return "missing";
 }
 
 }  // namespace gfxrepro::cli

@@ -81,4 +81,7 @@ class Columns {
 /// All rows as lines of aligned columns.
 std::string alignedColumns(const std::vector<std::vector<std::string>>& rows);
 
+/// "real", "stand-in", "generated", or "missing" where none of its files is here.
+std::string sceneState(const scene::Catalog& catalog, const std::string& name);
+
 }  // namespace gfxrepro::cli

@@ -2,10 +2,11 @@
 // order of the commands and an example of each.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "runner/cli/commands.h"
 
 namespace gfxrepro::cli {
 
@@ -36,5 +37,16 @@ std::string entryLines(const std::string& name, const std::string& doc, std::siz
 
 /// "gfxrepro run [OPTION…] [CONFIG…]" for the full `name` of a command.
 std::string usageLine(const CLI::App& app, const std::string& name);
+
+/// In the man macros of roff.
+std::string manPage(const CLI::App& app);
+
+/// `words` are those behind the program's name; the last is unfinished, perhaps empty. What ends in
+/// a slash goes on.
+std::vector<std::string> completions(const CLI::App& app, const Context& context,
+                                     const std::vector<std::string>& words);
+
+/// A script for "bash", "zsh" or "fish" that asks `gfxrepro complete WORD…`.
+std::string completionScript(const std::string& shell);
 
 }  // namespace gfxrepro::cli

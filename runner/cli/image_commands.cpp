@@ -1,12 +1,35 @@
-#include "runner/cli/image_commands.h"
-
+// `gfxrepro image …`.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "engine/image/colour_map.h"
+#include "engine/image/contact_sheet.h"
+#include "engine/image/exr_io.h"
+#include "engine/image/image_file.h"
+#include "engine/image/png_io.h"
+#include "engine/image/resample.h"
+#include "engine/image/srgb.h"
+#include "engine/metrics/error_map.h"
+#include "engine/metrics/flip.h"
+#include "engine/metrics/image_error.h"
+#include "runner/cli/commands.h"
+#include "runner/cli/console.h"
 
 namespace gfxrepro::cli {
+
+using image::ExrImage;
+using image::Image8;
+using image::ImageF;
 
 namespace {
 
@@ -117,6 +140,397 @@ void addImageCommands(CLI::App& app, ImageCommandOptions& options, std::function
     CLI::App* info = image->add_subcommand("info", "size, channels and attributes of a file");
     addFile(info, "file", options.file, "EXR or PNG");
     info->callback([&] { command = [&] { return imageInfo(options.file); }; });
+}
+
+namespace {
+
+const char* nameOf(image::ExrPixelType type) {
+    switch (type) {
+        case image::ExrPixelType::Half:
+            return "half";
+        case image::ExrPixelType::Float:
+            return "float";
+        case image::ExrPixelType::Uint:
+            break;
+    }
+    return "uint";
+}
+
+void printChannel(const image::ExrImage::Channel& channel) {
+    double sum = 0.0;
+    float low = std::numeric_limits<float>::infinity(), high = -low;
+    std::size_t finite = 0;
+    for (const float value : channel.values.values()) {
+        if (!std::isfinite(value)) continue;
+        ++finite;
+        sum += double{value};
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    say("channel {:<10} {:<5}", channel.name, nameOf(channel.type));
+    if (finite > 0) {
+        say(" {:g} to {:g}, mean {:g}", low, high, sum / static_cast<double>(finite));
+    }
+    if (const std::size_t others = channel.values.values().size() - finite; others > 0) {
+        say(" ({} not finite)", others);
+    }
+    say("\n");
+}
+
+}  // namespace
+
+int imageInfo(const std::string& file) {
+    if (!image::isExrFile(file)) {
+        const image::ImageF image = image::readStored(file);
+        say("png {}x{}, {} {}\n", image.width(), image.height(), image.channels(),
+            image.channels() == 1 ? "channel" : "channels");
+        return kExitOk;
+    }
+    const image::ExrImage exr = image::readExr(file);
+    say("exr {}x{}\n", exr.width(), exr.height());
+    for (const image::ExrImage::Channel& channel : exr.channels) printChannel(channel);
+    for (const auto& [name, text] : exr.attributes) say("{}: {}\n", name, text);
+    for (const auto& [name, matrix] : exr.matrices) {
+        say("{}: {}\n", name, fmt::format("{:.6g}", fmt::join(matrix, " ")));
+    }
+    return kExitOk;
+}
+
+namespace {
+
+struct Pair {
+    bool isLinear = false;   // EXR; else sRGB as stored in PNG files
+    ImageF reference, test;  // as stored
+    ImageF linearReference, linearTest;
+};
+
+Pair readPair(const ImageDiffOptions& options) {
+    Pair pair;
+    pair.isLinear = image::isExrFile(options.reference);
+    if (image::isExrFile(options.test) != pair.isLinear) {
+        throw UsageError(fmt::format(
+            "image diff: {} and {} are of different kinds; an EXR is linear, a PNG is not",
+            options.reference, options.test));
+    }
+    if (!options.out.empty()) image::isExrFile(options.out);
+    pair.reference = image::readStored(options.reference);
+    pair.test = image::readStored(options.test);
+    metrics::requireComparable(pair.reference, pair.test);
+    metrics::requireFlipSize(pair.reference);
+    pair.linearReference = pair.isLinear ? pair.reference : image::readLinear(options.reference);
+    pair.linearTest = pair.isLinear ? pair.test : image::readLinear(options.test);
+    return pair;
+}
+
+bool usesHdrFlip(const ImageDiffOptions& options, const Pair& pair) {
+    if (options.flip != "auto") return options.flip == "hdr";
+    return pair.isLinear &&
+           (metrics::exceedsDisplay(pair.reference) || metrics::exceedsDisplay(pair.test));
+}
+
+ImageF flipMapOf(const ImageDiffOptions& options, const Pair& pair) {
+    const ImageF reference = metrics::coloursOf(pair.linearReference);
+    const ImageF test = metrics::coloursOf(pair.linearTest);
+    return usesHdrFlip(options, pair) ? metrics::hdrFlipMap(reference, test)
+                                      : metrics::flipMap(reference, test);
+}
+
+/// Structural similarity has no value for smaller images.
+constexpr int kLeastSsimPx = 11;
+
+std::vector<std::pair<std::string, double>> differencesOf(const ImageDiffOptions& options,
+                                                          const Pair& pair,
+                                                          std::optional<ImageF>& flipMap) {
+    const ImageF& a = pair.reference;
+    const ImageF& b = pair.test;
+    const auto isWanted = [&](const char* name) {
+        return options.metrics.empty() || std::find(options.metrics.begin(), options.metrics.end(),
+                                                    name) != options.metrics.end();
+    };
+    const bool fitsSsim = a.width() >= kLeastSsimPx && a.height() >= kLeastSsimPx;
+    std::vector<std::pair<std::string, double>> values;
+    if (isWanted("mse")) values.emplace_back("mse", metrics::meanSquaredError(a, b));
+    if (isWanted("psnr")) values.emplace_back("psnr_db", metrics::peakSignalToNoiseDb(a, b));
+    if (isWanted("ssim") && (fitsSsim || !options.metrics.empty())) {
+        values.emplace_back("ssim", metrics::structuralSimilarity(a, b));
+    }
+    if (isWanted("flip")) {
+        flipMap = flipMapOf(options, pair);
+        values.emplace_back(usesHdrFlip(options, pair) ? "hdr_flip" : "flip",
+                            metrics::meanOfFlip(*flipMap));
+    }
+    if (isWanted("max")) values.emplace_back("max", metrics::maxAbsoluteError(a, b));
+    return values;
+}
+
+/// The map's numbers: gain · (reference − test) or its magnitude a channel, or FLIP.
+ImageF numbersOf(const ImageDiffOptions& options, const Pair& pair, const ImageF* flipMap) {
+    if (flipMap != nullptr) return *flipMap;
+    const auto gain = static_cast<float>(options.gain);
+    if (options.map == "abs") {
+        return metrics::absoluteDifference(pair.reference, pair.test, gain);
+    }
+    ImageF difference = pair.reference;
+    for (std::size_t i = 0; i < difference.values().size(); ++i) {
+        difference.values()[i] = gain * (difference.values()[i] - pair.test.values()[i]);
+    }
+    return difference;
+}
+
+/// Differences of what is compared above: linear light of EXR files, displayed values of PNG files.
+image::Image8 diffPicture(const ImageDiffOptions& options, const Pair& pair,
+                          const ImageF* flipMap) {
+    if (flipMap != nullptr) return metrics::flipPicture(*flipMap);
+    const auto draw =
+        options.map == "abs" ? metrics::absoluteErrorPicture : metrics::signedErrorPicture;
+    return draw(pair.linearReference, pair.linearTest, static_cast<float>(options.gain),
+                pair.isLinear ? metrics::ErrorOf::Linear : metrics::ErrorOf::Displayed);
+}
+
+void writeMap(const ImageDiffOptions& options, const Pair& pair, std::optional<ImageF> flipMap) {
+    if (options.map == "flip" && !flipMap) flipMap = flipMapOf(options, pair);
+    const ImageF* flip = options.map == "flip" ? &*flipMap : nullptr;
+    if (!image::isExrFile(options.out)) {
+        image::writePng(options.out, diffPicture(options, pair, flip));
+        return;
+    }
+    static const std::vector<std::string> kNames[] = {
+        {}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+    const ImageF numbers = numbersOf(options, pair, flip);
+    image::ExrImage exr;
+    exr.add(numbers, kNames[numbers.channels()], image::ExrPixelType::Float);
+    exr.attributes["reference"] = options.reference;
+    exr.attributes["test"] = options.test;
+    exr.attributes["map"] = options.map;
+    exr.attributes["gain"] = flip ? "1" : fmt::format("{:g}", options.gain);
+    image::writeExr(options.out, exr);
+}
+
+}  // namespace
+
+int imageDiff(const ImageDiffOptions& options) {
+    if (!options.out.empty()) {
+        const std::string inputs[] = {options.reference, options.test};
+        requireNoInput(options.out, inputs);
+    }
+    const Pair pair = readPair(options);
+    std::optional<ImageF> flipMap;
+    const auto values = differencesOf(options, pair, flipMap);
+    if (options.asJson) {
+        nlohmann::ordered_json json;
+        for (const auto& [name, value] : values) {
+            json[name] = std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
+        }
+        fmt::print("{}\n", json.dump(2));
+    } else {
+        for (const auto& [name, value] : values) fmt::print("{} {:.6g}\n", name, value);
+    }
+    if (!options.out.empty()) writeMap(options, pair, std::move(flipMap));
+    return kExitOk;
+}
+
+namespace {
+
+image::ToneMap toneMapOf(const std::string& name) {
+    if (name == "reinhard") return image::ToneMap::Reinhard;
+    return name == "aces" ? image::ToneMap::Aces : image::ToneMap::None;
+}
+
+image::ColourMap colourMapOf(const std::string& name) {
+    if (name == "grey") return image::ColourMap::Grey;
+    return name == "cool_warm" ? image::ColourMap::CoolWarm : image::ColourMap::Magma;
+}
+
+/// The channels that are named, in that order, with all attributes.
+ExrImage picked(const ExrImage& image, const std::string& names, const std::string& file) {
+    ExrImage result;
+    result.attributes = image.attributes;
+    result.matrices = image.matrices;
+    std::vector<std::string> known;
+    for (const ExrImage::Channel& channel : image.channels) known.push_back(channel.name);
+    for (const std::string& name : split(names, ',')) {
+        const auto found = std::find(known.begin(), known.end(), name);
+        if (found == known.end()) {
+            throw UsageError(fmt::format("{}: no channel '{}'{}; it has {}", file, name,
+                                         suggestion(name, known), joined(known)));
+        }
+        result.channels.push_back(image.channels[static_cast<std::size_t>(found - known.begin())]);
+    }
+    return result;
+}
+
+struct Range {
+    float low = 0.0F, high = 1.0F;
+};
+
+Range parseRange(const std::string& text) {
+    const std::vector<std::string> ends = split(text, ',');
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const double low = parseDouble(ends.front()).value_or(kNone);
+    const double high = ends.size() == 2 ? parseDouble(ends.back()).value_or(kNone) : kNone;
+    if (!(low < high) && !(low > high)) {
+        throw UsageError(
+            fmt::format("--range: expected two numbers that differ, low,high; found '{}'", text));
+    }
+    return {static_cast<float>(low), static_cast<float>(high)};
+}
+
+/// Of the finite values; depths of 0 are of pixels that show nothing.
+Range rangeOf(const ExrImage::Channel& channel) {
+    Range range{std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest()};
+    for (const float value : channel.values.values()) {
+        if (!std::isfinite(value) || (channel.name == "Z" && value == 0.0F)) continue;
+        range.low = std::min(range.low, value);
+        range.high = std::max(range.high, value);
+    }
+    if (range.low > range.high) return {};
+    if (range.low == range.high) range.high = range.low + 1.0F;
+    return range;
+}
+
+/// Values of both signs, as an error's, get a map whose middle is 0.
+Image8 falseColours(const ExrImage::Channel& channel, const ImageConvertOptions& options) {
+    Range range = options.range.empty() ? rangeOf(channel) : parseRange(options.range);
+    std::string colours = options.colours;
+    if (colours == "auto") {
+        const bool isSigned = range.low * range.high < 0.0F;
+        colours = isSigned ? "cool_warm" : "magma";
+        if (isSigned && options.range.empty()) {
+            range.high = std::max(-range.low, range.high);
+            range.low = -range.high;
+        }
+    }
+    say("{}: {:g} to {:g} in {}\n", channel.name, range.low, range.high, colours);
+    return image::coloured(channel.values, colourMapOf(colours), range.low, range.high);
+}
+
+bool areDirections(const ExrImage& image) {
+    return image.channels[0].name.ends_with(".X") && image.channels[1].name.ends_with(".Y") &&
+           image.channels[2].name.ends_with(".Z");
+}
+
+ImageF interleaved(const ExrImage& image) {
+    ImageF result(image.width(), image.height(), static_cast<int>(image.channels.size()));
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            for (std::size_t c = 0; c < image.channels.size(); ++c) {
+                result.at(x, y, static_cast<int>(c)) = image.channels[c].values.at(x, y);
+            }
+        }
+    }
+    return result;
+}
+
+Image8 directionPicture(const ImageF& directions) {
+    Image8 picture(directions.width(), directions.height(), 3);
+    for (std::size_t i = 0; i < picture.values().size(); ++i) {
+        const float shown = std::clamp(0.5F + 0.5F * directions.values()[i], 0.0F, 1.0F);
+        picture.values()[i] = static_cast<std::uint8_t>(255.0F * shown + 0.5F);
+    }
+    return picture;
+}
+
+Image8 shown(const ImageF& linear, const ImageConvertOptions& options) {
+    return image::toSrgb8(image::toneMapped(linear, static_cast<float>(options.exposureStops),
+                                            toneMapOf(options.toneMap)));
+}
+
+Image8 convertedPicture(const ImageConvertOptions& options) {
+    if (options.channels.empty()) {
+        if (!options.range.empty()) throw UsageError("--range is of one channel: give --channels");
+        return shown(image::readLinear(options.in), options);
+    }
+    if (!image::isExrFile(options.in)) {
+        throw UsageError(options.in + ": --channels is for EXR files");
+    }
+    const ExrImage image = picked(image::readExr(options.in), options.channels, options.in);
+    if (image.channels.size() == 1) return falseColours(image.channels[0], options);
+    if (!options.range.empty()) throw UsageError("--range is of one channel: name one");
+    if (image.channels.size() != 3) {
+        throw UsageError(fmt::format("--channels takes 1 or 3 names for a PNG, found {}",
+                                     image.channels.size()));
+    }
+    if (areDirections(image)) return directionPicture(interleaved(image));
+    return shown(interleaved(image), options);
+}
+
+ExrImage exrOf(const ImageF& image) {
+    static const std::vector<std::string> kNames[] = {
+        {}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+    ExrImage exr;
+    exr.add(image, kNames[image.channels()]);
+    return exr;
+}
+
+ExrImage exrFrom(const ImageConvertOptions& options) {
+    if (options.toneMap != "none" || !options.range.empty()) {
+        throw UsageError("--tonemap and --range are for PNG files; an EXR keeps its numbers");
+    }
+    ExrImage exr = image::isExrFile(options.in) ? image::readExr(options.in)
+                                                : exrOf(image::readLinear(options.in));
+    if (!options.channels.empty()) exr = picked(exr, options.channels, options.in);
+    const auto scale = static_cast<float>(std::exp2(options.exposureStops));
+    for (ExrImage::Channel& channel : exr.channels) {
+        const bool isColour = channel.name == "R" || channel.name == "G" || channel.name == "B" ||
+                              channel.name == "Y";
+        if (!isColour) continue;
+        for (float& value : channel.values.values()) value *= scale;
+    }
+    return exr;
+}
+
+}  // namespace
+
+int imageConvert(const ImageConvertOptions& options) {
+    image::isExrFile(options.in);
+    requireNoInput(options.out, {&options.in, 1});
+    if (image::isExrFile(options.out)) {
+        image::writeExr(options.out, exrFrom(options));
+    } else {
+        image::writePng(options.out, convertedPicture(options));
+    }
+    return kExitOk;
+}
+
+int imageCrop(const ImageCropOptions& options) {
+    const bool isExr = image::isExrFile(options.in);
+    if (image::isExrFile(options.out) != isExr) {
+        throw UsageError(
+            fmt::format("image crop: {} and {} are of different kinds; 'image "
+                        "convert' makes one of the other",
+                        options.in, options.out));
+    }
+    requireNoInput(options.out, {&options.in, 1});
+    const image::Rectangle part{options.left, options.top, options.width, options.height};
+    if (isExr) {
+        image::writeExr(options.out,
+                        image::cropped(image::readExr(options.in), part, options.scale));
+    } else {
+        image::writePng(options.out,
+                        image::cropped(image::readPng8(options.in), part, options.scale));
+    }
+    return kExitOk;
+}
+
+int imageSheet(const ImageSheetOptions& options) {
+    if (image::isExrFile(options.out)) {
+        throw UsageError(options.out + ": a contact sheet is a .png");
+    }
+    requireNoInput(options.out, options.files);
+    std::vector<image::Image8> images;
+    for (const std::string& file : options.files) {
+        images.push_back(image::isExrFile(file) ? image::toSrgb8(image::readLinear(file))
+                                                : image::readPng8(file));
+    }
+    image::SheetLayout layout;
+    layout.columns = options.columns;
+    layout.cellWidthPx = options.widthPx;
+    image::writePng(options.out, image::contactSheet(images, layout, options.files));
+    const auto columns = std::min(static_cast<std::size_t>(options.columns), options.files.size());
+    for (std::size_t i = 0; i < options.files.size(); ++i) {
+        say("row {} column {}  {}\n", i / columns + 1, i % columns + 1, options.files[i]);
+    }
+    return kExitOk;
 }
 
 }  // namespace gfxrepro::cli

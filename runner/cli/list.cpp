@@ -10,7 +10,6 @@
 #include "engine/core/text.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
-#include "runner/cli/scene_state.h"
 
 namespace gfxrepro::cli {
 

@@ -7,7 +7,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/results.h"
-#include "runner/cluster/merge.h"
+#include "runner/cluster/shards.h"
 #include "runner/run/manifest.h"
 
 namespace gfxrepro::cli {

@@ -17,8 +17,6 @@
 #include "runner/cli/experiments.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
-#include "runner/results/made_from.h"
-#include "runner/results/report_runs.h"
 #include "runner/results/results.h"
 #include "runner/run/run.h"
 #include "runner/tables/printed_parameters.h"

@@ -1,9 +1,12 @@
 #include <fmt/core.h>
-
+#include <sys/ioctl.h>
+#include <unistd.h>
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -17,21 +20,140 @@
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
-#include "runner/cli/progress.h"
 #include "runner/cli/results.h"
+#include "runner/cluster/predictions.h"
 #include "runner/cluster/shards.h"
 #include "runner/results/import_run.h"
 #include "runner/run/machine_state.h"
 #include "runner/run/manifest.h"
-#include "runner/run/not_survived.h"
 #include "runner/run/run.h"
-#include "runner/run/run_files.h"
+#include "runner/run/run_directory.h"
+#include "runner/run/scheduler.h"
 #include "runner/run/twins.h"
 #include "runner/studies/budget.h"
 
 namespace gfxrepro::cli {
 
 namespace fs = std::filesystem;
+
+/// Writes to standard error. Quiet: failures only.
+class Progress : public run::Observer {
+  public:
+    /// `unitTimesS`: predictions by case, for the time left; empty when nothing is known.
+    Progress(const std::vector<run::Unit>& units,
+             const std::map<const config::Case*, double>& unitTimesS, int jobs, bool isQuiet);
+
+    void unitsAdded(const std::vector<run::Unit>& units) override;
+    void unitBegan(const run::Unit& unit) override;
+    void unitEnded(const run::Unit& unit, records::Status status,
+                   const std::string& message) override;
+    void tick(std::string_view phase) override;
+    /// Takes the bar away.
+    void clear();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double timeS(const run::Unit& unit) const;
+    std::string etaText() const;
+
+    int unitCount_;
+    std::map<const config::Case*, double> unitTimesS_;
+    int jobs_;
+    double totalS_ = 0.0;  // predicted; units where there are no predictions
+    double doneS_ = 0.0;
+    int ended_ = 0;
+    bool isQuiet_;
+    bool isTerminal_;
+    Clock::time_point start_ = Clock::now();
+    Clock::time_point lastDraw_{};
+    std::string title_;
+};
+
+namespace {
+
+constexpr int kBarWidth = 24;
+constexpr std::chrono::milliseconds kDrawInterval{100};
+
+std::string titleOf(const run::Unit& unit) {
+    std::string title = unit.item->title();
+    const int processes = unit.item->measure.processes;
+    if (unit.process >= processes) {
+        title += fmt::format(" process {}", unit.process + 1);
+    } else if (processes > 1) {
+        title += fmt::format(" process {}/{}", unit.process + 1, processes);
+    }
+    if (unit.measuredAs) title += " (as " + unit.measuredAs->title() + ")";
+    return title;
+}
+
+std::size_t terminalWidth() {
+    winsize size{};
+    if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 80;
+    return size.ws_col;
+}
+
+}  // namespace
+
+Progress::Progress(const std::vector<run::Unit>& units,
+                   const std::map<const config::Case*, double>& unitTimesS, int jobs, bool isQuiet)
+    : unitCount_(static_cast<int>(units.size())),
+      unitTimesS_(unitTimesS),
+      jobs_(jobs),
+      isQuiet_(isQuiet),
+      isTerminal_(::isatty(STDERR_FILENO) == 1) {
+    for (const run::Unit& unit : units) totalS_ += timeS(unit);
+}
+
+double Progress::timeS(const run::Unit& unit) const {
+    const auto found = unitTimesS_.find(unit.item);
+    return found == unitTimesS_.end() ? 1.0 : found->second;
+}
+
+void Progress::unitsAdded(const std::vector<run::Unit>& units) {
+    unitCount_ += static_cast<int>(units.size());
+    for (const run::Unit& unit : units) totalS_ += timeS(unit);
+}
+
+void Progress::unitBegan(const run::Unit& unit) {
+    title_ = titleOf(unit);
+    lastDraw_ = {};
+    tick({});
+}
+
+void Progress::unitEnded(const run::Unit& unit, records::Status status,
+                         const std::string& message) {
+    ++ended_;
+    doneS_ += timeS(unit);
+    const bool isOk = status == records::Status::Ok;
+    if (isOk && (isQuiet_ || isTerminal_)) return;
+    clear();
+    tell("[{}/{}] {} {}{}\n", ended_, unitCount_, records::statusName(status), titleOf(unit),
+         message.empty() ? "" : ": " + message);
+}
+
+std::string Progress::etaText() const {
+    if (ended_ == 0) return "--:--";
+    const double elapsedS = std::chrono::duration<double>(Clock::now() - start_).count();
+    const auto leftS =
+        static_cast<long long>(cluster::remainingS(totalS_, doneS_, elapsedS, jobs_) + 0.5);
+    return fmt::format("{}:{:02}", leftS / 60, leftS % 60);
+}
+
+void Progress::tick(std::string_view) {
+    if (isQuiet_ || !isTerminal_ || Clock::now() - lastDraw_ < kDrawInterval) return;
+    lastDraw_ = Clock::now();
+    const int filled = unitCount_ == 0 ? kBarWidth : kBarWidth * ended_ / unitCount_;
+    std::string line =
+        fmt::format("[{}{}] {}/{}  ETA {}  {}", std::string(filled, '#'),
+                    std::string(kBarWidth - filled, '.'), ended_, unitCount_, etaText(), title_);
+    line.resize(std::min(line.size(), terminalWidth() - 1));
+    tell("\r\033[K{}", line);
+    std::fflush(stderr);
+}
+
+void Progress::clear() {
+    if (!isQuiet_ && isTerminal_) tell("\r\033[K");
+}
 
 namespace {
 

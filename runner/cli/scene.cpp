@@ -10,7 +10,6 @@
 #include "runner/cli/console.h"
 #include "runner/cli/driver_limit.h"
 #include "runner/cli/experiments.h"
-#include "runner/cli/image_commands.h"
 
 namespace gfxrepro::cli {
 

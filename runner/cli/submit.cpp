@@ -1,11 +1,17 @@
 // A plan handed to other machines: as a Slurm array job with a merge behind it, or as commands.
 #include <fmt/core.h>
-
+#include <fmt/format.h>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/json_shape.h"
 #include "engine/core/text.h"
@@ -13,10 +19,9 @@
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/history.h"
-#include "runner/cli/slurm.h"
-#include "runner/cluster/kept_program.h"
 #include "runner/cluster/shards.h"
 #include "runner/cluster/submission.h"
+#include "runner/run/child_process.h"
 #include "runner/run/run.h"
 #include "runner/run/twins.h"
 
@@ -25,6 +30,70 @@ namespace gfxrepro::cli {
 namespace fs = std::filesystem;
 using cluster::Submission;
 using run::Json;
+
+/// What sbatch said: a job's number, or why it refused it.
+struct SbatchAnswer {
+    std::string job;
+    std::string cluster;  // empty: the one that takes jobs by default
+    std::string refusal;
+};
+
+/// Throws Error where sbatch took something and gave no number.
+SbatchAnswer sbatch(std::vector<std::string> arguments);
+
+/// The states of these jobs' tasks on the cluster ("": the default one), as cluster::parseQueue()
+/// gives them. None when squeue is not there or does not answer: then nothing is known, least of
+/// all an end. A queue forgets jobs that ended, and answers.
+std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std::string>& jobs,
+                                                           const std::string& cluster);
+
+namespace {
+
+constexpr std::chrono::seconds kSlurmLimit{120};  // for an answer
+
+}  // namespace
+
+/// The number is what --parsable prints last: "123" or "123;cluster".
+SbatchAnswer sbatch(std::vector<std::string> arguments) {
+    constexpr int kNotFound = 127;  // env's
+    arguments.insert(arguments.begin(), {"/usr/bin/env", "sbatch", "--parsable"});
+    const run::ProgramEnd end = run::runToEnd(arguments, kSlurmLimit);
+    const std::string text(trimmed(end.output));
+    if (end.exitCode != 0) {
+        return {"", "",
+                fmt::format("sbatch did not take the job (exit code {}): {}{}", end.exitCode, text,
+                            end.exitCode == kNotFound
+                                ? "; where there is no Slurm, --engine commands prints commands"
+                                : "")};
+    }
+    const std::string last = text.substr(text.rfind('\n') + 1);
+    const std::size_t jobEnd = std::min(last.find(';'), last.size());
+    const std::string job = last.substr(0, jobEnd);
+    const std::string cluster = last.substr(std::min(jobEnd + 1, last.size()));
+    if (parseInteger(job)) return {job, cluster, ""};
+    throw Error(
+        "sbatch gave no number of a job, so what is queued is not known; squeue shows it: " + text);
+}
+
+std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std::string>& jobs,
+                                                           const std::string& cluster) {
+    std::vector<std::string> command = {"/usr/bin/env", "squeue",  "-h", "-r",
+                                        "-t",           "all",     "-j", joined(jobs, ","),
+                                        "-o",           "%F_%K %T"};
+    if (!cluster.empty()) command.push_back("--clusters=" + cluster);
+    const run::ProgramEnd end = run::runToEnd(command, kSlurmLimit);
+    // Its answer to the number of a single job that it has forgotten.
+    if (end.output.find("Invalid job id") != std::string::npos) {
+        return std::map<std::string, std::string>();
+    }
+    if (end.exitCode != 0) return std::nullopt;
+    std::map<std::string, std::string> states = cluster::parseQueue(end.output);
+    const std::string_view said = trimmed(end.output);
+    const bool isHead = said == "CLUSTER: " + cluster;  // of an answer without a task
+    const bool isNotice = states.empty() && !said.empty() && !isHead;
+    if (isNotice) return std::nullopt;  // it says something else: not that the jobs are forgotten
+    return states;
+}
 
 namespace {
 

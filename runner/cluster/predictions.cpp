@@ -9,7 +9,7 @@
 #include "engine/core/text.h"
 #include "engine/metrics/statistics.h"
 #include "runner/records/csv.h"
-#include "runner/run/run_files.h"
+#include "runner/run/run_directory.h"
 
 namespace gfxrepro::cluster {
 

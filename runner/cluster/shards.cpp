@@ -1,12 +1,23 @@
 #include "runner/cluster/shards.h"
 
+#include <fmt/format.h>
 #include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
+#include <set>
+#include <string_view>
+#include <utility>
 
+#include "engine/core/files.h"
 #include "engine/core/text.h"
+#include "runner/records/images.h"
+#include "runner/run/manifest.h"
 #include "runner/run/twins.h"
 
 namespace gfxrepro::cluster {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -69,6 +80,222 @@ void takeShard(run::Plan& plan, const run::Shard& shard, std::span<const double>
     for (std::size_t i = 0; i < plan.cases.size(); ++i) {
         if (shardOf[i] == shard.index - 1) plan.shard->caseIds.insert(plan.cases[i].id);
     }
+}
+
+namespace {
+
+using UnitRows = std::map<std::pair<std::string, int>, std::vector<records::Record>>;
+
+void requireOnePlan(const std::vector<ShardRun>& shards) {
+    const ShardRun& first = shards.front();
+    for (const ShardRun& shard : shards) {
+        const std::string difference = run::planDifference(first.run.plan, shard.run.plan);
+        if (difference.empty()) continue;
+        throw Error(first.path.string() + " and " + shard.path.string() +
+                    " are shards of different plans (" + first.run.plan.hash.substr(0, 12) + ", " +
+                    shard.run.plan.hash.substr(0, 12) + "): " + difference);
+    }
+}
+
+/// Cases that a shard was to measure, and those that it has rows of.
+std::set<std::string> casesOf(const run::StoredRun& run) {
+    std::set<std::string> ids;
+    for (const config::Case& item : run.plan.cases) {
+        if (run.plan.measures(item)) ids.insert(item.id);
+    }
+    for (const records::Record& row : run.records) ids.insert(row.caseId);
+    return ids;
+}
+
+void requireDisjoint(const std::vector<ShardRun>& shards) {
+    std::map<std::string, const ShardRun*> owners;
+    for (const ShardRun& shard : shards) {
+        for (const std::string& id : casesOf(shard.run)) {
+            const auto [owner, isNew] = owners.try_emplace(id, &shard);
+            if (isNew) continue;
+            const auto item = std::ranges::find(shard.run.plan.cases, id, &config::Case::id);
+            throw Error("the case '" + (item == shard.run.plan.cases.end() ? id : item->title()) +
+                        "' is in both " + owner->second->path.string() + " and " +
+                        shard.path.string() + ": these are no shards of one cut");
+        }
+    }
+}
+
+/// The machine that each experiment's times are from. Throws when there are two.
+run::Json timingMachines(const std::vector<ShardRun>& shards) {
+    std::map<std::string, std::pair<std::string, const ShardRun*>> machines;
+    for (const ShardRun& shard : shards) {
+        std::set<std::string> timed;
+        for (const records::Record& row : shard.run.records) {
+            if (row.lane == "timing") timed.insert(row.table);
+        }
+        for (const std::string& experiment : timed) {
+            const std::string machine = run::timingMachine(shard.run.manifest, experiment);
+            const auto [known, isNew] = machines.try_emplace(experiment, machine, &shard);
+            if (isNew || known->second.first == machine) continue;
+            throw Error("the times of " + experiment + " would mix devices: " +
+                        known->second.second->path.string() + " was measured on " +
+                        known->second.first + "; " + shard.path.string() + " on " + machine);
+        }
+    }
+    run::Json json = run::Json::object();
+    for (const auto& [experiment, machine] : machines) json[experiment] = machine.first;
+    return json;
+}
+
+/// The distinct values of a text in the manifests: "A; B".
+std::string together(const std::vector<ShardRun>& shards, const run::Json::json_pointer& place) {
+    std::vector<std::string> values;
+    for (const ShardRun& shard : shards) {
+        const std::string value = shard.run.manifest.at(place).get<std::string>();
+        if (std::ranges::find(values, value) == values.end()) values.push_back(value);
+    }
+    return joined(values, "; ");
+}
+
+run::Json mergedManifest(const std::vector<ShardRun>& shards, const std::string& commandLine) {
+    run::Json manifest = shards.front().run.manifest;
+    for (const char* place : {"/cpu", "/gl/vendor", "/gl/renderer", "/gl/version"}) {
+        const run::Json::json_pointer pointer(place);
+        manifest[pointer] = together(shards, pointer);
+    }
+    manifest["timing_machines"] = timingMachines(shards);
+    run::breakSeal(manifest);
+    manifest.erase("notes");
+    manifest["invocations"] = run::Json::array();
+    manifest["merged"] = run::Json::array();
+    run::beginInvocation(manifest, commandLine);
+    run::Json rounds = run::Json::object();  // each table's are of one shard
+    run::Json states = run::Json::object();  // likewise
+    for (const ShardRun& shard : shards) {
+        const run::Json& from = shard.run.manifest;
+        for (const std::string& note : run::notesOf(from)) {
+            manifest["notes"].push_back(shard.path.string() + ": " + note);
+        }
+        manifest["scenes"].update(from.at("scenes"));
+        run::addPrograms(manifest, run::programsOf(from));
+        if (from.contains("rounds")) rounds.update(from.at("rounds"));
+        if (from.contains("machine_states")) states.update(from.at("machine_states"));
+        manifest["merged"].push_back(
+            {{"folder", shard.path.string()},
+             {"shard", shard.run.plan.shard ? shard.run.plan.shard->name() : "1/1"},
+             {"machine", run::machineName(from)},
+             {"invocations", from.at("invocations")}});
+    }
+    manifest["rounds"] = rounds;
+    manifest["machine_states"] = states;
+    return manifest;
+}
+
+std::vector<records::Record> allRecords(const std::vector<ShardRun>& shards) {
+    std::vector<records::Record> records;
+    for (const ShardRun& shard : shards) {
+        std::ranges::copy(shard.run.records, std::back_inserter(records));
+    }
+    return records;
+}
+
+UnitRows rowsByUnit(const std::vector<ShardRun>& shards) {
+    UnitRows rows;
+    for (const ShardRun& shard : shards) {
+        for (const records::Record& row : shard.run.records) {
+            rows[{row.caseId, row.process}].push_back(row);
+        }
+    }
+    return rows;
+}
+
+void copyImages(const run::RunDirectory& directory, const std::vector<ShardRun>& shards,
+                const run::Plan& plan) {
+    std::map<std::string, std::vector<records::ImageEntry>> imagesOf;
+    for (const ShardRun& shard : shards) {
+        for (records::ImageEntry& image : records::readImages(shard.path)) {
+            imagesOf[image.caseId].push_back(std::move(image));
+        }
+        for (const char* folder : {"images", "artifacts"}) {
+            copyTree(shard.path / folder, directory.path() / folder);
+        }
+    }
+    // The copy of a shard's list goes: the new one has the images of all, in the plan's order.
+    fs::remove(directory.path() / "images" / "index.csv");
+    std::vector<records::ImageEntry> images;
+    for (const config::Case& item : plan.cases) {
+        std::ranges::move(imagesOf[item.id], std::back_inserter(images));
+    }
+    records::ImageWriter(directory.path()).append(images);
+}
+
+/// The journals of the shards one after another; a torn last line ends.
+std::string mergedJournal(const std::vector<ShardRun>& shards) {
+    std::string text;
+    for (const ShardRun& shard : shards) {
+        const fs::path file = shard.path / "journal.jsonl";
+        if (fs::exists(file)) text += readFile(file) + '\n';
+    }
+    return text;
+}
+
+}  // namespace
+
+run::StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string& commandLine) {
+    GFXREPRO_ASSERT(!shards.empty());
+    requireOnePlan(shards);
+    requireDisjoint(shards);
+    run::StoredRun merged;
+    merged.plan = shards.front().run.plan;
+    merged.plan.shard.reset();
+    merged.manifest = mergedManifest(shards, commandLine);
+    UnitRows rows = rowsByUnit(shards);
+    for (const run::Unit& unit : run::unitsOf(merged.plan, allRecords(shards))) {
+        std::ranges::move(rows[{unit.item->id, unit.process}], std::back_inserter(merged.records));
+    }
+    return merged;
+}
+
+std::vector<std::string> missingUnits(const run::StoredRun& run) {
+    std::set<std::pair<std::string, int>> recorded;
+    for (const records::Record& row : run.records) recorded.emplace(row.caseId, row.process);
+    std::vector<std::string> missing;
+    for (const run::Unit& unit : run::unitsOf(run.plan, run.records)) {
+        if (recorded.contains({unit.item->id, unit.process})) continue;
+        missing.push_back(unit.item->title());
+        if (unit.item->measure.processes > 1) {
+            missing.back() += " process " + std::to_string(unit.process + 1);
+        }
+    }
+    return missing;
+}
+
+std::vector<std::string> missingShards(const std::vector<ShardRun>& shards) {
+    std::set<int> present;
+    int count = 0;
+    for (const ShardRun& shard : shards) {
+        if (!shard.run.plan.shard) continue;
+        present.insert(shard.run.plan.shard->index);
+        count = shard.run.plan.shard->count;
+    }
+    std::vector<std::string> missing;
+    for (int index = 1; index <= count; ++index) {
+        if (!present.contains(index)) missing.push_back(run::Shard{index, count}.name());
+    }
+    return missing;
+}
+
+void writeMerged(const run::RunDirectory& directory, const std::vector<ShardRun>& shards,
+                 const run::StoredRun& merged) {
+    // A merge that is made again begins anew; without a plan the folder is no run meanwhile.
+    for (const fs::path& old : {directory.planFile(), directory.recordsFile()}) fs::remove(old);
+    fs::path records = directory.recordsFile();
+    records += ".tmp";
+    fs::remove(records);
+    records::RecordWriter(records).append(merged.records);
+    fs::rename(records, directory.recordsFile());
+    copyImages(directory, shards, merged.plan);
+    writeFileAtomic(directory.path() / "journal.jsonl", mergedJournal(shards));
+    run::Json manifest = merged.manifest;
+    run::sealRecords(manifest, directory.path());
+    writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
+    merged.plan.writeFile(directory.planFile());
 }
 
 }  // namespace gfxrepro::cluster

@@ -1,4 +1,5 @@
-// A plan handed to other machines: what each of them is told, as text.
+// A plan handed to other machines: what each of them is told, as text, and
+// the copy of the program that it measures with.
 #pragma once
 
 #include <filesystem>
@@ -65,5 +66,13 @@ bool isUnderWay(const std::map<std::string, std::string>& queue, const std::stri
 std::string stateOf(const ShardProgress& progress,
                     const std::optional<std::map<std::string, std::string>>& queue,
                     const std::string& task);
+
+/// A folder with the running program, the shaders and configs that it finds, and the libraries of a
+/// bundle: what is built later changes nothing of it. Is made where it is not there. Throws Error
+/// where it cannot be made or run there, and where it is not the build `buildId`.
+void keepProgram(const std::filesystem::path& folder, const std::string& buildId);
+
+/// The program in such a folder.
+std::filesystem::path keptProgram(const std::filesystem::path& folder);
 
 }  // namespace gfxrepro::cluster

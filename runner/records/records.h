@@ -1,4 +1,5 @@
-// Measurements in long form: one row a number, append-only, readable by any data frame library.
+// Measurements in long form, and how cases ended: one row a number, append-only, readable by any
+// data frame library.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/error.h"
 #include "engine/core/output_files.h"
 
 namespace gfxrepro::records {
@@ -79,5 +81,15 @@ class RecordWriter {
 /// out. Throws Error with file and line for any other unit without all of its rows, for a malformed
 /// row, and for a value (case, process, frame, repeat, pass, metric) that is there twice.
 std::vector<Record> readRecords(const std::filesystem::path& path);
+
+/// How a case ended over all its processes.
+struct CaseEnd {
+    enum class Outcome { Measured, Skipped, Failed };
+    std::string table;  // "zju2005/2.1"
+    std::string title;  // "zju2005/2.1 scene=models/duck"
+    Outcome outcome = Outcome::Measured;
+    std::string text = {};   // of the others: "crash: SIGSEGV", "not run"
+    SourceLocation where{};  // its config
+};
 
 }  // namespace gfxrepro::records

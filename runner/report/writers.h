@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runner/claims/claims.h"
-#include "runner/records/case_end.h"
+#include "runner/records/records.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::report {

@@ -15,10 +15,9 @@
 #include "runner/config/program.h"
 #include "runner/report/markup.h"
 #include "runner/results/import_run.h"
-#include "runner/results/made_from.h"
 #include "runner/results/results.h"
 #include "runner/run/manifest.h"
-#include "runner/run/run_files.h"
+#include "runner/run/run_directory.h"
 
 namespace gfxrepro::results {
 

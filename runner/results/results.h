@@ -2,10 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "runner/claims/claims.h"
 #include "runner/report/gallery.h"
+#include "runner/report/report.h"
+#include "runner/run/manifest.h"
 #include "runner/run/run.h"
 #include "runner/tables/printed_parameters.h"
 #include "runner/tables/table.h"
@@ -36,8 +39,35 @@ struct ResultFiles {
 };
 /// Makes cases.csv (as in tidy.h), tables/ and plots/, claims.csv with junit.xml, report.html again
 /// from the records. With `out` nothing is written into the run's folder, and nothing over the
-/// results of another run (made_from.h).
+/// results of another run.
 Results writeResults(const std::filesystem::path& runDir, const run::StoredRun& run,
                      const ResultFiles& which);
+
+/// The line that made-from.txt has of a run: its name, when it started, the hash of its plan.
+std::string madeFromLine(const std::filesystem::path& runDir, const run::Json& manifest);
+
+/// Throws Error where `folder` was made from other runs than `lines`, is a run itself, or has
+/// results and does not say of what.
+void requireMadeFrom(const std::filesystem::path& folder, const std::string& lines);
+/// Writes made-from.txt.
+void noteMadeFrom(const std::filesystem::path& folder, const std::string& lines);
+/// Both, for what is made of one run; the run's own folder needs neither.
+void takeFolder(const std::filesystem::path& folder, const std::filesystem::path& runDir,
+                const run::Json& manifest);
+
+/// Whether it is the configs of a document: of tables, figures or sections.
+bool isPaperFolder(const std::filesystem::path& folder);
+
+/// What the shipped configs say of documents, for every report.
+report::ReportOptions reportOptions(bool embeds = false, report::PicturesDone progress = {});
+
+/// With the plan's cases: the command that runs each again, and what journal.jsonl says of it. Its
+/// curves are not drawn.
+report::ReportRun reportRun(const std::filesystem::path& runDir, const run::StoredRun& run,
+                            const Results& results);
+
+/// A folder of which only manifest.json and claims.csv are at hand, as results/reference keeps
+/// them: its verdicts stand beside those of whole runs. Throws Error when these are not there.
+report::ReportRun keptRun(const std::filesystem::path& folder);
 
 }  // namespace gfxrepro::results

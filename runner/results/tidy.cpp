@@ -9,7 +9,6 @@
 #include "engine/core/atomic_file.h"
 #include "engine/core/files.h"
 #include "runner/records/csv.h"
-#include "runner/results/made_from.h"
 #include "runner/results/results.h"
 #include "runner/run/manifest.h"
 

@@ -2,18 +2,30 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
 #include "runner/run/commit.h"  // made by the build
-#include "runner/run/cpu_name.h"
 #include "runner/run/run_directory.h"
 
 namespace gfxrepro::run {
+
+std::string cpuName(std::istream& cpuinfo) {
+    std::string designer, part;
+    for (std::string line; std::getline(cpuinfo, line);) {
+        const std::size_t colon = line.find(':');
+        if (colon == std::string::npos) continue;
+        const std::string_view key = trimmed(std::string_view(line).substr(0, colon));
+        const std::string value(trimmed(std::string_view(line).substr(colon + 1)));
+        if (key == "model name") return value;
+        if (key == "CPU implementer") designer = value;
+        if (key == "CPU part") part = value;
+    }
+    return designer.empty() ? "unknown" : "ARM " + designer + ' ' + part;
+}
 
 namespace {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <istream>
 #include <set>
 #include <string>
 #include <vector>
@@ -60,5 +61,9 @@ std::string programBuild();
 
 /// Whether a manifest is of a merge that nothing was measured into since.
 bool isOnlyMerged(const Json& manifest);
+
+/// From /proc/cpuinfo: the model's name or, on ARM, which has none there, the numbers of its
+/// designer and of the part ("ARM 0x41 0xd0c"). "unknown" where neither is there.
+std::string cpuName(std::istream& cpuinfo);
 
 }  // namespace gfxrepro::run

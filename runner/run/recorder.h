@@ -7,11 +7,27 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/image/exr_io.h"
 #include "runner/run/plan.h"
 #include "runner/run/protocol.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::run {
+
+/// The beginning of the names of a case's files below images/ and artifacts/: what varies, by which
+/// people find them, then the id, which tells them apart:
+/// "sweep-mine/scene=torus,light_ratio=0.25-0123456789ab-". A value's folder is left out, a long
+/// text cut, and what a shell or an address would take for something else is "_".
+std::string fileStem(const Case& item);
+
+/// Text attributes: case (its hash), table, title, technique, method where there is one, params
+/// (JSON with scene and output size), frame, command (the one that measured) and commit. Of a
+/// camera: camera (JSON: eye, forward, up, vertical_fov_deg, near_m, far_m) and the matrices that
+/// OpenEXR names, worldToCamera and worldToNDC, as it defines them: left-handed, and from (0, 0) in
+/// the upper left to (1, 1) in the lower right corner. Files of twins are those of the measured
+/// case.
+void describeImage(image::ExrImage& exr, const Case& item, int frame, const std::string& command,
+                   const technique::ImageOptions& options);
 
 /// Metrics and images go into `result`; files are written atomically. Throws Error for a
 /// metric, unit or pass that `outputs` does not declare, for a second value of a metric, pass,

@@ -12,7 +12,7 @@
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
-#include "runner/run/case_variation.h"
+#include "runner/run/ledger.h"
 #include "runner/run/plan.h"
 
 namespace gfxrepro::run {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "runner/records/case_end.h"
 #include "runner/records/records.h"
 #include "runner/run/plan.h"
+#include "runner/run/protocol.h"
 #include "runner/run/rounds.h"
 #include "runner/run/run_directory.h"
 
@@ -56,5 +56,13 @@ Completeness completeness(const StoredRun& run);
 
 /// How every case of the run's plan, or of its shard, ended: by its worst process.
 std::vector<records::CaseEnd> caseResults(const StoredRun& run);
+
+/// The cases that were under way at two ends of the runner, or more, that it did not say (no `end`,
+/// no `interrupted`), with a message that says so; by id. What counts is the work, not its name:
+/// a case in whichever of its processes, and a twin (workKey) in place of another. A unit that ends
+/// after all clears what was counted of it; an interruption and a stop rule count nothing and clear
+/// nothing.
+std::map<std::string, std::string> casesNotSurvived(const Plan& plan,
+                                                    const std::vector<Json>& journal);
 
 }  // namespace gfxrepro::run

@@ -1,10 +1,14 @@
-// The scenes that a worker holds, for the case at hand and for later ones.
+// The scenes and programs that a worker holds, for the case at hand and for later ones.
 #pragma once
 
 #include <list>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "engine/scene/catalog.h"
+#include "runner/run/plan.h"
+#include "runner/run/protocol.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::run {
@@ -40,6 +44,20 @@ class SceneCache : public technique::SceneProvider {
     const scene::Catalog& catalog_;
     std::size_t budgetBytes_;
     std::list<Entry> entries_;  // the most recently used one first
+};
+
+class ProgramCache {
+  public:
+    /// The case's program with its version, and the files that it reads. Throws UnsupportedError
+    /// where the program is not on this machine, and Error where it, or a file, is not what it was
+    /// when the run was planned.
+    std::vector<ProgramUse> require(const Case& item, const Node& params);
+
+  private:
+    std::string versionOf(const config::Program& program, const std::string& sha256);
+
+    config::FileDigests digests_;
+    std::map<std::string, std::string> versions_;  // by the program's hash and what asks it
 };
 
 }  // namespace gfxrepro::run

@@ -4,13 +4,13 @@
 #include <signal.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <iterator>
+#include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -378,6 +378,39 @@ gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,
 RunOutcome runUnits(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
                     const SchedulerOptions& options, PhaseClock& phases, Observer& observer) {
     return Scheduler(units, rounds, directory, options, phases, observer).run();
+}
+
+std::vector<records::Record> recordsOf(const Unit& unit, const CaseResult& result) {
+    const Case& item = *unit.item;
+    records::Record row;
+    row.caseId = item.id;
+    row.table = item.experiment;
+    row.technique = item.technique;
+    row.method = item.method();
+    row.scene = item.recordedScene();
+    row.process = unit.process;
+    row.lane = item.measure.lane == config::Measure::Lane::Timing ? "timing" : "quality";
+    row.status = result.status;
+    row.message = result.message;
+    if (result.status != records::Status::Ok && result.status != records::Status::Flaky) {
+        row.value = std::numeric_limits<double>::quiet_NaN();
+        return {row};
+    }
+    std::vector<records::Record> rows;
+    for (const Sample& sample : result.samples) {
+        row.frame = sample.frame;
+        row.repeat = sample.repeat;
+        row.pass = sample.pass;
+        row.metric = sample.metric;
+        row.unit = sample.unit;
+        row.value = sample.value;
+        rows.push_back(row);
+        if (sample.isVoid) {
+            rows.back().status = records::Status::Ambiguous;
+            rows.back().message = result.voidReason;
+        }
+    }
+    return rows;
 }
 
 }  // namespace gfxrepro::run

@@ -6,7 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
-#include "runner/run/file_stem.h"
+#include "runner/run/recorder.h"
 
 namespace gfxrepro::run {
 

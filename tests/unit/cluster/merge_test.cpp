@@ -1,5 +1,5 @@
 // Merges of runs made by hand: complete or not, of one plan and one cut or refused.
-#include "runner/cluster/merge.h"
+#include "runner/cluster/shards.h"
 
 #include <gmock/gmock.h>
 

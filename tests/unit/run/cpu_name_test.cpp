@@ -1,4 +1,4 @@
-#include "runner/run/cpu_name.h"
+#include "runner/run/manifest.h"
 
 #include <gtest/gtest.h>
 

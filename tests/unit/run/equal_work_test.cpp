@@ -1,4 +1,4 @@
-#include "runner/run/equal_work.h"
+#include "runner/run/measure.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-#include "runner/run/image_attributes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runner/run/not_survived.h"
+#include "runner/run/run.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

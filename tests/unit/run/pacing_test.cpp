@@ -1,4 +1,4 @@
-#include "runner/run/pacing.h"
+#include "runner/run/measure.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "runner/cluster/merge.h"
 #include "runner/cluster/predictions.h"
+#include "runner/cluster/shards.h"
 
 namespace gfxrepro::test {
 

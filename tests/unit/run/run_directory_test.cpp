@@ -11,7 +11,6 @@
 
 #include "engine/core/files.h"
 #include "engine/core/text.h"
-#include "runner/run/run_files.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::test {

@@ -8,7 +8,7 @@
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "runner/cluster/shards.h"
-#include "runner/run/file_stem.h"
+#include "runner/run/recorder.h"
 #include "runner/run/rounds.h"
 #include "tests/support/support.h"
 #include "tests/unit/run/plan_fixture.h"
