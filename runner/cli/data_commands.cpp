@@ -7,11 +7,11 @@
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/parse.h"
-#include "runner/cli/results.h"
+#include "runner/cli/reading_commands.h"
+#include "runner/conclusion/artifact.h"
+#include "runner/conclusion/import_run.h"
+#include "runner/conclusion/tidy.h"
 #include "runner/regression/history_page.h"
-#include "runner/results/artifact.h"
-#include "runner/results/import_run.h"
-#include "runner/results/tidy.h"
 
 namespace gfxrepro::cli {
 
@@ -87,9 +87,10 @@ int exportRun(const Context& context, const ExportOptions& options) {
                                    : options.out;
     const run::StoredRun run = run::readRun(options.runDir);
     if (options.isTidy) {
-        results::writeTidy(options.runDir, run, target);
+        conclusion::writeTidy(options.runDir, run, target);
     } else {
-        results::writeArtifact(options.runDir, run, openCatalog(context, options.assets), target);
+        conclusion::writeArtifact(options.runDir, run, openCatalog(context, options.assets),
+                                  target);
     }
     sayNotes(run.manifest);
     say("{}\n", target);
@@ -111,7 +112,7 @@ std::pair<std::string, std::string> metricFrom(const std::string& text) {
 }  // namespace
 
 int importRun(const Context& context, const ImportOptions& options) {
-    results::ImportRequest request;
+    conclusion::ImportRequest request;
     request.files = {options.file, options.cases, {}};
     for (const std::string& metric : options.metrics) {
         request.files.metrics.push_back(metricFrom(metric));
@@ -121,7 +122,7 @@ int importRun(const Context& context, const ImportOptions& options) {
     if (!options.machine.empty()) {
         request.machine = options.machine;
     } else if (!options.cases.empty()) {  // perhaps exported: then it is known what measured it
-        const auto known = results::exportedRun(fs::path(options.cases).parent_path());
+        const auto known = conclusion::exportedRun(fs::path(options.cases).parent_path());
         if (known.contains("machine")) request.machine = known.at("machine");
         request.isOfGpu |= known.contains("device_class") && known.at("device_class") == "gpu";
     }
@@ -132,12 +133,12 @@ int importRun(const Context& context, const ImportOptions& options) {
             requestOf(selection, findPaperConfigs(options.configs)), options.profile);
     }
     const run::StoredRun run =
-        results::importRun(request, openCatalog(context, options.assets), context.techniques);
+        conclusion::importRun(request, openCatalog(context, options.assets), context.techniques);
     const fs::path dir =
         options.out.empty() ? run::defaultRunPath(runSlug(run.plan)) : fs::path(options.out);
     {
         const run::RunDirectory directory = run::RunDirectory::create(dir);
-        results::writeImported(directory, run);
+        conclusion::writeImported(directory, run);
     }
     say("imported {} numbers of {} case{} into {}\n", run.records.size(), run.plan.cases.size(),
         run.plan.cases.size() == 1 ? "" : "s", dir.string());

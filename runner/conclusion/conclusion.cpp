@@ -1,4 +1,4 @@
-#include "runner/results/results.h"
+#include "runner/conclusion/conclusion.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -13,9 +13,9 @@
 #include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
+#include "runner/conclusion/tidy.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
-#include "runner/results/tidy.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/machine_state.h"
 #include "runner/run/manifest.h"
@@ -25,7 +25,7 @@
 #include "runner/tables/fit.h"
 #include "runner/tables/moved_clocks.h"
 
-namespace gfxrepro::results {
+namespace gfxrepro::conclusion {
 
 namespace fs = std::filesystem;
 
@@ -343,4 +343,4 @@ Results writeResults(const fs::path& runDir, const run::StoredRun& run, const Re
     return results;
 }
 
-}  // namespace gfxrepro::results
+}  // namespace gfxrepro::conclusion

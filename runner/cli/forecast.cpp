@@ -1,4 +1,4 @@
-#include "runner/cli/history.h"
+#include "runner/cli/forecast.h"
 
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
 // Tables, claims and report, made again from a run's records; no GPU needed.
-#include "runner/cli/results.h"
+#include "runner/cli/reading_commands.h"
 
 #include <fmt/core.h>
 
@@ -15,9 +15,9 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
+#include "runner/conclusion/conclusion.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
-#include "runner/results/results.h"
 #include "runner/run/run.h"
 #include "runner/tables/printed_parameters.h"
 #include "runner/tables/table.h"
@@ -155,7 +155,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
         throw Error(fmt::format("{}: {} is not among what {} measured", experiment.file.string(),
                                 experiment.id, runDir.string()));
     }
-    results::Results judged = results::resultsOf(run, experiments);
+    conclusion::Results judged = conclusion::resultsOf(run, experiments);
     const std::string mark = "judged after the run, by a config that it did not know";
     std::vector<std::string> notes = run::notesOf(run.manifest);
     notes.insert(notes.begin(), mark);
@@ -165,7 +165,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     for (claims::ClaimResult& claim : judged.claims) {
         claim.reason = mark + (claim.reason.empty() ? "" : "; " + claim.reason);
     }
-    results::takeFolder(out, runDir, run.manifest);
+    conclusion::takeFolder(out, runDir, run.manifest);
     const fs::path folder = out / "judged-afterwards";
     fs::remove_all(folder);
     report::writeTables(folder, judged.tables, notes);
@@ -250,14 +250,14 @@ void sayNotes(const run::Json& manifest) {
 
 int conclude(const fs::path& runDir) {
     const run::StoredRun run = run::readRun(runDir);
-    const results::Results conclusion = results::writeResults(runDir, run, {});
+    const conclusion::Results results = conclusion::writeResults(runDir, run, {});
     sayNotes(run.manifest);
-    const std::size_t failing = sayFailing(conclusion.claims);
-    sayVerdicts(conclusion.claims);
-    sayWhatIsNotKnown(conclusion.claims);
-    annotate(conclusion.claims);
-    sayPrintedCells(conclusion.printedCells);
-    if (!std::ranges::all_of(conclusion.tables, isEmpty)) {
+    const std::size_t failing = sayFailing(results.claims);
+    sayVerdicts(results.claims);
+    sayWhatIsNotKnown(results.claims);
+    annotate(results.claims);
+    sayPrintedCells(results.printedCells);
+    if (!std::ranges::all_of(results.tables, isEmpty)) {
         say("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
     }
     sayReport(runDir / "report.html");
@@ -266,18 +266,18 @@ int conclude(const fs::path& runDir) {
 
 int table(const std::string& runDir, const std::string& out) {
     const run::StoredRun run = run::readRun(runDir);
-    const results::Results conclusion = results::writeResults(
+    const conclusion::Results results = conclusion::writeResults(
         runDir, run, {.tables = true, .claims = false, .report = false, .out = out});
     const std::string folder = (fs::path(out) / "tables").string();
-    for (std::size_t i = 0; i < conclusion.tables.size(); ++i) {
+    for (std::size_t i = 0; i < results.tables.size(); ++i) {
         const config::Experiment& experiment = run.plan.experiments[i];
-        if (isEmpty(conclusion.tables[i])) {
+        if (isEmpty(results.tables[i])) {
             say("{}: no table, for no case has a result\n", experiment.id);
         } else {
             say("{}: {}/{}.csv .md .tex\n", experiment.id, folder, experiment.slug());
         }
     }
-    sayPrintedCells(conclusion.printedCells);
+    sayPrintedCells(results.printedCells);
     sayNotes(run.manifest);
     return completenessCode(run);
 }
@@ -286,10 +286,10 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs,
            const std::string& out) {
     if (!configs.empty()) return judgeAfterwards(runDir, configs, out.empty() ? runDir : out);
     const run::StoredRun run = run::readRun(runDir);
-    const results::Results conclusion = results::writeResults(
+    const conclusion::Results results = conclusion::writeResults(
         runDir, run, {.tables = false, .claims = true, .report = false, .out = out});
-    const int verdict = sayClaims(conclusion.claims);
-    sayPrintedCells(conclusion.printedCells);
+    const int verdict = sayClaims(results.claims);
+    sayPrintedCells(results.printedCells);
     sayNotes(run.manifest);
     const int code = completenessCode(run);
     return code == kExitOk ? verdict : code;
@@ -298,7 +298,7 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs,
 int report(const std::vector<std::string>& runDirs, const std::string& out, bool embeds) {
     if (runDirs.size() == 1 && out.empty()) {
         const run::StoredRun run = run::readRun(runDirs.front());
-        results::writeResults(
+        conclusion::writeResults(
             runDirs.front(), run,
             {.tables = false, .claims = false, .embeds = embeds, .progress = sayPictures});
         sayNotes(run.manifest);
@@ -309,11 +309,11 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
     int code = kExitOk;
     for (const std::string& dir : runDirs) {
         if (!fs::exists(fs::path(dir) / "plan.json")) {  // kept results
-            runs.push_back(results::keptRun(dir));
+            runs.push_back(conclusion::keptRun(dir));
             continue;
         }
         const run::StoredRun run = run::readRun(dir);
-        runs.push_back(results::reportRun(dir, run, results::resultsOf(run)));
+        runs.push_back(conclusion::reportRun(dir, run, conclusion::resultsOf(run)));
         if (completenessCode(run) != kExitOk) code = kExitIncomplete;
     }
     noteOtherMachines(runs);
@@ -323,19 +323,19 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
     const fs::path made = file.parent_path() / (file.stem().string() + "-files");
     std::set<std::string> lines;
     for (const report::ReportRun& run : runs) {
-        lines.insert(results::madeFromLine(run.folder, run.manifest));
+        lines.insert(conclusion::madeFromLine(run.folder, run.manifest));
     }
     const std::string from = joined(std::vector<std::string>(lines.begin(), lines.end()), "");
     if (!out.empty()) {
-        if (!embeds) results::requireMadeFrom(made, from);
+        if (!embeds) conclusion::requireMadeFrom(made, from);
         requireReport(file);
     }
     for (std::size_t i = 0; i < runs.size(); ++i) {
         const fs::path drawn = embeds ? fs::path() : report::madeFolder(runs[i].folder, i, file);
         runs[i].curves = report::drawCurves(drawn, runs[i].tables, runs[i].experiments);
     }
-    report::writeReport(file, runs, results::reportOptions(embeds, sayPictures));
-    if (!embeds && fs::exists(made)) results::noteMadeFrom(made, from);
+    report::writeReport(file, runs, conclusion::reportOptions(embeds, sayPictures));
+    if (!embeds && fs::exists(made)) conclusion::noteMadeFrom(made, from);
     (embeds ? saySentReport : sayReport)(file);
     return code;
 }

@@ -5,7 +5,7 @@
 
 #include "runner/run/run.h"
 
-namespace gfxrepro::results {
+namespace gfxrepro::conclusion {
 
 /// Writes the folder `target`, which must not exist: plan, manifest, records, tables, claims,
 /// report (made again there: the run's folder is left as it is) and log, environment.txt, ASSETS.md
@@ -15,4 +15,4 @@ namespace gfxrepro::results {
 void writeArtifact(const std::filesystem::path& runDir, const run::StoredRun& run,
                    const scene::Catalog& catalog, const std::filesystem::path& target);
 
-}  // namespace gfxrepro::results
+}  // namespace gfxrepro::conclusion

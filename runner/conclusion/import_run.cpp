@@ -1,4 +1,4 @@
-#include "runner/results/import_run.h"
+#include "runner/conclusion/import_run.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,13 +12,13 @@
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
+#include "runner/conclusion/tidy.h"
 #include "runner/config/experiment.h"
-#include "runner/results/tidy.h"
 #include "runner/run/ledger.h"
 #include "runner/run/manifest.h"
 #include "runner/run/plan_json.h"
 
-namespace gfxrepro::results {
+namespace gfxrepro::conclusion {
 
 namespace fs = std::filesystem;
 using config::Experiment;
@@ -357,4 +357,4 @@ void requireNotImported(const run::Json& manifest, const std::string& runDir,
     throw Error(fmt::format("{}: was imported; there is nothing to {}", runDir, purpose));
 }
 
-}  // namespace gfxrepro::results
+}  // namespace gfxrepro::conclusion

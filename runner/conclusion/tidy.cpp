@@ -1,4 +1,4 @@
-#include "runner/results/tidy.h"
+#include "runner/conclusion/tidy.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -8,11 +8,11 @@
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/files.h"
+#include "runner/conclusion/conclusion.h"
 #include "runner/records/csv.h"
-#include "runner/results/results.h"
 #include "runner/run/manifest.h"
 
-namespace gfxrepro::results {
+namespace gfxrepro::conclusion {
 
 namespace fs = std::filesystem;
 
@@ -169,4 +169,4 @@ std::map<std::string, std::string> exportedRun(const fs::path& folder) {
     return entries;
 }
 
-}  // namespace gfxrepro::results
+}  // namespace gfxrepro::conclusion

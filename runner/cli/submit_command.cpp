@@ -18,7 +18,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/cli/history.h"
+#include "runner/cli/forecast.h"
 #include "runner/cluster/shards.h"
 #include "runner/cluster/submission.h"
 #include "runner/run/child_process.h"

@@ -19,11 +19,11 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/cli/history.h"
-#include "runner/cli/results.h"
+#include "runner/cli/forecast.h"
+#include "runner/cli/reading_commands.h"
 #include "runner/cluster/predictions.h"
 #include "runner/cluster/shards.h"
-#include "runner/results/import_run.h"
+#include "runner/conclusion/import_run.h"
 #include "runner/run/machine_state.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run.h"
@@ -320,7 +320,7 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
                         const run::Request& request, run::PhaseClock& phases) {
     run::RunDirectory directory = run::RunDirectory::open(options.resume);
     run::StoredRun stored = run::readRun(options.resume);
-    results::requireNotImported(stored.manifest, options.resume, "go on with");
+    conclusion::requireNotImported(stored.manifest, options.resume, "go on with");
     requireSameRequest(options, request, stored.plan);
     run::SchedulerOptions scheduler{
         deviceFor(context, stored.plan.request.device, stored.plan.experiments),

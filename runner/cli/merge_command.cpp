@@ -6,7 +6,7 @@
 
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
-#include "runner/cli/results.h"
+#include "runner/cli/reading_commands.h"
 #include "runner/cluster/shards.h"
 #include "runner/run/manifest.h"
 

@@ -1,4 +1,4 @@
-#include "runner/results/import_csv.h"
+#include "runner/conclusion/import_csv.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "engine/core/text.h"
 #include "runner/records/csv.h"
 
-namespace gfxrepro::results {
+namespace gfxrepro::conclusion {
 
 namespace fs = std::filesystem;
 using records::Record;
@@ -385,4 +385,4 @@ ImportedNumbers readImport(const ImportFiles& files) {
     return numbers;
 }
 
-}  // namespace gfxrepro::results
+}  // namespace gfxrepro::conclusion

@@ -1,4 +1,4 @@
-#include "runner/results/artifact.h"
+#include "runner/conclusion/artifact.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,14 +12,14 @@
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
 #include "runner/cluster/predictions.h"
+#include "runner/conclusion/conclusion.h"
+#include "runner/conclusion/import_run.h"
 #include "runner/config/program.h"
 #include "runner/report/markup.h"
-#include "runner/results/import_run.h"
-#include "runner/results/results.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run_directory.h"
 
-namespace gfxrepro::results {
+namespace gfxrepro::conclusion {
 
 namespace fs = std::filesystem;
 
@@ -266,4 +266,4 @@ void writeArtifact(const fs::path& runDir, const run::StoredRun& run, const scen
     writeFileAtomic(target / "SHA256SUMS", checksums(target));
 }
 
-}  // namespace gfxrepro::results
+}  // namespace gfxrepro::conclusion

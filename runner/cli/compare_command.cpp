@@ -13,11 +13,11 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
+#include "runner/conclusion/conclusion.h"
 #include "runner/regression/comparison.h"
 #include "runner/regression/history.h"
 #include "runner/regression/pictures.h"
 #include "runner/regression/summary.h"
-#include "runner/results/results.h"
 #include "runner/run/child_process.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run.h"
@@ -66,7 +66,7 @@ Measured readMeasured(const fs::path& runDir) {
                       run::notesOf(run.manifest),
                       regression::picturesOf(runDir, run.records, params),
                       run.plan.buildId,
-                      results::madeFromLine(runDir, run.manifest)};
+                      conclusion::madeFromLine(runDir, run.manifest)};
     for (const run::ProgramUse& use : run::programsOf(run.manifest)) {
         measured.programs[use.file] =
             use.sha256.substr(0, 12) + (use.version.empty() ? "" : " (" + use.version + ")");
@@ -279,8 +279,8 @@ int compare(const CompareOptions& options) {
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
-        results::requireMadeFrom(folder, older.madeFrom + newer.madeFrom);
-        results::noteMadeFrom(folder, older.madeFrom + newer.madeFrom);
+        conclusion::requireMadeFrom(folder, older.madeFrom + newer.madeFrom);
+        conclusion::noteMadeFrom(folder, older.madeFrom + newer.madeFrom);
         comparison.differences = compareRuns(older, newer, folder, comparison.notes);
         for (std::size_t i = 0; i < 2; ++i) {
             for (const std::string& note : (i == 0 ? older : newer).notes) {

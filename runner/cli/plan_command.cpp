@@ -3,7 +3,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/cli/history.h"
+#include "runner/cli/forecast.h"
 #include "runner/run/twins.h"
 
 namespace gfxrepro::cli {
