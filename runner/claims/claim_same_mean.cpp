@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "engine/metrics/mean_test.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 
 namespace gfxrepro::claims {
 

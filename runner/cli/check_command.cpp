@@ -14,7 +14,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 #include "runner/config/schema.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/ledger.h"

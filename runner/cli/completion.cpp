@@ -10,7 +10,7 @@
 #include "engine/core/text.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 
 namespace gfxrepro::cli {
 

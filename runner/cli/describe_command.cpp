@@ -8,7 +8,7 @@
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 #include "runner/config/schema.h"
 
 namespace gfxrepro::cli {

@@ -14,7 +14,7 @@
 #include "runner/cluster/predictions.h"
 #include "runner/conclusion/conclusion.h"
 #include "runner/conclusion/import_run.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 #include "runner/report/markup.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run_directory.h"

@@ -11,7 +11,7 @@
 #include "engine/core/params.h"
 #include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 

@@ -7,8 +7,8 @@
 #include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
+#include "runner/config/external_program.h"
 #include "runner/config/printed.h"
-#include "runner/config/program.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 

@@ -14,7 +14,7 @@
 
 #include "engine/scene/catalog.h"
 #include "runner/config/experiment.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::run {

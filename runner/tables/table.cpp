@@ -4,7 +4,7 @@
 #include <set>
 
 #include "engine/core/text.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 #include "runner/records/csv.h"
 #include "runner/tables/cell_builder.h"
 #include "runner/tables/default_layout.h"

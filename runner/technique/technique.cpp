@@ -2,7 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 
 namespace gfxrepro::technique {
 

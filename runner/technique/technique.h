@@ -137,7 +137,7 @@ struct TechniqueInfo {
     /// All that record() may give and render() may scope: nothing else can be recorded.
     config::Outputs (*outputs)();
     /// Of a technique that is made of a program, as `program` of its config says
-    /// (config/program.h): what that declares comes to parameters and outputs.
+    /// (config/external_program.h): what that declares comes to parameters and outputs.
     std::unique_ptr<Technique> (*createFrom)(const Node& program, Params& params) = nullptr;
 };
 

@@ -14,7 +14,7 @@
 #include "engine/core/text.h"
 #include "engine/metrics/mean_test.h"
 #include "engine/scene/load.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 #include "techniques/external/process.h"
 #include "techniques/external/results.h"
 

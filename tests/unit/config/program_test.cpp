@@ -1,4 +1,4 @@
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // What a program is run with: the values of its parameters, and the files that decide what it does.
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 
 #include <fmt/format.h>
 
