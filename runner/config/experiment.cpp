@@ -19,7 +19,6 @@ namespace gfxrepro::config {
 
 namespace {
 
-using Names = std::vector<std::string>;
 using Kind = Experiment::Kind;
 
 struct Identity {
@@ -260,7 +259,7 @@ void requireColumns(const Node& fit, const TableNames& names) {
         throwNotAllowed(fit, "fit", "a map {column: printed cell}");
     }
     for (const auto& [column, cell] : fit.entries()) {
-        const bool isKnown = std::ranges::find(names.columns, column) != names.columns.end();
+        const bool isKnown = contains(names.columns, column);
         if (isKnown || !names.hasAllColumns) continue;
         throw Error(fit.keyLocation(column),
                     "fit: no column '" + column + "'" + suggestion(column, names.columns));

@@ -17,7 +17,6 @@ namespace gfxrepro::config {
 
 namespace {
 
-using Names = std::vector<std::string>;
 using ParamType = ProgramParam::Type;
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -63,12 +62,12 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
     const Node& given = *params.find(name);
     const std::string what = "program: parameter '" + name + "'";
     requireSnakeCase(params, name, "parameter");
-    if (std::ranges::find(reservedNames(), name) != reservedNames().end()) {
+    if (contains(reservedNames(), name)) {
         throw Error(params.keyLocation(name),
                     what + ": every program has that placeholder; give it another name");
     }
     static const Names kOfCases = {"output", "scene_sample", "stands_for"};
-    if (std::ranges::find(kOfCases, name) != kOfCases.end()) {
+    if (contains(kOfCases, name)) {
         throw Error(params.keyLocation(name),
                     what + ": plans and tables have that of every case; give it another name");
     }
@@ -105,12 +104,11 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
         throwNotAllowed(*fallback, what + ": default",
                         "a whole number of 32 bits, or one with a point, as 5000000000.0");
     }
-    const bool isLegal =
-        isNumber                           ? *value >= param.min && *value <= param.max
-        : param.type == ParamType::Boolean ? fallback->tryBool().has_value()
-        : param.type == ParamType::Choice
-            ? std::ranges::find(param.choices, fallback->text()) != param.choices.end()
-            : true;
+    const bool isLegal = isNumber ? *value >= param.min && *value <= param.max
+                         : param.type == ParamType::Boolean ? fallback->tryBool().has_value()
+                         : param.type == ParamType::Choice
+                             ? contains(param.choices, fallback->text())
+                             : true;
     if (!isLegal) throwNotAllowed(*fallback, what + ": default", "one of the values it may have");
     return param;
 }
@@ -169,7 +167,7 @@ std::string templateOf(const Node& node, std::string_view what, const Names& kno
     forEachPart(
         node.text(), [](std::string_view) {},
         [&](std::string_view name) {
-            if (std::ranges::find(known, name) != known.end()) return;
+            if (contains(known, name)) return;
             throw Error(node.location(),
                         fmt::format("{}: '{{{}}}' stands for nothing{}; braces as such are "
                                     "{{{{ and }}}}",

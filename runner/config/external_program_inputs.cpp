@@ -22,7 +22,7 @@ void readChoice(const ProgramParam& param, Params& values) {
     const std::string allowed = joined(param.choices, " | ");
     const std::string doc = param.doc.empty() ? allowed : param.doc + " (" + allowed + ")";
     const std::string value = values.getText(param.name, param.fallback.text(), {doc, param.unit});
-    if (std::ranges::find(param.choices, value) != param.choices.end()) return;
+    if (contains(param.choices, value)) return;
     throw Error(values.locationOf(param.name),
                 fmt::format("{} is '{}'; allowed: {}", param.name, value, allowed));
 }

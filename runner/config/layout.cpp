@@ -11,8 +11,6 @@ namespace gfxrepro::config {
 
 namespace {
 
-using Names = std::vector<std::string>;
-
 /// Case axes, and `frame`: the frames of a path.
 Names referableAxes(const Vocabulary& vocabulary) {
     Names names = vocabulary.axisNames();
@@ -118,9 +116,7 @@ class AxisReader {
     }
 
   private:
-    bool isUsed(const std::string& name) const {
-        return std::find(used_.begin(), used_.end(), name) != used_.end();
-    }
+    bool isUsed(const std::string& name) const { return contains(used_, name); }
 
     LayoutAxis named(const Node& node) {
         const std::string& name = lineOf(node, "axis");
@@ -133,7 +129,7 @@ class AxisReader {
             if (axis.name == name) return axis;
             known.push_back(axis.name);
         }
-        if (std::find(known.begin(), known.end(), name) == known.end()) {
+        if (!contains(known, name)) {
             throw Error(node.location(),
                         "layout: unknown axis '" + name + "'" + suggestionOrAll(name, known));
         }
@@ -248,8 +244,7 @@ RowFilter readRowFilter(const Node& at, const std::string& what, const TableName
 }
 
 void requireStatistic(const Node& name) {
-    if (std::find(kStatistics.begin(), kStatistics.end(), lineOf(name, "statistic")) ==
-        kStatistics.end()) {
+    if (!contains(kStatistics, lineOf(name, "statistic"))) {
         throwNotAllowed(name, "statistic", fmt::format("{}", fmt::join(kStatistics, ", ")));
     }
 }

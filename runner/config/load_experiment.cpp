@@ -18,8 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Names = std::vector<std::string>;
-
 /// A file with what it extends. Profiles stay apart: their nulls remove keys only once the profile
 /// is laid over the whole.
 struct Merged {
@@ -93,7 +91,7 @@ class FileReader {
         allowed.insert(allowed.end(), identityKeys().begin(), identityKeys().end());
         for (std::string& key : keysOf("composition")) allowed.push_back(std::move(key));
         for (const auto& [key, value] : whole.entries()) {
-            const bool isKnown = std::ranges::find(allowed, key) != allowed.end();
+            const bool isKnown = contains(allowed, key);
             if (isKnown || !suggestion(key, allowed).empty()) continue;
             throw Error(whole.keyLocation(key),
                         "config: unknown key '" + key +
@@ -119,7 +117,7 @@ class FileReader {
             const fs::path candidate = folder / relative;
             if (!fs::is_regular_file(candidate)) continue;
             const fs::path real = fs::weakly_canonical(candidate);
-            if (std::find(open_.begin(), open_.end(), real) != open_.end()) {
+            if (contains(open_, real)) {
                 throw Error(name.location(),
                             "extends: '" + relative.string() + "' extends this file in turn");
             }
@@ -274,7 +272,7 @@ void applySets(const std::vector<Override>& sets, Node& document) {
     for (const Override& given : sets) {
         const std::string first = given.key.substr(0, given.key.find('.'));
         const auto& sections = sectionKeys();
-        const bool isPath = std::find(sections.begin(), sections.end(), first) != sections.end();
+        const bool isPath = contains(sections, first);
         const std::string path = isPath ? given.key : "params." + given.key;
         requireNotOverridden(given, parameterName(path), document);
         const Node value =
@@ -345,7 +343,7 @@ Override parseOverride(const std::string& text) {
 Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options,
                           const fs::path& configsFolder) {
     const std::string& profile = options.profile;
-    if (std::ranges::find(kProfiles, profile) == kProfiles.end()) {
+    if (!contains(kProfiles, profile)) {
         throw UsageError("profile '" + profile +
                          "'; allowed: " + joined(Names(kProfiles.begin(), kProfiles.end())));
     }

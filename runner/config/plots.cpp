@@ -11,12 +11,6 @@ namespace gfxrepro::config {
 
 namespace {
 
-using Names = std::vector<std::string>;
-
-bool contains(const Names& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// The first value of an axis that is no number, if its values are known.
 const Node* firstText(const std::string& axis, const TableNames& names) {
     const auto known = names.rowValues.find(axis);

@@ -16,19 +16,13 @@ namespace gfxrepro::config {
 namespace {
 
 /// The trimmed cells of one line.
-std::vector<std::string> cellsOf(const std::string& line) {
-    std::vector<std::string> cells = split(line, ',');
+Names cellsOf(const std::string& line) {
+    Names cells = split(line, ',');
     for (std::string& cell : cells) cell = std::string(trimmed(cell));
     return cells;
 }
 
-template <class Range, class Value>
-bool rangeContains(const Range& range, const Value& value) {
-    return std::find(range.begin(), range.end(), value) != range.end();
-}
-
-void requireHeader(const std::vector<std::string>& header, const TableNames* names,
-                   const SourceLocation& where) {
+void requireHeader(const Names& header, const TableNames* names, const SourceLocation& where) {
     std::set<std::string> seen;
     for (const std::string& name : header) {
         if (name.empty()) throw Error(where, "printed: a column has no name");
@@ -36,40 +30,39 @@ void requireHeader(const std::vector<std::string>& header, const TableNames* nam
             throw Error(where, "printed: column '" + name + "' stands twice");
         }
         if (!names || !names->hasAllColumns) continue;
-        std::vector<std::string> known = names->rowAxes;
+        Names known = names->rowAxes;
         known.insert(known.end(), names->columns.begin(), names->columns.end());
-        if (rangeContains(known, name)) continue;
+        if (contains(known, name)) continue;
         throw Error(where, "printed: '" + name + "' is neither a row axis nor a column" +
                                suggestionOrAll(name, known));
     }
     if (!names) return;
     for (const std::string& axis : names->rowAxes) {
-        if (!axis.empty() && !rangeContains(header, axis)) {
+        if (!axis.empty() && !contains(header, axis)) {
             throw Error(where, "printed: row axis '" + axis + "' has no column");
         }
     }
 }
 
 /// Whether two rows stand for the same place in the table.
-std::string keyOfRow(const std::vector<std::string>& row, const std::vector<std::string>& header,
-                     const TableNames& names) {
+std::string keyOfRow(const Names& row, const Names& header, const TableNames& names) {
     std::string key;
     for (std::size_t i = 0; i < row.size(); ++i) {
-        if (rangeContains(names.rowAxes, header[i])) key += row[i] + ",";
+        if (contains(names.rowAxes, header[i])) key += row[i] + ",";
     }
     return key;
 }
 
 /// Labels are known by heart; values of a sweep may be printed without being measured.
-void requireLabels(const std::vector<std::string>& row, const std::vector<std::string>& header,
-                   const Layout& layout, const SourceLocation& where) {
+void requireLabels(const Names& row, const Names& header, const Layout& layout,
+                   const SourceLocation& where) {
     for (const LayoutAxis& axis : layout.rows) {
         const auto at = std::find(header.begin(), header.end(), axis.name);
         if (axis.isSweepAxis() || at == header.end()) continue;
         const std::string& value = row[static_cast<std::size_t>(at - header.begin())];
-        std::vector<std::string> labels;
+        Names labels;
         for (const auto& label : axis.labels) labels.push_back(label.first);
-        if (rangeContains(labels, value)) continue;
+        if (contains(labels, value)) continue;
         throw Error(where, fmt::format("printed: {} is '{}'; allowed: {}", axis.name, value,
                                        joined(labels, " | ")));
     }
@@ -83,9 +76,8 @@ Node::Map readAt(const Node& at) {
     constexpr const char* kSizes[] = {"output.width", "output.height", "measure.frames"};
     Node::Map values;
     for (const auto& [name, value] : at.entries()) {
-        const bool isSize =
-            std::find(std::begin(kSizes), std::end(kSizes), name) != std::end(kSizes);
-        if (!isSize && rangeContains(name, '.')) {
+        const bool isSize = contains(kSizes, name);
+        if (!isSize && contains(name, '.')) {
             throw Error(at.keyLocation(name), "printed.at: '" + name +
                                                   "'; allowed: a parameter, scene, output.width, "
                                                   "output.height, measure.frames");
@@ -142,13 +134,13 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
     const Node* values = node.find("values");
     if (!values) return printed;
     printed.location = values->location();
-    const std::vector<std::string> lines = split(values->text(), '\n');
+    const Names lines = split(values->text(), '\n');
     std::set<std::string> keys;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const std::string_view line = trimmed(lines[i]);
         if (line.empty() || line.front() == '#') continue;
         const SourceLocation where = values->lineLocation(i);
-        std::vector<std::string> row = cellsOf(lines[i]);
+        Names row = cellsOf(lines[i]);
         if (printed.header.empty()) {
             requireHeader(row, names, where);
             printed.header = std::move(row);
@@ -169,8 +161,6 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
 }
 
 namespace {
-
-using Names = std::vector<std::string>;
 
 /// What a cell selects: `cell`, then the labels of its row, then those of its column.
 Selection laidOver(const Selection& under, const Selection& over) {
@@ -306,8 +296,7 @@ void requireSameMeasure(const Selection& ours, const Selection& theirs, const st
 
 }  // namespace
 
-bool isCalibrated(const Experiment& table, const std::vector<std::string>& row,
-                  const std::string& column) {
+bool isCalibrated(const Experiment& table, const Names& row, const std::string& column) {
     const Node* printed = table.document.find("printed");
     const Node* calibrated = printed ? printed->find("calibrated") : nullptr;
     if (!calibrated) return false;

@@ -1,6 +1,7 @@
 // The sections of a config, one reader each; private to this module.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -19,6 +20,13 @@ struct ParamInfo;
 
 namespace gfxrepro::config {
 
+using Names = std::vector<std::string>;
+
+template <class Range, class Value>
+bool contains(const Range& range, const Value& value) {
+    return std::ranges::find(range, value) != std::ranges::end(range);
+}
+
 /// What the other sections may refer to.
 struct Vocabulary {
     /// Every axis that a case has: swept ones, fixed parameters, `scene`; with its values in order.
@@ -27,7 +35,7 @@ struct Vocabulary {
     /// a profile or overrides, which make the sweep smaller.
     bool isComplete = true;
 
-    std::vector<std::string> axisNames() const;
+    Names axisNames() const;
 };
 
 Layout readLayout(const Node& node, const Vocabulary& vocabulary);
@@ -35,9 +43,9 @@ Layout readLayout(const Node& node, const Vocabulary& vocabulary);
 /// The names of the row axes and of the columns (several column axes are joined by "_"), against
 /// which printed values and claims are checked.
 struct TableNames {
-    std::vector<std::string> rowAxes;
+    Names rowAxes;
     std::map<std::string, std::vector<Node>> rowValues;  // of those row axes whose values are known
-    std::vector<std::string> columns;
+    Names columns;
     bool hasAllColumns = true;  // false: further columns may exist
 };
 TableNames tableNames(const Layout& layout, const Vocabulary& vocabulary);
@@ -68,9 +76,9 @@ std::string optionalLine(const Node& map, std::string_view key, const std::strin
 const Node& requiredAt(const Node& map, std::string_view key, std::string_view what);
 
 /// The keys of a config that a profile may change.
-const std::vector<std::string>& sectionKeys();
+const Names& sectionKeys();
 /// table, figure, section, sweep_of.
-const std::vector<std::string>& identityKeys();
+const Names& identityKeys();
 
 /// Throws Error for a value (but of params_by_scene) of which no case would know, as its axis is
 /// swept in every one: it stands in the file of the sweep, in the experiment's own or on the

@@ -187,7 +187,7 @@ class Factors {
 
   private:
     void claim(const std::string& axis, const SourceLocation& where) {
-        if (std::find(axes_.begin(), axes_.end(), axis) != axes_.end()) {
+        if (contains(axes_, axis)) {
             throw Error(where, "axis '" + axis + "' stands in the sweep twice");
         }
         axes_.push_back(axis);
