@@ -293,7 +293,7 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
         ->option_text("SCENE");
     sceneApp->add_option("--export", o.scene.exportFile, "write it as .glb or .ply")
         ->option_text("FILE");
-    sceneApp->add_option("--render", o.scene.renderFile, "draw it into a .png file")
+    sceneApp->add_option("--render", o.scene.renderFile, "write a picture of it as .png")
         ->option_text("FILE");
     sceneApp->add_option("--size", o.scene.sizePx, "pixels per side of the render")
         ->check(CLI::Range(16, 8192))
