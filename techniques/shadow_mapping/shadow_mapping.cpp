@@ -240,9 +240,9 @@ TruthLight truthLight(const Light& light, const scene::Box& bounds, int sizePx) 
 }
 
 /// Light `light` of the four channels.
-std::vector<float> channelOf(const std::vector<float>& terms, std::size_t light) {
-    std::vector<float> channel(terms.size() / 4);
-    for (std::size_t i = 0; i < channel.size(); ++i) channel[i] = terms[4 * i + light];
+std::vector<float> channelOf(const std::vector<glm::vec4>& terms, std::size_t light) {
+    std::vector<float> channel;
+    for (const glm::vec4& term : terms) channel.push_back(term[static_cast<int>(light)]);
     return channel;
 }
 
@@ -258,14 +258,9 @@ image::ImageF shadowPicture(const ShadowErrors& errors, const std::vector<float>
 
 /// With the normals that only an image with terms has.
 kit::ImageLayers layersOf(const ShadedImage& image) {
-    const std::vector<float> normals = image.normals.read<float>(GL_RGB, GL_FLOAT, 3);
-    std::vector<glm::vec3> normalWorld;
-    for (std::size_t i = 0; i < normals.size(); i += 3) {
-        normalWorld.emplace_back(normals[i], normals[i + 1], normals[i + 2]);
-    }
     kit::ImageLayers layers(image.view);
     layers.windowDepths(image.depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1));
-    layers.normals(normalWorld);
+    layers.normals(image.normals.read<glm::vec3>(GL_RGB, GL_FLOAT, 1));
     return layers;
 }
 
@@ -359,7 +354,7 @@ class ShadowMapping final : public technique::Technique {
     }
 
     void recordErrors(technique::Recorder& recorder, const ShadedImage& image) {
-        const std::vector<float> terms = image.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+        const auto terms = image.shadowTerms.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
         const std::vector<VisiblePoint> points = visiblePoints(*tracer_, image.view);
         const scene::Box& bounds = drawable_->bounds();
         const ShadowTruth truth(*tracer_, glm::length(bounds.size()));
@@ -403,17 +398,17 @@ class ShadowMapping final : public technique::Technique {
         ShadedImage other = makeShadedImage(image.view, true);
         maps.render(*drawable_, lights_);
         view.render(*drawable_, maps, other);
-        const std::vector<float> here = image.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
-        const std::vector<float> there = other.shadowTerms.read<float>(GL_RGBA, GL_FLOAT, 4);
+        const auto here = image.shadowTerms.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
+        const auto there = other.shadowTerms.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
         std::uint64_t differing = 0;
-        for (std::size_t pixel = 0; pixel < here.size() / 4; ++pixel) {
+        for (std::size_t pixel = 0; pixel < here.size(); ++pixel) {
             bool differs = false;
-            for (std::size_t i = 4 * pixel; i < 4 * pixel + lights_.size(); ++i) {
-                differs = differs || std::abs(here[i] - there[i]) > 1.0F / 64.0F;
+            for (int i = 0; i < static_cast<int>(lights_.size()); ++i) {
+                differs = differs || std::abs(here[pixel][i] - there[pixel][i]) > 1.0F / 64.0F;
             }
             differing += differs ? 1 : 0;
         }
-        recorder.metric("methods_differ_pct", kit::percent(differing, here.size() / 4), "%");
+        recorder.metric("methods_differ_pct", kit::percent(differing, here.size()), "%");
     }
 
     ShadowMappingParams params_;

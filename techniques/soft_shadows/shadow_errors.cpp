@@ -62,22 +62,9 @@ std::size_t HostReceivers::covered() const {
 }
 
 HostReceivers readReceivers(const Receivers& receivers) {
-    HostReceivers host;
-    host.sizePx = receivers.view.sizePx;
-    const auto asVectors = [](const std::vector<float>& values) {
-        std::vector<glm::vec4> vectors(values.size() / 4);
-        for (std::size_t i = 0; i < vectors.size(); ++i) {
-            vectors[i] = {values[4 * i], values[4 * i + 1], values[4 * i + 2], values[4 * i + 3]};
-        }
-        return vectors;
-    };
-    host.positions = asVectors(receivers.positions.read<float>(GL_RGBA, GL_FLOAT, 4));
-    host.normals = asVectors(receivers.normals.read<float>(GL_RGBA, GL_FLOAT, 4));
-    const auto bytes = receivers.shading.read<std::uint8_t>(GL_RGBA, GL_UNSIGNED_BYTE, 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 4) {
-        host.shading.emplace_back(bytes[i], bytes[i + 1], bytes[i + 2], bytes[i + 3]);
-    }
-    return host;
+    return {receivers.view.sizePx, receivers.positions.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
+            receivers.normals.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
+            receivers.shading.read<glm::u8vec4>(GL_RGBA, GL_UNSIGNED_BYTE, 1)};
 }
 
 HostVisibilityMask readMask(const VisibilityMask& mask) {
