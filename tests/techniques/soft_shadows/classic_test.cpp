@@ -171,14 +171,9 @@ TEST_F(ClassicTest, FacesTheEyeAndIsADisc) {
     const reference::Shape shape = reference::shapeOf(measured.triangles, measured.vertices.size());
     EXPECT_EQ(shape.euler, 1);
     EXPECT_EQ(shape.parts, 1);
-    const scene::Mesh world = toWorldMesh(measured.mesh);
-    for (const glm::uvec3& t : world.triangles) {
-        const glm::dvec3 a(world.positions[t.x] - images.image.view.eyeWorld),
-            b(world.positions[t.y] - images.image.view.eyeWorld),
-            c(world.positions[t.z] - images.image.view.eyeWorld);
-        ASSERT_LT(glm::dot(glm::cross(b - a, c - a), a), 0.0);
-    }
-    for (const glm::vec3& p : world.positions) EXPECT_NEAR(glm::length(p), 1.0F, 0.0005F);
+    expectFacesEye(measured);
+    for (const glm::vec3& p : toWorldMesh(measured.mesh).positions)
+        EXPECT_NEAR(glm::length(p), 1.0F, 0.0005F);
 }
 
 }  // namespace

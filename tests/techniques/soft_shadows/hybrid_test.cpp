@@ -65,16 +65,6 @@ void expectEqual(const HostMesh& measured, const std::vector<reference::Quad>& q
     EXPECT_LE(measured.mesh.sizeBytes(), 64 * quads.size());
 }
 
-void expectFacesEye(const HostMesh& measured) {
-    const scene::Mesh mesh = toWorldMesh(measured.mesh);
-    const glm::vec3 eye = measured.mesh.view.eyeWorld;
-    for (const glm::uvec3& t : mesh.triangles) {
-        const glm::dvec3 a(mesh.positions[t.x] - eye), b(mesh.positions[t.y] - eye),
-            c(mesh.positions[t.z] - eye);
-        ASSERT_LT(glm::dot(glm::cross(b - a, c - a), a), 0.0);
-    }
-}
-
 struct NamedMesh {
     const char* name;
     scene::Mesh mesh;

@@ -49,6 +49,17 @@ class ReconstructionTest : public test::SuiteDeviceTest {
     }
 };
 
+/// All triangles are counter-clockwise as the eye sees them.
+inline void expectFacesEye(const HostMesh& measured) {
+    const scene::Mesh mesh = toWorldMesh(measured.mesh);
+    const glm::vec3 eye = measured.mesh.view.eyeWorld;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 a(mesh.positions[t.x] - eye), b(mesh.positions[t.y] - eye),
+            c(mesh.positions[t.z] - eye);
+        ASSERT_LT(glm::dot(glm::cross(b - a, c - a), a), 0.0);
+    }
+}
+
 /// An image without samples.
 kit::HostDepthImage emptyImage(const kit::View& view);
 /// Both without samples, seen from the origin.
