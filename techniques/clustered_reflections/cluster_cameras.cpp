@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 namespace gfxrepro::clustered_reflections {
+
 namespace {
 
 /// Samples that one invocation goes through: 32 thousand invocations in a megapixel.

@@ -7,6 +7,8 @@
 #include "engine/gl/objects.h"
 #include "engine/gl/pass.h"
 #include "techniques/clustered_reflections/cluster_cameras.h"
+#include "techniques/clustered_reflections/cluster_images.h"
+#include "techniques/clustered_reflections/clustering.h"
 #include "techniques/reflections/gpu_objects.h"
 
 namespace gfxrepro::clustered_reflections {
@@ -97,6 +99,87 @@ class OneByOnePainter {
   private:
     std::vector<std::uint32_t> reflectorOfObject_, trianglesOfObject_, families_;
     gl::Pass pass_;
+};
+
+/// Of a painter's last draw; in front of the order in which images are placed, as
+/// shaders/atlas.glsl has it.
+struct AtlasState {
+    float scale = 1.0F;                   // by which all images were scaled to fit
+    std::uint32_t instances = 0;          // drawn: object × cluster pairs, or triangles
+    std::uint32_t leftOut = 0;            // of them, beyond the list
+    std::uint32_t triangles = 0;          // drawn
+    std::uint32_t groups[3] = {0, 1, 1};  // of a dispatch: one a cluster
+    std::uint32_t padding = 0;
+};
+static_assert(sizeof(AtlasState) == 32);
+
+/// Draws into the images by the commands in `commands`, which `issue` gives to the device;
+/// triangles are cut to their image by clip distances 1 to 4.
+template <class Issue>
+void drawInPlaces(ClusterImages& target, const gl::Pass& pass, const gl::Resources& resources,
+                  const gl::VertexArray& vertexArray, const gl::Buffer& commands, Issue&& issue) {
+    target.beginDrawing(target.sizePx());
+    pass.set("atlasSizePx", glm::vec2(target.sizePx()));
+    pass.use(resources);
+    commands.awaitPasses(GL_COMMAND_BARRIER_BIT);
+    vertexArray.bind();
+    for (int plane = 1; plane < 5; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.id());
+    issue();
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+    for (int plane = 1; plane < 5; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
+    target.endDrawing(target.sizePx());
+}
+
+class ImagePlaces {
+  public:
+    explicit ImagePlaces(const gl::ShaderLibrary& shaders);
+    /// Places the images of all clusters in a texture of `atlasSizePx`; leaves the counts
+    /// 0.
+    void place(const gl::Buffer& cameras, const Clusters& clusters, const CameraSettings& settings,
+               glm::ivec2 atlasSizePx) const;
+    /// For passes that include atlas.glsl.
+    gl::Resources resources(const gl::Buffer& cameras, const Clusters& clusters) const;
+    /// ivec4 a cluster: x, y, width, height; width 0: no image.
+    const gl::Buffer& places() const { return places_; }
+    /// AtlasState, then the clusters in the order in which they are placed.
+    const gl::Buffer& order() const { return order_; }
+    /// Waits for the device.
+    AtlasState state() const { return order_.read<AtlasState>(1).front(); }
+    std::size_t sizeBytes() const { return places_.sizeBytes() + order_.sizeBytes(); }
+
+  private:
+    gl::Pass pass_;
+    gl::Buffer places_, order_;
+};
+
+/// Images are packed side by side, objects culled for each cluster and both drawn by one multi-draw
+/// indirect, an instance for each cluster that sees an object, without a read-back. Where not all
+/// fit, all are scaled down by the same factor.
+class AtlasPainter {
+  public:
+    AtlasPainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
+                 const reflections::GpuObjects& objects, const CameraSettings& settings);
+    void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
+              const Clusters& clusters, ClusterImages& target);
+    /// For the intersection.
+    gl::Resources resources(const gl::Buffer& cameras) const {
+        return {{"Cameras", cameras}, {"Places", places()}};
+    }
+    const gl::Buffer& places() const { return places_.places(); }
+    std::size_t sizeBytes() const;
+
+    /// Of the last draw(); waits for the device.
+    AtlasState state() const { return places_.state(); }
+
+  private:
+    CameraSettings settings_;
+    gl::Buffer families_;
+    ImagePlaces places_;
+    gl::Pass cull_, draw_;
+    gl::Buffer commands_, instances_, pieces_;
+    gl::VertexArray vertexArray_;
+    int commandCount_ = 0;
 };
 
 }  // namespace gfxrepro::clustered_reflections

@@ -1,16 +1,61 @@
 // Steps 2 and 3 of [xie2017] Algorithm 6, as a tracer of reflections.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "techniques/clustered_reflections/cluster_cameras.h"
 #include "techniques/clustered_reflections/cluster_images.h"
-#include "techniques/clustered_reflections/cluster_intersection.h"
 #include "techniques/clustered_reflections/clustering.h"
-#include "techniques/reflections/environment_map.h"
+#include "techniques/clustered_reflections/visible_triangles.h"
 
 namespace gfxrepro::clustered_reflections {
+
+/// How a ray goes through a depth image (march.glsl).
+enum class March {
+    Linear,        // Algorithm 7: a texel per step along the longer axis
+    Hierarchical,  // the same samples, but those in tiles that are nearer than all that the tile
+                   // holds are stepped over, by a pyramid of nearest depths: the same hits
+};
+
+/// What rays are intersected with; of one frame.
+struct IntersectionInput {
+    const reflections::GBuffer& gbuffer;
+    const Clusters& clusters;
+    const gl::Resources& drawn;  // Cameras, Places, and what else the images' painter hands on
+    const ClusterImages& images;
+    const reflections::EnvironmentMap& map;
+};
+
+class ClusterIntersection {
+  public:
+    ClusterIntersection(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
+                        const CameraSettings& settings, March march, bool mayShowOwn,
+                        TexelContent content, glm::ivec2 sizePx);
+
+    /// Of all samples in a pass over the G-buffer: images in an atlas.
+    void intersectAll(const IntersectionInput& input, reflections::ReflectionTarget& target);
+
+    /// Of one cluster's samples after the other, each between the drawing of its image and of the
+    /// next: `range` is its entry of Clusters::ranges. What they share is set once a frame.
+    void beginClusters(const reflections::GBuffer& gbuffer) const;
+    void intersectCluster(std::uint32_t cluster, const glm::uvec4& range,
+                          const IntersectionInput& input,
+                          reflections::ReflectionTarget& target) const;
+
+    /// Once a frame, before either.
+    void clearEnvironmentSamples();
+    const gl::Texture& environmentSamples() const { return environmentSamples_; }
+    std::size_t sizeBytes() const { return environmentSamples_.sizeBytes(); }
+
+  private:
+    void setUniforms(const gl::Pass& pass, const reflections::GBuffer& gbuffer) const;
+
+    CameraSettings settings_;
+    gl::Pass all_, one_;
+    gl::Texture environmentSamples_;  // R8UI: 1 where a mirror ray took the environment map
+    kit::WholeImage wholeImage_;
+};
 
 /// How the clusters' depth images are drawn.
 enum class ImageDrawing {
@@ -54,18 +99,19 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     ClusteredTracer(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
                     const reflections::GpuObjects& objects, const reflections::EnvironmentMap& map,
                     const ClusteredSettings& settings, glm::ivec2 sizePx);
-    ~ClusteredTracer() override;
 
-    void update(const reflections::GpuObjects& objects, gl::Profiler& profiler) override;
+    void update(const reflections::GpuObjects& objects, gl::Profiler&) override {
+        objects_ = &objects;
+    }
     void trace(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
                reflections::ReflectionTarget& target, gl::Profiler& profiler) override;
     std::size_t sizeBytes() const override;
-    std::size_t frameBufferBytes() const override;
+    std::size_t frameBufferBytes() const override { return images_.sizeBytes(); }
 
     /// Of the last trace(); these read back and wait for the device.
     int clusterCount() const;
     std::vector<ClusterCamera> cameras() const;
-    const Clusters& clusters() const;
+    const Clusters& clusters() const { return builder_.clusters(); }
     /// What the images of the last trace() were drawn with, all together; nothing where there are
     /// none.
     struct Drawn {
@@ -78,8 +124,26 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     std::vector<std::uint8_t> environmentSamples() const;
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    void drawAtlas(const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
+                   gl::Profiler& profiler);
+    void drawOneByOne(const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
+                      gl::Profiler& profiler);
+
+    ClusteredSettings settings_;
+    const reflections::GpuObjects* objects_;  // of the last update()
+    const reflections::EnvironmentMap& map_;
+    ClusterBuilder builder_;
+    ClusterCameras clusterCameras_;
+    std::optional<gl::Pass> concavity_;
+    ClusterImages images_;
+    ClusterIntersection intersection_;
+    std::optional<AtlasPainter> atlas_;
+    std::optional<VisiblePainter> visible_;
+    std::optional<OneByOnePainter> oneByOne_;
+    // One by one:
+    gl::Buffer places_;
+    std::vector<glm::ivec4> sizes_;  // of the last frame's images: 0, 0, width, height
+    std::uint64_t trianglesDrawn_ = 0;
 };
 
 }  // namespace gfxrepro::clustered_reflections

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <memory>
 #include <vector>
 
 #include "engine/gl/objects.h"
 #include "engine/gl/profiler.h"
 #include "engine/gl/program.h"
+#include "techniques/clustered_reflections/clustering.h"
 #include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::clustered_reflections {
@@ -35,7 +37,7 @@ struct BinSettings {
 enum class Clustering {
     NormalBins,  // Sec. 4.3; on the device, nothing read back
     KdTree,      // the outlook of Sec. 4.7.4: splits by position and normal, largest first; on the
-                 // host, with a read-back of the G-buffer (see kd_clustering.h)
+                 // host, with a read-back of the G-buffer
 };
 
 /// At most so many; 25 reflectors × 13 × 8 = 2600 in the thesis.
@@ -78,5 +80,24 @@ class ClusterBuilder {
 std::vector<std::uint8_t> planarReflectors(const reflections::ReflectiveScene& scene);
 /// By reflector id: the number of the object that it is a part of.
 std::vector<std::uint32_t> wholeReflectors(const reflections::ReflectiveScene& scene);
+
+struct BinTables {
+    explicit BinTables(const BinSettings& settings);
+
+    /// Theta and phi bins of a curved reflector with `area` of `total` reflective samples, one of
+    /// `visible` reflectors.
+    glm::ivec2 binsOf(std::uint32_t area, std::uint32_t total, std::uint32_t visible) const;
+    /// No more bins than this have curved reflectors together, whatever their areas are; `parts`
+    /// has the number of them that each object consists of.
+    long long mostBins(std::vector<int> parts) const;
+
+    glm::ivec2 maxBins;
+    /// The least a_R / n_v for k + 2 theta bins, k = 0 … maxThetaBins − 2; then for phi's.
+    std::vector<float> leastScale;
+    /// (cos, sin) of border k = 1 … n − 1 between n theta bins, n = 2 … maxThetaBins.
+    std::vector<glm::vec2> thetaBorders;
+    /// cos · |cos| of border k = 1 … n − 1 between n phi bins, n = 2 … maxPhiBins.
+    std::vector<float> phiBorders;
+};
 
 }  // namespace gfxrepro::clustered_reflections

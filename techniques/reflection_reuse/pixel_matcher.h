@@ -1,5 +1,5 @@
 // [xie2017] Algorithm 9: where the reflection that a key-frame sample holds goes when the eye
-// moves.
+// moves; on the device and on the host.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,26 @@
 
 #include "engine/gl/objects.h"
 #include "engine/gl/program.h"
-#include "techniques/reflection_reuse/reflection_depth_image.h"
+#include "techniques/reflection_reuse/pixel_matcher.h"
+#include "techniques/reflections/gbuffer.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
+
+/// B.1 normal and depth and B.2 mirror factor are the G-buffer's, B.3 radiance L_r and B.4 travel
+/// distance r the tracer's. Where a ray left the scene, its end counts as the scene's diagonal
+/// away.
+/// Departure [xie2017] Sec. 5.5.1: it keeps all in two textures of four floats. Here L_r is halves;
+/// what positions, and so matches, are made of is floats, too.
+struct ReflectionDepthImage {
+    reflections::GBuffer gbuffer;
+    reflections::ReflectionTarget reflection;
+    float diagonalM = 1.0F;
+
+    ReflectionDepthImage(const kit::View& view, float sceneDiagonalM)
+        : gbuffer(view), reflection(view.sizePx), diagonalM(sceneDiagonalM) {}
+    std::size_t sizeBytes() const { return gbuffer.sizeBytes() + reflection.sizeBytes(); }
+};
 
 enum class Matching {
     FirstOrder,   // Algorithm 9: candidates are planes, a ring of 3×3 a step
@@ -112,5 +129,36 @@ HostMatch matchOnHost(const HostReflectionDepthImage& key, glm::ivec2 sample,
 /// The best candidate of all samples of the same reflector: what a search should have found.
 HostMatch matchExhaustively(const HostReflectionDepthImage& key, glm::ivec2 sample,
                             const glm::vec3& eyeWorld);
+
+bool isValid(const glm::vec2& offset);
+
+struct MatchCheck {
+    std::size_t checked = 0;
+    std::size_t wrong = 0;  // another sample of the reflector, not next to the match, fits better
+                            // than the match does where it is: between samples, of second order
+};
+
+/// At most `samples` of the valid matches, evenly spread over the image, against
+/// matchExhaustively().
+MatchCheck checkMatches(const HostReflectionDepthImage& key, const std::vector<glm::vec2>& offsets,
+                        const glm::vec3& eyeWorld, const MatchingSettings& settings, int samples);
+
+/// Of the second-order search ([xie2017] Sec. 5.5.4, outlook).
+constexpr int kMaxNewtonSteps = 8;
+/// Pixels. Linear extrapolation is trusted no farther.
+constexpr float kLongestStep = 32.0F;
+/// Share of the equations' trace that is added to their diagonal. Far below what moves a match by a
+/// hundredth of a pixel; without it, reflections that do not tell two directions apart (a
+/// cylinder seen from its focal line) divide by nothing.
+constexpr float kDamping = 1e-5F;
+
+/// Pixels, a power of two: how far from a sample with a match one that has lost its own is searched
+/// again. What comes back into a reflector's image enters over its border, and by less a frame.
+constexpr int kStartReach = 8;
+
+/// Share of the eye's distance by which a match may miss the eye for rounding alone: positions and
+/// normals are single precision. Without it a sample that has no neighbour to measure by is never
+/// valid, not even where the eye has not moved.
+constexpr float kRounding = 1e-5F;
 
 }  // namespace gfxrepro::reflection_reuse

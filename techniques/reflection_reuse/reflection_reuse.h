@@ -1,77 +1,51 @@
 // The technique `reflection_reuse`: chapter 5 of xie2017. See README.md.
 #pragma once
 
-#include <memory>
+#include <glm/glm.hpp>
 #include <optional>
-#include <vector>
+#include <span>
 
 #include "runner/technique/technique.h"
-#include "techniques/reflection_reuse/reflection_reuse_params.h"
-#include "techniques/reflection_reuse/resting_tracer.h"
+#include "techniques/reflection_reuse/reuse_renderer.h"
+#include "techniques/reflections/frame.h"
 
 namespace gfxrepro::reflection_reuse {
 
-/// What the technique records: each metric with its unit, each pass with its meaning.
-config::Outputs outputs();
-
-class ReflectionReuse final : public technique::Technique {
-  public:
-    explicit ReflectionReuse(Params& params);
-
-    void setup(technique::SetupContext& context) override;
-    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
-    void requireScene(const scene::Scene& scene) const override { params_.requireScene(scene); }
-    void requireFrames(int frameCount) const override;
-    /// Frames are consecutive. One that is rendered again starts from what was there before it.
-    void render(technique::FrameContext& context) override;
-    void record(technique::Recorder& recorder) override;
-    const gl::Texture* frameImage() const override {
-        return frame_ ? &frame_->composite.output() : nullptr;
-    }
-
-  private:
-    /// Frames of `method: ray_traced`.
-    struct FullTracing {
-        reflections::GBufferRenderer renderer;
-        reflections::GBuffer gbuffer;
-        reflections::ReflectionTarget target;
-    };
-
-    std::unique_ptr<reflections::ReflectionTracer> makeTracer(const gl::ShaderLibrary& shaders);
-    void place(const technique::FrameContext& context);
-    void traceFully(gl::Profiler& profiler);
-    const reflections::GBuffer& gbuffer() const;
-    const reflections::ReflectionTarget& reflection() const;
-
-    void recordReuse(technique::Recorder& recorder, const ReuseCounts& counts);
-    void keepLeastRecomputeTime();
-    void recordRecomputeFit(technique::Recorder& recorder, const ReuseCounts& counts);
-    void recordMatches(technique::Recorder& recorder, const ReuseCounts& counts);
-    image::ImageF truthOf(const reflections::HostGBuffer& gbuffer);
-    void recordErrors(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
-                      const image::ImageF& picture, const image::ImageF& truth);
-    void recordUndetected(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
-                          const image::ImageF& picture, const image::ImageF& truth);
-    /// `truth` is empty where errors are not measured.
-    void recordPictures(technique::Recorder& recorder, const reflections::HostGBuffer& gbuffer,
-                        const image::ImageF& picture, const image::ImageF& truth);
-
-    ReuseParams params_;
-    std::optional<reflections::Frame> frame_;
-    std::unique_ptr<reflections::ReflectionTracer> tracer_;
-    std::optional<ReuseRenderer> renderer_;   // of `reuse` and `direct`
-    std::optional<FullTracing> fullTracing_;  // of `ray_traced`
-    kit::View view_;
-    int frameIndex_ = -1;    // last rendered
-    int lastKeyFrame_ = -1;  // last recorded key frame
-    int frameCount_ = 0;
-
-    std::optional<gl::Profiler> recomputeTimes_;  // of `recompute_fit`
-    std::optional<double> leastRecomputeMs_;      // of the frame at hand
-    std::vector<glm::dvec2> recomputed_;          // (samples, ms) of frames that are not key frames
-
-    PoseWatch truthPoses_;
+enum class Method {
+    Reuse,      // Algorithm 8
+    Direct,     // the same by depth alone: what reflects is taken along with its surface
+    RayTraced,  // every sample of every frame
 };
+
+enum class Tracer {
+    Compute,    // on the same GL device
+    Embree,     // on the CPU
+    Clustered,  // chapter 4: "any tracer that returns radiance and distance" (Sec. 5.1)
+};
+
+struct ReuseParams : reflections::FrameSettings {
+    Method method = Method::Reuse;
+    Tracer tracer = Tracer::Compute;
+    int pathFrames = 500;
+    int firstFrame = 0;
+    ReuseSettings reuse;  // isDirect is set, too
+    bool fitsRecompute = false;
+    int exhaustiveSamples = 0;  // searched over their whole reflector; 0: none
+
+    /// Declares the parameters. Throws Error for combinations that mean nothing.
+    explicit ReuseParams(Params& params);
+};
+
+/// A straight line through measurements, and how much of their variation it explains.
+struct LinearFit {
+    double slope = 0.0;
+    double intercept = 0.0;
+    double rSquared = 0.0;  // 1: all points lie on the line; 0: x says nothing about y
+};
+
+/// Least squares of y over x. Nothing for fewer than three points, which any line fits, and where
+/// x or y does not vary.
+std::optional<LinearFit> linearFit(std::span<const glm::dvec2> points);
 
 extern const technique::TechniqueInfo kReflectionReuse;
 

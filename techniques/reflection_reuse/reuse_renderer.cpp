@@ -1,13 +1,87 @@
 #include "techniques/reflection_reuse/reuse_renderer.h"
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
 #include "engine/core/error.h"
-#include "techniques/reflection_reuse/moved_objects.h"
 
 namespace gfxrepro::reflection_reuse {
+
+namespace {
+
+/// Boxes grow by this share of the scene's diagonal on all sides: a ray ends on the surface, which
+/// often is the box's, give or take rounding.
+constexpr float kBoxMargin = 1e-3F;
+
+/// Moved of moved_objects.glsl.
+struct Moved {
+    glm::vec4 keyCentre;
+    glm::vec4 keyHalfSize;
+    std::uint32_t object;
+    std::uint32_t padding[3];
+};
+static_assert(offsetof(Moved, object) == 32);
+static_assert(sizeof(Moved) == 48);
+
+}  // namespace
+
+MovedObjects::MovedObjects(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx)
+    : then_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/doubt_moved.frag.glsl"},
+            reflections::objectDefines()),
+      now_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/want_moved.frag.glsl"},
+           reflections::objectDefines()),
+      doubtful_(gl::Texture::make2D(GL_R8UI, sizePx)),
+      framebuffer_(std::array<const gl::Texture*, 1>{&doubtful_}) {}
+
+void MovedObjects::setKeyFrame(const reflections::GpuObjects& objects) {
+    keyPoses_.assign(objects.poses().begin(), objects.poses().end());
+    keyBounds_.assign(objects.boundsWorld().begin(), objects.boundsWorld().end());
+}
+
+bool MovedObjects::find(const reflections::GpuObjects& objects) {
+    GFXREPRO_ASSERT_EQ(objects.poses().size(), keyPoses_.size());
+    std::vector<Moved> moved;
+    for (std::size_t i = 0; i < keyPoses_.size(); ++i) {
+        // Without triangles it neither is nor was anywhere.
+        if (objects.poses()[i] == keyPoses_[i] || keyBounds_[i].isEmpty()) continue;
+        moved.push_back({glm::vec4(keyBounds_[i].centre(), 1.0F),
+                         glm::vec4(0.5F * keyBounds_[i].size(), 0.0F),
+                         static_cast<std::uint32_t>(i),
+                         {}});
+    }
+    movedCount_ = static_cast<unsigned>(moved.size());
+    if (!moved.empty()) moved_ = gl::Buffer::of(moved);
+    return !moved.empty();
+}
+
+const gl::Texture& MovedObjects::doubtful(const ReflectionDepthImage& key) {
+    framebuffer_.bind();
+    then_.set("movedCount", movedCount_);
+    then_.set("margin", kBoxMargin * key.diagonalM);
+    then_.set("missDistance", key.diagonalM);
+    then_.use(gl::Resources{{"MovedObjects", moved_}, {"distanceM", key.reflection.distance}}.with(
+        key.gbuffer.resourcesFor(then_)));
+    wholeImage_.draw();
+    return doubtful_;
+}
+
+void MovedObjects::want(const reflections::GpuObjects& objects, const reflections::GBuffer& gbuffer,
+                        float diagonalM, gl::Texture& wanted) {
+    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&wanted});
+    framebuffer.bind();
+    now_.set("movedCount", movedCount_);
+    now_.set("margin", kBoxMargin * diagonalM);
+    now_.use(gl::Resources{{"MovedObjects", moved_}}
+                 .with(objects.resources())
+                 .with(gbuffer.resourcesFor(now_)));
+    wholeImage_.draw();
+}
+
+std::size_t MovedObjects::sizeBytes() const {
+    return doubtful_.sizeBytes() + moved_.sizeBytes();
+}
 
 namespace {
 
@@ -19,216 +93,158 @@ kit::View emptyView(glm::ivec2 sizePx) {
 
 }  // namespace
 
-struct ReuseRenderer::Impl {
-    const reflections::GpuObjects& objects;
-    reflections::ReflectionTracer& tracer;
-    ReuseSettings settings;
-    reflections::GBufferRenderer gbufferRenderer;
-    PixelMatcher matcher;
-    Reprojection reprojection;
-    MovedObjects movedObjects;
-    gl::Pass mend;
-    ReflectionDepthImage key;
-    reflections::GBuffer gbuffer;              // of this frame; of a key frame, `key` has it
-    reflections::ReflectionTarget reflection;  // of frames that are not key frames
-    reflections::ReflectionTarget traced;
-    std::array<Offsets, 2> offsets;       // of this and of the frame before
-    std::optional<ShiftedImage> shifted;  // of two steps
-    gl::Texture wanted;
-    gl::SampleQuery recomputed;
-    kit::WholeImage wholeImage;
-    bool hasFrame = false;
-    bool isKeyFrame = false;  // the last frame
-    bool hasOffsets = false;  // of the frame before, for the same key frame
-    bool hadOffsets = false;  // before the last render()
-    bool isUndone = false;    // isKeyFrame is what the next frame is, then, not what the last was
-
-    Impl(const gl::ShaderLibrary& shaders, const reflections::GpuObjects& ofObjects,
-         reflections::ReflectionTracer& byTracer, const ReuseSettings& withSettings,
-         glm::ivec2 sizePx, float diagonalM)
-        : objects(ofObjects),
-          tracer(byTracer),
-          settings(withSettings),
-          gbufferRenderer(shaders, objects.scene()),
-          matcher(shaders, settings.matching),
-          reprojection(shaders, settings.reprojection, sizePx),
-          movedObjects(shaders, sizePx),
-          mend(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/mend.frag.glsl"}),
-          key(emptyView(sizePx), diagonalM),
-          gbuffer(emptyView(sizePx)),
-          reflection(sizePx),
-          traced(sizePx),
-          offsets{Offsets(sizePx), Offsets(sizePx)},
-          wanted(gl::Texture::make2D(GL_R8UI, sizePx)) {
-        if (!settings.isDirect && settings.reprojection.resampling == Resampling::Twice)
-            shifted.emplace(sizePx);
-    }
-
-    std::uint32_t recomputedSamples() const {
-        return isKeyFrame ? reprojection.reflectiveSamples()
-                          : static_cast<std::uint32_t>(recomputed.result());
-    }
-
-    // [xie2017] Sec. 5.4.4: by what the frame before had to recompute.
-    bool isKeyFrameNext() const {
-        if (isUndone) return isKeyFrame;
-        if (!hasFrame) return true;
-        if (isKeyFrame) return false;
-        const double share = double{settings.keyFrameThreshold};
-        return recomputedSamples() > share * reprojection.reflectiveSamples();
-    }
-
-    void drawDiffuse(const kit::View& view, gl::Profiler& profiler) {
-        const gl::GpuScope scope(profiler, "diffuse");
-        gbuffer.view = view;
-        gbufferRenderer.render(objects, gbuffer);
-    }
-
-    void renderKeyFrame(gl::Profiler& profiler) {
-        std::swap(key.gbuffer, gbuffer);
-        {
-            const gl::GpuScope scope(profiler, "recompute");
-            tracer.trace(key.gbuffer, nullptr, key.reflection, profiler);
-            reprojection.wantAll(key.gbuffer, wanted);
-        }
-        const gl::GpuScope scope(profiler, "reflection_shift");
-        reprojection.setKeyFrame(key);
-        movedObjects.setKeyFrame(objects);
-        hasOffsets = false;
-    }
-
-    void renderReused(gl::Profiler& profiler, gl::Profiler* recomputeTimes) {
-        const bool hasMoved = settings.recomputesMoved && movedObjects.find(objects);
-        if (!settings.isDirect) match(profiler);
-        const gl::Texture* doubtful =
-            hasMoved && !settings.isDirect ? &movedObjects.doubtful(key) : nullptr;
-        if (shifted) {
-            const gl::GpuScope scope(profiler, "reflection_shift");
-            reprojection.shift(key, offsets[0], doubtful, *shifted);
-        }
-        {
-            const gl::GpuScope scope(profiler, "reflection_warp");
-            warp(doubtful);
-            if (hasMoved) movedObjects.want(objects, gbuffer, key.diagonalM, wanted);
-        }
-        const gl::GpuScope scope(profiler, "recompute");
-        std::optional<gl::GpuScope> own;
-        if (recomputeTimes != nullptr) own.emplace(*recomputeTimes, "recompute");
-        tracer.trace(gbuffer, &wanted, traced, profiler);
-        mendReflections();
-    }
-
-    void match(gl::Profiler& profiler) {
-        const gl::GpuScope scope(profiler, "pixel_matching");
-        std::swap(offsets[0], offsets[1]);
-        matcher.match(key, gbuffer.view.eyeWorld, hasOffsets ? &offsets[1] : nullptr, offsets[0]);
-        hasOffsets = true;
-    }
-
-    void warp(const gl::Texture* doubtful) {
-        if (shifted) {
-            reprojection.warp(key, shifted->radiance, gbuffer, reflection, wanted);
-        } else if (settings.isDirect) {
-            reprojection.warp(key, key.reflection.radiance, gbuffer, reflection, wanted);
-        } else {
-            reprojection.project(key, offsets[0], doubtful, gbuffer, reflection, wanted);
-        }
-    }
-
-    void mendReflections() {
-        // Read while it is drawn to: OpenGL 4.5 (Sec. 9.3.1) allows it where the texels read and
-        // those written are different ones, as reused and recomputed samples are.
-        glTextureBarrier();
-        mend.set("seamPx", settings.seamPx);
-        mend.use(gl::Resources{{"wanted", wanted},
-                               {"traced", traced.radiance},
-                               {"tracedDistance", traced.distance},
-                               {"reused", reflection.radiance}}
-                     .with(gbuffer.resourcesFor(mend)));
-        reflection.framebuffer.bind();
-        recomputed.begin();
-        wholeImage.draw();
-        recomputed.end();
-    }
-};
-
 ReuseRenderer::ReuseRenderer(const gl::ShaderLibrary& shaders,
                              const reflections::GpuObjects& objects,
                              reflections::ReflectionTracer& tracer, const ReuseSettings& settings,
                              glm::ivec2 sizePx, float diagonalM)
-    : impl_(std::make_unique<Impl>(shaders, objects, tracer, settings, sizePx, diagonalM)) {
+    : objects_(objects),
+      tracer_(tracer),
+      settings_(settings),
+      gbufferRenderer_(shaders, objects.scene()),
+      matcher_(shaders, settings.matching),
+      reprojection_(shaders, settings.reprojection, sizePx),
+      movedObjects_(shaders, sizePx),
+      mend_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/mend.frag.glsl"}),
+      key_(emptyView(sizePx), diagonalM),
+      gbuffer_(emptyView(sizePx)),
+      reflection_(sizePx),
+      traced_(sizePx),
+      offsets_{Offsets(sizePx), Offsets(sizePx)},
+      wanted_(gl::Texture::make2D(GL_R8UI, sizePx)) {
     GFXREPRO_ASSERT(settings.seamPx >= 0);
+    if (!settings.isDirect && settings.reprojection.resampling == Resampling::Twice)
+        shifted_.emplace(sizePx);
 }
-
-ReuseRenderer::~ReuseRenderer() = default;
 
 void ReuseRenderer::render(const kit::View& view, gl::Profiler& profiler,
                            gl::Profiler* recomputeTimes) {
-    GFXREPRO_ASSERT(view.sizePx == impl_->gbuffer.view.sizePx);
+    GFXREPRO_ASSERT(view.sizePx == gbuffer_.view.sizePx);
     // First what every frame needs: the device draws it while the count of the frame before, by
     // which this one is a key frame or not, is waited for.
-    impl_->drawDiffuse(view, profiler);
-    impl_->isKeyFrame = impl_->isKeyFrameNext();
-    impl_->hadOffsets = impl_->hasOffsets;
-    if (impl_->isKeyFrame) {
-        impl_->renderKeyFrame(profiler);
+    drawDiffuse(view, profiler);
+    isKeyFrame_ = isKeyFrameNext();
+    hadOffsets_ = hasOffsets_;
+    if (isKeyFrame_) {
+        renderKeyFrame(profiler);
     } else {
-        impl_->renderReused(profiler, recomputeTimes);
+        renderReused(profiler, recomputeTimes);
     }
-    impl_->hasFrame = true;
-    impl_->isUndone = false;
+    hasFrame_ = true;
+    isUndone_ = false;
+}
+
+std::uint32_t ReuseRenderer::recomputedSamples() const {
+    return isKeyFrame_ ? reprojection_.reflectiveSamples()
+                       : static_cast<std::uint32_t>(recomputed_.result());
+}
+
+// [xie2017] Sec. 5.4.4: by what the frame before had to recompute.
+bool ReuseRenderer::isKeyFrameNext() const {
+    if (isUndone_) return isKeyFrame_;
+    if (!hasFrame_) return true;
+    if (isKeyFrame_) return false;
+    const double share = double{settings_.keyFrameThreshold};
+    return recomputedSamples() > share * reprojection_.reflectiveSamples();
+}
+
+void ReuseRenderer::drawDiffuse(const kit::View& view, gl::Profiler& profiler) {
+    const gl::GpuScope scope(profiler, "diffuse");
+    gbuffer_.view = view;
+    gbufferRenderer_.render(objects_, gbuffer_);
+}
+
+void ReuseRenderer::renderKeyFrame(gl::Profiler& profiler) {
+    std::swap(key_.gbuffer, gbuffer_);
+    {
+        const gl::GpuScope scope(profiler, "recompute");
+        tracer_.trace(key_.gbuffer, nullptr, key_.reflection, profiler);
+        reprojection_.wantAll(key_.gbuffer, wanted_);
+    }
+    const gl::GpuScope scope(profiler, "reflection_shift");
+    reprojection_.setKeyFrame(key_);
+    movedObjects_.setKeyFrame(objects_);
+    hasOffsets_ = false;
+}
+
+void ReuseRenderer::renderReused(gl::Profiler& profiler, gl::Profiler* recomputeTimes) {
+    const bool hasMoved = settings_.recomputesMoved && movedObjects_.find(objects_);
+    if (!settings_.isDirect) match(profiler);
+    const gl::Texture* doubtful =
+        hasMoved && !settings_.isDirect ? &movedObjects_.doubtful(key_) : nullptr;
+    if (shifted_) {
+        const gl::GpuScope scope(profiler, "reflection_shift");
+        reprojection_.shift(key_, offsets_[0], doubtful, *shifted_);
+    }
+    {
+        const gl::GpuScope scope(profiler, "reflection_warp");
+        warp(doubtful);
+        if (hasMoved) movedObjects_.want(objects_, gbuffer_, key_.diagonalM, wanted_);
+    }
+    const gl::GpuScope scope(profiler, "recompute");
+    std::optional<gl::GpuScope> own;
+    if (recomputeTimes != nullptr) own.emplace(*recomputeTimes, "recompute");
+    tracer_.trace(gbuffer_, &wanted_, traced_, profiler);
+    mendReflections();
+}
+
+void ReuseRenderer::match(gl::Profiler& profiler) {
+    const gl::GpuScope scope(profiler, "pixel_matching");
+    std::swap(offsets_[0], offsets_[1]);
+    matcher_.match(key_, gbuffer_.view.eyeWorld, hasOffsets_ ? &offsets_[1] : nullptr, offsets_[0]);
+    hasOffsets_ = true;
+}
+
+void ReuseRenderer::warp(const gl::Texture* doubtful) {
+    if (shifted_) {
+        reprojection_.warp(key_, shifted_->radiance, gbuffer_, reflection_, wanted_);
+    } else if (settings_.isDirect) {
+        reprojection_.warp(key_, key_.reflection.radiance, gbuffer_, reflection_, wanted_);
+    } else {
+        reprojection_.project(key_, offsets_[0], doubtful, gbuffer_, reflection_, wanted_);
+    }
+}
+
+void ReuseRenderer::mendReflections() {
+    // Read while it is drawn to: OpenGL 4.5 (Sec. 9.3.1) allows it where the texels read and
+    // those written are different ones, as reused and recomputed samples are.
+    glTextureBarrier();
+    mend_.set("seamPx", settings_.seamPx);
+    mend_.use(gl::Resources{{"wanted", wanted_},
+                            {"traced", traced_.radiance},
+                            {"tracedDistance", traced_.distance},
+                            {"reused", reflection_.radiance}}
+                  .with(gbuffer_.resourcesFor(mend_)));
+    reflection_.framebuffer.bind();
+    recomputed_.begin();
+    wholeImage_.draw();
+    recomputed_.end();
 }
 
 void ReuseRenderer::undo() {
-    GFXREPRO_ASSERT(impl_->hasFrame && !impl_->isUndone);
-    impl_->isUndone = true;
-    if (impl_->isKeyFrame) return;  // it overwrote all there was, and so will the next
-    impl_->hasOffsets = impl_->hadOffsets;
-    if (!impl_->settings.isDirect) std::swap(impl_->offsets[0], impl_->offsets[1]);
-}
-
-const reflections::GBuffer& ReuseRenderer::gbuffer() const {
-    return impl_->isKeyFrame ? impl_->key.gbuffer : impl_->gbuffer;
-}
-
-const reflections::ReflectionTarget& ReuseRenderer::reflection() const {
-    return impl_->isKeyFrame ? impl_->key.reflection : impl_->reflection;
+    GFXREPRO_ASSERT(hasFrame_ && !isUndone_);
+    isUndone_ = true;
+    if (isKeyFrame_) return;  // it overwrote all there was, and so will the next
+    hasOffsets_ = hadOffsets_;
+    if (!settings_.isDirect) std::swap(offsets_[0], offsets_[1]);
 }
 
 ReuseCounts ReuseRenderer::counts() const {
     ReuseCounts counts;
-    counts.isKeyFrame = impl_->isKeyFrame;
-    if (!impl_->hasFrame) return counts;
-    counts.reflectiveSamples = impl_->reprojection.reflectiveSamples();
-    counts.recomputedSamples = impl_->recomputedSamples();
-    if (!impl_->isKeyFrame && !impl_->settings.isDirect) {
-        counts.matchingSteps = impl_->matcher.counts(impl_->key, impl_->offsets[0]).meanSteps();
+    counts.isKeyFrame = isKeyFrame_;
+    if (!hasFrame_) return counts;
+    counts.reflectiveSamples = reprojection_.reflectiveSamples();
+    counts.recomputedSamples = recomputedSamples();
+    if (!isKeyFrame_ && !settings_.isDirect) {
+        counts.matchingSteps = matcher_.counts(key_, offsets_[0]).meanSteps();
     }
     return counts;
 }
 
-const gl::Texture& ReuseRenderer::recomputed() const {
-    return impl_->wanted;
-}
-
-const Offsets& ReuseRenderer::offsets() const {
-    return impl_->offsets[0];
-}
-
-const ShiftedImage* ReuseRenderer::shifted() const {
-    return impl_->shifted ? &*impl_->shifted : nullptr;
-}
-
-const ReflectionDepthImage& ReuseRenderer::keyFrame() const {
-    return impl_->key;
-}
-
 std::size_t ReuseRenderer::sizeBytes() const {
-    return impl_->key.sizeBytes() + impl_->gbuffer.sizeBytes() + impl_->reflection.sizeBytes() +
-           impl_->traced.sizeBytes() + impl_->offsets[0].sizeBytes() +
-           impl_->offsets[1].sizeBytes() + (impl_->shifted ? impl_->shifted->sizeBytes() : 0) +
-           impl_->wanted.sizeBytes() + impl_->reprojection.sizeBytes() +
-           impl_->movedObjects.sizeBytes();
+    return key_.sizeBytes() + gbuffer_.sizeBytes() + reflection_.sizeBytes() + traced_.sizeBytes() +
+           offsets_[0].sizeBytes() + offsets_[1].sizeBytes() +
+           (shifted_ ? shifted_->sizeBytes() : 0) + wanted_.sizeBytes() +
+           reprojection_.sizeBytes() + movedObjects_.sizeBytes();
 }
 
 }  // namespace gfxrepro::reflection_reuse

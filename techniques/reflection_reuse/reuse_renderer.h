@@ -1,14 +1,51 @@
 // [xie2017] Algorithm 8: key frames traced, frames between them reprojected and mended.
 #pragma once
 
-#include <memory>
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
+#include "engine/gl/objects.h"
+#include "engine/gl/program.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/reflection_reuse/pixel_matcher.h"
 #include "techniques/reflection_reuse/reprojection.h"
 #include "techniques/reflections/reflection_tracer.h"
 
 namespace gfxrepro::reflection_reuse {
+
+/// Objects are their boxes. Then: the key frame's segments W → R through the box in which a moved
+/// object was. Now: the mirror rays of the new view through the box in which it is, and samples of
+/// reflectors that moved. A ray's length now is not known before it is traced, so that what stands
+/// before the object does not save it from being traced.
+class MovedObjects {
+  public:
+    MovedObjects(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx);
+
+    /// Where the objects are in the key frame.
+    void setKeyFrame(const reflections::GpuObjects& objects);
+    /// Finds those that are elsewhere now. False: none.
+    bool find(const reflections::GpuObjects& objects);
+
+    /// Then; R8UI in the key frame's view, 1: passes a box.
+    const gl::Texture& doubtful(const ReflectionDepthImage& key);
+    /// Now; writes 1 into `wanted`.
+    void want(const reflections::GpuObjects& objects, const reflections::GBuffer& gbuffer,
+              float diagonalM, gl::Texture& wanted);
+    std::size_t sizeBytes() const;
+
+  private:
+    gl::Pass then_, now_;
+    gl::Texture doubtful_;
+    gl::Framebuffer framebuffer_;
+    std::vector<glm::mat4> keyPoses_;
+    std::vector<scene::Box> keyBounds_;
+    gl::Buffer moved_;
+    unsigned movedCount_ = 0;
+    kit::WholeImage wholeImage_;
+};
 
 struct ReuseSettings {
     /// When more than this share of a frame's reflective samples was recomputed, the next frame is
@@ -46,7 +83,6 @@ class ReuseRenderer {
     ReuseRenderer(const gl::ShaderLibrary& shaders, const reflections::GpuObjects& objects,
                   reflections::ReflectionTracer& tracer, const ReuseSettings& settings,
                   glm::ivec2 sizePx, float diagonalM);
-    ~ReuseRenderer();
 
     /// The objects are posed and the tracer is updated. The first frame is a key frame. A profiler
     /// for `recomputeTimes` gets a scope of its own within `recompute`, between key frames.
@@ -55,22 +91,53 @@ class ReuseRenderer {
     /// Takes the last render() back but for what gbuffer() and the others hold: the next one
     /// decides and starts as it did, so that a frame can be rendered again.
     void undo();
-    const reflections::GBuffer& gbuffer() const;
-    const reflections::ReflectionTarget& reflection() const;
+    const reflections::GBuffer& gbuffer() const { return isKeyFrame_ ? key_.gbuffer : gbuffer_; }
+    const reflections::ReflectionTarget& reflection() const {
+        return isKeyFrame_ ? key_.reflection : reflection_;
+    }
     /// Of the last render(); waits for the device.
     ReuseCounts counts() const;
     /// 1 where a sample of the last frame was recomputed ([xie2017] Fig. 40), R8UI.
-    const gl::Texture& recomputed() const;
+    const gl::Texture& recomputed() const { return wanted_; }
     /// Of the last frame that was not a key frame.
-    const Offsets& offsets() const;
+    const Offsets& offsets() const { return offsets_[0]; }
     /// Of the last frame that was not a key frame; null: there is none (Resampling::Once, direct).
-    const ShiftedImage* shifted() const;
-    const ReflectionDepthImage& keyFrame() const;
+    const ShiftedImage* shifted() const { return shifted_ ? &*shifted_ : nullptr; }
+    const ReflectionDepthImage& keyFrame() const { return key_; }
     std::size_t sizeBytes() const;
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::uint32_t recomputedSamples() const;
+    bool isKeyFrameNext() const;
+    void drawDiffuse(const kit::View& view, gl::Profiler& profiler);
+    void renderKeyFrame(gl::Profiler& profiler);
+    void renderReused(gl::Profiler& profiler, gl::Profiler* recomputeTimes);
+    void match(gl::Profiler& profiler);
+    void warp(const gl::Texture* doubtful);
+    void mendReflections();
+
+    const reflections::GpuObjects& objects_;
+    reflections::ReflectionTracer& tracer_;
+    ReuseSettings settings_;
+    reflections::GBufferRenderer gbufferRenderer_;
+    PixelMatcher matcher_;
+    Reprojection reprojection_;
+    MovedObjects movedObjects_;
+    gl::Pass mend_;
+    ReflectionDepthImage key_;
+    reflections::GBuffer gbuffer_;              // of this frame; of a key frame, `key_` has it
+    reflections::ReflectionTarget reflection_;  // of frames that are not key frames
+    reflections::ReflectionTarget traced_;
+    std::array<Offsets, 2> offsets_;       // of this and of the frame before
+    std::optional<ShiftedImage> shifted_;  // of two steps
+    gl::Texture wanted_;
+    gl::SampleQuery recomputed_;
+    kit::WholeImage wholeImage_;
+    bool hasFrame_ = false;
+    bool isKeyFrame_ = false;  // the last frame
+    bool hasOffsets_ = false;  // of the frame before, for the same key frame
+    bool hadOffsets_ = false;  // before the last render()
+    bool isUndone_ = false;    // isKeyFrame_ is what the next frame is, then, not what the last was
 };
 
 }  // namespace gfxrepro::reflection_reuse

@@ -3,11 +3,60 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <glm/gtc/packing.hpp>
+
 #include "engine/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::reflections {
 
 namespace {
+
+constexpr std::size_t kSamplesGroupSize = 64;
+/// Work groups along one axis that every device takes; beyond, invocations take several samples.
+constexpr GLuint kMostGroups = 65535;
+
+/// As shaders/wanted_samples.comp.glsl has it.
+struct ListedSample {
+    std::uint32_t surface = 0;
+    float depthM = 0.0F;
+    glm::vec2 normalOctahedral{0.0F};
+    glm::vec3 keptDiffuse{0.0F};
+};
+static_assert(sizeof(ListedSample) == 28);
+
+gl::Pass samplesPass(const gl::ShaderLibrary& shaders, const char* file) {
+    return {shaders, {file}, {{"GROUP_SIZE", static_cast<unsigned>(kSamplesGroupSize)}}};
+}
+
+void dispatch(const gl::Pass& pass, std::size_t count, const gl::Resources& resources) {
+    pass.set("count", static_cast<std::uint32_t>(count));
+    pass.dispatch({std::min(kit::groupsFor(count, kSamplesGroupSize), kMostGroups), 1, 1},
+                  resources);
+}
+
+/// The places whose mask is not 0 and their four neighbours, each once.
+std::vector<std::uint32_t> withNeighbours(const std::vector<std::uint8_t>& mask,
+                                          glm::ivec2 sizePx) {
+    std::vector<std::uint8_t> isListed(mask.size());
+    std::vector<std::uint32_t> places;
+    const auto add = [&](std::size_t place) {
+        if (isListed[place] != 0) return;
+        isListed[place] = 1;
+        places.push_back(static_cast<std::uint32_t>(place));
+    };
+    const auto width = static_cast<std::size_t>(sizePx.x);
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        if (mask[i] == 0) continue;
+        add(i);
+        if (i % width > 0) add(i - 1);
+        if (i % width + 1 < width) add(i + 1);
+        if (i >= width) add(i - width);
+        if (i + width < mask.size()) add(i + width);
+    }
+    return places;
+}
 
 /// Triangles and instances; no attributes, materials or textures, so that posing the scene copies
 /// no more than matrices.
@@ -32,13 +81,21 @@ glm::mat3 normalFromMesh(const glm::mat4& worldFromMesh) {
 
 }  // namespace
 
+/// As shaders/found_samples.comp.glsl has it.
+struct EmbreeTracer::FoundSample {
+    std::uint32_t index = 0;  // of HostGBuffer
+    float distanceM = 0.0F;   // as TracedSample
+    glm::vec3 radiance{0.0F};
+};
+
 EmbreeTracer::EmbreeTracer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
                            const EnvironmentMap& map, const LobeSettings& lobe)
     : scene_(scene),
       map_(map),
       lobe_(lobe),
       posed_(trianglesOf(scene.scene())),
-      wantedSamples_(shaders) {}
+      readWanted_(samplesPass(shaders, "reflections/wanted_samples.comp.glsl")),
+      writeFound_(samplesPass(shaders, "reflections/found_samples.comp.glsl")) {}
 
 void EmbreeTracer::update(const GpuObjects& objects, gl::Profiler& profiler) {
     GFXREPRO_ASSERT_EQ(objects.poses().size(), posed_.instances.size());
@@ -94,7 +151,7 @@ void EmbreeTracer::traceWanted(const GBuffer& gbuffer, const gl::Texture& wanted
     std::vector<std::uint32_t> indices;
     {
         const gl::CpuScope scope(profiler, "transfer");
-        indices = wantedSamples_.read(gbuffer, wanted, host_);
+        indices = readWanted(gbuffer, wanted);
     }
     std::vector<FoundSample> found(indices.size());
     {
@@ -102,30 +159,70 @@ void EmbreeTracer::traceWanted(const GBuffer& gbuffer, const gl::Texture& wanted
         const auto width = static_cast<std::uint32_t>(gbuffer.view.sizePx.x);
         tbb::parallel_for(std::size_t{0}, indices.size(), [&](std::size_t i) {
             const glm::ivec2 pixel(indices[i] % width, indices[i] / width);
-            const TracedSample sample = traceSample(host_, pixel);
+            const TracedSample sample = traceSample(host_, pixel, lobe_);
             found[i] = {indices[i], sample.distanceM, sample.radiance};
         });
     }
     const gl::CpuScope scope(profiler, "transfer");
-    wantedSamples_.write(found, target);
+    writeFound(found, target);
 }
 
-/// What `trace` gives for the pixels of reflective samples, of all or of those that are wanted.
+/// Reads the reflective samples where `wanted` is not 0 and their four neighbours into host_.
+/// Returns the indices of the wanted ones. Waits for the device.
+std::vector<std::uint32_t> EmbreeTracer::readWanted(const GBuffer& gbuffer,
+                                                    const gl::Texture& wanted) {
+    const std::vector<std::uint8_t> mask = readMask(wanted);
+    host_.resizeFor(gbuffer.view);
+    const std::vector<std::uint32_t> places = withNeighbours(mask, gbuffer.view.sizePx);
+    std::vector<std::uint32_t> indices;
+    if (places.empty()) return indices;
+
+    const gl::Buffer placesBuffer = gl::Buffer::of(places);
+    const gl::Buffer samples(places.size() * sizeof(ListedSample));
+    dispatch(readWanted_, places.size(),
+             gl::Resources{{"Places", placesBuffer}, {"Samples", samples}}.with(
+                 gbuffer.resourcesFor(readWanted_)));
+    const std::vector<ListedSample> listed = samples.read<ListedSample>(places.size());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const std::size_t i = places[k];
+        host_.diffuse[i] = linearColour(listed[k].keptDiffuse);
+        host_.setNormal(i, listed[k].normalOctahedral);
+        host_.depthM[i] = listed[k].depthM;
+        host_.surface[i] = listed[k].surface;
+        if (mask[i] != 0 && host_.isReflective(i)) indices.push_back(places[k]);
+    }
+    return indices;
+}
+
+/// The rest of the target stays what it is.
+void EmbreeTracer::writeFound(std::vector<FoundSample>& found, ReflectionTarget& target) const {
+    static_assert(sizeof(FoundSample) == 20);
+    if (found.empty()) return;
+    // To halves as an upload does, to the nearest: a device may round what it stores down.
+    for (FoundSample& sample : found) {
+        for (int i = 0; i < 3; ++i) {
+            sample.radiance[i] = glm::unpackHalf1x16(glm::packHalf1x16(sample.radiance[i]));
+        }
+    }
+    const gl::Buffer samples = gl::Buffer::of(found);
+    dispatch(writeFound_, found.size(),
+             {{"Samples", samples},
+              {"radianceImage", target.radiance},
+              {"distanceImage", target.distance}});
+}
+
+/// What `trace` gives for the pixels of reflective samples.
 template <class Trace>
 std::vector<TracedSample> EmbreeTracer::samplesOf(const HostGBuffer& gbuffer,
-                                                  const std::vector<std::uint8_t>* wanted,
                                                   const Trace& trace) const {
     GFXREPRO_ASSERT(rays_.has_value());
     const glm::ivec2 sizePx = gbuffer.view.sizePx;
     std::vector<TracedSample> samples(gbuffer.depthM.size());
-    if (wanted != nullptr) GFXREPRO_ASSERT_EQ(wanted->size(), samples.size());
     tbb::parallel_for(tbb::blocked_range<int>(0, sizePx.y), [&](const auto& rows) {
         for (int y = rows.begin(); y < rows.end(); ++y) {
             for (int x = 0; x < sizePx.x; ++x) {
                 const std::size_t index = gbuffer.indexOf({x, y});
-                if (!gbuffer.isReflective(index)) continue;
-                if (wanted != nullptr && (*wanted)[index] == 0) continue;
-                samples[index] = trace(glm::ivec2(x, y));
+                if (gbuffer.isReflective(index)) samples[index] = trace(glm::ivec2(x, y));
             }
         }
     });
@@ -133,13 +230,12 @@ std::vector<TracedSample> EmbreeTracer::samplesOf(const HostGBuffer& gbuffer,
 }
 
 std::vector<TracedSample> EmbreeTracer::trace(const HostGBuffer& gbuffer,
-                                              const std::vector<std::uint8_t>* wanted) const {
-    return samplesOf(gbuffer, wanted,
-                     [&](glm::ivec2 pixel) { return traceSample(gbuffer, pixel); });
+                                              const LobeSettings& lobe) const {
+    return samplesOf(gbuffer, [&](glm::ivec2 pixel) { return traceSample(gbuffer, pixel, lobe); });
 }
 
 std::vector<TracedSample> EmbreeTracer::traceMirrorRays(const HostGBuffer& gbuffer) const {
-    return samplesOf(gbuffer, nullptr, [&](glm::ivec2 pixel) {
+    return samplesOf(gbuffer, [&](glm::ivec2 pixel) {
         TracedSample sample;
         const auto hit = closestHit(gbuffer.positionWorld(pixel), gbuffer.mirrorDirection(pixel));
         if (hit) sample = {glm::vec3(0.0F), hit->distance, 1 + hit->instance};
@@ -149,7 +245,8 @@ std::vector<TracedSample> EmbreeTracer::traceMirrorRays(const HostGBuffer& gbuff
 
 // [xie2017] Sec. 4.6: the lobe, its fading towards the far plane; the diffuse colour stands in for
 // what has faded and for glossy rays that meet nothing.
-TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel) const {
+TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel,
+                                       const LobeSettings& lobe) const {
     const std::size_t index = gbuffer.indexOf(pixel);
     const float glossiness = gbuffer.glossiness(index);
     const float diagonalM = scene_.diagonalM();
@@ -170,14 +267,14 @@ TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pi
                       : environment_.radianceFrom(mirrorDirection);
         return sample;
     }
-    const int count = raysOf(lobe_, glossiness);
+    const int count = raysOf(lobe, glossiness);
     glm::vec3 sum(0.0F);
     float weights = 0.0F;
     for (int i = 0; i < count; ++i) {
-        const glm::vec3 direction = lobeDirection(lobe_, mirrorDirection, glossiness, i, count);
+        const glm::vec3 direction = lobeDirection(lobe, mirrorDirection, glossiness, i, count);
         const std::optional<raycast::Hit> hit = closestHit(origin, direction);
         if (!hit) continue;
-        const float weight = fadeOf(lobe_, glossiness, hit->distance, diagonalM);
+        const float weight = fadeOf(lobe, glossiness, hit->distance, diagonalM);
         if (weight > 0.0F) {
             sum += weight * radianceAt(*hit, direction, beamArea(beam, hit->distance));
         }

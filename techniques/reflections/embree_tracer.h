@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "engine/raycast/ray_tracer.h"
-#include "techniques/reflections/environment_map.h"
+#include "techniques/reflections/gbuffer.h"
 #include "techniques/reflections/reflection_tracer.h"
-#include "techniques/reflections/wanted_samples.h"
 
 namespace gfxrepro::reflections {
 
@@ -39,26 +38,34 @@ class EmbreeTracer final : public ReflectionTracer {
 
     /// On the host, a sample a pixel of the G-buffer, rows from the bottom, in parallel. Needs an
     /// update() before.
-    std::vector<TracedSample> trace(const HostGBuffer& gbuffer,
-                                    const std::vector<std::uint8_t>* wanted = nullptr) const;
+    std::vector<TracedSample> trace(const HostGBuffer& gbuffer) const {
+        return trace(gbuffer, lobe_);
+    }
+    std::vector<TracedSample> trace(const HostGBuffer& gbuffer, const LobeSettings& lobe) const;
     /// Likewise, without radiance: for what asks only where mirror rays end.
     std::vector<TracedSample> traceMirrorRays(const HostGBuffer& gbuffer) const;
     /// Of the last update().
     const raycast::RayTracer& rays() const { return *rays_; }
 
   private:
+    struct FoundSample;
+
     void readEnvironment();
+    /// Wanted samples go by lists, so that what is transferred goes with them and not with the
+    /// image: beside its mask, a byte a sample, 28 bytes a wanted sample or neighbour of one, by
+    /// which its beam is found, and 20 back.
     void traceWanted(const GBuffer& gbuffer, const gl::Texture& wanted, ReflectionTarget& target,
                      gl::Profiler& profiler);
+    std::vector<std::uint32_t> readWanted(const GBuffer& gbuffer, const gl::Texture& wanted);
+    void writeFound(std::vector<FoundSample>& found, ReflectionTarget& target) const;
     template <class Trace>
-    std::vector<TracedSample> samplesOf(const HostGBuffer& gbuffer,
-                                        const std::vector<std::uint8_t>* wanted,
-                                        const Trace& trace) const;
+    std::vector<TracedSample> samplesOf(const HostGBuffer& gbuffer, const Trace& trace) const;
     std::optional<raycast::Hit> closestHit(const glm::vec3& origin,
                                            const glm::vec3& direction) const {
         return rays_->closestHit(origin, direction, kStart * scene_.diagonalM());
     }
-    TracedSample traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel) const;
+    TracedSample traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel,
+                             const LobeSettings& lobe) const;
     glm::vec3 radianceAt(const raycast::Hit& hit, const glm::vec3& direction, float beamArea) const;
 
     const ReflectiveScene& scene_;
@@ -69,8 +76,8 @@ class EmbreeTracer final : public ReflectionTracer {
     std::optional<raycast::RayTracer> rays_;
     EnvironmentMap::Host environment_;
     std::uint64_t environmentVersion_ = 0;
-    WantedSamples wantedSamples_;
-    HostGBuffer host_;  // what wantedSamples_ has read
+    gl::Pass readWanted_, writeFound_;
+    HostGBuffer host_;  // samples that were wanted; others stay what they are, nothing at first
 };
 
 }  // namespace gfxrepro::reflections

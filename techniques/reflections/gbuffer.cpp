@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "techniques/reflections/kept_colour.h"
-
 namespace gfxrepro::reflections {
 
 namespace {
@@ -133,26 +131,40 @@ void GBufferRenderer::render(const GpuObjects& objects, GBuffer& target) const {
 
 HostGBuffer readGBuffer(const GBuffer& gbuffer) {
     HostGBuffer host;
-    host.view = gbuffer.view;
-    host.worldFromPixels = kit::worldFromPixels(gbuffer.view);
+    host.resizeFor(gbuffer.view);
     const std::vector<float> diffuse = gbuffer.diffuse.read<float>(GL_RGB, GL_FLOAT, 3);
     const std::vector<float> normals = gbuffer.normal.read<float>(GL_RG, GL_FLOAT, 2);
     host.depthM = gbuffer.depth.read<float>(GL_RED, GL_FLOAT, 1);
     host.surface = readSurfaces(gbuffer);
-    const std::size_t samples = host.depthM.size();
-    host.diffuse.resize(samples);
-    host.normalOctahedral.resize(samples);
-    host.normalWorld.resize(samples);
-    tbb::parallel_for(std::size_t{0}, samples, [&](std::size_t i) {
+    tbb::parallel_for(std::size_t{0}, host.depthM.size(), [&](std::size_t i) {
         host.diffuse[i] = linearColour({diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]});
-        host.normalOctahedral[i] = {normals[2 * i], normals[2 * i + 1]};
-        host.normalWorld[i] = glm::normalize(directionFromOctahedral(host.normalOctahedral[i]));
+        host.setNormal(i, {normals[2 * i], normals[2 * i + 1]});
     });
     return host;
 }
 
 std::vector<std::uint32_t> readSurfaces(const GBuffer& gbuffer) {
     return gbuffer.surface.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+}
+
+std::vector<std::uint8_t> readMask(const gl::Texture& mask) {
+    return mask.read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1);
+}
+
+void HostGBuffer::resizeFor(const kit::View& of) {
+    view = of;
+    worldFromPixels = kit::worldFromPixels(view);
+    const std::size_t samples = indexOf({0, view.sizePx.y});
+    diffuse.resize(samples);
+    normalWorld.resize(samples);
+    normalOctahedral.resize(samples);
+    depthM.resize(samples);
+    surface.resize(samples);
+}
+
+void HostGBuffer::setNormal(std::size_t index, const glm::vec2& octahedral) {
+    normalOctahedral[index] = octahedral;
+    normalWorld[index] = glm::normalize(directionFromOctahedral(octahedral));
 }
 
 float HostGBuffer::glossiness(std::size_t index) const {

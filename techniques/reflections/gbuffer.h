@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "engine/gl/objects.h"
@@ -10,6 +11,18 @@
 #include "techniques/reflections/gpu_objects.h"
 
 namespace gfxrepro::reflections {
+
+/// Texels hold square roots of linear colours, 0 to 1, in 10 bits: as shown they are at most a
+/// fifth of a level of 255 off. Linear ones would be up to 1.6 levels off near black.
+constexpr GLenum kKeptColourFormat = GL_RGB10_A2;
+
+/// As shaders/kept_colour.glsl has it.
+inline glm::vec3 keptColour(const glm::vec3& linear) {
+    return glm::sqrt(linear);
+}
+inline glm::vec3 linearColour(const glm::vec3& kept) {
+    return kept * kept;
+}
 
 /// 24 bytes a sample with the depth buffer. Positions are not kept: a sample lies at
 /// kit::worldFromPixels(view) · (x·d, y·d, d, 1), (x, y) the pixel's centre.
@@ -62,6 +75,10 @@ struct HostGBuffer {
     std::vector<float> depthM;
     std::vector<std::uint32_t> surface;
 
+    /// Room for the samples of a view.
+    void resizeFor(const kit::View& of);
+    /// Sets both normals of a sample.
+    void setNormal(std::size_t index, const glm::vec2& octahedral);
     std::size_t indexOf(glm::ivec2 pixel) const {
         return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(view.sizePx.x) +
                static_cast<std::size_t>(pixel.x);
@@ -85,5 +102,7 @@ glm::vec3 directionFromOctahedral(const glm::vec2& e);
 HostGBuffer readGBuffer(const GBuffer& gbuffer);
 /// Likewise, `surface` alone: a fifth of the bytes, and nothing to unpack.
 std::vector<std::uint32_t> readSurfaces(const GBuffer& gbuffer);
+/// Likewise a texture of a byte a sample.
+std::vector<std::uint8_t> readMask(const gl::Texture& mask);
 
 }  // namespace gfxrepro::reflections

@@ -13,8 +13,6 @@ namespace gfxrepro::reflections {
 
 namespace {
 
-/// Of a draw that is not split: indices are counted by signed numbers.
-
 /// Object of shaders/objects.glsl.
 struct ObjectRecord {
     glm::mat4 worldFromMesh;

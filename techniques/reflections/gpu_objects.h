@@ -1,9 +1,12 @@
 // A ReflectiveScene on the device: one set of vertex buffers, a record an object.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "engine/gl/objects.h"
 #include "engine/gl/pass.h"
@@ -19,6 +22,19 @@ constexpr unsigned kObjectIndexAttribute = 4;
 gl::Defines objectDefines();
 /// Those, and what shading.glsl asks of the scene.
 gl::Defines surfaceDefines(const ReflectiveScene& scene);
+
+/// Whether objects have moved since it was last asked; the first time they have.
+class PoseWatch {
+  public:
+    bool hasChanged(std::span<const glm::mat4> poses) {
+        if (poses_ && std::ranges::equal(poses, *poses_)) return false;
+        poses_.emplace(poses.begin(), poses.end());
+        return true;
+    }
+
+  private:
+    std::optional<std::vector<glm::mat4>> poses_;
+};
 
 class GpuObjects {
   public:

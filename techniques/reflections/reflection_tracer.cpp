@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "engine/core/error.h"
 
 namespace gfxrepro::reflections {
 
@@ -60,6 +63,179 @@ ReflectionTarget::ReflectionTarget(glm::ivec2 sizePx)
 
 std::size_t ReflectionTarget::sizeBytes() const {
     return radiance.sizeBytes() + distance.sizeBytes();
+}
+
+namespace {
+
+/// As OpenGL has cube maps: where a face looks, and which way its rows go.
+struct Face {
+    glm::vec3 forward;
+    glm::vec3 up;
+};
+constexpr Face kFaces[6] = {{{1, 0, 0}, {0, -1, 0}}, {{-1, 0, 0}, {0, -1, 0}},
+                            {{0, 1, 0}, {0, 0, 1}},  {{0, -1, 0}, {0, 0, -1}},
+                            {{0, 0, 1}, {0, -1, 0}}, {{0, 0, -1}, {0, -1, 0}}};
+
+/// A face and a place on it, 0 to 1, by the table of the OpenGL specification (Sec. 8.13).
+struct PlaceOnCube {
+    int face = 0;
+    glm::vec2 place{0.0F};
+};
+PlaceOnCube placeOnCube(const glm::vec3& d) {
+    const glm::vec3 size = glm::abs(d);
+    int face = 0;
+    float s = 0.0F, t = 0.0F, major = 0.0F;
+    if (size.x >= size.y && size.x >= size.z) {
+        face = d.x >= 0.0F ? 0 : 1;
+        s = d.x >= 0.0F ? -d.z : d.z;
+        t = -d.y;
+        major = size.x;
+    } else if (size.y >= size.z) {
+        face = d.y >= 0.0F ? 2 : 3;
+        s = d.x;
+        t = d.y >= 0.0F ? d.z : -d.z;
+        major = size.y;
+    } else {
+        face = d.z >= 0.0F ? 4 : 5;
+        s = d.z >= 0.0F ? d.x : -d.x;
+        t = -d.y;
+        major = size.z;
+    }
+    return {face, 0.5F * (glm::vec2(s, t) / major + 1.0F)};
+}
+
+/// The farthest corner of the objects' boxes.
+float reachOf(std::span<const scene::Box> boxes, const glm::vec3& from) {
+    float reach = 0.0F;
+    for (const scene::Box& box : boxes) {
+        if (box.isEmpty()) continue;
+        const glm::vec3 farthest = glm::max(glm::abs(box.min - from), glm::abs(box.max - from));
+        reach = std::max(reach, glm::length(farthest));
+    }
+    return reach;
+}
+
+/// By a pass over the whole image that knows which samples are wanted.
+void drawReflections(const gl::Pass& pass, const kit::WholeImage& wholeImage,
+                     const EnvironmentMap& map, const GBuffer& gbuffer, const gl::Texture* wanted,
+                     ReflectionTarget& target) {
+    GFXREPRO_ASSERT(wanted == nullptr || wanted->size() == gbuffer.depth.size());
+    pass.set("hasWanted", wanted != nullptr ? 1 : 0);
+    pass.use(gl::Resources{{"wanted", wanted != nullptr ? *wanted : gbuffer.surface}}
+                 .with(gbuffer.resourcesFor(pass))
+                 .with(map.resources()));
+    target.framebuffer.bind();
+    wholeImage.draw();
+}
+
+}  // namespace
+
+EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene)
+    : EnvironmentMap(shaders, scene, scene.boundsWorld().centre()) {}
+
+// Colours are in [0, 1], as in the G-buffer.
+EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
+                               const glm::vec3& centreWorld)
+    : centreWorld_(centreWorld),
+      cube_(gl::Texture::makeCube(kKeptColourFormat, kFaceSizePx)),
+      depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(kFaceSizePx))),
+      pass_(shaders, {"reflections/surface.vert.glsl", "reflections/environment_map.frag.glsl"},
+            surfaceDefines(scene)) {}
+
+void EnvironmentMap::render(const GpuObjects& objects) {
+    ++version_;
+    // Everything lies before the far plane; what is nearer than a thousandth of it is cut off.
+    const float farM = std::max(1.001F * reachOf(objects.boundsWorld(), centreWorld_), 1e-3F);
+    const glm::mat4 clipFromView = glm::perspective(glm::radians(90.0F), 1.0F, 1e-3F * farM, farM);
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    pass_.set("eyeWorld", centreWorld_);
+    pass_.use(objects.resources());
+    for (int i = 0; i < 6; ++i) {
+        const gl::Framebuffer framebuffer = gl::Framebuffer::ofLayer(cube_, i, &depth_);
+        framebuffer.clearColour(0, glm::vec4(keptColour(kBackground), 1.0F));
+        framebuffer.clearDepth(1.0F);
+        framebuffer.bind();
+        pass_.set("clipFromWorld",
+                  clipFromView *
+                      glm::lookAt(centreWorld_, centreWorld_ + kFaces[i].forward, kFaces[i].up));
+        objects.drawAll();
+    }
+}
+
+std::size_t EnvironmentMap::sizeBytes() const {
+    return cube_.sizeBytes() + depth_.sizeBytes();
+}
+
+EnvironmentMap::Host EnvironmentMap::read() const {
+    const std::vector<float> values = cube_.read<float>(GL_RGB, GL_FLOAT, 3);
+    Host host;
+    host.sizePx = kFaceSizePx;
+    const float* next = values.data();
+    for (std::vector<glm::vec3>& face : host.faces) {
+        face.resize(std::size_t{kFaceSizePx} * kFaceSizePx);
+        for (glm::vec3& texel : face) {
+            texel = linearColour({next[0], next[1], next[2]});
+            next += 3;
+        }
+    }
+    return host;
+}
+
+glm::vec3 EnvironmentMap::Host::radianceFrom(const glm::vec3& direction) const {
+    const PlaceOnCube at = placeOnCube(direction);
+    const glm::ivec2 texel =
+        glm::clamp(glm::ivec2(at.place * static_cast<float>(sizePx)), 0, sizePx - 1);
+    return faces[at.face][static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(sizePx) +
+                          static_cast<std::size_t>(texel.x)];
+}
+
+EnvironmentTracer::EnvironmentTracer(const gl::ShaderLibrary& shaders, EnvironmentMap& map,
+                                     const LobeSettings& lobe, float diagonalM)
+    : map_(map),
+      lobe_(lobe),
+      diagonalM_(diagonalM),
+      pass_(shaders, {"kit/whole_image.vert.glsl", "reflections/environment_trace.frag.glsl"}) {}
+
+void EnvironmentTracer::update(const GpuObjects& objects, gl::Profiler& profiler) {
+    if (!poses_.hasChanged(objects.poses())) return;
+    const gl::GpuScope scope(profiler, "environment_map");
+    map_.render(objects);
+}
+
+void EnvironmentTracer::trace(const GBuffer& gbuffer, const gl::Texture* wanted,
+                              ReflectionTarget& target, gl::Profiler& profiler) {
+    const gl::GpuScope scope(profiler, "intersection");
+    setLobe(pass_, lobe_, diagonalM_);
+    drawReflections(pass_, wholeImage_, map_, gbuffer, wanted, target);
+}
+
+std::size_t EnvironmentTracer::sizeBytes() const {
+    return map_.sizeBytes();
+}
+
+ScreenSpaceTracer::ScreenSpaceTracer(const gl::ShaderLibrary& shaders, const EnvironmentMap& map,
+                                     const LobeSettings& lobe, float diagonalM, float thicknessM)
+    : map_(map),
+      lobe_(lobe),
+      diagonalM_(diagonalM),
+      thicknessM_(thicknessM),
+      pass_(shaders, {"kit/whole_image.vert.glsl", "reflections/screen_space.frag.glsl"}) {}
+
+void ScreenSpaceTracer::trace(const GBuffer& gbuffer, const gl::Texture* wanted,
+                              ReflectionTarget& target, gl::Profiler& profiler) {
+    const gl::GpuScope scope(profiler, "intersection");
+    pass_.set("pixelsFromWorld",
+              glm::mat4(glm::inverse(glm::dmat4(kit::worldFromPixels(gbuffer.view)))));
+    pass_.set("nearM", gbuffer.view.nearM);
+    pass_.set("thicknessM", thicknessM_);
+    setLobe(pass_, lobe_, diagonalM_);
+    drawReflections(pass_, wholeImage_, map_, gbuffer, wanted, target);
 }
 
 }  // namespace gfxrepro::reflections

@@ -1,11 +1,14 @@
 // The one interface of everything that finds what reflective samples reflect.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 
 #include "engine/gl/objects.h"
+#include "engine/gl/pass.h"
 #include "engine/gl/profiler.h"
+#include "techniques/kit/whole_image.h"
 #include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::reflections {
@@ -60,6 +63,86 @@ class ReflectionTracer {
     virtual std::size_t sizeBytes() const = 0;
     /// Of them, colours and depths that it draws reflections from.
     virtual std::size_t frameBufferBytes() const { return 0; }
+};
+
+/// A cube map of the scene's diffuse colours from the middle of its box (or where told),
+/// kBackground where nothing is seen. Made once; render() again for moved objects. Shaders:
+/// shaders/environment.glsl, `radianceFrom(direction)`.
+class EnvironmentMap {
+  public:
+    static constexpr int kFaceSizePx = 512;
+    /// From the middle of the scene's box.
+    EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene);
+    EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
+                   const glm::vec3& centreWorld);
+    /// `objects` are of the constructor's scene.
+    void render(const GpuObjects& objects);
+    /// How often it was drawn: what was read of it is stale when this has grown.
+    std::uint64_t version() const { return version_; }
+    /// For passes that include environment.glsl.
+    gl::Resources resources() const { return {{"environmentMap", cube_}}; }
+    const gl::Texture& cube() const { return cube_; }
+    const glm::vec3& centreWorld() const { return centreWorld_; }
+    std::size_t sizeBytes() const;
+
+    /// A face's rows as GL stores them, 3 values a texel; waits for the device. For tracers on the
+    /// host, with `radianceFrom`.
+    struct Host {
+        int sizePx = 0;
+        std::vector<glm::vec3> faces[6];
+        /// Nearest texel: as the device samples it.
+        glm::vec3 radianceFrom(const glm::vec3& direction) const;
+    };
+    Host read() const;
+
+  private:
+    std::uint64_t version_ = 0;
+    glm::vec3 centreWorld_;
+    gl::Texture cube_, depth_;
+    gl::Pass pass_;
+};
+
+/// Environment mapping: every ray takes the map in its direction, wherever it starts. All rays
+/// weigh the same, glossy ones too: the map knows no distances to fade by. Passes:
+/// `environment_map` when it is drawn again, `intersection`.
+class EnvironmentTracer final : public ReflectionTracer {
+  public:
+    EnvironmentTracer(const gl::ShaderLibrary& shaders, EnvironmentMap& map,
+                      const LobeSettings& lobe, float diagonalM);
+    /// Draws the map, again when an object has moved.
+    void update(const GpuObjects& objects, gl::Profiler& profiler) override;
+    void trace(const GBuffer& gbuffer, const gl::Texture* wanted, ReflectionTarget& target,
+               gl::Profiler& profiler) override;
+    std::size_t sizeBytes() const override;
+
+  private:
+    EnvironmentMap& map_;
+    LobeSettings lobe_;
+    float diagonalM_;
+    gl::Pass pass_;
+    kit::WholeImage wholeImage_;
+    PoseWatch poses_;  // in which the map was drawn
+};
+
+/// McGuire and Mara 2014, "Efficient GPU Screen-Space Ray Tracing": each ray is marched texel by
+/// texel through the G-buffer's depth, perspective-correct; a hit is a texel whose depth the ray
+/// passes within `thicknessM` and that shows the side which the ray meets. What the eye does not
+/// see takes the environment map. Pass: `intersection`.
+class ScreenSpaceTracer final : public ReflectionTracer {
+  public:
+    ScreenSpaceTracer(const gl::ShaderLibrary& shaders, const EnvironmentMap& map,
+                      const LobeSettings& lobe, float diagonalM, float thicknessM);
+    void update(const GpuObjects&, gl::Profiler&) override {}
+    void trace(const GBuffer& gbuffer, const gl::Texture* wanted, ReflectionTarget& target,
+               gl::Profiler& profiler) override;
+    std::size_t sizeBytes() const override { return 0; }
+
+  private:
+    const EnvironmentMap& map_;
+    LobeSettings lobe_;
+    float diagonalM_, thicknessM_;
+    gl::Pass pass_;
+    kit::WholeImage wholeImage_;
 };
 
 }  // namespace gfxrepro::reflections

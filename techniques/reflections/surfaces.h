@@ -2,6 +2,7 @@
 // method, on the device (shaders/shading.glsl) and here.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -10,11 +11,32 @@
 
 #include "engine/image/image.h"
 #include "engine/scene/scene.h"
-#include "techniques/reflections/reflector_rule.h"
-#include "techniques/reflections/texture_filter.h"
-#include "techniques/reflections/texture_layer.h"
+#include "techniques/reflections/reflectors.h"
 
 namespace gfxrepro::reflections {
+
+/// What the first three channels of a texture are.
+enum class TexelKind {
+    Colours,  // sRGB
+    Values,   // as they are: roughness and metalness, normals
+};
+
+/// From the 256 values of a channel to linear ones, 0 to 1.
+std::array<float, 256> decodingOf(TexelKind kind);
+
+/// An image (3 or 4 channels) as a square of `sizePx` with 4: each texel is the mean (of colours in
+/// linear light) of the part of the image that it covers. The same size stays as it is.
+image::Image8 textureLayer(const image::Image8& image, int sizePx,
+                           TexelKind kind = TexelKind::Colours);
+
+/// The same at half the width and height: each texel is the mean of four. The image has 4 channels
+/// and an even size.
+image::Image8 halvedLayer(const image::Image8& layer, TexelKind kind = TexelKind::Colours);
+
+enum class TextureFilter {
+    Footprint,    // averaged over what a sample, a texel or a ray covers, by levels half as fine
+    FinestLevel,  // as they are
+};
 
 /// At most so many lights of a scene are taken, the first, and a warning tells of the others; where
 /// it has none, one hangs under the top of its box.

@@ -1,4 +1,4 @@
-// Parts, levels and chunks of the scene's triangles, as detail_levels.h has them.
+// Parts, levels and chunks of the scene's triangles, as visible_triangles.h has them.
 
 struct DetailPart {
     vec4 boundsCentre;    // in mesh space

@@ -1,5 +1,5 @@
 #version 450 core
-// WantedSamples, second pass: what the host found, into the target.
+// EmbreeTracer, second pass of wanted samples: what the host found, into the target.
 layout(local_size_x = GROUP_SIZE) in;
 
 struct FoundSample {

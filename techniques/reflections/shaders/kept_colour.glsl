@@ -1,4 +1,4 @@
-// Colours that are drawn once and read again, as kept_colour.h has them.
+// Colours that are drawn once and read again, as gbuffer.h has them.
 
 vec3 keptColour(vec3 linear) {
     return sqrt(linear);

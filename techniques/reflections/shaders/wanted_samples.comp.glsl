@@ -1,5 +1,5 @@
 #version 450 core
-// WantedSamples, first pass: samples of a G-buffer from all over it into a list, as its textures
+// EmbreeTracer, first pass of wanted samples: from all over a G-buffer into a list, as its textures
 // hold them.
 #include "reflections/gbuffer.glsl"
 

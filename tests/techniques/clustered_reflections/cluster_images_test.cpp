@@ -3,7 +3,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/core/random.h"
-#include "techniques/clustered_reflections/cluster_atlas.h"
+#include "techniques/clustered_reflections/cluster_images.h"
 #include "techniques/clustered_reflections/visible_triangles.h"
 #include "tests/techniques/clustered_reflections/tracer_fixture.h"
 #include "tests/techniques/voxelization/shapes.h"

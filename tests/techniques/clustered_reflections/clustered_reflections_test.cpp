@@ -9,7 +9,6 @@
 #include <set>
 
 #include "runner/config/experiment.h"
-#include "techniques/clustered_reflections/reflection_params.h"
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
 #include "tests/techniques/clustered_reflections/room.h"
 #include "tests/techniques/technique_fixture.h"
@@ -85,7 +84,7 @@ TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
             Params params = test::paramsOf(kClusteredReflections, yaml);
-            ClusteredReflections technique(params);
+            kClusteredReflections.create(params);
         });
     };
     EXPECT_EQ(message("{}"), "no error");

@@ -4,7 +4,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include "techniques/clustered_reflections/bin_tables.h"
 #include "tests/techniques/clustered_reflections/cluster_fixture.h"
 #include "tests/techniques/clustered_reflections/clusters_on_host.h"
 

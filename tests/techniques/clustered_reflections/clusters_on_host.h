@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "techniques/clustered_reflections/bin_tables.h"
 #include "techniques/clustered_reflections/cluster_cameras.h"
 #include "techniques/clustered_reflections/clustering.h"
 

@@ -1,5 +1,5 @@
 // Chunks and levels of detail against what they are made of.
-#include "techniques/clustered_reflections/detail_levels.h"
+#include "techniques/clustered_reflections/visible_triangles.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/random.h"
-#include "techniques/clustered_reflections/cluster_intersection.h"
+#include "techniques/clustered_reflections/clustered_tracer.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/clustered_reflections/march_on_host.h"
 

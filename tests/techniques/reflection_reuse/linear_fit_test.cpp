@@ -1,4 +1,4 @@
-#include "techniques/reflection_reuse/linear_fit.h"
+#include "techniques/reflection_reuse/reflection_reuse.h"
 
 #include <gtest/gtest.h>
 

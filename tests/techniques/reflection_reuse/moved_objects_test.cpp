@@ -1,5 +1,5 @@
 // Objects that move between key frames: their ghosts, and what is recomputed of them.
-#include "techniques/reflection_reuse/moved_objects.h"
+#include "techniques/reflection_reuse/reuse_renderer.h"
 
 #include <gtest/gtest.h>
 

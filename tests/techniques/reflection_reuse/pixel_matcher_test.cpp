@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "techniques/reflection_reuse/matching_constants.h"
+#include "techniques/reflection_reuse/pixel_matcher.h"
 #include "tests/techniques/reflection_reuse/key_frame.h"
 
 namespace gfxrepro::reflection_reuse {

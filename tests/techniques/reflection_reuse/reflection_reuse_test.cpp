@@ -112,7 +112,7 @@ TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {
         return errorText([&] {
             Params params = paramsOf(yaml);
-            ReflectionReuse technique(params);
+            kReflectionReuse.create(params);
         });
     };
     EXPECT_EQ(message("{}"), "no error");

@@ -1,5 +1,5 @@
 // Composite against its formula on the host.
-#include "techniques/reflections/composite.h"
+#include "techniques/reflections/frame.h"
 
 #include <gtest/gtest.h>
 

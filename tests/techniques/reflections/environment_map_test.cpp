@@ -1,5 +1,5 @@
 // Environment maps in a room whose walls glow in known colours.
-#include "techniques/reflections/environment_map.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The device's BVH: a tree with boxes that hold what is below, and Embree's hits.
-#include "techniques/reflections/gpu_bvh.h"
+#include "techniques/reflections/gpu_ray_tracer.h"
 
 #include <fmt/format.h>
 

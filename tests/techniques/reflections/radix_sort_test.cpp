@@ -1,5 +1,5 @@
 // The device's sort against std::stable_sort.
-#include "techniques/reflections/radix_sort.h"
+#include "techniques/reflections/gpu_ray_tracer.h"
 
 #include <algorithm>
 #include <glm/glm.hpp>

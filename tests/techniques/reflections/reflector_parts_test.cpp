@@ -1,5 +1,5 @@
 // Objects cut into smooth parts that bend to one side.
-#include "techniques/reflections/reflector_parts.h"
+#include "techniques/reflections/reflectors.h"
 
 #include <gtest/gtest.h>
 

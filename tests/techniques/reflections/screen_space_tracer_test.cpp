@@ -1,4 +1,4 @@
-#include "techniques/reflections/screen_space_tracer.h"
+#include "techniques/reflections/reflection_tracer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "techniques/reflections/surface_pictures.h"
+#include "techniques/reflections/frame.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,11 @@
 // Levels of textures, and what is read of them over a footprint.
-#include "techniques/reflections/texture_filter.h"
+#include "techniques/reflections/surfaces.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "techniques/reflections/surfaces.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {

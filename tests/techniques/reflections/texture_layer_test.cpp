@@ -1,5 +1,5 @@
 // Resampling of textures: a box filter in linear light.
-#include "techniques/reflections/texture_layer.h"
+#include "techniques/reflections/surfaces.h"
 
 #include <gtest/gtest.h>
 

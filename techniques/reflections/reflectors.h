@@ -1,8 +1,11 @@
-// Which objects of a scene are reflectors.
+// Which objects of a scene are reflectors, and which parts of them.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "engine/scene/scene.h"
 
@@ -18,7 +21,7 @@ namespace gfxrepro::reflections {
 struct ReflectorRule {
     float maxRoughness = 0.4F;
     /// The smooth parts of an object are reflectors (and Objects) of their own; see
-    /// reflector_parts.h.
+    /// Parts.
     bool splitsParts = false;
 };
 
@@ -46,5 +49,33 @@ float reflectivityOf(const scene::Material& material, float metallic);
 
 /// As the G-buffer keeps it.
 float in255ths(float value);
+
+/// Between triangles whose planes turn by more than this, about 50°, a surface is not smooth: above
+/// a tube of eight sides, below a box.
+constexpr float kCreaseCosine = 0.64F;
+/// Parts of a smaller share of their object's area are joined with what they border on most.
+constexpr float kLeastPartShare = 0.05F;
+
+/// The parts of a mesh, 0, 1, … in the order of first triangles. A part is connected by edges
+/// (vertices at the same place are one), has no crease inside, and bends to one side: inside of a
+/// bowl and outside are two, however smooth its rim is. The side is the sign of the mean curvature,
+/// by majority over neighbouring triangles; normals say which side is out. Small parts that border
+/// on nothing are one part together.
+struct Parts {
+    std::vector<std::uint32_t> ofTriangle;
+    std::vector<std::uint8_t> isConcave;  // by part: most of its area
+};
+Parts partsOf(const scene::Mesh& mesh);
+
+/// Of an instance that splitIntoParts() has made or left as it is.
+struct PartOrigin {
+    int instance = 0;  // which one it was
+    bool isConcave = false;
+};
+
+/// Makes an instance of each part of the instances whose mesh `splits` accepts; motions go with
+/// them.
+std::vector<PartOrigin> splitIntoParts(scene::Scene& scene,
+                                       const std::function<bool(const scene::Mesh&)>& splits);
 
 }  // namespace gfxrepro::reflections
