@@ -41,7 +41,7 @@ class ClusterImages {
     void beginDrawing(glm::ivec2 sizePx) const;
     /// Back to the defaults that other passes take for granted; makes the pyramid of [0, sizePx).
     void endDrawing(glm::ivec2 sizePx);
-    /// For shaders that include cluster_image.glsl.
+    /// For shaders that include intersect.glsl.
     gl::Resources resources() const;
 
     glm::ivec2 sizePx() const { return glm::ivec2(colour_.size()); }

@@ -109,10 +109,6 @@ void EmbreeTracer::update(const GpuObjects& objects, gl::Profiler& profiler) {
         rays_.emplace(posed_);
     }
     const gl::CpuScope scope(profiler, "transfer");
-    readEnvironment();
-}
-
-void EmbreeTracer::readEnvironment() {
     if (environmentVersion_ == map_.version()) return;
     environment_ = map_.read();
     environmentVersion_ = map_.version();

@@ -50,7 +50,6 @@ class EmbreeTracer final : public ReflectionTracer {
   private:
     struct FoundSample;
 
-    void readEnvironment();
     /// Wanted samples go by lists, so that what is transferred goes with them and not with the
     /// image: beside its mask, a byte a sample, 28 bytes a wanted sample or neighbour of one, by
     /// which its beam is found, and 20 back.

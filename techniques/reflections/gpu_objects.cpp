@@ -134,7 +134,7 @@ gl::Texture layersTexture(const TextureLevels& levels, GLenum format) {
         if (isEmpty) texels.assign(4, 255);
         texture.upload(GL_RGBA, GL_UNSIGNED_BYTE, texels.data(), static_cast<int>(level));
     }
-    // Shaders mix levels themselves: shaders/footprint.glsl.
+    // Shaders mix levels themselves: shaders/shading.glsl.
     texture.setFilter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
     texture.setWrap(GL_REPEAT);
     return texture;

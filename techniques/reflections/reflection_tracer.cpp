@@ -130,9 +130,6 @@ void drawReflections(const gl::Pass& pass, const kit::WholeImage& wholeImage,
 
 }  // namespace
 
-EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene)
-    : EnvironmentMap(shaders, scene, scene.boundsWorld().centre()) {}
-
 // Colours are in [0, 1], as in the G-buffer.
 EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
                                const glm::vec3& centreWorld)

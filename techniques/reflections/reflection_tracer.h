@@ -72,7 +72,8 @@ class EnvironmentMap {
   public:
     static constexpr int kFaceSizePx = 512;
     /// From the middle of the scene's box.
-    EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene);
+    EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene)
+        : EnvironmentMap(shaders, scene, scene.boundsWorld().centre()) {}
     EnvironmentMap(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
                    const glm::vec3& centreWorld);
     /// `objects` are of the constructor's scene.

@@ -135,7 +135,7 @@ class ReflectiveScene {
     void setGlossiness(float glossiness);
 
     /// Width in texture coordinates of what a beam covers of a triangle: `beamArea` is its
-    /// cross-section there in m², `direction` the beam's, unit (shaders/footprint.glsl). 0 where
+    /// cross-section there in m², `direction` the beam's, unit (shaders/shading.glsl). 0 where
     /// textures are not filtered.
     float footprintAt(std::uint32_t triangle, const glm::mat4& worldFromMesh,
                       const glm::vec3& direction, float beamArea) const;
