@@ -14,7 +14,7 @@ constexpr std::uint32_t kPlanarCluster = 1;
 constexpr std::uint32_t kNoRoom = 2;       // between near and far (glossy): no image, no march
 constexpr std::uint32_t kEyeBehind = 4;    // the eye is not before the fitting plane (see below)
 constexpr std::uint32_t kRaysTurned = 16;  // some rays are beyond CameraSettings::maxSlope
-constexpr std::uint32_t kShowsOwn = 1U << 16;  // the image has the own reflector (ConcavityPass)
+constexpr std::uint32_t kShowsOwn = 1U << 16;  // the image has the own reflector (concavityPass)
 constexpr std::uint32_t kShowsOwnBack = 1U << 17;  // with what faces away from the camera
 
 /// A cluster's camera as shaders/cluster_camera.glsl has it (std430). It looks along the normal of

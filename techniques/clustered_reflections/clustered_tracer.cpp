@@ -4,79 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "techniques/clustered_reflections/visible_triangles.h"
 #include "techniques/kit/draws.h"
 
 namespace gfxrepro::clustered_reflections {
-
-namespace {
-
-gl::Resources shared(const IntersectionInput& input) {
-    return input.gbuffer.resources()
-        .with(input.map.resources())
-        .with(input.images.resources())
-        .with(input.drawn);
-}
-
-}  // namespace
-
-ClusterIntersection::ClusterIntersection(const gl::ShaderLibrary& shaders,
-                                         const reflections::ReflectiveScene& scene,
-                                         const CameraSettings& settings, March march,
-                                         bool mayShowOwn, TexelContent content, glm::ivec2 sizePx)
-    : settings_(settings), environmentSamples_(gl::Texture::make2D(GL_R8UI, sizePx)) {
-    gl::Defines defines = shadedImageDefines(scene);
-    defines["MARCH"] = march == March::Hierarchical ? 1 : 0;
-    defines["SEES_OWN"] = mayShowOwn ? 1 : 0;
-    defines["OF_TRIANGLES"] = content == TexelContent::Triangles ? 1 : 0;
-    all_ = gl::Pass(shaders,
-                    {"kit/whole_image.vert.glsl", "clustered_reflections/intersect.frag.glsl"},
-                    defines);
-    one_ = gl::Pass(shaders, {"clustered_reflections/intersect.comp.glsl"}, defines);
-}
-
-void ClusterIntersection::setUniforms(const gl::Pass& pass,
-                                      const reflections::GBuffer& gbuffer) const {
-    gbuffer.setUniforms(pass);
-    reflections::setLobe(pass, settings_.lobe, settings_.diagonalM);
-}
-
-void ClusterIntersection::clearEnvironmentSamples() {
-    environmentSamples_.clearToZero();
-}
-
-void ClusterIntersection::intersectAll(const IntersectionInput& input,
-                                       reflections::ReflectionTarget& target) {
-    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 3>{
-        &target.radiance, &target.distance, &environmentSamples_});
-    framebuffer.bind();
-    setUniforms(all_, input.gbuffer);
-    all_.use(
-        gl::Resources{{"clusterOfSample", input.clusters.clusterOfSample}}.with(shared(input)));
-    wholeImage_.draw();
-}
-
-void ClusterIntersection::beginClusters(const reflections::GBuffer& gbuffer) const {
-    setUniforms(one_, gbuffer);
-}
-
-void ClusterIntersection::intersectCluster(std::uint32_t cluster, const glm::uvec4& range,
-                                           const IntersectionInput& input,
-                                           reflections::ReflectionTarget& target) const {
-    constexpr std::uint32_t kGroupSize = 64;  // of the shader
-    const std::uint32_t sampleCount = range.y;
-    if (sampleCount == 0) return;
-    one_.set("cluster", cluster);
-    one_.set("firstSample", range.x);
-    one_.set("sampleCount", sampleCount);
-    // A sample is of one cluster.
-    one_.dispatch({kit::groupsFor(sampleCount, kGroupSize), 1, 1},
-                  gl::Resources{{"Samples", input.clusters.samples},
-                                gl::Resource("radiance", target.radiance).unordered(),
-                                gl::Resource("distanceM", target.distance).unordered(),
-                                gl::Resource("tookEnvironment", environmentSamples_).unordered()}
-                      .with(shared(input)));
-}
 
 namespace {
 
@@ -117,9 +47,15 @@ ClusteredTracer::ClusteredTracer(const gl::ShaderLibrary& shaders,
       clusterCameras_(shaders, settings_.camera),
       images_(shaders, kImagesSizePx, settings.march == March::Hierarchical,
               contentOf(settings.drawing)),
-      intersection_(shaders, scene, settings_.camera, settings.march,
-                    settings.ownReflector != OwnReflector::LeftOut, contentOf(settings.drawing),
-                    sizePx) {
+      environmentSamples_(gl::Texture::make2D(GL_R8UI, sizePx)) {
+    gl::Defines defines = shadedImageDefines(scene);
+    defines["MARCH"] = settings.march == March::Hierarchical ? 1 : 0;
+    defines["SEES_OWN"] = settings.ownReflector != OwnReflector::LeftOut ? 1 : 0;
+    defines["OF_TRIANGLES"] = settings.drawing == ImageDrawing::Visible ? 1 : 0;
+    intersectAll_ = gl::Pass(
+        shaders, {"kit/whole_image.vert.glsl", "clustered_reflections/intersect.frag.glsl"},
+        defines);
+    intersectOne_ = gl::Pass(shaders, {"clustered_reflections/intersect.comp.glsl"}, defines);
     if (settings.drawing == ImageDrawing::Atlas) {
         atlas_.emplace(shaders, scene, objects, settings_.camera);
     } else if (settings.drawing == ImageDrawing::Visible) {
@@ -150,7 +86,7 @@ void ClusteredTracer::trace(const reflections::GBuffer& gbuffer, const gl::Textu
                                      .with(gbuffer.resourcesFor(*concavity_)));
         }
     }
-    intersection_.clearEnvironmentSamples();
+    environmentSamples_.clearToZero();
     if (settings_.drawing == ImageDrawing::None) {
         target.radiance.clearToZero();
         target.distance.clearToZero();
@@ -172,7 +108,16 @@ void ClusteredTracer::drawAtlas(const reflections::GBuffer& gbuffer,
     const gl::GpuScope scope(profiler, "intersection");
     const gl::Resources drawn =
         visible_ ? visible_->resources(*objects_, cameraTable) : atlas_->resources(cameraTable);
-    intersection_.intersectAll({gbuffer, builder_.clusters(), drawn, images_, map_}, target);
+    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 3>{
+        &target.radiance, &target.distance, &environmentSamples_});
+    framebuffer.bind();
+    reflections::setLobe(intersectAll_, settings_.camera.lobe, settings_.camera.diagonalM);
+    intersectAll_.use(gl::Resources{{"clusterOfSample", builder_.clusters().clusterOfSample}}
+                          .with(gbuffer.resourcesFor(intersectAll_))
+                          .with(map_.resources())
+                          .with(images_.resources())
+                          .with(drawn));
+    wholeImage_.draw();
 }
 
 /// Step 3 of Algorithm 6 as the thesis has it: "one cluster's images are freed before the
@@ -197,7 +142,8 @@ void ClusteredTracer::drawOneByOne(const reflections::GBuffer& gbuffer,
     const gl::Buffer& cameraTable = clusterCameras_.cameras();
     const gl::Resources drawn =
         gl::Resources{{"Cameras", cameraTable}, {"Places", places_}}.with(objects_->resources());
-    intersection_.beginClusters(gbuffer);
+    gbuffer.setUniforms(intersectOne_);  // once a frame
+    reflections::setLobe(intersectOne_, settings_.camera.lobe, settings_.camera.diagonalM);
     for (std::uint32_t cluster = 0; cluster < table.size(); ++cluster) {
         const glm::ivec2 sizePx(sizes_[cluster].z, sizes_[cluster].w);
         if (sizePx.x > 0) {
@@ -206,15 +152,36 @@ void ClusteredTracer::drawOneByOne(const reflections::GBuffer& gbuffer,
                 oneByOne_->draw(*objects_, cameraTable, cluster, table[cluster], sizePx, images_);
         }
         const gl::GpuScope scope(profiler, "intersection");
-        intersection_.intersectCluster(
-            cluster, ranges[cluster], {gbuffer, builder_.clusters(), drawn, images_, map_}, target);
+        intersectCluster(
+            cluster, ranges[cluster],
+            gbuffer.resources().with(map_.resources()).with(images_.resources()).with(drawn),
+            target);
     }
+}
+
+void ClusteredTracer::intersectCluster(std::uint32_t cluster, const glm::uvec4& range,
+                                       const gl::Resources& resources,
+                                       reflections::ReflectionTarget& target) const {
+    constexpr std::uint32_t kGroupSize = 64;  // of the shader
+    const std::uint32_t sampleCount = range.y;
+    if (sampleCount == 0) return;
+    intersectOne_.set("cluster", cluster);
+    intersectOne_.set("firstSample", range.x);
+    intersectOne_.set("sampleCount", sampleCount);
+    // A sample is of one cluster.
+    intersectOne_.dispatch(
+        {kit::groupsFor(sampleCount, kGroupSize), 1, 1},
+        gl::Resources{{"Samples", builder_.clusters().samples},
+                      gl::Resource("radiance", target.radiance).unordered(),
+                      gl::Resource("distanceM", target.distance).unordered(),
+                      gl::Resource("tookEnvironment", environmentSamples_).unordered()}
+            .with(resources));
 }
 
 std::size_t ClusteredTracer::sizeBytes() const {
     return builder_.sizeBytes() + clusterCameras_.sizeBytes() + images_.sizeBytes() +
-           intersection_.sizeBytes() + places_.sizeBytes() + (atlas_ ? atlas_->sizeBytes() : 0) +
-           (visible_ ? visible_->sizeBytes() : 0);
+           environmentSamples_.sizeBytes() + places_.sizeBytes() +
+           (atlas_ ? atlas_->sizeBytes() : 0) + (visible_ ? visible_->sizeBytes() : 0);
 }
 
 int ClusteredTracer::clusterCount() const {
@@ -244,7 +211,7 @@ ClusteredTracer::Drawn ClusteredTracer::drawn() const {
 }
 
 std::vector<std::uint8_t> ClusteredTracer::environmentSamples() const {
-    return reflections::readMask(intersection_.environmentSamples());
+    return reflections::readMask(environmentSamples_);
 }
 
 }  // namespace gfxrepro::clustered_reflections

@@ -18,45 +18,6 @@ enum class March {
                    // holds are stepped over, by a pyramid of nearest depths: the same hits
 };
 
-/// What rays are intersected with; of one frame.
-struct IntersectionInput {
-    const reflections::GBuffer& gbuffer;
-    const Clusters& clusters;
-    const gl::Resources& drawn;  // Cameras, Places, and what else the images' painter hands on
-    const ClusterImages& images;
-    const reflections::EnvironmentMap& map;
-};
-
-class ClusterIntersection {
-  public:
-    ClusterIntersection(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
-                        const CameraSettings& settings, March march, bool mayShowOwn,
-                        TexelContent content, glm::ivec2 sizePx);
-
-    /// Of all samples in a pass over the G-buffer: images in an atlas.
-    void intersectAll(const IntersectionInput& input, reflections::ReflectionTarget& target);
-
-    /// Of one cluster's samples after the other, each between the drawing of its image and of the
-    /// next: `range` is its entry of Clusters::ranges. What they share is set once a frame.
-    void beginClusters(const reflections::GBuffer& gbuffer) const;
-    void intersectCluster(std::uint32_t cluster, const glm::uvec4& range,
-                          const IntersectionInput& input,
-                          reflections::ReflectionTarget& target) const;
-
-    /// Once a frame, before either.
-    void clearEnvironmentSamples();
-    const gl::Texture& environmentSamples() const { return environmentSamples_; }
-    std::size_t sizeBytes() const { return environmentSamples_.sizeBytes(); }
-
-  private:
-    void setUniforms(const gl::Pass& pass, const reflections::GBuffer& gbuffer) const;
-
-    CameraSettings settings_;
-    gl::Pass all_, one_;
-    gl::Texture environmentSamples_;  // R8UI: 1 where a mirror ray took the environment map
-    kit::WholeImage wholeImage_;
-};
-
 /// How the clusters' depth images are drawn.
 enum class ImageDrawing {
     OneByOne,  // the thesis: a cluster's image is drawn, used and overwritten by the next
@@ -128,6 +89,11 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
                    gl::Profiler& profiler);
     void drawOneByOne(const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
                       gl::Profiler& profiler);
+    /// Its samples, between the drawing of its image and of the next: `range` is its entry of
+    /// Clusters::ranges.
+    void intersectCluster(std::uint32_t cluster, const glm::uvec4& range,
+                          const gl::Resources& resources,
+                          reflections::ReflectionTarget& target) const;
 
     ClusteredSettings settings_;
     const reflections::GpuObjects* objects_;  // of the last update()
@@ -136,7 +102,9 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     ClusterCameras clusterCameras_;
     std::optional<gl::Pass> concavity_;
     ClusterImages images_;
-    ClusterIntersection intersection_;
+    gl::Pass intersectAll_, intersectOne_;
+    gl::Texture environmentSamples_;  // R8UI: 1 where a mirror ray took the environment map
+    kit::WholeImage wholeImage_;
     std::optional<AtlasPainter> atlas_;
     std::optional<VisiblePainter> visible_;
     std::optional<OneByOnePainter> oneByOne_;
