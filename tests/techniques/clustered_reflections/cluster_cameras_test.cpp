@@ -121,7 +121,7 @@ TEST_F(ClusterCamerasTest, PlanarMirrorHasTheMirroredEye) {
     const glm::vec3 eye(0.7F, 0.4F, 3.0F);
     for (const float turn : {0.0F, 0.5F, 1.2F}) {
         const glm::mat4 pose = glm::rotate(kIdentity, turn, {0.3F, 1.0F, 0.1F});
-        const reflections::ReflectiveScene scene = MirrorScene().add(square(), pose).get();
+        const reflections::ReflectiveScene scene = MirrorScene().add(squareMesh(), pose).get();
         const CameraSettings settings{.diagonalM = 10.0F};
         const Case c = build(scene, viewFrom(eye, {0, 0, 0}, {256, 192}), settings);
         ASSERT_EQ(c.cameras.size(), 1U);
@@ -151,7 +151,7 @@ TEST_F(ClusterCamerasTest, PlanarMirrorHasTheMirroredEye) {
 }
 
 TEST_F(ClusterCamerasTest, FacingMirrorIsSampledAsTheScreenIs) {
-    const reflections::ReflectiveScene scene = MirrorScene().add(square(), kIdentity).get();
+    const reflections::ReflectiveScene scene = MirrorScene().add(squareMesh(), kIdentity).get();
     const Case c = build(scene, viewFrom({0, 0, 4}, {0, 0, 0}, {320, 240}), {.diagonalM = 5.0F});
     ASSERT_EQ(c.cameras.size(), 1U);
     const glm::ivec2 first = c.samples[0].front(), last = c.samples[0].back();
@@ -280,7 +280,7 @@ TEST_F(ClusterCamerasTest, EdgeOnMirrorKeepsAThinImage) {
     // The least height is 1 mm.
     for (const float height : {5e-3F, 5e-4F}) {
         const glm::mat4 pose = glm::rotate(kIdentity, -1.5707964F, {1, 0, 0});
-        const reflections::ReflectiveScene scene = MirrorScene().add(square(), pose).get();
+        const reflections::ReflectiveScene scene = MirrorScene().add(squareMesh(), pose).get();
         const CameraSettings settings{.diagonalM = 10.0F};
         const kit::View view = viewFrom({0, height, 1.5F}, {0, 0, 0}, {16, 256}, 3.0F * height);
         const Case c = build(scene, view, settings);
@@ -307,7 +307,7 @@ TEST_F(ClusterCamerasTest, ClustersOfOneSampleHaveAnImageOfOneTexelAtLeast) {
 }
 
 TEST_F(ClusterCamerasTest, LobesWidenTheImageAndPullTheFarPlaneIn) {
-    reflections::ReflectiveScene scene = MirrorScene().add(square(), kIdentity).get();
+    reflections::ReflectiveScene scene = MirrorScene().add(squareMesh(), kIdentity).get();
     const kit::View view = viewFrom({0, 0, 4}, {0, 0, 0}, {160, 120});
     const CameraSettings settings{.diagonalM = 10.0F};
     const Case mirror = build(scene, view, settings);

@@ -7,49 +7,25 @@
 #include <optional>
 #include <vector>
 
-#include "engine/core/files.h"
-#include "engine/core/random.h"
 #include "techniques/clustered_reflections/cluster_cameras.h"
 #include "techniques/clustered_reflections/clustering.h"
-#include "tests/gl/gl_fixture.h"
+#include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::clustered_reflections {
 
 /// The part of the unit ball's surface with polar angles (from +z) up to `mostPolarRad`, its
 /// normals outwards.
 inline scene::Mesh cap(float mostPolarRad, unsigned segments = 96) {
-    scene::Mesh mesh;
-    for (unsigned i = 0; i <= segments; ++i) {
-        for (unsigned j = 0; j <= segments; ++j) {
-            const float polar = mostPolarRad * static_cast<float>(i) / static_cast<float>(segments);
-            const float azimuth = 2.0F * std::numbers::pi_v<float> * static_cast<float>(j) /
-                                  static_cast<float>(segments);
-            mesh.positions.push_back({std::sin(polar) * std::cos(azimuth),
-                                      std::sin(polar) * std::sin(azimuth), std::cos(polar)});
-        }
-    }
+    scene::Mesh mesh = reflections::dome(glm::vec3(0.0F), 1.0F, mostPolarRad, segments, segments);
+    for (glm::vec3& position : mesh.positions) std::swap(position.y, position.z);
     mesh.normals = mesh.positions;
-    for (unsigned i = 0; i < segments; ++i) {
-        for (unsigned j = 0; j < segments; ++j) {
-            const unsigned corner = i * (segments + 1) + j, below = corner + segments + 1;
-            mesh.triangles.push_back({corner, below, corner + 1});
-            mesh.triangles.push_back({corner + 1, below, below + 1});
-        }
-    }
     return mesh;
 }
 inline scene::Mesh ball() {
     return cap(std::numbers::pi_v<float>);
 }
 
-/// [−1, 1]² in the plane z = 0, facing +z.
-inline scene::Mesh square() {
-    scene::Mesh mesh;
-    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-    mesh.normals.assign(4, {0, 0, 1});
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return mesh;
-}
+using reflections::squareMesh;
 
 /// Instances of mirrors; `roughness` is their glossiness.
 class MirrorScene {

@@ -243,7 +243,7 @@ TEST_F(ClusteredReflectionsTest, ABowlsHitsOnItselfAreMissingWhereItIsLeftOut) {
     scene::Scene scene = rooms::room();
     rooms::add(scene, rooms::bowl({0.0F, -0.4F, 0.0F}, 0.8F), {1.0F, 0.0F, 1.0F},
                rooms::Surface::Mirror);
-    scene.cameras = {rooms::cameraAt({0.3F, 1.2F, 1.2F}, {0.0F, -0.6F, 0.0F})};
+    scene.cameras = {reflections::camera({0.3F, 1.2F, 1.2F}, {0.0F, -0.6F, 0.0F})};
     const Metrics out = run("{own_reflector: left_out}", scene);
     EXPECT_GT(out.at("occlusion_self_pct"), 20.0);
     for (const char* own : {"concave_diffuse", "whole_scene"}) {

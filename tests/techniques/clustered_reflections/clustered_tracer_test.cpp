@@ -32,7 +32,7 @@ class ClusteredTracerTest : public TracerTest {
         return scene;
     }
     static scene::Camera frontCamera() {
-        return rooms::cameraAt({0.4F, 0.2F, 1.8F}, {0.0F, -0.3F, -1.0F});
+        return reflections::camera({0.4F, 0.2F, 1.8F}, {0.0F, -0.3F, -1.0F});
     }
     /// Several reflectors of all kinds, touching each other.
     static scene::Scene fullRoom() {
@@ -276,7 +276,7 @@ TEST_F(ClusteredTracerTest, NothingIsReflectedWithoutReflectorsInView) {
         ClusteredSettings settings = settingsFor(scene);
         settings.drawing = drawing;
         const Traced traced =
-            trace(scene, rooms::cameraAt({0.0F, 0.0F, 1.5F}, {0.0F, 0.0F, 5.0F}), settings);
+            trace(scene, reflections::camera({0.0F, 0.0F, 1.5F}, {0.0F, 0.0F, 5.0F}), settings);
         EXPECT_EQ(traced.reflectiveCount(), 0U);
         EXPECT_TRUE(traced.cameras.empty());
     }
@@ -290,13 +290,13 @@ TEST_F(ClusteredTracerTest, DegenerateClustersAreFinite) {
         int sizePx;
     } cases[] = {
         {"a ball of about a pixel", sphereRoom(0.02F),
-         rooms::cameraAt({0.1F, -0.2F, 1.9F}, {0.1F, -0.2F, -0.3F}), 33},
+         reflections::camera({0.1F, -0.2F, 1.9F}, {0.1F, -0.2F, -0.3F}), 33},
         {"a mirror seen edge-on", mirrorRoom(),
-         rooms::cameraAt({0.0F, 0.0F, -1.999F}, {1.9F, 0.1F, -1.9995F}), 64},
+         reflections::camera({0.0F, 0.0F, -1.999F}, {1.9F, 0.1F, -1.9995F}), 64},
         {"an eye in the mirror", mirrorRoom(),
-         rooms::cameraAt({0.0F, 0.0F, -2.0F}, {1.0F, 0.1F, -1.9F}), 64},
+         reflections::camera({0.0F, 0.0F, -2.0F}, {1.0F, 0.1F, -1.9F}), 64},
         {"an eye inside of a ball", sphereRoom(),
-         rooms::cameraAt({0.1F, -0.2F, -0.3F}, {0.0F, 0.0F, -1.0F}), 64},
+         reflections::camera({0.1F, -0.2F, -0.3F}, {0.0F, 0.0F, -1.0F}), 64},
         {"one pixel", sphereRoom(), frontCamera(), 1},
     };
     for (const auto& one : cases) {
@@ -320,7 +320,7 @@ TEST_F(ClusteredTracerTest, ABowlSeesItselfOnlyWhereAskedTo) {
     // The bowl's own colour is in nothing else.
     rooms::add(bowlRoom, rooms::bowl(kCentre, kRadius), {1.0F, 0.0F, 1.0F}, Surface::Mirror);
     const ReflectiveScene scene(bowlRoom);
-    const scene::Camera camera = rooms::cameraAt({0.3F, 1.2F, 1.2F}, {0.0F, -0.6F, 0.0F});
+    const scene::Camera camera = reflections::camera({0.3F, 1.2F, 1.2F}, {0.0F, -0.6F, 0.0F});
     for (const ImageDrawing drawing : kDrawings) {
         for (const OwnReflector ownReflector :
              {OwnReflector::LeftOut, OwnReflector::ConcaveDiffuse, OwnReflector::WholeScene}) {
@@ -378,7 +378,7 @@ TEST_F(ClusteredTracerTest, InAndOutsideOfATubeShareNoClusterAsPartsOfIt) {
     addWall(0.76F, -1.0F);
     scene::Scene tubeRoom = rooms::room();
     rooms::add(tubeRoom, tube, glm::vec3(1.0F), Surface::Mirror);
-    const scene::Camera camera = rooms::cameraAt({0.0F, 0.3F, 1.8F}, {0.0F, -0.6F, 0.0F});
+    const scene::Camera camera = reflections::camera({0.0F, 0.3F, 1.8F}, {0.0F, -0.6F, 0.0F});
     // Of the samples, those whose cluster is taken to bend to the other side.
     const auto wrongShare = [&](bool splitsParts) {
         const ReflectiveScene scene(tubeRoom, {.splitsParts = splitsParts});
@@ -407,7 +407,7 @@ TEST_F(ClusteredTracerTest, PartsOfOneObjectThatDoNotTouchReflectEachOther) {
     // Their colour is in nothing else; they are convex, and show nothing of themselves.
     rooms::add(potRoom, rooms::potAndKnob(), {1.0F, 0.0F, 1.0F}, Surface::Mirror);
     const ReflectiveScene scene(potRoom, {.splitsParts = true});
-    const scene::Camera camera = rooms::cameraAt({0.4F, 0.6F, 1.4F}, {0.0F, -0.1F, 0.0F});
+    const scene::Camera camera = reflections::camera({0.4F, 0.6F, 1.4F}, {0.0F, -0.1F, 0.0F});
     const auto meets = [](const rooms::Ball& ball, const glm::vec3& from, const glm::vec3& to) {
         const float along = glm::dot(ball.centre - from, to);
         return along > 0.0F && glm::distance(from + along * to, ball.centre) < ball.radius;
@@ -440,7 +440,7 @@ TEST_F(ClusteredTracerTest, ABallHidesWhatItsRaysMeetWhereItsBackIsDrawn) {
     rooms::add(ballRoom, shapes::sphere({0.0F, -0.4F, 0.0F}, 0.5F, 5), {1.0F, 0.0F, 1.0F},
                Surface::Mirror);
     const ReflectiveScene scene(ballRoom);
-    const scene::Camera camera = rooms::cameraAt({0.3F, 0.2F, 1.4F}, {0.0F, -0.4F, 0.0F});
+    const scene::Camera camera = reflections::camera({0.3F, 0.2F, 1.4F}, {0.0F, -0.4F, 0.0F});
     for (const ImageDrawing drawing : kDrawings) {
         const auto seenShare = [&](bool showsOwnBack) {
             ClusteredSettings settings = settingsFor(scene);

@@ -24,7 +24,7 @@ reflections::ReflectiveScene fourReflectors() {
     return MirrorScene()
         .add(ball(), kIdentity)
         .add(ball(), kIdentity)
-        .add(square(), kIdentity)
+        .add(squareMesh(), kIdentity)
         .add(ball(), kIdentity)
         .get();
 }
@@ -125,8 +125,8 @@ TEST_F(ClusteringTest, RenderedBallAndPlaneAreClusteredAsOnTheHost) {
     const reflections::ReflectiveScene scene =
         MirrorScene()
             .add(ball(), kIdentity)
-            .add(square(), glm::scale(floor, glm::vec3(3.0F)))
-            .add(square(), glm::translate(kIdentity, {0, 0, -4}), false)
+            .add(squareMesh(), glm::scale(floor, glm::vec3(3.0F)))
+            .add(squareMesh(), glm::translate(kIdentity, {0, 0, -4}), false)
             .get();
     const reflections::GBuffer gbuffer =
         render(scene, viewFrom({2, 1.5F, 4}, {0, 0, 0}, {400, 300}));
@@ -318,7 +318,7 @@ TEST_F(ClusteringTest, KdClustersAreAsManyAndSplitByPlaceToo) {
     const reflections::ReflectiveScene scene =
         MirrorScene()
             .add(pair, kIdentity)
-            .add(square(), glm::translate(kIdentity, {0, 2.5F, 0}))
+            .add(squareMesh(), glm::translate(kIdentity, {0, 2.5F, 0}))
             .get();
     const reflections::GBuffer gbuffer =
         render(scene, viewFrom({0, 0.5F, 9}, {0, 0.5F, 0}, {300, 300}));

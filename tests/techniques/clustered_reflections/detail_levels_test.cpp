@@ -52,7 +52,7 @@ std::array<std::uint32_t, 3> sorted(const glm::uvec3& triangle) {
 TEST(DetailLevelsTest, TheFinestLevelsHoldEveryTriangleOnce) {
     const ReflectiveScene scene = MirrorScene()
                                       .add(ball(), glm::mat4(1.0F))
-                                      .add(square(), glm::mat4(1.0F))
+                                      .add(squareMesh(), glm::mat4(1.0F))
                                       .add(scene::Mesh{}, glm::mat4(1.0F))
                                       .add(cap(1.0F, 10), glm::mat4(1.0F), false)
                                       .get();

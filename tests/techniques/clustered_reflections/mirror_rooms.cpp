@@ -1,9 +1,8 @@
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
 
-#include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <utility>
 
+#include "tests/techniques/reflections/traced_scenes.h"
 #include "tests/techniques/voxelization/shapes.h"
 
 namespace gfxrepro::clustered_reflections::rooms {
@@ -11,47 +10,22 @@ namespace gfxrepro::clustered_reflections::rooms {
 namespace shapes = voxelization::shapes;
 
 void add(scene::Scene& scene, scene::Mesh mesh, const glm::vec3& colour, Surface surface) {
-    scene::Material material;
-    material.baseColor = glm::vec4(colour, 1.0F);
+    scene::Material material = reflections::matt(colour);
     if (surface == Surface::Mirror) {
         material.metallic = 1.0F;
         material.roughness = 0.0F;
     }
-    mesh.material = static_cast<int>(scene.materials.size());
-    scene.materials.push_back(material);
-    scene.instances.push_back({static_cast<int>(scene.meshes.size()), glm::mat4(1.0F)});
-    scene.meshes.push_back(std::move(mesh));
+    reflections::addPart(scene, std::move(mesh), material);
 }
 
 scene::Mesh rectangle(const glm::vec3& centre, const glm::vec3& u, const glm::vec3& v) {
-    scene::Mesh mesh;
-    mesh.positions = {centre - u - v, centre + u - v, centre + u + v, centre - u + v};
+    scene::Mesh mesh = reflections::rectangle(centre, u, v);
     mesh.normals.assign(4, glm::normalize(glm::cross(u, v)));
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     return mesh;
 }
 
 scene::Mesh bowl(const glm::vec3& centre, float radius) {
-    constexpr unsigned kAround = 64, kDown = 24;
-    scene::Mesh mesh;
-    for (unsigned j = 0; j <= kDown; ++j) {
-        for (unsigned i = 0; i <= kAround; ++i) {
-            const float longitude = glm::two_pi<float>() * static_cast<float>(i) / kAround;
-            const float polar = 0.45F * glm::pi<float>() * static_cast<float>(j) / kDown;
-            const glm::vec3 outwards(std::sin(polar) * std::cos(longitude), -std::cos(polar),
-                                     std::sin(polar) * std::sin(longitude));
-            mesh.positions.push_back(centre + radius * outwards);
-            mesh.normals.push_back(-outwards);
-        }
-    }
-    for (unsigned j = 0; j < kDown; ++j) {
-        for (unsigned i = 0; i < kAround; ++i) {
-            const unsigned a = j * (kAround + 1) + i, b = a + kAround + 1;
-            mesh.triangles.emplace_back(a, a + 1, b + 1);
-            mesh.triangles.emplace_back(a, b + 1, b);
-        }
-    }
-    return mesh;
+    return reflections::dome(centre, -radius, 0.45F * glm::pi<float>(), 64, 24);
 }
 
 scene::Mesh potAndKnob() {
@@ -102,29 +76,9 @@ scene::Scene mirroredInZ(const scene::Scene& scene, float plane) {
 }
 
 WallHit wallHit(const glm::vec3& origin, const glm::vec3& direction) {
-    float nearest = std::numeric_limits<float>::infinity();
-    int wall = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const float side = direction[axis] > 0.0F ? 1.0F : -1.0F;
-        const float distance = (side * kHalfSize[axis] - origin[axis]) / direction[axis];
-        if (distance < nearest) {
-            nearest = distance;
-            wall = 2 * axis + (side > 0.0F ? 1 : 0);
-        }
-    }
-    glm::vec3 normal(0.0F);
-    normal[wall / 2] = wall % 2 == 0 ? 1.0F : -1.0F;
-    return {origin + nearest * direction, normal, kWallColours[wall]};
-}
-
-scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
-    scene::Camera camera;
-    camera.position = position;
-    camera.target = target;
-    camera.verticalFovRad = 0.9F;
-    camera.nearM = 0.05F;
-    camera.farM = 50.0F;
-    return camera;
+    const reflections::WallHit hit =
+        reflections::wallHit({-kHalfSize, kHalfSize}, origin, direction);
+    return {glm::vec3(hit.position), hit.normal, kWallColours[hit.side]};
 }
 
 }  // namespace gfxrepro::clustered_reflections::rooms

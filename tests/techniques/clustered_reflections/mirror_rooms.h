@@ -44,6 +44,4 @@ struct WallHit {
 };
 WallHit wallHit(const glm::vec3& origin, const glm::vec3& direction);
 
-scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target);
-
 }  // namespace gfxrepro::clustered_reflections::rooms

@@ -9,6 +9,7 @@
 #include "tests/gl/suite_device.h"
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
 #include "tests/techniques/reflections/gl_calls.h"
+#include "tests/techniques/reflections/traced_scenes.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -81,14 +82,7 @@ class TracerTest : public test::SuiteDeviceTest {
     /// Of the samples that reflect; the maximum is 1.
     template <class Expected>
     static double psnrDb(const Traced& traced, const Expected& expected) {
-        double sum = 0.0, count = 0.0;
-        for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
-            if (!traced.gbuffer.isReflective(i)) continue;
-            const glm::vec3 error = traced.radiance[i] - expected(i);
-            sum += glm::dot(error, error) / 3.0F;
-            count += 1.0;
-        }
-        return -10.0 * std::log10(sum / count);
+        return reflections::psnrDb(traced.gbuffer, traced.radiance, expected);
     }
 
     /// The same of the means of 2 × 2 samples as they are shown, where all four are reflective.

@@ -1,7 +1,6 @@
 // Key frames of small scenes, drawn on the device and traced with Embree.
 #pragma once
 
-#include <cmath>
 #include <glm/gtc/constants.hpp>
 
 #include "techniques/reflection_reuse/pixel_matcher.h"
@@ -11,6 +10,7 @@
 namespace gfxrepro::reflection_reuse {
 
 using reflections::addPart;
+using reflections::dome;
 
 struct KeyFrame {
     reflections::ReflectiveScene scene;
@@ -43,42 +43,13 @@ struct HostOffsets {
     std::vector<std::uint8_t> steps;
 
     explicit HostOffsets(const Offsets& offsets)
-        : steps(offsets.steps.read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1)) {
-        const std::vector<float> values = offsets.offset.read<float>(GL_RG, GL_FLOAT, 2);
-        for (std::size_t i = 0; i < values.size(); i += 2) {
-            offset.emplace_back(values[i], values[i + 1]);
-        }
-    }
+        : offset(offsets.offset.read<glm::vec2>(GL_RG, GL_FLOAT, 1)),
+          steps(reflections::readMask(offsets.steps)) {}
     bool isValid(std::size_t index) const { return offset[index].x != kInvalidOffset; }
     std::optional<glm::vec2> at(std::size_t index) const {
         return isValid(index) ? std::optional(offset[index]) : std::nullopt;
     }
 };
-
-/// Part of a sphere, from the top (polar angle 0) to `polarRad`, with exact normals: outwards, or
-/// inwards for a negative radius, which also turns it upside down: a bowl.
-inline scene::Mesh dome(const glm::vec3& centre, float radius, float polarRad) {
-    constexpr unsigned kAround = 96, kDown = 48;
-    scene::Mesh mesh;
-    for (unsigned j = 0; j <= kDown; ++j) {
-        for (unsigned i = 0; i <= kAround; ++i) {
-            const float longitude = glm::two_pi<float>() * static_cast<float>(i) / kAround;
-            const float polar = polarRad * static_cast<float>(j) / kDown;
-            const glm::vec3 up(std::sin(polar) * std::cos(longitude), std::cos(polar),
-                               std::sin(polar) * std::sin(longitude));
-            mesh.positions.push_back(centre + radius * up);
-            mesh.normals.push_back(up);
-        }
-    }
-    for (unsigned j = 0; j < kDown; ++j) {
-        for (unsigned i = 0; i < kAround; ++i) {
-            const unsigned a = j * (kAround + 1) + i, b = a + kAround + 1;
-            mesh.triangles.emplace_back(a, b + 1, b);
-            mesh.triangles.emplace_back(a, a + 1, b + 1);
-        }
-    }
-    return mesh;
-}
 
 const scene::Box kRoom{glm::vec3(-2.0F, 0.0F, -2.0F), glm::vec3(2.0F, 2.5F, 2.0F)};
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "techniques/reflection_reuse/reuse_renderer.h"
 #include "tests/techniques/reflections/traced_scenes.h"
@@ -17,25 +16,7 @@ using reflections::HostGBuffer;
 enum RoomObject { kMirrorWall = 4, kPosts = 6, kBlock = 7, kBall = 8 };
 
 inline scene::Mesh sphere(const glm::vec3& centre, float radius) {
-    constexpr unsigned kAround = 48, kUp = 24;
-    scene::Mesh mesh;
-    for (unsigned j = 0; j <= kUp; ++j) {
-        for (unsigned i = 0; i <= kAround; ++i) {
-            const float azimuth =
-                2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / kAround;
-            const float polar = std::numbers::pi_v<float> * static_cast<float>(j) / kUp;
-            const glm::vec3 normal(std::sin(polar) * std::cos(azimuth), std::cos(polar),
-                                   std::sin(polar) * std::sin(azimuth));
-            mesh.positions.push_back(centre + radius * normal);
-            mesh.normals.push_back(normal);
-            if (j == kUp || i == kAround) continue;
-            const unsigned at = j * (kAround + 1) + i;
-            const unsigned below = at + kAround + 1;
-            mesh.triangles.emplace_back(at, at + 1, below);
-            mesh.triangles.emplace_back(at + 1, below + 1, below);
-        }
-    }
-    return mesh;
+    return reflections::dome(centre, radius, glm::pi<float>(), 48, 24);
 }
 
 /// Four metres wide, with a mirror for the wall at −z; opposite a row of posts, between them a
@@ -102,8 +83,7 @@ class ReuseTest : public reflections::ReflectionsTest {
             Frame frame;
             frame.gbuffer = readGBuffer(renderer.gbuffer());
             frame.radiance = renderer.reflection().radiance.read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
-            frame.recomputed =
-                renderer.recomputed().read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1);
+            frame.recomputed = reflections::readMask(renderer.recomputed());
             frame.counts = renderer.counts();
             return frame;
         }
@@ -115,14 +95,8 @@ class ReuseTest : public reflections::ReflectionsTest {
     /// Over the reflective samples; the largest value is 1.
     static double psnrDb(const World& world, const Frame& frame) {
         const std::vector<reflections::TracedSample> truth = world.truth(frame);
-        double sum = 0.0, count = 0.0;
-        for (std::size_t i = 0; i < truth.size(); ++i) {
-            if (!frame.gbuffer.isReflective(i)) continue;
-            const glm::vec3 error = frame.radiance[i] - truth[i].radiance;
-            sum += double{glm::dot(error, error)} / 3.0;
-            count += 1.0;
-        }
-        return -10.0 * std::log10(sum / count);
+        return reflections::psnrDb(frame.gbuffer, frame.radiance,
+                                   [&](std::size_t i) { return truth[i].radiance; });
     }
 
     static double share(const ReuseCounts& counts) {

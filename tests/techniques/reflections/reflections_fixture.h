@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <glm/gtc/constants.hpp>
 #include <string>
 
 #include "engine/core/files.h"
@@ -40,6 +41,32 @@ inline scene::Mesh squareMesh() {
     mesh.normals.assign(4, {0, 0, 1});
     mesh.texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+/// Part of a sphere, from the top (polar angle 0) to `polarRad`, with exact normals: outwards, or
+/// inwards for a negative radius, which also turns it upside down: a bowl.
+inline scene::Mesh dome(const glm::vec3& centre, float radius, float polarRad, unsigned around = 96,
+                        unsigned down = 48) {
+    scene::Mesh mesh;
+    for (unsigned j = 0; j <= down; ++j) {
+        for (unsigned i = 0; i <= around; ++i) {
+            const float longitude =
+                glm::two_pi<float>() * static_cast<float>(i) / static_cast<float>(around);
+            const float polar = polarRad * static_cast<float>(j) / static_cast<float>(down);
+            const glm::vec3 up(std::sin(polar) * std::cos(longitude), std::cos(polar),
+                               std::sin(polar) * std::sin(longitude));
+            mesh.positions.push_back(centre + radius * up);
+            mesh.normals.push_back(up);
+        }
+    }
+    for (unsigned j = 0; j < down; ++j) {
+        for (unsigned i = 0; i < around; ++i) {
+            const unsigned a = j * (around + 1) + i, b = a + around + 1;
+            mesh.triangles.emplace_back(a, b + 1, b);
+            mesh.triangles.emplace_back(a, a + 1, b + 1);
+        }
+    }
     return mesh;
 }
 

@@ -142,6 +142,19 @@ void forEachReflective(const HostGBuffer& gbuffer, Action&& action) {
     }
 }
 
+/// Of the samples that reflect; the maximum is 1.
+template <class Expected>
+double psnrDb(const HostGBuffer& gbuffer, const std::vector<glm::vec3>& radiance,
+              const Expected& expected) {
+    double sum = 0.0, count = 0.0;
+    forEachReflective(gbuffer, [&](glm::ivec2, std::size_t i) {
+        const glm::vec3 error = radiance[i] - expected(i);
+        sum += double{glm::dot(error, error)} / 3.0;
+        count += 1.0;
+    });
+    return -10.0 * std::log10(sum / count);
+}
+
 inline float largestDifference(const glm::vec3& a, const glm::vec3& b) {
     const glm::vec3 difference = glm::abs(a - b);
     return std::max({difference.x, difference.y, difference.z});
