@@ -1,4 +1,4 @@
-// [xie2017] Algorithm 7: a ray against a depth image, as march_on_host.h of the tests has it. MARCH is 0
+// [xie2017] Algorithm 7: a ray against a depth image, as march_test.cpp has it. MARCH is 0
 // for a texel a step, 1 for stepping over whole tiles whose content lies behind the ray.
 //
 // The image holds nearM / z, z being the distance along the axis, and 0 where nothing is: linear in

@@ -1,14 +1,127 @@
 // The marches on the device against the march on the host, and against rays whose hit is known.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <glm/gtc/matrix_transform.hpp>
+#include <optional>
+#include <vector>
 
 #include "engine/core/files.h"
 #include "engine/core/random.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "tests/gl/gl_fixture.h"
-#include "tests/techniques/clustered_reflections/march_on_host.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {
+
+// ---- [xie2017] Algorithm 7 (printed as 8 in the text) on the host, as march.glsl has it ----
+
+/// A depth image on the host: what the reference march reads. Rows from the bottom; depth is the
+/// distance along the camera's axis in metres, 0 where nothing is.
+struct HostMarchImage {
+    glm::mat4 clipFromWorld{1.0F};  // clip w: distance along the axis; clip z from −w to w
+    glm::ivec2 sizePx{0};
+    std::vector<float> depthM;
+    std::vector<std::uint8_t> isOwn;  // texels of the cluster's own reflector; empty: none
+    float depthAt(const glm::vec2& positionPx) const;  // nearest texel, clamped to the edge
+};
+
+struct MarchHit {
+    glm::vec2 positionPx{0.0F};  // where the ray first is behind the stored depth
+    float fraction = 0.0F;       // u, along the projected ray as clipped to the frustum
+    float depthM = 0.0F;         // of the ray there
+    int steps = 0;
+};
+
+/// As in shaders/march.glsl.
+constexpr float kLeaving = 1.0F / 32.0F;
+
+/// The part of a ray inside the frustum, projected: shaders/march.glsl has the same operations.
+struct ProjectedRay {
+    glm::vec2 beginPx{0.0F}, deltaPx{0.0F};
+    float k1 = 0.0F, k2 = 0.0F;
+    int steps = 0;
+};
+
+/// Keeps of [t0, t1] what lies on the inner side of a plane, to which the ends have these signed
+/// distances.
+void cut(float begin, float end, float& t0, float& t1) {
+    if (begin < 0.0F) t0 = end < 0.0F ? 2.0F : std::max(t0, begin / (begin - end));
+    if (end < 0.0F && !(begin < 0.0F)) t1 = std::min(t1, begin / (begin - end));
+}
+
+std::optional<ProjectedRay> project(const HostMarchImage& image, const glm::vec3& beginWorld,
+                                    const glm::vec3& endWorld) {
+    const glm::vec4 begin = image.clipFromWorld * glm::vec4(beginWorld, 1.0F);
+    const glm::vec4 end = image.clipFromWorld * glm::vec4(endWorld, 1.0F);
+    const glm::vec2 size(image.sizePx);
+    const glm::vec2 border = 1.0F + 1.0F / size;  // half a texel outwards
+    float t0 = 0.0F, t1 = 1.0F;
+    for (int axis = 0; axis < 2; ++axis) {
+        cut(border[axis] * begin.w + begin[axis], border[axis] * end.w + end[axis], t0, t1);
+        cut(border[axis] * begin.w - begin[axis], border[axis] * end.w - end[axis], t0, t1);
+    }
+    cut(begin.w + begin.z, end.w + end.z, t0, t1);
+    cut(begin.w - begin.z, end.w - end.z, t0, t1);
+    if (!(t0 <= t1)) return std::nullopt;
+
+    const glm::vec4 from = begin + (end - begin) * t0;
+    const glm::vec4 to = begin + (end - begin) * t1;
+    if (!(from.w > 0.0F && to.w > 0.0F)) return std::nullopt;
+    ProjectedRay ray;
+    ray.beginPx = (glm::vec2(from) / from.w * 0.5F + 0.5F) * size;
+    ray.deltaPx = (glm::vec2(to) / to.w * 0.5F + 0.5F) * size - ray.beginPx;
+    ray.k1 = 1.0F / from.w;
+    ray.k2 = 1.0F / to.w - ray.k1;
+    const float longest = std::max(std::abs(ray.deltaPx.x), std::abs(ray.deltaPx.y));
+    ray.steps = std::max(static_cast<int>(std::ceil(longest)), 1);
+    return ray;
+}
+
+std::size_t texelAt(const HostMarchImage& image, const glm::vec2& positionPx) {
+    const glm::ivec2 texel =
+        glm::clamp(glm::ivec2(glm::floor(positionPx)), glm::ivec2(0), image.sizePx - 1);
+    return static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(image.sizePx.x) +
+           static_cast<std::size_t>(texel.x);
+}
+
+float HostMarchImage::depthAt(const glm::vec2& positionPx) const {
+    return depthM[texelAt(*this, positionPx)];
+}
+
+// [xie2017] Algorithm 7.
+/// The march from begin to end, line by line as printed but for the signs:
+/// steps = max(|Δx|·width, |Δy|·height), at least 1; at fraction u the ray's depth is
+/// 1 / (k₁ + k₂·u) with k₁ = 1 / z_begin, k₂ = 1 / z_end − 1 / z_begin; the first sample where it
+/// is behind the stored depth is the hit. A ray that projects to a point takes the texel that it
+/// lies in, at its second step. What lies outside of the frustum is cut off before, but for half a
+/// texel around the image: the outermost rays run along its edge, and rounding must not lose them.
+///
+/// The own reflector (Sec. 4.7.4, second way) counts once the ray has been seen in front of
+/// something by 1/32 of its depth: before, it has not left the surface that it starts from.
+std::optional<MarchHit> marchOnHost(const HostMarchImage& image, const glm::vec3& beginWorld,
+                                    const glm::vec3& endWorld) {
+    if (image.sizePx.x <= 0 || image.sizePx.y <= 0) return std::nullopt;
+    const std::optional<ProjectedRay> ray = project(image, beginWorld, endWorld);
+    if (!ray) return std::nullopt;
+    const float perStep = 1.0F / static_cast<float>(ray->steps);
+    bool hasLeftOwn = false;
+    for (int step = 0; step <= ray->steps; ++step) {
+        const float u = static_cast<float>(step) * perStep;
+        const glm::vec2 positionPx = ray->beginPx + u * ray->deltaPx;
+        const float depthM = 1.0F / (ray->k1 + ray->k2 * u);
+        const float storedM = image.depthAt(positionPx);
+        const bool isBehind = storedM > 0.0F && depthM > storedM;
+        hasLeftOwn |= !(storedM > 0.0F) || depthM < storedM * (1.0F - kLeaving);
+        if (!isBehind) continue;
+        if (hasLeftOwn || image.isOwn.empty() || image.isOwn[texelAt(image, positionPx)] == 0) {
+            return MarchHit{positionPx, u, depthM, step + 1};
+        }
+    }
+    return std::nullopt;
+}
+
+// ---- The same on the device ----
 
 constexpr int kLevels = 4;  // of tiles of 4 texels and more
 constexpr int kTextureSidePx = 256;
