@@ -73,7 +73,7 @@ struct ClaimResult {
     /// What it comes to as far as the config knows; none where the run is altered.
     std::optional<Verdict> known = Verdict::Holds;
     std::string because;       // why, where it does not hold
-    std::string shownBy = {};  // and what proves it
+    std::string shownBy = {};  // and the place in results/findings that proves it
 
     /// A statement of the document itself: what counts.
     bool isOfDocument() const { return origin == config::ClaimSpec::Origin::Document; }

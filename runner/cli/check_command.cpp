@@ -98,6 +98,61 @@ void requireNamedSweeps(const Node& node) {
     }
 }
 
+/// The anchor of a heading in Markdown: "### Table 2.1: V1" has "table-21-v1".
+std::string anchorOf(std::string_view heading) {
+    std::string anchor;
+    for (const char c : trimmed(heading.substr(heading.find_first_not_of('#')))) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (std::isalnum(byte) != 0 || c == '-' || c == '_') {
+            anchor += static_cast<char>(std::tolower(byte));
+        } else if (c == ' ') {
+            anchor += '-';
+        }
+    }
+    return anchor;
+}
+
+/// Throws Error for a place in results/findings that is none: "PAGE.md#ANCHOR". An installation
+/// has no findings: there any place is taken.
+void requireFinding(const Node& shownBy) {
+    const std::string& place = shownBy.text();
+    const std::size_t end = place.find(".md#");
+    if (end == std::string::npos || place.find_first_of("/ ") != std::string::npos) {
+        throw Error(shownBy.location(),
+                    fmt::format("shown_by is '{}'; allowed: PAGE.md#ANCHOR, a heading of a page in "
+                                "results/findings",
+                                place));
+    }
+    const std::filesystem::path folder =
+        dataFolder("configs").parent_path() / "results" / "findings";
+    if (!std::filesystem::is_directory(folder)) return;
+    const std::string page = place.substr(0, end + 3), anchor = place.substr(end + 4);
+    if (!std::filesystem::is_regular_file(folder / page)) {
+        throw Error(shownBy.location(),
+                    fmt::format("shown_by: results/findings has no page '{}'", page));
+    }
+    std::vector<std::string> known;
+    for (const std::string& line : split(readFile(folder / page), '\n')) {
+        if (line.starts_with('#')) known.push_back(anchorOf(line));
+    }
+    if (std::ranges::find(known, anchor) != known.end()) return;
+    throw Error(shownBy.location(),
+                fmt::format("shown_by: no heading of results/findings/{} has the anchor '{}'{}",
+                            page, anchor, suggestion(anchor, known)));
+}
+
+void requireFindings(const Node& claims) {
+    for (const auto& [id, claim] : claims.entries()) {
+        const Node* because = claim.find("because");
+        if (!because) continue;
+        const Node::Sequence known =
+            because->isSequence() ? because->items() : Node::Sequence{*because};
+        for (const Node& one : known) {
+            if (const Node* shownBy = one.find("shown_by")) requireFinding(*shownBy);
+        }
+    }
+}
+
 /// Throws Error for a scene that the technique of a case cannot take.
 void requireTaken(const Context& context, const config::Case& item, const Node& reference,
                   const scene::Scene& scene) {
@@ -193,6 +248,7 @@ int check(const Context& context, const Selection& selection) {
             const Node* node = experiment.document.find(section);
             if (node) requireNamedSweeps(*node);
         }
+        if (const Node* given = experiment.document.find("claims")) requireFindings(*given);
         sayAbsent(file, cases);
         const std::size_t caseCount = cases.size();
         const tables::Table table = tables::buildTable(experiment, cases, {});

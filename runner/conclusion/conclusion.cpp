@@ -188,8 +188,10 @@ void addWords(std::vector<claims::ClaimResult>& claims) {
 }  // namespace
 
 report::ReportOptions reportOptions(bool embeds, report::PicturesDone progress) {
-    return {config::readDocuments(dataFolder("configs") / "documents.yaml"), embeds,
-            std::move(progress)};
+    const fs::path configs = dataFolder("configs");
+    const fs::path findings = configs.parent_path() / "results" / "findings";
+    return {config::readDocuments(configs / "documents.yaml"), embeds, std::move(progress),
+            fs::is_directory(findings) ? findings : fs::path()};
 }
 
 report::ReportRun reportRun(const fs::path& runDir, const run::StoredRun& run,

@@ -128,7 +128,7 @@ struct ClaimSpec {
         std::optional<std::string> profile;  // none: in any
         std::optional<std::string> scenes;   // "files" | "generated"; none: of any
         std::string reason;                  // in a sentence or two, for a reader of the document
-        std::string shownBy = {};            // the numbers and runs that prove it; perhaps empty
+        std::string shownBy = {};            // "PAGE.md#ANCHOR" of results/findings; or empty
     };
     std::string id;
     std::string text;  // `says:` the claim in the paper's sense, one line

@@ -26,6 +26,17 @@ namespace gfxrepro::report {
 
 namespace fs = std::filesystem;
 
+std::string encodedAddress(const fs::path& path) {
+    std::string address;
+    for (const char c : path.generic_string()) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool isPlain =
+            std::isalnum(byte) != 0 || std::string_view("/-_.~").find(c) != std::string_view::npos;
+        address += isPlain ? std::string(1, c) : fmt::format("%{:02X}", byte);
+    }
+    return address;
+}
+
 namespace {
 
 /// Whether `made` is there and no older than what it is made from.
@@ -41,18 +52,6 @@ void makeFolderOf(const fs::path& file) {
     if (failure) {
         throw Error("cannot create " + file.parent_path().string() + ": " + failure.message());
     }
-}
-
-/// A path as a link: its parts may hold what an address may not.
-std::string encodedAddress(const fs::path& path) {
-    std::string address;
-    for (const char c : path.generic_string()) {
-        const auto byte = static_cast<unsigned char>(c);
-        const bool isPlain =
-            std::isalnum(byte) != 0 || std::string_view("/-_.~").find(c) != std::string_view::npos;
-        address += isPlain ? std::string(1, c) : fmt::format("%{:02X}", byte);
-    }
-    return address;
 }
 
 /// The linear values of what a PNG shows, 3 channels.

@@ -31,6 +31,9 @@ struct GalleryPlace {
     int reducedPx = kShownPx;  // of Reduced: the longer side at most
 };
 
+/// A path as a link: its parts may hold what an address may not.
+std::string encodedAddress(const std::filesystem::path& path);
+
 /// One image: what an <img> shows of it, and what the viewer opens.
 struct Shot {
     std::string table;

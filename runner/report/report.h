@@ -43,6 +43,8 @@ struct ReportOptions {
     std::vector<config::Document> documents = {};  // titles and chapters, for the first screen
     bool embeds = false;                           // every picture inside of the file
     PicturesDone progress = {};                    // of each run
+    /// The folder of findings, which claims are shown by; empty where it is not at hand.
+    std::filesystem::path findings = {};
 };
 
 /// One file that asks no network and no other file but images: what reproduced and what did not,

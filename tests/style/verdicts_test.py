@@ -22,7 +22,7 @@ CLAIMS = [  # claim, verdict, the run's reason, the config's, what the page says
      ". Why: The interval of what was measured lies on both sides of the bound."),
     ("F", "fails", "worst at n 1", "Another.", ". Why: Another."),
     ("G", "holds", "worst at n 1", "", ""),
-    ("I", "fails", "worst at n 1", "an earlier cause", ". Why: It is so: in a config."),
+    ("I", "fails", "worst at n 1", "an earlier cause", ". Why: It is so: in a config. ([numbers](../../findings/p.md#table-1-i))"),
 ]
 CONFIG = """claims:
   I:
@@ -36,6 +36,7 @@ CONFIG = """claims:
         reason: >-
           It is so:
           in a config.
+        shown_by: p.md#table-1-i
   J:
     says: next
 """

@@ -476,7 +476,7 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
         }
     }
     run.experiments[0].claims[1].because = {{"fails", std::nullopt, std::nullopt, std::nullopt,
-                                             "the time is of another machine", "two machines"}};
+                                             "the time is of another machine", "zju2005.md#b"}};
     std::filesystem::create_directories(folder.path() / "images");
     image::writePng(folder.path() / "images/a.png", grey(100));
     records::ImageWriter(folder.path())
@@ -484,8 +484,12 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
     const config::Document document{
         "zju2005", "Thesis on <models>", {{"Later", {"9.9"}}, {"Earlier", {"figure-1"}}}};
     judge(run, records());
-    writeReport(folder.path() / "report.html", {&run, 1}, {{document}, false});
+    const std::filesystem::path findings = folder.path().parent_path() / "a b";
+    writeReport(folder.path() / "report.html", {&run, 1}, {{document}, false, {}, findings});
     const std::string html = readFile(folder.path() / "report.html");
+    writeReport(folder.path() / "sent.html", {&run, 1}, {{document}, true, {}, findings});
+    EXPECT_THAT(readFile(folder.path() / "sent.html"),
+                HasSubstr("shown by </span>results/findings/zju2005.md#b</p>"));
     EXPECT_THAT(html, HasSubstr("<figcaption>surface 0 · t</figcaption>"));
     std::size_t at = 0;
     for (const char* part : {
@@ -505,7 +509,8 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
              "href=\"#zju2005-9.9\">B</a>, document</span>\n<p><span class=\"soft\">why: </span>",
              "the time is of another machine (",
              "<h3>Earlier</h3>",
-             "<p><span class=\"soft\">shown by </span>two machines</p>",
+             "<p><span class=\"soft\">shown by </span><a "
+             "href=\"../a%20b/zju2005.md#b\">results/findings/zju2005.md#b</a></p>",
          }) {
         const std::size_t next = html.find(part, at);
         ASSERT_NE(next, html.npos) << part;
