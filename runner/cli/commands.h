@@ -87,6 +87,7 @@ struct DescribeOptions {
     bool asJsonSchema = false;
     bool asMarkdown = false;
     bool asJson = false;
+    bool isMerged = false;
     std::string assets;
 };
 

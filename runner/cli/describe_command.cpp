@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "engine/core/files.h"
 #include "engine/core/text.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
@@ -339,9 +340,85 @@ bool describeSchema(const Context& context, const DescribeOptions& options) {
     return true;
 }
 
+void writeYaml(const std::string& prefix, const Node& node, std::size_t indent, std::string& text);
+
+/// The entries of a map or the items of a list, in block style.
+std::string yamlBelow(const Node& node, std::size_t indent) {
+    std::string text;
+    if (node.isMap()) {
+        for (const auto& [key, value] : node.entries()) {
+            writeYaml(Node::scalar(key).toFlowText() + ":", value, indent, text);
+        }
+    } else {
+        for (const Node& item : node.items()) writeYaml("-", item, indent, text);
+    }
+    return text;
+}
+
+/// Behind "key:" or "-". Sections of a file and what does not fit on a line are in block style.
+void writeYaml(const std::string& prefix, const Node& node, std::size_t indent, std::string& text) {
+    constexpr std::size_t kColumns = 100;
+    const std::string pad(indent, ' '), below(indent + 2, ' ');
+    const std::string line = pad + prefix + ' ' + node.toFlowText();
+    const bool isSection = indent == 0 && node.isMap() && !node.entries().empty();
+    const bool isLong = line.size() > kColumns || isSection;
+    if (node.isScalar() && node.text().find('\n') != std::string::npos &&
+        !node.text().starts_with(' ') && !node.text().ends_with("\n\n")) {
+        text += pad + prefix + (node.text().ends_with('\n') ? " |\n" : " |-\n");
+        for (const std::string& row : split(trimmed(node.text()), '\n')) {
+            text += (row.empty() ? "" : below + row) + '\n';
+        }
+    } else if (node.isScalar() && isLong && node.text().find("  ") == std::string::npos &&
+               trimmed(node.text()) == node.text() && !parseDouble(node.text())) {
+        text += pad + prefix + " >-\n";
+        std::string row = below;
+        for (const std::string& word : split(node.text(), ' ')) {
+            if (row.size() > below.size() && row.size() + 1 + word.size() > kColumns) {
+                text += row + '\n';
+                row = below;
+            }
+            row += (row.size() > below.size() ? " " : "") + word;
+        }
+        text += row + '\n';
+    } else if (isLong && (node.isMap() || node.isSequence())) {
+        const std::string inner = yamlBelow(node, indent + 2);
+        text += prefix == "-" ? pad + "- " + inner.substr(indent + 2) : pad + prefix + '\n' + inner;
+    } else {
+        text += line + '\n';
+    }
+}
+
+std::string mergedYaml(const std::filesystem::path& file) {
+    return fmt::format("# {} with all that it extends\n{}", file.filename().generic_string(),
+                       yamlBelow(config::wholeDocument(file, dataFolder("configs")), 0));
+}
+
 int sayJson(const Json& json) {
     fmt::print("{}\n", json.dump(2));
     return kExitOk;
+}
+
+/// Whether there is such a table or file; else adds the names of those that there are.
+bool describeTable(const Context& context, const DescribeOptions& options,
+                   std::vector<std::string>& known) {
+    run::Request request;
+    for (const std::filesystem::path& file : paperConfigs()) {
+        request.configs.push_back(file.string());
+    }
+    if (isYamlFile(options.name)) request.configs = {options.name};
+    for (const config::Experiment& experiment : loadExperiments(request, "full")) {
+        known.push_back(experiment.id);
+        if (experiment.id != options.name && !isYamlFile(options.name)) continue;
+        if (options.isMerged) {
+            fmt::print("{}", mergedYaml(experiment.file));
+        } else if (options.asJson) {
+            sayJson(jsonOf(experiment));
+        } else {
+            describeExperiment(context, experiment);
+        }
+        return true;
+    }
+    return false;
 }
 
 }  // namespace
@@ -354,6 +431,11 @@ int describe(const Context& context, const DescribeOptions& options) {
     if (describeSchema(context, options)) return kExitOk;
     if (name.empty()) throw UsageError("describe: say what; see 'gfxrepro describe --help'");
     std::vector<std::string> known = {"config"};
+    if (options.isMerged) {
+        if (describeTable(context, options, known)) return kExitOk;
+        throw UsageError("describe: no table or file is called '" + name + "'" +
+                         suggestion(name, known) + "; --merged is for these alone");
+    }
     const auto technique = findNamed(context.techniques, name);
     if (technique != context.techniques.end()) {
         if (options.asJson) return sayJson(jsonOf(*technique));
@@ -373,19 +455,7 @@ int describe(const Context& context, const DescribeOptions& options) {
         describeScene(entry->second, catalog);
         return kExitOk;
     }
-    run::Request request;
-    for (const std::filesystem::path& file : paperConfigs()) {
-        request.configs.push_back(file.string());
-    }
-    if (isYamlFile(name)) request.configs = {name};
-    for (const config::Experiment& experiment : loadExperiments(request, "full")) {
-        if (experiment.id == name || isYamlFile(name)) {
-            if (options.asJson) return sayJson(jsonOf(experiment));
-            describeExperiment(context, experiment);
-            return kExitOk;
-        }
-        known.push_back(experiment.id);
-    }
+    if (describeTable(context, options, known)) return kExitOk;
     for (const technique::TechniqueInfo& info : context.techniques) known.emplace_back(info.name);
     for (const scene::GeneratorInfo& info : context.generators) known.emplace_back(info.name);
     for (const auto& [sceneName, unused] : catalog.entries()) known.push_back(sceneName);

@@ -277,6 +277,10 @@ struct ExperimentOptions {
 Experiment loadExperiment(const std::filesystem::path& file, const ExperimentOptions& options,
                           const std::filesystem::path& configsFolder);
 
+/// The file with all that it extends, as one document of the same plans, what it is called first;
+/// files that it names have absolute paths.
+Node wholeDocument(const std::filesystem::path& file, const std::filesystem::path& configsFolder);
+
 /// The experiment of a `document` that loadExperiment made (perhaps stored in a plan as JSON in
 /// between); `file` is where it came from. Names that the profile took out of the sweep may still
 /// be printed and claimed.

@@ -293,6 +293,17 @@ Node withProfile(const Node& document, const std::vector<std::pair<std::string, 
     return result;
 }
 
+/// `over` laid on `base`, both to be laid on a document later: what they remove stays a null.
+Node overlayOf(const Node& base, const Node& over) {
+    if (!base.isMap() || !over.isMap()) return over;
+    Node result = base;
+    for (const auto& [key, value] : over.entries()) {
+        const Node* old = result.find(key);
+        result.set(key, old ? overlayOf(*old, value) : value, over.keyLocation(key));
+    }
+    return result;
+}
+
 /// A file of the configs, or one beside `file`.
 fs::path configNamed(const Node& name, const fs::path& file, const fs::path& configsFolder,
                      const std::string& what) {
@@ -338,6 +349,25 @@ Override parseOverride(const std::string& text) {
     const SourceLocation where{kCommandLine + text, 0, 0};
     const Node value = parseYaml(text.substr(equals + 1), where.file.text());
     return {std::string(trimmed(text.substr(0, equals))), relocated(value, where)};
+}
+
+Node wholeDocument(const fs::path& file, const fs::path& configsFolder) {
+    auto [document, overlays] = FileReader(configsFolder).read(file);
+    resolveScenes(document);
+    Node profiles = Node::map({});
+    for (auto& [name, overlay] : overlays) {
+        resolveScenes(overlay);
+        const Node* earlier = profiles.find(name);
+        profiles.set(name, earlier ? overlayOf(*earlier, overlay) : overlay);
+    }
+    if (!profiles.entries().empty()) document.set("profiles", std::move(profiles));
+    Node whole = Node::map({}, document.location());
+    for (const Names& keys : {identityKeys(), sectionKeys(), Names{"profiles"}}) {
+        for (const std::string& key : keys) {
+            if (const Node* value = document.find(key)) whole.set(key, *value);
+        }
+    }
+    return whole;
 }
 
 Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options,

@@ -146,6 +146,31 @@ TEST(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
     EXPECT_EQ(errorOf("128,12", "few, shown_by: zju2005.md#table-21-v2-proportional"), "");
 }
 
+/// Two files that it extends have profiles of their own.
+TEST(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
+    const TemporaryFolder folder;
+    const ProcessResult merged = gfxrepro({"describe", "xie2017/10", "--merged"});
+    ASSERT_EQ(merged.exitCode, 0) << merged.err;
+    EXPECT_EQ(merged.out.find("extends:"), std::string::npos);
+    EXPECT_EQ(merged.out.find("# table-10.yaml with all that it extends\ntable: xie2017/10\n"), 0u);
+    const std::string file = folder.write("merged.yaml", merged.out);
+    for (const char* profile : {"quick", "full", "paper"}) {
+        const auto planOf = [&](const std::string& name) {
+            const ProcessResult plan =
+                gfxrepro({"plan", name, "--profile", profile, "--json", "--device", "software"});
+            const std::size_t cases = plan.out.find("\n \"cases\": [");
+            EXPECT_NE(cases, std::string::npos) << plan.err;
+            return cases == std::string::npos ? plan.err : plan.out.substr(cases);
+        };
+        EXPECT_EQ(planOf(file), planOf("xie2017/10")) << profile;
+    }
+    const auto body = [](const std::string& text) { return text.substr(text.find('\n')); };
+    EXPECT_EQ(body(gfxrepro({"describe", file, "--merged"}).out), body(merged.out));
+    EXPECT_EQ(refusal({"describe", "xie2017/100", "--merged"}, folder),
+              "gfxrepro: describe: no table or file is called 'xie2017/100'; did you mean "
+              "'xie2017/10'?; --merged is for these alone\n");
+}
+
 TEST(Usage, UnknownPaperAndKind) {
     const TemporaryFolder folder;
     EXPECT_EQ(refusal({"reproduce", "zju2006/2.1"}, folder),
