@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "runner/tables/share_draws.h"
+#include "runner/tables/cell.h"
 
 namespace gfxrepro::claims {
 

@@ -19,7 +19,7 @@
 #include "runner/run/case_filter.h"
 #include "runner/run/ledger.h"
 #include "runner/tables/figure.h"
-#include "runner/tables/printed_values.h"
+#include "runner/tables/printed.h"
 
 namespace gfxrepro::cli {
 

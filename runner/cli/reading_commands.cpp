@@ -18,8 +18,9 @@
 #include "runner/conclusion/conclusion.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
+#include "runner/results/results.h"
 #include "runner/run/run.h"
-#include "runner/tables/printed_parameters.h"
+#include "runner/tables/printed.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::cli {

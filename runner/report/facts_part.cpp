@@ -5,7 +5,7 @@
 
 #include "runner/report/markup.h"
 #include "runner/report/parts.h"
-#include "runner/tables/printed_parameters.h"
+#include "runner/tables/printed.h"
 
 namespace gfxrepro::report {
 

@@ -11,7 +11,7 @@
 #include "engine/core/text.h"
 #include "runner/report/markup.h"
 #include "runner/report/svg.h"
-#include "runner/tables/reference_line.h"
+#include "runner/tables/figure.h"
 
 namespace gfxrepro::report {
 

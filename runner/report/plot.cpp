@@ -9,7 +9,6 @@
 #include "runner/report/svg.h"
 #include "runner/tables/default_layout.h"
 #include "runner/tables/figure.h"
-#include "runner/tables/reference_line.h"
 
 namespace gfxrepro::report {
 

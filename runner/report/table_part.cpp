@@ -8,8 +8,8 @@
 #include "runner/report/overlay.h"
 #include "runner/report/parts.h"
 #include "runner/tables/labels.h"
-#include "runner/tables/moved_clocks.h"
-#include "runner/tables/printed_parameters.h"
+#include "runner/tables/printed.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::report {
 

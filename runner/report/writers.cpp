@@ -9,8 +9,8 @@
 #include "runner/records/csv.h"
 #include "runner/report/markup.h"
 #include "runner/tables/labels.h"
-#include "runner/tables/moved_clocks.h"
-#include "runner/tables/printed_parameters.h"
+#include "runner/tables/printed.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::report {
 

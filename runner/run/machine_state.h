@@ -18,7 +18,6 @@
 #include "runner/run/protocol.h"
 #include "runner/run/run_directory.h"
 #include "runner/run/scheduler.h"
-#include "runner/tables/moved_clocks.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::run {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/core/text.h"
+#include "runner/records/csv.h"
 #include "runner/tables/case_records.h"
 #include "runner/tables/labels.h"
 
@@ -43,6 +44,12 @@ std::vector<std::string> columnNames(const std::vector<Quantity>& columns) {
     return names;
 }
 
+std::vector<std::string> columnLabels(const Table& table) {
+    std::vector<std::string> labels;
+    for (const TableColumn& column : table.columns) labels.push_back(column.label);
+    return labels;
+}
+
 /// Makes the figure of one table row by row.
 class FigureMaker {
   public:
@@ -76,13 +83,9 @@ class FigureMaker {
     }
 
     std::size_t columnOf(const std::string& name) const {
-        std::vector<std::string> known;
-        for (std::size_t i = 0; i < table_.columns.size(); ++i) {
-            if (table_.columns[i].label == name) return i;
-            known.push_back(table_.columns[i].label);
-        }
-        throw Error(plot_.location,
-                    fmt::format("plot: unknown column '{}'; allowed: {}", name, joined(known)));
+        if (const auto found = table_.findColumn(name)) return *found;
+        throw Error(plot_.location, fmt::format("plot: unknown column '{}'; allowed: {}", name,
+                                                joined(columnLabels(table_))));
     }
 
     std::vector<const TableRow*> readRows(const std::vector<TableRow>& all) const {
@@ -333,18 +336,55 @@ bool FigurePanel::hasPoints() const {
 }
 
 std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table) {
-    std::vector<std::string> wanted = plot.y, known;
+    std::vector<std::string> wanted = plot.y;
     if (std::ranges::find(table.rowAxes, plot.x) == table.rowAxes.end()) wanted.push_back(plot.x);
-    for (const TableColumn& column : table.columns) known.push_back(column.label);
     for (const std::string& name : wanted) {
-        if (std::ranges::find(known, name) != known.end()) continue;
-        return fmt::format("'{}' is no column (columns: {})", name, joined(known));
+        if (table.findColumn(name)) continue;
+        return fmt::format("'{}' is no column (columns: {})", name, joined(columnLabels(table)));
     }
     return "";
 }
 
 Figure makeFigure(const config::PlotSpec& plot, const Table& table) {
     return FigureMaker(plot, table).make();
+}
+
+namespace {
+
+std::vector<FigurePoint> referenceOf(const std::vector<FigurePoint>& points, double slope) {
+    std::vector<FigurePoint> drawn;
+    double logX = 0.0, logY = 0.0;
+    for (const FigurePoint& point : points) {
+        if (!point.y) continue;
+        drawn.push_back(point);
+        logX += std::log(point.x);
+        logY += std::log(*point.y);
+    }
+    if (drawn.size() < 2) return {};
+    logX /= static_cast<double>(drawn.size());
+    logY /= static_cast<double>(drawn.size());
+    std::vector<FigurePoint> ends(2);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        ends[i].x = (i == 0 ? drawn.front() : drawn.back()).x;
+        ends[i].y = std::exp(logY + slope * (std::log(ends[i].x) - logX));
+    }
+    return ends;
+}
+
+}  // namespace
+
+void addReference(Figure& figure, double slope) {
+    for (FigurePanel& panel : figure.panels) {
+        for (FigureCurve& curve : panel.curves) {
+            curve.reference = referenceOf(curve.points, slope);
+            if (!curve.reference.empty()) figure.slope = slope;
+        }
+    }
+}
+
+std::string slopeName(double slope) {
+    return fmt::format("slope {}{}", slope < 0.0 ? "−" : "",
+                       records::shortestText(std::abs(slope)));
 }
 
 }  // namespace gfxrepro::tables

@@ -56,4 +56,12 @@ Figure makeFigure(const config::PlotSpec& plot, const Table& table);
 /// built from no records.
 std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table);
 
+/// Gives each curve of two points or more its `reference`: through the mean of its points on
+/// logarithmic axes, from the first to the last of them. `slope`: exponent of x. The figure has its
+/// `slope` where a curve got one. Values must be positive, as makeFigure's on such axes are.
+void addReference(Figure& figure, double slope);
+
+/// "slope −0.5".
+std::string slopeName(double slope);
+
 }  // namespace gfxrepro::tables

@@ -1,27 +1,21 @@
 #include "runner/tables/table.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <set>
 
 #include "engine/core/text.h"
 #include "runner/config/external_program.h"
 #include "runner/records/csv.h"
-#include "runner/tables/cell_builder.h"
+#include "runner/tables/calibration.h"
 #include "runner/tables/default_layout.h"
-#include "runner/tables/fit.h"
 #include "runner/tables/frame_times.h"
 #include "runner/tables/labels.h"
-#include "runner/tables/printed_parameters.h"
+#include "runner/tables/printed.h"
 
 namespace gfxrepro::tables {
 
 namespace {
-
-/// Numbers compare as numbers: "64.0" is 64.
-std::string canonicalCell(const std::string& text) {
-    const auto number = parseDouble(trimmed(text));
-    return number ? records::shortestText(*number) : std::string(trimmed(text));
-}
 
 std::vector<std::string> axisNames(const std::vector<config::LayoutAxis>& axes) {
     std::vector<std::string> names;
@@ -97,148 +91,35 @@ void blankWhatOthersHave(Table& table) {
     }
 }
 
-/// The columns of `printed` that name row axes and table columns.
-struct PrintedColumns {
-    std::vector<std::optional<std::size_t>> axes;     // beside the row axes
-    std::vector<std::optional<std::size_t>> columns;  // beside the table's columns
-};
-
-PrintedColumns findColumns(const config::Printed& printed, const Table& table) {
-    PrintedColumns found;
-    const auto find = [&](const std::string& name) -> std::optional<std::size_t> {
-        const auto at = std::find(printed.header.begin(), printed.header.end(), name);
-        if (at == printed.header.end()) return std::nullopt;
-        return static_cast<std::size_t>(at - printed.header.begin());
-    };
-    for (const std::string& axis : table.rowAxes) found.axes.push_back(find(axis));
-    for (const TableColumn& column : table.columns) found.columns.push_back(find(column.label));
-    return found;
-}
-
-/// The columns of `printed` that the table does not have: a profile or a sweep took them away.
-std::vector<std::string> absentColumns(const config::Printed& printed, const Table& table) {
-    std::vector<std::string> absent;
-    for (const std::string& name : printed.header) {
-        if (std::ranges::find(table.rowAxes, name) != table.rowAxes.end()) continue;
-        if (std::ranges::find(table.columns, name, &TableColumn::label) != table.columns.end()) {
-            continue;
-        }
-        absent.push_back(name);
-    }
-    return absent;
-}
-
-bool isRowOf(const std::vector<std::string>& printedRow, const PrintedColumns& found,
-             const TableRow& row) {
-    for (std::size_t i = 0; i < found.axes.size(); ++i) {
-        if (found.axes[i] && canonicalCell(printedRow[*found.axes[i]]) != row.labels[i]) {
-            return false;
-        }
-    }
-    return true;
-}
-
-void layPrintedBeside(const config::Experiment& experiment, const std::vector<Key>& columns,
-                      Table& table) {
-    const config::Printed& printed = experiment.printed;
-    if (printed.rows.empty()) return;
-    const PrintedColumns found = findColumns(printed, table);
-    const std::vector<std::string> absent = absentColumns(printed, table);
-    if (!absent.empty()) {
-        std::vector<std::string> said;
-        for (const std::string& name : absent) said.push_back(shownName(name, table.words));
-        table.notes.push_back("printed columns that are not part of this run: " + joined(said));
-    }
-    const auto layInto = [&](TableRow& row, const std::vector<std::string>& printedRow) {
-        for (std::size_t i = 0; i < columns.size(); ++i) {
-            if (!found.columns[i] || printedRow[*found.columns[i]].empty()) continue;
-            Cell& cell = row.cells[i];
-            cell.printed = printedRow[*found.columns[i]];
-            cell.printedValues =
-                makeQuery(experiment.layout, row.labels, columns[i]).format.parse(*cell.printed);
-        }
-    };
-    for (const std::vector<std::string>& printedRow : printed.rows) {
-        bool isPlaced = false;
-        for (TableRow& row : table.rows) {
-            if (!isRowOf(printedRow, found, row)) continue;
-            isPlaced = true;
-            layInto(row, printedRow);
-        }
-        if (isPlaced) continue;
-        Cell unplanned;
-        unplanned.isPlanned = false;
-        TableRow row{{}, SceneSource::Unknown, std::vector<Cell>(columns.size(), unplanned)};
-        for (const auto& axis : found.axes) {
-            row.labels.push_back(axis ? canonicalCell(printedRow[*axis]) : "");
-        }
-        layInto(row, printedRow);
-        table.printedRows.push_back(std::move(row));
-    }
-}
-
-/// Of a table without a measurement.
-void layPrintedAlone(const config::Printed& printed, Table& table) {
-    if (printed.rows.empty()) return;
-    table.isOnlyPrinted = true;
-    table.rowAxes = {printed.header[0]};
-    for (std::size_t i = 1; i < printed.header.size(); ++i) {
-        table.columns.push_back(
-            {printed.header[i], "", {}, config::Better::Neither, {printed.header[i]}});
-    }
-    for (const std::vector<std::string>& printedRow : printed.rows) {
-        TableRow row{{printedRow[0]}, SceneSource::Unknown, {}};
-        for (std::size_t i = 1; i < printedRow.size(); ++i) {
-            Cell cell;
-            cell.isPlanned = false;
-            if (!printedRow[i].empty()) cell.printed = printedRow[i];
-            row.cells.push_back(std::move(cell));
-        }
-        table.rows.push_back(std::move(row));
-    }
-}
-
 }  // namespace
 
-const Measured* Cell::find(const std::string& statistic, Clock clock) const {
-    for (const Measured& candidate : clock == Clock::Wall ? values : byProcess) {
-        if (statistic.empty() || candidate.statistic == statistic) return &candidate;
-    }
-    return nullptr;
-}
-
-std::string_view sceneSourceName(SceneSource source) {
-    switch (source) {
-        case SceneSource::Real:
-            return "real";
-        case SceneSource::Generated:
-            return "generated";
-        case SceneSource::StandIn:
-            return "stand-in";
-        case SceneSource::Unknown:
-            break;
-    }
-    return "";
-}
-
 bool Table::hasSources() const {
-    return std::any_of(rows.begin(), rows.end(),
-                       [](const TableRow& row) { return row.source != SceneSource::Unknown; });
+    return std::ranges::any_of(
+        rows, [](const TableRow& row) { return row.source != SceneSource::Unknown; });
+}
+
+bool Table::hasCell(const std::function<bool(const Cell&)>& isSuch) const {
+    return std::ranges::any_of(
+        rows, [&](const TableRow& row) { return std::ranges::any_of(row.cells, isSuch); });
 }
 
 bool Table::hasCalibrated() const {
-    return std::ranges::any_of(rows, [](const TableRow& row) {
-        return std::ranges::any_of(
-            row.cells, [](const Cell& cell) { return cell.isCalibrated && cell.isPlanned; });
-    });
+    return hasCell([](const Cell& cell) { return cell.isCalibrated && cell.isPlanned; });
 }
 
 bool Table::hasShown(Bounds bounds) const {
-    return std::ranges::any_of(rows, [&](const TableRow& row) {
-        return std::ranges::any_of(row.cells, [&](const Cell& cell) {
-            return cell.hasShownBounds() && cell.bounds() == bounds;
-        });
-    });
+    return hasCell(
+        [&](const Cell& cell) { return cell.hasShownBounds() && cell.bounds() == bounds; });
+}
+
+bool Table::hasPrinted() const {
+    return hasCell([](const Cell& cell) { return cell.printed.has_value(); });
+}
+
+std::optional<std::size_t> Table::findColumn(std::string_view label) const {
+    const auto found = std::ranges::find(columns, label, &TableColumn::label);
+    if (found == columns.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - columns.begin());
 }
 
 std::string Table::rowName(std::size_t row) const {
@@ -248,6 +129,11 @@ std::string Table::rowName(std::size_t row) const {
         parts.push_back(rowAxes[i].empty() ? value : rowAxes[i] + "=" + value);
     }
     return joined(parts);
+}
+
+std::string canonicalCell(std::string_view text) {
+    const auto number = parseDouble(trimmed(text));
+    return number ? records::shortestText(*number) : std::string(trimmed(text));
 }
 
 Table transposed(const Table& table, std::size_t rowAxis) {
@@ -329,7 +215,7 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     if (given.hasDefaultLayout()) describeColumns(given, layout, table);
     addTimes(experiment, records, cases, table);
     table.notes.insert(table.notes.end(), notes.begin(), notes.end());
-    layPrintedBeside(experiment, columns, table);
+    layPrintedBeside(experiment, table);
     blankWhatOthersHave(table);
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {
         table.notes.push_back(std::move(note));
@@ -345,6 +231,52 @@ std::vector<Table> buildTables(const std::vector<config::Experiment>& experiment
         tables.push_back(buildTable(experiment, planned, records));
     }
     return tables;
+}
+
+namespace {
+
+void widen(std::optional<ClockRange>& range, const ClockRange& by) {
+    const ClockRange before = range.value_or(by);
+    range = {std::min(before.lowHz, by.lowHz), std::max(before.highHz, by.highHz)};
+}
+
+}  // namespace
+
+void markMovedClocks(const MovedClocks& moved, Table& table) {
+    if (moved.empty()) return;
+    for (TableRow& row : table.rows) {
+        for (Cell& cell : row.cells) {
+            if (!cell.isTime || cell.values.empty()) continue;
+            for (const std::string& caseId : cell.caseIds) {
+                const auto clock = moved.find(caseId);
+                if (clock != moved.end()) widen(cell.movedClock, clock->second);
+            }
+        }
+    }
+}
+
+std::optional<ClockRange> movedClock(const Table& table, std::size_t column) {
+    std::optional<ClockRange> range;
+    for (const TableRow& row : table.rows) {
+        if (row.cells[column].movedClock) widen(range, *row.cells[column].movedClock);
+    }
+    return range;
+}
+
+std::optional<ClockRange> movedClock(const Table& table) {
+    std::optional<ClockRange> range;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        if (const auto clock = movedClock(table, i)) widen(range, *clock);
+    }
+    return range;
+}
+
+std::string clockText(const ClockRange& clock) {
+    return fmt::format("{:.3g} and {:.3g} GHz", 1e-9 * clock.lowHz, 1e-9 * clock.highHz);
+}
+
+std::string movedClockLegend(const ClockRange& clock) {
+    return "timed while the GPU's clock moved between " + clockText(clock);
 }
 
 }  // namespace gfxrepro::tables

@@ -13,8 +13,8 @@
 
 #include "engine/core/random.h"
 #include "runner/claims/claim_times.h"
+#include "runner/tables/cell.h"
 #include "runner/tables/frame_times.h"
-#include "runner/tables/sampling.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::claims {

@@ -14,7 +14,7 @@
 #include "runner/claims/kept_claims.h"
 #include "runner/records/images.h"
 #include "runner/tables/labels.h"
-#include "runner/tables/moved_clocks.h"
+#include "runner/tables/table.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 

@@ -5,7 +5,7 @@
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
 #include "runner/report/writers.h"
-#include "runner/tables/moved_clocks.h"
+#include "runner/tables/table.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "runner/tables/reference_line.h"
 #include "tests/unit/tables/fixture.h"
 
 namespace gfxrepro::tables {

@@ -1,4 +1,4 @@
-#include "runner/tables/printed_parameters.h"
+#include "runner/tables/printed.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

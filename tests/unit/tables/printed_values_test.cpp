@@ -1,4 +1,4 @@
-#include "runner/tables/printed_values.h"
+#include "runner/tables/printed.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Shares that were counted once: their intervals, and claims about them.
-#include "runner/tables/share_draws.h"
+#include "runner/tables/cell.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runner/tables/sampling.h"
+#include "runner/tables/cell.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 

@@ -1,4 +1,4 @@
-#include "runner/tables/fit.h"
+#include "runner/tables/calibration.h"
 
 #include <gmock/gmock.h>
 

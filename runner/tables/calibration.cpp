@@ -1,4 +1,4 @@
-#include "runner/tables/fit.h"
+#include "runner/tables/calibration.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,16 +25,13 @@ constexpr std::array kFitColumns{"column",   "table", "printed", "measured",
                                  "residual", "rms",   "edges"};
 
 const Cell* cellOf(const TableRow& row, const Table& table, const std::string& column) {
-    const auto at = std::ranges::find(table.columns, column, &TableColumn::label);
-    return at == table.columns.end()
-               ? nullptr
-               : &row.cells[static_cast<std::size_t>(at - table.columns.begin())];
+    const auto at = table.findColumn(column);
+    return at ? &row.cells[*at] : nullptr;
 }
 
 std::string unitOf(const Fit& fit, const Table& table) {
-    const auto at =
-        std::ranges::find(table.columns, fit.targets.front().column, &TableColumn::label);
-    const std::string unit = at == table.columns.end() ? "" : at->unit;
+    const auto at = table.findColumn(fit.targets.front().column);
+    const std::string unit = at ? table.columns[*at].unit : "";
     return unit == "%" ? " percentage points" : unit.empty() ? "" : " " + unit;
 }
 

@@ -1,15 +1,5 @@
-// At which parameters cells were measured, beside those that the paper measured at.
-//
-// What is printed stands for the cases of the profile `paper`, with `printed.at` laid over them. A
-// cell is at the printed parameters where the cases behind it are these cases: the same parameters
-// of the technique (defaults resolved), size of the output, frames and scene. Not compared: how
-// often and where a case runs, and the parameter `pictures`, by which techniques save pictures
-// beside their numbers. What an assumption names and `printed.at` does not say is open in the
-// document: a departure from the profile's value is said to be just that, and a cell without one is
-// at the printed parameters as far as they are given. So is a departure from a default, and any of
-// a table without printed numbers but of what `printed.at` says. A stand-in in place of a real
-// model is no other scene: it goes by its name, and Table marks its source, as that of a generated
-// one.
+// What a paper printed: its values beside what was measured, and the parameters at which both were
+// measured.
 #pragma once
 
 #include <set>
@@ -20,11 +10,32 @@
 #include "runner/config/experiment.h"
 #include "runner/tables/labels.h"
 #include "runner/tables/table.h"
-#include "runner/tables/table_axes.h"
 
 namespace gfxrepro::tables {
 
-/// What the paper measured behind each cell.
+/// Gives the cells of the table what `printed` has for their row and column. Printed rows that it
+/// does not have become its `printedRows`; its notes name printed columns that it does not have.
+void layPrintedBeside(const config::Experiment& experiment, Table& table);
+/// Of a table without a measurement: the first column for the rows.
+void layPrintedAlone(const config::Printed& printed, Table& table);
+
+/// Throws Error, at its line, for a printed row that none of `tables` measures, and for a printed
+/// value that is not written as its cell's format writes numbers. `experiment` is the file as it
+/// stands; the tables are of that and of its profiles, and may have been built from no records.
+void requirePrintedValues(const config::Experiment& experiment, std::span<const Table> tables);
+
+/// At what the paper measured behind each cell.
+///
+/// What is printed stands for the cases of the profile `paper`, with `printed.at` laid over them. A
+/// cell is at the printed parameters where the cases behind it are these cases: the same parameters
+/// of the technique (defaults resolved), size of the output, frames and scene. Not compared: how
+/// often and where a case runs, and the parameter `pictures`, by which techniques save pictures
+/// beside their numbers. What an assumption names and `printed.at` does not say is open in the
+/// document: a departure from the profile's value is said to be just that, and a cell without one
+/// is at the printed parameters as far as they are given. So is a departure from a default, and any
+/// of a table without printed numbers but of what `printed.at` says. A stand-in in place of a real
+/// model is no other scene: it goes by its name, and Table marks its source, as that of a generated
+/// one.
 class PrintedParameters {
   public:
     /// `experiment.paperCases` are its cases; without any, nothing is known.
@@ -41,8 +52,8 @@ class PrintedParameters {
     config::Layout layout_;
     config::Printed printed_;
     std::set<std::string> open_;
-    std::set<std::string>
-        given_;  // in its config, not left to a default; where nothing is printed, in `printed.at`
+    /// In its config, not left to a default; where nothing is printed, in `printed.at`.
+    std::set<std::string> given_;
     LayoutCases cases_;
 };
 

@@ -1,15 +1,162 @@
-#include "runner/tables/cell_builder.h"
+#include "runner/tables/cell.h"
 
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <random>
 #include <set>
 
+#include "engine/core/error.h"
 #include "engine/core/text.h"
-#include "runner/tables/sampling.h"
-#include "runner/tables/share_draws.h"
 
 namespace gfxrepro::tables {
+
+// From repeated measurements to one value with its bounds.
+
+namespace {
+
+using Units = std::map<int, std::vector<double>>;
+using metrics::Statistic;
+
+double summarizeUnits(const Units& units, Statistic statistic) {
+    if (units.size() == 1) return metrics::summarize(units.begin()->second, statistic);
+    std::vector<double> values;
+    for (const auto& [unit, repeats] : units) {
+        values.push_back(metrics::summarize(repeats, Statistic::Median));
+    }
+    return metrics::summarize(values, statistic);
+}
+
+Units pooled(const Samples& samples) {
+    Units units;
+    for (const auto& [process, own] : samples.processes) {
+        for (const auto& [unit, repeats] : own) {
+            std::vector<double>& all = units[unit];
+            all.insert(all.end(), repeats.begin(), repeats.end());
+        }
+    }
+    return units;
+}
+
+/// What the first repeat of every unit alone would give, then the second, …
+std::vector<double> byRepeat(const Units& units, Statistic statistic) {
+    std::size_t count = units.begin()->second.size();
+    for (const auto& [unit, repeats] : units) count = std::min(count, repeats.size());
+    std::vector<double> values;
+    for (std::size_t i = 0; i < count; ++i) {
+        Units alone;
+        for (const auto& [unit, repeats] : units) alone[unit] = {repeats[i]};
+        values.push_back(summarizeUnits(alone, statistic));
+    }
+    return values;
+}
+
+metrics::Interval rangeOf(const std::vector<double>& values) {
+    const auto [low, high] = std::ranges::minmax(values);
+    return {low, high};
+}
+
+/// Value and bounds of what each process came to, at least one.
+void fillFromRounds(const std::vector<double>& values, Summary& summary) {
+    summary.value = metrics::summarize(values, Statistic::Median);
+    summary.interval = rangeOf(values);
+    if (values.size() > 1) summary.bounds = Bounds::Range;
+    if (const auto interval = metrics::medianInterval(values)) {
+        summary.bounds = Bounds::Interval;
+        summary.interval = *interval;
+    }
+}
+
+}  // namespace
+
+std::string_view boundsName(Bounds bounds) {
+    constexpr std::string_view kNames[] = {"", "range", "95 % interval"};
+    return kNames[static_cast<std::size_t>(bounds)];
+}
+
+Summary summarize(const Samples& samples, Statistic statistic) {
+    const Units all = pooled(samples);
+    GFXREPRO_ASSERT(!all.empty());
+    Summary summary;
+    std::vector<double> values;
+    for (const auto& [process, units] : samples.processes) {
+        if (units.size() < all.size()) continue;
+        values.push_back(summarizeUnits(units, statistic));
+        summary.rounds[process] = values.back();
+    }
+    summary.value = summarizeUnits(all, statistic);
+    summary.interval = {summary.value, summary.value};
+    if (!values.empty()) fillFromRounds(values, summary);
+    // A sum or a count of repeats is not what one of them gives.
+    const bool isOfRepeats =
+        all.size() == 1 && (statistic == Statistic::Sum || statistic == Statistic::Count);
+    if (values.size() != 1 || isOfRepeats) return summary;
+    const std::vector<double> repeats = byRepeat(all, statistic);
+    if (repeats.size() < 2) return summary;
+    summary.bounds = Bounds::Range;
+    summary.interval = rangeOf(repeats);
+    return summary;
+}
+
+Summary together(const Summary& a, const Summary& b, double (*of)(double, double)) {
+    Summary both;
+    std::vector<double> values;
+    for (const auto& [process, value] : a.rounds) {
+        const auto other = b.rounds.find(process);
+        if (other == b.rounds.end()) continue;
+        values.push_back(of(value, other->second));
+        both.rounds[process] = values.back();
+    }
+    both.value = of(a.value, b.value);
+    both.interval = {both.value, both.value};
+    if (!values.empty()) fillFromRounds(values, both);
+    return both;
+}
+
+// What a share that was counted once could be in truth.
+
+namespace {
+
+/// The ends of an interval lie within 0.05 standard deviations of where ever more would put them.
+constexpr int kDraws = 4000;
+
+/// FNV-1a: the same on every machine.
+std::uint64_t seedOf(std::string_view name) {
+    std::uint64_t hash = 14695981039346656037ULL;
+    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+    return hash;
+}
+
+}  // namespace
+
+std::map<int, double> shareDraws(double percent, double count, std::string_view name) {
+    const double successes = std::round(percent / 100.0 * count);
+    std::mt19937_64 random(seedOf(name));
+    std::gamma_distribution<double> in(successes + 0.5), out(count - successes + 0.5);
+    std::map<int, double> draws;
+    for (int i = 0; i < kDraws; ++i) {
+        const double a = in(random), b = out(random);
+        draws[i] = 100.0 * a / (a + b);
+    }
+    return draws;
+}
+
+void boundByDraws(Summary& share, double scale, double count, std::string_view name) {
+    share.rounds = shareDraws(share.value / scale, count, name);
+    std::vector<double> draws;
+    for (auto& [number, value] : share.rounds) draws.push_back(value *= scale);
+    share.areDraws = true;
+    share.bounds = Bounds::Interval;
+    share.interval = drawsInterval(std::move(draws));
+}
+
+metrics::Interval drawsInterval(std::vector<double> draws) {
+    std::ranges::sort(draws);
+    const auto tail = static_cast<std::size_t>(0.025 * static_cast<double>(draws.size()));
+    return {draws[tail], draws[draws.size() - 1 - tail]};
+}
+
+// Which records a cell takes, and what they come to.
 
 namespace {
 
@@ -160,7 +307,7 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             takeRow(*record, query, unit->second, process, gathered);
         }
         for (const records::Record* count :
-             attempt.values(query.metric + std::string(kShareOf), query.pass)) {
+             attempt.values(query.metric + std::string(config::kShareOf), query.pass)) {
             if (matchesFrame(query.where, count->frame))
                 gathered.shareCounts.push_back(count->value);
         }
@@ -286,6 +433,18 @@ void fillProcessTimes(const CellQuery& query, const LayoutCases& cases, const Sa
 }
 
 }  // namespace
+
+const Measured* Cell::find(const std::string& statistic, Clock clock) const {
+    for (const Measured& candidate : clock == Clock::Wall ? values : byProcess) {
+        if (statistic.empty() || candidate.statistic == statistic) return &candidate;
+    }
+    return nullptr;
+}
+
+std::string_view sceneSourceName(SceneSource source) {
+    constexpr std::string_view kNames[] = {"", "real", "generated", "stand-in"};
+    return kNames[static_cast<std::size_t>(source)];
+}
 
 int timePower(std::string_view metric) {
     if (metric.ends_with("frame_rate") || metric.ends_with("_per_second")) return -1;
