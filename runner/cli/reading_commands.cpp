@@ -18,7 +18,6 @@
 #include "runner/conclusion/conclusion.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
-#include "runner/results/results.h"
 #include "runner/run/run.h"
 #include "runner/tables/printed.h"
 #include "runner/tables/table.h"

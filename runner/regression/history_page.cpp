@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "engine/core/files.h"
-#include "runner/regression/chart.h"
+#include "engine/metrics/statistics.h"
+#include "runner/report/curves.h"
 #include "runner/report/markup.h"
 #include "runner/report/parts.h"
+#include "runner/report/svg.h"
 
 namespace gfxrepro::regression {
 
@@ -70,13 +73,16 @@ std::string dayOf(const std::string& time) {
     return time.substr(0, 10);
 }
 
+/// The place of one of its nights among those that have a value.
+std::size_t placeOf(std::size_t night, const SeriesHistory& series) {
+    return static_cast<std::size_t>(std::ranges::find(series.nights, night) -
+                                    series.nights.begin());
+}
+
 std::string changeText(const SeriesHistory& series, const SeriesChange& change) {
     if (series.key.isTime()) return fmt::format("× {:.3f}", change.ratio);
-    const auto valueAt = [&](std::size_t night) {
-        const auto at = std::ranges::find(series.nights, night) - series.nights.begin();
-        return series.values[static_cast<std::size_t>(at)];
-    };
-    return fmt::format("{:.6g} → {:.6g}", valueAt(change.before), valueAt(change.night));
+    return fmt::format("{:.6g} → {:.6g}", series.values[placeOf(change.before, series)],
+                       series.values[placeOf(change.night, series)]);
 }
 
 bool isWorse(const SeriesHistory& series, const SeriesChange& change) {
@@ -131,21 +137,58 @@ std::string changesHtml(const MachineHistory& history, std::size_t machine,
     return html + "</tbody></table></div>\n";
 }
 
-std::string curveHtml(const MachineHistory& history, const SeriesHistory& series,
-                      const std::string& title, const std::string& anchor,
-                      const std::vector<ChartNight>& nights) {
-    ChartSeries chart{series.key.unit, {}, {}, series.key.isTime()};
-    chart.values.resize(history.nights.size());
-    for (std::size_t i = 0; i < series.nights.size(); ++i) {
-        chart.values[series.nights[i]] = series.values[i];
+tables::FigurePoint pointAt(std::size_t night, std::optional<double> value,
+                            std::string remark = "") {
+    tables::FigurePoint point;
+    point.x = static_cast<double>(night);
+    point.y = value;
+    point.remark = std::move(remark);
+    return point;
+}
+
+/// A point a night, and the median of each level between changes as a line.
+tables::FigureCurve curveOf(const MachineHistory& history, const SeriesHistory& series) {
+    tables::FigureCurve curve{series.key.title(), {}, {}};
+    for (std::size_t night = 0; night < history.nights.size(); ++night) {
+        curve.points.push_back(pointAt(night, std::nullopt));
     }
+    for (std::size_t i = 0; i < series.nights.size(); ++i) {
+        const NightOf& night = history.nights[series.nights[i]];
+        curve.points[series.nights[i]] =
+            pointAt(series.nights[i], series.values[i],
+                    fmt::format("{}, {}: {:.6g} {}", night.time, night.commit, series.values[i],
+                                series.key.unit));
+    }
+    if (!series.key.isTime()) return curve;
+    for (std::size_t level = 0, begin = 0; level <= series.changes.size(); ++level) {
+        const bool isLast = level == series.changes.size();
+        const std::size_t end =
+            isLast ? series.nights.size() : placeOf(series.changes[level].night, series);
+        const std::span<const double> values = std::span(series.values).subspan(begin, end - begin);
+        const double median = metrics::summarize(values, metrics::Statistic::Median);
+        curve.reference.push_back(pointAt(series.nights[begin], median));
+        curve.reference.push_back(pointAt(series.nights[end - 1], median));
+        curve.reference.push_back(pointAt(series.nights[end - 1], std::nullopt));
+        begin = end;
+    }
+    return curve;
+}
+
+std::string curveHtml(const MachineHistory& history, const SeriesHistory& series,
+                      const std::string& title, const std::string& anchor) {
+    tables::Figure figure;
+    for (const NightOf& night : history.nights) figure.xNames.push_back(dayOf(night.time));
+    figure.curveNames = {title};
+    figure.panels = {{"", series.key.unit, {curveOf(history, series)}}};
     for (const SeriesChange& change : series.changes) {
-        chart.marks.push_back({change.night, series.key.isTime() ? changeText(series, change) : "",
-                               isWorse(series, change)});
+        figure.panels[0].marks.push_back({static_cast<double>(change.night) - 0.5,
+                                          series.key.isTime() ? changeText(series, change) : "",
+                                          isWorse(series, change)});
     }
     return fmt::format(
-        "<figure class=\"curve\" id=\"{}\">\n{}<figcaption>{}</figcaption></figure>\n", anchor,
-        chartSvg(nights, chart, title), escapeXml(title));
+        "<figure class=\"curve\" id=\"{}\">\n{}{}<figcaption>{}</figcaption></figure>\n", anchor,
+        report::figureSvg(figure, title, report::kWidePx),
+        report::figureSvg(figure, title, report::kNarrowPx), escapeXml(title));
 }
 
 std::string nightsHtml(const MachineHistory& history) {
@@ -161,10 +204,6 @@ std::string nightsHtml(const MachineHistory& history) {
 
 std::string machineHtml(const MachineHistory& history, std::size_t machine) {
     const std::vector<std::string> titles = machineTitles(history);
-    std::vector<ChartNight> nights;
-    for (const NightOf& night : history.nights) {
-        nights.push_back({dayOf(night.time), night.time + ", " + night.commit});
-    }
     std::size_t unchanged = 0;
     std::string curves, table;
     for (std::size_t i = 0; i < history.series.size(); ++i) {
@@ -179,7 +218,7 @@ std::string machineHtml(const MachineHistory& history, std::size_t machine) {
                 fmt::format("<h3>{}</h3>\n<div class=\"curves\">\n", escapeXml(series.key.table));
             table = series.key.table;
         }
-        curves += curveHtml(history, series, titles[i], anchorOf(machine, i), nights);
+        curves += curveHtml(history, series, titles[i], anchorOf(machine, i));
     }
     if (!table.empty()) curves += "</div>\n";
     std::string html = fmt::format(

@@ -12,8 +12,8 @@
 #include "runner/config/documents.h"
 #include "runner/config/experiment.h"
 #include "runner/records/records.h"
+#include "runner/report/curves.h"
 #include "runner/report/gallery.h"
-#include "runner/report/plot.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::report {

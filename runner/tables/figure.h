@@ -17,14 +17,22 @@ struct FigurePoint {
     std::optional<double> y;
     metrics::Interval interval;
     Bounds bounds = Bounds::None;
-    std::string remark;  // why there is a gap
+    /// Why there is a gap; of a point what it is, where it is not its curve's name and its numbers.
+    std::string remark;
 };
 
 struct FigureCurve {
     std::string name;                         // in the legend
     std::vector<FigurePoint> points;          // by x
     std::vector<FigurePoint> printed;         // by x; each has its y
-    std::vector<FigurePoint> reference = {};  // the ends of a line (addReference), or none
+    std::vector<FigurePoint> reference = {};  // of a line beside it (addReference), or none
+};
+
+/// An upright line: from there on all is otherwise.
+struct FigureMark {
+    double x = 0.0;
+    std::string text;
+    bool isWorse = false;
 };
 
 /// `curves` lies beside those of the other panels: the same place is the same curve.
@@ -32,11 +40,13 @@ struct FigurePanel {
     std::string title;
     std::string yLabel;
     std::vector<FigureCurve> curves;
+    std::vector<FigureMark> marks = {};
     bool hasPoints() const;
 };
 
 struct Figure {
     std::string xLabel;
+    std::vector<std::string> xNames;  // of the x 0, 1, 2, …, in the place of these; or none
     bool isLogX = false;
     bool isLogY = false;
     std::optional<double> slope;  // of the references: exponent of x

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "engine/core/files.h"
-#include "runner/regression/chart.h"
 #include "tests/support/support.h"
 #include "tests/unit/regression/nights.h"
 
@@ -151,19 +150,18 @@ TEST(HistoryPage, ShowsCurvesMarksAndCommitsWithoutAScript) {
     EXPECT_EQ(curves, 6U);  // two of the first machine, one of the second; wide and narrow
 }
 
-TEST(Chart, ANightWithoutAValueIsAGap) {
-    const std::vector<ChartNight> nights = {{"1", "one"}, {"2", "two"}, {"3", "three"}, {"4", "4"}};
-    const std::string both =
-        chartSvg(nights, {"ms", {1.0, 2.0, std::nullopt, 3.0}, {}, true}, "a & b");
-    const std::string svg = both.substr(0, both.rfind("<svg"));
-    EXPECT_THAT(svg, HasSubstr("<title>a &amp; b</title>"));
-    EXPECT_THAT(svg, HasSubstr("<title>one: 1 ms</title>"));
-    EXPECT_THAT(svg, Not(HasSubstr("three:")));
-    const std::size_t last = svg.find("\" fill=\"none\"");  // the axes' are no outlines
-    const std::size_t path = svg.rfind("<path d=\"", last) + 9;
-    const std::string line = svg.substr(path, svg.find('"', path) - path);
+TEST(HistoryPage, ANightWithoutAValueIsAGap) {
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "history.html";
+    writeHistoryPage(file, "Nights", historiesOf(someRows()));
+    const std::string page = readFile(file);
+    const std::size_t svg = page.find("<svg", page.find("id=\"series-0-1\""));  // not on night 30
+    const std::size_t last = page.find("\" fill=\"none\"", svg);
+    const std::size_t path = page.rfind("<path d=\"", last) + 9;
+    const std::string line = page.substr(path, page.find('"', path) - path);
     EXPECT_EQ(std::ranges::count(line, 'M'), 2);
-    EXPECT_EQ(std::ranges::count(line, 'L'), 1);
+    EXPECT_EQ(std::ranges::count(line, 'L'), 37);
+    EXPECT_THAT(page.substr(svg, page.find("</svg>", svg) - svg), Not(HasSubstr("c030")));
 }
 
 TEST(HistoryRows, AFileThatIsNoHistoryIsRefused) {

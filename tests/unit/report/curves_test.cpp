@@ -1,4 +1,4 @@
-#include "runner/report/figure_svg.h"
+#include "runner/report/curves.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,7 +11,6 @@
 #include <set>
 
 #include "engine/core/files.h"
-#include "runner/report/plot.h"
 #include "runner/report/svg.h"
 #include "runner/tables/table.h"
 #include "tests/support/support.h"
@@ -176,6 +175,20 @@ TEST(FigureSvg, DrawsAReferenceAndNamesItsSlope) {
     EXPECT_THAT(svg, HasSubstr(">slope −0.5</text>"));
     const std::string dashed = "stroke-dasharray";
     EXPECT_EQ(findAll(svg, "(" + dashed + ")").size(), 2U);  // the legend's, that of one curve
+}
+
+TEST(FigureSvg, NightsHaveTheirNamesAndMarks) {
+    tables::Figure figure = figureOf({point(0, 10), point(1, 10), point(2, 20)});
+    figure.xNames = {"2026-11-20", "2026-11-21", "2026-11-22"};
+    figure.panels[0].curves[0].points[2].remark = "2026-11-22, c1: 20 ms";
+    figure.panels[0].marks = {{1.5, "× 2.000", true}};
+    const std::string svg = svgOf(figure);
+    EXPECT_THAT(svg, HasSubstr(">2026-11-21</text>"));
+    EXPECT_THAT(svg, HasSubstr("<title>2026-11-22, c1: 20 ms</title>"));
+    EXPECT_THAT(svg, HasSubstr("<title>one: 1, 10</title>"));
+    EXPECT_THAT(svg, HasSubstr("fill=\"var(--fails)\">× 2.000</text>"));
+    figure.panels[0].marks[0].isWorse = false;
+    EXPECT_THAT(svgOf(figure), HasSubstr("stroke=\"var(--holds)\""));
 }
 
 TEST(FigureSvg, PanelsStandInTwoColumnsOrOne) {

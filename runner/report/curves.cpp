@@ -1,4 +1,4 @@
-#include "runner/report/figure_svg.h"
+#include "runner/report/curves.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -6,14 +6,20 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 #include <set>
 
+#include "engine/core/files.h"
 #include "engine/core/text.h"
+#include "runner/config/reference_slope.h"
 #include "runner/report/markup.h"
 #include "runner/report/svg.h"
+#include "runner/tables/default_layout.h"
 #include "runner/tables/figure.h"
 
 namespace gfxrepro::report {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -39,7 +45,7 @@ constexpr std::array<CurveStyle, 7> kCurveStyles = {{{"#1f77c9", 0, 0},
 constexpr double kEdge = 14.0;  // right of a plot
 constexpr double kGap = 18.0;   // between entries, panels
 constexpr double kSample = 30.0;
-constexpr double kMeasured = 3.2, kPrinted = 4.5;  // sizes of markers
+constexpr double kMeasured = 3.2, kPrinted = 4.5, kSmallPoint = 2.4;  // sizes of markers
 constexpr std::string_view kReference = "stroke-dasharray=\"6 4\" stroke-width=\"1.2\"";
 constexpr std::string_view kHollow = "fill=\"none\" stroke-width=\"1.4\"";
 
@@ -208,7 +214,9 @@ class FigureDrawing {
             gatherValues(shown, panel.x, y);
             panel.plane.x = axisOf(panel.x, figure_.isLogX, false);
             panel.plane.y = axisOf(y, figure_.isLogY, true);
-            panel.plane.height = count > 1 ? 150.0 : width_ < kWidePx ? 220.0 : 270.0;
+            panel.plane.height = count > 1 || isOverNames() ? 150.0
+                                 : width_ < kWidePx         ? 220.0
+                                                            : 270.0;
             panel.yTicks = ticksOf(panel.plane.y, panel.plane.height, Along::Y);
             panel.head = wrapped(shown.title, slot);
             if (!hasOneLabel)
@@ -229,7 +237,11 @@ class FigureDrawing {
             svg_ += svgLines(
                 start, end_ + head - 4.0 - kLinePx * (static_cast<double>(panel.head.size()) - 1.0),
                 "start", panel.head);
-            svg_ += axesSvg(plane, ticksAt(panel.x, plane.x, plane.width), panel.yTicks);
+            svg_ += axesSvg(plane,
+                            isOverNames() ? ticksNamed(figure_.xNames, plane.x, plane.width)
+                                          : ticksAt(panel.x, plane.x, plane.width),
+                            panel.yTicks);
+            drawMarks(figure_.panels[i].marks, plane);
             for (std::size_t n = 0; n < figure_.panels[i].curves.size(); ++n) {
                 drawCurve(figure_.panels[i].curves[n], styleOf(n), plane);
             }
@@ -238,6 +250,19 @@ class FigureDrawing {
             svg_ += svgLines(plane.left + 0.5 * plane.width, next + 4.0, "middle", xLabel);
         }
         end_ = next - 6.0 + kLinePx * static_cast<double>(xLabel.size());
+    }
+
+    /// A series of nights, say: low, as many of them stand on a page, and of small points.
+    bool isOverNames() const { return !figure_.xNames.empty(); }
+
+    void drawMarks(const std::vector<tables::FigureMark>& marks, const Plane& plane) {
+        for (const tables::FigureMark& mark : marks) {
+            const double x = plane.xOf(mark.x);
+            const std::string colour = mark.isWorse ? "var(--fails)" : "var(--holds)";
+            svg_ += svgLine(x, plane.top - 8.0, x, plane.top + plane.height,
+                            "stroke=\"" + colour + "\" stroke-dasharray=\"5 3\"");
+            svg_ += svgText(x, plane.top - 12.0, "middle", mark.text, "fill=\"" + colour + "\"");
+        }
     }
 
     void drawCurve(const tables::FigureCurve& curve, const CurveStyle& style, const Plane& plane) {
@@ -255,7 +280,9 @@ class FigureDrawing {
                                   std::string_view attributes, std::string_view what) {
             if (!point.y || !plane.x.shows(point.x) || !plane.y.shows(*point.y)) return;
             std::string title =
-                fmt::format("{}{}: {:.6g}, {:.6g}", curve.name, what, point.x, *point.y);
+                point.remark.empty()
+                    ? fmt::format("{}{}: {:.6g}, {:.6g}", curve.name, what, point.x, *point.y)
+                    : point.remark;
             const double x = plane.xOf(point.x);
             if (point.bounds != tables::Bounds::None && !std::isnan(point.interval.low) &&
                 !std::isnan(point.interval.high)) {
@@ -268,7 +295,8 @@ class FigureDrawing {
             }
             markers += marker(style, x, plane.yOf(*point.y), size, attributes, title);
         };
-        for (const auto& point : curve.points) addPoint(point, kMeasured, "stroke=\"none\"", "");
+        for (const auto& point : curve.points)
+            addPoint(point, isOverNames() ? kSmallPoint : kMeasured, "stroke=\"none\"", "");
         for (const auto& point : curve.printed) addPoint(point, kPrinted, kHollow, ", printed");
         svg_ += group(style.colour, path(curve.points, "stroke-width=\"1.8\"") + bars + markers);
     }
@@ -283,6 +311,49 @@ class FigureDrawing {
 
 std::string figureSvg(const tables::Figure& figure, const std::string& title, double width) {
     return FigureDrawing(figure, width).draw(title);
+}
+
+namespace {
+
+/// `file` is where it goes as one; empty: nowhere.
+Curve drawCurve(const tables::Table& table, const config::PlotSpec& plot,
+                std::optional<double> slope, const fs::path& file) {
+    Curve curve{table.id, plot.title.empty() ? table.title : plot.title, "", ""};
+    const std::string absent = tables::whatIsAbsent(plot, table);
+    tables::Figure figure = absent.empty() ? tables::makeFigure(plot, table) : tables::Figure();
+    if (figure.panels.empty()) {
+        curve.problem =
+            absent.empty() ? "no value was measured" : "not among what was measured: " + absent;
+        if (!file.empty()) fs::remove(file);  // of a run before this one
+        return curve;
+    }
+    if (slope) tables::addReference(figure, *slope);
+    curve.svg = figureSvg(figure, curve.title, kWidePx);
+    if (!file.empty()) writeFileAtomic(file, curve.svg);
+    curve.svg += figureSvg(figure, curve.title, kNarrowPx);
+    return curve;
+}
+
+}  // namespace
+
+std::vector<Curve> drawCurves(const fs::path& folder, const std::vector<tables::Table>& tables,
+                              const std::vector<config::Experiment>& experiments) {
+    GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
+    std::vector<Curve> curves;
+    for (std::size_t i = 0; i < experiments.size(); ++i) {
+        const bool areOwn = !experiments[i].hasDefaultLayout();
+        const std::vector<config::PlotSpec> plots =
+            areOwn ? experiments[i].plots : tables::defaultPlots(tables[i]);
+        for (std::size_t n = 0; n < plots.size(); ++n) {
+            const std::string suffix = n == 0 ? "" : fmt::format("-{}", n + 1);
+            const fs::path file = "plots/" + tables[i].slug + suffix + ".svg";
+            const auto slope =
+                areOwn ? config::referenceSlope(experiments[i], n) : std::optional<double>();
+            curves.push_back(
+                drawCurve(tables[i], plots[n], slope, folder.empty() ? fs::path() : folder / file));
+        }
+    }
+    return curves;
 }
 
 }  // namespace gfxrepro::report

@@ -1,4 +1,4 @@
-// The curves of a run's tables.
+// Curves: figures as SVG, and those of the tables of a run.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runner/config/experiment.h"
+#include "runner/tables/figure.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::report {
@@ -25,5 +26,9 @@ struct Curve {
 std::vector<Curve> drawCurves(const std::filesystem::path& folder,
                               const std::vector<tables::Table>& tables,
                               const std::vector<config::Experiment>& experiments);
+
+/// The legend above, then the panels, then the notes. Points are titled with their numbers. What an
+/// axis does not show is left out; the ends of an interval stay within the axis.
+std::string figureSvg(const tables::Figure& figure, const std::string& title, double width);
 
 }  // namespace gfxrepro::report

@@ -1,4 +1,4 @@
-#include "runner/report/axis.h"
+#include "runner/report/svg.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -147,6 +147,16 @@ TEST(Axis, ExtremeValuesEndTicksToo) {
             }
         }
     }
+}
+
+TEST(Axis, NamesStandAtAsManyPlacesAsHaveRoom) {
+    const std::vector<std::string> days(10, "2026-11-21");
+    EXPECT_EQ(ticksNamed(days, {-0.5, 9.5}, 1000.0).size(), 10U);
+    const std::vector<Tick> some = ticksNamed(days, {-0.5, 9.5}, 300.0);
+    ASSERT_EQ(some.size(), 3U);
+    EXPECT_EQ(some[0].value, 1.0);
+    EXPECT_EQ(some[1].value, 4.0);
+    EXPECT_EQ(ticksNamed({"one"}, {-1.0, 1.0}, 300.0).at(0).value, 0.0);
 }
 
 TEST(Axis, TicksStandAtFewAndShortValues) {
