@@ -110,6 +110,24 @@ std::optional<long long> parseInteger(std::string_view text) {
     return parseWhole<long long>(text);
 }
 
+std::size_t utf8Length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::size_t length = byte(0) < 0x80                       ? 1
+                               : byte(0) >= 0xC2 && byte(0) < 0xE0  ? 2
+                               : byte(0) >= 0xE0 && byte(0) < 0xF0  ? 3
+                               : byte(0) >= 0xF0 && byte(0) <= 0xF4 ? 4
+                                                                    : 0;
+    if (length > text.size()) return 0;
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xC0) != 0x80) return 0;
+    }
+    const bool isOverlong = (length == 3 && byte(0) == 0xE0 && byte(1) < 0xA0) ||
+                            (length == 4 && byte(0) == 0xF0 && byte(1) < 0x90);
+    const bool isSurrogate = length == 3 && byte(0) == 0xED && byte(1) >= 0xA0;
+    const bool isTooLarge = length == 4 && byte(0) == 0xF4 && byte(1) >= 0x90;
+    return isOverlong || isSurrogate || isTooLarge ? 0 : length;
+}
+
 std::string shellQuoted(const std::string& argument) {
     const bool isSafe = !argument.empty() && std::ranges::all_of(argument, [](unsigned char c) {
         return std::isalnum(c) ||

@@ -1,6 +1,7 @@
-// Small text helpers: suggestions for misspelt names, joined lists, strict number parsing.
+// Small text helpers: suggestions for misspelt names, joined lists, strict number parsing, UTF-8.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,6 +31,9 @@ std::string_view trimmed(std::string_view text);
 /// zeros, no octal or hexadecimal forms, no infinities. Empty when it is anything else.
 std::optional<double> parseDouble(std::string_view text);
 std::optional<long long> parseInteger(std::string_view text);
+
+/// Bytes of the UTF-8 character that a text begins with; 0 where it is none.
+std::size_t utf8Length(std::string_view text);
 
 /// For /bin/sh: as it is where that is safe, else in single quotes.
 std::string shellQuoted(const std::string& argument);

@@ -206,25 +206,6 @@ class Builder : public YAML::EventHandler {
     bool isDone_ = false;
 };
 
-/// Bytes of the UTF-8 sequence at the start of `text`; 0 when it is none.
-std::size_t sequenceLength(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const std::size_t length = byte(0) < 0x80                       ? 1
-                               : byte(0) >= 0xC2 && byte(0) < 0xE0  ? 2
-                               : byte(0) >= 0xE0 && byte(0) < 0xF0  ? 3
-                               : byte(0) >= 0xF0 && byte(0) <= 0xF4 ? 4
-                                                                    : 0;
-    if (length > text.size()) return 0;
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(i) & 0xC0) != 0x80) return 0;
-    }
-    const bool isOverlong = (length == 3 && byte(0) == 0xE0 && byte(1) < 0xA0) ||
-                            (length == 4 && byte(0) == 0xF0 && byte(1) < 0x90);
-    const bool isSurrogate = length == 3 && byte(0) == 0xED && byte(1) >= 0xA0;
-    const bool isTooLarge = length == 4 && byte(0) == 0xF4 && byte(1) >= 0x90;
-    return isOverlong || isSurrogate || isTooLarge ? 0 : length;
-}
-
 /// yaml-cpp takes byte 4 for the end of the file and passes bad UTF-8 on; both are refused here.
 void requireText(std::string_view text, const std::string& fileName) {
     int line = 1;
@@ -233,7 +214,7 @@ void requireText(std::string_view text, const std::string& fileName) {
         const auto where = [&] {
             return SourceLocation{fileName, line, static_cast<int>(i - lineBegin) + 1};
         };
-        const std::size_t length = sequenceLength(text.substr(i));
+        const std::size_t length = utf8Length(text.substr(i));
         if (length == 0) throw Error(where(), "not UTF-8 text");
         const auto byte = static_cast<unsigned char>(text[i]);
         if ((byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7F) {

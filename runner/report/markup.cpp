@@ -1,8 +1,12 @@
 #include "runner/report/markup.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <utility>
+
+#include "engine/core/text.h"
 
 namespace gfxrepro::report {
 
@@ -10,22 +14,17 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 
-/// Bytes of the character of several bytes that the text begins with; 0 where it is no UTF-8, or
-/// none that XML has (U+FFFE, U+FFFF).
-std::size_t longCharacter(std::string_view text) {
-    const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const std::size_t length = at(0) >= 0xF0 ? 4 : at(0) >= 0xE0 ? 3 : 2;
-    if (at(0) < 0xC2 || at(0) > 0xF4 || text.size() < length) return 0;
-    std::uint32_t code = at(0) & (0x7FU >> length);
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((at(i) & 0xC0U) != 0x80U) return 0;
-        code = code << 6 | (at(i) & 0x3FU);
-    }
-    constexpr std::uint32_t kLeast[] = {0x80, 0x800, 0x10000};
-    const bool isSurrogate = code >= 0xD800 && code <= 0xDFFF;
-    const bool isShort = code < kLeast[length - 2];
-    return isShort || isSurrogate || code > 0x10FFFF || code == 0xFFFE || code == 0xFFFF ? 0
-                                                                                         : length;
+struct Reference {
+    char letter;
+    std::string_view text;
+};
+constexpr Reference kReferences[] = {{'&', "&amp;"},  {'<', "&lt;"},   {'>', "&gt;"},
+                                     {'"', "&quot;"}, {'\'', "&#39;"}, {'\n', "&#10;"},
+                                     {'\t', "&#9;"}};
+
+/// XML has no place for U+FFFE and U+FFFF.
+bool isOfXml(std::string_view character) {
+    return character != "\xEF\xBF\xBE" && character != "\xEF\xBF\xBF";
 }
 
 }  // namespace
@@ -33,41 +32,16 @@ std::size_t longCharacter(std::string_view text) {
 std::string escapeXml(std::string_view text) {
     std::string out;
     out.reserve(text.size());
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            case '\'':
-                out += "&#39;";
-                break;
-            case '\n':
-                out += "&#10;";
-                break;
-            case '\t':
-                out += "&#9;";
-                break;
-            default:
-                if (static_cast<unsigned char>(c) < 0x20) {
-                    out += kReplacement;
-                } else if (static_cast<unsigned char>(c) < 0x80) {
-                    out += c;
-                } else if (const std::size_t length = longCharacter(text.substr(i)); length > 0) {
-                    out += text.substr(i, length);
-                    i += length - 1;
-                } else {
-                    out += kReplacement;
-                }
+    while (!text.empty()) {
+        const std::size_t length = utf8Length(text);
+        const std::string_view character = text.substr(0, std::max<std::size_t>(length, 1));
+        text.remove_prefix(character.size());
+        const auto reference = std::ranges::find(kReferences, character[0], &Reference::letter);
+        if (reference != std::end(kReferences)) {
+            out += reference->text;
+        } else {
+            const bool isControl = static_cast<unsigned char>(character[0]) < 0x20;
+            out += length == 0 || isControl || !isOfXml(character) ? kReplacement : character;
         }
     }
     return out;
