@@ -11,7 +11,7 @@
 #include "engine/metrics/statistics.h"
 #include "runner/report/curves.h"
 #include "runner/report/markup.h"
-#include "runner/report/parts.h"
+#include "runner/report/pages.h"
 #include "runner/report/svg.h"
 
 namespace gfxrepro::regression {

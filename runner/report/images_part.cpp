@@ -1,17 +1,267 @@
+// The pictures of a page, which lie beside each other as the rows and columns of its table do.
 #include <fmt/ranges.h>
-
 #include <algorithm>
+#include <cstddef>
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "engine/core/text.h"
+#include "runner/report/gallery.h"
 #include "runner/report/markup.h"
-#include "runner/report/parts.h"
-#include "runner/report/picture_grid.h"
+#include "runner/report/pages.h"
 #include "runner/tables/labels.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::report {
 
 namespace {
+
+/// Pictures of one name: a line of the grid. Shots are given by their places in the list.
+struct PictureLine {
+    std::string name;
+    std::vector<std::vector<std::size_t>> cells;  // beside PictureGrid::columns
+    /// The truth of all of them, if it is one picture; it stands once, before them.
+    std::vector<std::size_t> truth;
+};
+
+struct PictureRow {
+    std::string label;  // "living room"; empty where there is one row
+    std::vector<PictureLine> lines;
+};
+
+/// A row or column of the table that the pictures do not tell apart is none here: rows of several
+/// measures of one picture are one row. Where a single column is left, the last of the axes of rows
+/// lies along the columns.
+struct PictureGrid {
+    std::vector<std::string> columns;  // one may be empty: nothing to be told apart
+    /// One picture of truth for each column, the same in every row: stands once, above them.
+    std::vector<std::vector<std::size_t>> truths;  // beside `columns`; or empty
+    std::vector<PictureRow> rows;
+    std::vector<std::size_t> others;  // of cases that no cell shows
+};
+
+using Labels = std::vector<std::optional<std::string>>;  // none: the case is under several
+
+/// Where a case lies in the table.
+struct Place {
+    Labels row, column;
+    std::size_t firstRow = 0, firstColumn = 0;
+};
+
+/// Leaves what both say.
+void keepCommon(const std::vector<std::string>& labels, std::optional<Labels>& common) {
+    if (!common) {
+        common.emplace(labels.begin(), labels.end());
+        return;
+    }
+    for (std::size_t i = 0; i < common->size() && i < labels.size(); ++i) {
+        if ((*common)[i] != labels[i]) (*common)[i].reset();
+    }
+}
+
+std::map<std::string, Place> placesOf(const tables::Table& table,
+                                      const std::set<std::string>& cases) {
+    struct Found {
+        std::optional<Labels> row, column;
+        std::size_t firstRow = 0, firstColumn = 0;
+    };
+    std::map<std::string, Found> found;
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
+        for (std::size_t c = 0; c < table.rows[r].cells.size(); ++c) {
+            for (const std::string& id : table.rows[r].cells[c].caseIds) {
+                if (!cases.contains(id)) continue;
+                const auto [item, isNew] = found.try_emplace(id, Found{{}, {}, r, c});
+                keepCommon(table.rows[r].labels, item->second.row);
+                keepCommon(table.columns[c].parts, item->second.column);
+                item->second.firstColumn = std::min(item->second.firstColumn, c);
+            }
+        }
+    }
+    std::map<std::string, Place> places;
+    for (auto& [id, item] : found) {
+        for (std::size_t i = 0; i < item.row->size(); ++i) {  // a number says nothing alone
+            auto& label = (*item.row)[i];
+            if (label && parseDouble(*label))
+                label = tables::shownValue(table.rowAxes[i], *label, table.words);
+        }
+        places.emplace(id, Place{*item.row, *item.column, item.firstRow, item.firstColumn});
+    }
+    return places;
+}
+
+/// The distinct labels of a side, in the order of the table.
+std::vector<Labels> distinct(const std::map<std::string, Place>& places, Labels Place::*labels,
+                             std::size_t Place::*first) {
+    std::map<Labels, std::size_t> at;
+    for (const auto& [id, place] : places) {
+        const auto [known, isNew] = at.try_emplace(place.*labels, place.*first);
+        known->second = std::min(known->second, place.*first);
+    }
+    std::vector<Labels> result;
+    for (const auto& [text, order] : at) result.push_back(text);
+    std::ranges::stable_sort(result, {}, [&](const Labels& text) { return at.at(text); });
+    return result;
+}
+
+/// Moves the last axis of the rows that tells cases apart into the columns.
+void layAlongColumns(std::map<std::string, Place>& places) {
+    if (places.empty()) return;
+    std::size_t axis = places.begin()->second.row.size();
+    const auto isAlike = [&](std::size_t i) {
+        return std::ranges::all_of(places, [&](const auto& item) {
+            return item.second.row[i] == places.begin()->second.row[i];
+        });
+    };
+    while (axis > 0 && isAlike(axis - 1)) --axis;
+    if (axis == 0) return;
+    for (auto& [id, place] : places) {
+        place.column = {place.row[axis - 1]};
+        place.firstColumn = place.firstRow;
+        place.row.erase(place.row.begin() + static_cast<std::ptrdiff_t>(axis - 1));
+    }
+}
+
+std::string textOf(const Labels& labels, const tables::Words& words) {
+    std::vector<std::string> said;
+    for (const auto& label : labels) {
+        if (label && !label->empty()) said.push_back(tables::shownName(*label, words));
+    }
+    return joined(said);
+}
+
+/// The truth of each shot, by place in the list.
+std::map<std::size_t, std::size_t> truthsOf(const std::vector<Shot>& shots) {
+    std::map<std::pair<std::string, std::string>, std::size_t> byName;
+    for (std::size_t i = 0; i < shots.size(); ++i) {
+        byName.try_emplace({shots[i].caseId, shots[i].name}, i);
+    }
+    std::map<std::size_t, std::size_t> truths;
+    for (std::size_t i = 0; i < shots.size(); ++i) {
+        if (shots[i].truth.empty()) continue;
+        const auto truth = byName.find({shots[i].caseId, shots[i].truth});
+        if (truth != byName.end()) truths.emplace(i, truth->second);
+    }
+    return truths;
+}
+
+/// The one truth of these shots; none where they have none, or several.
+std::optional<std::size_t> commonTruth(const std::vector<std::size_t>& members,
+                                       const std::vector<Shot>& shots,
+                                       const std::map<std::size_t, std::size_t>& truths) {
+    std::optional<std::size_t> common;
+    for (const std::size_t i : members) {
+        const auto truth = truths.find(i);
+        if (truth == truths.end()) return std::nullopt;
+        if (common && shots[*common].content != shots[truth->second].content) return std::nullopt;
+        if (!common) common = truth->second;
+    }
+    return common;
+}
+
+std::vector<std::size_t> membersOf(const PictureLine& line) {
+    std::vector<std::size_t> members;
+    for (const auto& cell : line.cells) members.insert(members.end(), cell.begin(), cell.end());
+    return members;
+}
+
+/// Puts truths where they stand once: above the columns, before a line, or after each picture.
+void addTruths(const std::vector<Shot>& shots, PictureGrid& grid) {
+    const std::map<std::size_t, std::size_t> truths = truthsOf(shots);
+    std::set<std::string> names;
+    for (const PictureRow& row : grid.rows) {
+        for (const PictureLine& line : row.lines) names.insert(line.name);
+    }
+    const auto isOneEach = [&] {
+        return std::ranges::all_of(grid.rows, [&](const PictureRow& row) {
+            return std::ranges::all_of(row.lines, [&](const PictureLine& line) {
+                return commonTruth(membersOf(line), shots, truths).has_value();
+            });
+        });
+    };
+    if (grid.rows.size() > 1 && names.size() == 1 && !isOneEach()) {
+        std::vector<std::vector<std::size_t>> above;
+        for (std::size_t c = 0; c < grid.columns.size(); ++c) {
+            std::vector<std::size_t> members;
+            for (const PictureRow& row : grid.rows) {
+                const auto& cell = row.lines.front().cells[c];
+                members.insert(members.end(), cell.begin(), cell.end());
+            }
+            const auto truth = commonTruth(members, shots, truths);
+            if (truth) above.push_back({*truth});
+        }
+        if (above.size() == grid.columns.size()) {
+            grid.truths = std::move(above);
+            return;
+        }
+    }
+    for (PictureRow& row : grid.rows) {
+        for (PictureLine& line : row.lines) {
+            const std::vector<std::size_t> members = membersOf(line);
+            if (const auto truth = commonTruth(members, shots, truths)) {
+                line.truth = {*truth};
+                continue;
+            }
+            for (auto& cell : line.cells) {
+                std::vector<std::size_t> withTruths;
+                for (const std::size_t i : cell) {
+                    withTruths.push_back(i);
+                    if (truths.contains(i)) withTruths.push_back(truths.at(i));
+                }
+                cell = std::move(withTruths);
+            }
+        }
+    }
+}
+
+/// The grid of the chosen ones among a run's shots of the table; truths of these come with them.
+PictureGrid pictureGrid(const tables::Table& table, const std::vector<Shot>& shots,
+                        const std::set<std::size_t>& chosen) {
+    std::set<std::string> cases;
+    for (const std::size_t i : chosen) cases.insert(shots[i].caseId);
+    std::map<std::string, Place> places = placesOf(table, cases);
+    std::vector<Labels> columns = distinct(places, &Place::column, &Place::firstColumn);
+    if (columns.size() == 1) {
+        layAlongColumns(places);
+        columns = distinct(places, &Place::column, &Place::firstColumn);
+    }
+    const std::vector<Labels> rows = distinct(places, &Place::row, &Place::firstRow);
+    PictureGrid grid;
+    for (const Labels& column : columns) grid.columns.push_back(textOf(column, table.words));
+    for (const Labels& row : rows)
+        grid.rows.push_back({rows.size() > 1 ? textOf(row, table.words) : "", {}});
+    const std::map<std::size_t, std::size_t> truths = truthsOf(shots);
+    std::set<std::size_t> shownAsTruth;
+    for (const auto& [shot, truth] : truths) {
+        if (chosen.contains(shot)) shownAsTruth.insert(truth);
+    }
+    for (const std::size_t i : chosen) {
+        if (shownAsTruth.contains(i)) continue;
+        const auto place = places.find(shots[i].caseId);
+        if (place == places.end()) {
+            grid.others.push_back(i);
+            if (truths.contains(i)) grid.others.push_back(truths.at(i));
+            continue;
+        }
+        const auto r =
+            static_cast<std::size_t>(std::ranges::find(rows, place->second.row) - rows.begin());
+        const auto c = static_cast<std::size_t>(std::ranges::find(columns, place->second.column) -
+                                                columns.begin());
+        std::vector<PictureLine>& lines = grid.rows[r].lines;
+        auto line = std::ranges::find(lines, shots[i].name, &PictureLine::name);
+        if (line == lines.end()) {
+            lines.push_back({shots[i].name, {}, {}});
+            line = lines.end() - 1;
+            line->cells.resize(columns.size());
+        }
+        line->cells[c].push_back(i);
+    }
+    std::erase_if(grid.rows, [](const PictureRow& row) { return row.lines.empty(); });
+    addTruths(shots, grid);
+    return grid;
+}
 
 /// The pictures of one run on a page. The viewer reads what it needs from the data attributes.
 class Pictures {
@@ -125,15 +375,9 @@ class Pictures {
                 if (shots_[i].isTruth()) shown.try_emplace(shots_[i].content, i);
             }
         }
-        std::map<std::pair<std::string, std::string>, std::size_t> byName;
-        for (std::size_t i = 0; i < shots_.size(); ++i) {
-            byName.try_emplace({shots_[i].caseId, shots_[i].name}, i);
-        }
-        for (std::size_t i = 0; i < shots_.size(); ++i) {
-            const auto truth = byName.find({shots_[i].caseId, shots_[i].truth});
-            if (shots_[i].truth.empty() || truth == byName.end()) continue;
-            const auto once = shown.find(shots_[truth->second].content);
-            truths_[i] = once == shown.end() ? truth->second : once->second;
+        for (const auto& [shot, truth] : truthsOf(shots_)) {
+            const auto once = shown.find(shots_[truth].content);
+            truths_[shot] = once == shown.end() ? truth : once->second;
         }
     }
 
@@ -259,6 +503,26 @@ class Pictures {
 
 }  // namespace
 
+bool isCalled(const Shot& shot, const std::string& name) {
+    return shot.baseName == name || shot.baseName.starts_with(name + '_');
+}
+
+std::set<std::size_t> mainShots(const std::vector<Shot>& shots,
+                                const std::vector<std::string>& names) {
+    std::set<std::size_t> named, withTruth, first;
+    std::map<std::string, std::string> firstName;
+    for (std::size_t i = 0; i < shots.size(); ++i) {
+        const Shot& shot = shots[i];
+        const auto isMeant = [&](const std::string& name) { return isCalled(shot, name); };
+        if (std::ranges::any_of(names, isMeant)) named.insert(i);
+        if (shot.isTruth()) continue;
+        if (!shot.truth.empty()) withTruth.insert(i);
+        const auto [name, isNew] = firstName.try_emplace(shot.caseId, shot.baseName);
+        if (name->second == shot.baseName) first.insert(i);
+    }
+    return !named.empty() ? named : !withTruth.empty() ? withTruth : first;
+}
+
 std::string imagesHtml(const Page& page, const Model& model) {
     std::string html;
     for (std::size_t run = 0; run < page.parts.size(); ++run) {
@@ -275,39 +539,6 @@ std::string imagesHtml(const Page& page, const Model& model) {
             place.reducedPx);
     }
     return fmt::format("<h3>Images</h3>\n<p class=\"soft small\">{}</p>\n", says) + html;
-}
-
-std::string casesHtml(const Page& page, const Model& model) {
-    std::string html;
-    std::size_t count = 0;
-    for (std::size_t run = 0; run < page.parts.size(); ++run) {
-        const ReportRun& of = model.runs[run];
-        const auto commandOf = [&](const std::string& id) {
-            const auto command = of.commands.find(id);
-            return command == of.commands.end() ? "" : command->second;
-        };
-        for (const config::Case* item : page.parts[run].cases) {
-            ++count;
-            html += fmt::format(
-                "<article class=\"case\" id=\"{}\"><h4>{}{} <span class=\"soft\">case {}</span>"
-                "</h4>\n<pre class=\"command\">{}</pre>\n",
-                escapeXml(caseAnchor(run, item->id)),
-                model.isComparison() ? Model::letter(run) + ": " : "",
-                escapeXml(tables::shownCase(item->title(), page.id, page.parts[run].table.words)),
-                escapeXml(item->id), escapeXml(commandOf(item->id)));
-            std::string log;
-            if (const auto events = of.events.find(item->id); events != of.events.end()) {
-                for (const std::string& line : events->second) log += escapeXml(line) + '\n';
-            }
-            html += fmt::format("<pre class=\"log\">{}</pre></article>\n",
-                                log.empty() ? "not run" : log);
-        }
-    }
-    if (html.empty()) return "";
-    return fmt::format(
-        "<details class=\"cases\"><summary>Cases: {}, each with the command that runs it again and "
-        "its log</summary>\n{}</details>\n",
-        count, html);
 }
 
 }  // namespace gfxrepro::report

@@ -1,12 +1,16 @@
+// The first screen: what ran on what, what of each document reproduced, and every claim in words.
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <functional>
 #include <map>
 
-#include "runner/report/highlights.h"
+#include "engine/core/text.h"
+#include "engine/image/png_io.h"
 #include "runner/report/markup.h"
-#include "runner/report/parts.h"
+#include "runner/report/pages.h"
+#include "runner/tables/printed.h"
 
 namespace gfxrepro::report {
 
@@ -14,6 +18,279 @@ using claims::ClaimResult;
 using claims::Verdict;
 using records::Status;
 
+namespace {
+
+/// What the manifest says at "gl.renderer", as text; empty where it says nothing.
+std::string manifestText(const nlohmann::ordered_json& manifest, const std::string& path) {
+    const nlohmann::ordered_json* node = &manifest;
+    std::string_view rest = path;
+    while (!rest.empty()) {
+        const std::size_t dot = std::min(rest.find('.'), rest.size());
+        const std::string key(rest.substr(0, dot));
+        if (!node->is_object() || !node->contains(key)) return "";
+        node = &(*node)[key];
+        rest.remove_prefix(std::min(dot + 1, rest.size()));
+    }
+    return node->is_string() ? node->get<std::string>() : node->dump();
+}
+
+std::string processorText(const nlohmann::ordered_json& manifest) {
+    const std::string cpu = manifestText(manifest, "cpu");
+    const std::string cores = manifestText(manifest, "cores");
+    return cores.empty() || cores == "0" ? cpu : fmt::format("{}, {} cores", cpu, cores);
+}
+
+/// "fragment shaders 0.97 times as fast as compute shaders (1.2e+04, 1.24e+04 Gflop/s); …"; nothing
+/// of a device that was not asked, as none is that is software.
+std::string balanceText(const nlohmann::ordered_json& manifest) {
+    const nlohmann::ordered_json::json_pointer place("/gl/balance");
+    if (!manifest.is_object() || !manifest.contains(place)) return "";
+    const nlohmann::ordered_json& balance = manifest[place];
+    const auto number = [&](const char* key) { return balance.value(key, 0.0); };
+    return fmt::format(
+        "fragment shaders {:.2g} times as fast as compute shaders ({:.3g}, {:.3g} Gflop/s); "
+        "{:.3g} Gpixel/s filled, {:.3g} M small triangles/s, {:.3g} GB/s copied",
+        number("fragment_gflops") / number("compute_gflops"), number("fragment_gflops"),
+        number("compute_gflops"), number("fill_gpixels_per_s"), number("triangles_m_per_s"),
+        number("copy_gbytes_per_s"));
+}
+
+/// "llvmpipe (LLVM 15.0.6, 256 bits) on Intel Xeon, 2 cores · quick profile · 2026-11-25".
+std::string machineText(const ReportRun& run) {
+    std::string text = run.context.device;
+    if (const std::string cpu = processorText(run.manifest); !cpu.empty()) text += " on " + cpu;
+    text += fmt::format(" · {} profile", run.context.profile);
+    const std::string started = manifestText(run.manifest, "started");
+    if (!started.empty()) text += " · " + started.substr(0, started.find('T'));
+    if (!run.context.commit.empty()) text += " · commit " + run.context.commit;
+    return text;
+}
+
+/// "112 tables, 903 cases"; nothing of a run of which only verdicts are at hand.
+std::string sizeText(const ReportRun& run) {
+    if (run.experiments.empty()) return "";
+    const auto counted = [](std::size_t count, const char* one, const char* several) {
+        return fmt::format("{} {}", count, count == 1 ? one : several);
+    };
+    std::string text = counted(run.experiments.size(), "experiment", "experiments");
+    if (!run.cases.empty()) text += ", " + counted(run.cases.size(), "case", "cases");
+    return text;
+}
+
+/// "7 real, 6 stand-ins, 12 generated" and each by name.
+std::string scenesHtml(const nlohmann::ordered_json& manifest) {
+    if (!manifest.is_object() || !manifest.contains("scenes")) return "";
+    std::map<std::string, std::vector<std::string>> ofKind;
+    const nlohmann::ordered_json& scenes = manifest["scenes"];
+    for (const auto& [name, scene] : scenes.items()) {
+        ofKind[manifestText(scene, "kind")].push_back(name);
+    }
+    std::string html;
+    for (const auto& [kind, names] : ofKind) {
+        html += fmt::format("{}{} {} <span class=\"soft\">({})</span>", html.empty() ? "" : "; ",
+                            names.size(), escapeXml(kind),
+                            escapeXml(fmt::format("{}", fmt::join(names, ", "))));
+    }
+    return html;
+}
+
+/// "povray (version 3.7, SHA-256 0123456789ab); scene.pov (SHA-256 …)".
+std::string programsHtml(const nlohmann::ordered_json& manifest) {
+    if (!manifest.is_object() || !manifest.contains("programs")) return "";
+    std::string html;
+    for (const nlohmann::ordered_json& program : manifest["programs"]) {
+        const std::string version = manifestText(program, "version");
+        html += fmt::format("{}{} <span class=\"soft\">({}SHA-256 {})</span>",
+                            html.empty() ? "" : "; ", escapeXml(manifestText(program, "file")),
+                            version.empty() ? "" : escapeXml(version) + ", ",
+                            escapeXml(manifestText(program, "sha256").substr(0, 12)));
+    }
+    return html;
+}
+
+/// A line a run: how many printed numbers of tables were measured, and at the printed parameters.
+std::string printedHtml(const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < model.runs.size(); ++run) {
+        tables::PrintedCells count;
+        for (const Page& page : model.pages) {
+            const RunPart& part = page.parts[run];
+            if (part.experiment) count.add(*part.experiment, part.table);
+        }
+        const std::string line = tables::printedCellsLine(count);
+        if (line.empty()) continue;
+        html += fmt::format("<p class=\"parameters\">{}{}</p>\n", model.boldLetter(run),
+                            escapeXml(line));
+    }
+    return html;
+}
+
+/// What ran on what: a line a fact, a column a run.
+std::string factsHtml(const Model& model) {
+    using Fact = std::string (*)(const ReportRun&);
+    static const std::pair<const char*, Fact> kFacts[] = {
+        {"Device",
+         [](const ReportRun& run) {
+             return escapeXml(fmt::format("{} ({})", run.context.device, run.context.deviceClass));
+         }},
+        {"OpenGL",
+         [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "gl.version")); }},
+        {"Balance", [](const ReportRun& run) { return escapeXml(balanceText(run.manifest)); }},
+        {"Processor", [](const ReportRun& run) { return escapeXml(processorText(run.manifest)); }},
+        {"Profile", [](const ReportRun& run) { return escapeXml(run.context.profile); }},
+        {"Commit", [](const ReportRun& run) { return escapeXml(run.context.commit); }},
+        {"Build",
+         [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "build")); }},
+        {"Started",
+         [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "started")); }},
+        {"Command", [](const ReportRun& run) { return escapeXml(run.context.command); }},
+        {"Scenes", [](const ReportRun& run) { return scenesHtml(run.manifest); }},
+        {"Programs", [](const ReportRun& run) { return programsHtml(run.manifest); }},
+        {"Notes",
+         [](const ReportRun& run) {
+             if (!run.manifest.is_object()) return std::string();
+             const auto notes = run.manifest.value("notes", std::vector<std::string>{});
+             return escapeXml(fmt::format("{}", fmt::join(notes, "; ")));
+         }},
+        {"Folder",
+         [](const ReportRun& run) {
+             return escapeXml(run.folder.lexically_normal().filename().string());
+         }},
+    };
+    std::string html = "<div class=\"scroll\"><table class=\"facts\">\n";
+    if (model.isComparison()) {
+        html += "<thead><tr><th></th>";
+        for (std::size_t i = 0; i < model.runs.size(); ++i) {
+            html += fmt::format("<th>{}</th>", Model::letter(i));
+        }
+        html += "</tr></thead>\n";
+    }
+    html += "<tbody>\n";
+    for (const auto& [name, fact] : kFacts) {
+        std::string cells;
+        bool isSaid = false;
+        for (const ReportRun& run : model.runs) {
+            const std::string text = fact(run);
+            isSaid |= !text.empty();
+            cells += fmt::format("<td>{}</td>", text);
+        }
+        if (isSaid) html += fmt::format("<tr><th scope=\"row\">{}</th>{}</tr>\n", name, cells);
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+/// The judged ones; the document's own come first, and of these those that fail.
+std::vector<const ClaimResult*> tellingClaims(const std::vector<ClaimResult>& claims) {
+    const auto rank = [](const ClaimResult* claim) {
+        return (claim->isOfDocument() ? 2 : 0) + (claim->verdict == Verdict::Fails ? 1 : 0);
+    };
+    std::vector<const ClaimResult*> telling;
+    for (const ClaimResult& claim : claims) {
+        const bool isJudged = claim.verdict == Verdict::Fails || claim.verdict == Verdict::Holds;
+        // A sentence that goes on from the one before says nothing alone.
+        if (isJudged && !claim.text.starts_with("…")) telling.push_back(&claim);
+    }
+    std::ranges::stable_sort(telling, std::greater<>(), rank);
+    return telling;
+}
+
+/// The pictures that the page shows first; the one that tells most of such a claim before others.
+std::vector<const Shot*> tellingShots(const RunPart& part, bool isFailing) {
+    std::vector<const Shot*> shots;
+    for (const std::size_t i : mainShots(part.shots, part.experiment->shows)) {
+        if (!part.shots[i].isTruth()) shots.push_back(&part.shots[i]);
+    }
+    std::ranges::stable_sort(shots, [&](const Shot* a, const Shot* b) {
+        if (a->flip.empty() != b->flip.empty()) return b->flip.empty();
+        if (!a->flip.empty()) {
+            return isFailing ? a->flipMean > b->flipMean : a->flipMean < b->flipMean;
+        }
+        return a->bytes > b->bytes;
+    });
+    return shots;
+}
+
+/// `count` of them, evenly over the list.
+std::vector<Highlight> spread(const std::vector<Highlight>& all, std::size_t count) {
+    if (all.size() <= count) return all;
+    std::vector<Highlight> chosen;
+    for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
+    return chosen;
+}
+
+/// Moves to `chosen` the first of `left` whose picture is least like those of its page there.
+void takeLeastAlike(const ShotDifference& difference, std::vector<Highlight>& left,
+                    std::vector<Highlight>& chosen) {
+    const auto isNew = [&](const Highlight& one) {
+        double least = 1.0;
+        for (const Highlight& other : chosen) {
+            if (other.page != one.page) continue;
+            least = std::min(least, difference(one.run, *one.shot, *other.shot));
+        }
+        return least;
+    };
+    const auto best = std::ranges::max_element(left, {}, isNew);
+    chosen.push_back(*best);
+    left.erase(best);
+}
+
+}  // namespace
+
+double shotDifference(const std::filesystem::path& runFolder, const Shot& a, const Shot& b) {
+    const image::Image16 first = image::readPng16(runFolder / a.png);
+    const image::Image16 second = image::readPng16(runFolder / b.png);
+    if (first.width() != second.width() || first.height() != second.height() ||
+        first.channels() != second.channels()) {
+        return 1.0;
+    }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < first.values().size(); ++i) {
+        sum += std::abs(int{first.values()[i]} - int{second.values()[i]});
+    }
+    return sum / (65535.0 * static_cast<double>(std::max<std::size_t>(first.values().size(), 1)));
+}
+
+std::vector<Highlight> highlightsOf(const std::vector<const Page*>& pages,
+                                    const ShotDifference& difference) {
+    std::vector<Highlight> failing, holding;
+    std::vector<std::vector<Highlight>> further;  // of each page, of its next claims
+    for (const Page* page : pages) {
+        for (std::size_t run = 0; run < page->parts.size(); ++run) {
+            const RunPart& part = page->parts[run];
+            const std::vector<const ClaimResult*> claims = tellingClaims(part.claims);
+            if (claims.empty() || !part.experiment || part.shots.empty()) continue;
+            const bool isFailing = claims[0]->verdict == Verdict::Fails;
+            const std::vector<const Shot*> shots = tellingShots(part, isFailing);
+            if (shots.empty()) continue;
+            (isFailing ? failing : holding).push_back({page, run, shots[0], claims[0]});
+            std::vector<Highlight>& others = further.emplace_back();
+            for (std::size_t i = 1; i < std::min(claims.size(), shots.size()); ++i) {
+                others.push_back({page, run, shots[i], claims[i]});
+            }
+            break;
+        }
+    }
+    const std::size_t fewest = std::min(holding.size(), kHighlights / 2);
+    const std::vector<Highlight> bad = spread(failing, kHighlights - fewest);
+    std::vector<Highlight> chosen = spread(holding, kHighlights - bad.size());
+    chosen.insert(chosen.end(), bad.begin(), bad.end());
+    const bool areAllShown = chosen.size() == failing.size() + holding.size();
+    std::vector<Highlight> left;
+    for (std::size_t i = 0; areAllShown && i < kHighlights; ++i) {
+        for (const std::vector<Highlight>& others : further) {
+            if (i < others.size()) left.push_back(others[i]);
+        }
+    }
+    const std::size_t missing = std::min(left.size(), kHighlights - chosen.size());
+    for (std::size_t i = 0; i < missing; ++i) takeLeastAlike(difference, left, chosen);
+    std::ranges::stable_sort(chosen, {}, [&](const Highlight& one) {
+        return std::ranges::find(pages, one.page) - pages.begin();
+    });
+    return chosen;
+}
+
+using claims::ClaimResult;
+using claims::Verdict;
 namespace {
 
 constexpr std::array kVerdicts = {Verdict::Holds, Verdict::Fails, Verdict::Ambiguous,
@@ -97,8 +374,8 @@ std::string examplesHtml(const char* before, const DocumentPages& document, Verd
                          std::size_t count) {
     std::string items;
     for (const auto& [page, claim] : examples(document, verdict)) {
-        items += fmt::format("{}“{}” (<a href=\"#{}\">{}</a>)", items.empty() ? "" : "; ",
-                             escapeXml(claim->text), escapeXml(page->slug), escapeXml(page->label));
+        items += fmt::format("{}“{}” ({})", items.empty() ? "" : "; ", escapeXml(claim->text),
+                             pageLink(*page));
     }
     if (items.empty()) return "";
     return fmt::format("{}{}: {}. ", before, count > kExamples ? ", among others" : "", items);
@@ -141,12 +418,12 @@ std::string highlightsHtml(const DocumentPages& document, const Model& model) {
     for (const Highlight& one : highlightsOf(document.pages(), difference)) {
         html += fmt::format(
             "<figure><a href=\"#{0}\"><img src=\"{1}\" alt=\"{2}\" width=\"{3}\" "
-            "height=\"{4}\"></a><figcaption>{5} {6} <a href=\"#{0}\">{7}</a></figcaption>"
+            "height=\"{4}\"></a><figcaption>{5} {6} {7}</figcaption>"
             "</figure>\n",
             escapeXml(one.page->slug), smallPicture(*one.shot, model.places[one.run]),
             escapeXml(one.shot->caseTitle + " · " + one.shot->name), one.shot->width,
             one.shot->height, verdictBadge(one.claim->verdict), escapeXml(one.claim->text),
-            escapeXml(one.page->label));
+            pageLink(*one.page));
     }
     return html.empty() ? "" : "<div class=\"highlights\">\n" + html + "</div>\n";
 }
@@ -160,7 +437,8 @@ std::string documentHtml(const DocumentPages& document, const Model& model) {
         if (own.empty() && others.empty()) continue;
         if (model.isComparison()) {
             html += fmt::format("<p><b>{}</b> {}</p>\n", Model::letter(run),
-                                escapeXml(runName(model.runs[run])));
+                                escapeXml(fmt::format("{}, {}", model.runs[run].context.profile,
+                                                      model.runs[run].context.device)));
         }
         if (!own.empty()) {
             html += tallyHtml(own);
@@ -180,7 +458,7 @@ std::string documentHtml(const DocumentPages& document, const Model& model) {
                        html, highlightsHtml(document, model));
 }
 
-std::string pageLink(const Page& page) {
+std::string titledLink(const Page& page) {
     const std::string rest = page.isOwn() ? "" : fmt::format(" {}", escapeXml(page.title));
     return fmt::format("<a href=\"#{}\">{}</a>{}", escapeXml(page.slug),
                        escapeXml(page.isOwn() ? page.title : page.label), rest);
@@ -202,7 +480,7 @@ std::string saidHtml(const Model& model) {
             for (const Page* page : chapter.pages) {
                 html +=
                     fmt::format("<div class=\"of-page\" data-text=\"{}\">\n<h4>{}</h4>\n{}</div>\n",
-                                escapeXml(page->label + ' ' + page->title), pageLink(*page),
+                                escapeXml(page->label + ' ' + page->title), titledLink(*page),
                                 claimsHtml(*page, model, ClaimDetail::Short));
             }
             html += "</section>\n";
@@ -218,12 +496,10 @@ std::string newsSection(const Model& model) {
         for (std::size_t run = 0; run < page.parts.size(); ++run) {
             for (const ClaimResult& claim : page.parts[run].claims) {
                 if (!claim.isNews()) continue;
-                items += fmt::format(
-                    "<li>{}<a href=\"#{}\">{}</a> <strong>{}</strong>: {} ({}); known: {}</li>\n",
-                    model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(page.slug),
-                    escapeXml(page.label), verdictName(claim.verdict),
-                    escapeXml(claim.text.empty() ? claim.id : claim.text), escapeXml(claim.id),
-                    verdictName(*claim.known));
+                items += fmt::format("<li>{}{} <strong>{}</strong>: {} ({}); known: {}</li>\n",
+                                     model.prefix(run), pageLink(page), verdictName(claim.verdict),
+                                     escapeXml(claim.text.empty() ? claim.id : claim.text),
+                                     escapeXml(claim.id), verdictName(*claim.known));
             }
         }
     }
@@ -244,18 +520,16 @@ std::string missingHtml(const Model& model) {
                 }
             }
             if (counts.empty() && part.failures.empty()) continue;
-            std::string what;
+            std::vector<std::string> what;
             for (const auto& [status, count] : counts) {
-                what += fmt::format("{}{} {}", what.empty() ? "" : ", ", count, statusName(status));
+                what.push_back(fmt::format("{} {}", count, statusName(status)));
             }
-            if (!what.empty()) what = fmt::format("cells without a value: {}", what);
+            std::string text = what.empty() ? "" : "cells without a value: " + joined(what);
             if (!part.failures.empty()) {
-                what += fmt::format("{}{} of its cases failed", what.empty() ? "" : "; ",
+                text += fmt::format("{}{} of its cases failed", text.empty() ? "" : "; ",
                                     part.failures.size());
             }
-            items += fmt::format("<li>{}<a href=\"#{}\">{}</a>: {}</li>\n",
-                                 model.isComparison() ? Model::letter(run) + ": " : "",
-                                 escapeXml(page.slug), escapeXml(page.label), what);
+            items += fmt::format("<li>{}{}: {}</li>\n", model.prefix(run), pageLink(page), text);
         }
     }
     if (items.empty()) return "<p class=\"soft\">Nothing is missing: every case finished.</p>\n";
@@ -263,6 +537,17 @@ std::string missingHtml(const Model& model) {
 }
 
 }  // namespace
+
+std::string machineHtml(const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < model.runs.size(); ++run) {
+        const std::string size = sizeText(model.runs[run]);
+        html +=
+            fmt::format("<p class=\"machine\">{}{}{}</p>\n", model.boldLetter(run),
+                        escapeXml(machineText(model.runs[run])), size.empty() ? "" : " · " + size);
+    }
+    return html;
+}
 
 std::string overviewHtml(const Model& model) {
     const bool isOwn = std::ranges::all_of(model.pages, &Page::isOwn);

@@ -1,18 +1,214 @@
+// The page of a table, with its claims and cases.
 #include <fmt/format.h>
+#include <algorithm>
+#include <set>
 
+#include "runner/config/schema.h"
 #include "runner/report/markup.h"
-#include "runner/report/parts.h"
+#include "runner/report/pages.h"
 #include "runner/tables/labels.h"
 
 namespace gfxrepro::report {
 
+using claims::ClaimResult;
+using claims::Verdict;
+
 namespace {
 
-std::string classedParagraph(const char* cssClass, const char* label, const std::string& text) {
+/// What one sees of a verdict without its colour, and what the word means.
+struct VerdictWords {
+    Verdict verdict;
+    const char* sign;
+    const char* meaning;
+};
+constexpr VerdictWords kWords[] = {
+    {Verdict::Holds, "✓", "what was measured agrees with the statement"},
+    {Verdict::Fails, "✗",
+     "on this machine, with these scenes, our implementation does not show what the document says: "
+     "a result, no error of the run, with its reason beside it"},
+    {Verdict::Ambiguous, "?", "the numbers are too few or scatter too much to tell"},
+    {Verdict::Unmeasured, "○", "a case that it needs has no result"},
+    {Verdict::NotApplicable, "–", "it asks for a GPU, or for another profile"},
+};
+
+const VerdictWords& wordsOf(Verdict verdict) {
+    return *std::ranges::find(kWords, verdict, &VerdictWords::verdict);
+}
+
+/// Every claim of any run, in the first run's order.
+std::vector<std::string> claimsOf(const Page& page) {
+    std::vector<std::string> ids;
+    for (const RunPart& part : page.parts) {
+        for (const ClaimResult& claim : part.claims) {
+            if (std::ranges::find(ids, claim.id) == ids.end()) ids.push_back(claim.id);
+        }
+    }
+    return ids;
+}
+
+const ClaimResult* findClaim(const RunPart& part, const std::string& id) {
+    const auto claim = std::ranges::find(part.claims, id, &ClaimResult::id);
+    return claim == part.claims.end() ? nullptr : &*claim;
+}
+
+/// Whose claim it is, and of a time what kind.
+std::string whoseText(const ClaimResult& claim) {
+    std::string text(config::originName(claim.origin));
+    if (claim.timeKind) text += fmt::format(", {}", config::timeKindName(*claim.timeKind));
+    return text;
+}
+
+std::string newsHtml(const ClaimResult& claim) {
+    if (!claim.isNews()) return "";
+    return fmt::format(" <span class=\"news\">news: known as {}</span>", verdictName(*claim.known));
+}
+
+std::string paragraph(const std::string& label, const std::string& text,
+                      const char* attributes = "") {
     if (text.empty()) return "";
-    return fmt::format("<p class=\"{}\"><span class=\"soft\">{}</span>{}</p>\n", cssClass, label,
+    return fmt::format("<p{}><span class=\"soft\">{}</span>{}</p>\n", attributes, label,
                        escapeXml(text));
 }
+
+std::string_view boundText(config::ClaimSpec::BoundSource source) {
+    using Source = config::ClaimSpec::BoundSource;
+    if (source == Source::Text) return "the bound is the text's";
+    return source == Source::Print ? "the bound is from the printed numbers" : "the bound is ours";
+}
+
+std::string requiredText(const ClaimResult& claim, const tables::Table& table) {
+    if (claim.required.empty()) return "";
+    const std::string text = tables::inWords(claim.required, table);
+    if (!claim.boundFrom) return text;
+    return fmt::format("{} ({})", text, boundText(*claim.boundFrom));
+}
+
+/// That nothing was tried is said once, below the meanings of the verdicts.
+std::string restsOnText(const ClaimResult& claim) {
+    const bool isNone = claim.restsOn == "not tried" || claim.restsOn == claims::kRestsOnUnknown;
+    return isNone ? "" : claim.restsOn;
+}
+
+/// What was found in one run, below the claim's words.
+std::string detailHtml(const ClaimResult& claim, const tables::Table& table,
+                       const std::string& letter, ClaimDetail detail) {
+    std::string html;
+    if (detail == ClaimDetail::Full) {
+        html += paragraph("measured ", claim.measured) +
+                paragraph("required ", requiredText(claim, table)) +
+                paragraph(claim.verdict == Verdict::Holds ? "noted: " : "why: ", whyText(claim)) +
+                paragraph("shown by ", claim.shownBy) + paragraph("rests on ", restsOnText(claim));
+    } else if (claim.verdict != Verdict::Holds && claim.verdict != Verdict::NotApplicable) {
+        html += paragraph("why: ", whyText(claim));
+    }
+    if (html.empty() || letter.empty()) return html;
+    return fmt::format("<div class=\"of-run\"><b>{}</b>\n{}</div>\n", letter, html);
+}
+
+std::string claimHtml(const Page& page, const std::string& id, const Model& model,
+                      ClaimDetail detail) {
+    std::string badges, details, says;
+    std::string verdictNames;
+    std::set<Verdict> verdicts;
+    const ClaimResult* any = nullptr;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const ClaimResult* claim = findClaim(page.parts[run], id);
+        if (!claim) continue;
+        if (!any) any = claim;
+        if (says.empty()) says = claim->text;  // kept verdicts come without it
+        verdicts.insert(claim->verdict);
+        verdictNames +=
+            fmt::format("{}{}", verdictNames.empty() ? "" : " ", verdictName(claim->verdict));
+        const std::string letter = model.isComparison() ? Model::letter(run) : "";
+        badges += model.boldLetter(run) + verdictBadge(claim->verdict) + newsHtml(*claim) + ' ';
+        details += detailHtml(*claim, page.parts[run].table, letter, detail);
+    }
+    const std::string text = says.empty() ? id : says;
+    const std::string code =
+        detail == ClaimDetail::Full
+            ? escapeXml(id)
+            : fmt::format("<a href=\"#{}\">{}</a>", escapeXml(page.slug), escapeXml(id));
+    return fmt::format(
+        "<li class=\"claim{}{}\" data-verdict=\"{}\" data-origin=\"{}\" data-text=\"{}\">"
+        "<span class=\"verdicts\">{}</span> <span class=\"says\">{}</span> "
+        "<span class=\"soft code\">{}, {}</span>\n{}</li>\n",
+        any->isOfDocument() ? "" : " uncounted", verdicts.size() > 1 ? " differs" : "",
+        verdictNames, config::originName(any->origin), escapeXml(id + ' ' + text), badges,
+        escapeXml(text), code, whoseText(*any), details);
+}
+
+}  // namespace
+
+std::string verdictBadge(Verdict verdict, const std::string& word) {
+    return fmt::format("<span class=\"badge {0}\"><span aria-hidden=\"true\">{1}</span> {2}</span>",
+                       verdictName(verdict), wordsOf(verdict).sign,
+                       word.empty() ? std::string(verdictName(verdict)) : word);
+}
+
+std::string verdictSign(Verdict verdict) {
+    return wordsOf(verdict).sign;
+}
+
+std::string legendHtml() {
+    std::string html = "<dl class=\"legend-of-verdicts\">\n";
+    for (const VerdictWords& words : kWords) {
+        html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", verdictBadge(words.verdict),
+                            words.meaning);
+    }
+    return html +
+           "</dl>\n<p class=\"soft small\">“Rests on” names the assumptions that turn a verdict "
+           "round; of a claim without it none was tried (<code>gfxrepro sensitivity</code> tries "
+           "them), or no folder of kept results was there to look in.</p>\n";
+}
+
+std::string claimsHtml(const Page& page, const Model& model, ClaimDetail detail) {
+    std::string html;
+    for (const std::string& id : claimsOf(page)) html += claimHtml(page, id, model, detail);
+    if (html.empty()) return "";
+    const char* cssClass = detail == ClaimDetail::Full ? "claims" : "claims short";
+    return fmt::format("<ul class=\"{}\">\n{}</ul>\n", cssClass, html);
+}
+
+std::string filtersHtml(const Model& model) {
+    std::set<std::string> papers;
+    bool hasOwn = false;
+    for (const Page& page : model.pages) {
+        papers.insert(page.paper());
+        for (const RunPart& part : page.parts) {
+            hasOwn |= std::ranges::any_of(part.claims, &ClaimResult::isOfDocument);
+        }
+    }
+    std::string html =
+        "<form class=\"filters\" hidden>\n<label>document <select name=\"paper\">"
+        "<option value=\"\">all</option>";
+    for (const std::string& paper : papers) {
+        html += fmt::format("<option>{}</option>", escapeXml(paper));
+    }
+    html +=
+        "</select></label>\n<label>whose claim <select name=\"origin\"><option value=\"\">all"
+        "</option>";
+    for (const std::string_view origin : config::kOrigins) {
+        const bool isChosen =
+            hasOwn && origin == config::originName(config::ClaimSpec::Origin::Document);
+        html += fmt::format("<option{}>{}</option>", isChosen ? " selected" : "", origin);
+    }
+    html +=
+        "</select></label>\n<label>words <input type=\"search\" name=\"text\" "
+        "placeholder=\"of the claim or table\"></label>\n<fieldset>";
+    for (const VerdictWords& words : kWords) {
+        html += fmt::format(
+            "<label class=\"badge {0}\"><input type=\"checkbox\" name=\"verdict\" "
+            "value=\"{0}\" checked> <span aria-hidden=\"true\">{1}</span> {0}</label>\n",
+            verdictName(words.verdict), words.sign);
+    }
+    html += "</fieldset>\n";
+    if (model.isComparison()) {
+        html += "<label><input type=\"checkbox\" name=\"differ\"> only where runs differ</label>\n";
+    }
+    return html + "<output></output>\n</form>\n";
+}
+
+namespace {
 
 std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions,
                             const tables::Words& words) {
@@ -42,7 +238,7 @@ std::string curvesHtml(const Page& page, const Model& model) {
         for (const Curve* curve : page.parts[run].curves) {
             html += fmt::format(
                 "<figure class=\"curve\">{}<figcaption>{}{}{}</figcaption></figure>\n", curve->svg,
-                model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(curve->title),
+                model.prefix(run), escapeXml(curve->title),
                 curve->problem.empty()
                     ? ""
                     : fmt::format(" <span class=\"soft\">({})</span>", escapeXml(curve->problem)));
@@ -58,7 +254,7 @@ std::string failuresHtml(const Page& page, const Model& model) {
             items += fmt::format(
                 "<li>{}{} (case <a href=\"#{}\">{}</a>): <span class=\"status\">{}</span>{}{}"
                 "</li>\n",
-                model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(failure.name),
+                model.prefix(run), escapeXml(failure.name),
                 escapeXml(caseAnchor(run, failure.caseId)), escapeXml(failure.caseId),
                 records::statusName(failure.status), failure.message.empty() ? "" : " — ",
                 escapeXml(failure.message));
@@ -81,7 +277,7 @@ std::string importedHtml(const Page& page, const Model& model) {
         html += fmt::format(
             "<p class=\"small\"><span class=\"badge ambiguous\">imported</span> {}measured "
             "elsewhere, on {}, and not by this program; the numbers of {}.</p>\n",
-            model.isComparison() ? Model::letter(run) + ": " : "", escapeXml(from.context.device),
+            model.prefix(run), escapeXml(from.context.device),
             escapeXml(from.manifest["imported"].value("file", "a file")));
     }
     return html;
@@ -95,6 +291,39 @@ std::string againHtml(const RunPart& part, const ReportRun& run) {
     const auto command = run.commands.find(part.table.id);
     if (command == run.commands.end()) return "";
     return fmt::format("<h3>Run it again</h3>\n<pre>{}</pre>\n", escapeXml(command->second));
+}
+
+/// Every case: its id, the command that runs it again, its log.
+std::string casesHtml(const Page& page, const Model& model) {
+    std::string html;
+    std::size_t count = 0;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const ReportRun& of = model.runs[run];
+        const auto commandOf = [&](const std::string& id) {
+            const auto command = of.commands.find(id);
+            return command == of.commands.end() ? "" : command->second;
+        };
+        for (const config::Case* item : page.parts[run].cases) {
+            ++count;
+            html += fmt::format(
+                "<article class=\"case\" id=\"{}\"><h4>{}{} <span class=\"soft\">case {}</span>"
+                "</h4>\n<pre class=\"command\">{}</pre>\n",
+                escapeXml(caseAnchor(run, item->id)), model.prefix(run),
+                escapeXml(tables::shownCase(item->title(), page.id, page.parts[run].table.words)),
+                escapeXml(item->id), escapeXml(commandOf(item->id)));
+            std::string log;
+            if (const auto events = of.events.find(item->id); events != of.events.end()) {
+                for (const std::string& line : events->second) log += escapeXml(line) + '\n';
+            }
+            html += fmt::format("<pre class=\"log\">{}</pre></article>\n",
+                                log.empty() ? "not run" : log);
+        }
+    }
+    if (html.empty()) return "";
+    return fmt::format(
+        "<details class=\"cases\"><summary>Cases: {}, each with the command that runs it again and "
+        "its log</summary>\n{}</details>\n",
+        count, html);
 }
 
 }  // namespace
@@ -120,13 +349,13 @@ std::string pageHtml(const Page& page, const Model& model) {
     const bool isPicture = shown->experiment->kind == config::Experiment::Kind::Figure ||
                            !shown->experiment->shows.empty();
     if (isPicture) html += images;
+    constexpr const char* kSmall = " class=\"small\"";
     html += tableHtml(page, model);
-    html += classedParagraph("small", "Printed numbers: ", shown->table.hardware);
-    html += classedParagraph("small", "Remark: ", shown->table.remark);
+    html += paragraph("Printed numbers: ", shown->table.hardware, kSmall);
+    html += paragraph("Remark: ", shown->table.remark, kSmall);
     for (std::size_t run = 0; run < page.parts.size(); ++run) {
-        const std::string whose = model.isComparison() ? Model::letter(run) + ": " : "";
         for (const std::string& note : page.parts[run].table.notes) {
-            html += classedParagraph("small soft", whose.c_str(), note);
+            html += paragraph(model.prefix(run), note, " class=\"small soft\"");
         }
     }
     html += curvesHtml(page, model);

@@ -1,12 +1,15 @@
+// The table of a page: the tables of several runs laid over one another.
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "engine/core/text.h"
 #include "runner/report/markup.h"
-#include "runner/report/overlay.h"
-#include "runner/report/parts.h"
+#include "runner/report/pages.h"
 #include "runner/tables/labels.h"
 #include "runner/tables/printed.h"
 #include "runner/tables/table.h"
@@ -18,6 +21,181 @@ using tables::Table;
 using tables::TableRow;
 
 namespace {
+
+/// All rows and columns that any of the tables has: runs of other profiles have other rows.
+class Overlay {
+  public:
+    explicit Overlay(const Page& page);
+
+    const std::vector<std::size_t>& runs() const { return runs_; }
+    const std::vector<tables::TableColumn>& columns() const { return columns_; }
+    const std::vector<std::vector<std::string>>& rows() const { return rows_; }
+
+    /// A row of the i-th table; null where it has none.
+    const TableRow* find(std::size_t i, const std::vector<std::string>& labels) const {
+        const auto row = rowOf_[i].find(labels);
+        return row == rowOf_[i].end() ? nullptr : row->second;
+    }
+    const Cell* find(std::size_t i, const TableRow* row, const std::string& column) const {
+        if (!row) return nullptr;
+        const auto place = tables_[i]->findColumn(column);
+        return place ? &row->cells[*place] : nullptr;
+    }
+    /// What the paper printed there; the same in every run that has the cell.
+    std::optional<std::string> printed(const std::vector<std::string>& labels,
+                                       const std::string& column) const {
+        for (std::size_t i = 0; i < tables_.size(); ++i) {
+            const Cell* cell = find(i, find(i, labels), column);
+            if (cell && cell->printed) return cell->printed;
+        }
+        return std::nullopt;
+    }
+    bool hasPrinted(const std::string& column) const { return printedColumns_.contains(column); }
+    bool isOnlyPrinted() const { return tables_.front()->isOnlyPrinted; }
+    const Table& first() const { return *tables_.front(); }
+    bool isEmpty() const { return tables_.empty() || columns_.empty() || rows_.empty(); }
+    /// What stands under one column's head: the printed number, then a number a run.
+    std::size_t widthOf(const std::string& column) const {
+        return isOnlyPrinted() ? 1 : (hasPrinted(column) ? 1 : 0) + runs_.size();
+    }
+
+  private:
+    std::vector<std::size_t> runs_;  // beside tables_: its index in the model
+    std::vector<const Table*> tables_;
+    std::vector<std::map<std::vector<std::string>, const TableRow*>> rowOf_;  // likewise
+    std::set<std::string> printedColumns_;
+    std::vector<tables::TableColumn> columns_;
+    std::vector<std::vector<std::string>> rows_;
+};
+
+Overlay::Overlay(const Page& page) {
+    std::set<std::vector<std::string>> seen;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        if (!page.parts[run].experiment) continue;
+        const Table& table = page.parts[run].table;
+        runs_.push_back(run);
+        tables_.push_back(&table);
+        for (const tables::TableColumn& column : table.columns) {
+            const auto isSame = [&](const auto& known) { return known.label == column.label; };
+            if (std::ranges::none_of(columns_, isSame)) columns_.push_back(column);
+        }
+        std::map<std::vector<std::string>, const TableRow*>& byLabels = rowOf_.emplace_back();
+        for (const TableRow& row : table.rows) {
+            byLabels.try_emplace(row.labels, &row);
+            if (seen.insert(row.labels).second) rows_.push_back(row.labels);
+            for (std::size_t c = 0; c < row.cells.size(); ++c) {
+                if (row.cells[c].printed) printedColumns_.insert(table.columns[c].label);
+            }
+        }
+    }
+}
+
+/// Which way a column is better.
+std::string directionHtml(config::Better better) {
+    if (better == config::Better::Neither) return "";
+    return fmt::format(" <span class=\"sub\" title=\"{}\">{}</span>", config::betterText(better),
+                       better == config::Better::Lower ? "↓" : "↑");
+}
+
+/// A column's own head: its last part, with its unit and which way it is better.
+struct Head {
+    std::vector<std::string> above;  // the parts before it: heads of several columns
+    std::string own;
+};
+
+Head headOf(const tables::TableColumn& column, const tables::Words& words) {
+    Head head;
+    head.above = column.parts;
+    std::string name = column.label;
+    if (!head.above.empty()) {
+        name = head.above.back();
+        head.above.pop_back();
+    }
+    const tables::Quantity quantity = tables::quantityOf(name, words, column.unit);
+    head.own = escapeXml(quantity.words);
+    if (!quantity.unit.empty()) {
+        head.own += fmt::format(" <span class=\"sub\">[{}]</span>", escapeXml(quantity.unit));
+    }
+    head.own += directionHtml(column.better);
+    return head;
+}
+
+/// A head over columns; all that it says of them on pointing at it.
+std::string columnHeadHtml(const tables::TableColumn& column, const std::string& text,
+                           std::size_t width, std::size_t height) {
+    std::string title = column.label;
+    if (!column.doc.empty()) title += ": " + column.doc;
+    std::string html =
+        fmt::format("<th class=\"{}\" scope=\"{}\" title=\"{}\"", width > 1 ? "group" : "num",
+                    width > 1 ? "colgroup" : "col", escapeXml(title));
+    if (width > 1) html += fmt::format(" colspan=\"{}\"", width);
+    if (height > 1) html += fmt::format(" rowspan=\"{}\"", height);
+    return html + ">" + text + "</th>";
+}
+
+/// The parts of column heads that several columns share, a line each.
+std::string sharedHeadsHtml(const Overlay& overlay, const std::vector<Head>& heads,
+                            std::size_t level) {
+    const auto partsOf = [&](std::size_t i) {
+        std::vector<std::string> parts = heads[i].above;
+        parts.resize(level + 1);
+        return parts;
+    };
+    std::string html;
+    for (std::size_t first = 0; first < heads.size();) {
+        const auto isUnder = [&](std::size_t i) { return partsOf(i) == partsOf(first); };
+        std::size_t last = first, width = 0;
+        while (last < heads.size() && isUnder(last)) {
+            width += overlay.widthOf(overlay.columns()[last++].label);
+        }
+        html +=
+            fmt::format("<th class=\"group\" scope=\"colgroup\" colspan=\"{}\">{}</th>", width,
+                        escapeXml(tables::shownName(partsOf(first)[level], overlay.first().words)));
+        first = last;
+    }
+    return html;
+}
+
+/// The heads of its columns: a line for each column axis, and one for printed and measured.
+std::string headHtml(const Overlay& overlay, bool isComparison) {
+    const tables::Words& words = overlay.first().words;
+    std::vector<Head> heads;
+    std::size_t levels = 0;
+    for (const tables::TableColumn& column : overlay.columns()) {
+        heads.push_back(headOf(column, words));
+        levels = std::max(levels, heads.back().above.size());
+    }
+    const auto isGroup = [&](const auto& column) { return overlay.widthOf(column.label) > 1; };
+    const bool hasSources = std::ranges::any_of(overlay.columns(), isGroup);
+    const std::size_t height = levels + 1 + (hasSources ? 1 : 0);
+    std::string html = "<thead><tr>";
+    bool isFirst = true;
+    for (const std::string& axis : overlay.first().rowAxes) {
+        html +=
+            fmt::format("<th class=\"axis{}\" scope=\"col\" rowspan=\"{}\" title=\"{}\">{}</th>",
+                        isFirst ? " first" : "", height, escapeXml(axis),
+                        escapeXml(tables::shownName(axis, words)));
+        isFirst = false;
+    }
+    for (std::size_t level = 0; level < levels; ++level) {
+        html += sharedHeadsHtml(overlay, heads, level) + "</tr>\n<tr>";
+    }
+    std::string below;
+    for (std::size_t i = 0; i < heads.size(); ++i) {
+        const tables::TableColumn& column = overlay.columns()[i];
+        const std::size_t width = overlay.widthOf(column.label);
+        html += columnHeadHtml(column, heads[i].own, width, hasSources && width == 1 ? 2 : 1);
+        if (!isGroup(column)) continue;
+        if (overlay.hasPrinted(column.label)) below += "<th class=\"sub\">printed</th>";
+        for (const std::size_t run : overlay.runs()) {
+            below += fmt::format("<th class=\"sub\">{}</th>",
+                                 isComparison ? Model::letter(run) : "measured");
+        }
+    }
+    html += "</tr>";
+    if (hasSources) html += fmt::format("\n<tr>{}</tr>", below);
+    return html + "</thead>\n";
+}
 
 /// "×1.2" of the printed number, where both are of the same parameters, all of them given, and
 /// nothing was fitted to it; a rate of what was, not a comparison of machines.
@@ -63,9 +241,9 @@ std::string cellHtml(const Cell* cell, std::size_t run) {
     }
     std::string below;
     if (cell->hasShownBounds()) {
-        const bool isInterval = cell->bounds() == tables::Bounds::Interval;
         below = fmt::format("<span title=\"{}\">{}{}{}</span>", tables::boundsName(cell->bounds()),
-                            escapeXml(cell->low), isInterval ? "–" : " … ", escapeXml(cell->high));
+                            escapeXml(cell->low), cell->hasInterval() ? "–" : " … ",
+                            escapeXml(cell->high));
     }
     if (const std::string ratio = ratioHtml(*cell); !ratio.empty()) {
         below += (below.empty() ? "" : " ") + ratio;
@@ -126,8 +304,6 @@ std::string rowHtml(const Overlay& overlay, std::size_t row, const ShownLabels& 
     return html + "</tr>\n";
 }
 
-}  // namespace
-
 /// At which parameters each run measured; before the table, that nobody reads its numbers without.
 std::string parametersHtml(const Page& page, const Model& model) {
     std::string html;
@@ -135,9 +311,8 @@ std::string parametersHtml(const Page& page, const Model& model) {
         if (!page.parts[run].experiment) continue;
         const std::string line = tables::parametersLine(page.parts[run].table);
         if (line.empty()) continue;
-        const std::string letter =
-            model.isComparison() ? fmt::format("<b>{}</b> ", Model::letter(run)) : "";
-        html += fmt::format("<p class=\"parameters\">{}{}</p>\n", letter, escapeXml(line));
+        html += fmt::format("<p class=\"parameters\">{}{}</p>\n", model.boldLetter(run),
+                            escapeXml(line));
     }
     return html;
 }
@@ -147,39 +322,33 @@ std::string constantsHtml(const Page& page) {
     const RunPart* shown = page.shown();
     if (!shown || shown->table.constants.empty()) return "";
     return fmt::format("<p class=\"parameters\">In every row: {}.</p>\n",
-                       escapeXml(fmt::format("{}", fmt::join(shown->table.constants, ", "))));
+                       escapeXml(joined(shown->table.constants)));
 }
 
 /// What stands under the numbers of this table.
 std::string smallPrintHtml(const Page& page) {
-    bool hasIntervals = false, hasTimes = false, hasRanges = false, hasShares = false,
-         hasRatios = false;
-    for (const RunPart& part : page.parts) {
-        if (!part.experiment || part.table.isOnlyPrinted) continue;
-        for (const TableRow& row : part.table.rows) {
-            for (const Cell& cell : row.cells) {
-                hasRatios |= !ratioHtml(cell).empty();
-                if (!cell.hasShownBounds()) continue;
-                const bool isInterval = cell.bounds() == tables::Bounds::Interval;
-                hasIntervals |= isInterval;
-                hasRanges |= !isInterval;
-                hasTimes |= isInterval && cell.isTime;
-                hasShares |= isInterval && !cell.isTime && cell.unit == "%";
-            }
-        }
-    }
-    std::string says;
-    const auto add = [&](const char* text) {
-        says += fmt::format("{}{}", says.empty() ? "" : " · ", text);
+    const auto has = [&](bool (*isSuch)(const Cell&)) {
+        return std::ranges::any_of(page.parts,
+                                   [&](const RunPart& part) { return part.table.hasCell(isSuch); });
     };
-    if (hasIntervals) add("95 % interval a–b");
-    if (hasTimes) add("of a time that of this sitting: another run's may differ by more");
-    if (hasShares)
-        add("of a share that was counted once by its count alone: other scenes may differ by more");
-    if (hasRanges) add("range a … b, of too few processes for an interval");
-    if (hasRatios) {
-        add("× measured ÷ printed, where it was measured at the printed parameters");
+    std::vector<std::string> parts;
+    if (has([](const Cell& cell) { return cell.hasInterval(); })) {
+        parts.emplace_back("95 % interval a–b");
     }
+    if (has([](const Cell& cell) { return cell.hasInterval() && cell.isTime; })) {
+        parts.emplace_back("of a time that of this sitting: another run's may differ by more");
+    }
+    if (has([](const Cell& cell) { return cell.isCountedShare(); })) {
+        parts.emplace_back(
+            "of a share that was counted once by its count alone: other scenes may differ by more");
+    }
+    if (has([](const Cell& cell) { return cell.hasShownBounds() && !cell.hasInterval(); })) {
+        parts.emplace_back("range a … b, of too few processes for an interval");
+    }
+    if (has([](const Cell& cell) { return !ratioHtml(cell).empty(); })) {
+        parts.emplace_back("× measured ÷ printed, where it was measured at the printed parameters");
+    }
+    std::string says = joined(parts, " · ");
     if (!says.empty()) says = "Small print under a number: " + says + ". ";
     return fmt::format(
         "<p class=\"soft small\">{}Point at a row for its cases; click to keep them.</p>\n", says);
@@ -218,6 +387,8 @@ std::string absentRowsHtml(const Page& page) {
     return html + "</tbody></table></div></details>\n";
 }
 
+}  // namespace
+
 std::string tableHtml(const Page& page, const Model& model) {
     const Overlay overlay(page);
     if (overlay.isEmpty()) return "";
@@ -239,8 +410,7 @@ std::string tableHtml(const Page& page, const Model& model) {
     for (const std::size_t run : overlay.runs()) {
         const auto clock = tables::movedClock(page.parts[run].table);
         if (!clock) continue;
-        html += fmt::format("<p class=\"soft small\">{}{} {}.</p>\n",
-                            model.isComparison() ? Model::letter(run) + ": " : "",
+        html += fmt::format("<p class=\"soft small\">{}{} {}.</p>\n", model.prefix(run),
                             tables::kMovedClockMark, escapeXml(tables::movedClockLegend(*clock)));
     }
     if (hasStandIn) {

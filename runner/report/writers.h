@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runner/claims/claims.h"
@@ -26,6 +27,16 @@ void writeTables(const std::filesystem::path& runDir, const std::vector<tables::
 void writeClaims(const std::filesystem::path& runDir, const std::vector<records::CaseEnd>& cases,
                  const std::vector<claims::ClaimResult>& results,
                  const claims::ReportContext& context);
+
+inline constexpr std::string_view kXmlHead = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+/// A test of a JUnit file: of what was measured nothing is said.
+struct JunitTest {
+    std::string group;
+    std::string name;
+    records::CaseEnd::Outcome outcome = records::CaseEnd::Outcome::Measured;
+    std::string message;
+};
+std::string junitSuite(std::string_view name, const std::vector<JunitTest>& tests);
 
 /// The text of junit.xml.
 std::string junitXml(const std::vector<records::CaseEnd>& cases,

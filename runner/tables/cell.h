@@ -79,8 +79,8 @@ struct Cell {
     bool isTime = false;  // a time, a rate of time, or a share of one
     int timePower = 0;    // of its metric; a share of times stays as they double
     std::string unit;     // of the records, if they agree; "%" of a share
-    /// It was measured at what the paper measured at (printed.h). Never without a
-    /// measurement, nor in a run whose plan does not know the printed parameters.
+    /// It was measured at what the paper measured at (printed.h). Never without a measurement, nor
+    /// in a run whose plan does not know the printed parameters.
     bool isAtPrintedParameters = false;
     /// Of what it was measured at, beside departures: what the document does not give, by the name
     /// of its parameter; the profile `paper` has a value of ours for it. Its scene is told by its
@@ -101,6 +101,9 @@ struct Cell {
     Bounds bounds() const { return values.empty() ? Bounds::None : values[0].bounds; }
     /// Bounds that are apart, as the format writes them.
     bool hasShownBounds() const { return !low.empty() && low != high; }
+    bool hasInterval() const { return hasShownBounds() && bounds() == Bounds::Interval; }
+    /// A share whose interval is that of its count.
+    bool isCountedShare() const { return hasInterval() && !isTime && unit == "%"; }
     /// The statistic of that name, the first if the name is empty; null when it is not there.
     const Measured* find(const std::string& statistic, Clock clock = Clock::Wall) const;
 };

@@ -1,5 +1,5 @@
 // Which pictures stand for a document.
-#include "runner/report/highlights.h"
+#include "runner/report/pages.h"
 
 #include <gmock/gmock.h>
 
