@@ -15,8 +15,8 @@
 #include "runner/cli/experiments.h"
 #include "runner/conclusion/conclusion.h"
 #include "runner/regression/comparison.h"
-#include "runner/regression/history.h"
-#include "runner/regression/pictures.h"
+#include "runner/regression/nightly_history.h"
+#include "runner/regression/picture_comparison.h"
 #include "runner/regression/summary.h"
 #include "runner/run/child_process.h"
 #include "runner/run/manifest.h"
@@ -225,7 +225,8 @@ void annotateChanges(const regression::Comparison& comparison,
 
 void sayAll(const regression::Comparison& comparison, const fs::path& folder) {
     for (const std::string& note : comparison.notes) say("warning: {}\n", note);
-    const std::vector<std::string> titles = regression::titlesOf(comparison.differences);
+    const std::vector<std::string> titles =
+        regression::titlesOf(regression::keysOf(comparison.differences));
     for (std::size_t i = 0; i < titles.size(); ++i) {
         const Difference& difference = comparison.differences[i];
         const bool isOfNone = difference.isOfNone();

@@ -1,14 +1,16 @@
 #include "runner/regression/series.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 
+#include "engine/core/error.h"
+#include "engine/core/text.h"
 #include "engine/metrics/statistics.h"
 
 namespace gfxrepro::regression {
@@ -28,7 +30,7 @@ double meanOfMedians(const Frames& frames) {
         Series values;
         for (const auto& [repeat, value] : repeats) values.push_back(value);
         if (standing(values).size() < values.size()) return kVoid;
-        sum += metrics::summarize(values, metrics::Statistic::Median);
+        sum += medianOf(values);
         ++count;
     }
     return sum / static_cast<double>(count);
@@ -68,6 +70,29 @@ std::optional<SeriesMap> reduced(const SeriesMap& series, const ParamNames& know
         if (!result.emplace(own, values).second) return std::nullopt;
     }
     return result;
+}
+
+/// The parameters of each key that are not the same in all, "a=1 b=2".
+std::vector<std::string> differingParams(const std::vector<const SeriesKey*>& keys) {
+    std::vector<Json> params;
+    std::map<std::string, std::set<std::string>> values;
+    for (const SeriesKey* key : keys) {
+        Json own = Json::parse(key->params, nullptr, false);
+        if (!own.is_object()) own = Json::object();
+        for (const auto& [name, value] : own.items()) values[name].insert(value.dump());
+        params.push_back(std::move(own));
+    }
+    std::vector<std::string> texts;
+    for (const Json& own : params) {
+        std::vector<std::string> parts;
+        for (const auto& [name, value] : own.items()) {
+            if (values[name].size() < 2) continue;
+            const bool isText = value.is_string();
+            parts.push_back(name + "=" + (isText ? value.get<std::string>() : value.dump()));
+        }
+        texts.push_back(joined(parts, " "));
+    }
+    return texts;
 }
 
 }  // namespace
@@ -174,6 +199,25 @@ std::string reducedParams(const SeriesKey& key, const ParamNames& known) {
     return params.dump();
 }
 
+double medianOf(std::span<const double> values) {
+    return metrics::summarize(values, metrics::Statistic::Median);
+}
+
+std::vector<std::string> titlesOf(const std::vector<const SeriesKey*>& keys) {
+    std::map<std::string, std::vector<std::size_t>> places;
+    for (std::size_t i = 0; i < keys.size(); ++i) places[keys[i]->title()].push_back(i);
+    std::vector<std::string> titles(keys.size());
+    for (const auto& [title, own] : places) {
+        std::vector<const SeriesKey*> alike;
+        for (const std::size_t i : own) alike.push_back(keys[i]);
+        const std::vector<std::string> params = differingParams(alike);
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            titles[own[i]] = params[i].empty() ? title : title + ", " + params[i];
+        }
+    }
+    return titles;
+}
+
 void append(SeriesMap& series, const SeriesMap& more) {
     for (const auto& [key, values] : more) {
         Series& own = series[key];
@@ -201,6 +245,146 @@ void chooseTimes(SeriesMap& before, SeriesMap& after, bool isSoftware) {
     for (SeriesMap* side : {&before, &after}) {
         std::erase_if(*side, [&](const auto& entry) { return !isChosen(entry.first); });
     }
+}
+
+// Exact tests.
+
+namespace {
+
+constexpr double kTail = 0.025;  // of a 95 % interval
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr metrics::Interval kUnbounded{-kInfinity, kInfinity};
+
+/// Ranks times two: whole numbers where values are equal, too.
+std::vector<std::size_t> doubledRanks(std::span<const double> values) {
+    std::vector<std::size_t> doubled;
+    for (const double rank : ranksOf(values)) {
+        doubled.push_back(static_cast<std::size_t>(std::lround(2.0 * rank)));
+    }
+    return doubled;
+}
+
+std::vector<std::size_t> doubledPlaces(std::size_t count) {
+    std::vector<std::size_t> places(count);
+    for (std::size_t i = 0; i < count; ++i) places[i] = 2 * (i + 1);
+    return places;
+}
+
+/// The chance of each sum of `count` of the scores, each choice as likely as another.
+Series choiceSums(const std::vector<std::size_t>& scores, std::size_t count) {
+    const std::size_t size = std::accumulate(scores.begin(), scores.end(), std::size_t{0}) + 1;
+    // Of the first i scores, a share of j / i in the choices of j is with the i-th: no large
+    // binomial coefficient is ever formed.
+    std::vector<Series> chances(count + 1, Series(size, 0.0));
+    chances[0][0] = 1.0;
+    for (std::size_t i = 1; i <= scores.size(); ++i) {
+        const std::size_t score = scores[i - 1];
+        for (std::size_t j = std::min(i, count); j >= 1; --j) {
+            const double with = static_cast<double>(j) / static_cast<double>(i);
+            for (std::size_t sum = size; sum-- > 0;) {
+                const double before = sum >= score ? chances[j - 1][sum - score] : 0.0;
+                chances[j][sum] = (1.0 - with) * chances[j][sum] + with * before;
+            }
+        }
+    }
+    return chances[count];
+}
+
+/// The chance of a sum as far from the mean as `sum` or farther.
+double twoSided(const Series& chances, double mean, double sum) {
+    const double distance = std::abs(sum - mean) - 0.25;
+    double chance = 0.0;
+    for (std::size_t i = 0; i < chances.size(); ++i) {
+        if (std::abs(static_cast<double>(i) - mean) >= distance) chance += chances[i];
+    }
+    return std::min(chance, 1.0);
+}
+
+/// How many steps of two from `begin` on lie below a tail of kTail.
+std::size_t stepsInTail(const Series& chances, std::size_t begin) {
+    double tail = 0.0;
+    std::size_t steps = 0;
+    for (std::size_t sum = begin; sum < chances.size(); sum += 2, ++steps) {
+        tail += chances[sum];
+        if (tail > kTail) break;
+    }
+    return steps;
+}
+
+}  // namespace
+
+Series ranksOf(std::span<const double> values) {
+    std::vector<std::size_t> order(values.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return values[i]; });
+    Series ranks(values.size());
+    for (std::size_t begin = 0; begin < order.size();) {
+        std::size_t end = begin + 1;
+        while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
+        for (std::size_t i = begin; i < end; ++i) {
+            ranks[order[i]] = 0.5 * static_cast<double>(begin + 1 + end);
+        }
+        begin = end;
+    }
+    return ranks;
+}
+
+RankTest signedRank(std::span<const double> differences) {
+    const std::size_t count = differences.size();
+    GFXREPRO_ASSERT(count > 0);
+    RankTest test;
+    test.attainable = std::min(1.0, std::exp2(1.0 - static_cast<double>(count)));
+    test.shift = metrics::centre(differences);
+    test.interval = metrics::centreInterval(differences).value_or(kUnbounded);
+    Series sizes;
+    for (const double difference : differences) {
+        if (difference != 0.0) sizes.push_back(std::abs(difference));
+    }
+    const std::vector<std::size_t> ranks = doubledRanks(sizes);
+    double sum = 0.0, all = 0.0;
+    for (std::size_t i = 0, ranked = 0; i < count; ++i) {
+        if (differences[i] == 0.0) continue;
+        const auto rank = static_cast<double>(ranks[ranked++]);
+        all += rank;
+        if (differences[i] > 0.0) sum += rank;
+    }
+    test.chance = twoSided(metrics::coinSums(ranks), 0.5 * all, sum);
+    return test;
+}
+
+double rankSumChance(std::span<const double> first, std::span<const double> rest) {
+    Series all(first.begin(), first.end());
+    all.insert(all.end(), rest.begin(), rest.end());
+    const std::vector<std::size_t> ranks = doubledRanks(all);
+    // The side with fewer values: far fewer sums.
+    const bool isFirstSmaller = first.size() <= rest.size();
+    const std::size_t count = std::min(first.size(), rest.size());
+    const auto begin =
+        isFirstSmaller ? ranks.begin() : ranks.begin() + static_cast<std::ptrdiff_t>(first.size());
+    const auto sum =
+        std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(count), std::size_t{0});
+    const double mean = static_cast<double>(count * (all.size() + 1));
+    return twoSided(choiceSums(ranks, count), mean, static_cast<double>(sum));
+}
+
+RankTest rankSum(std::span<const double> before, std::span<const double> after) {
+    GFXREPRO_ASSERT(!before.empty() && !after.empty());
+    RankTest test;
+    test.chance = rankSumChance(before, after);
+    const std::size_t count = std::min(before.size(), after.size());
+    const Series untied = choiceSums(doubledPlaces(before.size() + after.size()), count);
+    const std::size_t least = count * (count + 1);  // the doubled sum of the lowest places
+    test.attainable = std::min(1.0, 2.0 * untied[least]);
+    Series steps;
+    for (const double a : after) {
+        for (const double b : before) steps.push_back(a - b);
+    }
+    std::ranges::sort(steps);
+    test.shift = medianOf(steps);
+    const std::size_t inTail = stepsInTail(untied, least);
+    test.interval = inTail > 0 ? metrics::Interval{steps[inTail - 1], steps[steps.size() - inTail]}
+                               : kUnbounded;
+    return test;
 }
 
 }  // namespace gfxrepro::regression

@@ -1,13 +1,15 @@
-// The numbers of a run that can be compared with another run's.
+// The numbers of a run that can be compared with another run's, and exact tests of them.
 #pragma once
 
 #include <compare>
 #include <cstddef>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "engine/metrics/statistics.h"
 #include "runner/records/records.h"
 
 namespace gfxrepro::regression {
@@ -44,6 +46,8 @@ using SeriesMap = std::map<SeriesKey, Series>;
 /// The values that are not void.
 Series standing(const Series& values);
 
+double medianOf(std::span<const double> values);
+
 /// The parameters of a run's cases as SeriesKey has them, by id.
 using CaseParams = std::map<std::string, std::string>;
 
@@ -73,6 +77,17 @@ void addParamNames(const SeriesKey& key, ParamNames& names);
 /// The parameters in `known` alone; all where nothing is known of the technique.
 std::string reducedParams(const SeriesKey& key, const ParamNames& known);
 
+/// Titles in their order; where several have one, with the parameters in which these differ:
+/// "sweep/mine … wall_time_ms, samples=4".
+std::vector<std::string> titlesOf(const std::vector<const SeriesKey*>& keys);
+/// Of whatever has a `key`.
+template <class Results>
+std::vector<const SeriesKey*> keysOf(const Results& results) {
+    std::vector<const SeriesKey*> keys;
+    for (const auto& result : results) keys.push_back(&result.key);
+    return keys;
+}
+
 /// Puts `more`'s processes behind those of `series`: rounds of alternating runs.
 void append(SeriesMap& series, const SeriesMap& more);
 
@@ -85,5 +100,29 @@ void matchParams(SeriesMap& before, SeriesMap& after);
 /// of the process where both have it, for the clock counts what else the machine did; else the
 /// clock's.
 void chooseTimes(SeriesMap& before, SeriesMap& after, bool isSoftware);
+
+/// A shift between two sides [Hodges and Lehmann 1963], its exact two-sided chance under no shift
+/// [Wilcoxon 1945], and where it lies at 95 %.
+struct RankTest {
+    double shift = 0.0;
+    double chance = 1.0;
+    /// The smallest chance that so many values can give.
+    double attainable = 1.0;
+    /// Unbounded where there are too few values for 95 %: below 6 pairs, or 4 and 4 values.
+    metrics::Interval interval;
+};
+
+/// The differences of pairs against none: signed ranks. At least one.
+RankTest signedRank(std::span<const double> differences);
+
+/// `after` against `before`, which are no pairs: rank sums. At least one value each.
+RankTest rankSum(std::span<const double> before, std::span<const double> after);
+
+/// The exact two-sided chance that as many values as `first`, drawn from both, have a rank sum as
+/// far from its mean as `first`'s.
+double rankSumChance(std::span<const double> first, std::span<const double> rest);
+
+/// 1 … n, the mean of their places where values are equal.
+Series ranksOf(std::span<const double> values);
 
 }  // namespace gfxrepro::regression

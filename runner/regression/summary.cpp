@@ -11,6 +11,7 @@
 
 #include "engine/core/text.h"
 #include "runner/report/markup.h"
+#include "runner/report/writers.h"
 
 namespace gfxrepro::regression {
 
@@ -76,37 +77,6 @@ std::vector<std::string> uniqueNames(const std::vector<const SeriesKey*>& keys) 
     return names;
 }
 
-/// The parameters of each key that are not the same in all, "a=1 b=2".
-std::vector<std::string> differingParams(const std::vector<const SeriesKey*>& keys) {
-    using Json = nlohmann::ordered_json;
-    std::vector<Json> params;
-    std::map<std::string, std::set<std::string>> values;
-    for (const SeriesKey* key : keys) {
-        Json own = Json::parse(key->params, nullptr, false);
-        if (!own.is_object()) own = Json::object();
-        for (const auto& [name, value] : own.items()) values[name].insert(value.dump());
-        params.push_back(std::move(own));
-    }
-    std::vector<std::string> texts;
-    for (const Json& own : params) {
-        std::vector<std::string> parts;
-        for (const auto& [name, value] : own.items()) {
-            if (values[name].size() < 2) continue;
-            const bool isText = value.is_string();
-            parts.push_back(name + "=" + (isText ? value.get<std::string>() : value.dump()));
-        }
-        texts.push_back(joined(parts, " "));
-    }
-    return texts;
-}
-
-template <class Results>
-std::vector<std::string> uniqueNamesOf(const Results& results) {
-    std::vector<const SeriesKey*> keys;
-    for (const auto& result : results) keys.push_back(&result.key);
-    return uniqueNames(keys);
-}
-
 }  // namespace
 
 std::string summaryLine(const std::vector<Difference>& differences) {
@@ -119,23 +89,6 @@ std::string summaryLine(const std::vector<Difference>& differences) {
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, verdictName(verdict));
     }
     return text.empty() ? "nothing to compare" : text;
-}
-
-std::vector<std::string> titlesOf(const std::vector<Difference>& differences) {
-    std::map<std::string, std::vector<std::size_t>> places;
-    for (std::size_t i = 0; i < differences.size(); ++i) {
-        places[differences[i].key.title()].push_back(i);
-    }
-    std::vector<std::string> titles(differences.size());
-    for (const auto& [title, own] : places) {
-        std::vector<const SeriesKey*> keys;
-        for (const std::size_t i : own) keys.push_back(&differences[i].key);
-        const std::vector<std::string> params = differingParams(keys);
-        for (std::size_t i = 0; i < own.size(); ++i) {
-            titles[own[i]] = params[i].empty() ? title : title + ", " + params[i];
-        }
-    }
-    return titles;
 }
 
 std::string stepLine(const SeriesStep& found) {
@@ -160,7 +113,7 @@ std::string markdown(const Comparison& comparison) {
     }
     text += "| what | before | after | time after / before | floor | verdict |\n";
     text += "| --- | ---: | ---: | ---: | ---: | --- |\n";
-    const std::vector<std::string> titles = titlesOf(differences);
+    const std::vector<std::string> titles = titlesOf(keysOf(differences));
     for (std::size_t i = 0; i < differences.size(); ++i) {
         if (differences[i].verdict == Verdict::Same) continue;
         text += markdownRow(differences[i], titles[i]);
@@ -169,42 +122,26 @@ std::string markdown(const Comparison& comparison) {
 }
 
 std::string junitXml(const Comparison& comparison) {
+    using Outcome = records::CaseEnd::Outcome;
     const std::vector<Difference>& differences = comparison.differences;
-    const auto failures = std::ranges::count_if(differences, &Difference::isAlarm) +
-                          std::ranges::count_if(comparison.steps, &SeriesStep::isAlarm);
-    const std::size_t skipped =
-        countOf(differences, Verdict::CannotTell) + countOf(differences, Verdict::Missing) +
-        countOf(differences, Verdict::Void) + countOf(differences, Verdict::Failed);
-    std::string text = fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-        "<testsuite name=\"regression\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n",
-        differences.size() + comparison.steps.size(), failures, skipped);
-    const std::vector<std::string> names = uniqueNamesOf(differences);
+    std::vector<report::JunitTest> tests;
+    std::vector<std::string> names = uniqueNames(keysOf(differences));
     for (std::size_t i = 0; i < differences.size(); ++i) {
-        const Difference& difference = differences[i];
-        text += fmt::format("  <testcase classname=\"{}\" name=\"{}\"",
-                            report::escapeXml(difference.key.table), report::escapeXml(names[i]));
-        const bool isPass =
-            difference.verdict == Verdict::Same || difference.verdict == Verdict::Faster;
-        if (isPass) {
-            text += "/>\n";
-            continue;
-        }
-        text += fmt::format("><{} message=\"{}\"/></testcase>\n",
-                            difference.isAlarm() ? "failure" : "skipped",
-                            report::escapeXml(fmt::format("{} {}", verdictText(difference),
-                                                          ratioText(difference))));
+        const Difference& one = differences[i];
+        const bool isPass = one.verdict == Verdict::Same || one.verdict == Verdict::Faster;
+        tests.push_back({one.key.table, names[i],
+                         isPass          ? Outcome::Measured
+                         : one.isAlarm() ? Outcome::Failed
+                                         : Outcome::Skipped,
+                         fmt::format("{} {}", verdictText(one), ratioText(one))});
     }
-    const std::vector<std::string> stepNames = uniqueNamesOf(comparison.steps);
+    names = uniqueNames(keysOf(comparison.steps));
     for (std::size_t i = 0; i < comparison.steps.size(); ++i) {
         const SeriesStep& step = comparison.steps[i];
-        text += fmt::format("  <testcase classname=\"{}\" name=\"history of {}\"",
-                            report::escapeXml(step.key.table), report::escapeXml(stepNames[i]));
-        text += step.isAlarm() ? fmt::format("><failure message=\"{}\"/></testcase>\n",
-                                             report::escapeXml(stepLine(step)))
-                               : "/>\n";
+        tests.push_back({step.key.table, "history of " + names[i],
+                         step.isAlarm() ? Outcome::Failed : Outcome::Measured, stepLine(step)});
     }
-    return text + "</testsuite>\n";
+    return std::string(report::kXmlHead) + report::junitSuite("regression", tests);
 }
 
 std::string smallerIsBetterJson(const std::vector<Difference>& differences) {

@@ -5,16 +5,12 @@
 #include <vector>
 
 #include "runner/regression/comparison.h"
-#include "runner/regression/history.h"
+#include "runner/regression/nightly_history.h"
 
 namespace gfxrepro::regression {
 
 /// One line: "2 slower, 1 faster, 40 same, 3 cannot tell".
 std::string summaryLine(const std::vector<Difference>& differences);
-
-/// Titles in their order; where several have one, with the parameters in which these differ:
-/// "sweep/mine … wall_time_ms, samples=4".
-std::vector<std::string> titlesOf(const std::vector<Difference>& differences);
 
 /// "step in zju2005/2.1 …: × 1.102 since night 18 of 30 (chance 1e-07)".
 std::string stepLine(const SeriesStep& step);

@@ -1,4 +1,4 @@
-#include "runner/regression/rank_tests.h"
+#include "runner/regression/series.h"
 
 #include <gtest/gtest.h>
 

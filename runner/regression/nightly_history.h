@@ -1,8 +1,10 @@
-// The medians of every night, and the steps in them.
+// The history of many nights: the medians of each, the steps in them, and the page that shows them.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -80,5 +82,46 @@ struct SeriesStep {
 /// The steps of all times, at familyError / (series × nightsAYear) each: of 20 series 7e-6, which
 /// nights of 13 and 13 without an overlap attain, and no 24 nights can.
 std::vector<SeriesStep> findSteps(const SeriesMap& history, const StepRules& rules = {});
+
+/// A change of a series: of a time its level, of another value the value.
+struct SeriesChange {
+    std::size_t night = 0;   // of the machine's: the first with the new one
+    std::size_t before = 0;  // the series' last night before
+    double ratio = 1.0;      // after / before
+    double chance = 0.0;     // of a step: of one as clear without a change; 0 of a value
+};
+
+/// A series of one machine, beside its nights.
+struct SeriesHistory {
+    SeriesKey key;
+    std::vector<std::size_t> nights;  // that have a value, ascending
+    Series values;                    // beside them
+    std::vector<SeriesChange> changes;
+};
+
+/// What one machine measured. Nights are in the order of their time.
+struct MachineHistory {
+    std::string machine;
+    struct NightOf {
+        std::string time, commit;
+    };
+    std::vector<NightOf> nights;
+    std::vector<SeriesHistory> series;  // in the order of their keys
+};
+
+/// The rows by machine, with every change: steps of times as findAllSteps() has them at the
+/// nightly's significance, changes of other values as findChanges(). Rows may come from several
+/// files; of two of one night and series the last counts.
+std::vector<MachineHistory> historiesOf(std::span<const HistoryRow> rows);
+
+/// One file without scripts: of each machine its changes with the commits between which they lie, a
+/// curve for each time and for each value that changed, and its nights. Throws Error.
+void writeHistoryPage(const std::filesystem::path& file, const std::string& title,
+                      std::span<const MachineHistory> histories);
+
+/// `history` (a row a number) and `changes` (a row a change), with the columns of the CSV file;
+/// `table` and `commit`, which are words of SQL, are called `experiment` and `commit_id`.
+void writeHistorySqlite(const std::filesystem::path& file,
+                        std::span<const MachineHistory> histories);
 
 }  // namespace gfxrepro::regression

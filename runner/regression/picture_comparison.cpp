@@ -1,4 +1,4 @@
-#include "runner/regression/pictures.h"
+#include "runner/regression/picture_comparison.h"
 
 #include <fmt/format.h>
 
