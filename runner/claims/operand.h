@@ -18,7 +18,7 @@ namespace gfxrepro::claims {
 struct Sampled {
     double point = 0.0;
     std::map<int, double> rounds;
-    bool areDraws = false;  // they are of shares that were counted once (share_draws.h)
+    bool areDraws = false;  // they are of shares that were counted once (tables::shareDraws)
 
     double at(int round) const { return rounds.empty() ? point : rounds.at(round); }
 };

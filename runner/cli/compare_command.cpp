@@ -17,7 +17,6 @@
 #include "runner/regression/comparison.h"
 #include "runner/regression/nightly_history.h"
 #include "runner/regression/picture_comparison.h"
-#include "runner/regression/summary.h"
 #include "runner/run/child_process.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run.h"

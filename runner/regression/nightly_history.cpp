@@ -204,6 +204,13 @@ namespace {
 
 using NightOf = MachineHistory::NightOf;
 
+constexpr std::string_view kExplanation =
+    "One point a night: the median over the processes of that night; its commit is the point's "
+    "title. A dashed line is the median of a level. A time has a step where the levels before and "
+    "after differ by 5 % or more and the exact chance of so clear a difference, were there none, "
+    "is within what the nightly may take: one false alarm in twenty years over all series of the "
+    "machine. Other values are marked where they are another than the night before.";
+
 /// The nights of a machine by time and commit, in order, with their place.
 using Places = std::map<std::pair<std::string, std::string>, std::size_t>;
 
@@ -334,8 +341,7 @@ tables::FigureCurve curveOf(const MachineHistory& history, const SeriesHistory& 
         const bool isLast = level == series.changes.size();
         const std::size_t end =
             isLast ? series.nights.size() : placeOf(series.changes[level].night, series);
-        const std::span<const double> values = std::span(series.values).subspan(begin, end - begin);
-        const double median = medianOf(values);
+        const double median = medianOf(std::span(series.values).subspan(begin, end - begin));
         curve.reference.push_back(pointAt(series.nights[begin], median));
         curve.reference.push_back(pointAt(series.nights[end - 1], median));
         curve.reference.push_back(pointAt(series.nights[end - 1], std::nullopt));
@@ -419,21 +425,8 @@ std::vector<MachineHistory> historiesOf(std::span<const HistoryRow> rows) {
 
 void writeHistoryPage(const std::filesystem::path& file, const std::string& title,
                       std::span<const MachineHistory> histories) {
-    std::string html =
-        report::headOfFile(title) +
-        fmt::format(
-            "<main>\n<h1>{}</h1>\n"
-            "<p>One point a night: the median over the processes of that night; its commit is the "
-            "point's title. A line is the median of a level. A time has a step where the levels "
-            "before "
-            "and after differ by 5 % or more and the exact chance of so clear a difference, were "
-            "there "
-            "none, is within what the nightly may take: one false alarm in twenty years over all "
-            "series "
-            "of the machine. Other values are marked where they are another than the night "
-            "before.</p>"
-            "\n",
-            escapeXml(title));
+    std::string html = report::headOfFile(title) + fmt::format("<main>\n<h1>{}</h1>\n<p>{}</p>\n",
+                                                               escapeXml(title), kExplanation);
     for (std::size_t i = 0; i < histories.size(); ++i) html += machineHtml(histories[i], i);
     writeFileAtomic(file, html + "</main>\n</body>\n</html>\n");
 }

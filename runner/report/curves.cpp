@@ -14,12 +14,14 @@
 #include "runner/config/reference_slope.h"
 #include "runner/report/markup.h"
 #include "runner/report/svg.h"
-#include "runner/tables/default_layout.h"
 #include "runner/tables/figure.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::report {
 
 namespace fs = std::filesystem;
+
+// A figure.
 
 namespace {
 
@@ -47,6 +49,7 @@ constexpr double kGap = 18.0;   // between entries, panels
 constexpr double kSample = 30.0;
 constexpr double kMeasured = 3.2, kPrinted = 4.5, kSmallPoint = 2.4;  // sizes of markers
 constexpr std::string_view kReference = "stroke-dasharray=\"6 4\" stroke-width=\"1.2\"";
+constexpr std::string_view kFaint = "stroke-opacity=\".4\"";
 constexpr std::string_view kHollow = "fill=\"none\" stroke-width=\"1.4\"";
 
 const CurveStyle& styleOf(std::size_t curve) {
@@ -274,7 +277,7 @@ class FigureDrawing {
         };
         const std::string_view colour =
             figure_.curveNames.size() > 1 ? style.colour : "currentColor";
-        svg_ += group(colour, path(curve.reference, kReference));
+        const std::string reference = group(colour, path(curve.reference, kReference));
         std::string bars, markers;
         const auto addPoint = [&](const tables::FigurePoint& point, double size,
                                   std::string_view attributes, std::string_view what) {
@@ -298,7 +301,9 @@ class FigureDrawing {
         for (const auto& point : curve.points)
             addPoint(point, isOverNames() ? kSmallPoint : kMeasured, "stroke=\"none\"", "");
         for (const auto& point : curve.printed) addPoint(point, kPrinted, kHollow, ", printed");
-        svg_ += group(style.colour, path(curve.points, "stroke-width=\"1.8\"") + bars + markers);
+        const std::string_view line = isOverNames() ? kFaint : "stroke-width=\"1.8\"";
+        const std::string drawn = group(style.colour, path(curve.points, line) + bars + markers);
+        svg_ += isOverNames() ? drawn + reference : reference + drawn;
     }
 
     const tables::Figure& figure_;
@@ -312,6 +317,8 @@ class FigureDrawing {
 std::string figureSvg(const tables::Figure& figure, const std::string& title, double width) {
     return FigureDrawing(figure, width).draw(title);
 }
+
+// The curves of the tables of a run.
 
 namespace {
 

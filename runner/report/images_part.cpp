@@ -1,5 +1,5 @@
 // The pictures of a page, which lie beside each other as the rows and columns of its table do.
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 #include <algorithm>
 #include <cstddef>
 #include <map>
@@ -312,7 +312,7 @@ class Pictures {
             missing_ += fmt::format(
                 "<p class=\"soft small\">None of these cases saved the picture '{}', which `shows` "
                 "names; they saved {}.</p>\n",
-                escapeXml(name), escapeXml(fmt::format("{}", fmt::join(names, ", "))));
+                escapeXml(name), escapeXml(joined(std::vector(names.begin(), names.end()))));
         }
     }
 
@@ -344,7 +344,7 @@ class Pictures {
             const std::string name = tables::shownName(shots_[i].baseName, words_);
             if (std::ranges::find(names, name) == names.end()) names.push_back(name);
         }
-        return fmt::format("{}", fmt::join(names, ", "));
+        return joined(names);
     }
 
     std::string gridHtml(const PictureGrid& grid) const {

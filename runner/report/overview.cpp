@@ -18,34 +18,32 @@ using claims::ClaimResult;
 using claims::Verdict;
 using records::Status;
 
+// What ran on what, and which pictures stand for a document.
+
 namespace {
 
-/// What the manifest says at "gl.renderer", as text; empty where it says nothing.
-std::string manifestText(const nlohmann::ordered_json& manifest, const std::string& path) {
-    const nlohmann::ordered_json* node = &manifest;
-    std::string_view rest = path;
-    while (!rest.empty()) {
-        const std::size_t dot = std::min(rest.find('.'), rest.size());
-        const std::string key(rest.substr(0, dot));
-        if (!node->is_object() || !node->contains(key)) return "";
-        node = &(*node)[key];
-        rest.remove_prefix(std::min(dot + 1, rest.size()));
-    }
-    return node->is_string() ? node->get<std::string>() : node->dump();
+using Json = nlohmann::ordered_json;
+
+/// What the manifest says at "/gl/renderer", as text; empty where it says nothing.
+std::string manifestText(const Json& manifest, const std::string& path) {
+    const Json::json_pointer place(path);
+    if (!manifest.contains(place)) return "";
+    const Json& node = manifest[place];
+    return node.is_string() ? node.get<std::string>() : node.dump();
 }
 
-std::string processorText(const nlohmann::ordered_json& manifest) {
-    const std::string cpu = manifestText(manifest, "cpu");
-    const std::string cores = manifestText(manifest, "cores");
+std::string processorText(const Json& manifest) {
+    const std::string cpu = manifestText(manifest, "/cpu");
+    const std::string cores = manifestText(manifest, "/cores");
     return cores.empty() || cores == "0" ? cpu : fmt::format("{}, {} cores", cpu, cores);
 }
 
 /// "fragment shaders 0.97 times as fast as compute shaders (1.2e+04, 1.24e+04 Gflop/s); …"; nothing
 /// of a device that was not asked, as none is that is software.
-std::string balanceText(const nlohmann::ordered_json& manifest) {
-    const nlohmann::ordered_json::json_pointer place("/gl/balance");
-    if (!manifest.is_object() || !manifest.contains(place)) return "";
-    const nlohmann::ordered_json& balance = manifest[place];
+std::string balanceText(const Json& manifest) {
+    const Json::json_pointer place("/gl/balance");
+    if (!manifest.contains(place)) return "";
+    const Json& balance = manifest[place];
     const auto number = [&](const char* key) { return balance.value(key, 0.0); };
     return fmt::format(
         "fragment shaders {:.2g} times as fast as compute shaders ({:.3g}, {:.3g} Gflop/s); "
@@ -60,7 +58,7 @@ std::string machineText(const ReportRun& run) {
     std::string text = run.context.device;
     if (const std::string cpu = processorText(run.manifest); !cpu.empty()) text += " on " + cpu;
     text += fmt::format(" · {} profile", run.context.profile);
-    const std::string started = manifestText(run.manifest, "started");
+    const std::string started = manifestText(run.manifest, "/started");
     if (!started.empty()) text += " · " + started.substr(0, started.find('T'));
     if (!run.context.commit.empty()) text += " · commit " + run.context.commit;
     return text;
@@ -78,32 +76,31 @@ std::string sizeText(const ReportRun& run) {
 }
 
 /// "7 real, 6 stand-ins, 12 generated" and each by name.
-std::string scenesHtml(const nlohmann::ordered_json& manifest) {
+std::string scenesHtml(const Json& manifest) {
     if (!manifest.is_object() || !manifest.contains("scenes")) return "";
     std::map<std::string, std::vector<std::string>> ofKind;
-    const nlohmann::ordered_json& scenes = manifest["scenes"];
+    const Json& scenes = manifest["scenes"];
     for (const auto& [name, scene] : scenes.items()) {
-        ofKind[manifestText(scene, "kind")].push_back(name);
+        ofKind[manifestText(scene, "/kind")].push_back(name);
     }
     std::string html;
     for (const auto& [kind, names] : ofKind) {
         html += fmt::format("{}{} {} <span class=\"soft\">({})</span>", html.empty() ? "" : "; ",
-                            names.size(), escapeXml(kind),
-                            escapeXml(fmt::format("{}", fmt::join(names, ", "))));
+                            names.size(), escapeXml(kind), escapeXml(joined(names)));
     }
     return html;
 }
 
 /// "povray (version 3.7, SHA-256 0123456789ab); scene.pov (SHA-256 …)".
-std::string programsHtml(const nlohmann::ordered_json& manifest) {
+std::string programsHtml(const Json& manifest) {
     if (!manifest.is_object() || !manifest.contains("programs")) return "";
     std::string html;
-    for (const nlohmann::ordered_json& program : manifest["programs"]) {
-        const std::string version = manifestText(program, "version");
+    for (const Json& program : manifest["programs"]) {
+        const std::string version = manifestText(program, "/version");
         html += fmt::format("{}{} <span class=\"soft\">({}SHA-256 {})</span>",
-                            html.empty() ? "" : "; ", escapeXml(manifestText(program, "file")),
+                            html.empty() ? "" : "; ", escapeXml(manifestText(program, "/file")),
                             version.empty() ? "" : escapeXml(version) + ", ",
-                            escapeXml(manifestText(program, "sha256").substr(0, 12)));
+                            escapeXml(manifestText(program, "/sha256").substr(0, 12)));
     }
     return html;
 }
@@ -125,38 +122,29 @@ std::string printedHtml(const Model& model) {
     return html;
 }
 
+/// A run's facts by their names, the same of each run; empty where it does not say.
+std::vector<std::pair<const char*, std::string>> factsOf(const ReportRun& run) {
+    const Json& manifest = run.manifest;
+    const auto notes = manifest.is_object() ? manifest.value("notes", std::vector<std::string>{})
+                                            : std::vector<std::string>();
+    const claims::ReportContext& context = run.context;
+    return {{"Device", escapeXml(fmt::format("{} ({})", context.device, context.deviceClass))},
+            {"OpenGL", escapeXml(manifestText(manifest, "/gl/version"))},
+            {"Balance", escapeXml(balanceText(manifest))},
+            {"Processor", escapeXml(processorText(manifest))},
+            {"Profile", escapeXml(context.profile)},
+            {"Commit", escapeXml(context.commit)},
+            {"Build", escapeXml(manifestText(manifest, "/build"))},
+            {"Started", escapeXml(manifestText(manifest, "/started"))},
+            {"Command", escapeXml(context.command)},
+            {"Scenes", scenesHtml(manifest)},
+            {"Programs", programsHtml(manifest)},
+            {"Notes", escapeXml(joined(notes, "; "))},
+            {"Folder", escapeXml(run.folder.lexically_normal().filename().string())}};
+}
+
 /// What ran on what: a line a fact, a column a run.
 std::string factsHtml(const Model& model) {
-    using Fact = std::string (*)(const ReportRun&);
-    static const std::pair<const char*, Fact> kFacts[] = {
-        {"Device",
-         [](const ReportRun& run) {
-             return escapeXml(fmt::format("{} ({})", run.context.device, run.context.deviceClass));
-         }},
-        {"OpenGL",
-         [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "gl.version")); }},
-        {"Balance", [](const ReportRun& run) { return escapeXml(balanceText(run.manifest)); }},
-        {"Processor", [](const ReportRun& run) { return escapeXml(processorText(run.manifest)); }},
-        {"Profile", [](const ReportRun& run) { return escapeXml(run.context.profile); }},
-        {"Commit", [](const ReportRun& run) { return escapeXml(run.context.commit); }},
-        {"Build",
-         [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "build")); }},
-        {"Started",
-         [](const ReportRun& run) { return escapeXml(manifestText(run.manifest, "started")); }},
-        {"Command", [](const ReportRun& run) { return escapeXml(run.context.command); }},
-        {"Scenes", [](const ReportRun& run) { return scenesHtml(run.manifest); }},
-        {"Programs", [](const ReportRun& run) { return programsHtml(run.manifest); }},
-        {"Notes",
-         [](const ReportRun& run) {
-             if (!run.manifest.is_object()) return std::string();
-             const auto notes = run.manifest.value("notes", std::vector<std::string>{});
-             return escapeXml(fmt::format("{}", fmt::join(notes, "; ")));
-         }},
-        {"Folder",
-         [](const ReportRun& run) {
-             return escapeXml(run.folder.lexically_normal().filename().string());
-         }},
-    };
     std::string html = "<div class=\"scroll\"><table class=\"facts\">\n";
     if (model.isComparison()) {
         html += "<thead><tr><th></th>";
@@ -166,15 +154,21 @@ std::string factsHtml(const Model& model) {
         html += "</tr></thead>\n";
     }
     html += "<tbody>\n";
-    for (const auto& [name, fact] : kFacts) {
-        std::string cells;
-        bool isSaid = false;
-        for (const ReportRun& run : model.runs) {
-            const std::string text = fact(run);
-            isSaid |= !text.empty();
-            cells += fmt::format("<td>{}</td>", text);
+    std::vector<std::string> lines;
+    std::vector<bool> areSaid;
+    for (const ReportRun& run : model.runs) {
+        const auto facts = factsOf(run);
+        lines.resize(facts.size());
+        areSaid.resize(facts.size());
+        for (std::size_t i = 0; i < facts.size(); ++i) {
+            if (lines[i].empty())
+                lines[i] = fmt::format("<th scope=\"row\">{}</th>", facts[i].first);
+            lines[i] += fmt::format("<td>{}</td>", facts[i].second);
+            if (!facts[i].second.empty()) areSaid[i] = true;
         }
-        if (isSaid) html += fmt::format("<tr><th scope=\"row\">{}</th>{}</tr>\n", name, cells);
+    }
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (areSaid[i]) html += fmt::format("<tr>{}</tr>\n", lines[i]);
     }
     return html + "</tbody></table></div>\n";
 }
@@ -234,8 +228,7 @@ void takeLeastAlike(const ShotDifference& difference, std::vector<Highlight>& le
     left.erase(best);
 }
 
-}  // namespace
-
+/// The mean difference of their PNGs' values below the run's folder; 1 where the sizes differ.
 double shotDifference(const std::filesystem::path& runFolder, const Shot& a, const Shot& b) {
     const image::Image16 first = image::readPng16(runFolder / a.png);
     const image::Image16 second = image::readPng16(runFolder / b.png);
@@ -249,6 +242,8 @@ double shotDifference(const std::filesystem::path& runFolder, const Shot& a, con
     }
     return sum / (65535.0 * static_cast<double>(std::max<std::size_t>(first.values().size(), 1)));
 }
+
+}  // namespace
 
 std::vector<Highlight> highlightsOf(const std::vector<const Page*>& pages,
                                     const ShotDifference& difference) {
@@ -291,6 +286,8 @@ std::vector<Highlight> highlightsOf(const std::vector<const Page*>& pages,
 
 using claims::ClaimResult;
 using claims::Verdict;
+// What reproduced and what did not, and every claim.
+
 namespace {
 
 constexpr std::array kVerdicts = {Verdict::Holds, Verdict::Fails, Verdict::Ambiguous,

@@ -13,6 +13,8 @@ namespace gfxrepro::report {
 using claims::ClaimResult;
 using claims::Verdict;
 
+// Claims.
+
 namespace {
 
 /// What one sees of a verdict without its colour, and what the word means.
@@ -207,6 +209,8 @@ std::string filtersHtml(const Model& model) {
     }
     return html + "<output></output>\n</form>\n";
 }
+
+// The page.
 
 namespace {
 

@@ -106,9 +106,6 @@ struct Highlight {
 /// How much two pictures of a run differ, from 0 to 1.
 using ShotDifference = std::function<double(std::size_t run, const Shot& a, const Shot& b)>;
 
-/// The mean difference of their PNGs' values below the run's folder; 1 where the sizes differ.
-double shotDifference(const std::filesystem::path& runFolder, const Shot& a, const Shot& b);
-
 /// How many stand for a document.
 inline constexpr std::size_t kHighlights = 6;
 

@@ -18,6 +18,8 @@ namespace gfxrepro::report {
 
 namespace fs = std::filesystem;
 
+// What the pages show.
+
 namespace {
 
 /// Beyond this the images stay files of their own: browsers open larger pages badly.
@@ -199,6 +201,8 @@ Model buildModel(std::span<const ReportRun> runs, const fs::path& file,
     }
     return model;
 }
+
+// The file.
 
 namespace {
 

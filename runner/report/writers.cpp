@@ -19,6 +19,8 @@ namespace gfxrepro::report {
 
 namespace fs = std::filesystem;
 
+// CSV and Markdown.
+
 namespace {
 
 /// The statistics of a column, of all its rows, in the order of their formats.
@@ -256,6 +258,8 @@ void writeClaims(const fs::path& runDir, const std::vector<records::CaseEnd>& ca
     writeFileAtomic(runDir / "junit.xml", junitXml(cases, results));
 }
 
+// LaTeX.
+
 namespace {
 
 /// TeX's own names hold letters only; \csname takes the keys as they are. A key that is not there
@@ -329,17 +333,16 @@ class LatexWriter {
         writeColumns();
         for (std::size_t row = 0; row < table_.rows.size(); ++row) writeRow(row);
         text_ += "\\bottomrule\n\\end{tabular}\n";
-        writeParameters();
+        if (!parameters_.empty()) addNote(cite(table_.id));
         if (table_.hasCalibrated()) {
-            text_ += fmt::format("\\par{{\\footnotesize {} {}.\\par}}\n", kMark,
-                                 tables::kCalibratedLegend);
+            addNote(fmt::format("{} {}.", kMark, tables::kCalibratedLegend));
         }
         if (const auto clock = tables::movedClock(table_)) {
-            text_ += fmt::format("\\par{{\\footnotesize {} {}.\\par}}\n", kClockMark,
-                                 escapeLatex(tables::movedClockLegend(*clock)));
+            addNote(
+                fmt::format("{} {}.", kClockMark, escapeLatex(tables::movedClockLegend(*clock))));
         }
         for (const std::string& note : runNotes_) {
-            text_ += fmt::format("\\par{{\\footnotesize Note: {}.\\par}}\n", escapeLatex(note));
+            addNote(fmt::format("Note: {}.", escapeLatex(note)));
         }
         return std::move(text_);
     }
@@ -451,9 +454,8 @@ class LatexWriter {
     }
 
     /// Below the table, in its own paragraph.
-    void writeParameters() {
-        if (parameters_.empty()) return;
-        text_ += fmt::format("\\par{{\\footnotesize {}\\par}}\n", cite(table_.id));
+    void addNote(const std::string& latex) {
+        text_ += fmt::format("\\par{{\\footnotesize {}\\par}}\n", latex);
     }
 
     const tables::Table& table_;
@@ -482,6 +484,8 @@ std::string latexKeyPart(const std::string& label) {
 std::string tableLatex(const tables::Table& table, const std::vector<std::string>& runNotes) {
     return LatexWriter(table, runNotes).write();
 }
+
+// JUnit.
 
 namespace {
 

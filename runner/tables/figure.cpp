@@ -13,6 +13,8 @@
 
 namespace gfxrepro::tables {
 
+// What a table and a plot come to.
+
 namespace {
 
 /// What all names begin with, up to a blank: "intensity mean ".
@@ -348,6 +350,8 @@ std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table) {
 Figure makeFigure(const config::PlotSpec& plot, const Table& table) {
     return FigureMaker(plot, table).make();
 }
+
+// A line of an expected slope.
 
 namespace {
 

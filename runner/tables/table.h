@@ -89,7 +89,8 @@ Table transposed(const Table& table, std::size_t rowAxis);
 /// any record stay, as `missing`. A cell takes the records that the selections of its row, column
 /// and `cell` choose; summarize() (cell.h) makes one number and its bounds of them.
 ///
-/// An experiment of one's own without a layout gets the default one (default_layout.h).
+/// An experiment of one's own without a layout gets a default one: a row a point of its sweep, a
+/// column a time or metric.
 ///
 /// Of an experiment without a technique the table is what was printed: the first column for the
 /// rows, no cell planned.
@@ -98,6 +99,10 @@ Table transposed(const Table& table, std::size_t rowAxis);
 /// Error with the layout's place for an unknown statistic or axis.
 Table buildTable(const config::Experiment& experiment, std::span<const config::Case> planned,
                  const std::vector<records::Record>& records);
+
+/// The plots of a table that nobody laid out: its times, and the first of its metrics that is
+/// better one way, over the axis of numbers that has most of them. None without such an axis.
+std::vector<config::PlotSpec> defaultPlots(const Table& table);
 
 /// Sentences below a table that its records do not tell: of calibrations that read its printed
 /// cells, of the machine while it was timed. By table.

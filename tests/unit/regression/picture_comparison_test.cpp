@@ -10,7 +10,7 @@
 #include "engine/image/png_io.h"
 #include "engine/image/srgb.h"
 #include "runner/records/images.h"
-#include "runner/regression/summary.h"
+#include "runner/regression/comparison.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::regression {

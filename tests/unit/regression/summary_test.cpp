@@ -1,4 +1,4 @@
-#include "runner/regression/summary.h"
+#include "runner/regression/comparison.h"
 
 #include <gtest/gtest.h>
 

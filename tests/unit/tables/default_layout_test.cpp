@@ -1,5 +1,5 @@
 // The table and the curves of who laid out none.
-#include "runner/tables/default_layout.h"
+#include "runner/tables/table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
