@@ -22,8 +22,8 @@
 #include "runner/run/plan.h"
 #include "runner/run/run_directory.h"
 #include "runner/studies/sensitivity.h"
-#include "runner/tables/fit.h"
-#include "runner/tables/moved_clocks.h"
+#include "runner/tables/calibration.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::conclusion {
 

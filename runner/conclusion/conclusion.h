@@ -10,7 +10,7 @@
 #include "runner/report/report.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run.h"
-#include "runner/tables/printed_parameters.h"
+#include "runner/tables/printed.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::conclusion {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/core/atomic_file.h"
 #include "engine/core/files.h"
+#include "engine/core/output_files.h"
 #include "runner/conclusion/conclusion.h"
 #include "runner/records/csv.h"
 #include "runner/run/manifest.h"

@@ -119,9 +119,4 @@ std::vector<MachineHistory> historiesOf(std::span<const HistoryRow> rows);
 void writeHistoryPage(const std::filesystem::path& file, const std::string& title,
                       std::span<const MachineHistory> histories);
 
-/// `history` (a row a number) and `changes` (a row a change), with the columns of the CSV file;
-/// `table` and `commit`, which are words of SQL, are called `experiment` and `commit_id`.
-void writeHistorySqlite(const std::filesystem::path& file,
-                        std::span<const MachineHistory> histories);
-
 }  // namespace gfxrepro::regression

@@ -11,7 +11,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/text.h"
-#include "runner/config/reference_slope.h"
+#include "runner/config/experiment.h"
 #include "runner/report/markup.h"
 #include "runner/report/svg.h"
 #include "runner/tables/figure.h"

@@ -91,15 +91,25 @@ std::string restsOnText(const ClaimResult& claim) {
     return isNone ? "" : claim.restsOn;
 }
 
+/// The place in results/findings that has the numbers, as a link where the folder is at hand.
+std::string shownByHtml(const ClaimResult& claim, const Model& model) {
+    const std::string place = "results/findings/" + claim.shownBy;
+    if (claim.shownBy.empty() || model.findings.empty()) {
+        return paragraph("shown by ", claim.shownBy.empty() ? "" : place);
+    }
+    return fmt::format("<p><span class=\"soft\">shown by </span><a href=\"{}/{}\">{}</a></p>\n",
+                       model.findings, escapeXml(claim.shownBy), escapeXml(place));
+}
+
 /// What was found in one run, below the claim's words.
-std::string detailHtml(const ClaimResult& claim, const tables::Table& table,
+std::string detailHtml(const ClaimResult& claim, const tables::Table& table, const Model& model,
                        const std::string& letter, ClaimDetail detail) {
     std::string html;
     if (detail == ClaimDetail::Full) {
         html += paragraph("measured ", claim.measured) +
                 paragraph("required ", requiredText(claim, table)) +
                 paragraph(claim.verdict == Verdict::Holds ? "noted: " : "why: ", whyText(claim)) +
-                paragraph("shown by ", claim.shownBy) + paragraph("rests on ", restsOnText(claim));
+                shownByHtml(claim, model) + paragraph("rests on ", restsOnText(claim));
     } else if (claim.verdict != Verdict::Holds && claim.verdict != Verdict::NotApplicable) {
         html += paragraph("why: ", whyText(claim));
     }
@@ -123,7 +133,7 @@ std::string claimHtml(const Page& page, const std::string& id, const Model& mode
             fmt::format("{}{}", verdictNames.empty() ? "" : " ", verdictName(claim->verdict));
         const std::string letter = model.isComparison() ? Model::letter(run) : "";
         badges += model.boldLetter(run) + verdictBadge(claim->verdict) + newsHtml(*claim) + ' ';
-        details += detailHtml(*claim, page.parts[run].table, letter, detail);
+        details += detailHtml(*claim, page.parts[run].table, model, letter, detail);
     }
     const std::string text = says.empty() ? id : says;
     const std::string code =

@@ -70,6 +70,7 @@ struct Model {
     std::vector<Page> pages;
     std::vector<GalleryPlace> places;  // beside `runs`
     std::vector<config::Document> documents;
+    std::string findings = {};  // the address of their folder from the file; empty: no links
 
     bool isComparison() const { return runs.size() > 1; }
     /// One table, on whose page the report opens.

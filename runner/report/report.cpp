@@ -199,6 +199,9 @@ Model buildModel(std::span<const ReportRun> runs, const fs::path& file,
              embedding, reducedPx});
         addRun(i, model.places.back(), options.progress, model);
     }
+    if (options.findings.empty() || options.embeds) return model;
+    const fs::path beside = fs::absolute(file).parent_path();
+    model.findings = encodedAddress(fs::relative(fs::absolute(options.findings), beside));
     return model;
 }
 

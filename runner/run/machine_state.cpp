@@ -9,7 +9,7 @@
 
 #include "engine/core/text.h"
 #include "runner/run/process_memory.h"
-#include "runner/tables/moved_clocks.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::run {
 

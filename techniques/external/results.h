@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/image/image.h"
-#include "runner/config/program.h"
+#include "runner/config/external_program.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::external {
