@@ -11,7 +11,7 @@
 #include "runner/conclusion/artifact.h"
 #include "runner/conclusion/import_run.h"
 #include "runner/conclusion/tidy.h"
-#include "runner/regression/history_page.h"
+#include "runner/regression/nightly_history.h"
 
 namespace gfxrepro::cli {
 
