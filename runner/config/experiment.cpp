@@ -379,113 +379,132 @@ std::string Experiment::label() const {
     return std::string(identity->label) + " " + number;
 }
 
-SchemaFile experimentSchema() {
+namespace {
+
+SchemaSection identity() {
     using namespace types;
+    return {
+        "identity",
+        "",
+        "Exactly one key names the experiment; a file that others extend has none.",
+        {{"table", "PAPER/NUMBER", "none", "a table, as zju2005/2.1", text()},
+         {"figure", "PAPER/NUMBER", "none", "a figure", text()},
+         {"section", "PAPER/NUMBER", "none", "numbers in running text", text()},
+         {"sweep_of", "NAME", "none", "an experiment of one's own; its id is sweep/NAME", text()}},
+        false};
+}
+
+SchemaSection composition() {
+    using namespace types;
+    return {"composition",
+            "",
+            "What the file is put together from.",
+            {{"extends", "file | [files]", "[]",
+              "files laid under this one, later over earlier; in configs/, then beside this file",
+              oneOrMore(text())},
+             {"profiles", "{quick, paper}", "none", "parts laid over the file by --profile",
+              refTo("profiles")}}};
+}
+
+SchemaSection content() {
+    using namespace types;
+    return {
+        "content",
+        "",
+        "What is measured and shown.",
+        {{"title", "line", "required", "what is shown, in the paper's words", text()},
+         {"technique", "name", "none",
+          "what measures; `imported`: numbers that `gfxrepro import` takes; without it the file is "
+          "only `printed`",
+          text()},
+         {"program", "map", "none",
+          "what a technique measures that takes one: `gfxrepro list techniques`", refTo("program")},
+         {"scene", "reference", "none", "a catalogued name, or a file beside this one", text()},
+         {"scene_params", "{name: value}", "{}",
+          "of the generated scenes, laid over the catalogue's: `gfxrepro describe GENERATOR`; of a "
+          "height map beside this file: spacing_m, height_scale_m, no_data",
+          mapOf(anything())},
+         {"scene_instead", "{scene: scene}", "{}",
+          "takes the place of a scene, whose rows it fills: another catalogued one, or NAME@SEED",
+          mapOf(text())},
+         {"params", "{name: value}", "{}", "of the technique: `gfxrepro describe TECHNIQUE`",
+          mapOf(anything())},
+         {"params_by_scene", "{scene: {name: value}}", "{}",
+          "laid over `params` in the cases of a scene, whatever its seed; a swept axis wins",
+          mapOf(mapOf(anything()))},
+         {"params_instead", "{name: value}", "{}",
+          "takes the place of a parameter's value or default in the cases that take it",
+          mapOf(anything())},
+         {"output", "map", "512 × 512", "size of the image", refTo("output")},
+         {"sweep", "{axis: values}", "{}", "axes multiply: each point is a case", refTo("sweep")},
+         {"measure", "map",
+          "once; of sweep_of without layout and lane: timed, six rounds or a minute",
+          "lane, warm-up, repeats and processes", refTo("measure")},
+         {"shows", "[name]", "those with a truth",
+          "pictures that the document shows, by the names that the technique gives them (`classes` "
+          "is also classes_0, …): the report folds the others",
+          listOf(text())},
+         {"labels", "{name: words}", "{}",
+          "what the report says for a parameter, a scene, a row or a column; a preset may have "
+          "names that a file lacks",
+          mapOf(text())},
+         {"layout", "map", "none", "what the table looks like", refTo("layout")},
+         {"printed", "map", "none", "what the paper printed; never reaches a worker",
+          refTo("printed")},
+         {"claims", "{ID: claim}", "{}", "what must follow from the numbers",
+          mapOf(refTo("claim_part"))},
+         {"plots", "[plot]", "[]", "curves of the table's numbers, with their intervals",
+          listOf(refTo("plot"))},
+         {"fit", "{column: printed cell}", "{}",
+          "columns held against printed cells of other tables, all of the method of `params`: the "
+          "best row is shown",
+          mapOf(refTo("fit"))},
+         {"assumptions", "{NAME: assumption}", "{}",
+          "what the paper left open: a parameter, `output`, `scene`, `scene_seed`, "
+          "`measure.frames`, or free text",
+          mapOf(refTo("assumption_part"))}}};
+}
+
+SchemaSection profiles() {
+    using namespace types;
+    return {"profiles",
+            "profiles.",
+            "",
+            {{"quick", "part of a config", "none", "laid over the file by --profile quick",
+              refTo("content")},
+             {"paper", "part of a config", "none", "laid over the file by --profile paper",
+              refTo("content")}}};
+}
+
+SchemaSection assumption() {
+    using namespace types;
+    return {"assumption",
+            "assumptions.NAME.",
+            "",
+            {{"value", "value", "the cases'",
+              "what is taken: of free text alone, a parameter's is filled in", anything()},
+             {"range", "[values] | [first, last] | {scene: [scenes]}", "none",
+              "what `gfxrepro sensitivity` tries instead; a parameter's as it allows", anything()},
+             {"unit", "line", "the parameter's", "of value and range: of free text alone", text()},
+             {"why", "line", "required", "why this value", text()}},
+            false};
+}
+
+}  // namespace
+
+SchemaFile experimentSchema() {
     SchemaFile file{
-        "experiment",
-        "A table, figure, section or sweep",
-        {{"identity",
-          "",
-          "Exactly one key names the experiment; a file that others extend has none.",
-          {{"table", "PAPER/NUMBER", "none", "a table, as zju2005/2.1", text()},
-           {"figure", "PAPER/NUMBER", "none", "a figure", text()},
-           {"section", "PAPER/NUMBER", "none", "numbers in running text", text()},
-           {"sweep_of", "NAME", "none", "an experiment of one's own; its id is sweep/NAME",
-            text()}},
-          false},
-         {"composition",
-          "",
-          "What the file is put together from.",
-          {{"extends", "file | [files]", "[]",
-            "files laid under this one, later over earlier; in configs/, then beside this file",
-            oneOrMore(text())},
-           {"profiles", "{quick, paper}", "none", "parts laid over the file by --profile",
-            refTo("profiles")}}},
-         {"content",
-          "",
-          "What is measured and shown.",
-          {{"title", "line", "required", "what is shown, in the paper's words", text()},
-           {"technique", "name", "none",
-            "what measures; `imported`: numbers that `gfxrepro import` takes; without it the file "
-            "is "
-            "only `printed`",
-            text()},
-           {"program", "map", "none",
-            "what a technique measures that takes one: `gfxrepro list techniques`",
-            refTo("program")},
-           {"scene", "reference", "none", "a catalogued name, or a file beside this one", text()},
-           {"scene_params", "{name: value}", "{}",
-            "of the generated scenes, laid over the catalogue's: `gfxrepro describe GENERATOR`; of "
-            "a "
-            "height map beside this file: spacing_m, height_scale_m, no_data",
-            mapOf(anything())},
-           {"scene_instead", "{scene: scene}", "{}",
-            "takes the place of a scene, whose rows it fills: another catalogued one, or NAME@SEED",
-            mapOf(text())},
-           {"params", "{name: value}", "{}", "of the technique: `gfxrepro describe TECHNIQUE`",
-            mapOf(anything())},
-           {"params_by_scene", "{scene: {name: value}}", "{}",
-            "laid over `params` in the cases of a scene, whatever its seed; a swept axis wins",
-            mapOf(mapOf(anything()))},
-           {"params_instead", "{name: value}", "{}",
-            "takes the place of a parameter's value or default in the cases that take it",
-            mapOf(anything())},
-           {"output", "map", "512 × 512", "size of the image", refTo("output")},
-           {"sweep", "{axis: values}", "{}", "axes multiply: each point is a case", refTo("sweep")},
-           {"measure", "map",
-            "once; of sweep_of without layout and lane: timed, six rounds or a minute",
-            "lane, warm-up, repeats and processes", refTo("measure")},
-           {"shows", "[name]", "those with a truth",
-            "pictures that the document shows, by the names that the technique gives them "
-            "(`classes` is also classes_0, …): the report folds the others",
-            listOf(text())},
-           {"labels", "{name: words}", "{}",
-            "what the report says for a parameter, a scene, a row or a column; a preset may have "
-            "names that a file lacks",
-            mapOf(text())},
-           {"layout", "map", "none", "what the table looks like", refTo("layout")},
-           {"printed", "map", "none", "what the paper printed; never reaches a worker",
-            refTo("printed")},
-           {"claims", "{ID: claim}", "{}", "what must follow from the numbers",
-            mapOf(refTo("claim_part"))},
-           {"plots", "[plot]", "[]", "curves of the table's numbers, with their intervals",
-            listOf(refTo("plot"))},
-           {"fit", "{column: printed cell}", "{}",
-            "columns held against printed cells of other tables, all of the method of `params`: "
-            "the "
-            "best row is shown",
-            mapOf(refTo("fit"))},
-           {"assumptions", "{NAME: assumption}", "{}",
-            "what the paper left open: a parameter, `output`, `scene`, `scene_seed`, "
-            "`measure.frames`, or free text",
-            mapOf(refTo("assumption_part"))}}}}};
+        "experiment", "A table, figure, section or sweep", {identity(), composition(), content()}};
     const auto add = [&](std::vector<SchemaSection> sections) {
         for (SchemaSection& section : sections) file.sections.push_back(std::move(section));
     };
     add(programKeys());
     add({outputKeys()});
     add(sweepKeys());
-    add({measureKeys(),
-         {"profiles",
-          "profiles.",
-          "",
-          {{"quick", "part of a config", "none", "laid over the file by --profile quick",
-            refTo("content")},
-           {"paper", "part of a config", "none", "laid over the file by --profile paper",
-            refTo("content")}}}});
+    add({measureKeys(), profiles()});
     add(layoutKeys());
     add(printedKeys());
-    add({plotKeys(),
-         {"assumption",
-          "assumptions.NAME.",
-          "",
-          {{"value", "value", "the cases'",
-            "what is taken: of free text alone, a parameter's is filled in", anything()},
-           {"range", "[values] | [first, last] | {scene: [scenes]}", "none",
-            "what `gfxrepro sensitivity` tries instead; a parameter's as it allows", anything()},
-           {"unit", "line", "the parameter's", "of value and range: of free text alone", text()},
-           {"why", "line", "required", "why this value", text()}},
-          false}});
+    add({plotKeys(), assumption()});
     add(claimSections());
     return file;
 }

@@ -447,16 +447,12 @@ std::vector<SchemaSection> programKeys() {
         {"program",
          "program.",
          "Texts may have placeholders: {NAME} of a parameter, {here} (folder of this file), {out} "
-         "(an "
-         "empty folder, in which the program runs), {scene} (the case's scene as a .glb file), "
+         "(an empty folder, in which the program runs), {scene} (the case's scene as a .glb file), "
          "{width}, {height}, {seed} (a parameter of every program that takes it), {frame} (from "
-         "0), "
-         "{frames} (how many). No shell sees them. The program says what "
-         "it "
-         "measured by lines of JSON, {\"metric\": …, \"value\": …, \"unit\": …} with \"pass\" and "
-         "\"frame\" where there are such, on the descriptor whose number is in "
-         "GFXREPRO_METRICS_FD, "
-         "or in the file that GFXREPRO_METRICS_FILE names.",
+         "0), {frames} (how many). No shell sees them. The program says what it measured by lines "
+         "of JSON, {\"metric\": …, \"value\": …, \"unit\": …} with \"pass\" and \"frame\" where "
+         "there are such, on the descriptor whose number is in GFXREPRO_METRICS_FD, or in the file "
+         "that GFXREPRO_METRICS_FILE names.",
          {{"command", "line | [arguments]", "required",
            "the program and its arguments; a line is cut at its blanks", oneOrMore(text())},
           {"params", "{name: default | parameter}", "{}", "what `params` and `sweep` may have",
@@ -478,8 +474,7 @@ std::vector<SchemaSection> programKeys() {
            choice({"one", "all"})},
           {"seeds", "case | process", "case",
            "of which {seed} is: the same in all processes of a case; or another in each, greater "
-           "by "
-           "1000, for rounds of independent random numbers",
+           "by 1000, for rounds of independent random numbers",
            choice({"case", "process"})},
           {"gpu", "boolean", "false", "whether it works on the GPU: then a run asks which that is",
            boolean()},
@@ -508,15 +503,14 @@ std::vector<SchemaSection> programKeys() {
         {"program_image",
          "program.images.NAME.",
          "With a truth its errors are recorded, under the image's name as pass: `gfxrepro "
-         "describe` "
-         "of the technique lists them. An EXR file is linear, a PNG file sRGB, as is its truth.",
+         "describe` of the technique lists them. An EXR file is linear, a PNG file sRGB, as is its "
+         "truth.",
          {{"file", "file", "required", "in {out}", text()},
           {"truth", "file | {parameter: value}", "none",
            "a file, or parameters (seed and frame, too) laid over the case's, with which the "
-           "program "
-           "makes it: once for all cases that agree on the others. With frames (2 or more) it is "
-           "made of so many seeds, from frame on, and same_mean_p says whether the case's frames "
-           "have its expectation",
+           "program makes it: once for all cases that agree on the others. With frames (2 or more) "
+           "it is made of so many seeds, from frame on, and same_mean_p says whether the case's "
+           "frames have its expectation",
            anyOf({text(), mapOf(anything())})}}}};
 }
 

@@ -320,8 +320,8 @@ std::vector<SchemaSection> layoutKeys() {
           {"cell", "format | selection", "{median:.4g}", "what every cell shows", selectionType}}},
         {"selection",
          "selection.",
-         "A selection is a metric, or a map of these; the column's part wins over the row's, "
-         "the row's over the cell's.",
+         "A selection is a metric, or a map of these; the column's part wins over the row's, the "
+         "row's over the cell's.",
          {{"metric", "name", "none", "of the technique's metrics", text()},
           {"pass", "name", "whole case", "step of the algorithm", text()},
           {"format", "text", "none", "median mean min max sum count rate in braces: {mean:.2f}",

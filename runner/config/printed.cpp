@@ -374,35 +374,34 @@ std::vector<FitTarget> fitTargets(const Experiment& experiment) {
 
 std::vector<SchemaSection> printedKeys() {
     using namespace types;
-    return {
-        {"printed",
-         "printed.",
-         "",
-         {{"hardware", "text", "\"\"", "what the paper measured on", text()},
-          {"remark", "text", "\"\"", "misprints and the like", text()},
-          {"values",
-           "CSV block",
-           "none",
-           "a header of row axes and columns, then the rows",
-           {{"type", "string"}}},
-          {"compared", "[method]", "[]",
-           "methods that the paper compares with a usual one: no fit reads their cells",
-           listOf(text())},
-          {"calibrated", "[{row axis: value, column: name}]", "[]",
-           "cells for which an input of ours was fitted, so that they come out: marked in every "
-           "form of the table. Each value may be a list; what is left out is any",
-           listOf(pairs())},
-          {"at", "{parameter: value}", "{}",
-           "what the paper measured at, where the profile paper departs from it: a parameter, "
-           "scene, output.width, output.height, measure.frames",
-           pairs()}}},
-        {"fit",
-         "fit.COLUMN.",
-         "Only the cells that are named are read, and none of another method.",
-         {{"table", "file", "required", "of the table, in configs/", text()},
-          {"row", "{row axis: value}", "required", "all row axes of that table", pairs()},
-          {"column", "name", "required", "of that table", text()}},
-         false}};
+    return {{"printed",
+             "printed.",
+             "",
+             {{"hardware", "text", "\"\"", "what the paper measured on", text()},
+              {"remark", "text", "\"\"", "misprints and the like", text()},
+              {"values",
+               "CSV block",
+               "none",
+               "a header of row axes and columns, then the rows",
+               {{"type", "string"}}},
+              {"compared", "[method]", "[]",
+               "methods that the paper compares with a usual one: no fit reads their cells",
+               listOf(text())},
+              {"calibrated", "[{row axis: value, column: name}]", "[]",
+               "cells for which an input of ours was fitted, so that they come out: marked in "
+               "every form of the table. Each value may be a list; what is left out is any",
+               listOf(pairs())},
+              {"at", "{parameter: value}", "{}",
+               "what the paper measured at, where the profile paper departs from it: a parameter, "
+               "scene, output.width, output.height, measure.frames",
+               pairs()}}},
+            {"fit",
+             "fit.COLUMN.",
+             "Only the cells that are named are read, and none of another method.",
+             {{"table", "file", "required", "of the table, in configs/", text()},
+              {"row", "{row axis: value}", "required", "all row axes of that table", pairs()},
+              {"column", "name", "required", "of that table", text()}},
+             false}};
 }
 
 }  // namespace gfxrepro::config
