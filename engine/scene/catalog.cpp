@@ -79,8 +79,8 @@ SceneSource readFileSource(const Node& node) {
 }
 
 float readPositive(const Node& node, const std::string& key) {
-    const double value = node.asDouble();
-    if (value > 0.0 && value <= 1e6) return static_cast<float>(value);
+    const auto value = static_cast<float>(node.asDouble());
+    if (value > 0.0F && value <= 1e6F) return value;
     throw Error(node.location(),
                 fmt::format("{} is {}; allowed: above 0, at most 1e6", key, node.text()));
 }

@@ -4,7 +4,7 @@
 
 #include "tests/support/support.h"
 
-namespace gfxrepro::config {
+namespace gfxrepro::scene {
 namespace {
 
 using testing::ElementsAre;
@@ -66,4 +66,4 @@ TEST(SceneReference, RefusesWhatIsNoParameter) {
 }
 
 }  // namespace
-}  // namespace gfxrepro::config
+}  // namespace gfxrepro::scene
