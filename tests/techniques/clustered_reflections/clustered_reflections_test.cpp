@@ -11,6 +11,7 @@
 #include "runner/config/experiment.h"
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
 #include "tests/techniques/clustered_reflections/room.h"
+#include "tests/techniques/reflections/traced_scenes.h"
 #include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::clustered_reflections {
