@@ -12,7 +12,7 @@ namespace gfxrepro::claims {
 namespace {
 
 /// The fewest pictures of a truth that has several; 0 where none has.
-int truthFramesOf(const config::Program& program) {
+int truthFramesOf(const config::ExternalProgram& program) {
     int fewest = 0;
     for (const config::ProgramPicture& picture : program.pictures) {
         if (picture.truthFrames < 2) continue;

@@ -217,7 +217,7 @@ void sayAbsent(const std::string& file, const std::vector<config::Case>& cases) 
     std::set<std::string> absent;
     for (const config::Case& item : cases) {
         if (item.program.isNull()) continue;
-        const config::Program program = config::readProgram(item.program);
+        const config::ExternalProgram program = config::readProgram(item.program);
         const config::Placeholders values = program.valuesOf(item.params);
         config::requireFiles(item.program, program, values);
         const auto files = config::filesOf(program, values);

@@ -204,7 +204,7 @@ PairNames pairNamesOf(const Words& tables, const Context& context) {
             techniques.insert(experiment.technique);
             const Node& node = config::programOf(experiment);
             if (node.isNull()) continue;
-            const config::Program program = config::readProgram(node);
+            const config::ExternalProgram program = config::readProgram(node);
             for (const config::ProgramParam& param : program.params) {
                 ParamInfo& info = found.params.emplace_back();
                 info.name = param.name;

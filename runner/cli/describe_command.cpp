@@ -110,7 +110,7 @@ void describeTechnique(const technique::TechniqueInfo& info) {
 
 void describeProgram(const config::Experiment& experiment,
                      const technique::TechniqueInfo& technique) {
-    const config::Program program = config::readProgram(config::programOf(experiment));
+    const config::ExternalProgram program = config::readProgram(config::programOf(experiment));
     Params params(Node::map({}), "program");
     program.declare(params);
     fmt::print("\nprogram\n");
@@ -259,7 +259,7 @@ Json jsonOf(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
             {"sources", std::move(sources)}};
 }
 
-Json jsonOf(const config::Program& program) {
+Json jsonOf(const config::ExternalProgram& program) {
     Params params(Node::map({}), "program");
     program.declare(params);
     Json files = Json::array();

@@ -120,7 +120,7 @@ std::map<fs::path, std::string> programFiles(const run::Plan& plan,
     std::map<fs::path, std::string> files;
     const Node& node = config::programOf(experiment);
     if (node.isNull()) return files;
-    const config::Program program = config::readProgram(node);
+    const config::ExternalProgram program = config::readProgram(node);
     try {
         for (const config::Case& item : plan.cases) {
             if (item.experiment != experiment.id) continue;

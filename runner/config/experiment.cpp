@@ -190,7 +190,7 @@ Node paramsByScene(const Node& document) {
 /// What a program is not told of it cannot follow.
 void requireTold(const Node& document, const Experiment& experiment) {
     if (programOf(experiment).isNull()) return;
-    const Program program = readProgram(programOf(experiment));
+    const ExternalProgram program = readProgram(programOf(experiment));
     const auto require = [&](const char* key, bool isGiven, const std::string& names, bool isTold) {
         if (!isGiven || isTold) return;
         const Node* node = document.find(key);

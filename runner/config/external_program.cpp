@@ -209,7 +209,7 @@ Better betterOf(const Node& metric, const std::string& what) {
     throwNotAllowed(*better, what + ": better", "lower, higher");
 }
 
-void readMetrics(const Node& metrics, Program& program) {
+void readMetrics(const Node& metrics, ExternalProgram& program) {
     if (!metrics.isMap()) throwNotAllowed(metrics, "program: metrics", "a map {name: metric}");
     for (const auto& [name, given] : metrics.entries()) {
         const std::string what = "program: metric '" + name + "'";
@@ -247,7 +247,7 @@ void readMetrics(const Node& metrics, Program& program) {
     }
 }
 
-void readPasses(const Node& passes, Program& program) {
+void readPasses(const Node& passes, ExternalProgram& program) {
     if (!passes.isMap()) throwNotAllowed(passes, "program: passes", "a map {name: meaning}");
     for (const auto& [name, doc] : passes.entries()) {
         requireSnakeCase(passes, name, "pass");
@@ -256,7 +256,7 @@ void readPasses(const Node& passes, Program& program) {
 }
 
 /// Several pictures of a truth are other seeds: `frame` says which.
-void readTruthFrames(const Node& truth, const std::string& what, const Program& program,
+void readTruthFrames(const Node& truth, const std::string& what, const ExternalProgram& program,
                      ProgramPicture& picture) {
     constexpr long long kMost = 1000;
     const Node& frames = *truth.find(placeholder::kFrames);
@@ -287,8 +287,8 @@ void requirePictureType(const Node& file, const std::string& what) {
     throwNotAllowed(file, what, "a name that ends in .exr or .png");
 }
 
-void readTruth(const Node& truth, const std::string& what, const Names& known, Program& program,
-               ProgramPicture& picture) {
+void readTruth(const Node& truth, const std::string& what, const Names& known,
+               ExternalProgram& program, ProgramPicture& picture) {
     if (!truth.isMap()) {
         picture.truthFile = templateOf(truth, what, known);
         return requirePictureType(truth, what);
@@ -321,7 +321,7 @@ void readTruth(const Node& truth, const std::string& what, const Names& known, P
     if (truth.find(placeholder::kFrames)) readTruthFrames(truth, what, program, picture);
 }
 
-void readPictures(const Node& pictures, const Names& known, Program& program) {
+void readPictures(const Node& pictures, const Names& known, ExternalProgram& program) {
     if (!pictures.isMap()) throwNotAllowed(pictures, "program: images", "a map {name: file}");
     for (const auto& [name, given] : pictures.entries()) {
         const std::string what = "program: image '" + name + "'";
@@ -362,7 +362,7 @@ std::string filled(std::string_view text, const Placeholders& values) {
     return result;
 }
 
-bool Program::uses(std::string_view name) const {
+bool ExternalProgram::uses(std::string_view name) const {
     const auto has = [&](const std::string& text) { return hasPlaceholder(text, name); };
     return std::ranges::any_of(command, has) ||
            std::ranges::any_of(environment, [&](const auto& one) { return has(one.second); });
@@ -374,9 +374,9 @@ const Node& programOf(const Experiment& experiment) {
     return program ? *program : kNone;
 }
 
-Program readProgram(const Node& node) {
+ExternalProgram readProgram(const Node& node) {
     requireKeys(node, "program", keysOf("program"));
-    Program program;
+    ExternalProgram program;
     const auto section = [&](const char* key, auto&& read) {
         if (const Node* found = node.find(key)) read(*found);
     };

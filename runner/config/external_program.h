@@ -71,7 +71,7 @@ struct ProgramPattern {
     std::string regex;  // ECMAScript; its first group is the number; the last match counts
 };
 
-struct Program {
+struct ExternalProgram {
     std::vector<std::string> command;  // with placeholders, never empty; no shell sees it
     std::vector<std::pair<std::string, std::string>> environment;  // likewise
     std::vector<std::string> version;  // what prints the version; may be empty
@@ -99,7 +99,7 @@ struct Program {
 const Node& programOf(const Experiment& experiment);
 /// Throws Error with file:line:column for what is wrong, for a placeholder that is none, and for a
 /// parameter that stands in no argument.
-Program readProgram(const Node& node);
+ExternalProgram readProgram(const Node& node);
 
 /// Makes `program.here` of a config absolute: the folder of the file that names the command, where
 /// it says no other.
@@ -116,12 +116,12 @@ std::filesystem::path findExecutable(const std::string& name, const std::filesys
 /// The program itself and those that it starts, looked for as a shell does; then what arguments,
 /// variables and truths name from {here} on, where it is a file, and `files`. Throws Error for one
 /// of `files` that is not there.
-std::vector<ProgramFile> filesOf(const Program& program, const Placeholders& values);
+std::vector<ProgramFile> filesOf(const ExternalProgram& program, const Placeholders& values);
 
 /// Throws Error with file:line:column for one of `files`, and for a truth, that is no file. `node`
 /// is what `program` was read from. A truth below {out}, or one of {frame}, {width} or {height}, is
 /// passed over.
-void requireFiles(const Node& node, const Program& program, const Placeholders& values);
+void requireFiles(const Node& node, const ExternalProgram& program, const Placeholders& values);
 
 /// Digests of files, remembered by size and time.
 class FileDigests {

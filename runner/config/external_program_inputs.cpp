@@ -29,7 +29,7 @@ void readChoice(const ProgramParam& param, Params& values) {
 
 }  // namespace
 
-void Program::declare(Params& values) const {
+void ExternalProgram::declare(Params& values) const {
     for (const ProgramParam& param : params) {
         const ParamSpec spec{param.doc, param.unit, param.min, param.max};
         switch (param.type) {
@@ -71,7 +71,7 @@ fs::path findExecutable(const std::string& name, const fs::path& here) {
     return {};
 }
 
-Placeholders Program::valuesOf(const Node& resolved) const {
+Placeholders ExternalProgram::valuesOf(const Node& resolved) const {
     Placeholders values = {{placeholder::kHere, here}};
     for (const ProgramParam& param : params) {
         if (const Node* value = resolved.find(param.name)) values[param.name] = value->text();
@@ -100,7 +100,7 @@ void setProgramFolder(Node& document) {
     program->set("here", Node::scalar(here.string(), command->location(), true));
 }
 
-std::vector<ProgramFile> filesOf(const Program& program, const Placeholders& values) {
+std::vector<ProgramFile> filesOf(const ExternalProgram& program, const Placeholders& values) {
     const std::string name = filled(program.command.front(), values);
     const fs::path here = program.here;
     std::vector<ProgramFile> files = {{name, findExecutable(name, here)}};
@@ -133,7 +133,7 @@ std::vector<ProgramFile> filesOf(const Program& program, const Placeholders& val
     return files;
 }
 
-void requireFiles(const Node& node, const Program& program, const Placeholders& values) {
+void requireFiles(const Node& node, const ExternalProgram& program, const Placeholders& values) {
     const auto require = [](const Node& named, const std::string& what, const fs::path& path) {
         std::error_code isAbsent;
         if (fs::is_regular_file(path, isAbsent)) return;

@@ -95,7 +95,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
 
 std::string programKeyOf(const Case& item, config::FileDigests& digests) {
     if (item.program.isNull()) return "";
-    const config::Program program = config::readProgram(item.program);
+    const config::ExternalProgram program = config::readProgram(item.program);
     return config::programKey(config::filesOf(program, program.valuesOf(item.params)), digests);
 }
 

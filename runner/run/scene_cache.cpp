@@ -86,7 +86,7 @@ std::string firstLine(const std::string& output) {
 }  // namespace
 
 std::vector<ProgramUse> ProgramCache::require(const Case& item, const Node& params) {
-    const config::Program program = config::readProgram(item.program);
+    const config::ExternalProgram program = config::readProgram(item.program);
     const std::vector<config::ProgramFile> files =
         config::filesOf(program, program.valuesOf(params));
     const std::string key = config::programKey(files, digests_);
@@ -111,7 +111,8 @@ std::vector<ProgramUse> ProgramCache::require(const Case& item, const Node& para
     return uses;
 }
 
-std::string ProgramCache::versionOf(const config::Program& program, const std::string& sha256) {
+std::string ProgramCache::versionOf(const config::ExternalProgram& program,
+                                    const std::string& sha256) {
     std::vector<std::string> command;
     for (const std::string& argument : program.version) {
         command.push_back(config::filled(argument, {{config::placeholder::kHere, program.here}}));

@@ -54,7 +54,7 @@ class ProgramCache {
     std::vector<ProgramUse> require(const Case& item, const Node& params);
 
   private:
-    std::string versionOf(const config::Program& program, const std::string& sha256);
+    std::string versionOf(const config::ExternalProgram& program, const std::string& sha256);
 
     config::FileDigests digests_;
     std::map<std::string, std::string> versions_;  // by the program's hash and what asks it

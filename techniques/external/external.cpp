@@ -319,7 +319,7 @@ class External : public technique::Technique {
         return sha256(content).substr(0, 16);
     }
 
-    config::Program program_;
+    config::ExternalProgram program_;
     config::Placeholders values_;
     fs::path scratch_;
     std::optional<Folder> folder_;

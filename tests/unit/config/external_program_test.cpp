@@ -12,7 +12,7 @@ using test::errorText;
 using test::TemporaryFolder;
 using testing::ElementsAre;
 
-Program programOf(const std::string& yaml) {
+ExternalProgram programOf(const std::string& yaml) {
     return readProgram(parseYaml(yaml, "c.yaml"));
 }
 
@@ -20,7 +20,7 @@ std::string errorOf(const std::string& yaml) {
     return errorText([&] { programOf(yaml); });
 }
 
-TEST(Program, FillsPlaceholders) {
+TEST(ExternalProgram, FillsPlaceholders) {
     const Placeholders values = {{"n", "4"}, {"out", "/o"}};
     EXPECT_EQ(filled("-n{n} {out}/x.png", values), "-n4 /o/x.png");
     EXPECT_EQ(filled("{{n}} {{{n}}}", values), "{n} {4}");
@@ -29,7 +29,7 @@ TEST(Program, FillsPlaceholders) {
     EXPECT_EQ(filled("", values), "");
 }
 
-TEST(Program, CommandIsALineOrAList) {
+TEST(ExternalProgram, CommandIsALineOrAList) {
     EXPECT_THAT(programOf("command: tracer  -o {out}/x.png").command,
                 ElementsAre("tracer", "-o", "{out}/x.png"));
     EXPECT_THAT(programOf("command: [tracer, \"a b\"]").command, ElementsAre("tracer", "a b"));
@@ -41,7 +41,7 @@ TEST(Program, CommandIsALineOrAList) {
               "brace needs quotes");
 }
 
-TEST(Program, RefusesWhatStandsForNothing) {
+TEST(ExternalProgram, RefusesWhatStandsForNothing) {
     EXPECT_EQ(errorOf("command: t {widt}"),
               "c.yaml:1:10: program: command: '{widt}' stands for nothing; did you mean 'width'?; "
               "braces as such are {{ and }}");
@@ -58,7 +58,7 @@ TEST(Program, RefusesWhatStandsForNothing) {
               "here, out, scene, width, height, seed, frame, frames; braces as such are {{ and }}");
 }
 
-TEST(Program, MayGiveAllFramesInOneRun) {
+TEST(ExternalProgram, MayGiveAllFramesInOneRun) {
     EXPECT_FALSE(programOf("command: t {frame}").givesAllFrames);
     EXPECT_FALSE(programOf("command: t {frame}\nframes: one").givesAllFrames);
     EXPECT_TRUE(programOf("command: t {frames}\nframes: all").givesAllFrames);
@@ -83,8 +83,8 @@ TEST(Program, MayGiveAllFramesInOneRun) {
               8);
 }
 
-TEST(Program, ThatTakesASeedHasItAsAParameter) {
-    const Program program = programOf("command: t {seed}\nseeds: process");
+TEST(ExternalProgram, ThatTakesASeedHasItAsAParameter) {
+    const ExternalProgram program = programOf("command: t {seed}\nseeds: process");
     EXPECT_TRUE(program.seedsByProcess);
     Params params(parseYaml("{seed: 7}", "p"), "technique 't'");
     program.declare(params);
@@ -109,8 +109,8 @@ TEST(Program, ThatTakesASeedHasItAsAParameter) {
               "n");
 }
 
-TEST(Program, TypesAreThoseOfTheDefaults) {
-    const Program program = programOf(
+TEST(ExternalProgram, TypesAreThoseOfTheDefaults) {
+    const ExternalProgram program = programOf(
         "command: t {a} {b} {c} {d} {e} {f}\n"
         "params:\n"
         "  a: 4\n"
@@ -132,13 +132,13 @@ TEST(Program, TypesAreThoseOfTheDefaults) {
     EXPECT_EQ(filled("{a} {b} {c} {d} {e} {f}", values), "4 2.5 true some text y 0.5");
 }
 
-TEST(Program, RefusesValuesThatAParameterDoesNotTake) {
-    const Program choice =
+TEST(ExternalProgram, RefusesValuesThatAParameterDoesNotTake) {
+    const ExternalProgram choice =
         programOf("command: t {m}\nparams: {m: {default: x, choices: [x, y], doc: how}}");
     Params wrong(parseYaml("{m: z}", "p"), "technique 't'");
     EXPECT_EQ(errorText([&] { choice.declare(wrong); }), "p:1:5: m is 'z'; allowed: x | y");
     EXPECT_EQ(wrong.declared()[0].doc, "how (x | y)");
-    const Program program =
+    const ExternalProgram program =
         programOf("command: t {n}\nparams: {n: {default: 4, min: 1, max: 64, unit: sample}}");
     Params params(parseYaml("{n: 128}", "p"), "technique 't'");
     EXPECT_EQ(errorText([&] { program.declare(params); }),
@@ -165,8 +165,8 @@ TEST(Program, RefusesValuesThatAParameterDoesNotTake) {
               "first");
 }
 
-TEST(Program, DeclaresWhatItSays) {
-    const Program program = programOf(
+TEST(ExternalProgram, DeclaresWhatItSays) {
+    const ExternalProgram program = programOf(
         "command: t\n"
         "metrics:\n"
         "  rays: ray\n"
@@ -207,9 +207,9 @@ TEST(Program, DeclaresWhatItSays) {
               "c.yaml:2:32: program: metric 'a': better is more; allowed: lower, higher");
 }
 
-TEST(Program, ATruthMayBeMadeByOtherParameters) {
+TEST(ExternalProgram, ATruthMayBeMadeByOtherParameters) {
     const std::string head = "command: t {n} {frame}\nparams: {n: {default: 4, max: 64}}\n";
-    const Program program =
+    const ExternalProgram program =
         programOf(head + "images: {result: {file: r.exr, truth: {n: 64, frame: 9}}}");
     EXPECT_EQ(program.pictures.at(0).truthParams.toFlowText(), "{n: 64, frame: 9}");
     EXPECT_EQ(errorOf(head + "images: {result: {file: r.exr, truth: {n: 65}}}"),
@@ -222,9 +222,9 @@ TEST(Program, ATruthMayBeMadeByOtherParameters) {
               "no {frame}");
 }
 
-TEST(Program, ATruthMayBeOfSeveralSeeds) {
+TEST(ExternalProgram, ATruthMayBeOfSeveralSeeds) {
     const std::string head = "command: t {frame}\nimages: {result: {file: r.exr, truth: ";
-    const Program program = programOf(head + "{frame: 9, frames: 6}}}");
+    const ExternalProgram program = programOf(head + "{frame: 9, frames: 6}}}");
     EXPECT_EQ(program.pictures.at(0).truthFrames, 6);
     EXPECT_EQ(program.pictures.at(0).truthParams.toFlowText(), "{frame: 9}");
     EXPECT_EQ(programOf(head + "{frame: 9}}}").pictures.at(0).truthFrames, 1);
@@ -241,7 +241,7 @@ TEST(Program, ATruthMayBeOfSeveralSeeds) {
               "c.yaml:2:58: " + alike);
 }
 
-TEST(Program, ItsKeyIsOfItsFiles) {
+TEST(ExternalProgram, ItsKeyIsOfItsFiles) {
     const TemporaryFolder folder;
     const auto script = folder.write("run.sh", "#!/bin/sh\n");
     std::filesystem::permissions(script, std::filesystem::perms::owner_all);
@@ -249,7 +249,7 @@ TEST(Program, ItsKeyIsOfItsFiles) {
     folder.write("more.txt", "two");
     folder.write("truth.png", "three");
     const std::string here = folder.path().string();
-    const Program program = programOf(
+    const ExternalProgram program = programOf(
         "command: \"{here}/run.sh +I{here}/{scene_name}.txt\"\n"
         "params: {scene_name: scene}\n"
         "images: {result: {file: r.png, truth: \"{here}/truth.png\"}}\n"
@@ -274,22 +274,22 @@ TEST(Program, ItsKeyIsOfItsFiles) {
     EXPECT_NE(programKey(filesNow("scene"), digests), key);
 }
 
-TEST(Program, OneThatIsNotHereHasNoKey) {
-    const Program absent = programOf("command: no-such-program-anywhere");
+TEST(ExternalProgram, OneThatIsNotHereHasNoKey) {
+    const ExternalProgram absent = programOf("command: no-such-program-anywhere");
     FileDigests digests;
     EXPECT_EQ(programKey(filesOf(absent, {}), digests), "");
     EXPECT_EQ(absentOf(filesOf(absent, {}))->name, "no-such-program-anywhere");
-    const Program starter = programOf("command: sh\nstarts: [no-such-program-anywhere]");
+    const ExternalProgram starter = programOf("command: sh\nstarts: [no-such-program-anywhere]");
     EXPECT_EQ(absentOf(filesOf(starter, {}))->name, "no-such-program-anywhere");
-    const Program other = programOf("command: sh\nfiles: [no-such-file]\nhere: /usr");
+    const ExternalProgram other = programOf("command: sh\nfiles: [no-such-file]\nhere: /usr");
     EXPECT_EQ(errorText([&] { filesOf(other, {}); }),
               "program: files: there is no file /usr/no-such-file");
 }
 
-TEST(Program, NamesFilesThatAreNotThereByTheirPlace) {
+TEST(ExternalProgram, NamesFilesThatAreNotThereByTheirPlace) {
     const auto missingIn = [](const std::string& yaml) {
         const Node node = parseYaml(yaml, "c.yaml");
-        const Program program = readProgram(node);
+        const ExternalProgram program = readProgram(node);
         return errorText([&] { requireFiles(node, program, {{"here", "/usr"}, {"n", "gone"}}); });
     };
     EXPECT_EQ(missingIn("command: sh\nfiles: [bin/sh, no-such-file]\nhere: /usr"),
@@ -303,7 +303,7 @@ TEST(Program, NamesFilesThatAreNotThereByTheirPlace) {
     }
 }
 
-TEST(Program, RefusesWhatItCouldNotTake) {
+TEST(ExternalProgram, RefusesWhatItCouldNotTake) {
     EXPECT_EQ(errorOf("command: t -o {out"),
               "c.yaml:1:10: program: command: a brace of 't -o {out' is not closed; braces as such "
               "are {{ and }}");
