@@ -36,7 +36,9 @@ namespace gfxrepro::cli {
 
 namespace fs = std::filesystem;
 
-/// Writes to standard error. Quiet: failures only.
+namespace {
+
+/// Shows a run as it goes, on standard error. Quiet: failures only.
 class Progress : public run::Observer {
   public:
     /// `unitTimesS`: predictions by case, for the time left; empty when nothing is known.
@@ -69,8 +71,6 @@ class Progress : public run::Observer {
     std::string title_;
 };
 
-namespace {
-
 constexpr int kBarWidth = 24;
 constexpr std::chrono::milliseconds kDrawInterval{100};
 
@@ -91,8 +91,6 @@ std::size_t terminalWidth() {
     if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 80;
     return size.ws_col;
 }
-
-}  // namespace
 
 Progress::Progress(const std::vector<run::Unit>& units,
                    const std::map<const config::Case*, double>& unitTimesS, int jobs, bool isQuiet)
@@ -154,8 +152,6 @@ void Progress::tick(std::string_view) {
 void Progress::clear() {
     if (!isQuiet_ && isTerminal_) tell("\r\033[K");
 }
-
-namespace {
 
 int jobsOf(const RunOptions& options) {
     if (options.jobs > 0) return options.jobs;

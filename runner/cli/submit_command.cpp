@@ -31,6 +31,10 @@ namespace fs = std::filesystem;
 using cluster::Submission;
 using run::Json;
 
+namespace {
+
+constexpr std::chrono::seconds kSlurmLimit{120};  // for an answer
+
 /// What sbatch said: a job's number, or why it refused it.
 struct SbatchAnswer {
     std::string job;
@@ -38,22 +42,8 @@ struct SbatchAnswer {
     std::string refusal;
 };
 
-/// Throws Error where sbatch took something and gave no number.
-SbatchAnswer sbatch(std::vector<std::string> arguments);
-
-/// The states of these jobs' tasks on the cluster ("": the default one), as cluster::parseQueue()
-/// gives them. None when squeue is not there or does not answer: then nothing is known, least of
-/// all an end. A queue forgets jobs that ended, and answers.
-std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std::string>& jobs,
-                                                           const std::string& cluster);
-
-namespace {
-
-constexpr std::chrono::seconds kSlurmLimit{120};  // for an answer
-
-}  // namespace
-
-/// The number is what --parsable prints last: "123" or "123;cluster".
+/// The number is what --parsable prints last: "123" or "123;cluster". Throws Error where sbatch
+/// took something and gave none.
 SbatchAnswer sbatch(std::vector<std::string> arguments) {
     constexpr int kNotFound = 127;  // env's
     arguments.insert(arguments.begin(), {"/usr/bin/env", "sbatch", "--parsable"});
@@ -75,6 +65,9 @@ SbatchAnswer sbatch(std::vector<std::string> arguments) {
         "sbatch gave no number of a job, so what is queued is not known; squeue shows it: " + text);
 }
 
+/// The states of these jobs' tasks on the cluster ("": the default one), as cluster::parseQueue()
+/// gives them. None when squeue is not there or does not answer: then nothing is known, least of
+/// all an end. A queue forgets jobs that ended, and answers.
 std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std::string>& jobs,
                                                            const std::string& cluster) {
     std::vector<std::string> command = {"/usr/bin/env", "squeue",  "-h", "-r",
@@ -94,8 +87,6 @@ std::optional<std::map<std::string, std::string>> askQueue(const std::vector<std
     if (isNotice) return std::nullopt;  // it says something else: not that the jobs are forgotten
     return states;
 }
-
-namespace {
 
 constexpr double kShardS = 1800.0;  // predicted, of a shard, where no number of them is given
 constexpr int kUnknownShards = 8;   // where nothing is predicted either

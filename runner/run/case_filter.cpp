@@ -90,10 +90,6 @@ std::optional<std::vector<std::string>> keyValues(const Case& item,
                      (isCut ? ", …" : ""));
 }
 
-}  // namespace
-
-namespace {
-
 /// A pattern is text, whatever YAML makes of `*` at its beginning.
 config::Override wantedBy(const std::string& written) {
     const std::size_t value = written.find('=') + 1;
