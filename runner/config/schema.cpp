@@ -12,38 +12,6 @@ namespace gfxrepro::config {
 
 namespace {
 
-/// Read in runner/run/expectations.cpp.
-SchemaFile expectationsSchema() {
-    using namespace types;
-    const std::vector<SchemaKey> entry = {
-        {"table", "id", "required", "the experiment, as zju2005/2.1", text()},
-        {"at", "{axis: value | [values]}", "all cases", "axes or parameters", pairs()},
-        {"reason", "line", "required", "why", text()},
-        {"until",
-         "YYYY-MM-DD",
-         "required",
-         "the last day on which it counts",
-         {{"type", "string"}, {"pattern", "^[0-9]{4}-[0-9]{2}-[0-9]{2}$"}}}};
-    SchemaSection failure{"expected_failure", "fails[].", "", entry, false};
-    failure.keys.push_back({"status", "name", "any", "how the case ends",
-                            choice({"ok", "ambiguous", "flaky", "unsupported", "timeout", "oom",
-                                    "crash", "device-lost", "missing", "error"})});
-    return {
-        "expectations",
-        "`expect-software.yaml` and `expect-gpu.yaml`, beside configs",
-        {SchemaSection{
-             "expectations",
-             "",
-             "",
-             {{"fails", "[entry]", "[]", "cases that end otherwise than well",
-               listOf(refTo("expected_failure"))},
-              {"flakes", "[entry]", "[]", "cases that fail at times", listOf(refTo("expectation"))},
-              {"skips", "[entry]", "[]", "cases that are not tried", listOf(refTo("expectation"))}},
-             false},
-         std::move(failure),
-         SchemaSection{"expectation", "flakes[]. or skips[].", "", entry, false}}};
-}
-
 using Row = std::array<std::string, 4>;
 
 /// Columns on a screen: `…` is one of them and three bytes.
