@@ -2,15 +2,16 @@
 #include "runner/cluster/shards.h"
 
 #include <gmock/gmock.h>
-
 #include <algorithm>
 #include <numeric>
 #include <random>
 
+#include "runner/run/manifest.h"
 #include "tests/support/support.h"
 #include "tests/unit/run/plan_fixture.h"
 
 namespace gfxrepro::test {
+
 namespace {
 
 using config::Case;
@@ -132,5 +133,208 @@ TEST(Shards, AllShardsTogetherHaveEachUnitOnce) {
     EXPECT_EQ(units, whole);
 }
 
+using cluster::mergeRuns;
+using Lane = config::Measure::Lane;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// Four quality cases q/1, then two timing cases t/1.
+run::Plan makePlan() {
+    run::Plan plan;
+    plan.hash = "0123456789abcdef";
+    for (int size = 1; size <= 4; ++size) plan.cases.push_back(makeCase("q/1", "a", size));
+    for (int size = 1; size <= 2; ++size) {
+        plan.cases.push_back(makeCase("t/1", "a", size, Lane::Timing));
+    }
+    return plan;
+}
+
+TEST(Merge, RecordsAreInTheOrderOfThePlan) {
+    const run::Plan plan = makePlan();
+    const run::StoredRun merged =
+        mergeRuns({makeShard(plan, 2, 2, {5, 4, 1}), makeShard(plan, 1, 2, {3, 0, 2})}, "merge");
+    std::vector<double> values;
+    for (const records::Record& row : merged.records) values.push_back(row.value);
+    EXPECT_THAT(values, ElementsAre(0, 1, 2, 3, 4, 5));
+    EXPECT_FALSE(merged.plan.shard);
+    EXPECT_THAT(cluster::missingUnits(merged), IsEmpty());
+    EXPECT_EQ(run::completeness(merged).missing, 0);
+    EXPECT_EQ(merged.manifest["merged"].size(), 2U);
+    EXPECT_EQ(merged.manifest["merged"][0]["shard"], "2/2");
+    EXPECT_TRUE(run::isOnlyMerged(merged.manifest));
+    run::Json continued = merged.manifest;
+    run::beginInvocation(continued, "run --resume");
+    EXPECT_FALSE(run::isOnlyMerged(continued));
+}
+
+/// Rounds beyond those asked for are in no list of units but the records'.
+TEST(Merge, KeepsFurtherRounds) {
+    run::Plan plan = makePlan();
+    for (const std::size_t i : {4, 5}) {
+        plan.cases[i].measure.processes = 6;
+        plan.cases[i].measure.relativeError = 0.05;
+    }
+    std::vector<cluster::ShardRun> shards = {makeShard(plan, 1, 2, {0, 1}),
+                                             makeShard(plan, 2, 2, {2, 3, 4, 5})};
+    for (int process = 1; process < 8; ++process) {
+        for (const std::size_t i : {5, 4}) {
+            shards[1].run.records.push_back(makeRow(plan.cases[i], 0.0, process));
+        }
+    }
+    shards[1].run.manifest["rounds"] = {{"t/1", {{"rounds", 8}}}};
+    shards[0].run.manifest["machine_states"] = {{"t/2", {{"hottest_c", 40.0}}}};
+    shards[1].run.manifest["machine_states"] = {{"t/1", {{"hottest_c", 50.0}}}};
+    const run::StoredRun merged = mergeRuns(shards, "merge");
+    EXPECT_EQ(merged.records.size(), 4U + 16U);
+    EXPECT_EQ(merged.records.back().process, 7);
+    EXPECT_EQ(merged.records.back().caseId, plan.cases[4].id) << "odd rounds go backwards";
+    EXPECT_EQ(merged.manifest["rounds"]["t/1"]["rounds"], 8);
+    EXPECT_EQ(merged.manifest["machine_states"]["t/1"]["hottest_c"], 50.0);
+    EXPECT_EQ(merged.manifest["machine_states"]["t/2"]["hottest_c"], 40.0);
+    EXPECT_EQ(run::completeness(merged).units, 20);
+    EXPECT_EQ(run::completeness(merged).missing, 0);
+    shards[1].run.records.pop_back();  // round 7 was interrupted
+    EXPECT_THAT(cluster::missingUnits(mergeRuns(shards, "merge")),
+                ElementsAre("t/1 method=a size=1 process 8"));
+}
+
+TEST(Merge, NamesWhatIsMissing) {
+    const run::Plan plan = makePlan();
+    std::vector<cluster::ShardRun> shards = {makeShard(plan, 1, 3, {0, 2}),
+                                             makeShard(plan, 3, 3, {4, 5})};
+    shards[0].run.records.pop_back();  // planned there, not measured
+    EXPECT_THAT(cluster::missingUnits(mergeRuns(shards, "merge")),
+                ElementsAre("q/1 method=a size=2", "q/1 method=a size=3", "q/1 method=a size=4"));
+    EXPECT_THAT(cluster::missingShards(shards), ElementsAre("2/3"));
+}
+
+TEST(Merge, AMissingProcessIsMissing) {
+    run::Plan plan = makePlan();
+    plan.cases.resize(1);
+    plan.cases[0].measure.processes = 2;
+    EXPECT_THAT(cluster::missingUnits(mergeRuns({makeShard(plan, 1, 1, {0})}, "merge")),
+                ElementsAre("q/1 method=a size=1 process 2"));
+}
+
+TEST(Merge, RefusesDifferentPlans) {
+    const run::Plan plan = makePlan();
+    run::Plan other = plan;
+    other.hash = "fedcba9876543210";
+    other.buildId = "another build";
+    EXPECT_EQ(errorText([&] {
+                  mergeRuns({makeShard(plan, 1, 2, {0}), makeShard(other, 2, 2, {1})}, "merge");
+              }),
+              "s1 and s2 are shards of different plans (0123456789ab, fedcba987654): the program "
+              "or a shader changed (build  then, another buil now)");
+}
+
+TEST(Merge, RefusesACaseThatTwoHave) {
+    const run::Plan plan = makePlan();
+    EXPECT_EQ(
+        errorText([&] {
+            mergeRuns({makeShard(plan, 1, 2, {0, 1}), makeShard(plan, 2, 3, {1, 2})}, "");
+        }),
+        "the case 'q/1 method=a size=2' is in both s1 and s2: these are no shards of one cut");
+    // Planned in one and measured in the other is no better.
+    std::vector<cluster::ShardRun> shards = {makeShard(plan, 1, 2, {0, 1}),
+                                             makeShard(plan, 2, 2, {1})};
+    shards[0].run.records.pop_back();
+    EXPECT_EQ(
+        errorText([&] { mergeRuns(shards, ""); }),
+        "the case 'q/1 method=a size=2' is in both s1 and s2: these are no shards of one cut");
+}
+
+TEST(Merge, RefusesToMixDevicesInOneTable) {
+    const run::Plan plan = makePlan();
+    EXPECT_EQ(errorText([&] {
+                  mergeRuns({makeShard(plan, 1, 2, {0, 4}, "GPU A"),
+                             makeShard(plan, 2, 2, {1, 5}, "GPU B")},
+                            "merge");
+              }),
+              "the times of t/1 would mix devices: s1 was measured on CPU, 2 cores, GPU A, 4.5; s2 "
+              "on CPU, 2 cores, GPU B, 4.5");
+}
+
+TEST(Merge, DevicesMayDifferElsewhere) {
+    const run::Plan plan = makePlan();
+    const run::StoredRun merged = mergeRuns(
+        {makeShard(plan, 1, 2, {0, 2, 4, 5}, "GPU A"), makeShard(plan, 2, 2, {1, 3}, "GPU B")},
+        "merge");
+    EXPECT_EQ(merged.manifest["gl"]["renderer"], "GPU A; GPU B");
+    EXPECT_EQ(merged.manifest["timing_machines"], (run::Json{{"t/1", "CPU, 2 cores, GPU A, 4.5"}}));
+}
+
+TEST(Merge, AShardThatMovedTellsTheMachineOfItsTimes) {
+    const run::Plan plan = makePlan();
+    std::vector<cluster::ShardRun> shards = {makeShard(plan, 1, 2, {0, 4}, "GPU A"),
+                                             makeShard(plan, 2, 2, {1, 5}, "GPU A")};
+    shards[1].run.manifest["timing_machines"]["t/1"] = "another node";
+    EXPECT_EQ(errorText([&] { mergeRuns(shards, "merge"); }),
+              "the times of t/1 would mix devices: s1 was measured on CPU, 2 cores, GPU A, 4.5; s2 "
+              "on another node");
+}
+
+/// A run directory with these rows.
+run::RunDirectory directoryWith(const TemporaryFolder& folder, const cluster::ShardRun& shard) {
+    run::RunDirectory directory = run::RunDirectory::create(folder.path());
+    records::RecordWriter(directory.recordsFile()).append(shard.run.records);
+    return directory;
+}
+
+TEST(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
+    const run::Plan plan = makePlan();
+    cluster::ShardRun shard = makeShard(plan, 1, 1, {0, 1, 4}, "GPU A");  // 5, of times, is missing
+    shard.run.plan.shard.reset();
+    const TemporaryFolder folder;
+    const run::RunDirectory directory = directoryWith(folder, shard);
+    EXPECT_THAT(run::replaceForeignTimes(plan, directory, {}, shard.run.manifest,
+                                         run::machineName(shard.run.manifest)),
+                IsEmpty());
+    EXPECT_EQ(records::readRecords(directory.recordsFile()).size(), 3U);
+
+    EXPECT_THAT(run::replaceForeignTimes(plan, directory, {}, shard.run.manifest, "another node"),
+                ElementsAre("t/1"));
+    EXPECT_EQ(run::timingMachine(shard.run.manifest, "t/1"), "another node");
+    const std::vector<records::Record> kept = records::readRecords(directory.recordsFile());
+    ASSERT_EQ(kept.size(), 2U);
+    EXPECT_EQ(kept[1].caseId, plan.cases[1].id);
+    // Nothing measured is lost.
+    const auto replaced = records::readRecords(folder.path() / "records-replaced.csv");
+    ASSERT_EQ(replaced.size(), 1U);
+    EXPECT_EQ(replaced[0].caseId, plan.cases[4].id);
+    // Two quality cases and both timing cases.
+    EXPECT_EQ(run::remainingUnits(plan, directory).size(), 4U);
+}
+
+TEST(ForeignTimes, TablesBetweenTwoRoundsAreMeasuredAgain) {
+    run::Plan plan = makePlan();
+    for (config::Case& item : plan.cases) {
+        if (item.measure.lane == config::Measure::Lane::Quality) continue;
+        item.measure.timeBudgetS = 60.0;
+        item.measure.processes = 2;
+        item.measure.isWithinBudget = true;
+    }
+    cluster::ShardRun shard = makeShard(plan, 1, 1, {0, 4, 5}, "GPU A");
+    const TemporaryFolder folder;
+    const run::RunDirectory directory = directoryWith(folder, shard);
+    const run::Json ended = {{"event", "rounds"}, {"table", "t/1"}, {"rounds", 1}};
+    EXPECT_THAT(run::replaceForeignTimes(plan, directory, {ended}, shard.run.manifest, "another"),
+                IsEmpty());
+    EXPECT_THAT(run::replaceForeignTimes(plan, directory, {}, shard.run.manifest, "another"),
+                ElementsAre("t/1"));
+}
+
+TEST(ForeignTimes, FinishedTablesStay) {
+    const run::Plan plan = makePlan();
+    cluster::ShardRun shard = makeShard(plan, 1, 1, {0, 4, 5}, "GPU A");
+    const TemporaryFolder folder;
+    const run::RunDirectory directory = directoryWith(folder, shard);
+    EXPECT_THAT(run::replaceForeignTimes(plan, directory, {}, shard.run.manifest, "another node"),
+                IsEmpty());
+    EXPECT_EQ(run::timingMachine(shard.run.manifest, "t/1"), "CPU, 2 cores, GPU A, 4.5");
+    EXPECT_EQ(records::readRecords(directory.recordsFile()).size(), 3U);
+}
+
 }  // namespace
+
 }  // namespace gfxrepro::test
