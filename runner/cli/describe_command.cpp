@@ -355,13 +355,12 @@ std::string yamlBelow(const Node& node, std::size_t indent) {
     return text;
 }
 
-/// Behind "key:" or "-". Sections of a file and what does not fit on a line are in block style.
+/// Behind "key:" or "-". What does not fit on a line is in block style.
 void writeYaml(const std::string& prefix, const Node& node, std::size_t indent, std::string& text) {
     constexpr std::size_t kColumns = 100;
     const std::string pad(indent, ' '), below(indent + 2, ' ');
     const std::string line = pad + prefix + ' ' + node.toFlowText();
-    const bool isSection = indent == 0 && node.isMap() && !node.entries().empty();
-    const bool isLong = line.size() > kColumns || isSection;
+    const bool isLong = line.size() > kColumns;
     if (node.isScalar() && node.text().find('\n') != std::string::npos &&
         !node.text().starts_with(' ') && !node.text().ends_with("\n\n")) {
         text += pad + prefix + (node.text().ends_with('\n') ? " |\n" : " |-\n");
