@@ -17,7 +17,7 @@ namespace gfxrepro::clustered_reflections {
 /// normals outwards.
 inline scene::Mesh cap(float mostPolarRad, unsigned segments = 96) {
     scene::Mesh mesh = reflections::dome(glm::vec3(0.0F), 1.0F, mostPolarRad, segments, segments);
-    for (glm::vec3& position : mesh.positions) std::swap(position.y, position.z);
+    for (glm::vec3& p : mesh.positions) p = {p.x, -p.z, p.y};  // from +y to +z
     mesh.normals = mesh.positions;
     return mesh;
 }
