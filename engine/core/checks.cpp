@@ -30,6 +30,14 @@ const Node& requiredEntry(const Node& map, std::string_view key, std::string_vie
                 fmt::format("{}{}'{}' is missing", what, what.empty() ? "" : ": ", key));
 }
 
+const std::string& lineOf(const Node& node, std::string_view what) {
+    if (!node.isScalar() || trimmed(node.text()).empty() ||
+        node.text().find('\n') != std::string::npos) {
+        throwNotAllowed(node, what, "one line of text");
+    }
+    return node.text();
+}
+
 std::optional<double> fractionOf(const Node& node) {
     const std::string text = node.isScalar() ? node.text() : "";
     std::optional<double> fraction = node.tryDouble();

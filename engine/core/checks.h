@@ -22,6 +22,8 @@ void requireKeys(const Node& map, std::string_view what, std::span<const std::st
 /// The entry of a map. Throws Error "WHAT: 'KEY' is missing" at the map's place; without `what`
 /// "'KEY' is missing".
 const Node& requiredEntry(const Node& map, std::string_view key, std::string_view what = "");
+/// `text` of one line that is not empty. Throws Error for another.
+const std::string& lineOf(const Node& node, std::string_view what);
 
 /// A share, as a percentage ("25%", "25 %") or a fraction; none for another text, and for a
 /// fraction beyond 1, where the sign is likely forgotten.

@@ -1,18 +1,81 @@
 #include "runner/claims/claim_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "engine/core/text.h"
+#include "runner/claims/kinds/operands.h"
 #include "runner/tables/case_records.h"
 #include "runner/tables/labels.h"
 
 namespace gfxrepro::claims {
 
-using config::ClaimSpec;
+Operand::Operand(const std::string& text, const tables::Table& table, const SourceLocation& where,
+                 const std::string& owner) {
+    const std::string whole(trimmed(text));
+    std::vector<std::string> labels;
+    for (const tables::TableColumn& column : table.columns) labels.push_back(column.label);
+    const std::vector<OperandPiece> pieces = operandPieces(whole, labels);
+    isColumn_ = pieces.size() == 1 && pieces[0].column.has_value();
+    std::string expression;  // with a variable for each column
+    for (const OperandPiece& piece : pieces) {
+        if (!piece.problem.empty()) throw AbsentColumnError(where, owner, piece.problem);
+        if (!piece.column) {
+            expression += piece.text;
+            continue;
+        }
+        const auto found = std::ranges::find(columns_, *piece.column);
+        expression += fmt::format("v{}", found - columns_.begin());
+        if (found == columns_.end()) columns_.push_back(*piece.column);
+    }
+    slots_.resize(columns_.size());
+    try {
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            parser_.DefineVar(fmt::format("v{}", i), &slots_[i]);
+        }
+        parser_.SetExpr(expression);
+        parser_.Eval();
+    } catch (const mu::Parser::exception_type& error) {
+        throw Error(where,
+                    fmt::format("{}: '{}' is no expression: {}", owner, whole, error.GetMsg()));
+    }
+}
 
-tables::Table tableFor(const config::ClaimSpec& claim, const tables::Table& table) {
+double Operand::evaluate(std::span<const double> values) {
+    std::copy(values.begin(), values.end(), slots_.begin());
+    return parser_.Eval();
+}
+
+Sampled Operand::evaluate(const tables::TableRow& row, tables::Clock clock) {
+    std::vector<Sampled> cells;
+    std::vector<double> values;
+    for (const std::size_t column : columns_) {
+        const tables::Cell& cell = row.cells[column];
+        const tables::Measured& measured =
+            *cell.find("", cell.isTime ? clock : tables::Clock::Wall);
+        // A single round tells no more than the value.
+        const bool hasRounds = measured.rounds.size() > 1;
+        cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
+                         measured.areDraws});
+        values.push_back(measured.value);
+    }
+    std::vector<Sampled*> all;
+    for (Sampled& cell : cells) all.push_back(&cell);
+    Sampled result;
+    result.point = evaluate(values);
+    result.areDraws = keepRoundsOrDraws(all);
+    for (const int round : commonRounds(cells)) {
+        for (std::size_t i = 0; i < cells.size(); ++i) values[i] = cells[i].at(round);
+        result.rounds[round] = evaluate(values);
+    }
+    return result;
+}
+
+tables::Table tableFor(const ClaimSpec& claim, const tables::Table& table) {
     if (!claim.across) return table;
     const auto found = std::find(table.rowAxes.begin(), table.rowAxes.end(), *claim.across);
     if (found == table.rowAxes.end()) {
@@ -24,7 +87,7 @@ tables::Table tableFor(const config::ClaimSpec& claim, const tables::Table& tabl
 }
 
 ClaimReader::ClaimReader(const ClaimSpec& claim, const tables::Table& table)
-    : claim_(claim), table_(table), statistic_(claim.statistic.value_or("")) {
+    : claim_(claim), table_(table) {
     const std::string owner = "claim '" + claim.id + "'";
     for (const std::string& operand : claim.operands) {
         operands_.emplace_back(operand, table, claim.location, owner);
@@ -89,10 +152,8 @@ std::vector<bool> ClaimReader::axesAlongX() {
 }
 
 std::vector<Rows> ClaimReader::groups() {
-    const bool isOneGroup = (claim_.type == ClaimSpec::Type::Independent && !claim_.over) ||
-                            claim_.type == ClaimSpec::Type::SameMean;
     std::vector<bool> along = axesAlongX();
-    if (isOneGroup) along.assign(along.size(), true);
+    if (claim_.kind->isOfAllRows) along.assign(along.size(), true);
     std::vector<Rows> groups;
     std::map<std::vector<std::string>, std::size_t> indices;
     for (const std::size_t row : rows()) {
@@ -121,8 +182,20 @@ std::string ClaimReader::groupName(const Rows& rows) const {
     return joined(parts);
 }
 
-bool ClaimReader::readsSome(const std::function<bool(const tables::Cell&)>& isSuch) const {
-    const Rows read = rows();
+bool isCalibrated(const tables::Cell& cell) {
+    return cell.isPlanned && cell.isCalibrated;
+}
+
+Rows ClaimReader::rowsOrAll() const {
+    Rows read = rows();
+    if (!read.empty()) return read;
+    read.resize(table_.rows.size());
+    std::iota(read.begin(), read.end(), std::size_t{0});
+    return read;
+}
+
+bool ClaimReader::readsSome(const std::function<bool(const tables::Cell&)>& isSuch,
+                            const Rows& read) const {
     const auto readsOne = [&](const Operand& operand) {
         return std::ranges::any_of(operand.columns(), [&](std::size_t column) {
             return std::ranges::any_of(
@@ -133,18 +206,7 @@ bool ClaimReader::readsSome(const std::function<bool(const tables::Cell&)>& isSu
 }
 
 bool ClaimReader::readsTime() const {
-    return readsSome([](const tables::Cell& cell) { return cell.isTime; });
-}
-
-bool ClaimReader::readsShare() const {
-    return readsSome([](const tables::Cell& cell) {
-        const bool isScaled = cell.metric.empty() && cell.unit.empty();
-        return isScaled || cell.metric.ends_with("_pct");
-    });
-}
-
-bool ClaimReader::readsPrinted() const {
-    return readsSome([](const tables::Cell& cell) { return cell.printed.has_value(); });
+    return readsSome([](const tables::Cell& cell) { return cell.isTime; }, rowsOrAll());
 }
 
 bool ClaimReader::readsOnly(const std::string& metric) const {
@@ -155,7 +217,8 @@ bool ClaimReader::readsOnly(const std::string& metric) const {
 }
 
 std::optional<std::string> ClaimReader::wordAlongOver() const {
-    if (!overAxis_ || claim_.type == config::ClaimSpec::Type::Independent) return std::nullopt;
+    const std::vector<ClaimPart> parts = partsOf(claim_);
+    if (!overAxis_ || std::ranges::none_of(parts, &ClaimPart::needsX)) return std::nullopt;
     for (const std::size_t row : rows()) {
         const std::string& label = table_.rows[row].labels[*overAxis_];
         if (!parseDouble(label)) return label;
@@ -170,13 +233,9 @@ bool ClaimReader::isOverItself() const {
     });
 }
 
-bool ClaimReader::readsSomeCalibrated() const {
-    return readsSome([](const tables::Cell& cell) { return cell.isPlanned && cell.isCalibrated; });
-}
-
 bool ClaimReader::readsCalibrated() const {
     const Rows read = rows();
-    return readsSomeCalibrated() && std::ranges::all_of(operands_, [&](const Operand& operand) {
+    return readsSome(isCalibrated) && std::ranges::all_of(operands_, [&](const Operand& operand) {
                return std::ranges::all_of(operand.columns(), [&](std::size_t column) {
                    return std::ranges::all_of(read, [&](std::size_t row) {
                        const tables::Cell& cell = table_.rows[row].cells[column];
@@ -202,21 +261,19 @@ std::optional<double> ClaimReader::growthAsTimesDouble(Operand& operand, std::si
 }
 
 bool ClaimReader::asksForATimeAsSuch() {
-    using Type = ClaimSpec::Type;
-    const bool isOfValues =
-        claim_.type == Type::Bound || claim_.type == Type::Exact || claim_.type == Type::Tolerance;
-    const bool isOfEach = claim_.type == Type::Trend || claim_.type == Type::Independent;
+    using Compares = Kind::Compares;
+    const Compares compares = claim_.kind->compares;
     const auto areAlike = [](const std::vector<double>& growths) {
         constexpr double kTolerance = 1e-9;
         return std::ranges::all_of(growths, [&](double growth) {
             return std::abs(growth - growths.front()) < kTolerance;
         });
     };
-    for (const std::size_t row : rows()) {
+    for (const std::size_t row : rowsOrAll()) {
         std::vector<double> growths;
-        if (isOfValues) growths.push_back(1.0);
+        if (compares == Compares::Values) growths.push_back(1.0);
         for (Operand& operand : operands_) {
-            if (isOfEach) growths.clear();
+            if (compares == Compares::Rows) growths.clear();
             // A sum with a number grows by less somewhere, a comparison with one at its number.
             for (int exponent = -10; exponent <= 30; ++exponent) {
                 const std::optional<double> growth =
@@ -227,6 +284,11 @@ bool ClaimReader::asksForATimeAsSuch() {
         }
     }
     return false;
+}
+
+std::optional<ClaimSpec::TimeKind> ClaimReader::timeKind() {
+    if (claim_.timeKind || !readsTime() || !asksForATimeAsSuch()) return claim_.timeKind;
+    return ClaimSpec::TimeKind::Absolute;
 }
 
 std::vector<const tables::Cell*> ClaimReader::timeCells() const {
@@ -278,28 +340,23 @@ std::string ClaimReader::problemOf(const Operand& operand, std::size_t row) cons
                    std::string(records::statusName(cell.status)) +
                    (cell.message.empty() ? "" : " (" + cell.message + ")");
         }
-        if (!cell.find(statistic_)) {
-            return "statistic '" + statistic_ + "' is not in the format of column '" +
-                   table_.columns[column].label + "'";
-        }
     }
     return "";
 }
 
 std::optional<double> ClaimReader::expected(std::size_t operand, std::size_t row) {
-    if (claim_.type == ClaimSpec::Type::Exact && claim_.low) return claim_.low;
+    if (claim_.low) return claim_.low;  // a given number, in the place of the printed one
     std::vector<double> printed;
     for (const std::size_t column : operands_[operand].columns()) {
         const tables::Cell& cell = table_.rows[row].cells[column];
-        const auto index = static_cast<std::size_t>(cell.find(statistic_) - cell.values.data());
-        if (index >= cell.printedValues.size() || !cell.printedValues[index]) return std::nullopt;
-        printed.push_back(*cell.printedValues[index]);
+        if (cell.printedValues.empty() || !cell.printedValues[0]) return std::nullopt;
+        printed.push_back(*cell.printedValues[0]);
     }
     return operands_[operand].evaluate(printed);
 }
 
 Sampled ClaimReader::abscissa(std::size_t row) {
-    if (!overColumn_.empty()) return overColumn_[0].evaluate(table_.rows[row], statistic_, clock_);
+    if (!overColumn_.empty()) return overColumn_[0].evaluate(table_.rows[row], clock_);
     if (!overAxis_) fail("expected `over:`, a row axis or a column");
     const std::string& label = table_.rows[row].labels[*overAxis_];
     const auto value = parseDouble(label);
@@ -329,7 +386,7 @@ ClaimReader::Reading ClaimReader::read(const ClaimPart& part, const Rows& rows) 
         }
         for (std::size_t i = 0; i < part.operands.size(); ++i) {
             reading.group.operands[i].push_back(
-                operands_[part.operands[i]].evaluate(table_.rows[row], statistic_, clock_));
+                operands_[part.operands[i]].evaluate(table_.rows[row], clock_));
         }
         if (part.needsX) reading.group.x.push_back(abscissa(row));
         reading.rows.push_back(row);

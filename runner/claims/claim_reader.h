@@ -1,30 +1,78 @@
 // Reads the values that a claim is about off a table.
 #pragma once
 
+#include <muParser.h>
+
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "runner/claims/claim_parts.h"
-#include "runner/claims/operand.h"
-#include "runner/config/experiment.h"
+#include "engine/core/error.h"
+#include "runner/claims/judge.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::claims {
 
 using Rows = std::vector<std::size_t>;
 
+/// A name that is no column of the table, or may be one: a profile or an override may have taken it
+/// away, or brought a column that looks like a number.
+class AbsentColumnError : public Error {
+  public:
+    AbsentColumnError(const SourceLocation& where, const std::string& owner,
+                      const std::string& text)
+        : Error(where, owner + ": " + text), text_(text) {}
+    /// Without the place and the owner.
+    const std::string& text() const { return text_; }
+
+  private:
+    std::string text_;
+};
+
+/// The arithmetic of claims: an expression over the columns of a table ("rasterization_ms +
+/// draw_ms").
+class Operand {
+  public:
+    /// Columns are written as operandPieces() reads them. Throws Error at `where`, its
+    /// message begun with `owner`, for bad syntax, and AbsentColumnError for a name that is no
+    /// column, or may be one.
+    Operand(const std::string& text, const tables::Table& table, const SourceLocation& where,
+            const std::string& owner);
+    Operand(Operand&&) = default;
+    Operand& operator=(Operand&&) = delete;
+
+    /// Whether it is a column as it stands, without arithmetic.
+    bool isColumn() const { return isColumn_; }
+    /// The table's columns that are read.
+    const std::vector<std::size_t>& columns() const { return columns_; }
+    /// `values` lies beside columns().
+    double evaluate(std::span<const double> values);
+    /// On the cells of a row, all of which must be measured by that clock; those that have
+    /// none by the process's are no times. The rounds are those that all cells have; draws count
+    /// only where no cell has rounds of its own.
+    Sampled evaluate(const tables::TableRow& row, tables::Clock clock);
+
+  private:
+    bool isColumn_ = false;
+    std::vector<std::size_t> columns_;
+    std::vector<double> slots_;  // the parser points at them
+    mu::Parser parser_;
+};
+
 /// The table as the claim reads it: with `across`, rows for columns. Throws Error at the claim's
 /// place for an axis that it does not have.
-tables::Table tableFor(const config::ClaimSpec& claim, const tables::Table& table);
+tables::Table tableFor(const ClaimSpec& claim, const tables::Table& table);
+
+bool isCalibrated(const tables::Cell& cell);
 
 /// A claim made ready to be read off a table.
 class ClaimReader {
   public:
     /// `table` is that of tableFor(). Throws Error with the claim's place for operands and axes
     /// that it does not have. The claim and the table must outlive the reader.
-    ClaimReader(const config::ClaimSpec& claim, const tables::Table& table);
+    ClaimReader(const ClaimSpec& claim, const tables::Table& table);
 
     /// The rows that `at` leaves, parted into the groups that the claim is judged in.
     std::vector<Rows> groups();
@@ -51,13 +99,16 @@ class ClaimReader {
     bool hasTimes() const { return !timeCells().empty(); }
     /// Whether all times that it reads were measured at what the paper measured at.
     bool isAtPrintedParameters() const;
-    /// Whether some cell that it may read is a time or a rate of time.
+    /// Whether some cell that it may read is a time or a rate of time; of all rows, where `at`
+    /// leaves none in this profile.
     bool readsTime() const;
-    /// Whether some cell that it may read is, perhaps scaled, a recorded percentage, which has an
-    /// interval where it is a share of a count.
-    bool readsShare() const;
-    /// Whether a value was printed for some cell that it may read.
-    bool readsPrinted() const;
+    /// What decides a claim about time: as it says; times as such, where it holds one against a
+    /// number; else nothing is known.
+    std::optional<ClaimSpec::TimeKind> timeKind();
+    /// Whether some cell that it may read is such.
+    bool readsSome(const std::function<bool(const tables::Cell&)>& isSuch) const {
+        return readsSome(isSuch, rows());
+    }
     /// Whether its operands are columns alone, no arithmetic, and show that metric as recorded.
     bool readsOnly(const std::string& metric) const;
     /// How many rows it reads.
@@ -66,9 +117,8 @@ class ClaimReader {
     std::optional<std::string> wordAlongOver() const;
     /// Whether what it reads is a column, and `over` or `of` is the same.
     bool isOverItself() const;
-    /// Whether all cells that it may read are marked as calibrated, or some.
+    /// Whether all cells that it may read are marked as calibrated.
     bool readsCalibrated() const;
-    bool readsSomeCalibrated() const;
     /// Whether what it asks could come out otherwise on a machine on which every time is twice as
     /// long: a time held against a number, or compared with what is no time.
     bool asksForATimeAsSuch();
@@ -78,7 +128,8 @@ class ClaimReader {
         throw Error(claim_.location, "claim '" + claim_.id + "': " + message);
     }
     Rows rows() const;
-    bool readsSome(const std::function<bool(const tables::Cell&)>& isSuch) const;
+    Rows rowsOrAll() const;
+    bool readsSome(const std::function<bool(const tables::Cell&)>& isSuch, const Rows& rows) const;
     std::size_t rowAxis(const std::string& name, const char* key) const;
     std::vector<bool> axesAlongX();
     std::optional<double> expected(std::size_t operand, std::size_t row);
@@ -90,9 +141,8 @@ class ClaimReader {
     std::vector<const tables::Cell*> timeCells() const;
     Sampled abscissa(std::size_t row);
 
-    const config::ClaimSpec& claim_;
+    const ClaimSpec& claim_;
     const tables::Table& table_;
-    std::string statistic_;
     std::vector<Operand> operands_;
     std::optional<std::size_t> overAxis_;
     std::vector<Operand> overColumn_;  // one, or none

@@ -3,19 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <map>
+#include <utility>
 
 #include "engine/core/text.h"
-#include "runner/claims/claim_parts.h"
 #include "runner/claims/claim_reader.h"
-#include "runner/claims/claim_same_mean.h"
 #include "runner/config/schema.h"
 
 namespace gfxrepro::claims {
 
 namespace {
 
-using config::ClaimSpec;
+/// In the order of Verdict: the name, and what it counts.
+struct VerdictInfo {
+    std::string_view name;
+    int severity;
+};
+constexpr std::array<VerdictInfo, 5> kVerdicts = {
+    {{"holds", 0}, {"fails", 4}, {"ambiguous", 2}, {"not-applicable", 1}, {"unmeasured", 3}}};
 
 /// What one part came to in one group.
 struct Outcome {
@@ -89,20 +96,24 @@ Outcome judgePart(const ClaimPart& part, ClaimReader& reader, const std::vector<
     return none;
 }
 
-/// Why the claim is not to be judged here; empty if it is.
-std::string whyNotApplicable(const ClaimSpec& claim, const ReportContext& context) {
-    if (claim.device == ClaimSpec::Device::Gpu && context.deviceClass != "gpu") {
-        return "claims about a GPU are not judged on a " + context.deviceClass + " device";
+/// Where the claim is not to be judged here, says so; true then.
+bool isNotApplicable(const ClaimSpec& claim, const ReportContext& context, ClaimResult& result) {
+    const bool isOfGpu = result.timeKind && *result.timeKind != ClaimSpec::TimeKind::Algorithmic;
+    if (isOfGpu && context.deviceClass != "gpu") {
+        result.reason = "claims about a GPU are not judged on a " + context.deviceClass + " device";
+    } else if (claim.profile && *claim.profile != context.profile) {
+        result.reason = "judged in the profile '" + *claim.profile + "' only";
+    } else {
+        return false;
     }
-    if (claim.profile && *claim.profile != context.profile) {
-        return "judged in the profile '" + *claim.profile + "' only";
-    }
-    return "";
+    result.verdict = Verdict::NotApplicable;
+    return true;
 }
 
 /// What counts of work decide is judged by the work of all cores where they are the device: the
 /// process's CPU time, which waits for no neighbour. Says which clock it is; empty for none.
-std::string chooseClock(const ClaimSpec& claim, const ReportContext& context, ClaimReader& reader) {
+std::string chooseClock(const ClaimResult& claim, const ReportContext& context,
+                        ClaimReader& reader) {
     using Kind = ClaimSpec::TimeKind;
     const bool isAlgorithmic = claim.timeKind.value_or(Kind::Algorithmic) == Kind::Algorithmic;
     if (!isAlgorithmic || context.deviceClass != "software" || !reader.hasTimes()) return "";
@@ -132,7 +143,7 @@ ClaimResult unjudged(const ClaimSpec& claim, const tables::Table& table,
     result.id = claim.id;
     result.table = table.id;
     result.text = claim.text;
-    result.origin = claim.origin.value_or(ClaimSpec::Origin::Ours);
+    result.origin = claim.origin;
     result.boundFrom = claim.boundFrom;
     result.timeKind = claim.timeKind;
     takeKnown(claim, context, result);
@@ -140,14 +151,13 @@ ClaimResult unjudged(const ClaimSpec& claim, const tables::Table& table,
     std::vector<std::string> required;
     for (const ClaimPart& part : partsOf(claim)) required.push_back(part.requirement.text);
     result.required = joined(required, "; ");
-    result.reason = whyNotApplicable(claim, context);
-    if (!result.reason.empty()) result.verdict = Verdict::NotApplicable;
+    isNotApplicable(claim, context, result);
     return result;
 }
 
 /// What to know of a claim about a GPU's units where these are not those of a graphics card; empty
 /// elsewhere.
-std::string balanceNote(const ClaimSpec& claim, const ReportContext& context) {
+std::string balanceNote(const ClaimResult& claim, const ReportContext& context) {
     constexpr double kLeast = 0.5;
     const bool isArchitectural = claim.timeKind == ClaimSpec::TimeKind::Architectural;
     if (!isArchitectural || context.fragmentShare.value_or(1.0) >= kLeast) return "";
@@ -160,7 +170,7 @@ std::string balanceNote(const ClaimSpec& claim, const ReportContext& context) {
 
 /// That an input was fitted to what a claim reads that is not of that input; else empty.
 std::string calibratedNote(const ClaimSpec& claim, const ClaimReader& reader) {
-    if (claim.origin == ClaimSpec::Origin::Calibrated || !reader.readsSomeCalibrated()) return "";
+    if (claim.origin == ClaimSpec::Origin::Calibrated || !reader.readsSome(isCalibrated)) return "";
     return reader.readsCalibrated() ? "what it reads is calibrated"
                                     : "some of what it reads is calibrated";
 }
@@ -170,24 +180,26 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
     ClaimResult result = unjudged(claim, table, context);
     if (result.verdict == Verdict::NotApplicable) return result;
     ClaimReader reader(claim, table);
-    if (claim.type == ClaimSpec::Type::SameMean && !reader.readsOnly(kSameMeanMetric)) {
-        result.reason = fmt::format("reads another metric than {}", kSameMeanMetric);
+    result.timeKind = reader.timeKind();
+    if (isNotApplicable(claim, context, result)) return result;
+    const char* metric = claim.kind->metric;
+    if (metric && !reader.readsOnly(metric)) {
+        result.reason = fmt::format("reads another metric than {}", metric);
         return result;
     }
-    const std::vector<ClaimPart> parts = partsOf(claim);
-    const bool isAbsolute = claim.timeKind == ClaimSpec::TimeKind::Absolute;
+    const bool isAbsolute = result.timeKind == ClaimSpec::TimeKind::Absolute;
     if (isAbsolute && table.isPublished && !reader.isAtPrintedParameters()) {
         result.verdict = Verdict::NotApplicable;
         result.reason = "a time as such is judged at the printed parameters only";
         return result;
     }
-    const std::string clock = chooseClock(claim, context, reader);
+    const std::string clock = chooseClock(result, context, reader);
     std::optional<TimeRule> times;
     if (reader.readsTime()) times = TimeRule{table.noise(reader.clock())};
     const std::vector<Rows> groups = reader.groups();
     std::vector<std::string> measured;
     std::optional<Outcome> worst;
-    for (const ClaimPart& part : parts) {
+    for (const ClaimPart& part : partsOf(claim)) {
         Outcome outcome = judgePart(part, reader, groups, times);
         if (!outcome.judgement.measured.empty()) measured.push_back(outcome.judgement.measured);
         if (worst && !isWorse(outcome, *worst)) continue;
@@ -200,7 +212,7 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
     result.verdict = worst->judgement.verdict;
     result.reason = worst->reason;
     for (const std::string& note :
-         {clock, balanceNote(claim, context), calibratedNote(claim, reader)}) {
+         {clock, balanceNote(result, context), calibratedNote(claim, reader)}) {
         if (!note.empty()) result.reason += (result.reason.empty() ? "" : "; ") + note;
     }
     return result;
@@ -232,6 +244,23 @@ std::string restsOn(const ClaimResult& result, const ReportContext& context) {
 }
 
 }  // namespace
+
+Verdict verdictFromName(std::string_view name) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < kVerdicts.size(); ++i) {
+        if (kVerdicts[i].name == name) return static_cast<Verdict>(i);
+        names.emplace_back(kVerdicts[i].name);
+    }
+    throw Error(fmt::format("'{}' is no verdict ({})", name, joined(names)));
+}
+
+std::string_view verdictName(Verdict verdict) {
+    return kVerdicts[static_cast<std::size_t>(verdict)].name;
+}
+
+int severity(Verdict verdict) {
+    return kVerdicts[static_cast<std::size_t>(verdict)].severity;
+}
 
 std::string sceneClass(const std::set<std::string>& scenes, const SceneFiles& files) {
     std::size_t ofFiles = 0;
@@ -276,6 +305,52 @@ std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {
     } catch (const AbsentColumnError& error) {
         return error.text();
     }
+}
+
+std::string claimSummaryLine(const std::vector<ClaimResult>& results) {
+    if (results.empty()) return "no claims";
+    std::map<Verdict, int> counts;
+    for (const ClaimResult& result : results) ++counts[result.verdict];
+    std::vector<std::string> parts;
+    for (const auto& [verdict, count] : counts) {
+        std::string word(verdictName(verdict));
+        if (verdict == Verdict::Holds && count != 1) word = "hold";
+        if (verdict == Verdict::Fails && count != 1) word = "fail";
+        parts.push_back(std::to_string(count) + " " + word);
+    }
+    return joined(parts);
+}
+
+std::string originSummaryLine(const std::vector<ClaimResult>& results) {
+    using Origin = ClaimSpec::Origin;
+    static constexpr std::pair<Origin, const char*> kGroups[] = {
+        {Origin::Document, "of the documents' own claims"},
+        {Origin::Derived, "read off their numbers"},
+        {Origin::Ours, "our aims"},
+        {Origin::Definition, "definitions"},
+        {Origin::Calibrated, "calibrated inputs"}};
+    std::vector<std::string> parts;
+    for (const auto& [origin, name] : kGroups) {
+        std::vector<ClaimResult> alike;
+        std::ranges::copy_if(
+            results, std::back_inserter(alike),
+            [origin = origin](const ClaimResult& result) { return result.origin == origin; });
+        if (!alike.empty()) parts.push_back(fmt::format("{} {}", name, claimSummaryLine(alike)));
+    }
+    return parts.empty() ? claimSummaryLine(results) : joined(parts, "; ");
+}
+
+std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& experiments,
+                                        const std::vector<tables::Table>& tables,
+                                        const ReportContext& context) {
+    GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
+    std::vector<ClaimResult> results;
+    for (std::size_t i = 0; i < experiments.size(); ++i) {
+        for (ClaimResult& result : evaluateClaims(experiments[i], tables[i], context)) {
+            results.push_back(std::move(result));
+        }
+    }
+    return results;
 }
 
 }  // namespace gfxrepro::claims

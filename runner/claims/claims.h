@@ -67,16 +67,16 @@ struct ClaimResult {
     std::optional<double> distance;  // the same as a number; of percent as a share
     std::string reason;              // of a verdict that is not plain: "worst at …", "one sample"
 
-    config::ClaimSpec::Origin origin = config::ClaimSpec::Origin::Ours;
-    std::optional<config::ClaimSpec::BoundSource> boundFrom;
-    std::optional<config::ClaimSpec::TimeKind> timeKind;
+    ClaimSpec::Origin origin = ClaimSpec::Origin::Ours;
+    std::optional<ClaimSpec::BoundSource> boundFrom;
+    std::optional<ClaimSpec::TimeKind> timeKind;
     /// What it comes to as far as the config knows; none where the run is altered.
     std::optional<Verdict> known = Verdict::Holds;
     std::string because;       // why, where it does not hold
     std::string shownBy = {};  // and the place in results/findings that proves it
 
     /// A statement of the document itself: what counts.
-    bool isOfDocument() const { return origin == config::ClaimSpec::Origin::Document; }
+    bool isOfDocument() const { return origin == ClaimSpec::Origin::Document; }
     /// Another verdict than the known one. Ambiguous is none, and tells nothing against one; where
     /// it is the known one, failing is news.
     bool isNews() const {
@@ -101,8 +101,8 @@ std::string whyText(const ClaimResult& claim);
 
 /// Judges every claim of the experiment on its table. Each type is one quantity with a required
 /// range. Of values that are no times it is computed and judged as it is (judge(),
-/// claim_quantity.h); of times in each round, and a 95 % interval over rounds wholly inside of the
-/// range holds, wholly outside fails, else it is ambiguous (judgeTimes(), claim_times.h). On a
+/// judge.h); of times in each round, and a 95 % interval over rounds wholly inside of the
+/// range holds, wholly outside fails, else it is ambiguous (judgeTimes(), judge.h). On a
 /// software device the times of an algorithmic claim are the CPU times of the process. Groups of
 /// rows are judged apart; the worst verdict counts. What reads a column that
 /// the table does not have is unmeasured. Throws Error with the claim's place for an operand that
@@ -116,22 +116,23 @@ std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& e
                                         const std::vector<tables::Table>& tables,
                                         const ReportContext& context);
 
+/// Whether the claim reads a time of the table.
+bool isOfTime(const ClaimSpec& claim, const tables::Table& table);
+
 /// What the claim reads and the table does not have, as one whose profile or override took a column
 /// or rows away: "'y' is no column (columns: x)"; empty where it has all of it. The table may have
 /// been built from no records.
-std::string whatIsAbsent(const config::ClaimSpec& claim, const tables::Table& table);
+std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table);
 
 /// Throws Error for a claim that no measurement could judge: a trend or a crossing along words, a
 /// column over itself, `at` with an empty list. `table` may have been built from no records.
 void requireJudgeable(const config::Experiment& experiment, const tables::Table& table);
 
-/// Throws Error where a claim of the experiment reads a time and has no kind, or has one and reads
-/// none, where a document's table does not say whose the claim or its bound is, where a claim whose
-/// bound is from print reads no printed cell, is not met by what was printed or is another number
-/// (an aim of ours may better that), where one of a calibrated input reads cells that are not
-/// marked so, a reason is for a device or profile that the claim is not judged on, or what has no
-/// interval is known as ambiguous, where a tolerance is as large as the printed number, or where a
-/// document's claim reads calibrated cells alone. `table` may have been built from no records.
+/// Throws Error for what `gfxrepro check` refuses of the experiment's claims: a time whose kind is
+/// open, or that of what is no time; a bound from print that is not what was printed (an aim of
+/// ours may better that); cells to which an input was fitted, in a claim that is not of that input;
+/// a reason where the claim is not judged, or for what has no interval and is known as ambiguous;
+/// and what its kind refuses. `table` may have been built from no records.
 void requireProvenance(const config::Experiment& experiment, const tables::Table& table);
 
 /// "12 hold, 1 fails, 2 unmeasured": only those that occur; "no claims" for none.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <set>
 
 #include "engine/core/files.h"
 #include "engine/core/text.h"
@@ -45,6 +46,7 @@ struct Study {
     studies::Variations variations;
     std::string basis;
     fs::path folder;
+    std::set<std::string> timed = {};             // the claims that read a time
     std::vector<std::string> sets = {};           // of every run
     std::vector<studies::Outcome> outcomes = {};  // of the first runs
     double spentS = 0.0;
@@ -119,10 +121,7 @@ void writeStudy(const Study& study, const std::string& keep) {
 bool lacksTimes(const studies::Outcome& outcome, const Study& study) {
     if (!study.sets.empty()) return false;  // it asks for none
     return std::ranges::any_of(outcome.claims, [&](const claims::ClaimResult& claim) {
-        const auto& claims = study.experiment().claims;
-        const auto spec = std::ranges::find(claims, claim.id, &config::ClaimSpec::id);
-        return spec != claims.end() && spec->timeKind &&
-               claim.verdict == claims::Verdict::Unmeasured;
+        return study.timed.contains(claim.id) && claim.verdict == claims::Verdict::Unmeasured;
     });
 }
 
@@ -182,9 +181,12 @@ std::optional<Study> studyOf(const Context& context, const std::string& file,
                 .basis = {},
                 .folder = {}};
     const config::Experiment& experiment = study.experiment();
-    const auto isOfTime = [](const config::ClaimSpec& claim) { return claim.timeKind.has_value(); };
+    const tables::Table table = tables::buildTable(experiment, study.plan.cases, {});
+    for (const config::ClaimSpec& claim : experiment.claims) {
+        if (claims::isOfTime(claim, table)) study.timed.insert(claim.id);
+    }
     const bool isTimed = experiment.measure.lane == config::Measure::Lane::Timing;
-    if (std::ranges::all_of(experiment.claims, isOfTime) &&
+    if (study.timed.size() == experiment.claims.size() &&
         (experiment.claims.empty() || !options.hasTimes)) {
         tell("{}: left out, {}\n", experiment.id,
              experiment.claims.empty() ? "it has no claims" : "all its claims are of times");

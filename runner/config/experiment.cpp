@@ -307,7 +307,10 @@ void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     if (printed) experiment.printed = readPrinted(*printed, &experiment.layout, &names);
     if (isComplete) requireNotSwept(experiment.printed, points);
     if (const Node* fit = document.find("fit")) requireColumns(*fit, names);
-    if (claims) experiment.claims = readClaims(*claims, names, !experiment.printed.rows.empty());
+    if (claims) {
+        experiment.claims = readClaims(*claims, names, !experiment.printed.rows.empty(),
+                                       experiment.kind != Experiment::Kind::Sweep);
+    }
     if (plots) experiment.plots = readPlots(*plots, names);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/core/node.h"
+#include "runner/claims/kinds/claim.h"
 #include "runner/config/case.h"
 #include "runner/config/outputs.h"
 
@@ -98,69 +99,7 @@ using RowFilter = std::vector<std::pair<std::string, std::vector<Node>>>;
 /// What a claim calls the axis of the columns when it compares rows (`across`).
 inline constexpr const char* kColumnAxis = "column";
 
-/// `claims:` — typed, not code. Operands are arithmetic expressions over column names ("a + b").
-struct ClaimSpec {
-    enum class Type {
-        Order,
-        Ratio,
-        Trend,
-        Independent,
-        Bound,
-        Exact,
-        Tolerance,
-        Crossover,
-        SameMean
-    };
-    enum class Device { Any, Gpu };
-    /// Whose claim it is: a statement of the document; read off its printed numbers; an aim of
-    /// ours; true by construction (a self-test); or of an input that was fitted to it.
-    enum class Origin { Document, Derived, Ours, Definition, Calibrated };
-    /// Where the number in its bound comes from.
-    enum class BoundSource { Print, Text, Ours };
-    /// Of a claim about time: what decides it. Algorithmic: counts of work, on any device.
-    /// Architectural: units, caches and buses of a GPU, judged only there. Absolute: times as
-    /// such, judged on a GPU at the printed parameters.
-    enum class TimeKind { Algorithmic, Architectural, Absolute };
-    /// `because:` a verdict other than `holds` that is known, where, and its proven cause.
-    struct Known {
-        std::string verdict;                 // "fails", "ambiguous", …
-        std::optional<std::string> device;   // "software" | "gpu"; none: on any
-        std::optional<std::string> profile;  // none: in any
-        std::optional<std::string> scenes;   // "files" | "generated"; none: of any
-        std::string reason;                  // in a sentence or two, for a reader of the document
-        std::string shownBy = {};            // "PAGE.md#ANCHOR" of results/findings; or empty
-    };
-    std::string id;
-    std::string text;  // `says:` the claim in the paper's sense, one line
-    Type type = Type::Order;
-    std::vector<std::string>
-        operands;  // order: a < b < c · ratio: a / b · independent: each · crossover: a, b
-    std::optional<std::string> over;  // trend, crossover: a row axis or column; independent: `of`
-    std::optional<double> low,
-        high;  // what is required of the ratio, exponent, spread (as a fraction), …
-               // same_mean: low is the rate of false alarms
-    bool isLowExcluded = false;            // more_than
-    bool isHighExcluded = false;           // less_than
-    bool isStrict = false;                 // trend: strictly monotonic
-    int direction = 0;                     // trend: −1 decreasing, +1 increasing, 0 by exponent
-    std::optional<std::string> statistic;  // of a cell with several, e.g. mean
-    /// Rows that are read: axis = one of these values. A claim must hold in every group of rows
-    /// that agree on all row axes but `over`.
-    RowFilter at;
-    /// A row axis whose labels the operands name instead of columns; the columns become the row
-    /// axis `column` (kColumnAxis). So rows are compared with rows, a column at a time.
-    std::optional<std::string> across;
-    Device device = Device::Any;
-    std::optional<std::string> profile;  // only in this one
-    std::optional<Origin> origin;        // none: ours
-    std::optional<BoundSource> boundFrom;
-    std::optional<TimeKind> timeKind;
-    std::vector<Known> because;
-    SourceLocation location;
-
-    /// Whether a number stands in what it requires: then the number has a source.
-    bool hasBound() const;
-};
+using claims::ClaimSpec;
 /// "document", "derived", …: the names in configs.
 std::string_view originName(ClaimSpec::Origin origin);
 std::string_view boundSourceName(ClaimSpec::BoundSource source);

@@ -1,6 +1,7 @@
 // The schema for editors: JSON Schema, draft 7, which YAML language servers understand.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -40,9 +41,16 @@ Json propertyOf(const SchemaKey& key, bool isRemovable) {
 Json mapOfSections(const std::vector<const SchemaSection*>& sections) {
     Json properties = Json::object();
     Json required = Json::array();
+    Json types = Json::object();  // kinds of claims may give a key of one name several
     for (const SchemaSection* section : sections) {
         for (const SchemaKey& key : section->keys) {
-            properties[key.name] = propertyOf(key, section->isRemovable);
+            Json& known = types[key.name];
+            if (std::find(known.begin(), known.end(), key.json) == known.end()) {
+                known.push_back(key.json);
+                const Json property = propertyOf(key, section->isRemovable);
+                Json& whole = properties[key.name];
+                whole = whole.is_null() ? property : anyOf({whole, property});
+            }
             // What is required may come from a file that is extended.
             if (key.isRequired() && !section->isRemovable) required.push_back(key.name);
         }

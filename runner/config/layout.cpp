@@ -243,11 +243,16 @@ RowFilter readRowFilter(const Node& at, const std::string& what, const TableName
     return filter;
 }
 
+namespace {
+
+/// Throws Error unless it is one of median, mean, min, max, sum, count, rate.
 void requireStatistic(const Node& name) {
     if (!contains(kStatistics, lineOf(name, "statistic"))) {
         throwNotAllowed(name, "statistic", fmt::format("{}", fmt::join(kStatistics, ", ")));
     }
 }
+
+}  // namespace
 
 void requireCellFormat(const Node& format) {
     const std::string& text = lineOf(format, "format");
@@ -281,14 +286,6 @@ void requireCellFormat(const Node& format) {
         i = end;
     }
     if (count == 0) throwNotAllowed(format, "format", "a statistic in braces, as {median:.4g}");
-}
-
-const std::string& lineOf(const Node& node, std::string_view what) {
-    if (!node.isScalar() || trimmed(node.text()).empty() ||
-        node.text().find('\n') != std::string::npos) {
-        throwNotAllowed(node, what, "one line of text");
-    }
-    return node.text();
 }
 
 std::string optionalLine(const Node& map, std::string_view key, const std::string& what) {

@@ -53,10 +53,10 @@ TableNames tableNames(const Layout& layout, const Vocabulary& vocabulary);
 /// `layout` and `names` are null for a table that is only printed: then any header will do.
 Printed readPrinted(const Node& node, const Layout* layout, const TableNames* names);
 
-std::vector<ClaimSpec> readClaims(const Node& node, const TableNames& names, bool hasPrinted);
-
-/// origin, bound_from, kind and because of a claim; `what` begins the messages.
-void readProvenance(const Node& node, const std::string& what, ClaimSpec& claim);
+/// `isOfDocument`: of a document's table, whose claims are its own and bounds ours, unless they say
+/// otherwise.
+std::vector<ClaimSpec> readClaims(const Node& node, const TableNames& names, bool hasPrinted,
+                                  bool isOfDocument);
 
 std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names);
 
@@ -65,12 +65,7 @@ RowFilter readRowFilter(const Node& at, const std::string& what, const TableName
 
 /// Throws Error unless `format` is text with at least one statistic in braces, as "{mean:.2f}".
 void requireCellFormat(const Node& format);
-/// Throws Error unless it is one of median, mean, min, max, sum, count, rate.
-void requireStatistic(const Node& name);
-
-/// `text` of one line that is not empty.
-const std::string& lineOf(const Node& node, std::string_view what);
-/// The same of a key of `map`; "" where it is not there.
+/// lineOf() of a key of `map`; "" where it is not there.
 std::string optionalLine(const Node& map, std::string_view key, const std::string& what);
 /// Throws Error "WHAT needs 'KEY'" where it is not there.
 const Node& requiredAt(const Node& map, std::string_view key, std::string_view what);

@@ -38,11 +38,11 @@ printed:
     1,2.0
     2,2.0
 claims:
-  H: {{says: the first is small, origin: document, bound_from: text, bound: ok, below: 5, at: {{number: 1}}}}
-  F: {{says: the third is small, origin: document, bound_from: text, bound: ok, below: 2, at: {{number: 3}},
+  H: {{says: the first is small, origin: document, bound_from: text, bound: ok, at_most: 5, at: {{number: 1}}}}
+  F: {{says: the third is small, origin: document, bound_from: text, bound: ok, at_most: 2, at: {{number: 3}},
       because: {{verdict: fails, reason: three is not below two}}}}
-  U: {{says: what was thrown is small, origin: document, bound_from: text, bound: throw, below: 2}}
-  G: {{says: on a GPU it is faster, bound: ok, below: 1, device: gpu}}
+  U: {{says: what was thrown is small, origin: document, bound_from: text, bound: throw, at_most: 2}}
+  G: {{says: on a GPU it is faster, bound: ok, at_most: 1, profile: paper}}
 assumptions:
   view: {{value: front, range: front or back, why: the paper does not say}}
 """

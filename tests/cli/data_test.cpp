@@ -24,8 +24,8 @@ constexpr const char* kLines =
     "bad: {metric: number, where: {behaviour: throw}}}}\n"
     "claims:\n"
     "  grows: {says: it grows, trend: out, over: number, direction: increasing}\n"
-    "  small: {says: it is small, bound: out, below: 3, bound_from: ours}\n"
-    "  bad: {says: what failed, bound: bad, below: 3, bound_from: ours}\n"
+    "  small: {says: it is small, bound: out, at_most: 3, bound_from: ours}\n"
+    "  bad: {says: what failed, bound: bad, at_most: 3, bound_from: ours}\n"
     "plots: [{x: number, y: out}]\n";
 
 class Data : public testing::Test {
@@ -165,7 +165,7 @@ TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
         "sweep: {samples: [4, 16, 64]}\n"
         "layout: {rows: samples, columns: {mse: {metric: mse}}}\n"
         "claims:\n  slope: {says: error falls as 1 / samples, trend: mse, over: samples, "
-        "exponent: [-1.1, -0.9], bound_from: text}\n"
+        "at_least: -1.1, at_most: -0.9, bound_from: text}\n"
         "plots: [{x: samples, y: mse, log: [x, y]}]\n");
     EXPECT_EQ(mockGfxrepro({"check", config}).out,
               config + ": ok, sweep/theirs, 0 cases, 1 claim\n");

@@ -76,7 +76,7 @@ TEST(Faults, APerfectPictureIsInfinitelyGood) {
                         "sweep: {behaviour: [infinite]}\n"
                         "layout:\n  rows: behaviour\n  columns:\n"
                         "    psnr: {metric: psnr_db, format: \"{median:.1f} dB\"}\n"
-                        "claims:\n  C: {says: it is good, bound: psnr, above: 40}\n");
+                        "claims:\n  C: {says: it is good, bound: psnr, at_least: 40}\n");
     const std::string dir = folder.path() / "run";
     const ProcessResult run =
         mockGfxrepro({"reproduce", config, "--device", "software", "--out", dir});

@@ -22,7 +22,7 @@ TEST(Judging, ACauseOfGeneratedScenesIsOfThoseThatWereLoaded) {
         const std::string config = writeMockConfig(
             folder, std::string(lines) +
                         "layout:\n  rows: scene\n  columns: {n: {metric: number}}\n"
-                        "claims:\n  none: {says: there is none, bound: n, below: -1, because: "
+                        "claims:\n  none: {says: there is none, bound: n, at_most: -1, because: "
                         "{verdict: fails, scenes: generated, reason: there is one}}\n");
         const ProcessResult run = mockGfxrepro(
             {"reproduce", config, "--device", "software", "--out", folder.path() / "run"});
@@ -47,7 +47,7 @@ TEST(Judging, TheRunsOwnConfigGivenAgainJudgesAlike) {
         folder,
         "sweep: {number: [1, 2]}\n"
         "layout:\n  rows: number\n  columns: {n: {metric: number}}\n"
-        "claims:\n  small: {says: it is small, bound: n, below: 1, because: {verdict: fails, "
+        "claims:\n  small: {says: it is small, bound: n, at_most: 1, because: {verdict: fails, "
         "reason: two is more}}\n");
     const std::string dir = folder.path() / "run";
     ASSERT_EQ(mockGfxrepro(

@@ -313,7 +313,7 @@ ProcessResult reproduceDemo(const TemporaryFolder& folder, const std::string& mi
             "}\n"
             "layout:\n  rows: behaviour\n  columns:\n    n: {metric: number, format: "
             "\"{median:.0f}\"}\n"
-            "claims:\n  D1: {says: the number is large, bound: n, at: {behaviour: ok}, above: " +
+            "claims:\n  D1: {says: the number is large, bound: n, at: {behaviour: ok}, at_least: " +
             minimum + "}\n");
     return runProgram({GFXREPRO_MOCK_PROGRAM, "reproduce", "demo2026/1", "--device", "software",
                        "--quiet", "--out", (folder.path() / "run").string()},

@@ -20,7 +20,7 @@ class Seal : public ::testing::Test {
         "sweep: {behaviour: [ok]}\nparams: {number: 3}\n"
         "layout:\n  rows: behaviour\n  columns:\n"
         "    n: {metric: number, format: \"{median:.0f}\"}\n"
-        "claims:\n  small: {says: the number is small, bound: n, below: ";
+        "claims:\n  small: {says: the number is small, bound: n, at_most: ";
 
     std::string config(int bound) const {
         return writeMockConfig(folder, kBody + std::to_string(bound) + "}\n");

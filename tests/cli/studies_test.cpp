@@ -17,8 +17,8 @@ using testing::StartsWith;
 const char* const kClaim =
     "sweep: {behaviour: [ok]}\nparams: {number: 3}\n"
     "layout:\n  rows: behaviour\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n"
-    "claims:\n  small: {says: the number is small, bound: n, below: 6}\n"
-    "  any: {says: the number is there, bound: n, above: -1}\n"
+    "claims:\n  small: {says: the number is small, bound: n, at_most: 6}\n"
+    "  any: {says: the number is there, bound: n, at_least: -1}\n"
     "assumptions:\n  number: {range: [0, 10], why: left open}\n"
     "  place: {value: none, range: any, why: left open}\n";
 
@@ -71,7 +71,7 @@ TEST(Sensitivity, CasesThatFailedLeaveItIncomplete) {
         folder,
         "sweep: {number: [1, 2]}\n"
         "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n"
-        "claims:\n  any: {says: the number is there, bound: n, above: -1}\n"
+        "claims:\n  any: {says: the number is there, bound: n, at_least: -1}\n"
         "params: {behaviour: ok}\n"
         "assumptions:\n  behaviour: {range: [throw], why: left open}\n");
     const std::string out = folder.path() / "out";
@@ -127,7 +127,7 @@ TEST(Sensitivity, GoesOnWhereKeptResultsEnd) {
     EXPECT_THAT(kept(), HasSubstr(",pause_ms,1,small,holds,3,"));
     // Another claim: nothing that is kept is of it.
     std::string other = kClaim;
-    other.replace(other.find("below: 6"), 8, "below: 2");
+    other.replace(other.find("at_most: 6"), 10, "at_most: 2");
     EXPECT_THAT(run(other, "c", {}).err, HasSubstr("[1/4] sweep/mock as configured\n"));
 }
 
@@ -138,7 +138,7 @@ TEST(Sensitivity, TablesOfTimesAreNamed) {
         writeMockConfig(folder,
                         "sweep: {behaviour: [ok]}\nmeasure: {lane: timing, processes: 6}\n"
                         "layout: {rows: behaviour, columns: {ms: {metric: wall_time_ms}}}\n"
-                        "claims: {fast: {says: fast, bound: ms, below: 5, kind: absolute}}\n");
+                        "claims: {fast: {says: fast, bound: ms, at_most: 5, kind: absolute}}\n");
     std::vector<std::string> command = sensitivityCommand(config, folder.path() / "out");
     command.insert(command.end(), {"--keep", keep});
     const ProcessResult run = mockGfxrepro(command);
@@ -158,7 +158,7 @@ TEST(Sensitivity, TriesTimesWhereTheyAreAskedForAndKeepsThem) {
         "sweep: {behaviour: [ok]}\nmeasure: {lane: timing, processes: 6}\n"
         "layout: {rows: behaviour, columns: {ms: {metric: wall_time_ms}, n: {metric: number}}}\n"
         "claims:\n  fast: {says: fast, order: ms < 1000 * ms, kind: algorithmic}\n";
-    const std::string few = "  few: {says: few, bound: n, below: 6}\n";
+    const std::string few = "  few: {says: few, bound: n, at_most: 6}\n";
     const std::string open = "assumptions: {number: {range: [1, 10], why: left open}}\n";
     const auto run = [&](const std::string& claims, const std::vector<std::string>& more) {
         std::vector<std::string> command =
@@ -222,8 +222,8 @@ TEST(Sensitivity, WhereNothingCouldBeKeptIsSaidOnce) {
         "t.yaml",
         "table: demo2026/1\ntitle: t\ntechnique: mock\nsweep: {number: [1, 2]}\n"
         "layout:\n  rows: number\n  columns:\n    n: {metric: number}\n"
-        "claims:\n  A: {says: a, origin: ours, bound_from: ours, bound: n, above: -1}\n"
-        "  B: {says: b, origin: ours, bound_from: ours, bound: n, above: -2}\n");
+        "claims:\n  A: {says: a, origin: ours, bound_from: ours, bound: n, at_least: -1}\n"
+        "  B: {says: b, origin: ours, bound_from: ours, bound: n, at_least: -2}\n");
     const std::string run = folder.path() / "run", kept = folder.path() / "results/sensitivity";
     const auto out = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), GFXREPRO_MOCK_PROGRAM);
@@ -251,7 +251,7 @@ TEST(Budget, TablesThatDoNotFitAreLeftOutAndNamed) {
     const TemporaryFolder folder;
     const std::string body =
         "title: t\ntechnique: mock\nlayout:\n  rows: number\n  columns:\n    n: {metric: number}\n"
-        "claims:\n  C: {says: n is there, bound: n, above: -1}\n";
+        "claims:\n  C: {says: n is there, bound: n, at_least: -1}\n";
     const std::string small =
         folder.write("small.yaml", "sweep_of: small\nsweep: {number: [1]}\n" + body);
     const std::string large = folder.write(

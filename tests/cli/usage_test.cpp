@@ -117,7 +117,8 @@ TEST(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
             "layout: {rows: resolution, columns: {voxels: {metric: voxels}}}\n"
             "printed:\n  values: |\n    resolution,voxels\n    " +
                 row +
-                "\nclaims:\n  C: {says: s, origin: document, bound: voxels, above: 1, bound_from: "
+                "\nclaims:\n  C: {says: s, origin: document, bound: voxels, at_least: 1, "
+                "bound_from: "
                 "ours, because: {verdict: fails, reason: " +
                 reason + "}}\n");
         const ProcessResult result = gfxrepro({"check", config});
@@ -132,7 +133,7 @@ TEST(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
               "t.yaml:11: printed: voxels is '12x8'; allowed: as the cell's format writes numbers, "
               "or empty where it is lost\n");
     EXPECT_EQ(errorOf("128,12", "few (sweeps/voxelization-rule.yaml)"),
-              "t.yaml:13:111: 'sweeps/voxelization-rule' is named, and configs/sweeps has none of "
+              "t.yaml:13:114: 'sweeps/voxelization-rule' is named, and configs/sweeps has none of "
               "that name; did you mean 'voxelization-rules'?\n");
     EXPECT_EQ(errorOf("128,12", "few (sweeps/voxelization-rules.yaml)"), "");
     EXPECT_EQ(errorOf("128,12", "few, shown_by: two machines"),

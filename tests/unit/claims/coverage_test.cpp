@@ -8,11 +8,12 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/core/random.h"
-#include "runner/claims/claim_times.h"
+#include "runner/claims/judge.h"
 #include "runner/tables/cell.h"
 #include "runner/tables/frame_times.h"
 #include "tests/support/support.h"
@@ -75,15 +76,26 @@ Group groupOf(const std::vector<std::vector<double>>& truths, const std::vector<
     return group;
 }
 
-/// Whether the verdict on "quantity in the range" is right or open where the truth lies just inside
-/// of the upper bound, and just outside of the lower: then the interval holds it.
-bool isHeld(const Group& group, const Quantity& quantity, Scale scale, double truth) {
-    Requirement atMost, atLeast;
-    atMost.high = truth;
-    atLeast.low = truth;
+ClaimSpec claimOf(const char* kind) {
+    ClaimSpec claim;
+    claim.kind = kindNamed(kind);
+    claim.operands = {"a", "b"};
+    return claim;
+}
+
+Verdict verdictOn(const Group& group, const ClaimSpec& claim,
+                  const std::optional<double>& noise = {}) {
+    return judgeTimes(group, partsOf(claim)[0].onTimes, noise).verdict;
+}
+
+/// Whether the verdict of a kind with bounds is right or open where the truth lies just inside of
+/// the upper bound, and just outside of the lower: then the interval holds it.
+bool isHeld(const Group& group, const char* kind, double truth) {
+    ClaimSpec atMost = claimOf(kind), atLeast = claimOf(kind);
+    atMost.high = atLeast.low = truth;
     // Fails only if the interval lies wholly above, or wholly below, the truth.
-    return judgeTimes(group, asItself("", quantity, atMost, scale), {}).verdict != Verdict::Fails &&
-           judgeTimes(group, asItself("", quantity, atLeast, scale), {}).verdict != Verdict::Fails;
+    return verdictOn(group, atMost) != Verdict::Fails &&
+           verdictOn(group, atLeast) != Verdict::Fails;
 }
 
 class Coverage : public ::testing::TestWithParam<int> {};
@@ -111,7 +123,7 @@ TEST_P(Coverage, OfTheMedianOfACell) {
 TEST_P(Coverage, OfARatio) {
     const double share = shareOf("ratio", GetParam(), [&](Random& random) {
         const Group group = groupOf({{30.0}, {10.0}}, {}, GetParam(), random);
-        return isHeld(group, firstRatio, Scale::Logarithmic, 3.0);
+        return isHeld(group, "ratio", 3.0);
     });
     EXPECT_GE(share, kRequired);
 }
@@ -120,16 +132,18 @@ TEST_P(Coverage, OfAnExponent) {
     const double share = shareOf("exponent", GetParam(), [&](Random& random) {
         const Group group =
             groupOf({{10.0, 20.0, 40.0, 80.0}}, {1.0, 2.0, 4.0, 8.0}, GetParam(), random);
-        return isHeld(group, exponent, Scale::Linear, 1.0);
+        return isHeld(group, "trend", 1.0);
     });
     EXPECT_GE(share, kRequired);
 }
 
 /// Equal times are not said to differ, nor different ones to be equal.
 TEST_P(Coverage, OfWhatIsAlike) {
+    ClaimSpec alike = claimOf("independent");
+    alike.high = 0.25;
     const double share = shareOf("unlike said alike", GetParam(), [&](Random& random) {
         const Group group = groupOf({{10.0, 12.5}}, {1.0, 2.0}, GetParam(), random);
-        return judgeTimes(group, allAlike(0.25), {}).verdict != Verdict::Holds;
+        return verdictOn(group, alike) != Verdict::Holds;
     });
     EXPECT_GE(share, kRequired);
 }
@@ -157,7 +171,7 @@ TEST_P(Coverage, OfTheNoiseOfATable) {
         Requirement any;
         std::vector<double> logs;
         for (const int round : roundsOf(pair)) {
-            logs.push_back(std::log(firstRatio(pointOf(pair, round))));
+            logs.push_back(std::log(pair.operands[0][0].at(round) / pair.operands[1][0].at(round)));
         }
         return std::abs(metrics::centre(logs)) <= std::log1p(*times.noise(tables::Clock::Wall));
     });
@@ -166,16 +180,18 @@ TEST_P(Coverage, OfTheNoiseOfATable) {
 
 /// A trend that is there is rarely denied, one that is not is rarely affirmed.
 TEST_P(Coverage, OfADirection) {
+    ClaimSpec rising = claimOf("trend");
+    rising.direction = 1;
     const double risen = shareOf("flat said to rise", GetParam(), [&](Random& random) {
         const Group group =
             groupOf({std::vector<double>(6, 10.0)}, {1, 2, 3, 4, 5, 6}, GetParam(), random);
-        return judgeTimes(group, rising(1), {}).verdict != Verdict::Holds;
+        return verdictOn(group, rising) != Verdict::Holds;
     });
     EXPECT_GE(risen, atLeast(0.95));
     const double denied = shareOf("plateau denied", GetParam(), [&](Random& random) {
         const Group group =
             groupOf({{10.0, 20.0, 40.0, 40.0, 40.0, 40.0}}, {1, 2, 3, 4, 5, 6}, GetParam(), random);
-        return judgeTimes(group, rising(1), 0.12).verdict != Verdict::Fails;
+        return verdictOn(group, rising, 0.12) != Verdict::Fails;
     });
     EXPECT_GE(denied, atLeast(0.99));
 }

@@ -1,7 +1,7 @@
 // Claims that noisy pictures have the expectation of their truth.
 #include <gtest/gtest.h>
 
-#include "runner/claims/claim_same_mean.h"
+#include "runner/claims/claims.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 

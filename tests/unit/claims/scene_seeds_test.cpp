@@ -14,7 +14,7 @@ layout:
   columns: {share: {metric: share}}
   cell: "{median:.1f}"
 claims:
-  bound: {says: the meadow has many, bound: share, above: 5, at: {scene: grass}}
+  bound: {says: the meadow has many, bound: share, at_least: 5, at: {scene: grass}}
   order: {says: and more than the scan, across: scene, order: scan < grass}
 )";
 

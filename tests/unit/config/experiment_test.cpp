@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runner/claims/kinds/kind.h"
 #include "tests/support/support.h"
 #include "tests/unit/config/experiment_fixture.h"
 
@@ -42,18 +43,19 @@ claims:
     says: rasterization grows slower than the number of triangles
     trend: rasterization_ms
     over: triangles
-    exponent: [0.3, 1.2]
+    at_least: 0.3
+    at_most: 1.2
   V1b:
     says: the image-space steps do not depend on the model
     independent: [texelization_ms, synthesis_ms]
     of: triangles
-    within: 25%
+    at_most: 25%
   V7:
     says: real time even for the largest model
     bound: rasterization_ms + max(texelization_ms, synthesis_ms)
     at: {scene: models/blade}
-    below: 16.6
-    device: gpu
+    at_most: 16.6
+    kind: absolute
 assumptions:
   voxel_padding: {value: 1, range: [0, 2], unit: voxels, why: the thesis does not say how the box is fitted}
 )";
@@ -86,7 +88,6 @@ claims:
   R3a:
     says: the non-redundant images beat depth peeling on the city
     order: non_redundant < depth_peeling
-    statistic: mean
     at: {scene: city, light_ratio: [0.5, 1, 2, 4]}
   R3b: {says: by far, ratio: depth_peeling / non_redundant, at: {scene: city, light_ratio: 1.0}, at_least: 3}
 )";
@@ -110,11 +111,11 @@ printed:
     1,68.63,7213870
     2,147.57,2005672
 claims:
-  T1: {says: fewer triangles, trend: triangles, over: delta_s, exponent: [-2.2, -1.5], direction: decreasing, strictly: true}
-  T3: {says: real time, bound: fps, at: {delta_s: 1}, above: 60, device: gpu}
-  T4: {says: as printed, tolerance: triangles, within: 0.05}
+  T1: {says: fewer triangles, trend: triangles, over: delta_s, at_least: -2.2, at_most: -1.5, direction: decreasing, strictly: true}
+  T3: {says: real time, bound: fps, at: {delta_s: 1}, at_least: 60, kind: absolute}
+  T4: {says: as printed, tolerance: triangles, at_most: 0.05}
   T5: {says: as printed, exact: triangles, equals: printed, profile: paper}
-  T6: {says: cross, crossover: [fps, triangles / 1000], over: delta_s, between: [2, 4]}
+  T6: {says: cross, crossover: [fps, triangles / 1000], over: delta_s, at_least: 2, at_most: 4}
 )";
 
 TEST_F(ExperimentTest, VoxelizationTable) {
@@ -150,17 +151,17 @@ TEST_F(ExperimentTest, VoxelizationTable) {
     EXPECT_EQ(table.printed.hardware, "Radeon 9800 Pro, Pentium 4 2.4 GHz");
 
     ASSERT_EQ(table.claims.size(), 3U);
-    EXPECT_EQ(table.claims[0].type, ClaimSpec::Type::Trend);
+    EXPECT_EQ(table.claims[0].kind->name(), "trend");
     EXPECT_EQ(table.claims[0].over, "triangles");
     EXPECT_EQ(table.claims[0].low, 0.3);
     EXPECT_EQ(table.claims[0].high, 1.2);
     EXPECT_THAT(table.claims[1].operands, ElementsAre("texelization_ms", "synthesis_ms"));
     EXPECT_EQ(table.claims[1].low, std::nullopt);
     EXPECT_EQ(table.claims[1].high, 0.25);
-    EXPECT_EQ(table.claims[2].device, ClaimSpec::Device::Gpu);
+    EXPECT_EQ(table.claims[2].timeKind, ClaimSpec::TimeKind::Absolute);
     EXPECT_EQ(table.claims[2].high, 16.6);
     EXPECT_EQ(table.claims[2].at[0].second[0].text(), "models/blade");
-    EXPECT_EQ(table.claims[2].location.line, 35);
+    EXPECT_EQ(table.claims[2].location.line, 36);
 
     ASSERT_EQ(table.assumptions.size(), 1U);
     EXPECT_EQ(table.assumptions[0].unit, "voxels");
@@ -407,7 +408,7 @@ TEST_F(ExperimentTest, SceneFilesStandBesideTheirConfig) {
         "table: p/1\ntitle: t\ntechnique: x\n"
         "sweep: {scene: [../m.obj, models/duck, /abs/m.glb], exclude: [{scene: /abs/m.glb}]}\n"
         "layout: {rows: scene, columns: {a: {metric: m, where: {scene: ../m.obj}}}}\n"
-        "claims: {C: {says: s, bound: a, above: 1, at: {scene: ../m.obj}}}\n");
+        "claims: {C: {says: s, bound: a, at_least: 1, at: {scene: ../m.obj}}}\n");
     const auto cases = expandCases(table);
     ASSERT_EQ(cases.size(), 2U);
     const std::string file = (folder.path() / "m.obj").string();

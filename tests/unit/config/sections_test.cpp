@@ -215,7 +215,7 @@ TEST_F(ExperimentTest, ColumnsOfSeveralAxesAreJoined) {
         "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: [s], method: [nr, dp], size: [512, "
         "1024]}\n"
         "layout: {rows: scene, columns: [method, size], cell: {metric: m}}\n"
-        "claims: {C: {says: s, ratio: (dp_512 + 1) / nr_512, between: [1, 2]}}\n"
+        "claims: {C: {says: s, ratio: (dp_512 + 1) / nr_512, at_least: 1, at_most: 2}}\n"
         "printed: {values: \"scene,nr_512,dp_1024\\ns,1,2\"}\n";
     const Experiment table = load(text);
     EXPECT_THAT(table.claims[0].operands, ElementsAre("(dp_512 + 1)", "nr_512"));
@@ -235,10 +235,10 @@ TEST_F(ExperimentTest, BadClaims) {
                   "exact, tolerance, crossover, same_mean");
     EXPECT_EQ(claimError("{says: s, order: aa < bb, bound: aa}"),
               head + "32: claim 'C' is of two types, 'order' and 'bound'");
-    EXPECT_EQ(claimError("{says: s, order: aa < bb, above: 1}"),
+    EXPECT_EQ(claimError("{says: s, order: aa < bb, at_least: 1}"),
               head +
-                  "32: claim 'C': unknown key 'above'; allowed: says, at, across, statistic, "
-                  "device, profile, origin, bound_from, kind, because, order");
+                  "32: claim 'C': unknown key 'at_least'; allowed: says, at, across, "
+                  "profile, origin, bound_from, kind, because, order");
     EXPECT_EQ(claimError("{says: s, order: aa}"),
               head + "23: claim 'C': order is aa; allowed: a < b < …");
     EXPECT_EQ(claimError("{says: s, order: aa < bb < aa}"),
@@ -250,15 +250,13 @@ TEST_F(ExperimentTest, BadClaims) {
     EXPECT_EQ(claimError("{says: s, ratio: aa, at_least: 1}"),
               head + "23: claim 'C': ratio is aa; allowed: a / b");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb}"),
-              head + "3: claim 'C' needs at_least, more_than, at_most, less_than or between");
+              head + "3: claim 'C' needs at_least, more_than, at_most or less_than");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 2, at_most: 1}"),
               head + "54: claim 'C': the lower bound exceeds the upper");
-    EXPECT_EQ(claimError("{says: s, ratio: aa / bb, at_least: 2, between: [1, 2]}"),
-              head + "54: claim 'C': between beside other bounds");
     EXPECT_EQ(claimError("{says: s, bound: aa}"),
-              head + "3: claim 'C' needs above, more_than, below or less_than");
-    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, more_than: 1}"),
-              head + "48: claim 'C': 'above' and 'more_than'; one is allowed");
+              head + "3: claim 'C' needs at_least, more_than, at_most or less_than");
+    EXPECT_EQ(claimError("{says: s, bound: aa, at_least: 1, more_than: 1}"),
+              head + "51: claim 'C': 'at_least' and 'more_than'; one is allowed");
     EXPECT_EQ(claimError("{says: s, bound: aa, more_than: 1, less_than: 1}"),
               head + "52: claim 'C': less_than is 1; allowed: bounds with a number between them");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb, more_than: 1, at_most: 1}"),
@@ -270,32 +268,30 @@ TEST_F(ExperimentTest, BadClaims) {
 
 TEST_F(ExperimentTest, BadClaimsOverAxes) {
     const std::string head = "DIR/zju/a.yaml:7:";
-    EXPECT_EQ(claimError("{says: s, trend: aa, exponent: [1, 2]}"),
+    EXPECT_EQ(claimError("{says: s, trend: aa, at_least: 1, at_most: 2}"),
               head + "3: claim 'C' needs 'over'");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: bb}"),
-              head + "3: claim 'C' needs exponent or direction");
+              head + "3: claim 'C' needs at_least, more_than, at_most, less_than or direction");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: scen, direction: decreasing}"),
               head +
                   "33: claim 'C': 'scen' is neither a row axis nor a column; did you mean "
                   "'scene'?");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, direction: down}"),
               head + "48: claim 'C': direction is down; allowed: increasing | decreasing");
-    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, exponent: [1, 2], strictly: true}"),
-              head + "65: claim 'C': strictly needs 'direction'");
-    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, exponent: [2, 1]}"),
-              head + "47: claim 'C': exponent is [2, 1]; allowed: [low, high], low first");
-    for (const char* within : {"25", "x%", "-1%", "[1]"}) {
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, at_least: 1, at_most: 2, strictly: true}"),
+              head + "72: claim 'C': strictly needs 'direction'");
+    for (const char* share : {"25", "x%", "-1%", "[1]"}) {
         EXPECT_EQ(
-            claimError(std::string("{says: s, independent: aa, of: bb, within: ") + within + "}"),
-            head + "49: claim 'C': within is " + within +
+            claimError(std::string("{says: s, independent: aa, of: bb, at_most: ") + share + "}"),
+            head + "50: claim 'C': at_most is " + share +
                 "; allowed: a percentage as 25%, or a fraction 0 … 1");
     }
     EXPECT_EQ(claimError("{says: s, exact: aa}"), head + "3: claim 'C' needs 'equals'");
     EXPECT_EQ(claimError("{says: s, exact: aa, equals: printed}"),
               head + "3: claim 'C' needs printed values");
-    EXPECT_EQ(claimError("{says: s, tolerance: aa, within: 5%}"),
+    EXPECT_EQ(claimError("{says: s, tolerance: aa, at_most: 5%}"),
               head + "3: claim 'C' needs printed values");
-    EXPECT_EQ(claimError("{says: s, crossover: [aa], over: scene, between: [1, 2]}"),
+    EXPECT_EQ(claimError("{says: s, crossover: [aa], over: scene, at_least: 1, at_most: 2}"),
               head + "27: claim 'C': crossover is [aa]; allowed: [a, b]");
     EXPECT_EQ(claimError("{says: s, same_mean: aa, false_alarms: 1%}"), "no error");
     EXPECT_EQ(claimError("{says: s, same_mean: aa}"), head + "3: claim 'C' needs 'false_alarms'");
@@ -308,17 +304,13 @@ TEST_F(ExperimentTest, BadClaimsOverAxes) {
 
 TEST_F(ExperimentTest, BadClaimScopes) {
     const std::string head = "DIR/zju/a.yaml:7:";
-    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, at: {scene: u}}"),
-              head + "49: claim 'C': at.scene is u; allowed: s | t");
-    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, at: {scnene: s}}"),
-              head + "42: claim 'C': at: unknown key 'scnene'; did you mean 'scene'?");
-    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, device: cpu}"),
-              head + "45: claim 'C': device is cpu; allowed: any | gpu");
-    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, profile: fast}"),
-              head + "46: claim 'C': profile is fast; allowed: quick | full | paper");
-    EXPECT_EQ(claimError("{says: s, bound: aa, above: 1, statistic: avg}"),
-              head + "48: statistic is avg; allowed: median, mean, min, max, sum, count, rate");
-    EXPECT_EQ(claimError("{says: \"s\\nt\", bound: aa, above: 1}"),
+    EXPECT_EQ(claimError("{says: s, bound: aa, at_least: 1, at: {scene: u}}"),
+              head + "52: claim 'C': at.scene is u; allowed: s | t");
+    EXPECT_EQ(claimError("{says: s, bound: aa, at_least: 1, at: {scnene: s}}"),
+              head + "45: claim 'C': at: unknown key 'scnene'; did you mean 'scene'?");
+    EXPECT_EQ(claimError("{says: s, bound: aa, at_least: 1, profile: fast}"),
+              head + "49: claim 'C': profile is fast; allowed: quick | full | paper");
+    EXPECT_EQ(claimError("{says: \"s\\nt\", bound: aa, at_least: 1}"),
               head + "13: claim 'C': says is \"s\\nt\"; allowed: one line of text");
 }
 
@@ -338,8 +330,6 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
     EXPECT_EQ(
         error("kind: fast"),
         head + "47: claim 'C': kind is fast; allowed: algorithmic | architectural | absolute");
-    EXPECT_EQ(error("kind: absolute, device: gpu"),
-              head + "65: claim 'C': device beside kind, which decides it");
     EXPECT_EQ(errorWith(layout + "{says: s, order: aa < bb, bound_from: print}"),
               head + "44: claim 'C': bound_from, and there is no number in what it requires");
     EXPECT_EQ(error("because: {verdict: fails}"), head + "50: claim 'C': because needs 'reason'");
@@ -402,13 +392,26 @@ TEST_F(ExperimentTest, ProvenanceOfAClaim) {
     EXPECT_EQ(claim.origin, ClaimSpec::Origin::Derived);
     EXPECT_EQ(claim.boundFrom, ClaimSpec::BoundSource::Print);
     EXPECT_EQ(claim.timeKind, ClaimSpec::TimeKind::Architectural);
-    EXPECT_EQ(claim.device, ClaimSpec::Device::Gpu);
     EXPECT_TRUE(claim.isLowExcluded);
     ASSERT_EQ(claim.because.size(), 1u);
     EXPECT_EQ(claim.because[0].profile, "quick");
     EXPECT_EQ(claim.because[0].shownBy, "s");
     EXPECT_EQ(claim.because[0].scenes, "files");
     EXPECT_EQ(claim.because[0].device, std::nullopt);
+}
+
+TEST_F(ExperimentTest, AClaimIsItsTablesUnlessItSaysOtherwise) {
+    const std::string body =
+        "title: t\ntechnique: voxelization\nsweep: {scene: [s]}\n"
+        "layout: {rows: scene, columns: {aa: m, bb: m}}\n"
+        "claims: {A: {says: s, bound: aa, more_than: 0}, B: {says: s, order: aa < bb}}\n";
+    const Experiment table = load("table: zju/1\n" + body);
+    EXPECT_EQ(table.claims[0].origin, ClaimSpec::Origin::Document);
+    EXPECT_EQ(table.claims[0].boundFrom, ClaimSpec::BoundSource::Ours);
+    EXPECT_EQ(table.claims[1].boundFrom, std::nullopt) << "it requires no number";
+    const Experiment sweep = load("sweep_of: zju\n" + body);
+    EXPECT_EQ(sweep.claims[0].origin, ClaimSpec::Origin::Ours);
+    EXPECT_EQ(sweep.claims[0].boundFrom, std::nullopt);
 }
 
 TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
@@ -420,7 +423,7 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
     };
     const std::string head = "DIR/zju/a.yaml:7:";
     EXPECT_EQ(error("across: e, order: p < q, at: {scene: s, column: [aa, bb]}}"), "no error");
-    EXPECT_EQ(error("across: e, trend: p / q, over: scene, exponent: [1, 2]}"), "no error");
+    EXPECT_EQ(error("across: e, trend: p / q, over: scene, at_least: 1, at_most: 2}"), "no error");
     EXPECT_EQ(error("across: f, order: p < q}"),
               head + "24: claim 'C': across is f; allowed: e | scene");
     EXPECT_EQ(error("across: e, order: aa < bb}"),
@@ -429,6 +432,15 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
               head + "46: claim 'C': at: unknown key 'e'; allowed: scene, column");
     EXPECT_EQ(error("across: e, order: p < q, at: {column: p}}"),
               head + "54: claim 'C': at.column is p; allowed: aa | bb");
+    EXPECT_EQ(error("order: [e=p, e=q], at: {scene: s, column: [aa, bb]}}"), "no error");
+    EXPECT_EQ(error("order: [e=p, scene=s]}"),
+              head + "29: claim 'C' is scene=s; allowed: e=LABEL, as the others");
+    EXPECT_EQ(error("order: [e=p, e=r]}"),
+              head + "29: claim 'C': 'r' is no column; did you mean 'p'? (columns: p, q)");
+    EXPECT_EQ(error("order: [aa, bb]}"),
+              head +
+                  "23: claim 'C': order is [aa, bb]; allowed: a < b < …, or [axis=a, axis=b] of "
+                  "a row axis");
 }
 
 }  // namespace

@@ -42,9 +42,9 @@ printed:
     scene,error,draw_ms
     models/duck,3.00/106,16.0
 claims:
-  A: {says: "a < b & \"c\"", bound: draw_ms, below: 10, at: {scene: models/duck}}
-  B: {says: no, bound: draw_ms, below: 1, at: {scene: models/duck}}
-  C: {says: maybe, bound: draw_ms, below: 1, at: {scene: models/lost}}
+  A: {says: "a < b & \"c\"", bound: draw_ms, at_most: 10, at: {scene: models/duck}, origin: ours, kind: algorithmic}
+  B: {says: no, bound: draw_ms, at_most: 1, at: {scene: models/duck}, origin: ours, kind: algorithmic}
+  C: {says: maybe, bound: draw_ms, at_most: 1, at: {scene: models/lost}, origin: ours, kind: algorithmic}
 assumptions:
   padding: {value: 1, range: [0, 2], unit: voxels, why: "not <said>"}
 )"),
@@ -506,7 +506,8 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
              "<h2>Every claim, in words</h2>",
              "<h3>Later</h3>",
              "<span class=\"says\">no</span> <span class=\"soft code\"><a "
-             "href=\"#zju2005-9.9\">B</a>, document</span>\n<p><span class=\"soft\">why: </span>",
+             "href=\"#zju2005-9.9\">B</a>, document, algorithmic</span>\n<p><span "
+             "class=\"soft\">why: </span>",
              "the time is of another machine (",
              "<h3>Earlier</h3>",
              "<p><span class=\"soft\">shown by </span><a "

@@ -33,9 +33,9 @@ printed:
     scene,error,draw_ms
     models/duck,3.00/106,9.0
 claims:
-  A: {says: "a < b & \"c\"", bound: draw_ms, below: 10, at: {scene: models/duck}}
-  B: {says: no, bound: draw_ms, below: 1, at: {scene: models/duck}, origin: document, bound_from: text, kind: algorithmic, because: {verdict: fails, reason: "slow, measured"}}
-  C: {says: maybe, bound: draw_ms, below: 1, at: {scene: models/lost}}
+  A: {says: "a < b & \"c\"", bound: draw_ms, at_most: 10, at: {scene: models/duck}, origin: ours, kind: algorithmic}
+  B: {says: no, bound: draw_ms, at_most: 1, at: {scene: models/duck}, origin: document, bound_from: text, kind: algorithmic, because: {verdict: fails, reason: "slow, measured"}}
+  C: {says: maybe, bound: draw_ms, at_most: 1, at: {scene: models/lost}, origin: ours, kind: algorithmic}
 assumptions:
   padding: {value: 1, range: [0, 2], unit: voxels, why: "not <said>"}
 )"),
@@ -192,7 +192,8 @@ TEST(Writers, ClaimFiles) {
         run.read("claims.csv"),
         "claim,says,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
         "margin,reason,because,rests_on\n"
-        "A,\"a < b & \"\"c\"\"\",zju2005/9.9,llvmpipe,quick,ours,,,holds,holds,\"8 [8, "
+        "A,\"a < b & \"\"c\"\"\",zju2005/9.9,llvmpipe,quick,ours,ours,algorithmic,holds,holds,\"8 "
+        "[8, "
         "8]\",draw_ms ≤ 10,2,by the clock: "
         "no CPU time was "
         "recorded of these,,"
@@ -201,7 +202,8 @@ TEST(Writers, ClaimFiles) {
         "8]\",draw_ms "
         "≤ 1,-7,by the clock: no CPU time was recorded of these,\"slow, measured\",not tried: "
         "holds then\n"
-        "C,maybe,zju2005/9.9,llvmpipe,quick,ours,,,unmeasured,holds,,draw_ms ≤ 1,,draw_ms at "
+        "C,maybe,zju2005/9.9,llvmpipe,quick,ours,ours,algorithmic,unmeasured,holds,,draw_ms ≤ "
+        "1,,draw_ms at "
         "scene=models/lost: crash (signal <11>),,\n");
     const auto kept = claims::readClaims(run.folder.path() / "claims.csv");
     ASSERT_EQ(kept.size(), results.size());

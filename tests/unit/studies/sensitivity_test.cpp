@@ -242,7 +242,7 @@ run::Plan planWith(const std::string& claim, int number) {
 }
 
 TEST(Sensitivity, KeptResultsOfAnotherCaseOrClaimAreStale) {
-    const run::Plan plan = planWith("{says: a, bound: n, above: 1}", 3);
+    const run::Plan plan = planWith("{says: a, bound: n, at_least: 1}", 3);
     const test::TemporaryFolder folder;
     folder.write("software/quick/p-1.csv", sensitivityCsv({outcome("", "", Verdict::Holds),
                                                            outcome("bias", "5", Verdict::Fails)},
@@ -256,10 +256,10 @@ TEST(Sensitivity, KeptResultsOfAnotherCaseOrClaimAreStale) {
     EXPECT_EQ(own.at({"p/1", "C"}).verdict, Verdict::Holds);
     // What is said of a claim does not matter.
     const run::Plan reworded =
-        planWith("{says: b, bound: n, above: 1, because: {verdict: fails}}", 3);
+        planWith("{says: b, bound: n, at_least: 1, because: {verdict: fails}}", 3);
     EXPECT_EQ(kept(reworded).size(), 1U);
-    EXPECT_TRUE(kept(planWith("{says: a, bound: n, above: 2}", 3)).empty());
-    EXPECT_TRUE(kept(planWith("{says: a, bound: n, above: 1}", 4)).empty());
+    EXPECT_TRUE(kept(planWith("{says: a, bound: n, at_least: 2}", 3)).empty());
+    EXPECT_TRUE(kept(planWith("{says: a, bound: n, at_least: 1}", 4)).empty());
 }
 
 }  // namespace

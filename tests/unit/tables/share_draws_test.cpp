@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "runner/claims/claim_quantity.h"
+#include "runner/claims/judge.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 

@@ -6,12 +6,10 @@
 #include <iterator>
 
 #include "runner/claims/claim_reader.h"
-#include "runner/claims/claim_same_mean.h"
 #include "runner/claims/claims.h"
+#include "runner/config/external_program.h"
 
 namespace gfxrepro::claims {
-
-using config::ClaimSpec;
 
 namespace {
 
@@ -53,16 +51,39 @@ int processesOfPaper(const config::Experiment& experiment) {
 
 /// Why a claim's kind of time is not that of what it reads; empty if it is.
 std::string whyWrongKind(const ClaimSpec& claim, ClaimReader& reader) {
-    if (reader.readsTime() && !claim.timeKind) {
-        return "reads a time and needs 'kind': algorithmic | architectural | absolute";
-    }
-    if (!reader.readsTime() && claim.timeKind) return "has a 'kind' and reads no time";
-    if (claim.timeKind && *claim.timeKind != ClaimSpec::TimeKind::Absolute &&
-        reader.asksForATimeAsSuch()) {
+    if (!reader.readsTime()) return claim.timeKind ? "has a 'kind' and reads no time" : "";
+    if (!reader.timeKind()) return "reads a time and needs 'kind': algorithmic | architectural";
+    if (*reader.timeKind() != ClaimSpec::TimeKind::Absolute && reader.asksForATimeAsSuch()) {
         return "holds a time against a number, which neither a count of work nor another machine "
                "decides; its 'kind' is absolute";
     }
     return "";
+}
+
+/// Of the technique or program of the experiment.
+Sampling samplingOf(const config::Experiment& experiment, const ClaimReader& reader) {
+    Sampling sampling{reader.rowCount(), experiment.measure.frames};
+    const Node& program = config::programOf(experiment);
+    if (program.isNull()) return sampling;
+    sampling.truthFrames = 0;
+    for (const config::ProgramPicture& picture : config::readProgram(program).pictures) {
+        if (picture.truthFrames < 2) continue;
+        const bool isFirst = *sampling.truthFrames == 0;
+        sampling.truthFrames =
+            isFirst ? picture.truthFrames : std::min(*sampling.truthFrames, picture.truthFrames);
+    }
+    return sampling;
+}
+
+/// What its kind refuses of a claim.
+std::string whyRefused(const ClaimSpec& claim, const config::Experiment& experiment,
+                       const ClaimReader& reader) {
+    const Kind& kind = *claim.kind;
+    if (kind.metric && !reader.readsOnly(kind.metric)) {
+        return fmt::format("is '{}': allowed: a column of the metric {}, without 'scale' and alone",
+                           kind.name(), kind.metric);
+    }
+    return kind.refused ? kind.refused(claim, samplingOf(experiment, reader)) : "";
 }
 
 /// The table with what was printed where measurements stand, each a number without an interval.
@@ -126,15 +147,22 @@ bool isAtBound(const ClaimSpec& claim, const tables::Table& table) {
 /// not all that it reads is there.
 std::string whyNotOfPrint(const ClaimSpec& claim, const tables::Table& table) {
     if (claim.origin == ClaimSpec::Origin::Ours) return "";
-    if (claim.type == ClaimSpec::Type::Tolerance)
-        return "how far from it a tolerance may be is not";
-    if (claim.statistic) return "which of the printed statistics it is cannot be told";
     const ClaimResult result = judgedOnPrint(claim, table);
     if (result.verdict == Verdict::Fails) {
         return "what is printed does not meet it: " + result.measured;
     }
     const bool isGiven = result.verdict != Verdict::Holds || isAtBound(claim, table);
     return isGiven ? "" : "what is printed is another number: " + result.measured;
+}
+
+bool isPrinted(const tables::Cell& cell) {
+    return cell.printed.has_value();
+}
+
+/// Perhaps scaled, a recorded percentage, which has an interval where it is a share of a count.
+bool isShare(const tables::Cell& cell) {
+    const bool isScaled = cell.metric.empty() && cell.unit.empty();
+    return isScaled || cell.metric.ends_with("_pct");
 }
 
 /// Scenes that a verdict in the profile, or in any, is taken over.
@@ -146,6 +174,12 @@ int seedsAtMost(const config::Experiment& experiment, const std::optional<std::s
 }
 
 }  // namespace
+
+bool isOfTime(const ClaimSpec& claim, const tables::Table& table) {
+    const tables::Table read = tableFor(claim, table);
+    return isReadable(claim, read) ? ClaimReader(claim, read).readsTime()
+                                   : claim.timeKind.has_value();
+}
 
 void requireJudgeable(const config::Experiment& experiment, const tables::Table& table) {
     for (const ClaimSpec& claim : experiment.claims) {
@@ -165,20 +199,16 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
         const auto complain = [&](const std::string& what) {
             throw Error(claim.location, fmt::format("claim '{}' {}", claim.id, what));
         };
-        if (isOfDocument && !claim.origin) {
-            complain("needs 'origin': document | derived | ours | definition | calibrated");
-        }
-        if (isOfDocument && claim.hasBound() && !claim.boundFrom) {
-            complain("requires a number and needs 'bound_from': print | text | ours");
-        }
         if (claim.boundFrom == ClaimSpec::BoundSource::Print && experiment.printed.rows.empty()) {
             complain("has its bound from print, and the table has no printed values: text | ours");
         }
-        if (claim.type == ClaimSpec::Type::Tolerance && *claim.high >= 1.0) {
-            complain("is within 100 % of what is printed or more, so that nothing is too little");
-        }
+        if (!isReadable(claim, read = tableFor(claim, table))) continue;
+        ClaimReader reader(claim, read);
+        if (!reader.readsAny()) continue;  // its rows are not of this profile
+        const auto timeKind = reader.timeKind();
+        const bool isOfGpu = timeKind && *timeKind != ClaimSpec::TimeKind::Algorithmic;
         for (const ClaimSpec::Known& known : claim.because) {
-            if (claim.device == ClaimSpec::Device::Gpu && known.device == "software") {
+            if (isOfGpu && known.device == "software") {
                 complain("has a reason for software ('because'), and a GPU alone judges it");
             }
             if (claim.profile && known.profile && known.profile != claim.profile) {
@@ -186,14 +216,10 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
                                      *known.profile, *claim.profile));
             }
         }
-        if (!isReadable(claim, read = tableFor(claim, table))) continue;
-        ClaimReader reader(claim, read);
-        if (!reader.readsAny()) continue;  // its rows are not of this profile
-        if (claim.type == ClaimSpec::Type::SameMean) {
-            const std::string why = whyNotTestable(experiment, claim, reader);
-            if (!why.empty()) complain(why);
+        if (const std::string why = whyRefused(claim, experiment, reader); !why.empty()) {
+            complain(why);
         }
-        if (claim.boundFrom == ClaimSpec::BoundSource::Print && !reader.readsPrinted()) {
+        if (claim.boundFrom == ClaimSpec::BoundSource::Print && !reader.readsSome(isPrinted)) {
             complain(
                 "has its bound from print, and reads no cell with a printed value: text | ours");
         }
@@ -205,7 +231,7 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
         }
         for (const ClaimSpec::Known& known : claim.because) {
             if (known.verdict != verdictName(Verdict::Ambiguous) || reader.readsTime()) continue;
-            if (reader.readsShare() || seedsAtMost(experiment, known.profile) > 1) continue;
+            if (reader.readsSome(isShare) || seedsAtMost(experiment, known.profile) > 1) continue;
             complain(
                 "is known as ambiguous, and reads neither a time nor a share, of one scene: a "
                 "number without an interval holds or fails");
@@ -224,7 +250,7 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
                 "('printed.calibrated'): its origin is calibrated");
         }
         if (const std::string why = whyWrongKind(claim, reader); !why.empty()) complain(why);
-        if (isOfDocument && claim.timeKind && paperProcesses < config::kFewestRounds) {
+        if (isOfDocument && timeKind && paperProcesses < config::kFewestRounds) {
             complain(
                 fmt::format("is of a time: the paper profile needs processes: {} or more, has {}",
                             config::kFewestRounds, paperProcesses));

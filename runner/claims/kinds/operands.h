@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gfxrepro::config {
+namespace gfxrepro::claims {
 
 /// A column, or what stands between columns: a number, the name of a function, or one character.
 struct OperandPiece {
@@ -31,4 +31,4 @@ std::vector<OperandPiece> operandPieces(std::string_view expression,
 std::vector<std::string> sidesOf(std::string_view text, std::string_view separator,
                                  std::span<const std::string> labels);
 
-}  // namespace gfxrepro::config
+}  // namespace gfxrepro::claims

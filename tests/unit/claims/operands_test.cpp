@@ -1,11 +1,11 @@
-#include "runner/config/claim_operands.h"
+#include "runner/claims/kinds/operands.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "engine/core/text.h"
 
-namespace gfxrepro::config {
+namespace gfxrepro::claims {
 namespace {
 
 using testing::ElementsAre;
@@ -69,4 +69,4 @@ TEST(ClaimOperands, SidesAreApartOutsideOfParenthesesAndColumns) {
 }
 
 }  // namespace
-}  // namespace gfxrepro::config
+}  // namespace gfxrepro::claims

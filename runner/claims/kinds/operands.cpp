@@ -1,4 +1,4 @@
-#include "runner/config/claim_operands.h"
+#include "runner/claims/kinds/operands.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "engine/core/text.h"
 
-namespace gfxrepro::config {
+namespace gfxrepro::claims {
 
 namespace {
 
@@ -111,4 +111,4 @@ std::vector<std::string> sidesOf(std::string_view text, std::string_view separat
     return sides;
 }
 
-}  // namespace gfxrepro::config
+}  // namespace gfxrepro::claims

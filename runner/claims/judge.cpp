@@ -1,0 +1,250 @@
+#include "runner/claims/judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/tables/cell.h"
+
+namespace gfxrepro::claims {
+
+namespace {
+
+GroupPoint pointOf(const Group& group, const std::function<double(const Sampled&)>& pick) {
+    GroupPoint point;
+    for (const auto& operand : group.operands) {
+        std::vector<double>& values = point.operands.emplace_back();
+        for (const Sampled& sampled : operand) values.push_back(pick(sampled));
+    }
+    for (const Sampled& sampled : group.x) point.x.push_back(pick(sampled));
+    return point;
+}
+
+/// "2 [1.9, 2.1]" with an interval, "2 (1.9 … 2.1)" with a range.
+std::string boundedText(double point, tables::Bounds bounds, const metrics::Interval& interval,
+                        const Requirement& requirement) {
+    const std::string text = quantityText(point, requirement);
+    if (bounds == tables::Bounds::None) return text;
+    return fmt::format(
+        fmt::runtime(bounds == tables::Bounds::Interval ? "{} [{}, {}]" : "{} ({} … {})"), text,
+        quantityText(interval.low, requirement), quantityText(interval.high, requirement));
+}
+
+/// To the nearest bound, as the share by which a time would differ.
+double ratioToBound(double value, const Requirement& requirement) {
+    double nearest = kInfinity;
+    for (const double bound : {requirement.low, requirement.high}) {
+        if (!std::isfinite(bound) || !std::isfinite(value)) continue;
+        const double larger = std::max(std::abs(value), std::abs(bound));
+        const double distance = value > 0.0 && bound > 0.0 ? std::abs(std::log(value / bound))
+                                : larger > 0.0             ? std::abs(value - bound) / larger
+                                                           : 0.0;
+        nearest = std::min(nearest, distance);
+    }
+    return nearest;
+}
+
+/// The value in the middle of the rounds and its interval, on the contrast's scale.
+struct Told {
+    double middle = 0.0;
+    metrics::Interval interval;
+};
+
+Told tell(std::vector<double> rounds, Scale scale) {
+    const bool isFinite =
+        std::ranges::all_of(rounds, [](double value) { return std::isfinite(value); });
+    if (scale == Scale::Ranks || !isFinite) {
+        return {metrics::summarize(rounds, metrics::Statistic::Median),
+                *metrics::medianInterval(rounds)};
+    }
+    const bool isLogarithmic = scale == Scale::Logarithmic && arePositive(rounds);
+    if (isLogarithmic) {
+        for (double& value : rounds) value = std::log(value);
+    }
+    Told told{metrics::centre(rounds), *metrics::centreInterval(rounds)};
+    if (isLogarithmic) {
+        told = {std::exp(told.middle), {std::exp(told.interval.low), std::exp(told.interval.high)}};
+    }
+    return told;
+}
+
+/// A verdict, where times are far enough apart for one.
+void decide(const Contrast& contrast, const Told& told, double distance, double noise,
+            Judgement& judgement) {
+    judgement.verdict = verdictOf(told.interval, contrast.requirement);
+    if (contrast.isRefutation) {
+        // Only what surely contradicts counts; within the noise it leaves the claim open.
+        if (judgement.verdict != Verdict::Fails) {
+            judgement.verdict = Verdict::Holds;
+        } else if (distanceToBound(told.interval.high, contrast.requirement) <= noise) {
+            judgement.verdict = Verdict::Ambiguous;
+            judgement.why = "a step back in every round, within the noise of this table";
+        }
+        return;
+    }
+    const bool isDecided =
+        judgement.verdict == Verdict::Holds || judgement.verdict == Verdict::Fails;
+    if (!isDecided || distance >= noise) return;
+    judgement.verdict = Verdict::Ambiguous;
+    judgement.why =
+        fmt::format("nearer to the bound than the noise of this table, {:.3g} %", 100.0 * noise);
+}
+
+std::string whyTooFew(std::size_t rounds) {
+    if (rounds < 2) return "one sample of a time decides nothing";
+    return fmt::format("a range of {} processes; an interval needs {}", rounds,
+                       metrics::kFewestForInterval);
+}
+
+Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
+                        const Contrast& contrast, double noise) {
+    const GroupPoint whole = pointOf(group);
+    double middle = contrast.quantity(whole);
+    std::vector<double> values;
+    for (const int round : rounds) values.push_back(contrast.quantity(pointOf(group, round)));
+    Judgement judgement;
+    if (std::isnan(middle) ||
+        std::ranges::any_of(values, [](double value) { return std::isnan(value); })) {
+        judgement.measured = "not a number";
+        return judgement;
+    }
+    const Requirement& requirement = contrast.requirement;
+    if (values.size() < metrics::kFewestForInterval) {
+        judgement.verdict = Verdict::Ambiguous;
+        judgement.why = whyTooFew(values.size());
+        metrics::Interval range{middle, middle};
+        if (values.size() > 1) range = {std::ranges::min(values), std::ranges::max(values)};
+        judgement.measured =
+            boundedText(middle, values.size() > 1 ? tables::Bounds::Range : tables::Bounds::None,
+                        range, requirement);
+    } else {
+        const Told told = tell(values, contrast.scale);
+        middle = told.middle;
+        const double distance = contrast.distance ? contrast.distance(whole, middle)
+                                                  : ratioToBound(middle, requirement);
+        decide(contrast, told, distance, noise, judgement);
+        judgement.measured =
+            boundedText(middle, tables::Bounds::Interval, told.interval, requirement);
+    }
+    if (!contrast.name.empty()) judgement.measured = contrast.name + " " + judgement.measured;
+    judgement.isAbsent = requirement.isInfinityAbsence && std::isinf(middle);
+    judgement.margin = std::min(middle - requirement.low, requirement.high - middle);
+    judgement.marginText = quantityText(judgement.margin, requirement);
+    return judgement;
+}
+
+}  // namespace
+
+bool keepRoundsOrDraws(std::span<Sampled* const> values) {
+    const bool hasRounds = std::ranges::any_of(
+        values, [](const Sampled* value) { return !value->rounds.empty() && !value->areDraws; });
+    if (!hasRounds) return std::ranges::any_of(values, &Sampled::areDraws);
+    for (Sampled* value : values) {
+        if (value->areDraws) *value = {value->point, {}, false};
+    }
+    return false;
+}
+
+std::vector<int> commonRounds(std::span<const Sampled> values) {
+    std::map<int, std::size_t> counts;
+    std::size_t sampledCount = 0;
+    for (const Sampled& sampled : values) {
+        sampledCount += sampled.rounds.empty() ? 0 : 1;
+        for (const auto& [round, value] : sampled.rounds) ++counts[round];
+    }
+    std::vector<int> rounds;
+    for (const auto& [round, count] : counts) {
+        if (count == sampledCount) rounds.push_back(round);
+    }
+    return rounds;
+}
+
+GroupPoint pointOf(const Group& group, int round) {
+    return pointOf(group, [round](const Sampled& sampled) { return sampled.at(round); });
+}
+
+GroupPoint pointOf(const Group& group) {
+    return pointOf(group, [](const Sampled& sampled) { return sampled.point; });
+}
+
+std::vector<int> roundsOf(const Group& group) {
+    std::vector<Sampled> all = group.x;
+    for (const auto& operand : group.operands)
+        all.insert(all.end(), operand.begin(), operand.end());
+    return commonRounds(all);
+}
+
+Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirement) {
+    const bool isAboveLow = requirement.isLowExcluded ? interval.low > requirement.low
+                                                      : interval.low >= requirement.low;
+    const bool isBelowLow = requirement.isLowExcluded ? interval.high <= requirement.low
+                                                      : interval.high < requirement.low;
+    const bool isBelowHigh = requirement.isHighExcluded ? interval.high < requirement.high
+                                                        : interval.high <= requirement.high;
+    const bool isAboveHigh = requirement.isHighExcluded ? interval.low >= requirement.high
+                                                        : interval.low > requirement.high;
+    // A crossing that is not there lies outside of any range, an open one too.
+    const bool isAbsent =
+        requirement.isInfinityAbsence && std::isinf(interval.low) && interval.low == interval.high;
+    const bool isPartlyAbsent =
+        requirement.isInfinityAbsence && (std::isinf(interval.low) || std::isinf(interval.high));
+    if (isBelowLow || isAboveHigh || isAbsent) return Verdict::Fails;
+    if (isAboveLow && isBelowHigh && !isPartlyAbsent) return Verdict::Holds;
+    return Verdict::Ambiguous;
+}
+
+Judgement judge(Group group, const Quantity& quantity, const Requirement& requirement) {
+    std::vector<Sampled*> all;
+    for (auto& operand : group.operands)
+        for (Sampled& sampled : operand) all.push_back(&sampled);
+    const bool areDraws = keepRoundsOrDraws(all) && !requirement.isOfCounts;
+    for (Sampled* sampled : all) {
+        if (sampled->areDraws && !areDraws) *sampled = {sampled->point, {}, false};
+    }
+    Judgement judgement;
+    const double point = quantity(pointOf(group));
+    std::vector<double> values;
+    for (const int round : roundsOf(group)) values.push_back(quantity(pointOf(group, round)));
+    const auto isNotANumber = [](double value) { return std::isnan(value); };
+    if (std::isnan(point) || std::ranges::any_of(values, isNotANumber)) {
+        judgement.measured = "not a number";
+        return judgement;
+    }
+    judgement.isSingleSample = values.empty();
+    judgement.isAbsent = requirement.isInfinityAbsence && std::isinf(point);
+    metrics::Interval interval{point, point};
+    tables::Bounds bounds = tables::Bounds::None;
+    const bool isEqual = std::ranges::all_of(values, [&](double value) { return value == point; });
+    if (!isEqual && areDraws) {
+        bounds = tables::Bounds::Interval;
+        interval = tables::drawsInterval(values);
+    } else if (!isEqual) {
+        const auto told = metrics::medianInterval(values);
+        const auto [low, high] = std::ranges::minmax(values);
+        bounds = told ? tables::Bounds::Interval : tables::Bounds::Range;
+        interval = told.value_or(metrics::Interval{low, high});
+    }
+    judgement.verdict = verdictOf(interval, requirement);
+    judgement.measured = boundedText(point, bounds, interval, requirement);
+    judgement.margin = std::min(point - requirement.low, requirement.high - point);
+    judgement.marginText = quantityText(judgement.margin, requirement);
+    return judgement;
+}
+
+Judgement judgeTimes(const Group& group, const Contrasts& contrasts, std::optional<double> noise) {
+    const std::vector<int> rounds = roundsOf(group);
+    std::optional<Judgement> worst;
+    for (const Contrast& contrast : contrasts(pointOf(group))) {
+        Judgement judgement = judgeContrast(group, rounds, contrast, noise.value_or(0.0));
+        const auto isWorse = [&] {
+            const int left = severity(judgement.verdict), right = severity(worst->verdict);
+            return left != right ? left > right
+                                 : judgement.margin < worst->margin && !contrast.isRefutation;
+        };
+        if (!worst || isWorse()) worst = std::move(judgement);
+    }
+    return worst.value_or(Judgement{});
+}
+
+}  // namespace gfxrepro::claims

@@ -1,0 +1,79 @@
+// The verdict on the quantity of a group of rows: of times, and of everything else.
+//
+// Times are judged on rounds, in which all that is compared was measured alternately. A quantity
+// is computed in each round of its own: what slows a whole round, an hour or a
+// neighbour, falls out of a ratio of two times of that round. The interval is over rounds, by
+// Wilcoxon's signed ranks (metrics::centreInterval) on the scale on which they scatter evenly: a
+// ratio of two equally noisy times is as likely 1.1 as 1 / 1.1. It holds the truth in 95 % from
+// six rounds on, which tests/unit/claims/coverage_test.cpp shows.
+//
+// Extreme values (the smallest of many gaps or steps, the spread) move with the number of rows and
+// the noise; times are judged without them, each comparison by its own interval. That all must
+// hold needs no correction for their number (intersection-union test: Berger 1982, "Multiparameter
+// hypothesis testing and acceptance sampling", Technometrics 24). That one fails is the union of
+// theirs: among k comparisons on their bounds, up to k times the 2.5 % of one end.
+//
+// Rounds that end by a relative error are no fixed number; FrameTimes::isKnownTo says by which rule
+// their intervals hold the truth as often, too.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/metrics/statistics.h"
+#include "runner/claims/claims.h"
+#include "runner/claims/kinds/kind.h"
+
+namespace gfxrepro::claims {
+
+/// A value, and what it was in each round (none: it is taken as certain).
+struct Sampled {
+    double point = 0.0;
+    std::map<int, double> rounds;
+    bool areDraws = false;  // they are of shares that were counted once (share_draws.h)
+
+    double at(int round) const { return rounds.empty() ? point : rounds.at(round); }
+};
+
+/// Where a value has rounds of its own, drops the draws of others: the two have nothing to do with
+/// each other, and rounds tell more. Whether draws are left.
+bool keepRoundsOrDraws(std::span<Sampled* const> values);
+
+/// The rounds that all of them have but those that are certain.
+std::vector<int> commonRounds(std::span<const Sampled> values);
+
+using Group = GroupOf<Sampled>;
+/// The group in one round; and by its values alone.
+GroupPoint pointOf(const Group& group, int round);
+GroupPoint pointOf(const Group& group);
+/// The rounds that all of its values have but those that are certain.
+std::vector<int> roundsOf(const Group& group);
+
+/// The verdict on one quantity of one group.
+struct Judgement {
+    Verdict verdict = Verdict::Unmeasured;
+    std::string measured;
+    double margin = 0.0;  // to the nearest bound, negative outside
+    std::string marginText;
+    bool isSingleSample = false;
+    bool isAbsent = false;  // a crossing that is not there
+    std::string why;        // of an ambiguous verdict on times; empty: the interval tells
+};
+/// What is inside of the range wholly holds, wholly outside fails, else is ambiguous.
+Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirement);
+
+/// Of values that are no times, and the same in every run of the program: the quantity itself is
+/// judged, of one sample too. Where it differs between rounds all the same (memory, the order of a
+/// parallel sum), it is judged by what it was in them: their medianInterval, or the range of fewer.
+/// Shares that were counted once are judged by the interval of the quantity over their draws.
+Judgement judge(Group group, const Quantity& quantity, const Requirement& requirement);
+
+/// The worst of the contrasts. With fewer than metrics::kFewestForInterval rounds nothing is
+/// decided; nor where times would have to differ by less than `noise`, the table's, for another
+/// verdict.
+Judgement judgeTimes(const Group& group, const Contrasts& contrasts, std::optional<double> noise);
+
+}  // namespace gfxrepro::claims

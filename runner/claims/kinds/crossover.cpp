@@ -1,0 +1,62 @@
+// crossover: two change places along x.
+#include <cmath>
+
+#include "engine/core/text.h"
+#include "runner/claims/kinds/kind.h"
+
+namespace gfxrepro::claims {
+
+namespace {
+
+using namespace types;
+
+void readCrossover(const ClaimKeys& keys, ClaimSpec& claim) {
+    keys.readList(claim);
+    if (claim.operands.size() != 2) keys.refuse(keys.operands, "crossover", "[a, b]");
+    keys.readOver("over", claim);
+    keys.readBounds(claim);
+}
+
+/// x where a − b changes its sign the first time, by interpolation of log(a/b) over log(x). Without
+/// a change, +∞ where the two come nearer with x, else −∞. Not-a-number unless all are positive.
+double crossing(const GroupPoint& group) {
+    const std::vector<double>& a = group.operands[0];
+    const std::vector<double>& b = group.operands[1];
+    if (!arePositive(group.x) || !arePositive(a) || !arePositive(b)) return kNan;
+    const std::vector<std::size_t> rows = rowsByX(group);
+    const auto difference = [&](std::size_t i) { return std::log(a[rows[i]] / b[rows[i]]); };
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (std::isnan(difference(i))) return kNan;
+    }
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        const double before = difference(i - 1);
+        const double after = difference(i);
+        if (before == 0.0) return group.x[rows[i - 1]];
+        if (after != 0.0 && (before < 0.0) == (after < 0.0)) continue;
+        return std::exp(std::lerp(std::log(group.x[rows[i - 1]]), std::log(group.x[rows[i]]),
+                                  before / (before - after)));
+    }
+    const bool isNearer = std::abs(difference(rows.size() - 1)) < std::abs(difference(0));
+    return isNearer ? kInfinity : -kInfinity;
+}
+
+std::vector<ClaimPart> crossoverParts(const ClaimSpec& claim) {
+    const std::string name =
+        "crossing of " + joined(claim.operands, " and ") + " at " + claim.over.value_or("");
+    ClaimPart part{{0, 1}, crossing, rangeOf(claim, name), "crossing at"};
+    part.requirement.isInfinityAbsence = true;
+    part.needsX = true;
+    part.minRows = 2;
+    return {part};
+}
+
+}  // namespace
+
+Kind crossover() {
+    return {boundedSection({"crossover", "[a, b]", "", "the two change places, within bounds",
+                            tupleOf(text(), 2)},
+                           {overKey("over", "along which")}),
+            readCrossover, crossoverParts, Kind::Compares::Operands, Scale::Ranks};
+}
+
+}  // namespace gfxrepro::claims

@@ -1,0 +1,54 @@
+// exact: is the printed number, or a given one.
+#include <cmath>
+
+#include "runner/claims/kinds/kind.h"
+
+namespace gfxrepro::claims {
+
+namespace {
+
+using namespace types;
+
+void readExact(const ClaimKeys& keys, ClaimSpec& claim) {
+    keys.readOne(claim);
+    const Node& equals = keys.require("equals");
+    if (equals.isScalar() && equals.text() == "printed") return keys.requirePrinted();
+    if (!equals.tryDouble()) keys.refuse(equals, "equals", "a number, or printed");
+    claim.low = claim.high = equals.tryDouble();
+}
+
+/// The largest |measured − expected| over the rows; operands are these two.
+double largestDifference(const GroupPoint& group) {
+    // A scale such as 1/1024² may round the last bit of a number that was measured exactly.
+    constexpr double kRounding = 1e-12;
+    double largest = 0.0;
+    for (std::size_t row = 0; row < group.operands[0].size(); ++row) {
+        const double expected = group.operands[1][row];
+        if (group.operands[0][row] == expected) continue;
+        const double difference = std::abs(group.operands[0][row] - expected);
+        const bool isRounding = difference <= kRounding * std::abs(expected);
+        if (!isRounding || std::isinf(difference)) largest = greater(largest, difference);
+    }
+    return largest;
+}
+
+std::vector<ClaimPart> exactParts(const ClaimSpec& claim) {
+    ClaimPart part{{0}, largestDifference, {}, "largest difference"};
+    part.requirement.high = 0.0;
+    part.requirement.isOfCounts = true;
+    part.requirement.text = claim.operands[0] + " = " +
+                            (claim.low ? quantityText(*claim.low, part.requirement) : "printed");
+    part.needsExpected = true;
+    return {part};
+}
+
+}  // namespace
+
+Kind exact() {
+    return {sectionOf({"exact", "a", "", "is exactly so", text()},
+                      {{"equals", "number | printed", "required", "what it is",
+                        anyOf({number(), choice({"printed"})})}}),
+            readExact, exactParts, Kind::Compares::Values};
+}
+
+}  // namespace gfxrepro::claims

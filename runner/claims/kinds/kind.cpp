@@ -1,0 +1,244 @@
+#include "runner/claims/kinds/kind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/core/checks.h"
+#include "engine/core/text.h"
+#include "runner/claims/kinds/operands.h"
+
+namespace gfxrepro::claims {
+
+using namespace types;
+using Texts = std::vector<std::string>;
+
+// The kinds, each in a file of its name: to add one, its name in both lists.
+Kind order(), ratio(), trend(), independent(), bound(), exact(), tolerance(), crossover(),
+    sameMean();
+
+const std::vector<Kind>& kinds() {
+    static const std::vector<Kind> all = {order(), ratio(),     trend(),     independent(), bound(),
+                                          exact(), tolerance(), crossover(), sameMean()};
+    return all;
+}
+
+const Kind* kindNamed(std::string_view name) {
+    const auto found = std::ranges::find(kinds(), name, &Kind::name);
+    return found == kinds().end() ? nullptr : &*found;
+}
+
+std::vector<ClaimPart> partsOf(const ClaimSpec& claim) {
+    std::vector<ClaimPart> parts = claim.kind->parts(claim);
+    for (ClaimPart& part : parts) {
+        if (part.onTimes) continue;
+        part.onTimes =
+            asItself(part.measuredName, part.quantity, part.requirement, claim.kind->scale);
+    }
+    return parts;
+}
+
+// Keys
+
+const Node& ClaimKeys::require(std::string_view key) const {
+    const Node* value = node.find(key);
+    if (!value) throw Error(where, fmt::format("{} needs '{}'", what, key));
+    return *value;
+}
+
+void ClaimKeys::requirePrinted() const {
+    if (!hasPrinted) throw Error(where, what + " needs printed values");
+}
+
+void ClaimKeys::refuse(const Node& value, std::string_view key, std::string_view allowed) const {
+    throwNotAllowed(value, key.empty() ? what : fmt::format("{}: {}", what, key), allowed);
+}
+
+void ClaimKeys::fail(const Node& at, const std::string& text) const {
+    throw Error(at.location(), what + ": " + text);
+}
+
+void ClaimKeys::readOne(ClaimSpec& claim) const {
+    addOperands(operands, {lineOf(operands, what)}, claim);
+}
+
+void ClaimKeys::readList(ClaimSpec& claim) const {
+    const bool isList = operands.isSequence();
+    for (const Node& item : isList ? operands.items() : Node::Sequence{operands}) {
+        addOperands(item, {lineOf(item, what)}, claim);
+    }
+    if (claim.operands.empty()) refuse(operands, "", "a column, or a list");
+}
+
+void ClaimKeys::readSides(std::string_view separator, ClaimSpec& claim) const {
+    const std::string& text = lineOf(operands, what + ": " + claim.kind->name());
+    addOperands(operands, sidesOf(text, separator, columns), claim);
+}
+
+/// The columns that an operand names must be there, as far as they are known.
+void ClaimKeys::addOperands(const Node& at, const Texts& texts, ClaimSpec& claim) const {
+    for (const std::string& operand : texts) {
+        if (operand.empty()) refuse(at, "", "an expression over columns");
+        for (const OperandPiece& piece : operandPieces(operand, columns)) {
+            if (hasAllColumns && !piece.problem.empty()) fail(at, piece.problem);
+        }
+        if (std::ranges::find(claim.operands, operand) != claim.operands.end()) {
+            throw Error(at.location(), fmt::format("{} compares '{}' with itself", what, operand));
+        }
+        claim.operands.push_back(operand);
+    }
+}
+
+void ClaimKeys::readOver(std::string_view key, ClaimSpec& claim) const {
+    const Node& over = require(key);
+    const std::string& name = lineOf(over, fmt::format("{}: {}", what, key));
+    Texts known = rowAxes;
+    known.insert(known.end(), columns.begin(), columns.end());
+    if (hasAllColumns && std::ranges::find(known, name) == known.end()) {
+        fail(over, fmt::format("'{}' is neither a row axis nor a column{}", name,
+                               suggestion(name, known)));
+    }
+    claim.over = name;
+}
+
+void ClaimKeys::readBounds(ClaimSpec& claim, const char* other) const {
+    // True for the second key, which excludes the bound itself.
+    const auto readBound = [&](const char* including, const char* excluding, auto& bound) {
+        const Node *included = node.find(including), *excluded = node.find(excluding);
+        if (included && excluded) {
+            fail(*excluded, fmt::format("'{}' and '{}'; one is allowed", including, excluding));
+        }
+        const Node* value = included ? included : excluded;
+        if (value) bound = value->asDouble();
+        if (claim.low && claim.high && *claim.low > *claim.high) {
+            fail(*value, "the lower bound exceeds the upper");
+        }
+        return excluded != nullptr;
+    };
+    claim.isLowExcluded = readBound("at_least", "more_than", claim.low);
+    claim.isHighExcluded = readBound("at_most", "less_than", claim.high);
+    if (!claim.hasBound() && !(other && node.find(other))) {
+        throw Error(where,
+                    fmt::format("{} needs at_least, more_than, at_most{}{}", what,
+                                other ? ", less_than or " : " or less_than", other ? other : ""));
+    }
+    // Bounds of which one excludes itself leave nothing where they are one number.
+    const bool isOpen = claim.isLowExcluded || claim.isHighExcluded;
+    if (!isOpen || !claim.low || !claim.high || *claim.low < *claim.high) return;
+    const char* key = claim.isHighExcluded ? "less_than" : "more_than";
+    refuse(*node.find(key), key, "bounds with a number between them");
+}
+
+void ClaimKeys::readShare(ClaimSpec& claim) const {
+    const Node& share = require("at_most");
+    claim.high = fractionOf(share);
+    if (!claim.high || *claim.high < 0.0) {
+        refuse(share, "at_most", "a percentage as 25%, or a fraction 0 … 1");
+    }
+}
+
+// Their schema
+
+SchemaSection sectionOf(SchemaKey first, std::vector<SchemaKey> further, Json conditions) {
+    first.absent = "required";
+    SchemaSection section{"claim." + first.name, "claims.ID.", "", {first}, false};
+    for (SchemaKey& key : further) section.keys.push_back(std::move(key));
+    section.conditions = std::move(conditions);
+    return section;
+}
+
+SchemaKey overKey(const char* key, const char* doc) {
+    return {key, "row axis | column", "required", doc, text()};
+}
+
+/// "25%", or 0.25.
+SchemaKey shareKey(const char* key, const char* type, const char* doc) {
+    return {key, type, "required", doc,
+            anyOf({{{"type", "string"}, {"pattern", R"(^\s*[0-9.eE+-]+\s*%$)"}},
+                   {{"type", "number"}, {"minimum", 0}, {"maximum", 1}}})};
+}
+
+SchemaSection boundedSection(SchemaKey first, std::vector<SchemaKey> further, const char* other) {
+    further.push_back({"at_least", "number", "none", "lower bound", number()});
+    further.push_back({"more_than", "number", "none", "lower bound, itself excluded", number()});
+    further.push_back({"at_most", "number", "none", "upper bound", number()});
+    further.push_back({"less_than", "number", "none", "upper bound, itself excluded", number()});
+    Json conditions = needsOneOf({{"at_least"}, {"more_than"}, {"at_most"}, {"less_than"}});
+    if (other) conditions["anyOf"].push_back({{"required", Json::array({other})}});
+    return sectionOf(std::move(first), std::move(further), std::move(conditions));
+}
+
+// Ranges
+
+Requirement rangeOf(const ClaimSpec& claim, const std::string& name, bool isPercent) {
+    Requirement requirement;
+    requirement.low = claim.low.value_or(-kInfinity);
+    requirement.high = claim.high.value_or(kInfinity);
+    requirement.isLowExcluded = claim.isLowExcluded;
+    requirement.isHighExcluded = claim.isHighExcluded;
+    requirement.isPercent = isPercent;
+    requirement.text = name + " " + rangeText(requirement);
+    return requirement;
+}
+
+std::string quantityText(double value, const Requirement& requirement) {
+    if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
+    return requirement.isPercent ? fmt::format("{:.4g} %", value * 100.0)
+                                 : fmt::format("{:.4g}", value);
+}
+
+std::string rangeText(const Requirement& requirement) {
+    const std::string low = quantityText(requirement.low, requirement);
+    const std::string high = quantityText(requirement.high, requirement);
+    if (std::isinf(requirement.high)) return (requirement.isLowExcluded ? "> " : "≥ ") + low;
+    if (std::isinf(requirement.low)) return (requirement.isHighExcluded ? "< " : "≤ ") + high;
+    return fmt::format("in {}{}, {}{}", requirement.isLowExcluded ? '(' : '[', low, high,
+                       requirement.isHighExcluded ? ')' : ']');
+}
+
+double distanceToBound(double value, const Requirement& requirement) {
+    return std::min(std::abs(value - requirement.low), std::abs(requirement.high - value));
+}
+
+Contrasts asItself(std::string name, Quantity quantity, Requirement requirement, Scale scale) {
+    Contrast contrast{std::move(name), std::move(quantity), std::move(requirement), scale};
+    if (scale == Scale::Linear) {
+        contrast.distance = [range = contrast.requirement](const GroupPoint&, double value) {
+            return distanceToBound(value, range);
+        };
+    }
+    if (scale == Scale::Ranks) contrast.distance = [](const auto&, double) { return kInfinity; };
+    return [contrast](const GroupPoint&) { return std::vector<Contrast>{contrast}; };
+}
+
+// Arithmetic
+
+double relativeDifference(double left, double right) {
+    if (left == right) return 0.0;
+    if (std::isinf(left) || std::isinf(right)) return left < right ? 1.0 : -1.0;
+    return (right - left) / std::max(std::abs(left), std::abs(right));
+}
+
+double lesser(double a, double b) {
+    return std::isnan(a) || b > a ? a : b;
+}
+
+double greater(double a, double b) {
+    return std::isnan(a) || b < a ? a : b;
+}
+
+bool arePositive(const std::vector<double>& values) {
+    return std::ranges::all_of(values, [](double value) { return value > 0.0; });
+}
+
+std::vector<std::size_t> rowsByX(const GroupPoint& group) {
+    std::vector<std::size_t> order(group.x.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order,
+                             [&](std::size_t a, std::size_t b) { return group.x[a] < group.x[b]; });
+    return order;
+}
+
+}  // namespace gfxrepro::claims

@@ -1,0 +1,175 @@
+// What a kind of claim is: each is one file of this folder, and its name in kind.cpp.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/core/key_schema.h"
+#include "engine/core/node.h"
+#include "runner/claims/kinds/claim.h"
+
+namespace gfxrepro::claims {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// What a claim reads of a group of rows: each operand on each row, the abscissa, what is expected.
+template <class Value>
+struct GroupOf {
+    std::vector<std::vector<Value>> operands;  // [operand][row]
+    std::vector<Value> x;                      // [row]; empty without an abscissa
+};
+using GroupPoint = GroupOf<double>;
+
+/// The number that is made of a group. A measured value may be +∞: the PSNR of equal pictures. It
+/// is larger than any other, equal to itself, and ∞ − ∞ or ∞ ÷ ∞ is not a number: a quantity that
+/// needs one is unmeasured.
+using Quantity = std::function<double(const GroupPoint&)>;
+
+/// The range that the quantity must lie in.
+struct Requirement {
+    double low = -kInfinity;
+    double high = kInfinity;
+    bool isLowExcluded = false;
+    bool isHighExcluded = false;
+    bool isInfinityAbsence = false;  // crossover alone: what is infinite is not there, and fails
+    bool isOfCounts = false;         // exact alone: of what was counted, not of what it stands for
+    std::string text;                // "exponent in [0.3, 1.2]"
+    bool isPercent = false;          // shown ×100 with a percent sign
+};
+
+/// On which scale a quantity scatters evenly. Logarithmic where all of its values are positive,
+/// else linear. Ranks: on none that is known; only the order of the rounds counts (medianInterval).
+enum class Scale { Linear, Logarithmic, Ranks };
+
+/// One comparison of times.
+struct Contrast {
+    std::string name;  // "exponent": before the measured value; may be empty
+    Quantity quantity;
+    Requirement requirement;
+    Scale scale = Scale::Logarithmic;
+    /// By which share times would have to differ for the quantity to reach its bound: what is
+    /// compared with the noise of the table. Absent: as a quantity that is a ratio or a time.
+    std::function<double(const GroupPoint&, double quantity)> distance = {};
+    /// It can only fail: not to be told from its bound is as good as to hold.
+    bool isRefutation = false;
+};
+/// The contrasts of a group with these values.
+using Contrasts = std::function<std::vector<Contrast>(const GroupPoint&)>;
+
+/// One quantity of a claim. Most claims have one; a trend may ask for a direction and an exponent,
+/// an independence is asked of each operand.
+struct ClaimPart {
+    std::vector<std::size_t> operands;  // of the claim
+    Quantity quantity;
+    Requirement requirement;
+    std::string measuredName = {};  // "smallest step": before the measured value; may be empty
+    bool needsX = false;            // numeric abscissa
+    bool needsExpected = false;     // a further operand: what was printed, or is given
+    std::size_t minRows = 1;
+    Contrasts onTimes = {};  // judged instead where the operands are times; absent: the quantity
+};
+
+/// The keys of a claim, as its kind reads them. What is wrong is an Error at its place.
+struct ClaimKeys {
+    const Node& node;
+    const Node& operands;  // the value of the key that names the kind
+    const std::vector<std::string>& rowAxes;
+    const std::vector<std::string>& columns;
+    bool hasAllColumns;  // false: further columns may exist
+    bool hasPrinted;
+    const std::string& what;  // begins the messages: "claim 'C'"
+    const SourceLocation& where;
+
+    const Node& require(std::string_view key) const;
+    void requirePrinted() const;
+    /// "claim 'C': KEY is VALUE; allowed: …"; an empty key is of the whole claim.
+    [[noreturn]] void refuse(const Node& value, std::string_view key,
+                             std::string_view allowed) const;
+    /// "claim 'C': TEXT".
+    [[noreturn]] void fail(const Node& at, const std::string& text) const;
+
+    /// The operand; those of a list; those between separators.
+    void readOne(ClaimSpec& claim) const;
+    void readList(ClaimSpec& claim) const;
+    void readSides(std::string_view separator, ClaimSpec& claim) const;
+    /// The row axis or column under `key`.
+    void readOver(std::string_view key, ClaimSpec& claim) const;
+    /// at_least or more_than, at_most or less_than: one of them, unless the `other` key is there.
+    void readBounds(ClaimSpec& claim, const char* other = nullptr) const;
+    /// at_most, of a share.
+    void readShare(ClaimSpec& claim) const;
+    void addOperands(const Node& at, const std::vector<std::string>& texts, ClaimSpec& claim) const;
+};
+
+/// What `check` knows of how a claim will be measured.
+struct Sampling {
+    std::size_t rows = 0;
+    int frames = 1;  // measure.frames
+    /// The fewest pictures of a truth that has several, 0 where none has; absent: a technique takes
+    /// them.
+    std::optional<int> truthFrames = std::nullopt;
+};
+
+struct Kind {
+    /// What with what: operands with each other, an operand's values along the rows, or a value
+    /// with a number, which asks for a time as such.
+    enum class Compares { Operands, Rows, Values };
+
+    SchemaSection section;  // its keys; the first of them names it
+    void (*read)(const ClaimKeys& keys, ClaimSpec& claim) = nullptr;
+    std::vector<ClaimPart> (*parts)(const ClaimSpec& claim) = nullptr;
+    Compares compares = Compares::Operands;
+    /// Of its quantity, where that is of times. Ratios and times scatter on a logarithmic one; of
+    /// where curves cross none is known.
+    Scale scale = Scale::Linear;
+    bool isOfAllRows = false;      // judged once, not in each group of rows
+    const char* metric = nullptr;  // the only one that its operand may be
+    /// What `check` refuses, to follow the claim's name; empty where nothing is wrong.
+    std::string (*refused)(const ClaimSpec& claim, const Sampling& sampling) = nullptr;
+
+    const std::string& name() const { return section.keys.front().name; }
+};
+
+/// All of them, in the order in which people are told of them.
+const std::vector<Kind>& kinds();
+/// Null for a name that is none.
+const Kind* kindNamed(std::string_view name);
+std::vector<ClaimPart> partsOf(const ClaimSpec& claim);
+
+// What kinds share.
+
+/// The first key names the kind. With `conditions`: which keys go together.
+SchemaSection sectionOf(SchemaKey first, std::vector<SchemaKey> further, Json conditions = nullptr);
+/// With at_least, more_than, at_most and less_than, of which one, or the `other` key, is needed.
+SchemaSection boundedSection(SchemaKey first, std::vector<SchemaKey> further = {},
+                             const char* other = nullptr);
+SchemaKey overKey(const char* key, const char* doc);
+SchemaKey shareKey(const char* key, const char* type, const char* doc);
+
+/// The bounds of the claim, as "NAME in [0.3, 1.2]".
+Requirement rangeOf(const ClaimSpec& claim, const std::string& name, bool isPercent = false);
+/// "in [0.3, 1.2]", "≥ 10", "≤ 25 %".
+std::string rangeText(const Requirement& requirement);
+/// "0.4123", "41.23 %".
+std::string quantityText(double value, const Requirement& requirement);
+/// From a value to the nearer bound.
+double distanceToBound(double value, const Requirement& requirement);
+/// Whatever the quantity is: itself, on a scale.
+Contrasts asItself(std::string name, Quantity quantity, Requirement requirement, Scale scale);
+
+/// (right − left) / max(|right|, |left|); ±1 where one of the two is infinite.
+double relativeDifference(double left, double right);
+/// The smaller, the larger one; not-a-number when either is.
+double lesser(double a, double b);
+double greater(double a, double b);
+bool arePositive(const std::vector<double>& values);
+/// The rows in ascending x.
+std::vector<std::size_t> rowsByX(const GroupPoint& group);
+
+}  // namespace gfxrepro::claims

@@ -1,0 +1,73 @@
+// same_mean: noisy pictures have the expectation of their truth.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/core/checks.h"
+#include "engine/metrics/mean_test.h"
+#include "runner/claims/kinds/kind.h"
+
+namespace gfxrepro::claims {
+
+namespace {
+
+void readSameMean(const ClaimKeys& keys, ClaimSpec& claim) {
+    constexpr double kMost = 0.1;  // more would call a coin a test
+    keys.readOne(claim);
+    const Node& rate = keys.require("false_alarms");
+    claim.falseAlarms = fractionOf(rate);
+    if (!claim.falseAlarms || *claim.falseAlarms <= 0.0 || *claim.falseAlarms > kMost) {
+        keys.refuse(rate, "false_alarms", "a percentage as 1%, or a fraction, above 0 and to 10%");
+    }
+}
+
+/// The smallest p of the rows × their number (Bonferroni), 1 at most.
+double familyWiseP(const GroupPoint& group) {
+    const std::vector<double>& p = group.operands[0];
+    return std::min(1.0, static_cast<double>(p.size()) * std::ranges::min(p));
+}
+
+std::vector<ClaimPart> sameMeanParts(const ClaimSpec& claim) {
+    ClaimPart part{{0}, familyWiseP, {}, "p of all rows"};
+    part.requirement.low = *claim.falseAlarms;
+    part.requirement.text = fmt::format("the same expectation ({}: p of all rows ≥ {:.4g})",
+                                        claim.operands[0], *claim.falseAlarms);
+    return {part};
+}
+
+/// Pictures that are too few for as few false alarms.
+std::string refusedSameMean(const ClaimSpec& claim, const Sampling& sampling) {
+    if (!sampling.truthFrames) return "";  // a technique that records it knows its samples
+    const int frames = sampling.frames, truths = *sampling.truthFrames;
+    if (truths == 0) {
+        return "is 'same_mean' and needs an image whose truth has several 'frames': {frame: 1000, "
+               "frames: 6}";
+    }
+    if (frames < 2) return "is 'same_mean' and needs 'measure.frames', a seed each: 2 or more";
+    const auto rows = static_cast<double>(sampling.rows);
+    const double least =
+        rows * metrics::leastP(static_cast<std::size_t>(frames), static_cast<std::size_t>(truths));
+    if (least <= *claim.falseAlarms) return "";
+    return fmt::format(
+        "asks for {:.3g} % of false alarms over {} row{}, and could not fail: {} frames and {} of "
+        "the truth come to no p below {:.2g} %; take more ('measure.frames', 'truth: {{frames}}')",
+        100.0 * *claim.falseAlarms, rows, rows == 1.0 ? "" : "s", frames, truths, 100.0 * least);
+}
+
+}  // namespace
+
+Kind sameMean() {
+    SchemaSection section = sectionOf(
+        {"same_mean", "a", "",
+         "noisy pictures have the expectation of their truth; a column of the metric same_mean_p",
+         types::text()},
+        {shareKey("false_alarms", "1% | fraction",
+                  "how often it may fail where it holds, over all rows together; to 10%")});
+    Kind kind{std::move(section), readSameMean, sameMeanParts};
+    kind.isOfAllRows = true;
+    kind.metric = "same_mean_p";  // the p of metrics::testMeans, as techniques record it
+    kind.refused = refusedSameMean;
+    return kind;
+}
+
+}  // namespace gfxrepro::claims

@@ -1,0 +1,154 @@
+// trend: grows or falls along x, or as a power of x.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/metrics/statistics.h"
+#include "runner/claims/kinds/kind.h"
+
+namespace gfxrepro::claims {
+
+namespace {
+
+using namespace types;
+
+void readTrend(const ClaimKeys& keys, ClaimSpec& claim) {
+    keys.readOne(claim);
+    keys.readOver("over", claim);
+    keys.readBounds(claim, "direction");
+    if (const Node* direction = keys.node.find("direction")) {
+        const std::string name = direction->isScalar() ? direction->text() : "";
+        claim.direction = name == "increasing" ? 1 : name == "decreasing" ? -1 : 0;
+        if (claim.direction == 0) keys.refuse(*direction, "direction", "increasing | decreasing");
+    }
+    if (const Node* strictly = keys.node.find("strictly")) {
+        claim.isStrict = strictly->asBool();
+        if (claim.direction == 0) keys.fail(*strictly, "strictly needs 'direction'");
+    }
+}
+
+/// The least-squares slope of log(operand) over log(x). Not-a-number unless all are positive.
+double exponent(const GroupPoint& group) {
+    const std::vector<double>& y = group.operands[0];
+    if (!arePositive(group.x) || !arePositive(y)) return kNan;
+    const auto count = static_cast<double>(y.size());
+    double meanX = 0.0, meanY = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        meanX += std::log(group.x[i]) / count;
+        meanY += std::log(y[i]) / count;
+    }
+    double covariance = 0.0, variance = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        const double dx = std::log(group.x[i]) - meanX;
+        covariance += dx * (std::log(y[i]) - meanY);
+        variance += dx * dx;
+    }
+    return variance > 0.0 ? covariance / variance : kNan;
+}
+
+/// With the rows sorted by x, the smallest step towards `direction`, relative to the larger of its
+/// ends.
+double smallestStep(const GroupPoint& group, int direction) {
+    const std::vector<std::size_t> rows = rowsByX(group);
+    double smallest = kInfinity;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        const double step =
+            relativeDifference(group.operands[0][rows[i - 1]], group.operands[0][rows[i]]);
+        smallest = lesser(smallest, direction * step);
+    }
+    return smallest;
+}
+
+/// Exponent: a distance of one in it is a factor of x's range in the time.
+Contrasts slope(Requirement requirement) {
+    Contrast contrast{"exponent", exponent, std::move(requirement), Scale::Linear};
+    contrast.distance = [range = contrast.requirement](const GroupPoint& group, double value) {
+        const auto [low, high] = std::ranges::minmax(group.x);
+        return distanceToBound(value, range) * std::log(high / low);
+    };
+    return [contrast](const GroupPoint&) { return std::vector<Contrast>{contrast}; };
+}
+
+/// Of the steps between neighbours by x, the one that begins at `place`, towards `direction`.
+Quantity stepAt(std::size_t place, int direction) {
+    return [place, direction](const GroupPoint& group) {
+        const std::vector<std::size_t> rows = rowsByX(group);
+        const double before = group.operands[0][rows[place]];
+        const double after = group.operands[0][rows[place + 1]];
+        if (before == after) return 0.0;
+        return direction * (after - before) / std::max(std::abs(before), std::abs(after));
+    };
+}
+
+/// Direction: Kendall's rank correlation with x is above 0 towards it (Kendall 1938), and no step
+/// goes back by more than the noise of the table for certain.
+Contrasts rising(int direction) {
+    return [direction](const GroupPoint& group) {
+        Requirement above;
+        above.low = 0.0;
+        above.isLowExcluded = true;
+        const Quantity rank = [direction](const GroupPoint& one) {
+            return direction * metrics::kendall(one.x, one.operands[0]);
+        };
+        Contrast whole{"rank correlation", rank, above, Scale::Linear};
+        // From the first row to the last.
+        whole.distance = [](const GroupPoint& one, double) {
+            const std::vector<std::size_t> rows = rowsByX(one);
+            const double first = one.operands[0][rows.front()];
+            const double last = one.operands[0][rows.back()];
+            return first > 0.0 && last > 0.0 ? std::abs(std::log(last / first)) : kInfinity;
+        };
+        std::vector<Contrast> contrasts{whole};
+        Requirement notBack;
+        notBack.low = 0.0;
+        notBack.isPercent = true;
+        for (std::size_t place = 0; place + 1 < group.x.size(); ++place) {
+            contrasts.push_back(
+                {"step", stepAt(place, direction), notBack, Scale::Linear, {}, true});
+        }
+        return contrasts;
+    };
+}
+
+std::vector<ClaimPart> trendParts(const ClaimSpec& claim) {
+    std::vector<ClaimPart> parts;
+    if (claim.direction != 0) {
+        const int direction = claim.direction;
+        const auto step = [direction](const GroupPoint& group) {
+            return smallestStep(group, direction);
+        };
+        ClaimPart part{{0}, step, {}, "smallest step"};
+        part.requirement.low = 0.0;
+        part.requirement.isLowExcluded = claim.isStrict;
+        part.requirement.isPercent = true;
+        part.requirement.text = std::string(claim.isStrict ? "strictly " : "") +
+                                (direction > 0 ? "increasing" : "decreasing") + " with " +
+                                claim.over.value_or("");
+        part.onTimes = rising(direction);
+        parts.push_back(std::move(part));
+    }
+    if (claim.hasBound()) {
+        parts.push_back({{0}, exponent, rangeOf(claim, "exponent"), "exponent"});
+        parts.back().onTimes = slope(parts.back().requirement);
+    }
+    for (ClaimPart& part : parts) {
+        part.needsX = true;
+        part.minRows = 2;
+    }
+    return parts;
+}
+
+}  // namespace
+
+Kind trend() {
+    return {
+        boundedSection(
+            {"trend", "a", "", "grows or falls, or as a power; bounds are its exponent's", text()},
+            {overKey("over", "along which"),
+             {"direction", "increasing | decreasing", "none", "which way",
+              choice({"increasing", "decreasing"})},
+             {"strictly", "true | false", "false", "no two equal; with direction", boolean()}},
+            "direction"),
+        readTrend, trendParts, Kind::Compares::Rows};
+}
+
+}  // namespace gfxrepro::claims
