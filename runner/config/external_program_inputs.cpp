@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "engine/core/checks.h"
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
 #include "runner/config/sections.h"
