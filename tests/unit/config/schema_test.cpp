@@ -11,7 +11,6 @@
 #include "engine/core/files.h"
 #include "runner/config/documents.h"
 #include "runner/config/schema.h"
-#include "runner/records/records.h"
 #include "tests/unit/config/experiment_fixture.h"
 
 namespace gfxrepro::config {
@@ -349,19 +348,6 @@ TEST_F(BadValues, EveryKeyOfTheSchemaIsRead) {
     for (const SchemaSection& section : schema().front().sections) {
         EXPECT_TRUE(seen.contains(section.name)) << section.name << " has no test";
     }
-}
-
-TEST(Schema, StatusesAreThoseOfRecords) {
-    const auto& keys = schemaSection("expected_failure").keys;
-    const auto status = std::find_if(keys.begin(), keys.end(),
-                                     [](const SchemaKey& key) { return key.name == "status"; });
-    ASSERT_NE(status, keys.end());
-    std::size_t count = 0;
-    for (const auto& name : status->json.at("enum")) {
-        EXPECT_NO_THROW(records::statusFromName(name.get<std::string>())) << name;
-        ++count;
-    }
-    EXPECT_EQ(count, static_cast<std::size_t>(records::Status::Error) + 1);
 }
 
 TEST(Schema, DescribesEveryKeyInWordsAndInMarkdown) {
