@@ -67,7 +67,8 @@ with tempfile.TemporaryDirectory() as folder:
         shutil.copytree(SOURCE / part, root / part)
     for part in (".clang-format", "techniques/README.md"):
         shutil.copy(SOURCE / part, root / part)
-    for part in ("configs", "runner", "tests"):
+    for part in ("configs", "engine", "runner", "tests"):
+        (root / part).mkdir(exist_ok=True)
         shutil.copy(SOURCE / part / "README.md", root / part / "README.md")
     script = root / "scripts/new_technique"
     git = ("git", "-C", root, "-c", "user.name=test", "-c", "user.email=test@gfxrepro.invalid")
