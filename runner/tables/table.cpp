@@ -375,8 +375,8 @@ bool Table::hasPrinted() const {
     return hasCell([](const Cell& cell) { return cell.printed.has_value(); });
 }
 
-std::optional<std::size_t> Table::findColumn(std::string_view label) const {
-    const auto found = std::ranges::find(columns, label, &TableColumn::label);
+std::optional<std::size_t> Table::findColumn(std::string_view name) const {
+    const auto found = std::ranges::find(columns, name, &TableColumn::label);
     if (found == columns.end()) return std::nullopt;
     return static_cast<std::size_t>(found - columns.begin());
 }
