@@ -109,7 +109,7 @@ Candidates findCandidates() {
     const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     // GLVND's libEGL without any vendor library answers as well, with next to nothing.
     if (!hasExtension(extensions, "EGL_EXT_platform_base")) {
-        found.problems.push_back(
+        found.problems.emplace_back(
             "EGL: libEGL found no driver (the client extension EGL_EXT_platform_base is missing); "
             "install a GPU driver's EGL, or Mesa's (libegl-mesa0), which needs no GPU");
         return found;
@@ -143,7 +143,7 @@ Candidates findCandidates() {
     if (hasExtension(extensions, "EGL_MESA_platform_surfaceless")) {
         found.all.push_back({static_cast<int>(found.all.size()), "surfaceless", EGL_NO_DEVICE_EXT});
     } else {
-        found.problems.push_back("EGL surfaceless: EGL_MESA_platform_surfaceless is missing");
+        found.problems.emplace_back("EGL surfaceless: EGL_MESA_platform_surfaceless is missing");
     }
     return found;
 }
