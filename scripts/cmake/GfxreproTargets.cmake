@@ -53,7 +53,7 @@ function(gfxrepro_precompiled target cold)
             <fmt/format.h> ${own})
     endif()
     # GCC 12 takes the short form of a moved string for one that is read beyond its end.
-    target_compile_options(${target} PRIVATE -fpch-preprocess -Wno-array-bounds)
+    target_compile_options(${target} PRIVATE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
     target_precompile_headers(${target} REUSE_FROM ${common})
 endfunction()
 
