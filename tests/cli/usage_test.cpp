@@ -137,12 +137,12 @@ TEST(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
               "that name; did you mean 'voxelization-rules'?\n");
     EXPECT_EQ(errorOf("128,12", "few (sweeps/voxelization-rules.yaml)"), "");
     EXPECT_EQ(errorOf("128,12", "few, shown_by: two machines"),
-              "t.yaml:13:126: shown_by is 'two machines'; allowed: PAGE.md#ANCHOR, a heading of a "
+              "t.yaml:13:129: shown_by is 'two machines'; allowed: PAGE.md#ANCHOR, a heading of a "
               "page in results/findings\n");
     EXPECT_EQ(errorOf("128,12", "few, shown_by: zju2006.md#table-21-v2-proportional"),
-              "t.yaml:13:126: shown_by: results/findings has no page 'zju2006.md'\n");
+              "t.yaml:13:129: shown_by: results/findings has no page 'zju2006.md'\n");
     EXPECT_EQ(errorOf("128,12", "few, shown_by: zju2005.md#table-21-v2-proportion"),
-              "t.yaml:13:126: shown_by: no heading of results/findings/zju2005.md has the anchor "
+              "t.yaml:13:129: shown_by: no heading of results/findings/zju2005.md has the anchor "
               "'table-21-v2-proportion'; did you mean 'table-21-v2-proportional'?\n");
     EXPECT_EQ(errorOf("128,12", "few, shown_by: zju2005.md#table-21-v2-proportional"), "");
 }
