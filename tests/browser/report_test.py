@@ -42,7 +42,7 @@ claims:
   F: {{says: the third is small, origin: document, bound_from: text, bound: ok, at_most: 2, at: {{number: 3}},
       because: {{verdict: fails, reason: three is not below two}}}}
   U: {{says: what was thrown is small, origin: document, bound_from: text, bound: throw, at_most: 2}}
-  G: {{says: on a GPU it is faster, bound: ok, at_most: 1, profile: paper}}
+  G: {{says: on a GPU it is faster, origin: ours, bound: ok, at_most: 1, profile: paper}}
 assumptions:
   view: {{value: front, range: front or back, why: the paper does not say}}
 """
