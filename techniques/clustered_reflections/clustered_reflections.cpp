@@ -242,10 +242,6 @@ config::Outputs outputs() {
         },
         {
             {"first_pass", "drawing what the eye sees"},
-            {"first_pass_and_clustering",
-             "drawing what the eye sees, and clustering its reflective samples"},
-            {"cluster_cameras", "placing a camera for each cluster"},
-            {"depth_images", "drawing the depth images of the clusters"},
         },
     });
 }

@@ -191,6 +191,12 @@ config::Outputs withFrameOutputs(config::Outputs own) {
     std::ranges::move(own.metrics, std::back_inserter(all.metrics));
     all.passes.insert(all.passes.end(),
                       {
+                          // Of the tracers (ReflectionTracer), in every technique that has them.
+                          {"first_pass_and_clustering",
+                           "clustering the reflective samples, after drawing what the eye sees "
+                           "where that is no pass of its own"},
+                          {"cluster_cameras", "placing a camera for each cluster"},
+                          {"depth_images", "drawing the depth images of the clusters"},
                           {"bvh_build", "building the ray tracer's bounding volume hierarchy"},
                           {"bvh_codes", "of that: places along a curve"},
                           {"bvh_sort", "of that: sorting"},

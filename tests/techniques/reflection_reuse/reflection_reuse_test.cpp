@@ -70,6 +70,7 @@ class ReflectionReuseTest : public test::GlTest {
         technique::setUp(*technique, context);
         EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
         std::vector<test::MetricRecorder> frames(static_cast<std::size_t>(frameCount));
+        const config::Outputs outputs = technique::outputsOf(info);
         for (int frame = 0; frame < frameCount; ++frame) {
             technique::FrameContext frameContext{frame, frameCount, profiler_};
             for (int repeat = 0; repeat < repeats; ++repeat) {
@@ -78,6 +79,8 @@ class ReflectionReuseTest : public test::GlTest {
                 for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
             }
             technique->record(frames[static_cast<std::size_t>(frame)]);
+            frames[static_cast<std::size_t>(frame)].expectDeclared(outputs);
+            for (const std::string& pass : passes_) EXPECT_TRUE(outputs.hasPass(pass)) << pass;
             EXPECT_TRUE(profiler_.collect().empty()) << "recording is not timed by pass";
         }
         return frames;
