@@ -27,8 +27,8 @@ endif()
 
 set(CMAKE_CXX_EXTENSIONS OFF)
 
-# Tests take longer to compile than to run. ccache wants to see which precompiled header they take.
-set(GFXREPRO_TEST_OPTIONS $<IF:$<CONFIG:Release>,-O1,-O0> $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+# Tests take longer to compile than to run. As one unit, what is local to a source seems to be another one's.
+set(GFXREPRO_TEST_OPTIONS $<IF:$<CONFIG:Release>,-O1,-O0> -Wno-subobject-linkage)
 
 # gfxrepro_precompiled(TARGET COLD): where sources compile one by one, what most of them include is compiled once, in the two
 # ways that modules are optimized. Preset `clang` compiles without, and so tells of a header that a source forgets.
@@ -132,13 +132,12 @@ function(gfxrepro_shaders target folder)
 endfunction()
 
 # gfxrepro_test(NAME [SERIAL] LABEL label SOURCES … LINK targets …) → one GoogleTest program, one ctest entry a case;
-# SERIAL: beside no other test. Tests share a precompiled header. Their sources have helpers of the same names: no unity.
+# SERIAL: beside no other test. A few sources are one unit, in every preset: most of what a test takes to compile are headers.
 function(gfxrepro_test name)
     cmake_parse_arguments(arg "SERIAL" "LABEL" "SOURCES;LINK" ${ARGN})
     add_executable(${name} ${arg_SOURCES})
-    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
     target_compile_options(${name} PRIVATE ${GFXREPRO_TEST_OPTIONS})
-    target_precompile_headers(${name} REUSE_FROM gfxrepro_test_support)
     target_link_libraries(${name} PRIVATE gfxrepro_test_support ${arg_LINK} GTest::gmock GTest::gtest_main)
     include(GoogleTest)
     # Under ThreadSanitizer simulations of a minute take ten.

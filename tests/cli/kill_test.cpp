@@ -76,7 +76,7 @@ void tear(const fs::path& file, std::size_t rows, std::mt19937& random) {
     fs::resize_file(file, begin + 1 + random() % (text.size() - begin - 1));
 }
 
-std::size_t measuredCount(const std::string& dir) {
+std::size_t countMeasured(const std::string& dir) {
     return fs::exists(dir + "/records.csv") ? rowsOf(dir, "number").size() : 0;
 }
 
@@ -99,11 +99,11 @@ TEST(Kill, AnyProcessAtAnyMomentLosesNothing) {
             const int delayMs = static_cast<int>(random() % kLatestMs);
             const int blocks = random() % 4 == 0 ? static_cast<int>(8 + random() % 40) : 0;
             runAndKill(config, dir, delayMs, static_cast<Victim>(random() % 3), blocks);
-            const std::size_t now = measuredCount(dir);
+            const std::size_t now = countMeasured(dir);
             EXPECT_GE(now, measured) << dir << ", " << delayMs << " ms";
             const bool isTorn = now < 12 && random() % 4 == 0;  // not of a run that has ended
             if (isTorn) tear(dir + "/records.csv", unitRows, random);
-            measured = measuredCount(dir);
+            measured = countMeasured(dir);
             EXPECT_GE(measured + 1, now) << "one unit was cut";
             unfinished += now < 12 ? 1 : 0;
         }

@@ -30,8 +30,8 @@ std::vector<std::string> writeTables(const TemporaryFolder& folder, const std::s
             writeTable(folder, "2", more + layout + "sweep: {number: [2, 3, 4]}\n")};
 }
 
-ProcessResult measure(std::vector<std::string> configs, const std::string& dir,
-                      const std::vector<std::string>& more = {}) {
+ProcessResult measureTwins(std::vector<std::string> configs, const std::string& dir,
+                           const std::vector<std::string>& more = {}) {
     configs.insert(configs.begin(), {"run"});
     configs.insert(configs.end(), {"--device", "software", "--jobs", "1", "--out", dir});
     configs.insert(configs.end(), more.begin(), more.end());
@@ -67,7 +67,7 @@ void expectTablesOfTheirOwn(const std::vector<std::string>& configs, const std::
     for (std::size_t i = 0; i < configs.size(); ++i) {
         const std::string index = std::to_string(i + 1);
         const std::string alone = dir + "-alone-" + index;
-        ASSERT_EQ(measure({configs[i]}, alone).exitCode, 0);
+        ASSERT_EQ(measureTwins({configs[i]}, alone).exitCode, 0);
         ASSERT_EQ(mockGfxrepro({"table", alone}).exitCode, 0);
         const std::string name = "/tables/demo2026-" + index + ".csv";
         EXPECT_EQ(readFile(dir + name), readFile(alone + name)) << name;
@@ -78,7 +78,7 @@ TEST(Twins, AreMeasuredOnceAndFillBothTables) {
     const TemporaryFolder folder;
     const std::vector<std::string> configs = writeTables(folder);
     const std::string dir = folder.path() / "run";
-    const ProcessResult run = measure(configs, dir);
+    const ProcessResult run = measureTwins(configs, dir);
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(run.out, "6 of 6 finished, 2 as a twin; records: " + dir + "/records.csv\n");
     EXPECT_THAT(run.err, HasSubstr("] ok demo2026/2 number=3 (as demo2026/1 number=3)\n"));
@@ -109,7 +109,7 @@ TEST(Twins, AreMeasuredOnceAndFillBothTables) {
 TEST(Twins, NeverAmongTimes) {
     const TemporaryFolder folder;
     const std::string dir = folder.path() / "run";
-    const ProcessResult run = measure(writeTables(folder, "measure: {lane: timing}\n"), dir);
+    const ProcessResult run = measureTwins(writeTables(folder, "measure: {lane: timing}\n"), dir);
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(measuredCount(dir), 6);
     EXPECT_NE(timesOf(dir, "demo2026/1").at(2), timesOf(dir, "demo2026/2").at(2));
@@ -118,7 +118,7 @@ TEST(Twins, NeverAmongTimes) {
 TEST(Twins, ProcessesAreSharedOneByOne) {
     const TemporaryFolder folder;
     const std::string dir = folder.path() / "run";
-    const ProcessResult run = measure(writeTables(folder, "measure: {processes: 2}\n"), dir);
+    const ProcessResult run = measureTwins(writeTables(folder, "measure: {processes: 2}\n"), dir);
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_THAT(run.out, HasSubstr("12 of 12 finished, 4 as a twin;"));
     EXPECT_THAT(run.err, HasSubstr("demo2026/2 number=3 process 2/2 (as demo2026/1 number=3)\n"));
@@ -129,7 +129,7 @@ TEST(Twins, AResumedRunMeasuresWhatEitherTableLacks) {
     const TemporaryFolder folder;
     const std::vector<std::string> configs = writeTables(folder);
     const std::string dir = folder.path() / "run";
-    ASSERT_EQ(measure(configs, dir).exitCode, 0);
+    ASSERT_EQ(measureTwins(configs, dir).exitCode, 0);
     const std::vector<records::Record> all = records::readRecords(dir + "/records.csv");
     const auto keep = [&](auto isKept) {
         std::vector<records::Record> rows;
@@ -164,7 +164,7 @@ TEST(Twins, FailTogetherAndAreTriedAgainTogether) {
         writeTable(folder, "2",
                    "sweep: {behaviour: [flake, throw]}\nparams: {marker: " + marker + "}\n")};
     const std::string dir = folder.path() / "run";
-    const ProcessResult run = measure(configs, dir);
+    const ProcessResult run = measureTwins(configs, dir);
     EXPECT_EQ(run.exitCode, 4) << run.err;
     EXPECT_THAT(run.out, HasSubstr("2 of 4 finished, 1 as a twin, 2 flaky, 2 failed; records: "));
     EXPECT_THAT(run.err, HasSubstr("error demo2026/2 behaviour=throw (as demo2026/1 "
@@ -186,7 +186,7 @@ TEST(Twins, ShardsKeepThemTogetherAndMerge) {
     int measured = 0;
     for (const char* shard : {"1/2", "2/2"}) {
         const std::string dir = folder.path() / (std::string("shard-") + shard[0]);
-        ASSERT_EQ(measure(configs, dir, {"--shard", shard}).exitCode, 0);
+        ASSERT_EQ(measureTwins(configs, dir, {"--shard", shard}).exitCode, 0);
         measured += measuredCount(dir);
         merge.push_back(dir);
     }
@@ -204,7 +204,7 @@ TEST(Twins, OnlyLeavesThemAloneAndAPlanPredictsThemOnce) {
     const TemporaryFolder folder;
     const std::vector<std::string> configs = writeTables(folder);
     const std::string dir = folder.path() / "run";
-    const ProcessResult run = measure(configs, dir, {"--only", "number=3"});
+    const ProcessResult run = measureTwins(configs, dir, {"--only", "number=3"});
     EXPECT_THAT(run.out, HasSubstr("2 of 2 finished, 1 as a twin;")) << run.err;
     const ProcessResult plan =
         mockGfxrepro({"plan", configs[0], configs[1], "--device", "software", "--from", dir});

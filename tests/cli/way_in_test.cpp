@@ -17,14 +17,14 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
 
-std::vector<std::string> linesOf(const std::string& text) {
+std::vector<std::string> linesOfText(const std::string& text) {
     std::vector<std::string> lines;
     std::istringstream stream(text);
     for (std::string line; std::getline(stream, line);) lines.push_back(line);
     return lines;
 }
 
-bool isHere(const std::string& program) {
+bool isInstalled(const std::string& program) {
     return runProgram({"/bin/sh", "-c", "command -v " + program}).exitCode == 0;
 }
 
@@ -37,7 +37,7 @@ std::string manPage() {
 /// Every command as words, {"image", "diff"}; from the man page, which has all of them.
 std::vector<std::vector<std::string>> allCommands() {
     std::vector<std::vector<std::string>> commands;
-    for (const std::string& line : linesOf(manPage())) {
+    for (const std::string& line : linesOfText(manPage())) {
         if (!line.starts_with(".SS gfxrepro ")) continue;
         std::istringstream stream(line.substr(13));
         commands.emplace_back();
@@ -60,7 +60,7 @@ void expectFitsOnAScreen(const std::vector<std::string>& command) {
     arguments.emplace_back("--help");
     const ProcessResult result = gfxrepro(arguments);
     EXPECT_EQ(result.exitCode, 0) << name;
-    const std::vector<std::string> lines = linesOf(result.out);
+    const std::vector<std::string> lines = linesOfText(result.out);
     EXPECT_LE(lines.size(), 24U) << name << "\n" << result.out;
     for (const std::string& line : lines) EXPECT_LE(columnsOf(line), 80U) << name << ": " << line;
 }
@@ -115,13 +115,13 @@ TEST(ManPage, PassesTheLinters) {
     const TemporaryFolder folder;
     const fs::path page = folder.write("gfxrepro.1", manPage());
     bool isChecked = false;
-    if (isHere("mandoc")) {
+    if (isInstalled("mandoc")) {
         EXPECT_EQ(
             runProgram({"/usr/bin/env", "mandoc", "-T", "lint", "-W", "error", page.string()}).out,
             "");
         isChecked = true;
     }
-    if (isHere("groff")) {
+    if (isInstalled("groff")) {
         const ProcessResult groff = runProgram({"/usr/bin/env", "groff", "-man", "-ww", "-K",
                                                 "utf8", "-T", "utf8", "-z", page.string()});
         EXPECT_EQ(groff.err, "");
@@ -145,7 +145,7 @@ std::vector<std::string> completed(std::vector<std::string> words) {
     const ProcessResult result = gfxrepro(words);
     EXPECT_EQ(result.exitCode, 0);
     EXPECT_EQ(result.err, "");
-    return linesOf(result.out);
+    return linesOfText(result.out);
 }
 
 TEST(Completion, OffersWhatTheCommandLineTakes) {
@@ -244,7 +244,7 @@ TEST(Completion, BashAsksTheProgram) {
 }
 
 TEST(Completion, FishAsksTheProgram) {
-    if (!isHere("fish")) GTEST_SKIP() << "no fish here";
+    if (!isInstalled("fish")) GTEST_SKIP() << "no fish here";
     const std::string program = GFXREPRO_PROGRAM;
     const std::string script = "set PATH " + fs::path(program).parent_path().string() +
                                " $PATH; gfxrepro completion fish | source; "
@@ -253,7 +253,7 @@ TEST(Completion, FishAsksTheProgram) {
 }
 
 TEST(Completion, ZshTakesTheScript) {
-    if (!isHere("zsh")) GTEST_SKIP() << "no zsh here";
+    if (!isInstalled("zsh")) GTEST_SKIP() << "no zsh here";
     // Its completion needs a terminal: compadd is replaced by a function that prints.
     const std::string script =
         "compdef() { }\ncompadd() { print -r -- \"$@\" }\n"
@@ -295,7 +295,7 @@ TEST(WayIn, ScenesAreListedWithWhatTheyAreMadeOf) {
         command.insert(command.end(), more.begin(), more.end());
         return gfxrepro(command).out;
     };
-    EXPECT_THAT(linesOf(listed({})),
+    EXPECT_THAT(linesOfText(listed({})),
                 IsSupersetOf({testing::ContainsRegex("^models/bunny +stand-in +"),
                               testing::ContainsRegex("^shapes/torus +generated +")}));
     EXPECT_THAT(listed({"--json"}), HasSubstr("\"state\": \"stand-in\""));

@@ -15,13 +15,13 @@
 namespace gfxrepro::scene {
 namespace {
 
-Scene generated(std::uint64_t seed = 1, const std::string& yaml = "{}") {
+Scene generatedBathroom(std::uint64_t seed = 1, const std::string& yaml = "{}") {
     Params params(parseYaml(yaml, "t.yaml"), "generator 'bathroom'");
     return findGenerator(registeredGenerators(), "bathroom", {}).generate(params, seed);
 }
 
 const Scene& bathroomScene() {
-    static const Scene scene = generated();
+    static const Scene scene = generatedBathroom();
     return scene;
 }
 
@@ -41,14 +41,15 @@ bool isPlanar(const Mesh& mesh) {
 }
 
 template <class T>
-std::string digestOf(const std::vector<T>& values) {
+std::string digestOfBathroom(const std::vector<T>& values) {
     return sha256(std::as_bytes(std::span(values)));
 }
-std::string digestOf(const Scene& scene) {
+std::string digestOfBathroom(const Scene& scene) {
     std::string digests;
     for (const Mesh& mesh : scene.meshes) {
-        digests += digestOf(mesh.positions) + digestOf(mesh.normals) + digestOf(mesh.colors) +
-                   digestOf(mesh.texcoords) + digestOf(mesh.triangles);
+        digests += digestOfBathroom(mesh.positions) + digestOfBathroom(mesh.normals) +
+                   digestOfBathroom(mesh.colors) + digestOfBathroom(mesh.texcoords) +
+                   digestOfBathroom(mesh.triangles);
     }
     for (const image::Image8& texture : scene.textures) {
         digests += sha256(std::as_bytes(texture.values()));
@@ -59,7 +60,7 @@ std::string digestOf(const Scene& scene) {
 TEST(Bathroom, HasThePrintedCounts) {
     for (const std::uint64_t seed : {1U, 2U, 9U}) {
         SCOPED_TRACE(seed);
-        const Scene scene = generated(seed);
+        const Scene scene = generatedBathroom(seed);
         std::size_t diffuse = 0, reflective = 0, reflectors = 0;
         std::set<int> meshes;
         for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -254,19 +255,19 @@ TEST(Bathroom, PathsSeeThePrintedSharesOfReflectors) {
 }
 
 TEST(Bathroom, SameSeedSameBytesAndAnotherSeedAnother) {
-    EXPECT_EQ(digestOf(generated(3)), digestOf(generated(3)));
-    EXPECT_NE(digestOf(generated(3)), digestOf(generated(4)));
+    EXPECT_EQ(digestOfBathroom(generatedBathroom(3)), digestOfBathroom(generatedBathroom(3)));
+    EXPECT_NE(digestOfBathroom(generatedBathroom(3)), digestOfBathroom(generatedBathroom(4)));
 }
 
 TEST(Bathroom, SameBytesOnEveryMachine) {
     // A difference here is a changed generator (then kGeneratorVersion goes up) or a compiler that
     // reorders floating point.
-    EXPECT_EQ(digestOf(bathroomScene()),
+    EXPECT_EQ(digestOfBathroom(bathroomScene()),
               "bd96704f0307c39b9b9ef19196215d854dd19f3fa35b54274634dcd6b5113f15");
 }
 
 TEST(Bathroom, HasNoParameters) {
-    EXPECT_EQ(test::errorText([] { generated(1, "{triangles: 48}"); }),
+    EXPECT_EQ(test::errorText([] { generatedBathroom(1, "{triangles: 48}"); }),
               "t.yaml:1:2: generator 'bathroom': unknown parameter 'triangles'; it has none");
 }
 

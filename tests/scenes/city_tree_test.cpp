@@ -10,7 +10,7 @@
 namespace gfxrepro::scene {
 namespace {
 
-Scene sized(const std::string& name, int triangles, std::uint64_t seed = 1) {
+Scene grown(const std::string& name, int triangles, std::uint64_t seed = 1) {
     return generated(name, "{triangles: " + std::to_string(triangles) + "}", seed);
 }
 
@@ -23,7 +23,7 @@ class CityOrTree : public testing::TestWithParam<Case> {};
 
 TEST_P(CityOrTree, HasItsCountAndSoundMeshes) {
     const auto [name, triangles] = GetParam();
-    const Scene scene = sized(name, triangles, 5);
+    const Scene scene = grown(name, triangles, 5);
     EXPECT_EQ(scene.triangleCount(), static_cast<std::size_t>(triangles));
     for (const Mesh& mesh : scene.meshes) {
         SCOPED_TRACE(mesh.name);
@@ -50,9 +50,9 @@ TEST(CityAndTree, DefaultsAreTheThesis) {
 TEST(CityAndTree, EverySeedMeetsTheCount) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         SCOPED_TRACE(seed);
-        EXPECT_EQ(sized("city", 50'000, seed).triangleCount(), 50'000U);
-        EXPECT_EQ(sized("city", 5000, seed).triangleCount(), 5000U);
-        EXPECT_EQ(sized("tree", 10'000, seed).triangleCount(), 10'000U);
+        EXPECT_EQ(grown("city", 50'000, seed).triangleCount(), 50'000U);
+        EXPECT_EQ(grown("city", 5000, seed).triangleCount(), 5000U);
+        EXPECT_EQ(grown("tree", 10'000, seed).triangleCount(), 10'000U);
     }
 }
 
@@ -80,7 +80,7 @@ float heightOverCentre(const Scene& scene) {
 TEST(City, ABuildingStandsUnderItsCentre) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         SCOPED_TRACE(seed);
-        EXPECT_GT(heightOverCentre(sized("city", 50'000, seed)), 20.0F);
+        EXPECT_GT(heightOverCentre(grown("city", 50'000, seed)), 20.0F);
         EXPECT_GT(heightOverCentre(generated("city", "{blocks: 5, building_width: 2}", seed)),
                   30.0F);
     }
@@ -149,8 +149,8 @@ TEST(Tree, LeavesShareTheTriangles) {
 
 TEST(CityAndTree, AnotherSeedIsAnotherScene) {
     for (const char* name : {"city", "tree"}) {
-        EXPECT_EQ(digestOf(sized(name, 12'000, 1)), digestOf(sized(name, 12'000, 1)));
-        EXPECT_NE(digestOf(sized(name, 12'000, 1)), digestOf(sized(name, 12'000, 2)));
+        EXPECT_EQ(digestOf(grown(name, 12'000, 1)), digestOf(grown(name, 12'000, 1)));
+        EXPECT_NE(digestOf(grown(name, 12'000, 1)), digestOf(grown(name, 12'000, 2)));
     }
 }
 
@@ -209,9 +209,9 @@ TEST(CityAndTree, CamerasAndTheViewsAroundThemHoldTheScene) {
 }
 
 TEST(CityAndTree, NothingIsDoubleSidedAndLeavesHaveTwoSides) {
-    const Scene tree = sized("tree", 12'000);
+    const Scene tree = grown("tree", 12'000);
     expectTwoSidedSheet(meshNamed(tree, "leaves"));
-    for (const Scene& scene : {tree, sized("city", 5000)}) {
+    for (const Scene& scene : {tree, grown("city", 5000)}) {
         for (const Material& material : scene.materials) EXPECT_FALSE(material.isDoubleSided);
     }
 }

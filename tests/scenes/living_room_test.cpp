@@ -184,7 +184,7 @@ TEST(LivingRoom, MotionsMoveNamedObjectsAndEndWhereTheyBegan) {
     EXPECT_EQ(moving, (std::set<std::string>{"vase", "knot", "ball", "chair_oak"}));
 }
 
-std::string digestOf(const Scene& scene) {
+std::string digestOfRoom(const Scene& scene) {
     std::string digests;
     const auto add = [&](const auto& values) {
         digests += sha256(std::as_bytes(std::span(values)));
@@ -202,12 +202,12 @@ std::string digestOf(const Scene& scene) {
 
 TEST(LivingRoom, SameSeedSameBytesAndOtherSeedsOthers) {
     const std::string small = "{diffuse_triangles: 60000}";
-    EXPECT_EQ(digestOf(room(small, 1)), digestOf(room(small, 1)));
-    EXPECT_NE(digestOf(room(small, 1)), digestOf(room(small, 2)));
+    EXPECT_EQ(digestOfRoom(room(small, 1)), digestOfRoom(room(small, 1)));
+    EXPECT_NE(digestOfRoom(room(small, 1)), digestOfRoom(room(small, 2)));
 }
 
 TEST(LivingRoom, SameBytesOnEveryMachine) {
-    EXPECT_EQ(digestOf(theRoom()),
+    EXPECT_EQ(digestOfRoom(theRoom()),
               "3f18cec2a9e562f524de854e3ac06bfa126bdf2dd0d8001db5a08f44af6883d8");
 }
 

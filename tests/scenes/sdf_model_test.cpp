@@ -16,12 +16,12 @@
 namespace gfxrepro::scene {
 namespace {
 
-Scene generated(const std::string& yaml, std::uint64_t seed = 1) {
+Scene sampled(const std::string& yaml, std::uint64_t seed = 1) {
     Params params(parseYaml(yaml, "t.yaml"), "generator 'sdf_model'");
     return findGenerator(registeredGenerators(), "sdf_model", {}).generate(params, seed);
 }
 
-std::string digestOf(const Mesh& mesh) {
+std::string digestOfMesh(const Mesh& mesh) {
     return sha256(std::as_bytes(std::span(mesh.positions))) +
            sha256(std::as_bytes(std::span(mesh.normals))) +
            sha256(std::as_bytes(std::span(mesh.triangles)));
@@ -31,7 +31,7 @@ class ModelShape : public testing::TestWithParam<const char*> {};
 
 TEST_P(ModelShape, IsClosedManifoldOutwardAndOfTheWantedCounts) {
     const std::string shape = GetParam();
-    const Scene scene = generated("{shape: " + shape + ", triangles: 12346, vertices: 7000}", 3);
+    const Scene scene = sampled("{shape: " + shape + ", triangles: 12346, vertices: 7000}", 3);
     ASSERT_EQ(scene.meshes.size(), 1U);
     const Mesh& mesh = scene.meshes[0];
     EXPECT_EQ(mesh.name, shape);
@@ -67,8 +67,8 @@ INSTANTIATE_TEST_SUITE_P(All, ModelShape,
 
 TEST(Generators, SameSeedSameBytes) {
     const auto brain = [](std::uint64_t seed) {
-        return digestOf(
-            generated("{shape: brain, triangles: 6000, vertices: 4000}", seed).meshes[0]);
+        return digestOfMesh(
+            sampled("{shape: brain, triangles: 6000, vertices: 4000}", seed).meshes[0]);
     };
     EXPECT_EQ(brain(1), brain(1));
     EXPECT_NE(brain(1), brain(2));
@@ -77,27 +77,27 @@ TEST(Generators, SameSeedSameBytes) {
 TEST(Generators, SameBytesOnEveryMachine) {
     // Only operations that IEEE 754 rounds exactly are used: a difference here is a changed
     // generator (then kGeneratorVersion goes up) or a compiler that reorders floating point.
-    EXPECT_EQ(sha256(digestOf(generated("{shape: bunny, triangles: 3000}").meshes[0])),
+    EXPECT_EQ(sha256(digestOfMesh(sampled("{shape: bunny, triangles: 3000}").meshes[0])),
               "ca7fdfa3d10d7f8669bc4cb2a180e3e3d472db9adb66f8dcb8bb63e3d6bae78f");
 }
 
 TEST(Generators, AnalyticBodiesHaveTheirVolumesAndGenus) {
     constexpr double kPi = std::numbers::pi;
-    const Mesh sphere = generated("{shape: sphere, triangles: 20000}").meshes[0];
+    const Mesh sphere = sampled("{shape: sphere, triangles: 20000}").meshes[0];
     EXPECT_NEAR(signedVolume(sphere), 4.0 / 3.0 * kPi, 0.01);
     for (const glm::vec3& normal : sphere.normals) EXPECT_NEAR(glm::length(normal), 1.0F, 1e-5F);
     for (const glm::vec3& p : sphere.positions) EXPECT_NEAR(glm::length(p), 1.0F, 4e-3F);
 
-    const Mesh torus = generated("{shape: torus, triangles: 20000}").meshes[0];
+    const Mesh torus = sampled("{shape: torus, triangles: 20000}").meshes[0];
     EXPECT_NEAR(signedVolume(torus), 2.0 * kPi * kPi * 0.7 * 0.3 * 0.3, 0.01);
     const Topology ring = topologyOf(torus);
     EXPECT_EQ(ring.vertices + ring.triangles, ring.edges);  // genus 1
 
-    const Mesh rings = generated("{shape: linked_tori, triangles: 20000}").meshes[0];
+    const Mesh rings = sampled("{shape: linked_tori, triangles: 20000}").meshes[0];
     EXPECT_EQ(topologyOf(rings).components, 2U);
     EXPECT_NEAR(signedVolume(rings), 2.0 * 2.0 * kPi * kPi * 0.5 * 0.12 * 0.12, 0.01);
 
-    const Mesh cube = generated("{shape: cube, triangles: 768}").meshes[0];
+    const Mesh cube = sampled("{shape: cube, triangles: 768}").meshes[0];
     EXPECT_NEAR(signedVolume(cube), 8.0, 1e-5);
     EXPECT_EQ(topologyOf(cube).vertices, 768U / 2 + 2);
 }
@@ -127,8 +127,8 @@ TEST(Generators, PolynomialSineIsASine) {
 }
 
 TEST(Generators, StretchKeepsTheCounts) {
-    const Mesh made = generated("{shape: torus, triangles: 1000}").meshes[0];
-    const Mesh wide = generated("{shape: torus, triangles: 1000, stretch: [2, 1, 0.5]}").meshes[0];
+    const Mesh made = sampled("{shape: torus, triangles: 1000}").meshes[0];
+    const Mesh wide = sampled("{shape: torus, triangles: 1000, stretch: [2, 1, 0.5]}").meshes[0];
     EXPECT_EQ(wide.triangles.size(), made.triangles.size());
     const glm::vec3 before = made.bounds().size();
     const glm::vec3 after = wide.bounds().size();
@@ -140,22 +140,22 @@ TEST(Generators, StretchKeepsTheCounts) {
 }
 
 TEST(Generators, BadParametersAreLocated) {
-    EXPECT_EQ(test::errorText([] { generated("{shape: sphere, triangles: 1001}"); }),
+    EXPECT_EQ(test::errorText([] { sampled("{shape: sphere, triangles: 1001}"); }),
               "t.yaml:1:28: triangles: 1001 is odd, but a closed surface has an even number");
     EXPECT_EQ(
-        test::errorText([] { generated("{shape: cube, triangles: 1200, vertices: 100}"); }),
+        test::errorText([] { sampled("{shape: cube, triangles: 1200, vertices: 100}"); }),
         "t.yaml:1:42: vertices: 100 cannot be had with 1200 triangles of this shape; allowed: 0 or "
         "702 to 3600");
     EXPECT_EQ(
-        test::errorText([] { generated("{shape: dargon}"); }),
+        test::errorText([] { sampled("{shape: dargon}"); }),
         "t.yaml:1:9: generator 'sdf_model': shape is 'dargon'; allowed: blade | brain | buddha | "
         "bunny | cube | dragon | duck | hand | head | hip | hugo | linked_tori | lion | sphere | "
         "torus | "
         "wagner");
-    EXPECT_EQ(test::errorText([] { generated("{stretch: [1, 0, 1]}"); }),
+    EXPECT_EQ(test::errorText([] { sampled("{stretch: [1, 0, 1]}"); }),
               "t.yaml:1:11: generator 'sdf_model': stretch is [1, 0, 1]; allowed: a list of 3 "
               "numbers, each 0.1 … 10");
-    EXPECT_EQ(test::errorText([] { generated("{triangels: 1000}"); }),
+    EXPECT_EQ(test::errorText([] { sampled("{triangels: 1000}"); }),
               "t.yaml:1:2: generator 'sdf_model': unknown parameter 'triangels'; did you mean "
               "'triangles'?");
     EXPECT_EQ(test::errorText([] {

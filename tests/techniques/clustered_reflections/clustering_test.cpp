@@ -10,7 +10,7 @@
 namespace gfxrepro::clustered_reflections {
 namespace {
 
-const glm::mat4 kIdentity(1.0F);
+const glm::mat4 kAtRest(1.0F);
 
 glm::vec2 octahedral(const glm::vec3& v) {
     const glm::vec2 p = glm::vec2(v) / (std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
@@ -22,10 +22,10 @@ glm::vec2 octahedral(const glm::vec3& v) {
 /// Three curved reflectors and a planar one; their shapes do not matter.
 reflections::ReflectiveScene fourReflectors() {
     return MirrorScene()
-        .add(ball(), kIdentity)
-        .add(ball(), kIdentity)
-        .add(squareMesh(), kIdentity)
-        .add(ball(), kIdentity)
+        .add(ball(), kAtRest)
+        .add(ball(), kAtRest)
+        .add(squareMesh(), kAtRest)
+        .add(ball(), kAtRest)
         .get();
 }
 
@@ -121,12 +121,12 @@ TEST_F(ClusteringTest, SmallClustersJoinTheirReflectorsOthers) {
 
 TEST_F(ClusteringTest, RenderedBallAndPlaneAreClusteredAsOnTheHost) {
     const glm::mat4 floor =
-        glm::rotate(glm::translate(kIdentity, {0, -1, 0}), -1.5707964F, {1, 0, 0});
+        glm::rotate(glm::translate(kAtRest, {0, -1, 0}), -1.5707964F, {1, 0, 0});
     const reflections::ReflectiveScene scene =
         MirrorScene()
-            .add(ball(), kIdentity)
+            .add(ball(), kAtRest)
             .add(squareMesh(), glm::scale(floor, glm::vec3(3.0F)))
-            .add(squareMesh(), glm::translate(kIdentity, {0, 0, -4}), false)
+            .add(squareMesh(), glm::translate(kAtRest, {0, 0, -4}), false)
             .get();
     const reflections::GBuffer gbuffer =
         render(scene, viewFrom({2, 1.5F, 4}, {0, 0, 0}, {400, 300}));
@@ -166,12 +166,12 @@ TEST_F(ClusteringTest, NothingReflectiveGivesNoClusters) {
     ClusterBuilder builder(shaders, scene, Clustering::KdTree, {}, {64, 48});
     builder.build(gbuffer, nullptr);
     EXPECT_EQ(countsOf(builder.clusters()), glm::uvec3(0));
-    const reflections::ReflectiveScene diffuse = MirrorScene().add(ball(), kIdentity, false).get();
+    const reflections::ReflectiveScene diffuse = MirrorScene().add(ball(), kAtRest, false).get();
     expectAsOnHost(diffuse, gbuffer, {});
 }
 
 TEST_F(ClusteringTest, LoneBallHasAllBinsThatFaceTheEye) {
-    const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kIdentity).get();
+    const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kAtRest).get();
     const reflections::GBuffer gbuffer =
         render(scene, viewFrom({0, 0, 8}, {0, 0, 0}, {512, 512}, 0.3F));
     ClusterBuilder builder(shaders, scene, Clustering::NormalBins, {}, {512, 512});
@@ -254,7 +254,7 @@ TEST_F(ClusteringTest, PartsShareTheirObjectsCount) {
     for (const glm::uvec3& t : one.triangles) pair.triangles.push_back(t + count);
     const reflections::ReflectiveScene split =
         MirrorScene()
-            .add(pair, kIdentity)
+            .add(pair, kAtRest)
             .add(pair, glm::translate(glm::mat4(1.0F), {0, 2.5F, 0}))
             .get({.splitsParts = true});
     ASSERT_EQ(split.reflectorCount(), 4);
@@ -317,8 +317,8 @@ TEST_F(ClusteringTest, KdClustersAreAsManyAndSplitByPlaceToo) {
     for (const glm::uvec3& t : other.triangles) pair.triangles.push_back(t + offset);
     const reflections::ReflectiveScene scene =
         MirrorScene()
-            .add(pair, kIdentity)
-            .add(squareMesh(), glm::translate(kIdentity, {0, 2.5F, 0}))
+            .add(pair, kAtRest)
+            .add(squareMesh(), glm::translate(kAtRest, {0, 2.5F, 0}))
             .get();
     const reflections::GBuffer gbuffer =
         render(scene, viewFrom({0, 0.5F, 9}, {0, 0.5F, 0}, {300, 300}));

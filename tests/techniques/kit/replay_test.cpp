@@ -179,14 +179,14 @@ Verdict Replay::pixel(glm::ivec2 pixel, std::span<const HostDepthImage> earlier)
     return {isDecided, first.id, first.depthM, tolerance};
 }
 
-constexpr int kSizePx = 96;
+constexpr int kReplaySizePx = 96;
 
 class ReplayTest : public DepthImageTest {
   protected:
     static std::vector<glm::ivec2> pixels() {
         std::vector<glm::ivec2> all;
-        for (int y = 0; y < kSizePx; ++y) {
-            for (int x = 0; x < kSizePx; ++x) all.emplace_back(x, y);
+        for (int y = 0; y < kReplaySizePx; ++y) {
+            for (int x = 0; x < kReplaySizePx; ++x) all.emplace_back(x, y);
         }
         return all;
     }
@@ -211,15 +211,15 @@ class ReplayTest : public DepthImageTest {
                     << "image " << i << " pixel " << pixel.x << ' ' << pixel.y;
                 ASSERT_NEAR(image.depthM[index], verdict.depthM, verdict.depthToleranceM);
             }
-            EXPECT_GT(samples, kSizePx * kSizePx / 10) << "image " << i;
-            EXPECT_LE(undecided, allowedUndecided * kSizePx * kSizePx) << "image " << i;
+            EXPECT_GT(samples, kReplaySizePx * kReplaySizePx / 10) << "image " << i;
+            EXPECT_LE(undecided, allowedUndecided * kReplaySizePx * kReplaySizePx) << "image " << i;
             RecordProperty("undecided" + std::to_string(i), undecided);
         }
     }
 
     const scene::Mesh mesh_ = randomTriangles(500, 0.35F, 11);
     const scene::Scene scene_ = scene::sceneOf(mesh_);
-    const std::vector<View> views_ = threeViews(kSizePx);
+    const std::vector<View> views_ = threeViews(kReplaySizePx);
     const std::vector<View> sameViews_ = {views_[0], views_[0], views_[0]};
 };
 
@@ -297,7 +297,7 @@ TEST_F(ReplayTest, PeeledLayersAreTheHitsOfARay) {
                 << "layer " << k << " pixel " << pixel.x << ' ' << pixel.y;
         }
     }
-    EXPECT_GE(decided, 0.95 * kSizePx * kSizePx);
+    EXPECT_GE(decided, 0.95 * kReplaySizePx * kReplaySizePx);
 }
 
 TEST_F(ReplayTest, IdsOfTheGeometryStageAreThoseOfThePrimitives) {

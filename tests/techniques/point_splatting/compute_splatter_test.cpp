@@ -6,7 +6,7 @@
 namespace gfxrepro::point_splatting {
 namespace {
 
-constexpr glm::ivec2 kSize(48, 40);
+constexpr glm::ivec2 kTargetSize(48, 40);
 constexpr float kDistance = 4.0F;
 
 /// Points that fall safely into a pixel, several of them into most, at depths that are clearly
@@ -15,12 +15,12 @@ scene::PointCloud pointsInPixels(const PatchView& view) {
     Random random(17);
     scene::PointCloud points;
     for (int i = 0; i < 6000; ++i) {
-        const glm::vec2 pixel{random.index(static_cast<std::uint32_t>(kSize.x)) + 0.5F,
-                              random.index(static_cast<std::uint32_t>(kSize.y)) + 0.5F};
+        const glm::vec2 pixel{random.index(static_cast<std::uint32_t>(kTargetSize.x)) + 0.5F,
+                              random.index(static_cast<std::uint32_t>(kTargetSize.y)) + 0.5F};
         const glm::vec2 at = pixel + glm::vec2(random.uniform(-0.4F, 0.4F));
         const float layer = 3.0F + 0.5F * static_cast<float>(random.index(4));
         const float depth = layer + random.uniform(0.0F, 0.02F);
-        const glm::vec2 slope = (at - 0.5F * glm::vec2(kSize)) / view.focalPx;
+        const glm::vec2 slope = (at - 0.5F * glm::vec2(kTargetSize)) / view.focalPx;
         points.positions.emplace_back(slope * depth, kDistance - depth);
         points.normals.push_back(
             glm::normalize(glm::vec3{random.uniform(-1, 1), random.uniform(-1, 1), 2.0F}));
@@ -32,9 +32,9 @@ scene::PointCloud pointsInPixels(const PatchView& view) {
 }
 
 TEST_F(SplatTest, ComputeSplatterAveragesWhatIsNearest) {
-    const PatchView view = viewFrom(kDistance, kSize);
+    const PatchView view = viewFrom(kDistance, kTargetSize);
     const ModelFile model = modelOf(pointsInPixels(view));
-    ComputeSplatter splatter(shaders, model, PointStorage::Uncompressed, kSize);
+    ComputeSplatter splatter(shaders, model, PointStorage::Uncompressed, kTargetSize);
     gl::Profiler profiler(true);
     // Twice: nothing of the first frame may be left.
     for (int frame = 0; frame < 2; ++frame) {
@@ -42,14 +42,15 @@ TEST_F(SplatTest, ComputeSplatterAveragesWhatIsNearest) {
     }
     const Picture picture = pictureOf(splatter.output());
 
-    const auto count = static_cast<std::size_t>(kSize.x * kSize.y);
+    const auto count = static_cast<std::size_t>(kTargetSize.x * kTargetSize.y);
     const auto depthOf = [&](std::size_t i) {
         return static_cast<double>(kDistance - model.positions()[i].z);
     };
     const auto pixelOf = [&](std::size_t i) {
         const glm::dvec2 slope = glm::dvec2(model.positions()[i]) / depthOf(i);
-        const glm::ivec2 at(slope * static_cast<double>(view.focalPx) + 0.5 * glm::dvec2(kSize));
-        return static_cast<std::size_t>(at.y * kSize.x + at.x);
+        const glm::ivec2 at(slope * static_cast<double>(view.focalPx) +
+                            0.5 * glm::dvec2(kTargetSize));
+        return static_cast<std::size_t>(at.y * kTargetSize.x + at.x);
     };
     std::vector<double> nearest(count, 1e9);
     std::vector<glm::dvec3> normals(count, glm::dvec3(0.0)), colors(count, glm::dvec3(0.0));
@@ -79,8 +80,8 @@ TEST_F(SplatTest, ComputeSplatterAveragesWhatIsNearest) {
         const glm::ivec4 found(picture.pixels[p]);
         ASSERT_EQ(found.a, counts[p] > 0 ? 255 : 0);
         if (counts[p] == 0) continue;
-        const int x = static_cast<int>(p) % kSize.x, y = static_cast<int>(p) / kSize.x;
-        const glm::dvec2 slope = (glm::dvec2(x + 0.5, y + 0.5) - 0.5 * glm::dvec2(kSize)) /
+        const int x = static_cast<int>(p) % kTargetSize.x, y = static_cast<int>(p) / kTargetSize.x;
+        const glm::dvec2 slope = (glm::dvec2(x + 0.5, y + 0.5) - 0.5 * glm::dvec2(kTargetSize)) /
                                  static_cast<double>(view.focalPx);
         const glm::dvec3 expected = glm::min(
             shadedReference(colors[p] / static_cast<double>(counts[p]), glm::normalize(normals[p]),
@@ -94,9 +95,9 @@ TEST_F(SplatTest, ComputeSplatterAveragesWhatIsNearest) {
 TEST_F(SplatTest, ComputeSplatterLeavesOutWhatIsNotSeen) {
     scene::PointCloud points = sphere(300);
     for (glm::vec3& p : points.positions) p = 0.05F * p + glm::vec3(0.0F, 0.0F, 5.0F);
-    const PatchView view = viewFrom(kDistance, kSize);  // looks away from them
+    const PatchView view = viewFrom(kDistance, kTargetSize);  // looks away from them
     const ModelFile model = modelOf(points);
-    ComputeSplatter splatter(shaders, model, PointStorage::Compressed, kSize);
+    ComputeSplatter splatter(shaders, model, PointStorage::Compressed, kTargetSize);
     gl::Profiler profiler(true);
     splatter.render(everything(model, SplatMode::FullEwa), view, profiler);
     for (const glm::u8vec4& pixel : pictureOf(splatter.output()).pixels) ASSERT_EQ(pixel.a, 0);

@@ -221,7 +221,7 @@ scene::PointCloud onePoint(const glm::vec3& position, const glm::vec3& normal, f
     return points;
 }
 
-int coveredPixels(const Picture& picture) {
+int coveredPixelsOf(const Picture& picture) {
     return static_cast<int>(std::count_if(picture.pixels.begin(), picture.pixels.end(),
                                           [](const glm::u8vec4& p) { return p.a > 0; }));
 }
@@ -231,14 +231,14 @@ TEST_F(SplatTest, OneSpriteIsASquareAndOneSplatAnEllipse) {
     const float radius = 10.0F * 3.0F / view.focalPx;  // 10 pixels
     const glm::vec3 slanted(std::sin(1.0F), 0.0F, std::cos(1.0F));
     const ModelFile model = modelOf(onePoint(glm::vec3(0.0F), slanted, radius));
-    EXPECT_EQ(coveredPixels(renderModel(model, SplatMode::Sprite, view)), 400);
+    EXPECT_EQ(coveredPixelsOf(renderModel(model, SplatMode::Sprite, view)), 400);
     // Half axes of two standard deviations, one of them foreshortened.
     const double area = glm::pi<double>() * 20.0 * 20.0 * std::cos(1.0);
-    EXPECT_NEAR(coveredPixels(renderModel(model, SplatMode::Reconstruction, view)), area, 25.0);
+    EXPECT_NEAR(coveredPixelsOf(renderModel(model, SplatMode::Reconstruction, view)), area, 25.0);
     const double foreshortened = std::sqrt(100.0 * std::pow(std::cos(1.0), 2.0) + 0.49);
-    EXPECT_NEAR(coveredPixels(renderModel(model, SplatMode::FullEwa, view)),
+    EXPECT_NEAR(coveredPixelsOf(renderModel(model, SplatMode::FullEwa, view)),
                 glm::pi<double>() * 4.0 * std::sqrt(100.49) * foreshortened, 25.0);
-    EXPECT_NEAR(coveredPixels(renderModel(model, SplatMode::LowPass, view)),
+    EXPECT_NEAR(coveredPixelsOf(renderModel(model, SplatMode::LowPass, view)),
                 glm::pi<double>() * 4.0 * 0.49, 4.0);
 }
 
@@ -333,7 +333,7 @@ TEST_F(SplatTest, DiscsWiderThanGlPointsAreStillWhole) {
                                         {.storage = PointStorage::Uncompressed});
     const double radiusPx = 2.0 * 0.4 * static_cast<double>(view.focalPx) / 3.0;
     EXPECT_GT(radiusPx, 400.0);
-    EXPECT_NEAR(coveredPixels(picture), glm::pi<double>() * radiusPx * radiusPx, 4000.0);
+    EXPECT_NEAR(coveredPixelsOf(picture), glm::pi<double>() * radiusPx * radiusPx, 4000.0);
 }
 
 TEST_F(SplatTest, NothingDegenerateBreaksASum) {
@@ -375,7 +375,7 @@ TEST_F(SplatTest, NothingDegenerateBreaksASum) {
                 ASSERT_TRUE(std::isfinite(sum));
             }
             const bool isSeen = c.isSeen[static_cast<std::size_t>(mode)];
-            EXPECT_EQ(coveredPixels(picture) > 0, isSeen);
+            EXPECT_EQ(coveredPixelsOf(picture) > 0, isSeen);
             device.finish(c.name);
         }
     }
@@ -386,7 +386,8 @@ TEST_F(SplatTest, SplatsTurnedAwayAreNotDrawn) {
     for (const SplatMode mode :
          {SplatMode::FullEwa, SplatMode::Reconstruction, SplatMode::LowPass, SplatMode::Sprite}) {
         const auto coveredAt = [&](float turnRad) {
-            return coveredPixels(renderModel(modelOf(sheet(40, 0.5F, 0.0F, turnRad)), mode, view));
+            return coveredPixelsOf(
+                renderModel(modelOf(sheet(40, 0.5F, 0.0F, turnRad)), mode, view));
         };
         EXPECT_GT(coveredAt(1.4F), 0);
         EXPECT_EQ(coveredAt(2.0F), 0);
@@ -398,8 +399,8 @@ TEST_F(SplatTest, NothingDrawnIsAnEmptyPicture) {
     const ModelFile model = modelOf(sphere(500));
     const PatchView view = viewFrom(4.0F, kSize);
     SplatRenderer renderer(shaders, model, {}, kSize);
-    EXPECT_GT(coveredPixels(render(renderer, everything(model, SplatMode::Sprite), view)), 1000);
-    EXPECT_EQ(coveredPixels(render(renderer, {}, view)), 0);
+    EXPECT_GT(coveredPixelsOf(render(renderer, everything(model, SplatMode::Sprite), view)), 1000);
+    EXPECT_EQ(coveredPixelsOf(render(renderer, {}, view)), 0);
 }
 
 TEST_F(SplatTest, ALevelIsAPrefixWithItsOwnRadii) {

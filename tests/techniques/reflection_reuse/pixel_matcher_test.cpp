@@ -42,7 +42,7 @@ double invalidShare(const MatchingCounts& counts) {
                : 0.0;
 }
 
-constexpr glm::ivec2 kSizePx(128, 96);
+constexpr glm::ivec2 kImageSizePx(128, 96);
 
 using PixelMatcherTest = KeyFrameTest;
 using reflections::forEachReflective;
@@ -80,7 +80,7 @@ int countNear(const HostReflectionDepthImage& key, const glm::vec2& positionPx, 
 }
 
 TEST_F(PixelMatcherTest, AnEyeThatStaysKeepsEverySample) {
-    const KeyFrame key = keyFrame(roomWithAll(), aboveFloor(), kSizePx);
+    const KeyFrame key = keyFrame(roomWithAll(), aboveFloor(), kImageSizePx);
     for (const MatchingSettings& settings : kOrders) {
         const HostOffsets offsets(match(key, key.eyeWorld(), settings));
         int count = 0;
@@ -95,7 +95,7 @@ TEST_F(PixelMatcherTest, AnEyeThatStaysKeepsEverySample) {
 }
 
 TEST_F(PixelMatcherTest, PlanarMirrorsMatchWhereTheyShowThePoint) {
-    const KeyFrame key = keyFrame(roomWithMirrorFloor(), aboveFloor(), kSizePx);
+    const KeyFrame key = keyFrame(roomWithMirrorFloor(), aboveFloor(), kImageSizePx);
     for (const glm::vec3& move : {glm::vec3(0.15F, 0, 0), glm::vec3(-0.2F, 0.1F, 0),
                                   glm::vec3(0.1F, -0.15F, -0.3F), glm::vec3(0, 0.3F, 0.2F)}) {
         const glm::vec3 eye = key.eyeWorld() + move;
@@ -131,7 +131,7 @@ TEST_F(PixelMatcherTest, ReflectionsThatLeaveTheReflectorAreInvalid) {
     addPart(source, reflections::rectangle({0, 0, 0.8F}, {0, 0, 1.2F}, {0.7F, 0, 0}),
             reflections::mirror());
     source.instances[2].worldFromMesh[3].y = -0.01F;  // the floor, below the mirror
-    const KeyFrame key = keyFrame(source, aboveFloor(), kSizePx);
+    const KeyFrame key = keyFrame(source, aboveFloor(), kImageSizePx);
     for (const MatchingSettings& settings : kOrders) {
         int outOfMirror = 0, outOfImage = 0;
         for (const glm::vec3& move : {glm::vec3(0.4F, 0.3F, -0.5F), glm::vec3(0.4F, -0.2F, 0.5F)}) {
@@ -144,8 +144,8 @@ TEST_F(PixelMatcherTest, ReflectionsThatLeaveTheReflectorAreInvalid) {
                 if (countNear(key.host, expected, 2, 1) > 0) return;
                 EXPECT_FALSE(offsets.isValid(index)) << pixel.x << ", " << pixel.y;
                 const bool isInImage = expected.x > 0.0F && expected.y > 0.0F &&
-                                       expected.x < static_cast<float>(kSizePx.x) &&
-                                       expected.y < static_cast<float>(kSizePx.y);
+                                       expected.x < static_cast<float>(kImageSizePx.x) &&
+                                       expected.y < static_cast<float>(kImageSizePx.y);
                 (isInImage ? outOfMirror : outOfImage) += 1;
             });
         }
@@ -162,7 +162,7 @@ TEST_F(PixelMatcherTest, OtherReflectorsAreNeverMatched) {
             reflections::mirror());
     addPart(source, reflections::rectangle({1, kHeight, 0}, {0, 0, 2}, {1, 0, 0}),
             reflections::mirror());
-    const KeyFrame key = keyFrame(source, aboveFloor(), kSizePx);
+    const KeyFrame key = keyFrame(source, aboveFloor(), kImageSizePx);
     const glm::vec3 eye = key.eyeWorld() + glm::vec3(0.5F, 0, 0);
     for (const MatchingSettings& settings : kOrders) {
         const HostOffsets offsets(match(key, eye, settings));
@@ -200,7 +200,7 @@ TEST_F(PixelMatcherTest, SearchesDoNotCrossASilhouette) {
     scene::Scene source = mattRoom();
     addPart(source, scene::flattened(panels), reflections::mirror());
     const KeyFrame key =
-        keyFrame(source, reflections::camera({0, 1.2F, 1.5F}, {0, 1.2F, 0}), kSizePx);
+        keyFrame(source, reflections::camera({0, 1.2F, 1.5F}, {0, 1.2F, 0}), kImageSizePx);
     const glm::vec3 eye = key.eyeWorld() + glm::vec3(0.3F, 0, 0);
     const HostOffsets offsets(match(key, eye));
     const reflections::HostGBuffer& gbuffer = key.host.gbuffer;
@@ -265,9 +265,9 @@ TEST_F(PixelMatcherTest, DeviceAndHostAgree) {
 }
 
 TEST_F(PixelMatcherTest, SearchesBeginWhereTheLastOneEnded) {
-    const KeyFrame key = keyFrame(roomWithAll(), aboveFloor(), kSizePx);
+    const KeyFrame key = keyFrame(roomWithAll(), aboveFloor(), kImageSizePx);
     const PixelMatcher matcher(shaders, {});
-    Offsets previous(kSizePx), current(kSizePx), fresh(kSizePx);
+    Offsets previous(kImageSizePx), current(kImageSizePx), fresh(kImageSizePx);
     matcher.match(key.image, key.eyeWorld(), nullptr, previous);
     double steps = 0.0, freshSteps = 0.0;
     constexpr int kFrames = 12;
@@ -297,9 +297,9 @@ TEST_F(PixelMatcherTest, SearchesBeginWhereTheLastOneEnded) {
 /// What has left the mirror is not searched while it is far, and is matched again when the eye
 /// comes back, as fast as it left.
 TEST_F(PixelMatcherTest, LostMatchesAreFoundAgainFromTheirNeighbours) {
-    const KeyFrame key = keyFrame(roomWithMirrorFloor(), aboveFloor(), kSizePx);
+    const KeyFrame key = keyFrame(roomWithMirrorFloor(), aboveFloor(), kImageSizePx);
     const PixelMatcher matcher(shaders, {});
-    Offsets previous(kSizePx), current(kSizePx), fresh(kSizePx);
+    Offsets previous(kImageSizePx), current(kImageSizePx), fresh(kImageSizePx);
     matcher.match(key.image, key.eyeWorld(), nullptr, previous);
     constexpr int kFrames = 12;
     double lost = 0.0, steps = 0.0, freshSteps = 0.0;
@@ -322,7 +322,7 @@ TEST_F(PixelMatcherTest, LostMatchesAreFoundAgainFromTheirNeighbours) {
 }
 
 TEST_F(PixelMatcherTest, LongSearchesAreInvalid) {
-    const KeyFrame key = keyFrame(roomWithMirrorFloor(), aboveFloor(), kSizePx);
+    const KeyFrame key = keyFrame(roomWithMirrorFloor(), aboveFloor(), kImageSizePx);
     const glm::vec3 eye = key.eyeWorld() + glm::vec3(0.3F, 0, 0);
     const HostOffsets all(match(key, eye));
     const HostOffsets some(match(key, eye, {.maxSteps = 3}));
@@ -363,9 +363,9 @@ TEST_F(PixelMatcherTest, CountsAreSumsOverReflectiveSamples) {
 }
 
 TEST_F(PixelMatcherTest, WithoutReflectorsNothingIsValid) {
-    const KeyFrame key = keyFrame(mattRoom(), aboveFloor(), kSizePx);
+    const KeyFrame key = keyFrame(mattRoom(), aboveFloor(), kImageSizePx);
     const PixelMatcher matcher(shaders, {});
-    Offsets offsets(kSizePx);
+    Offsets offsets(kImageSizePx);
     matcher.match(key.image, key.eyeWorld(), nullptr, offsets);
     const HostOffsets host(offsets);
     for (std::size_t i = 0; i < host.offset.size(); ++i) {
@@ -379,7 +379,7 @@ TEST_F(PixelMatcherTest, WithoutReflectorsNothingIsValid) {
 }
 
 TEST_F(PixelMatcherTest, OffsetsTakeSixBytesASampleOrFive) {
-    EXPECT_EQ(Offsets(kSizePx).sizeBytes(), std::size_t{128 * 96 * 5});
+    EXPECT_EQ(Offsets(kImageSizePx).sizeBytes(), std::size_t{128 * 96 * 5});
 }
 
 }  // namespace

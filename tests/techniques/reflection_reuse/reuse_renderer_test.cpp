@@ -10,8 +10,8 @@ namespace gfxrepro::reflection_reuse {
 namespace {
 
 /// As the thesis has them; {} is the default.
-const ReuseSettings kPrinted{.matching = {.matching = Matching::FirstOrder},
-                             .reprojection = {.resampling = Resampling::Twice}};
+const ReuseSettings kPrintedSettings{.matching = {.matching = Matching::FirstOrder},
+                                     .reprojection = {.resampling = Resampling::Twice}};
 
 TEST_F(ReuseTest, TheFirstFrameIsAKeyFrameAndTraced) {
     World world(shaders, mirrorRoom(), {});
@@ -23,7 +23,7 @@ TEST_F(ReuseTest, TheFirstFrameIsAKeyFrameAndTraced) {
 }
 
 TEST_F(ReuseTest, ACameraThatStandsStillRecomputesNothing) {
-    for (const ReuseSettings& settings : {ReuseSettings{}, kPrinted, {.isDirect = true}}) {
+    for (const ReuseSettings& settings : {ReuseSettings{}, kPrintedSettings, {.isDirect = true}}) {
         World world(shaders, mirrorRoom(), settings);
         const Frame key = world.render(front());
         for (int i = 0; i < 2; ++i) {
@@ -86,7 +86,7 @@ TEST_F(ReuseTest, EveryReflectiveSampleIsReusedOrRecomputed) {
 }
 
 TEST_F(ReuseTest, AMirrorKeepsItsImageWhenTheEyeMoves) {
-    World world(shaders, mirrorRoom(), kPrinted);
+    World world(shaders, mirrorRoom(), kPrintedSettings);
     World direct(shaders, mirrorRoom(), {.isDirect = true});
     world.render(front());
     direct.render(front());
@@ -104,7 +104,7 @@ TEST_F(ReuseTest, AMirrorKeepsItsImageWhenTheEyeMoves) {
 TEST_F(ReuseTest, OnlyWhatTheKeyFrameDidNotSeeIsRecomputed) {
     scene::Scene scene = mirrorRoom();
     scene.instances.resize(kBlock + 1);  // no ball: every reflection is in the plane z = −2
-    World world(shaders, scene, kPrinted);
+    World world(shaders, scene, kPrintedSettings);
     const Frame key = world.render(front());
     const std::vector<reflections::TracedSample> keyTruth = world.truth(key);
     const Frame frame = world.render(front(0.1F));
@@ -267,7 +267,7 @@ TEST_F(ReuseTest, SeamsAreMixedWithinTheirWidthOnly) {
 }
 
 TEST_F(ReuseTest, PassesAreThoseOfTheThesis) {
-    World world(shaders, mirrorRoom(), kPrinted);
+    World world(shaders, mirrorRoom(), kPrintedSettings);
     world.render(front());
     world.profiler.collect();
     world.render(front(0.05F));

@@ -13,7 +13,7 @@
 namespace gfxrepro::reflections {
 namespace {
 
-constexpr glm::ivec2 kSize{96, 64};
+constexpr glm::ivec2 kBufferSize{96, 64};
 
 /// A textured floor, seen from the side that its winding calls the back, and two turned, stretched
 /// instances of a reflecting ball, one of them mirrored.
@@ -46,7 +46,7 @@ kit::View viewOfScene() {
     camera.target = {0, 0.5F, 0};
     camera.nearM = 0.5F;
     camera.farM = 20.0F;
-    return kit::viewOf(camera, kSize);
+    return kit::viewOf(camera, kBufferSize);
 }
 
 class GBufferTest : public ReflectionsTest {
@@ -71,8 +71,8 @@ TEST_F(GBufferTest, SeesWhatRaysMeet) {
     const HostGBuffer host = readGBuffer(gbuffer);
     const raycast::RayTracer rays(posed);
     int seen = 0, background = 0, elsewhere = 0, filtered = 0, ofReflector[3] = {};
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) {
+    for (int y = 0; y < kBufferSize.y; ++y) {
+        for (int x = 0; x < kBufferSize.x; ++x) {
             const glm::ivec2 pixel(x, y);
             const std::size_t i = host.indexOf(pixel);
             const glm::vec3 direction = rayThrough(host.view, glm::vec2(pixel) + 0.5F);
@@ -129,13 +129,13 @@ TEST_F(GBufferTest, SeesWhatRaysMeet) {
             }
         }
     }
-    EXPECT_LE(elsewhere, kSize.x * kSize.y / 500);
+    EXPECT_LE(elsewhere, kBufferSize.x * kBufferSize.y / 500);
     EXPECT_GT(background, 500);
     EXPECT_GT(filtered, 500);
     EXPECT_GT(ofReflector[0], 500);
     EXPECT_GT(ofReflector[1], 300);
     EXPECT_GT(ofReflector[2], 300);
-    EXPECT_EQ(seen + background + elsewhere, kSize.x * kSize.y);
+    EXPECT_EQ(seen + background + elsewhere, kBufferSize.x * kBufferSize.y);
 }
 
 TEST_F(GBufferTest, IsReadTheSameOnTheDevice) {
@@ -157,11 +157,11 @@ void main() {
 )");
     const HostGBuffer host = readGBuffer(gbuffer);
     const gl::Buffer buffer(4 * host.depthM.size() * sizeof(glm::vec4));
-    read.dispatch({kSize.x, kSize.y, 1},
+    read.dispatch({kBufferSize.x, kBufferSize.y, 1},
                   gl::Resources{{"Results", buffer}}.with(gbuffer.resourcesFor(read)));
     const auto results = buffer.read<glm::vec4>(4 * host.depthM.size());
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) {
+    for (int y = 0; y < kBufferSize.y; ++y) {
+        for (int x = 0; x < kBufferSize.x; ++x) {
             const std::size_t i = host.indexOf({x, y});
             if (host.depthM[i] == 0.0F) continue;
             const glm::vec4* found = &results[4 * i];
@@ -190,8 +190,8 @@ TEST_F(GBufferTest, KeepsDarkColours) {
     const raycast::RayTracer rays(posed);
     double sum = 0.0, most = 0.0;
     int count = 0;
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) {
+    for (int y = 0; y < kBufferSize.y; ++y) {
+        for (int x = 0; x < kBufferSize.x; ++x) {
             const std::size_t i = host.indexOf({x, y});
             const glm::vec3 direction = rayThrough(host.view, glm::vec2(x, y) + 0.5F);
             const auto hit = rays.closestHit(host.view.eyeWorld, direction);
@@ -239,11 +239,11 @@ struct Halves {
         scene::Camera camera;
         camera.position = {0, 0, 5.0F * side};
         camera.target = {0, 0, 0};
-        GBuffer gbuffer(kit::viewOf(camera, kSize));
+        GBuffer gbuffer(kit::viewOf(camera, kBufferSize));
         GBufferRenderer(shaders, scene).render(GpuObjects(scene), gbuffer);
         host = readGBuffer(gbuffer);
-        left = host.indexOf({kSize.x / 2 - static_cast<int>(9 * side), kSize.y / 2});
-        right = host.indexOf({kSize.x / 2 + static_cast<int>(9 * side), kSize.y / 2});
+        left = host.indexOf({kBufferSize.x / 2 - static_cast<int>(9 * side), kBufferSize.y / 2});
+        right = host.indexOf({kBufferSize.x / 2 + static_cast<int>(9 * side), kBufferSize.y / 2});
     }
 };
 
@@ -308,7 +308,7 @@ TEST_F(GBufferTest, DrawsSomeObjectsOnly) {
                         objectDefines());
     const gl::SampleQuery query;
     const auto samplesOf = [&](std::vector<std::uint32_t> drawn) {
-        const gl::Texture colour = gl::Texture::make2D(GL_RGBA8, kSize);
+        const gl::Texture colour = gl::Texture::make2D(GL_RGBA8, kBufferSize);
         const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&colour});
         framebuffer.bind();
         glDisable(GL_DEPTH_TEST);

@@ -10,7 +10,7 @@
 namespace gfxrepro::reflections {
 namespace {
 
-constexpr glm::ivec2 kSizePx(96, 72);
+constexpr glm::ivec2 kScreenSizePx(96, 72);
 constexpr float kThicknessM = 0.3F;
 
 /// Two pillars, a wide one and a thin one, on a mirror; nothing around.
@@ -67,7 +67,7 @@ bool isSeen(const HostGBuffer& gbuffer, const glm::vec3& point, const glm::vec3&
 }
 
 TEST_F(ScreenSpaceTracerTest, AgreesWithRaysWhereTheEyeSeesWhatIsReflected) {
-    const Prepared prepared(shaders, pillarsOnMirror(), beforePillars(), kSizePx);
+    const Prepared prepared(shaders, pillarsOnMirror(), beforePillars(), kScreenSizePx);
     EmbreeTracer embree(shaders, prepared.scene, prepared.map, {});
     embree.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
@@ -109,7 +109,7 @@ TEST_F(ScreenSpaceTracerTest, RaysPassBehindWhatIsInFrontOfThem) {
     addPart(source, rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}), mirror());
     addPart(source, rectangle({0, 2, -1.9F}, {2, 0, 0}, {0, 2, 0}), glowing({0.2F, 0.6F, 0.3F}));
     addPart(source, rectangle({0, 0.75F, 1.2F}, {0.6F, 0, 0}, {0, 0.1F, 0}), glowing({1, 0, 0}));
-    const Prepared prepared(shaders, source, camera({0, 0.9F, 2.2F}, {0, 0.5F, 0}), kSizePx);
+    const Prepared prepared(shaders, source, camera({0, 0.9F, 2.2F}, {0, 0.5F, 0}), kScreenSizePx);
     EmbreeTracer embree(shaders, prepared.scene, prepared.map, {});
     embree.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
@@ -139,7 +139,7 @@ TEST_F(ScreenSpaceTracerTest, RaysPassBehindWhatIsInFrontOfThem) {
 /// The eye looks at the mirror alone: all that is reflected is above the image.
 TEST_F(ScreenSpaceTracerTest, TakesTheEnvironmentForWhatIsOutsideOfTheImage) {
     const Prepared prepared(shaders, pillarsOnMirror(),
-                            camera({0.0F, 0.8F, 1.6F}, {0.0F, 0.0F, 1.0F}), kSizePx);
+                            camera({0.0F, 0.8F, 1.6F}, {0.0F, 0.0F, 1.0F}), kScreenSizePx);
     EmbreeTracer embree(shaders, prepared.scene, prepared.map, {});
     embree.update(prepared.objects, profiler);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
@@ -170,7 +170,7 @@ TEST_F(ScreenSpaceTracerTest, GlossyMeanOfOneColourIsThatColour) {
         material.baseColor = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
         material.emissive = colour;
     }
-    const Prepared prepared(shaders, source, beforePillars(), kSizePx);
+    const Prepared prepared(shaders, source, beforePillars(), kScreenSizePx);
     const Traced traced = this->traced(prepared, {});
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
     int hits = 0;
@@ -183,7 +183,7 @@ TEST_F(ScreenSpaceTracerTest, GlossyMeanOfOneColourIsThatColour) {
 
 /// Where whole lobes meet what the eye sees, their means agree with Embree's.
 TEST_F(ScreenSpaceTracerTest, GlossyMeansAgreeWithRays) {
-    const Prepared prepared(shaders, pillarsOnMirror(0.15F), beforePillars(), kSizePx);
+    const Prepared prepared(shaders, pillarsOnMirror(0.15F), beforePillars(), kScreenSizePx);
     // Reflections end at 0.8 m.
     const LobeSettings lobe{16, 0.6F, 12.0F};
     EmbreeTracer embree(shaders, prepared.scene, prepared.map, lobe);
@@ -207,12 +207,12 @@ TEST_F(ScreenSpaceTracerTest, GlossyMeansAgreeWithRays) {
 }
 
 TEST_F(ScreenSpaceTracerTest, WritesWantedSamplesOnly) {
-    const Prepared prepared(shaders, pillarsOnMirror(), beforePillars(), kSizePx);
+    const Prepared prepared(shaders, pillarsOnMirror(), beforePillars(), kScreenSizePx);
     const Traced all = traced(prepared, {});
     profiler.collect();
     std::vector<std::uint8_t> wantedSamples(all.distanceM.size());
     for (std::size_t i = 0; i < wantedSamples.size(); ++i) wantedSamples[i] = i % 3 == 0 ? 1 : 0;
-    gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSizePx);
+    gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kScreenSizePx);
     wanted.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wantedSamples.data());
     const Traced some = traced(prepared, {}, &wanted);
     const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);

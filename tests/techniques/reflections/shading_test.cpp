@@ -26,7 +26,7 @@ void main() {
 }
 )";
 
-struct Input {
+struct ShadedPoint {
     glm::vec4 position, normal, color, texcoordAndObject;
 };
 
@@ -55,7 +55,7 @@ TEST_F(ReflectionsTest, ShadesAsTheHostDoes) {
     Random random(3);
     const ReflectiveScene scene(litScene(random));
     const GpuObjects objects(scene);
-    std::vector<Input> inputs;
+    std::vector<ShadedPoint> inputs;
     std::vector<glm::vec3> albedos, colours;
     for (int i = 0; i < 600; ++i) {
         const std::uint32_t triangle = random.index(4);

@@ -11,7 +11,7 @@
 namespace gfxrepro::reflections {
 namespace {
 
-scene::Scene texturedScene(const image::Image8& texture) {
+scene::Scene texturedSquare(const image::Image8& texture) {
     scene::Scene scene;
     addPart(scene, squareMesh(), {.baseColorTexture = 0});
     scene.textures = {texture};
@@ -19,7 +19,7 @@ scene::Scene texturedScene(const image::Image8& texture) {
 }
 
 TEST(TextureFilterTest, KeepsLevelsWhereTexturesAreFiltered) {
-    const scene::Scene scene = texturedScene({8, 8, 3});
+    const scene::Scene scene = texturedSquare({8, 8, 3});
     const ReflectiveScene filtered(scene);
     ASSERT_EQ(filtered.textureLevels().size(), 10U);
     EXPECT_EQ(filtered.textureLevels()[1].at(0).width(), 256);
@@ -31,7 +31,7 @@ TEST(TextureFilterTest, KeepsLevelsWhereTexturesAreFiltered) {
 
 TEST(TextureFilterTest, FootprintsAreAsWideAsWhatABeamCoversIsLong) {
     // The texture's side is 2 m, 6 m of the stretched instance.
-    const ReflectiveScene scene(texturedScene({8, 8, 3}));
+    const ReflectiveScene scene(texturedSquare({8, 8, 3}));
     const glm::mat4 rest(1.0F);
     const glm::vec3 straight(0, 0, -1), slanted = glm::normalize(glm::vec3(0.6F, 0, -0.8F));
     EXPECT_NEAR(scene.footprintAt(0, rest, straight, 0.01F), 0.05F, 1e-6F);
@@ -40,7 +40,7 @@ TEST(TextureFilterTest, FootprintsAreAsWideAsWhatABeamCoversIsLong) {
     EXPECT_NEAR(scene.footprintAt(0, glm::scale(rest, glm::vec3(3)), straight, 0.01F), 0.05F / 3.0F,
                 1e-6F);
     EXPECT_GT(scene.footprintAt(0, rest, {1, 0, 0}, 0.01F), 1e10F);  // edge-on: all of it
-    const ReflectiveScene finest(texturedScene({8, 8, 3}), {}, TextureFilter::FinestLevel);
+    const ReflectiveScene finest(texturedSquare({8, 8, 3}), {}, TextureFilter::FinestLevel);
     EXPECT_EQ(finest.footprintAt(0, rest, straight, 0.01F), 0.0F);
 }
 
@@ -52,7 +52,7 @@ TEST(TextureFilterTest, AveragesTexturesOverTheFootprint) {
             for (int channel = 0; channel < 3; ++channel) columns.at(x, y, channel) = 255;
         }
     }
-    scene::Scene scene = texturedScene(columns);
+    scene::Scene scene = texturedSquare(columns);
     scene.materials[0].baseColor = glm::vec4(1.0F);
     const ReflectiveScene prepared(scene);
     const auto white = [&](float texels) {  // in the middle of a white one

@@ -18,7 +18,7 @@ constexpr float kHalfPlate = 0.5F;
 constexpr float kHalfShadow = kHalfPlate * kLightHeight / (kLightHeight - kPlateHeight);
 
 /// A square plate, seen from both sides, over a floor that faces up.
-scene::Scene plateOverFloor() {
+scene::Scene tracedPlateOverFloor() {
     scene::MeshBuilder builder;
     builder.addQuad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4});
     builder.addQuad({-kHalfPlate, kPlateHeight, kHalfPlate}, {kHalfPlate, kPlateHeight, kHalfPlate},
@@ -69,7 +69,7 @@ class ShadowTruthTest : public testing::Test {
 
     std::vector<float> terms(float value) const { return std::vector(points_.size(), value); }
 
-    scene::Scene scene_ = plateOverFloor();
+    scene::Scene scene_ = tracedPlateOverFloor();
     raycast::RayTracer tracer_{scene_};
     ShadowTruth truth_{tracer_, glm::length(scene_.bounds().size())};
     std::vector<VisiblePoint> points_;

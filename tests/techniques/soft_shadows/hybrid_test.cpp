@@ -21,7 +21,7 @@ namespace shapes = voxelization::shapes;
 
 using HybridTest = ReconstructionTest;
 
-constexpr ReconstructionSettings kSettings;
+constexpr ReconstructionSettings kHybridSettings;
 
 /// The device's mesh is the reference's: quads in order, corners at their places and depths, and
 /// two corners are one vertex exactly when both are the same sample of H.
@@ -86,9 +86,9 @@ TEST_F(HybridTest, IsTheReferencesMesh) {
             SCOPED_TRACE(fmt::format("{} {}", shape.name, size.x));
             const ImagePair images = traceImages(shape.mesh, camera, size);
             const auto quads =
-                reference::hybridQuads(images.image, images.offset, normals, kSettings);
+                reference::hybridQuads(images.image, images.offset, normals, kHybridSettings);
             EXPECT_GT(quads.size(), 200U);
-            const HostMesh measured = reconstruct(images, normals, kSettings);
+            const HostMesh measured = reconstruct(images, normals, kHybridSettings);
             expectEqual(measured, quads, images.image.view);
             expectFacesEye(measured);
         }
@@ -115,11 +115,12 @@ TEST_F(HybridTest, IsTheReferencesMeshForNonRedundantImages) {
 
     const std::vector<glm::vec3> normals = reference::normalsOf(mesh);
     const ImagePair images{readDepthImage(second), readDepthImage(offset)};
-    const auto quads = reference::hybridQuads(images.image, images.offset, normals, kSettings);
+    const auto quads =
+        reference::hybridQuads(images.image, images.offset, normals, kHybridSettings);
     EXPECT_GT(quads.size(), 200U);
     const gl::Buffer normalBuffer = triangleNormals(mesh, device().limits());
-    const HostMesh measured =
-        readBack(Reconstructor(shaders(), kSettings).reconstruct(second, &offset, normalBuffer));
+    const HostMesh measured = readBack(
+        Reconstructor(shaders(), kHybridSettings).reconstruct(second, &offset, normalBuffer));
     expectEqual(measured, quads, images.image.view);
     EXPECT_GT(measured.mesh.fittedCorners, measured.mesh.sampleCount);
 }
@@ -128,7 +129,7 @@ TEST_F(HybridTest, SmoothSurfacesAreWatertightUpToTheSilhouette) {
     const scene::Mesh mesh = shapes::sphere(glm::vec3(0.0F), 1.0F, 6);
     const scene::Camera camera = scene::framingCamera(mesh.bounds(), 1.0F);
     const ImagePair images = traceImages(mesh, camera, {100, 100});
-    const HostMesh measured = reconstruct(images, reference::normalsOf(mesh), kSettings);
+    const HostMesh measured = reconstruct(images, reference::normalsOf(mesh), kHybridSettings);
 
     // A sphere has no discontinuity within its outline: corners are missing where H misses it.
     std::map<std::pair<int, int>, int> quadsAtCorner;
@@ -174,12 +175,12 @@ TEST_F(HybridTest, CornersLieOnTheSurface) {
     const scene::Mesh mesh = shapes::sphere(centre, 1.0F, 6);
     const ImagePair images =
         traceImages(mesh, scene::framingCamera(mesh.bounds(), 1.0F), {100, 100});
-    const HostMesh measured = reconstruct(images, reference::normalsOf(mesh), kSettings);
+    const HostMesh measured = reconstruct(images, reference::normalsOf(mesh), kHybridSettings);
     const scene::Mesh world = toWorldMesh(measured.mesh);
     // Of a pixel at the far side, which is farther than every sample.
     const double footprint = reference::footprintM(
         images.image.view, glm::distance(images.image.view.eyeWorld, centre) + 1.0F);
-    const double limit = kSettings.grazingLimitPx;
+    const double limit = kHybridSettings.grazingLimitPx;
     std::size_t exact = 0;
     for (const glm::vec3& p : world.positions) {
         const double error = std::abs(glm::length(p - centre) - 1.0F);
@@ -205,19 +206,21 @@ TEST_F(HybridTest, PlanesThatSlantAwayAreBounded) {
     for (const float tilt : {0.02F, 0.2F}) {
         const glm::vec3 normal = glm::normalize(glm::vec3(0.0F, 1.0F, down + tilt));
         const std::vector<glm::vec3> normals{normal};
-        const HostMesh measured = reconstruct(images, normals, kSettings);
+        const HostMesh measured = reconstruct(images, normals, kHybridSettings);
         expectEqual(measured,
-                    reference::hybridQuads(images.image, images.offset, normals, kSettings), view);
+                    reference::hybridQuads(images.image, images.offset, normals, kHybridSettings),
+                    view);
         const float footprint = 10.0F * 2.0F / 4.0F;
         ASSERT_EQ(measured.vertices.size(), 4U);
         float lowest = 1e9F, highest = 0.0F;
         for (const CornerVertex& v : measured.vertices) {
             lowest = std::min(lowest, v.depthM);
             highest = std::max(highest, v.depthM);
-            EXPECT_LE(std::abs(v.depthM - 10.0F), 1.0001F * kSettings.grazingLimitPx * footprint);
+            EXPECT_LE(std::abs(v.depthM - 10.0F),
+                      1.0001F * kHybridSettings.grazingLimitPx * footprint);
         }
         EXPECT_GT(lowest, 0.0F);
-        EXPECT_FLOAT_EQ(highest, 10.0F + kSettings.grazingLimitPx * footprint);
+        EXPECT_FLOAT_EQ(highest, 10.0F + kHybridSettings.grazingLimitPx * footprint);
     }
 }
 
@@ -229,9 +232,9 @@ TEST_F(HybridTest, OneTriangleHasNoDiscontinuityInItself) {
     images.offset.depthM[3] = 90.0F;
     images.offset.triangleId[3] = 1;
     const std::vector<glm::vec3> normals(2, glm::vec3(0.0F, 0.0F, 1.0F));
-    EXPECT_EQ(reconstruct(images, normals, kSettings).mesh.sharedCorners, 1U);
+    EXPECT_EQ(reconstruct(images, normals, kHybridSettings).mesh.sharedCorners, 1U);
     images.offset.triangleId[3] = 2;
-    EXPECT_EQ(reconstruct(images, normals, kSettings).mesh.sharedCorners, 0U);
+    EXPECT_EQ(reconstruct(images, normals, kHybridSettings).mesh.sharedCorners, 0U);
 }
 
 TEST_F(HybridTest, TheThresholdCountsInFootprints) {
@@ -275,7 +278,7 @@ TEST_F(HybridTest, MergedRowsCoverTheSameSamplesInTheSamePlanes) {
         const scene::Camera camera = scene::framingCamera(mesh.bounds(), 1.2F);
         const ImagePair images = traceImages(mesh, camera, {160, 120});
         const std::vector<glm::vec3> normals = reference::normalsOf(mesh);
-        const HostMesh whole = reconstruct(images, normals, kSettings);
+        const HostMesh whole = reconstruct(images, normals, kHybridSettings);
         const HostMesh merged = reconstruct(images, normals, merging);
         expectFacesEye(merged);
         EXPECT_EQ(merged.vertices.size(), whole.vertices.size());
@@ -308,7 +311,7 @@ TEST_F(HybridTest, AWallOfOneTriangleIsAQuadARow) {
 
 TEST_F(HybridTest, AnImageWithoutSamplesIsAnEmptyMesh) {
     const ImagePair images = emptyPair({40, 30});
-    const HostMesh measured = reconstruct(images, std::vector<glm::vec3>(1), kSettings);
+    const HostMesh measured = reconstruct(images, std::vector<glm::vec3>(1), kHybridSettings);
     EXPECT_EQ(measured.mesh.vertexCount, 0U);
     EXPECT_EQ(measured.mesh.triangleCount, 0U);
     EXPECT_EQ(measured.mesh.sampleCount, 0U);
@@ -323,7 +326,7 @@ TEST_F(HybridTest, OnePixelIsOneQuad) {
     images.offset.depthM[0] = 2.5F;
     images.offset.triangleId[0] = 1;
     const std::vector<glm::vec3> normals{glm::vec3(0.0F, 0.0F, 1.0F)};
-    const HostMesh measured = reconstruct(images, normals, kSettings);
+    const HostMesh measured = reconstruct(images, normals, kHybridSettings);
     EXPECT_EQ(measured.mesh.sharedCorners, 1U);
     EXPECT_EQ(measured.mesh.fittedCorners, 3U);
     const scene::Mesh world = toWorldMesh(measured.mesh);
@@ -344,7 +347,7 @@ TEST_F(HybridTest, IsolatedSamplesHaveQuadsOfTheirOwn) {
         }
     }
     const std::vector<glm::vec3> normals{glm::vec3(0.0F, 0.0F, 1.0F)};
-    const HostMesh measured = reconstruct(images, normals, kSettings);
+    const HostMesh measured = reconstruct(images, normals, kHybridSettings);
     EXPECT_EQ(measured.mesh.sampleCount, samples);
     EXPECT_EQ(measured.vertices.size(), 4 * samples);
     EXPECT_EQ(measured.triangles.size(), 2 * samples);
@@ -361,7 +364,7 @@ TEST_F(HybridTest, TakesTheLargestImages) {
     images.image.depthM.assign(kSamples, 3.0F);
     images.image.triangleId.assign(kSamples, 1);
     const std::vector<glm::vec3> normals{glm::vec3(0.0F, 0.0F, 1.0F)};
-    const HostMesh measured = reconstruct(images, normals, kSettings);
+    const HostMesh measured = reconstruct(images, normals, kHybridSettings);
     EXPECT_EQ(measured.mesh.fittedCorners, 4 * kSamples);
     ASSERT_EQ(measured.vertices.size(), 4 * kSamples);
     EXPECT_EQ(measured.mesh.sizeBytes(), 56 * static_cast<std::size_t>(kSamples));
@@ -379,8 +382,8 @@ TEST_F(HybridTest, RepeatsToTheByte) {
     const std::vector<glm::vec3> normals = reference::normalsOf(mesh);
     const ImagePair images =
         traceImages(mesh, scene::framingCamera(mesh.bounds(), 1.0F), {130, 90});
-    const HostMesh a = reconstruct(images, normals, kSettings);
-    const HostMesh b = reconstruct(images, normals, kSettings);
+    const HostMesh a = reconstruct(images, normals, kHybridSettings);
+    const HostMesh b = reconstruct(images, normals, kHybridSettings);
     EXPECT_EQ(a.triangles, b.triangles);
     ASSERT_EQ(a.vertices.size(), b.vertices.size());
     EXPECT_EQ(
@@ -391,7 +394,7 @@ TEST_F(HybridTest, RepeatsToTheByte) {
 TEST_F(HybridTest, OneReconstructorTakesImagesOfSeveralSizes) {
     const scene::Mesh mesh = shapes::sphere(glm::vec3(0.0F), 1.0F, 3);
     const gl::Buffer normals = triangleNormals(mesh, device().limits());
-    Reconstructor reconstructor(shaders(), kSettings);
+    Reconstructor reconstructor(shaders(), kHybridSettings);
     for (const int size : {64, 20, 90}) {
         const ImagePair images =
             traceImages(mesh, scene::framingCamera(mesh.bounds(), 1.0F), {size, size});
@@ -401,7 +404,7 @@ TEST_F(HybridTest, OneReconstructorTakesImagesOfSeveralSizes) {
         writeDepthImage(images.offset, offset);
         expectEqual(readBack(reconstructor.reconstruct(image, &offset, normals)),
                     reference::hybridQuads(images.image, images.offset, reference::normalsOf(mesh),
-                                           kSettings),
+                                           kHybridSettings),
                     images.image.view);
     }
 }

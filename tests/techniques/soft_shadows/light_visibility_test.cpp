@@ -19,7 +19,7 @@ constexpr int kGrid = 6;  // 36 samples: a whole word of bits and a part of one
 constexpr glm::ivec2 kSize{64, 48};
 
 /// A floor of ±2 and a square plate of ±0.5 at height 1, both double-sided.
-scene::Scene plateOverFloor() {
+scene::Scene litPlateOverFloor() {
     scene::MeshBuilder builder;
     const auto addSquare = [&](float half, float y) {
         builder.addQuad({-half, y, half}, {half, y, half}, {half, y, -half}, {-half, y, -half});
@@ -46,7 +46,7 @@ float insidePlate(const glm::vec3& point, const glm::vec3& light) {
 class LightVisibilityTest : public testing::Test {
   protected:
     LightVisibilityTest()
-        : scene(plateOverFloor()),
+        : scene(litPlateOverFloor()),
           drawable(scene),
           receivers(render()),
           host(readReceivers(receivers)) {}

@@ -8,7 +8,7 @@ namespace gfxrepro::terrain_tessellation {
 namespace {
 
 constexpr glm::ivec2 kSize{96, 60};
-constexpr int kViews = 200;
+constexpr int kViewCount = 200;
 
 class TerrainCracksTest : public TerrainTest {
   protected:
@@ -74,16 +74,16 @@ class TerrainCracksTest : public TerrainTest {
 
 TEST_F(TerrainCracksTest, NoBackgroundShowsFrom800Places) {
     for (const unsigned seed : {21U, 22U, 23U, 24U}) {
-        const Found found = cracksOver(kViews, true, EdgeRule::Shared, seed);
+        const Found found = cracksOver(kViewCount, true, EdgeRule::Shared, seed);
         EXPECT_EQ(found.crackPixels, 0U) << seed;
-        EXPECT_GT(found.viewsOfSeveralLevels, kViews / 4) << seed;
+        EXPECT_GT(found.viewsOfSeveralLevels, kViewCount / 4) << seed;
         EXPECT_GT(found.covered, 200U * 96U * 60U / 4U) << seed;
     }
 }
 
 TEST_F(TerrainCracksTest, TheyAreSeenWithoutSkirtsAndWithFactorsOfThePatch) {
-    EXPECT_GT(cracksOver(kViews / 4, false, EdgeRule::Shared).crackPixels, 0U);
-    EXPECT_GT(cracksOver(kViews / 4, false, EdgeRule::OwnPatch).crackPixels, 0U);
+    EXPECT_GT(cracksOver(kViewCount / 4, false, EdgeRule::Shared).crackPixels, 0U);
+    EXPECT_GT(cracksOver(kViewCount / 4, false, EdgeRule::OwnPatch).crackPixels, 0U);
 }
 
 }  // namespace

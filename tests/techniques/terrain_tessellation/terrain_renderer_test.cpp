@@ -6,7 +6,7 @@
 namespace gfxrepro::terrain_tessellation {
 namespace {
 
-constexpr glm::ivec2 kSize{160, 100};
+constexpr glm::ivec2 kPictureSize{160, 100};
 
 /// Pixels that show the background with terrain above them in the same column.
 int holesBelowSilhouette(const std::vector<glm::vec4>& pixels, glm::ivec2 size) {
@@ -58,15 +58,15 @@ TEST_F(TerrainTest, FlatTerrainIsThePlane) {
     RenderSettings set = settings();
     set.hasSkirts = false;
     TerrainRenderer renderer(shaders, *terrain, set);
-    const kit::View view = viewAt({128, 30, 300}, {128, 0, 100}, kSize);
-    const auto pixels = picture(kSize, [&](const gl::Framebuffer& target) {
+    const kit::View view = viewAt({128, 30, 300}, {128, 0, 100}, kPictureSize);
+    const auto pixels = picture(kPictureSize, [&](const gl::Framebuffer& target) {
         renderer.drawTessellated(tilesOf(0), view, target);
     });
     int compared = 0;
-    const glm::vec4 first = pixels[static_cast<std::size_t>(20 * kSize.x + 80)];
+    const glm::vec4 first = pixels[static_cast<std::size_t>(20 * kPictureSize.x + 80)];
     EXPECT_EQ(first.a, 1.0F);
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) {
+    for (int y = 0; y < kPictureSize.y; ++y) {
+        for (int x = 0; x < kPictureSize.x; ++x) {
             const glm::vec2 px(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
             const glm::vec3 ray = kit::rayThrough(view, px);
             const float away = ray.y < 0.0F ? -view.eyeWorld.y / ray.y : -1.0F;
@@ -75,7 +75,7 @@ TEST_F(TerrainTest, FlatTerrainIsThePlane) {
                 std::min(std::min(hit.x, 256.0F - hit.x), std::min(hit.z, 256.0F - hit.z));
             if (away > 0.0F && std::abs(inside) < 3.0F) continue;  // on the rim
             const bool isTerrain = away > 0.0F && inside > 0.0F;
-            const glm::vec4 pixel = pixels[static_cast<std::size_t>(y * kSize.x + x)];
+            const glm::vec4 pixel = pixels[static_cast<std::size_t>(y * kPictureSize.x + x)];
             ASSERT_EQ(pixel.a, isTerrain ? 1.0F : 0.0F) << x << ' ' << y;
             if (isTerrain) EXPECT_LT(glm::distance(pixel, first), 1e-5F);
             ++compared;
@@ -96,13 +96,13 @@ TEST_F(TerrainTest, CullingChangesNoPixelAndDropsPatches) {
     for (int i = 0; i < 6; ++i) {
         const glm::vec3 eye{anywhere(), 70.0F, anywhere()};
         const glm::vec3 target{anywhere(), 10.0F, anywhere()};
-        const kit::View view = viewAt(eye, target, kSize);
+        const kit::View view = viewAt(eye, target, kPictureSize);
         DrawCounts fewer, all;
-        const auto a = picture(kSize, [&](const gl::Framebuffer& target) {
+        const auto a = picture(kPictureSize, [&](const gl::Framebuffer& target) {
             culling.drawTessellated(tilesOf(0), view, target);
             fewer = culling.counts();
         });
-        const auto b = picture(kSize, [&](const gl::Framebuffer& target) {
+        const auto b = picture(kPictureSize, [&](const gl::Framebuffer& target) {
             whole.drawTessellated(tilesOf(0), view, target);
             all = whole.counts();
         });
@@ -137,12 +137,12 @@ TEST_F(TerrainTest, SkirtsHideTheCracksBetweenTilesOfDifferentLevels) {
             };
             const glm::vec3 eye{about(40, 216), about(70, 110), about(40, 216)};
             const kit::View view =
-                viewAt(eye, eye + glm::vec3{about(-30, 30), -about(60, 90), 20.0F}, kSize);
-            holes += holesBelowSilhouette(picture(kSize,
+                viewAt(eye, eye + glm::vec3{about(-30, 30), -about(60, 90), 20.0F}, kPictureSize);
+            holes += holesBelowSilhouette(picture(kPictureSize,
                                                   [&](const gl::Framebuffer& target) {
                                                       renderer.drawTessellated(tiles, view, target);
                                                   }),
-                                          kSize);
+                                          kPictureSize);
         }
         return holes;
     };
@@ -155,14 +155,14 @@ TEST_F(TerrainTest, SkirtsHideTheCracksBetweenTilesOfDifferentLevels) {
 TEST_F(TerrainTest, SplittingChangesNoPixel) {
     makeTerrain(roughMap(257, 40.0F));
     RenderSettings set = settings();
-    const kit::View view = viewAt({128, 70, 300}, {128, 0, 100}, kSize);
+    const kit::View view = viewAt({128, 70, 300}, {128, 0, 100}, kPictureSize);
     std::vector<std::vector<glm::vec4>> pictures;
     std::vector<DrawCounts> counts;
     for (const int limit : {0, 1500}) {
         set.batches.reset();
         if (limit > 0) set.batches = BatchLimits{limit, limit / 2};
         TerrainRenderer renderer(shaders, *terrain, set);
-        pictures.push_back(picture(kSize, [&](const gl::Framebuffer& target) {
+        pictures.push_back(picture(kPictureSize, [&](const gl::Framebuffer& target) {
             renderer.drawTessellated(tilesOf(0), view, target);
             counts.push_back(renderer.counts());
         }));

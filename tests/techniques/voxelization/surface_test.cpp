@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kTorusFormula = "(sqrt(x^2 + y^2) - 1)^2 + z^2 - 0.16";
 
-Params paramsOf(const std::string& yaml) {
+Params surfaceParams(const std::string& yaml) {
     return Params(parseYaml(yaml, "test.yaml"), "test");
 }
 
@@ -33,7 +33,7 @@ class SurfaceTest : public GlTest {
     template <class Source>
     Source sourceOf(const std::string& yaml, const GridSettings& settings,
                     const std::optional<scene::Box>& box) {
-        Params params = paramsOf(yaml);
+        Params params = surfaceParams(yaml);
         Source source(params, settings, box);
         params.finish();
         technique::SetupContext context = setupContext();
@@ -223,7 +223,7 @@ TEST(SampleStatistics, MeasuresGapsAndSkipsWhatIsNoPoint) {
 TEST(ParametricSource, RefusesWhatItCannotDo) {
     const auto errorOf = [](const std::string& yaml, const GridSettings& settings) {
         return test::errorText([&] {
-            Params params = paramsOf(yaml);
+            Params params = surfaceParams(yaml);
             ParametricSource(params, settings, std::nullopt);
         });
     };

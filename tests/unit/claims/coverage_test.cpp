@@ -33,15 +33,15 @@ constexpr double atLeast(double share) {
 /// 95 % less what 2000 trials leave open (three standard errors: 1.5 %).
 constexpr double kRequired = atLeast(0.93);
 
-double normal(Random& random) {
+double normalDraw(Random& random) {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - double{random.uniform()}));
     return radius * std::cos(2.0 * std::numbers::pi * double{random.uniform()});
 }
 
 /// One process of a case whose true time is `truth`.
 double processTime(double truth, Random& random) {
-    const double between = kBetween * normal(random);
-    return truth * std::exp(between + kWithin * normal(random));
+    const double between = kBetween * normalDraw(random);
+    return truth * std::exp(between + kWithin * normalDraw(random));
 }
 
 bool holds(const metrics::Interval& interval, double truth) {
@@ -106,10 +106,10 @@ TEST_P(Coverage, OfTheMedianOfACell) {
             shareOf(frames == 1 ? "cell" : "path", GetParam(), [&](Random& random) {
                 tables::Samples samples;
                 for (int process = 0; process < GetParam(); ++process) {
-                    const double own = std::exp(kBetween * normal(random));
+                    const double own = std::exp(kBetween * normalDraw(random));
                     for (int frame = 0; frame < frames; ++frame) {
-                        samples.processes[process][frame] = {10.0 * own *
-                                                             std::exp(kWithin * normal(random))};
+                        samples.processes[process][frame] = {
+                            10.0 * own * std::exp(kWithin * normalDraw(random))};
                     }
                 }
                 const tables::Summary summary =
@@ -224,7 +224,7 @@ Ended measure(int cases, double scatter, Random& random) {
             record.lane = "timing";
             record.metric = "wall_time_ms";
             record.process = ended.rounds;
-            record.value = 10.0 * std::exp(scatter * normal(random));
+            record.value = 10.0 * std::exp(scatter * normalDraw(random));
             times.add(record);
             samples[static_cast<std::size_t>(i)].processes[ended.rounds][0] = {record.value};
         }

@@ -8,7 +8,7 @@
 namespace gfxrepro::claims {
 namespace {
 
-const ReportContext kSoftware{"llvmpipe", "software", "quick", "abc", ""};
+const ReportContext kSoftwareDevice{"llvmpipe", "software", "quick", "abc", ""};
 
 std::string bodyOf(const std::string& claim, const std::string& column = "metric: same_mean_p") {
     return "sweep: {n: [1, 2, 4]}\nlayout: {rows: n, columns: {p: {" + column +
@@ -28,7 +28,8 @@ tables::Recorded recorded(std::initializer_list<double> p) {
 
 ClaimResult judged(const std::string& body, std::initializer_list<double> p) {
     const config::Experiment experiment = tables::experimentFrom(body);
-    return evaluateClaims(experiment, tables::buildTable(experiment, recorded(p)), kSoftware).at(0);
+    return evaluateClaims(experiment, tables::buildTable(experiment, recorded(p)), kSoftwareDevice)
+        .at(0);
 }
 
 TEST(SameMean, HoldsWhereNoRowIsTooUnlikely) {
@@ -70,9 +71,10 @@ TEST(SameMean, IsAskedOfItsMetricAlone) {
         EXPECT_NE(error.find(".yaml:"), std::string::npos) << error;
     }
     const config::Experiment wrong = tables::experimentFrom(bodyOf(claim, "metric: rmse"));
-    EXPECT_EQ(
-        evaluateClaims(wrong, tables::buildTable(wrong, recorded({0.5})), kSoftware).at(0).verdict,
-        Verdict::Unmeasured);
+    EXPECT_EQ(evaluateClaims(wrong, tables::buildTable(wrong, recorded({0.5})), kSoftwareDevice)
+                  .at(0)
+                  .verdict,
+              Verdict::Unmeasured);
 }
 
 TEST(SameMean, IsRefusedWhereItCouldNotFail) {

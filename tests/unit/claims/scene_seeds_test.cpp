@@ -35,7 +35,7 @@ tables::Recorded records(const std::vector<double>& shares) {
     return maker.records();
 }
 
-Verdict verdictOn(const std::string& claim, const std::vector<double>& shares) {
+Verdict verdictOnShares(const std::string& claim, const std::vector<double>& shares) {
     const config::Experiment experiment = tables::experimentFrom(kBody);
     for (const ClaimResult& result :
          evaluateClaims(experiment, tables::buildTable(experiment, records(shares)),
@@ -58,12 +58,12 @@ TEST(SceneSeeds, AreOneCellWithTheRange) {
 }
 
 TEST(SceneSeeds, AVerdictTakesAllOfThem) {
-    EXPECT_EQ(verdictOn("bound", {9, 8, 7, 10, 11}), Verdict::Holds);
-    EXPECT_EQ(verdictOn("bound", {9, 8, 3, 10, 11}), Verdict::Ambiguous);
-    EXPECT_EQ(verdictOn("bound", {1, 2, 3, 4, 4.5}), Verdict::Fails);
-    EXPECT_EQ(verdictOn("order", {9, 8, 7, 10, 11}), Verdict::Holds);
-    EXPECT_EQ(verdictOn("order", {9, 8, 5.5, 10, 11}), Verdict::Ambiguous);
-    EXPECT_EQ(verdictOn("order", {1, 2, 3, 4, 5.5}), Verdict::Fails);
+    EXPECT_EQ(verdictOnShares("bound", {9, 8, 7, 10, 11}), Verdict::Holds);
+    EXPECT_EQ(verdictOnShares("bound", {9, 8, 3, 10, 11}), Verdict::Ambiguous);
+    EXPECT_EQ(verdictOnShares("bound", {1, 2, 3, 4, 4.5}), Verdict::Fails);
+    EXPECT_EQ(verdictOnShares("order", {9, 8, 7, 10, 11}), Verdict::Holds);
+    EXPECT_EQ(verdictOnShares("order", {9, 8, 5.5, 10, 11}), Verdict::Ambiguous);
+    EXPECT_EQ(verdictOnShares("order", {1, 2, 3, 4, 5.5}), Verdict::Fails);
 }
 
 }  // namespace

@@ -22,9 +22,9 @@ constexpr std::array<int, 3> kTooDark{180, 4, 38};
 constexpr std::array<int, 3> kTooBright{59, 76, 192};
 
 /// Equal, test black, test white, and one channel off.
-struct Pair {
+struct PictureAndTruth {
     ImageF reference{4, 1, 3, 0.5F}, test{4, 1, 3, 0.5F};
-    Pair() {
+    PictureAndTruth() {
         for (int c = 0; c < 3; ++c) {
             reference.at(1, 0, c) = 1.0F;
             test.at(1, 0, c) = 0.0F;
@@ -36,7 +36,7 @@ struct Pair {
 };
 
 TEST(ErrorMap, SignedErrorsHaveTheirColours) {
-    const Pair p;
+    const PictureAndTruth p;
     const Image8 picture = signedErrorPicture(p.reference, p.test);
     EXPECT_EQ(pixel(picture, 0), kEqual);
     EXPECT_EQ(pixel(picture, 1), kTooDark);
@@ -50,7 +50,7 @@ TEST(ErrorMap, SignedErrorsHaveTheirColours) {
 /// A third of the channels is off: sRGB of 0.5 is 0.735357, of 0.25 0.537099, so that the mean is
 /// 0.0660860, and 0.0833333 in linear light. A gain of one over it gives the end of the map.
 TEST(ErrorMap, GainAndSpaceOfSignedErrors) {
-    const Pair p;
+    const PictureAndTruth p;
     EXPECT_EQ(pixel(signedErrorPicture(p.reference, p.test, 15.14F), 3), kTooDark);
     EXPECT_NE(pixel(signedErrorPicture(p.reference, p.test, 14.0F), 3), kTooDark);
     EXPECT_EQ(pixel(signedErrorPicture(p.reference, p.test, 12.0F, ErrorOf::Linear), 3), kTooDark);
@@ -68,7 +68,7 @@ TEST(ErrorMap, WhatNoDisplayShowsIsEqualUnlessLinear) {
 }
 
 TEST(ErrorMap, AbsoluteErrorsAreValues) {
-    const Pair p;
+    const PictureAndTruth p;
     const Image8 picture = absoluteErrorPicture(p.reference, p.test, 1.0F, ErrorOf::Linear);
     EXPECT_EQ(pixel(picture, 0), (std::array<int, 3>{0, 0, 0}));
     EXPECT_EQ(pixel(picture, 2), (std::array<int, 3>{255, 255, 255}));

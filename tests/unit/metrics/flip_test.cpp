@@ -159,7 +159,7 @@ double bruteFlip(const ImageF& reference, const ImageF& test, double pixelsPerDe
     return std::pow(colour, 1.0 - feature);
 }
 
-ImageF noise(int width, int height, std::uint64_t seed) {
+ImageF colouredNoise(int width, int height, std::uint64_t seed) {
     Random random(seed);
     ImageF image(width, height, 3);
     for (float& value : image.values()) value = random.uniform();
@@ -213,7 +213,7 @@ void expectNear(const ImageF& a, const ImageF& b, float tolerance) {
 }
 
 TEST(Flip, EqualImagesDoNotDiffer) {
-    const ImageF a = noise(31, 17, 1);
+    const ImageF a = colouredNoise(31, 17, 1);
     const ImageF map = flipMap(a, a);
     for (const float value : map.values()) EXPECT_EQ(value, 0.0F);
     EXPECT_EQ(flip(a, a), 0.0);
@@ -242,8 +242,8 @@ TEST(Flip, FollowsTheDefinition) {
     };
     const Case cases[] = {{drawing(26, 19, 0), drawing(26, 19, 2), kFlipPixelsPerDegree},
                           {drawing(26, 19, 0), filled(26, 19, {0.05F, 0.05F, 0.05F}), 20.0},
-                          {noise(15, 22, 2), noise(15, 22, 3), 40.0},
-                          {noise(7, 1, 4), drawing(7, 1, -5), kFlipPixelsPerDegree}};
+                          {colouredNoise(15, 22, 2), colouredNoise(15, 22, 3), 40.0},
+                          {colouredNoise(7, 1, 4), drawing(7, 1, -5), kFlipPixelsPerDegree}};
     for (const Case& c : cases) {
         const ImageF map = flipMap(c.reference, c.test, c.pixelsPerDegree);
         double sum = 0.0;

@@ -115,7 +115,7 @@ struct Shape {
     Noise noise;
     bool hasHeavyTail;
 };
-const std::vector<Shape>& shapes() {
+const std::vector<Shape>& noiseShapes() {
     static const std::vector<Shape> kShapes = {{"gaussian", gaussian, false},
                                                {"coin", coin, false},
                                                {"exponential", exponential, false},
@@ -128,7 +128,7 @@ constexpr double kLevel = 0.05;
 
 TEST(MeanTest, GivesNoMoreFalseAlarmsThanDeclaredWhateverTheNoise) {
     constexpr int kTrials = 400;
-    for (const auto& [name, noise, hasHeavyTail] : shapes()) {
+    for (const auto& [name, noise, hasHeavyTail] : noiseShapes()) {
         const Count count = countOf(name, kTrials, kLevel, noise, 2, 2);
         EXPECT_LE(count.alarms, mostAlarms(kTrials, kLevel)) << name;
         EXPECT_LE(count.unlike, mostAlarms(kTrials, 0.01)) << name;
@@ -138,7 +138,7 @@ TEST(MeanTest, GivesNoMoreFalseAlarmsThanDeclaredWhateverTheNoise) {
 /// Four times the pictures of a quarter of the samples have the same noise.
 TEST(MeanTest, HoldsManyOfFewSamplesAgainstFewOfMany) {
     constexpr int kTrials = 200;
-    for (const auto& [name, noise, hasHeavyTail] : shapes()) {
+    for (const auto& [name, noise, hasHeavyTail] : noiseShapes()) {
         const Count count = countOf(name, kTrials, kLevel, noise, 1, 4, 0.0, 4 * kSeeds);
         EXPECT_LE(count.alarms, mostAlarms(kTrials, kLevel)) << name;
         EXPECT_LE(count.unlike, mostAlarms(kTrials, 0.01)) << name;
@@ -148,7 +148,7 @@ TEST(MeanTest, HoldsManyOfFewSamplesAgainstFewOfMany) {
 /// Unlike noise does no harm without heavy tails, and much of it is found to be unlike.
 TEST(MeanTest, KnowsUnlikeNoise) {
     constexpr int kTrials = 200;
-    for (const auto& [name, noise, hasHeavyTail] : shapes()) {
+    for (const auto& [name, noise, hasHeavyTail] : noiseShapes()) {
         if (hasHeavyTail) continue;
         EXPECT_LE(countOf(name, kTrials, kLevel, noise, 2, 4).alarms, mostAlarms(kTrials, kLevel))
             << name;

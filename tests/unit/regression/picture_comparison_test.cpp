@@ -59,7 +59,7 @@ class Pictures : public ::testing::Test {
         return all.empty() ? Difference{} : all.front();
     }
 
-    test::TemporaryFolder folder;
+    gfxrepro::test::TemporaryFolder folder;
     std::map<std::string, std::vector<records::Record>> records;
     CaseParams caseParams;
 };

@@ -289,7 +289,7 @@ TEST(FigureSvg, ColoursStandOutFromLightAndDark) {
     EXPECT_THAT(svg, HasSubstr("fill=\"currentColor\""));
 }
 
-config::Experiment experiment() {
+config::Experiment curveExperiment() {
     return tables::experimentFrom(R"(
 sweep: {scene: [a], size: [1, 2, 4]}
 layout: {rows: [scene, size], columns: {time_ms: {metric: gpu_time_ms}}}
@@ -299,7 +299,7 @@ plots:
 )");
 }
 
-tables::Recorded records() {
+tables::Recorded curveRecords() {
     tables::RecordMaker maker;
     for (const int size : {1, 2, 4}) {
         maker.beginCase("a", "{\"size\":" + std::to_string(size) + "}");
@@ -310,8 +310,8 @@ tables::Recorded records() {
 
 TEST(Curves, EachPlotIsAFile) {
     const test::TemporaryFolder folder;
-    const auto tables = tables::buildTables({experiment()}, records());
-    const auto curves = drawCurves(folder.path(), tables, {experiment()});
+    const auto tables = tables::buildTables({curveExperiment()}, curveRecords());
+    const auto curves = drawCurves(folder.path(), tables, {curveExperiment()});
     ASSERT_EQ(curves.size(), 2U);
     EXPECT_EQ(curves[0].table, "zju2005/9.9");
     EXPECT_EQ(curves[0].title, "A table");
@@ -325,14 +325,14 @@ TEST(Curves, EachPlotIsAFile) {
         EXPECT_THAT(curve.svg, testing::StartsWith(svg));
         EXPECT_THAT(curve.svg, HasSubstr("class=\"narrow\""));
     }
-    EXPECT_EQ(drawCurves("", tables, {experiment()})[1].svg, curves[1].svg);
+    EXPECT_EQ(drawCurves("", tables, {curveExperiment()})[1].svg, curves[1].svg);
 }
 
 TEST(Curves, NothingIsDrawnOfNothing) {
     const test::TemporaryFolder folder;
     const auto stale = folder.write("plots/zju2005-9.9.svg", "old");
-    const auto curves =
-        drawCurves(folder.path(), tables::buildTables({experiment()}, {}), {experiment()});
+    const auto curves = drawCurves(folder.path(), tables::buildTables({curveExperiment()}, {}),
+                                   {curveExperiment()});
     EXPECT_EQ(curves.at(0).problem, "no value was measured");
     EXPECT_EQ(curves[0].svg, "");
     EXPECT_FALSE(std::filesystem::exists(stale));

@@ -14,7 +14,7 @@ namespace {
 using testing::DoubleEq;
 using testing::ElementsAre;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<std::string> textsOf(const std::vector<Tick>& ticks) {
@@ -46,13 +46,13 @@ TEST(Axis, Ranges) {
 
 TEST(Axis, LeavesOutWhatItCannotShow) {
     EXPECT_EQ(axisOf({}, false, true).high, 1.0);
-    EXPECT_EQ(axisOf({kNan, kInfinity}, false, true).high, 1.0);
-    EXPECT_DOUBLE_EQ(axisOf({kNan, 2.0, 4.0, -kInfinity}, false, false).low, 1.9);
+    EXPECT_EQ(axisOf({kGap, kInfinity}, false, true).high, 1.0);
+    EXPECT_DOUBLE_EQ(axisOf({kGap, 2.0, 4.0, -kInfinity}, false, false).low, 1.9);
     const Axis powers = axisOf({-1.0, 0.0, 5.0}, true, false);
     EXPECT_DOUBLE_EQ(powers.low, 5.0 / 1.1);
     EXPECT_DOUBLE_EQ(powers.high, 5.0 * 1.1);
     EXPECT_FALSE(powers.shows(0.0));
-    EXPECT_FALSE(powers.shows(kNan));
+    EXPECT_FALSE(powers.shows(kGap));
     EXPECT_TRUE(Axis().shows(-3.0));
     EXPECT_FALSE(Axis().shows(kInfinity));
 }
@@ -168,7 +168,7 @@ TEST(Axis, TicksStandAtFewAndShortValues) {
                 ElementsAre("0", "500", "1000"));
     EXPECT_THAT(textsOf(ticksAt({1.23456, 2.34567}, {1, 2.4}, 300.0)),
                 ElementsAre("1.0", "1.5", "2.0"));
-    EXPECT_THAT(textsOf(ticksAt({kNan, 2}, {1, 3}, 300.0)), ElementsAre("2"));
+    EXPECT_THAT(textsOf(ticksAt({kGap, 2}, {1, 3}, 300.0)), ElementsAre("2"));
     EXPECT_GE(ticksAt({}, {0, 1}, 300.0).size(), 2U);
 }
 

@@ -15,10 +15,10 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const claims::ReportContext kContext{"llvmpipe", "software", "quick", "abc123",
-                                     "gfxrepro reproduce"};
+const claims::ReportContext kWritersContext{"llvmpipe", "software", "quick", "abc123",
+                                            "gfxrepro reproduce"};
 
-config::Experiment experiment() {
+config::Experiment writtenExperiment() {
     return tables::withPaperCases(tables::experimentFrom(R"(
 sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
 layout:
@@ -42,7 +42,7 @@ assumptions:
                                   {{"models/duck", "{}"}, {"<b>&|_%", "{light_grid: 16}"}});
 }
 
-tables::Recorded records() {
+tables::Recorded writtenRecords() {
     tables::RecordMaker maker;
     maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {8.0});
     maker.add("scene_source", {1.0}, "", "enum");
@@ -63,7 +63,7 @@ struct Written {
 
 TEST(Writers, TableFiles) {
     const Written run;
-    writeTables(run.folder.path(), tables::buildTables({experiment()}, records()));
+    writeTables(run.folder.path(), tables::buildTables({writtenExperiment()}, writtenRecords()));
     const std::string csv = run.read("tables/zju2005-9.9.csv");
     EXPECT_THAT(csv, testing::StartsWith(
                          "scene,source,error_printed,error_mean_measured,error_mean_low,"
@@ -99,7 +99,7 @@ TEST(Writers, TableFiles) {
 /// Rounds share what lasts as long as a run.
 TEST(Writers, IntervalsOfTimesAreOfOneSitting) {
     const Written run;
-    std::vector<tables::Table> built = tables::buildTables({experiment()}, records());
+    std::vector<tables::Table> built = tables::buildTables({writtenExperiment()}, writtenRecords());
     tables::Cell& draw = built[0].rows[0].cells[1];
     ASSERT_TRUE(draw.isTime);
     draw.low = "7.0";
@@ -175,11 +175,11 @@ layout: {rows: scene, columns: {error: {metric: error, format: "{median:.0f}"}, 
 
 TEST(Writers, ClaimFiles) {
     const Written run;
-    const auto tables = tables::buildTables({experiment()}, records());
-    claims::ReportContext context = kContext;
+    const auto tables = tables::buildTables({writtenExperiment()}, writtenRecords());
+    claims::ReportContext context = kWritersContext;
     context.tried[{"zju2005/9.9", "A"}] = {claims::Verdict::Holds, "none of the 5 tried"};
     context.tried[{"zju2005/9.9", "B"}] = {claims::Verdict::Holds, "bias (of 5 tried)"};
-    const auto results = claims::evaluateClaims({experiment()}, tables, context);
+    const auto results = claims::evaluateClaims({writtenExperiment()}, tables, context);
     using Outcome = records::CaseEnd::Outcome;
     const std::vector<records::CaseEnd> cases = {
         {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Measured},
@@ -187,7 +187,7 @@ TEST(Writers, ClaimFiles) {
         {"zju2005/9.9", "zju2005/9.9 scene=b", Outcome::Skipped, "missing: too slow"},
         {"zju2005/9.9", "zju2005/9.9 text=\x01", Outcome::Measured},
         {"zju2005/9.9", "zju2005/9.9 text=\x02", Outcome::Measured}};
-    writeClaims(run.folder.path(), cases, results, kContext);
+    writeClaims(run.folder.path(), cases, results, kWritersContext);
     EXPECT_EQ(
         run.read("claims.csv"),
         "claim,says,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"

@@ -92,7 +92,7 @@ std::vector<std::int16_t> values() {
     return result;
 }
 
-void writeTiff(const fs::path& path, const std::vector<std::int16_t>& values, int tileSide) {
+void writeTiledTiff(const fs::path& path, const std::vector<std::int16_t>& values, int tileSide) {
     TIFF* tiff = TIFFOpen(path.c_str(), "w");
     TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 70);
     TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 150);
@@ -154,8 +154,8 @@ TEST(HeightRows, MapsInFilesAreThoseInMemory) {
     const test::TemporaryFolder folder;
     const std::vector<std::int16_t> all = values();
     const auto at = [&](const char* name) { return folder.path() / name; };
-    writeTiff(at("strips.tif"), all, 0);
-    writeTiff(at("tiles.tif"), all, 32);
+    writeTiledTiff(at("strips.tif"), all, 0);
+    writeTiledTiff(at("tiles.tif"), all, 32);
     writePng(at("rows.png"), all, PNG_INTERLACE_NONE);
     writePng(at("interlaced.png"), all, PNG_INTERLACE_ADAM7);
     folder.write("bare.raw",

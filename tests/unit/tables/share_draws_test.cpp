@@ -50,7 +50,7 @@ TEST(ShareDraws, TheSameNameGivesTheSameDrawsAnotherOnesOwn) {
     EXPECT_NE(shareDraws(30.0, 900.0, "a"), shareDraws(30.0, 900.0, "b"));
 }
 
-const char* const kShares = R"(
+const char* const kDrawnShares = R"(
 sweep:
   scene: [models/duck, models/bunny]
 layout:
@@ -78,7 +78,8 @@ RecordMaker sharesCounted(double duckCount, double bunnyCount) {
 }
 
 TEST(ShareDraws, CellsOfSharesThatSayTheirCountHaveAnInterval) {
-    const Table table = buildTable(experimentFrom(kShares), sharesCounted(2000, 200'000).records());
+    const Table table =
+        buildTable(experimentFrom(kDrawnShares), sharesCounted(2000, 200'000).records());
     const Cell& cell = table.rows[0].cells[0];
     EXPECT_EQ(cell.bounds(), Bounds::Interval);
     EXPECT_EQ(cell.measured, "0.500");
@@ -87,7 +88,7 @@ TEST(ShareDraws, CellsOfSharesThatSayTheirCountHaveAnInterval) {
 }
 
 TEST(ShareDraws, ClaimsAreJudgedByTheIntervalOfWhatTheyCompare) {
-    const config::Experiment experiment = experimentFrom(kShares);
+    const config::Experiment experiment = experimentFrom(kDrawnShares);
     const Table table = buildTable(experiment, sharesCounted(2000, 200'000).records());
     const auto results =
         claims::evaluateClaims(experiment, table, {"llvmpipe", "software", "quick", "abc", ""});
@@ -97,7 +98,7 @@ TEST(ShareDraws, ClaimsAreJudgedByTheIntervalOfWhatTheyCompare) {
 }
 
 TEST(ShareDraws, ExactClaimsAreOfTheCountItself) {
-    std::string body = kShares;
+    std::string body = kDrawnShares;
     body +=
         "  half: {says: half a percent, origin: ours, bound_from: ours, exact: useful, equals: "
         "0.5}\n";
