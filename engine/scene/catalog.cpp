@@ -227,6 +227,7 @@ void turnUp(Scene& scene) {
     }
     for (glm::vec3& position : scene.points.positions) position = turned(position);
     for (glm::vec3& normal : scene.points.normals) normal = turned(normal);
+    scene.offset = {scene.offset.x, scene.offset.z, -scene.offset.y};
 }
 
 /// All instances as one mesh of the wanted count; materials and cameras stay.

@@ -41,7 +41,8 @@ Scene loadScene(const std::filesystem::path& path) {
     requireReadAtOnce(path);
     Scene scene = format.load(path);
     scene.name = path.stem().string();
-    scene.origin = {Origin::Kind::Real, path.filename().string(), sha256OfModel(path)};
+    scene.origin = {Origin::Kind::Real, path.filename().string(),
+                    sha256OfModel(path, scene.filesBeside)};
     return scene;
 }
 

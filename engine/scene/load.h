@@ -20,11 +20,15 @@ void requireKnownExtension(const std::filesystem::path& path);
 /// `origin` is Real, with the file's sha256.
 Scene loadScene(const std::filesystem::path& path);
 
-/// PLY 1.0, ascii or binary of either endianness, meshes (polygons are fan-triangulated) or points.
+// Meshes have the vertices that their triangles use; Scene::warnings says what was left out.
+
+/// PLY 1.0, ascii or binary of either endianness, meshes (of polygons of any shape) or points.
 Scene loadPly(const std::filesystem::path& path);
-/// Wavefront OBJ with MTL: v/vt/vn, negative indices, polygons (fan), materials split into meshes.
+/// Wavefront OBJ with MTL: v/vt/vn, negative indices, polygons of any shape, materials split into
+/// meshes, and these by which attributes their triangles have.
 Scene loadObj(const std::filesystem::path& path);
-/// glTF 2.0, text or binary, through tinygltf: node transforms, materials, textures, cameras.
+/// glTF 2.0, text or binary, through tinygltf: node transforms, the default pose of skins and morph
+/// targets, materials, textures, cameras.
 Scene loadGltf(const std::filesystem::path& path);
 
 /// Binary little-endian PLY of the flattened scene (or of its points when it has no triangles).

@@ -5,180 +5,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/scene/load.h"
-#include "engine/scene/load_text.h"
+#include "engine/scene/load_lines.h"
 #include "engine/scene/model_files.h"
+#include "engine/scene/polygon.h"
+#include "engine/scene/topology.h"
 
 namespace gfxrepro::scene {
-namespace {
-
-/// Goes through a text line by line and through a line word by word. A backslash at the end of a
-/// line continues it; '#' begins a comment.
-class LineReader {
-  public:
-    LineReader(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
-
-    /// False at the end of the text.
-    bool nextLine() {
-        line_ = nextLine_;
-        if (text_.empty()) return false;
-        rest_ = takeLine();
-        if (endsWithBackslash(rest_)) joinContinuations();
-        if (const std::size_t comment = rest_.find('#'); comment != rest_.npos) {
-            rest_ = rest_.substr(0, comment);
-        }
-        return true;
-    }
-
-    /// Empty at the end of the line.
-    std::string_view word() {
-        skipBlanks();
-        std::size_t end = 0;
-        while (end < rest_.size() && !isBlank(rest_[end])) ++end;
-        const std::string_view result = rest_.substr(0, end);
-        rest_.remove_prefix(end);
-        return result;
-    }
-
-    /// What is left of the line, without blanks around it.
-    std::string_view rest() {
-        skipBlanks();
-        while (!rest_.empty() && isBlank(rest_.back())) rest_.remove_suffix(1);
-        return rest_;
-    }
-
-    /// The next word as a finite number; empty at the end of the line.
-    std::optional<float> optionalNumber() {
-        const std::string_view text = word();
-        if (text.empty()) return std::nullopt;
-        const auto value = parsedNumber<float>(text);
-        if (!value || !std::isfinite(*value)) {
-            fail(fmt::format("{} is not a finite number", inQuotes(text)));
-        }
-        return value;
-    }
-
-    float number() {
-        const auto value = optionalNumber();
-        if (!value) fail("the line lacks a number");
-        return *value;
-    }
-
-    [[noreturn]] void fail(const std::string& message) const {
-        throw Error({file_, line_, 0}, message);
-    }
-
-  private:
-    static constexpr std::size_t kMostLineBytes = std::size_t{64} << 20;
-
-    static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-    static bool endsWithBackslash(std::string_view line) {
-        while (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-        return !line.empty() && line.back() == '\\';
-    }
-
-    void skipBlanks() {
-        while (!rest_.empty() && isBlank(rest_.front())) rest_.remove_prefix(1);
-    }
-
-    std::string_view takeLine() {
-        ++nextLine_;
-        const std::size_t end = text_.find('\n');
-        const std::string_view line = text_.substr(0, end);
-        if (line.size() > kMostLineBytes) {
-            line_ = nextLine_ - 1;
-            fail(fmt::format("a line of {} bytes; at most {} are read", line.size(),
-                             kMostLineBytes));
-        }
-        text_.remove_prefix(end == text_.npos ? text_.size() : end + 1);
-        return line;
-    }
-
-    void joinContinuations() {
-        joined_.clear();
-        while (endsWithBackslash(rest_)) {
-            joined_ += rest_.substr(0, rest_.rfind('\\'));
-            joined_ += ' ';
-            rest_ = text_.empty() ? std::string_view{} : takeLine();
-        }
-        joined_ += rest_;
-        rest_ = joined_;
-    }
-
-    std::string_view text_;
-    std::string file_;
-    std::string_view rest_;
-    std::string joined_;
-    int line_ = 1;
-    int nextLine_ = 1;
-};
-
-/// "Kd r g b", or "Kd grey".
-glm::vec3 colour(LineReader& lines) {
-    const float red = lines.number();
-    const auto green = lines.optionalNumber();
-    const auto blue = green ? lines.optionalNumber() : std::nullopt;
-    return blue ? glm::vec3(red, *green, *blue) : glm::vec3(red);
-}
-
-/// The GGX roughness whose lobe is as wide as that of a Blinn-Phong exponent: α² = 2 / (Ns + 2),
-/// and glTF's roughness is √α.
-float roughnessOf(float exponent) {
-    return std::pow(2.0F / (std::max(exponent, 0.0F) + 2.0F), 0.25F);
-}
-
-/// The file name may hold blanks; with options ("-s 1 1 1 wood.png") it is the last word.
-std::string textureName(std::string_view rest) {
-    if (rest.starts_with('-')) rest.remove_prefix(rest.find_last_of(" \t") + 1);
-    return std::string(rest);
-}
-
-}  // namespace
-
-std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path) {
-    requireReadAtOnce(path);
-    const MappedFile file(path);
-    LineReader lines(file.text(), path.string());
-    std::map<std::string, MtlMaterial> materials;
-    MtlMaterial ignored;  // what stands before the first newmtl
-    MtlMaterial* current = &ignored;
-    while (lines.nextLine()) {
-        const std::string_view key = lines.word();
-        Material& material = current->material;
-        if (key == "newmtl") {
-            const std::string name(lines.rest());
-            current = &materials[name];
-            current->material.name = name;
-        } else if (key == "Kd") {
-            material.baseColor = glm::vec4(colour(lines), material.baseColor.a);
-        } else if (key == "Ke") {
-            material.emissive = colour(lines);
-        } else if (key == "Ns") {
-            material.roughness = roughnessOf(lines.number());
-        } else if (key == "Ni") {
-            material.indexOfRefraction = lines.number();
-        } else if (key == "d") {
-            material.baseColor.a = lines.number();
-        } else if (key == "Tr") {
-            material.baseColor.a = 1.0F - lines.number();
-        } else if (key == "map_Kd") {
-            current->colourFile = textureName(lines.rest());
-        }
-    }
-    return materials;
-}
-
 namespace {
 
 /// Indices from 0 into the lists of the file; −1: none.
@@ -209,65 +56,93 @@ struct Group {
 
 struct ObjContent {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> colors;  // empty, or as many as positions
+    std::vector<glm::vec3> colors;  // linear; empty, or as many as positions
     std::vector<glm::vec2> texcoords;
     std::vector<glm::vec3> normals;
     std::vector<Group> groups;
-    std::vector<std::string> materialFiles;
-    bool hasTriples = false;  // some corner has a texcoord or a normal
+    std::vector<std::string> libraries;  // what stands behind "mtllib"
+    bool hasTriples = false;             // some corner has a texcoord or a normal
+    std::size_t linesOfLines = 0;
 };
 
 class ObjParser {
   public:
-    ObjParser(std::string_view text, const std::string& file) : lines_(text, file) {}
+    /// `offset` is subtracted from all positions.
+    ObjParser(std::string_view text, const std::string& file, const glm::dvec3& offset,
+              LeftOut& leftOut)
+        : lines_(text, file), offset_(offset), leftOut_(leftOut) {}
 
     ObjContent parse() {
-        while (lines_.nextLine()) {
-            const std::string_view key = lines_.word();
-            if (key == "v") {
-                parseVertex();
-            } else if (key == "vt") {
-                const float u = lines_.number();
-                // OBJ counts v from the bottom, glTF from the top.
-                content_.texcoords.emplace_back(u, 1.0F - lines_.optionalNumber().value_or(0.0F));
-            } else if (key == "vn") {
-                const float x = lines_.number();
-                const float y = lines_.number();
-                content_.normals.push_back(unitNormal({x, y, lines_.number()}));
-            } else if (key == "f" || key == "fo") {
-                parseFace();
-            } else if (key == "usemtl") {
-                useMaterial(std::string(lines_.rest()));
-            } else if (key == "mtllib") {
-                std::string file(lines_.rest());
-                const bool isNew = materialFiles_.insert(file).second;
-                if (isNew) content_.materialFiles.push_back(std::move(file));
-            }  // groups, smoothing, lines, curves: no triangles in them
+        while (lines_.nextLine()) parseLine(lines_.word());
+        if (!content_.colors.empty() && content_.colors.size() != content_.positions.size()) {
+            leftOut_.add("vertex colours, as not every vertex has one");
+            content_.colors.clear();
         }
-        if (content_.colors.size() != content_.positions.size()) content_.colors.clear();
+        makeLinear(content_.colors);
         std::erase_if(content_.groups, [](const Group& group) { return group.corners.empty(); });
+        dropAttributesThatAreNotThere();
+        leftOut_.add("the line 'l'", content_.linesOfLines);
+        // Normals of the file say what smoothing groups would.
+        if (content_.normals.empty()) leftOut_.add("the line 's' (smoothing)", smoothingCount_);
+        leftOut_.add(kOverlap, polygons_.overlappingCount());
         return std::move(content_);
     }
 
   private:
+    void parseLine(std::string_view key) {
+        if (key == "v") {
+            parseVertex();
+        } else if (key == "vt") {
+            const float u = texcoord(lines_.anyNumber());
+            // OBJ counts v from the bottom, glTF from the top.
+            const bool hasV = !lines_.name().empty() && !lines_.name().starts_with('#');
+            content_.texcoords.emplace_back(u, 1.0F - (hasV ? texcoord(lines_.anyNumber()) : 0.0F));
+        } else if (key == "vn") {
+            const float x = lines_.anyNumber();
+            const float y = lines_.anyNumber();
+            content_.normals.push_back(unitNormal({x, y, lines_.anyNumber()}));
+        } else if (key == "f" || key == "fo") {
+            parseFace();
+        } else if (key == "usemtl") {
+            useMaterial(std::string(lines_.name()));
+        } else if (key == "mtllib") {
+            std::string line(lines_.name());
+            const bool isNew = libraries_.insert(line).second;
+            if (isNew) content_.libraries.push_back(std::move(line));
+        } else if (key == "l") {
+            ++content_.linesOfLines;
+        } else if (key == "s") {
+            ++smoothingCount_;
+        } else if (!key.empty() && key != "o" && key != "g") {  // these only name things
+            leftOut_.add(fmt::format("the line {}", inQuotes(key)));
+        }
+    }
+
     /// "v x y z", "v x y z w", "v x y z r g b".
     void parseVertex() {
-        const float x = coordinate();
-        const float y = coordinate();
-        content_.positions.emplace_back(x, y, coordinate());
+        const float x = coordinate(0);
+        const float y = coordinate(1);
+        content_.positions.emplace_back(x, y, coordinate(2));
         const auto red = lines_.optionalNumber();
         const auto green = red ? lines_.optionalNumber() : std::nullopt;
         const auto blue = green ? lines_.optionalNumber() : std::nullopt;
         if (blue) content_.colors.emplace_back(*red, *green, *blue);
     }
 
-    float coordinate() {
-        const float value = lines_.number();
-        if (std::abs(value) > kMaxCoordinate) {
-            lines_.fail(fmt::format("a coordinate is {}; {:g} to {:g} are allowed", value,
+    float coordinate(int axis) {
+        const double offset = offset_[axis];
+        const double value = offset != 0.0 ? lines_.number<double>() : double{lines_.number()};
+        if (std::abs(value) > double{kMaxCoordinate}) {
+            lines_.fail(fmt::format("a coordinate is {:g}; {:g} to {:g} are allowed", value,
                                     -kMaxCoordinate, kMaxCoordinate));
         }
-        return value;
+        return static_cast<float>(value - offset);
+    }
+
+    float texcoord(float value) {
+        if (std::isfinite(value)) return value;
+        leftOut_.add("a texture coordinate that is not finite, taken as 0");
+        return 0.0F;
     }
 
     void parseFace() {
@@ -275,14 +150,19 @@ class ObjParser {
         for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word()) {
             polygon_.push_back(parseCorner(word));
         }
-        if (polygon_.size() < 3) {
-            lines_.fail(
-                fmt::format("a face of {} corners; 3 or more are allowed", polygon_.size()));
-        }
+        if (polygon_.size() < 3) leftOut_.add("a face of fewer than 3 corners");
         if (content_.groups.empty()) useMaterial("");
         std::vector<Corner>& corners = content_.groups[group_].corners;
-        for (std::size_t i = 2; i < polygon_.size(); ++i) {
-            corners.insert(corners.end(), {polygon_[0], polygon_[i - 1], polygon_[i]});
+        if (polygon_.size() == 3) {
+            corners.insert(corners.end(), polygon_.begin(), polygon_.end());
+        } else if (polygon_.size() > 3) {
+            places_.clear();
+            for (const Corner& each : polygon_) {
+                places_.push_back(content_.positions[static_cast<std::size_t>(each.position)]);
+            }
+            for (const glm::uvec3& t : polygons_.fill(places_)) {
+                corners.insert(corners.end(), {polygon_[t.x], polygon_[t.y], polygon_[t.z]});
+            }
         }
     }
 
@@ -290,16 +170,49 @@ class ObjParser {
     Corner parseCorner(std::string_view word) {
         const std::string_view whole = word;
         Corner corner;
-        corner.position = parseIndex(word, whole, content_.positions.size(), "v");
+        const auto positionCount = static_cast<long long>(content_.positions.size());
+        const long long position = parseIndex(word, whole, positionCount);
+        if (position < 0 || position >= positionCount) {
+            lines_.fail(fmt::format("index {} is not one of the {} 'v' lines so far",
+                                    whole.substr(0, std::min(whole.find('/'), std::size_t{40})),
+                                    positionCount));
+        }
+        corner.position = static_cast<int>(position);
         if (skipSlash(word) && !word.starts_with('/') && !word.empty()) {
-            corner.texcoord = parseIndex(word, whole, content_.texcoords.size(), "vt");
+            corner.texcoord = attribute(word, whole, content_.texcoords.size(), mostTexcoord_);
         }
         if (skipSlash(word) && !word.empty()) {
-            corner.normal = parseIndex(word, whole, content_.normals.size(), "vn");
+            corner.normal = attribute(word, whole, content_.normals.size(), mostNormal_);
         }
         if (!word.empty()) failCorner(whole);
         content_.hasTriples |= corner.texcoord >= 0 || corner.normal >= 0;
         return corner;
+    }
+
+    /// The index of a line that may come later.
+    int attribute(std::string_view& word, std::string_view whole, std::size_t count, int& most) {
+        const long long index = parseIndex(word, whole, static_cast<long long>(count));
+        const bool isAbsent = index < 0 || index >= std::numeric_limits<int>::max();
+        if (isAbsent) leftOut_.add(kAbsentAttribute);
+        most = isAbsent ? most : std::max(most, static_cast<int>(index));
+        return isAbsent ? -1 : static_cast<int>(index);
+    }
+
+    void dropAttributesThatAreNotThere() {
+        const auto texcoordCount = static_cast<int>(content_.texcoords.size());
+        const auto normalCount = static_cast<int>(content_.normals.size());
+        if (mostTexcoord_ < texcoordCount && mostNormal_ < normalCount) return;
+        const auto drop = [&](int& index, int count) {
+            if (index < count) return;
+            index = -1;
+            leftOut_.add(kAbsentAttribute);
+        };
+        for (Group& group : content_.groups) {
+            for (Corner& corner : group.corners) {
+                drop(corner.texcoord, texcoordCount);
+                drop(corner.normal, normalCount);
+            }
+        }
     }
 
     static bool skipSlash(std::string_view& word) {
@@ -313,19 +226,14 @@ class ObjParser {
                                 inQuotes(whole)));
     }
 
-    /// Indices count from 1; negative ones from the end of what has been read.
-    int parseIndex(std::string_view& word, std::string_view whole, std::size_t count,
-                   std::string_view list) const {
+    /// Indices count from 1; negative ones from the end of the `count` lines that have been read.
+    /// The result counts from 0, and is negative where there is no such line.
+    long long parseIndex(std::string_view& word, std::string_view whole, long long count) const {
         long long index = 0;
         const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), index);
         if (error != std::errc()) failCorner(whole);
         word.remove_prefix(static_cast<std::size_t>(stop - word.data()));
-        const auto size = static_cast<long long>(count);
-        if (index == 0 || index > size || index < -size) {
-            lines_.fail(
-                fmt::format("index {} is not one of the {} '{}' lines so far", index, count, list));
-        }
-        return static_cast<int>(index > 0 ? index - 1 : size + index);
+        return index > 0 ? index - 1 : index < 0 && index >= -count ? count + index : -1;
     }
 
     void useMaterial(std::string name) {
@@ -334,15 +242,25 @@ class ObjParser {
         if (isNew) content_.groups.push_back({std::move(name), {}});
     }
 
+    static constexpr const char* kAbsentAttribute =
+        "a texture coordinate or a normal of a corner, which is not in the file";
+
     LineReader lines_;
+    glm::dvec3 offset_;
+    LeftOut& leftOut_;
     ObjContent content_;
     std::unordered_map<std::string, std::size_t> groupOf_;
     std::size_t group_ = 0;
     std::vector<Corner> polygon_;
-    std::set<std::string> materialFiles_;
+    std::vector<glm::vec3> places_;  // of its corners
+    PolygonFiller polygons_;
+    std::set<std::string> libraries_;
+    int mostTexcoord_ = -1;  // of all corners
+    int mostNormal_ = -1;
+    std::size_t smoothingCount_ = 0;
 };
 
-/// The corners as they are: vertex i of the mesh is line i of the file.
+/// The corners as they are, less the vertices that they leave out: these stay in their order.
 Mesh meshOfPositions(ObjContent& content) {
     Mesh mesh;
     std::vector<Corner>& corners = content.groups.front().corners;
@@ -353,15 +271,44 @@ Mesh meshOfPositions(ObjContent& content) {
     }
     mesh.positions = std::move(content.positions);
     mesh.colors = std::move(content.colors);
+    dropUnusedVertices(mesh);
     return mesh;
 }
 
-/// An attribute is kept when every corner has it.
+/// Which attributes all three corners of a triangle have: 1 texture coordinates, 2 normals.
+std::size_t attributesOf(const Corner* corners) {
+    std::size_t attributes = 3;
+    for (int i = 0; i < 3; ++i) {
+        if (corners[i].texcoord < 0) attributes &= ~std::size_t{1};
+        if (corners[i].normal < 0) attributes &= ~std::size_t{2};
+    }
+    return attributes;
+}
+
+/// Triangles with the same attributes together; mostly all have the same.
+std::vector<std::vector<Corner>> alike(std::vector<Corner>&& corners) {
+    std::array<std::size_t, 4> placeOf{4, 4, 4, 4};
+    std::vector<std::vector<Corner>> parts;
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+        std::size_t& place = placeOf[attributesOf(&corners[i])];
+        if (place == 4) {
+            place = parts.size();
+            parts.emplace_back();
+        }
+    }
+    if (parts.size() == 1) return {std::move(corners)};
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+        std::vector<Corner>& part = parts[placeOf[attributesOf(&corners[i])]];
+        part.insert(part.end(), &corners[i], &corners[i] + 3);
+    }
+    return parts;
+}
+
+/// Of triangles that all have the same attributes.
 Mesh meshOfTriples(const ObjContent& content, const std::vector<Corner>& corners) {
-    const bool texcoords = std::none_of(corners.begin(), corners.end(),
-                                        [](const Corner& each) { return each.texcoord < 0; });
-    const bool normals = std::none_of(corners.begin(), corners.end(),
-                                      [](const Corner& each) { return each.normal < 0; });
+    const std::size_t attributes = attributesOf(corners.data());
+    const bool texcoords = (attributes & 1) != 0;
+    const bool normals = (attributes & 2) != 0;
     Mesh mesh;
     mesh.triangles.resize(corners.size() / 3);
     std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
@@ -382,96 +329,139 @@ Mesh meshOfTriples(const ObjContent& content, const std::vector<Corner>& corners
 }
 
 /// Materials and textures of the groups. Material files and textures that are not there leave the
-/// default grey and no texture: many OBJ files travel without them.
+/// default grey and no texture, and are said: many OBJ files travel without them.
 class MaterialTable {
   public:
-    MaterialTable(const std::filesystem::path& folder, const std::vector<std::string>& files)
-        : folder_(folder) {
-        for (const std::string& file : files) {
-            if (const auto path = existing(file)) {
-                defined_.merge(loadMtl(*path));
-            } else {
-                absent_.push_back(file);
-            }
+    MaterialTable(const std::filesystem::path& folder, const std::vector<std::string>& lines,
+                  LeftOut& leftOut, Scene& scene)
+        : folder_(folder), leftOut_(leftOut), scene_(scene) {
+        for (const std::string& line : lines) {
+            for (const std::string& name : libraryNames(line, folder)) addLibrary(name);
         }
     }
 
-    void addTo(Scene& scene, const std::string& name) {
-        const auto found = defined_.find(name);
-        Material material = found == defined_.end() ? Material{} : found->second.material;
-        material.name = name;
+    void add(const std::string& name) {
+        auto found = defined_.find(name);
+        if (found == defined_.end()) {
+            found = defined_.find(std::string(LineReader::withoutComment(name)));
+        }
+        Material material;
         if (found != defined_.end()) {
-            material.baseColorTexture = texture(scene, found->second.colourFile);
+            material = found->second.material;
+            material.baseColorTexture = texture(found->second.colourFile);
+        } else if (isComplete_) {
+            leftOut_.add(fmt::format("the material {}, which no material file has: it is grey",
+                                     inQuotes(name)));
         }
-        scene.materials.push_back(std::move(material));
-    }
-
-    /// Of files that are not there: what looks grey for it.
-    std::vector<std::string> warnings() const {
-        std::vector<std::string> texts;
-        for (const std::string& file : absent_) {
-            texts.push_back(fmt::format(
-                "material file '{}' is not beside the model: its materials are grey", file));
-        }
-        return texts;
+        material.name = name;
+        scene_.materials.push_back(std::move(material));
     }
 
   private:
-    std::optional<std::filesystem::path> existing(std::string file) const {
-        std::replace(file.begin(), file.end(), '\\', '/');
-        const auto path = pathInside(folder_, file);
-        std::error_code ignored;
-        return path && std::filesystem::is_regular_file(*path, ignored) ? path : std::nullopt;
+    void addLibrary(const std::string& name) {
+        if (const auto path = fileInside(folder_, name)) {
+            scene_.filesBeside.push_back(*path);
+            defined_.merge(loadMtl(*path, leftOut_));
+            return;
+        }
+        isComplete_ = false;
+        scene_.warnings.push_back(fmt::format(
+            "material file '{}' is not beside the model: its materials are grey", name));
     }
 
-    int texture(Scene& scene, const std::string& file) {
-        const auto path = existing(file);
-        if (!path) return -1;
+    int texture(const std::string& name) {
+        if (name.empty()) return -1;
+        const auto path = textureFile(name, folder_);
+        if (!path) {
+            leftOut_.add(
+                fmt::format("the texture {}, which is not beside the model", inQuotes(name)));
+            return -1;
+        }
         const auto [found, isNew] =
-            textureOf_.try_emplace(path->string(), static_cast<int>(scene.textures.size()));
-        if (isNew) {
-            scene.textures.push_back(decodeTexture(MappedFile(*path).bytes(), path->string()));
+            textureOf_.try_emplace(path->string(), static_cast<int>(scene_.textures.size()));
+        if (!isNew) return found->second;
+        const MappedFile file(*path);
+        scene_.filesBeside.push_back(*path);
+        if (isPngOrJpeg(file.bytes())) {
+            scene_.textures.push_back(decodeTexture(file.bytes(), path->string()));
+        } else {
+            leftOut_.add(
+                fmt::format("the texture {}, which is neither PNG nor JPEG", inQuotes(name)));
+            found->second = -1;
         }
         return found->second;
     }
 
     std::filesystem::path folder_;
+    LeftOut& leftOut_;
+    Scene& scene_;
     std::map<std::string, MtlMaterial> defined_;
-    std::vector<std::string> absent_;
+    bool isComplete_ = true;  // all material files are there
     std::map<std::string, int> textureOf_;
 };
 
-}  // namespace
+/// Lines of the file that no corner names.
+std::size_t unusedPositions(const ObjContent& content) {
+    std::vector<bool> isUsed(content.positions.size(), false);
+    std::size_t count = isUsed.size();
+    for (const Group& group : content.groups) {
+        for (const Corner& corner : group.corners) {
+            const auto position = static_cast<std::size_t>(corner.position);
+            count -= isUsed[position] ? 0 : 1;
+            isUsed[position] = true;
+        }
+    }
+    return count;
+}
 
-Scene loadObj(const std::filesystem::path& path) {
-    const MappedFile mapped(path);
+Scene sceneOf(ObjContent content, const std::filesystem::path& path, LeftOut& leftOut) {
     const std::string file = path.string();
-    ObjContent content = ObjParser(mapped.text(), file).parse();
     if (content.positions.empty()) throw Error(file + ": no vertices");
     if (content.positions.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
         throw Error(file + ": more than 2147483647 vertices");
     }
     Scene scene;
     if (content.groups.empty()) {
+        if (content.linesOfLines > 0) throw Error(file + ": lines, but no faces or points");
         scene.points.positions = std::move(content.positions);
         scene.points.colors = std::move(content.colors);
         return scene;
     }
-    MaterialTable materials(path.parent_path(), content.materialFiles);
-    scene.warnings = materials.warnings();
+    leftOut.add("a vertex that no face uses", unusedPositions(content));
+    MaterialTable materials(path.parent_path(), content.libraries, leftOut, scene);
     const bool asIs = content.groups.size() == 1 && !content.hasTriples;
-    for (Group& group : content.groups) {
-        Mesh mesh = asIs ? meshOfPositions(content) : meshOfTriples(content, group.corners);
-        std::vector<Corner>().swap(group.corners);
-        if (!group.material.empty()) {
-            mesh.name = group.material;
-            mesh.material = static_cast<int>(scene.materials.size());
-            materials.addTo(scene, group.material);
+    const auto addMesh = [&](Mesh mesh, const std::string& material) {
+        if (!material.empty()) {
+            mesh.name = material;
+            mesh.material = static_cast<int>(scene.materials.size()) - 1;
         }
         scene.instances.push_back({static_cast<int>(scene.meshes.size()), glm::mat4(1.0F)});
         scene.meshes.push_back(std::move(mesh));
+    };
+    for (Group& group : content.groups) {
+        if (!group.material.empty()) materials.add(group.material);
+        if (asIs) {
+            addMesh(meshOfPositions(content), group.material);
+            continue;
+        }
+        for (const std::vector<Corner>& corners : alike(std::move(group.corners))) {
+            addMesh(meshOfTriples(content, corners), group.material);
+        }
     }
     return scene;
+}
+
+}  // namespace
+
+Scene loadObj(const std::filesystem::path& path) {
+    const MappedFile mapped(path);
+    return loadedNearOrigin([&](const glm::dvec3& offset) {
+        LeftOut leftOut;
+        ObjContent content = ObjParser(mapped.text(), path.string(), offset, leftOut).parse();
+        Scene scene = sceneOf(std::move(content), path, leftOut);
+        leftOut.tell(scene.warnings);
+        return scene;
+    });
 }
 
 }  // namespace gfxrepro::scene

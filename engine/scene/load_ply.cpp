@@ -11,12 +11,16 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/scene/left_out.h"
 #include "engine/scene/load.h"
 #include "engine/scene/load_ply_header.h"
 #include "engine/scene/load_text.h"
+#include "engine/scene/polygon.h"
+#include "engine/scene/topology.h"
 
 namespace gfxrepro::scene {
 namespace {
@@ -61,8 +65,12 @@ struct Row {
 /// Numbers of a text body, separated by white space.
 class AsciiReader {
   public:
-    AsciiReader(std::string_view text, const Header& header, const std::string& file)
-        : file_(file), rest_(text.substr(header.bodyAt)), line_(header.bodyLine) {}
+    /// Floats are read as doubles where they are exact enough to become relative to an offset.
+    AsciiReader(std::string_view text, const Header& header, const std::string& file, bool isExact)
+        : file_(file),
+          rest_(text.substr(header.bodyAt)),
+          line_(header.bodyLine),
+          isExact_(isExact) {}
 
     static constexpr bool kIsAscii = true;
     Row row;
@@ -76,6 +84,7 @@ class AsciiReader {
 
     double number(Type type) {
         const std::string_view word = nextWord();
+        if (isExact_ && type == Type::Float32) type = Type::Float64;
         return visitType(type, [&](auto sample) {
             using T = decltype(sample);
             using Parsed = std::conditional_t<std::is_integral_v<T>, std::int64_t, T>;
@@ -115,6 +124,7 @@ class AsciiReader {
     const std::string& file_;
     std::string_view rest_;
     int line_;
+    bool isExact_;
 };
 
 /// Numbers of a binary body.
@@ -186,7 +196,7 @@ PropertySlot slotOf(const Property& property) {
         std::string_view name;
         PropertySlot slot;
     };
-    constexpr std::array<Named, 16> kNamed{{{"x", kX},
+    constexpr std::array<Named, 22> kNamed{{{"x", kX},
                                             {"y", kY},
                                             {"z", kZ},
                                             {"nx", kNx},
@@ -195,6 +205,12 @@ PropertySlot slotOf(const Property& property) {
                                             {"red", kRed},
                                             {"green", kGreen},
                                             {"blue", kBlue},
+                                            {"diffuse_red", kRed},
+                                            {"diffuse_green", kGreen},
+                                            {"diffuse_blue", kBlue},
+                                            {"r", kRed},
+                                            {"g", kGreen},
+                                            {"b", kBlue},
                                             {"u", kU},
                                             {"v", kV},
                                             {"s", kU},
@@ -209,9 +225,8 @@ PropertySlot slotOf(const Property& property) {
     return kNoSlot;
 }
 
-/// Bytes are sRGB; wider integers and floats are linear, integers as parts of their maximum.
-float linearColour(Type type, double value) {
-    if (type == Type::UInt8) return linearFromSrgb(static_cast<float>(value / 255.0));
+/// Integers as parts of their maximum.
+float colourOf(Type type, double value) {
     return visitType(type, [value](auto sample) {
         using T = decltype(sample);
         if constexpr (std::is_integral_v<T>) {
@@ -220,6 +235,12 @@ float linearColour(Type type, double value) {
             return static_cast<float>(value);
         }
     });
+}
+
+/// What scanners and their programs write of a vertex that changes nothing of what is drawn.
+bool changesNothing(const Property& property) {
+    return property.name == "confidence" || property.name == "intensity" ||
+           property.name == "quality" || property.name == "flags";
 }
 
 struct Vertices {
@@ -253,21 +274,28 @@ void skipElement(Reader& reader, const Element& element) {
 template <class Reader>
 class VertexParser {
   public:
-    VertexParser(Reader& reader, const Element& element, const std::string& file)
-        : reader_(reader), element_(element) {
+    VertexParser(Reader& reader, const Element& element, const std::string& file,
+                 const glm::dvec3& offset, LeftOut& leftOut)
+        : reader_(reader), element_(element), offset_(offset) {
         for (const Property& property : element.properties) {
             slots_.push_back(slotOf(property));
-            if (slots_.back() != kNoSlot) has_[slots_.back()] = true;
+            has_[slots_.back()] = true;
+            if (isColour(slots_.back())) areBytes_ &= property.type == Type::UInt8;
+        }
+        for (std::size_t i = 0; i < slots_.size(); ++i) {
+            const Property& property = element.properties[i];
+            if (isComplete(slots_[i]) || changesNothing(property)) continue;
+            leftOut.add(fmt::format("the property {} of vertices", inQuotes(property.name)));
         }
         if (!hasAll({kX, kY, kZ})) {
             throw Error({file, element.line, 0}, "element 'vertex' lacks x, y or z");
         }
         for (std::size_t byte = 0; byte < linearBytes_.size(); ++byte) {
-            linearBytes_[byte] = linearColour(Type::UInt8, static_cast<double>(byte));
+            linearBytes_[byte] = linearFromSrgb(colourOf(Type::UInt8, static_cast<double>(byte)));
         }
     }
 
-    Vertices parse() {
+    Vertices parse(bool hasLinearColours) {
         Vertices vertices;
         const bool normals = hasAll({kNx, kNy, kNz});
         const bool colors = hasAll({kRed, kGreen, kBlue});
@@ -287,6 +315,7 @@ class VertexParser {
             if (texcoords) vertices.texcoords.push_back({row_[kU], row_[kV]});
             if (radii) vertices.radii.push_back(row_[kRadius]);
         }
+        if (!areBytes_ && !hasLinearColours) makeLinear(vertices.colors);
         return vertices;
     }
 
@@ -294,6 +323,14 @@ class VertexParser {
     bool hasAll(std::initializer_list<PropertySlot> slots) const {
         return std::all_of(slots.begin(), slots.end(),
                            [this](PropertySlot slot) { return has_[slot]; });
+    }
+
+    /// Whether the vertices have all that makes an attribute with this.
+    bool isComplete(PropertySlot slot) const {
+        if (slot >= kNx && slot <= kNz) return hasAll({kNx, kNy, kNz});
+        if (isColour(slot)) return hasAll({kRed, kGreen, kBlue});
+        if (slot == kU || slot == kV) return hasAll({kU, kV});
+        return slot < kSlotCount;
     }
 
     void readRow() {
@@ -309,23 +346,26 @@ class VertexParser {
         }
     }
 
+    static bool isColour(PropertySlot slot) {
+        return slot == kRed || slot == kGreen || slot == kBlue;
+    }
+
     float read(const Property& property, PropertySlot slot) {
         const double number = reader_.number(property.type);
-        const bool isColour = slot == kRed || slot == kGreen || slot == kBlue;
-        if (isColour && property.type == Type::UInt8) {
-            return linearBytes_[static_cast<std::size_t>(number)];
-        }
-        const auto value =
-            isColour ? linearColour(property.type, number) : static_cast<float>(number);
+        if (isColour(slot) && areBytes_) return linearBytes_[static_cast<std::size_t>(number)];
+        const bool isPosition = slot == kX || slot == kY || slot == kZ;
+        const auto value = isColour(slot) ? colourOf(property.type, number)
+                           : isPosition   ? static_cast<float>(number - offset_[slot - kX])
+                                          : static_cast<float>(number);
         // Scanners write normals that are not numbers; unitNormal() takes those.
         const bool isNormal = slot == kNx || slot == kNy || slot == kNz;
         if (!std::isfinite(value) && !isNormal) {
             reader_.fail(property.name + " is " + std::to_string(number) +
                          "; finite numbers in the range of float are allowed");
         }
-        const bool isLength = slot == kX || slot == kY || slot == kZ || slot == kRadius;
-        if (isLength && std::abs(value) > kMaxCoordinate) {
-            reader_.fail(fmt::format("{} is {}; {:g} to {:g} are allowed", property.name, value,
+        const bool isLength = isPosition || slot == kRadius;
+        if (isLength && std::abs(number) > double{kMaxCoordinate}) {
+            reader_.fail(fmt::format("{} is {:g}; {:g} to {:g} are allowed", property.name, number,
                                      -kMaxCoordinate, kMaxCoordinate));
         }
         return value;
@@ -333,17 +373,52 @@ class VertexParser {
 
     Reader& reader_;
     const Element& element_;
+    glm::dvec3 offset_;
+    bool areBytes_ = true;  // all colours
     std::vector<PropertySlot> slots_;
-    std::array<bool, kSlotCount> has_{};
+    std::array<bool, kNoSlot + 1> has_{};
     std::array<float, kSlotCount> row_{};
     std::array<float, 256> linearBytes_;
 };
 
-/// A polygon as a fan around its first corner; fewer than three corners cover nothing.
-void appendFan(std::vector<glm::uvec3>& triangles, std::span<const std::int64_t> corners) {
+/// The triangles of faces, as long as no corner's position is known: fans around the first corners.
+struct Faces {
+    struct Polygon {
+        std::size_t firstTriangle = 0;
+        std::size_t triangleCount = 0;
+    };
+    std::vector<glm::uvec3> triangles;
+    std::vector<Polygon> polygons;  // of more than 3 corners
+    std::size_t linesCount = 0;     // of fewer
+};
+
+void appendFan(Faces& faces, std::span<const std::int64_t> corners) {
+    if (corners.size() < 3) ++faces.linesCount;
+    if (corners.size() > 3) faces.polygons.push_back({faces.triangles.size(), corners.size() - 2});
     for (std::size_t i = 2; i < corners.size(); ++i) {
-        triangles.emplace_back(corners[0], corners[i - 1], corners[i]);
+        faces.triangles.emplace_back(corners[0], corners[i - 1], corners[i]);
     }
+}
+
+/// Other triangles in the place of those fans that do not fill their polygon.
+void fillPolygons(Faces& faces, std::span<const glm::vec3> positions, LeftOut& leftOut) {
+    PolygonFiller filler;
+    std::vector<std::uint32_t> corners;
+    std::vector<glm::vec3> places;
+    for (const Faces::Polygon& polygon : faces.polygons) {
+        const auto fan =
+            std::span(faces.triangles).subspan(polygon.firstTriangle, polygon.triangleCount);
+        corners = {fan[0].x, fan[0].y};
+        for (const glm::uvec3& triangle : fan) corners.push_back(triangle.z);
+        places.clear();
+        for (const std::uint32_t corner : corners) places.push_back(positions[corner]);
+        const auto triangles = filler.fill(places);
+        for (std::size_t i = 0; i < fan.size(); ++i) {
+            fan[i] = {corners[triangles[i].x], corners[triangles[i].y], corners[triangles[i].z]};
+        }
+    }
+    leftOut.add("a face of fewer than 3 corners", faces.linesCount);
+    leftOut.add(kOverlap, filler.overlappingCount());
 }
 
 /// A strip of triangles, where −1 begins another one. Every second triangle is turned round.
@@ -358,19 +433,31 @@ void appendStrip(std::vector<glm::uvec3>& triangles, std::span<const std::int64_
     }
 }
 
-/// Faces, or strips of them, into `triangles`.
+bool isIndexList(const Property& property) {
+    return property.isList() &&
+           (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+/// Whether the element's rows are faces or strips of them, whatever its name is.
+bool hasFaces(const Element& element) {
+    return element.name == "face" || element.name == "tristrips" ||
+           std::ranges::any_of(element.properties, isIndexList);
+}
+
+/// Faces, or strips of them.
 template <class Reader>
 void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCount,
-                const std::string& file, std::vector<glm::uvec3>& triangles) {
+                const std::string& file, Faces& faces, LeftOut& leftOut) {
     const bool isStrip = element.name == "tristrips";
-    const auto isIndexList = [](const Property& property) {
-        return property.isList() &&
-               (property.name == "vertex_indices" || property.name == "vertex_index");
-    };
+    std::vector<glm::uvec3>& triangles = faces.triangles;
     const auto list = std::ranges::find_if(element.properties, isIndexList);
     if (list == element.properties.end()) {
         throw Error({file, element.line, 0},
                     "element '" + element.name + "' lacks the list vertex_indices");
+    }
+    for (const Property& property : element.properties) {
+        if (isIndexList(property) || changesNothing(property)) continue;
+        leftOut.add(fmt::format("the property {} of faces", inQuotes(property.name)));
     }
     // A file of zeros has a face of no corners in each byte.
     const std::size_t triangleBytes =
@@ -392,7 +479,9 @@ void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCoun
         for (std::int64_t& corner : corners) {
             const double index = reader.number(property.type);
             const bool isRestart = isStrip && index == -1.0;
-            if (!isRestart && !(index >= 0.0 && index < static_cast<double>(vertexCount))) {
+            const bool isWhole = index == std::floor(index);
+            if (!isRestart &&
+                !(isWhole && index >= 0.0 && index < static_cast<double>(vertexCount))) {
                 reader.fail(
                     fmt::format("index {} is not one of the {} vertices", index, vertexCount));
             }
@@ -403,7 +492,7 @@ void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCoun
         for (const Property& property : element.properties) {
             if (isIndexList(property)) {
                 readCorners(property);
-                isStrip ? appendStrip(triangles, corners) : appendFan(triangles, corners);
+                isStrip ? appendStrip(triangles, corners) : appendFan(faces, corners);
             } else if (property.isList()) {
                 skipList(reader, property);
             } else {
@@ -414,7 +503,8 @@ void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCoun
 }
 
 template <class Reader>
-Scene parseBody(Reader reader, const Header& header, const std::string& file) {
+Scene parseBody(Reader reader, const Header& header, const std::string& file,
+                const glm::dvec3& offset, LeftOut& leftOut) {
     const Element* vertexElement = header.find("vertex");
     if (vertexElement == nullptr || vertexElement->count == 0) throw Error(file + ": no vertices");
     if (vertexElement->count > std::numeric_limits<std::uint32_t>::max()) {
@@ -422,8 +512,9 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file) {
             {file, vertexElement->line, 0},
             std::to_string(vertexElement->count) + " vertices; at most 4294967295 are allowed");
     }
+    leftOut.add("a comment TextureFile", header.textureComments);
     Vertices vertices;
-    Mesh mesh;
+    Faces faces;
     for (const Element& element : header.elements) {
         reader.row = {element.name, 0};
         const std::size_t rowBytes = element.minimumRowBytes(Reader::kIsAscii);
@@ -434,26 +525,34 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file) {
                                                      "' do not fit into the file");
         }
         if (element.name == "vertex") {
-            vertices = VertexParser<Reader>(reader, element, file).parse();
-        } else if (element.name == "face" || element.name == "tristrips") {
-            parseFaces(reader, element, vertexElement->count, file, mesh.triangles);
+            vertices = VertexParser<Reader>(reader, element, file, offset, leftOut)
+                           .parse(header.hasLinearColours);
+        } else if (hasFaces(element)) {
+            parseFaces(reader, element, vertexElement->count, file, faces, leftOut);
         } else {
+            leftOut.add(fmt::format("a row of element {}", inQuotes(element.name)), element.count);
             skipElement(reader, element);
         }
     }
     if (vertices.positions.empty()) {
         throw Error({file, vertexElement->line, 0}, "element 'vertex' lacks x, y or z");
     }
-    if (mesh.triangles.empty()) {
+    fillPolygons(faces, vertices.positions, leftOut);
+    if (faces.triangles.empty()) {
+        leftOut.add("the texture coordinates of a point", vertices.texcoords.size());
         Scene scene;
         scene.points = {std::move(vertices.positions), std::move(vertices.normals),
                         std::move(vertices.radii), std::move(vertices.colors)};
         return scene;
     }
+    leftOut.add("the radius of a vertex with faces", vertices.radii.size());
+    Mesh mesh;
+    mesh.triangles = std::move(faces.triangles);
     mesh.positions = std::move(vertices.positions);
     mesh.normals = std::move(vertices.normals);
     mesh.texcoords = std::move(vertices.texcoords);
     mesh.colors = std::move(vertices.colors);
+    leftOut.add("a vertex that no face uses", dropUnusedVertices(mesh));
     return sceneOf(std::move(mesh));
 }
 
@@ -463,10 +562,17 @@ Scene loadPly(const std::filesystem::path& path) {
     const MappedFile mapped(path);
     const std::string file = path.string();
     const Header header = ply::parseHeader(mapped.text(), file);
-    if (header.format == ply::Format::Ascii) {
-        return parseBody(AsciiReader(mapped.text(), header, file), header, file);
-    }
-    return parseBody(BinaryReader(mapped.text(), header, file), header, file);
+    return loadedNearOrigin([&](const glm::dvec3& offset) {
+        LeftOut leftOut;
+        const bool isExact = offset != glm::dvec3(0.0);
+        Scene scene = header.format == ply::Format::Ascii
+                          ? parseBody(AsciiReader(mapped.text(), header, file, isExact), header,
+                                      file, offset, leftOut)
+                          : parseBody(BinaryReader(mapped.text(), header, file), header, file,
+                                      offset, leftOut);
+        leftOut.tell(scene.warnings);
+        return scene;
+    });
 }
 
 }  // namespace gfxrepro::scene

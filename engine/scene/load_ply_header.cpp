@@ -46,7 +46,8 @@ std::vector<std::string_view> words(std::string_view line) {
 
 class HeaderParser {
   public:
-    HeaderParser(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+    HeaderParser(std::string_view text, const std::string& file)
+        : text_(text), file_(file), at_(text.size() - withoutByteOrderMark(text).size()) {}
 
     Header parse() {
         if (nextLine() != std::vector<std::string_view>{"ply"}) {
@@ -55,7 +56,12 @@ class HeaderParser {
         parseFormat(nextLine());
         while (true) {
             const std::vector<std::string_view> line = nextLine();
-            if (line.empty() || line[0] == "comment" || line[0] == "obj_info") continue;
+            if (line.empty() || line[0] == "comment" || line[0] == "obj_info") {
+                header_.hasLinearColours |=
+                    fmt::format("{}", fmt::join(line, " ")) == kLinearColours;
+                header_.textureComments += line.size() > 1 && line[1] == "TextureFile" ? 1 : 0;
+                continue;
+            }
             if (line[0] == "end_header") break;
             if (line[0] == "element") {
                 parseElement(line);
@@ -151,7 +157,7 @@ class HeaderParser {
 
     std::string_view text_;
     const std::string& file_;
-    std::size_t at_ = 0;
+    std::size_t at_;
     int line_ = 0;
     std::unordered_set<std::string_view> names_;  // of elements
     Header header_;

@@ -37,11 +37,16 @@ struct Element {
 
 enum class Format { Ascii, LittleEndian, BigEndian };
 
+/// Of files of ours, whose colours of floats are linear; others hold what a display shows.
+inline constexpr std::string_view kLinearColours = "comment linear colours";
+
 struct Header {
     Format format = Format::Ascii;
     std::vector<Element> elements;
     std::size_t bodyAt = 0;  // bytes from the start of the file
     int bodyLine = 0;
+    bool hasLinearColours = false;    // by kLinearColours
+    std::size_t textureComments = 0;  // "comment TextureFile wood.png"
 
     /// Null when there is no such element.
     const Element* find(std::string_view name) const;

@@ -1,5 +1,7 @@
-// What the loaders of text formats share: numbers and colours.
+// What the loaders share: numbers, colours, coordinates far from the origin.
 #pragma once
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -9,8 +11,17 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "engine/scene/scene.h"
 
 namespace gfxrepro::scene {
+
+/// Editors on Windows put one before UTF-8.
+inline std::string_view withoutByteOrderMark(std::string_view text) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
 
 /// The whole word as a number, independent of the locale; "nan" and "inf" are numbers here, what is
 /// too large becomes infinite and what is too small 0. Empty when it is anything else.
@@ -22,9 +33,15 @@ std::optional<T> parsedNumber(std::string_view word) {
     if (stop != word.data() + word.size() || word.empty()) return std::nullopt;
     if (error == std::errc()) return value;
     if (error == std::errc::result_out_of_range && std::numeric_limits<T>::has_infinity) {
-        // from_chars does not say on which side it left the range; the exponent does.
-        const bool isTiny = word.find("e-") != word.npos || word.find("E-") != word.npos;
-        return isTiny ? T{0} : std::numeric_limits<T>::infinity();
+        // from_chars does not say on which side it left the range. The exponent does; without one
+        // the first digit that counts, which stands behind the point.
+        const std::size_t exponent = word.find_first_of("eE");
+        const bool isTiny = exponent != word.npos
+                                ? word.substr(exponent + 1).starts_with('-')
+                                : word.find_first_of("123456789") > word.find('.');
+        if (isTiny) return T{0};
+        const T infinity = std::numeric_limits<T>::infinity();
+        return word[0] == '-' ? -infinity : infinity;
     }
     return std::nullopt;
 }
@@ -44,6 +61,17 @@ inline float linearFromSrgb(float srgb) {
     return srgb <= 0.04045F ? srgb / 12.92F : std::pow((srgb + 0.055F) / 1.055F, 2.4F);
 }
 
+/// Vertex colours of OBJ and PLY are what a display shows (sRGB), as parts of 1, or, where any is
+/// larger, of 255: makes them linear.
+inline void makeLinear(std::vector<glm::vec3>& colors) {
+    float largest = 0.0F;
+    for (const glm::vec3& c : colors) largest = std::max({largest, c.r, c.g, c.b});
+    const float whole = largest > 1.0F ? 255.0F : 1.0F;
+    for (glm::vec3& color : colors) {
+        for (int c = 0; c < 3; ++c) color[c] = linearFromSrgb(color[c] / whole);
+    }
+}
+
 inline bool isFinite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -55,6 +83,23 @@ inline glm::vec3 unitNormal(const glm::vec3& normal) {
     if (std::abs(squaredLength - 1.0F) < 1e-4F) return normal;
     const glm::vec3 unit = normal / std::sqrt(squaredLength);
     return isFinite(unit) ? unit : glm::vec3(0.0F);
+}
+
+/// A scene whose coordinates floats can hold. `load(offset)` reads a file and subtracts the offset
+/// from all coordinates in double; where the box lies far from the origin without one, it reads
+/// again with one, which Scene::offset keeps and a warning tells.
+template <class Load>
+Scene loadedNearOrigin(Load&& load) {
+    Scene scene = load(glm::dvec3(0.0));
+    const glm::dvec3 offset = offsetOf(scene.bounds());
+    if (offset == glm::dvec3(0.0)) return scene;
+    Scene moved = load(offset);
+    if (moved.bounds().size() == glm::vec3(0.0F)) return scene;  // one point is as good anywhere
+    moved.offset = offset;
+    moved.warnings.push_back(
+        fmt::format("its coordinates lie far from the origin: ({}, {}, {}) is subtracted from them",
+                    offset.x, offset.y, offset.z));
+    return moved;
 }
 
 }  // namespace gfxrepro::scene

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -16,9 +15,9 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
-#include "engine/core/text.h"
 #include "engine/image/image.h"
 #include "engine/image/png_io.h"
+#include "engine/scene/load_gltf_keys.h"
 #include "engine/scene/load_obj.h"
 
 namespace gfxrepro::scene {
@@ -82,6 +81,10 @@ image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string&
     throw Error(name + ": neither a PNG nor a JPEG image");
 }
 
+bool isPngOrJpeg(std::span<const std::byte> bytes) {
+    return beginsWith(bytes, kPng) || beginsWith(bytes, kJpeg);
+}
+
 std::string lowerCaseExtension(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::ranges::transform(extension, extension.begin(),
@@ -106,73 +109,26 @@ std::optional<std::filesystem::path> pathInside(const std::filesystem::path& fol
 
 namespace fs = std::filesystem;
 
-namespace {
-
-/// Nothing of a name that no file can have, such as one of 5,000 letters.
-std::optional<fs::path> existing(const fs::path& folder, std::string name) {
+std::optional<fs::path> fileInside(const fs::path& folder, std::string name) {
     std::ranges::replace(name, '\\', '/');
     const auto path = pathInside(folder, name);
-    std::error_code ignored;
+    std::error_code ignored;  // of a name that no file can have, such as one of 5,000 letters
     return path && fs::is_regular_file(*path, ignored) ? path : std::nullopt;
 }
 
-std::vector<std::string> namesInGltf(std::string_view text) {
-    const nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
-    std::vector<std::string> names;
-    for (const char* member : {"buffers", "images"}) {
-        if (!document.is_object() || !document.contains(member)) continue;
-        for (const nlohmann::json& item : document[member]) {
-            if (!item.is_object() || !item.contains("uri") || !item["uri"].is_string()) continue;
-            const auto& uri = item["uri"].get_ref<const std::string&>();
-            if (!uri.starts_with("data:")) names.push_back(uri);
-        }
-    }
-    return names;
-}
-
-std::vector<std::string> namesInObj(std::string_view text, const fs::path& folder) {
-    constexpr std::string_view kKey = "mtllib";
-    constexpr std::size_t kMostNameBytes = 4096;  // no file has a longer one
-    std::vector<std::string> names;
-    std::set<std::string> libraries;
-    for (std::size_t at = text.find(kKey); at != text.npos; at = text.find(kKey, at + 1)) {
-        const std::size_t before = text.find_last_not_of(" \t", at - (at > 0 ? 1 : 0));
-        const bool beginsLine = at == 0 || before == text.npos || text[before] == '\n';
-        if (!beginsLine) continue;
-        const std::string_view line = text.substr(at, text.find_first_of("\r\n", at) - at);
-        const std::string name(trimmed(line.substr(kKey.size(), kMostNameBytes + 1)));
-        if (name.size() > kMostNameBytes || !libraries.insert(name).second) continue;
-        names.push_back(name);
-        const auto path = existing(folder, name);
-        if (!path) continue;
-        try {
-            for (const auto& [material, read] : loadMtl(*path)) names.push_back(read.colourFile);
-        } catch (const Error&) {  // its loader says what is wrong
-        }
-    }
-    return names;
-}
-
-}  // namespace
-
 std::vector<fs::path> filesBeside(const fs::path& model) {
     const std::string extension = lowerCaseExtension(model);
-    std::vector<std::string> names;
+    const fs::path folder = model.parent_path();
+    std::set<fs::path> files;
     try {
         const MappedFile file(model);
-        if (extension == ".gltf") names = namesInGltf(file.text());
-        if (extension == ".glb") names = namesInGltf(jsonOfGlb(file.text()));
-        if (extension == ".obj") names = namesInObj(file.text(), model.parent_path());
+        if (extension == ".gltf") files = filesOfGltf(file.text(), folder);
+        if (extension == ".glb") files = filesOfGltf(jsonOfGlb(file.text()), folder);
+        if (extension == ".obj") files = filesOfObj(file.text(), folder);
     } catch (const Error&) {
         return {};
     }
-    std::set<fs::path> files;
-    for (const std::string& name : names) {
-        const auto path = existing(model.parent_path(), name);
-        if (!path) continue;
-        requireReadAtOnce(*path);
-        files.insert(*path);
-    }
+    for (const fs::path& file : files) requireReadAtOnce(file);
     return {files.begin(), files.end()};
 }
 
@@ -184,8 +140,13 @@ void requireReadAtOnce(const fs::path& file) {
                 " bytes; a file of a scene has less than 4 GiB");
 }
 
-std::string sha256OfModel(const fs::path& model) {
+std::string sha256OfModel(const fs::path& model, const std::vector<fs::path>& opened) {
     const std::vector<fs::path> beside = filesBeside(model);
+    for (const fs::path& file : opened) {
+        if (std::ranges::find(beside, file) != beside.end()) continue;
+        throw Error(file.string() + ": belongs to " + model.string() +
+                    ", but is not part of the model's identity");
+    }
     std::string all = sha256OfFile(model);
     if (beside.empty()) return all;
     for (const fs::path& file : beside) all += sha256OfFile(file);

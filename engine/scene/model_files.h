@@ -18,6 +18,9 @@ namespace gfxrepro::scene {
 /// message. Memory is bounded as in engine/image/png_io.h.
 image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string& name);
 
+/// Whether decodeTexture() knows the format by its first bytes.
+bool isPngOrJpeg(std::span<const std::byte> bytes);
+
 /// ".ply" of "A.PLY".
 std::string lowerCaseExtension(const std::filesystem::path& path);
 
@@ -28,6 +31,12 @@ std::string_view jsonOfGlb(std::string_view file);
 /// folder/name; empty when `name` is absolute or leaves the folder.
 std::optional<std::filesystem::path> pathInside(const std::filesystem::path& folder,
                                                 const std::filesystem::path& name);
+
+/// The file of the folder, or below it, that a model's file calls `name`, with slashes of either
+/// kind. Nothing where it is not there or not inside. Loaders open, and filesBeside() lists, by
+/// this function alone.
+std::optional<std::filesystem::path> fileInside(const std::filesystem::path& folder,
+                                                std::string name);
 
 /// Those that are there, by their names: of a glTF its buffers and images, of an OBJ its material
 /// files and their textures. A broken file draws in none here: its loader says what is wrong.
@@ -40,7 +49,9 @@ inline constexpr std::uintmax_t kMostBytesAtOnce = std::uintmax_t{4} << 30;
 /// Throws Error for one that has not.
 void requireReadAtOnce(const std::filesystem::path& file);
 
-/// SHA-256 of a model: its file's, or, where others belong to it, that of all of theirs.
-std::string sha256OfModel(const std::filesystem::path& model);
+/// SHA-256 of a model: its file's, or, where others belong to it, that of all of theirs. Throws
+/// Error where `opened`, which its loader read, has a file that is none of those.
+std::string sha256OfModel(const std::filesystem::path& model,
+                          const std::vector<std::filesystem::path>& opened = {});
 
 }  // namespace gfxrepro::scene

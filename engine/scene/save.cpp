@@ -2,6 +2,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <span>
 #include <sstream>
@@ -12,6 +13,7 @@
 #include "engine/image/png_io.h"
 #include "engine/scene/load.h"
 #include "engine/scene/load_gltf_file.h"
+#include "engine/scene/load_ply_header.h"
 
 namespace gfxrepro::scene {
 namespace {
@@ -30,16 +32,22 @@ struct PlyVertices {
     std::span<const glm::vec2> texcoords;
     std::span<const glm::vec3> colors;
     std::span<const float> radii;
+    glm::dvec3 offset{0.0};  // of the positions, which are doubles where there is one
+
+    bool areDoubles() const { return offset != glm::dvec3(0.0); }
 };
 
 std::string plyHeader(const PlyVertices& vertices, std::size_t triangleCount) {
     std::string header = "ply\nformat binary_little_endian 1.0\n";
-    const auto properties = [&header](std::initializer_list<std::string_view> names) {
-        for (const std::string_view name : names)
-            header += fmt::format("property float {}\n", name);
+    if (!vertices.colors.empty()) header += fmt::format("{}\n", ply::kLinearColours);
+    const auto properties = [&header](std::initializer_list<std::string_view> names,
+                                      std::string_view type = "float") {
+        for (const std::string_view name : names) {
+            header += fmt::format("property {} {}\n", type, name);
+        }
     };
     header += fmt::format("element vertex {}\n", vertices.positions.size());
-    properties({"x", "y", "z"});
+    properties({"x", "y", "z"}, vertices.areDoubles() ? "double" : "float");
     if (!vertices.normals.empty()) properties({"nx", "ny", "nz"});
     if (!vertices.texcoords.empty()) properties({"u", "v"});
     if (!vertices.colors.empty()) properties({"red", "green", "blue"});
@@ -54,7 +62,11 @@ std::string plyHeader(const PlyVertices& vertices, std::size_t triangleCount) {
 std::string plyContent(const PlyVertices& vertices, std::span<const glm::uvec3> triangles) {
     std::string content = plyHeader(vertices, triangles.size());
     for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
-        appendBytes(content, vertices.positions[i]);
+        if (vertices.areDoubles()) {
+            appendBytes(content, glm::dvec3(vertices.positions[i]) + vertices.offset);
+        } else {
+            appendBytes(content, vertices.positions[i]);
+        }
         if (!vertices.normals.empty()) appendBytes(content, vertices.normals[i]);
         if (!vertices.texcoords.empty()) appendBytes(content, vertices.texcoords[i]);
         if (!vertices.colors.empty()) appendBytes(content, vertices.colors[i]);
@@ -78,12 +90,11 @@ tinygltf::Value extension(const char* key, float value) {
     return tinygltf::Value(tinygltf::Value::Object{{key, numberText(value)}});
 }
 
-std::vector<double> matrixOf(const glm::mat4& matrix) {
-    std::vector<double> values;
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 4; ++row) values.push_back(matrix[column][row]);
-    }
-    return values;
+/// Of a node, with the scene's offset.
+std::vector<double> matrixOf(const glm::mat4& matrix, const glm::dvec3& offset) {
+    glm::dmat4 moved(matrix);
+    moved[3] += glm::dvec4(offset, 0.0);
+    return {glm::value_ptr(moved), glm::value_ptr(moved) + 16};
 }
 
 class GlbBuilder {
@@ -98,7 +109,9 @@ class GlbBuilder {
     }
 
     tinygltf::Model build() {
-        for (const image::Image8& texture : scene_.textures) addTexture(texture);
+        for (std::size_t i = 0; i < scene_.textures.size(); ++i) {
+            addTexture(scene_.textures[i], samplingOf(scene_, static_cast<int>(i)));
+        }
         for (const Material& material : scene_.materials) addMaterial(material);
         addMeshes();
         if (!scene_.points.positions.empty()) addPoints();
@@ -176,8 +189,8 @@ class GlbBuilder {
             if (glbMesh[instance.mesh] < 0) continue;
             tinygltf::Node& node = addNode();
             node.mesh = glbMesh[instance.mesh];
-            if (instance.worldFromMesh != glm::mat4(1.0F)) {
-                node.matrix = matrixOf(instance.worldFromMesh);
+            if (instance.worldFromMesh != glm::mat4(1.0F) || isMoved()) {
+                node.matrix = matrixOf(instance.worldFromMesh, scene_.offset);
             }
         }
     }
@@ -189,8 +202,12 @@ class GlbBuilder {
         addAttribute(primitive, "NORMAL", scene_.points.normals);
         addAttribute(primitive, "COLOR_0", scene_.points.colors);
         addMesh("points", std::move(primitive));
-        addNode().mesh = static_cast<int>(model_.meshes.size()) - 1;
+        tinygltf::Node& node = addNode();
+        node.mesh = static_cast<int>(model_.meshes.size()) - 1;
+        if (isMoved()) node.matrix = matrixOf(glm::mat4(1.0F), scene_.offset);
     }
+
+    bool isMoved() const { return scene_.offset != glm::dvec3(0.0); }
 
     void addMesh(const std::string& name, tinygltf::Primitive primitive) {
         tinygltf::Mesh mesh;
@@ -204,13 +221,23 @@ class GlbBuilder {
         return model_.nodes.emplace_back();
     }
 
-    void addTexture(const image::Image8& texture) {
+    void addTexture(const image::Image8& texture, const Sampling& sampling) {
         const std::string png = image::encodePng(texture);
         tinygltf::Image image;
         image.bufferView = addView(std::span<const char>(png), 0);
         image.mimeType = "image/png";
         model_.images.push_back(std::move(image));
-        model_.textures.emplace_back().source = static_cast<int>(model_.images.size()) - 1;
+        tinygltf::Texture& to = model_.textures.emplace_back();
+        to.source = static_cast<int>(model_.images.size()) - 1;
+        if (sampling == Sampling{}) return;
+        constexpr int kWraps[] = {TINYGLTF_TEXTURE_WRAP_REPEAT,
+                                  TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT,
+                                  TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE};
+        to.sampler = static_cast<int>(model_.samplers.size());
+        tinygltf::Sampler& sampler = model_.samplers.emplace_back();
+        sampler.wrapS = kWraps[static_cast<int>(sampling.u)];
+        sampler.wrapT = kWraps[static_cast<int>(sampling.v)];
+        if (sampling.isNearest) sampler.magFilter = TINYGLTF_TEXTURE_FILTER_NEAREST;
     }
 
     void addMaterial(const Material& from) {
@@ -269,7 +296,8 @@ class GlbBuilder {
         node.extras =
             tinygltf::Value(tinygltf::Value::Object{{gltf::kTargetM, tinygltf::Value(targetM)}});
         node.matrix = matrixOf({glm::vec4(right, 0.0F), glm::vec4(glm::cross(back, right), 0.0F),
-                                glm::vec4(back, 0.0F), glm::vec4(from.position, 1.0F)});
+                                glm::vec4(back, 0.0F), glm::vec4(from.position, 1.0F)},
+                               scene_.offset);
     }
 
     const Scene& scene_;
@@ -281,7 +309,8 @@ class GlbBuilder {
 void savePly(const std::filesystem::path& path, const Scene& scene) {
     if (scene.triangleCount() > 0) {
         const Mesh mesh = flattened(scene);
-        const PlyVertices vertices{mesh.positions, mesh.normals, mesh.texcoords, mesh.colors, {}};
+        const PlyVertices vertices{mesh.positions, mesh.normals, mesh.texcoords,
+                                   mesh.colors,    {},           scene.offset};
         writeFileAtomic(path, plyContent(vertices, mesh.triangles));
         return;
     }
@@ -290,7 +319,9 @@ void savePly(const std::filesystem::path& path, const Scene& scene) {
         throw Error("cannot write " + path.string() + ": the scene has no triangles and no points");
     }
     writeFileAtomic(
-        path, plyContent({points.positions, points.normals, {}, points.colors, points.radii}, {}));
+        path,
+        plyContent(
+            {points.positions, points.normals, {}, points.colors, points.radii, scene.offset}, {}));
 }
 
 void saveGlb(const std::filesystem::path& path, const Scene& scene) {

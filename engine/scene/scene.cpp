@@ -107,6 +107,11 @@ Material materialOf(const Scene& scene, const Mesh& mesh) {
                              : scene.materials[static_cast<std::size_t>(mesh.material)];
 }
 
+Sampling samplingOf(const Scene& scene, int texture) {
+    const auto index = static_cast<std::size_t>(texture);
+    return index < scene.samplings.size() ? scene.samplings[index] : Sampling{};
+}
+
 glm::vec3 unitOrZero(const glm::vec3& vector) {
     const float length = glm::length(vector);
     return length > 0.0F ? vector / length : glm::vec3(0.0F);
@@ -116,6 +121,24 @@ glm::mat3 normalMatrix(const glm::mat3& matrix) {
     const glm::mat3 cofactors(glm::cross(matrix[1], matrix[2]), glm::cross(matrix[2], matrix[0]),
                               glm::cross(matrix[0], matrix[1]));
     return glm::determinant(matrix) < 0.0F ? -cofactors : cofactors;
+}
+
+glm::dvec3 offsetOf(const Box& box) {
+    constexpr double kFarDiagonals = 16.0;
+    glm::dvec3 offset(0.0);
+    if (box.isEmpty()) return offset;
+    const glm::dvec3 low(box.min);
+    const glm::dvec3 high(box.max);
+    const double diagonal = glm::length(high - low);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double reach = std::max(std::abs(low[axis]), std::abs(high[axis]));
+        if (reach <= kFarDiagonals * diagonal) continue;
+        // Floats of such a file may be steps apart: the diagonal is known no better than a step.
+        const double known = std::max(diagonal, 1e-7 * reach);
+        const double unit = std::pow(10.0, std::floor(std::log10(known)));
+        offset[axis] = std::round(0.5 * (low[axis] + high[axis]) / unit) * unit;
+    }
+    return offset;
 }
 
 Mesh flattened(const Scene& scene) {

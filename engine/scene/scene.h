@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
@@ -72,6 +73,16 @@ struct Material {
     float indexOfRefraction = 1.5F;
 };
 
+/// How a texture is read beyond 0 … 1 and between its texels.
+struct Sampling {
+    enum class Wrap { Repeat, Mirror, Clamp };
+    Wrap u = Wrap::Repeat;
+    Wrap v = Wrap::Repeat;
+    bool isNearest = false;  // magnified: the nearest texel, not between them
+
+    bool operator==(const Sampling&) const = default;
+};
+
 /// A mesh put into the world.
 struct Instance {
     int mesh = 0;
@@ -138,6 +149,7 @@ struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Material> materials;
     std::vector<image::Image8> textures;  // 3 or 4 channels; materials say how they are read
+    std::vector<Sampling> samplings;      // of the first textures; the others have the default
     std::vector<Instance> instances;
     PointCloud points;
     std::optional<HeightMap> heights;  // terrain, beside which there may be meshes
@@ -146,6 +158,11 @@ struct Scene {
     std::vector<PointLight> lights;
     std::vector<Motion> motions;        // at most one an instance
     std::vector<std::string> warnings;  // what the loader left out; for the log
+    /// What was subtracted from the file's coordinates, as they lie too far from the origin for
+    /// floats. Everything above is relative to it.
+    glm::dvec3 offset{0.0};
+    /// What the loader opened beside the scene's own file.
+    std::vector<std::filesystem::path> filesBeside;
 
     /// Of everything that is instanced, in world space, of the points and of the terrain.
     Box bounds() const;
@@ -156,11 +173,18 @@ struct Scene {
 /// A mesh's material, a plain one where it names none.
 Material materialOf(const Scene& scene, const Mesh& mesh);
 
+Sampling samplingOf(const Scene& scene, int texture);
+
 /// For normals: the inverse transpose times |determinant|, by cofactors, which singular matrices
 /// have, too.
 glm::mat3 normalMatrix(const glm::mat3& matrix);
 
 glm::vec3 unitOrZero(const glm::vec3& vector);
+
+/// What to subtract from coordinates in this box before they become floats: the middle, in round
+/// numbers, along each axis on which the box reaches farther from 0 than 16 of its diagonals. Up to
+/// there a float still tells a millionth of the diagonal.
+glm::dvec3 offsetOf(const Box& box);
 
 /// All instances as one mesh in world space (attributes that not all have are dropped; normals by
 /// the inverse transpose; mirrored instances keep their outside). A single instance with the

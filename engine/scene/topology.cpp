@@ -1,5 +1,8 @@
 #include "engine/scene/topology.h"
 
+#include <algorithm>
+#include <numeric>
+
 namespace gfxrepro::scene {
 
 Welding weldedByPosition(std::span<const glm::vec3> positions) {
@@ -15,6 +18,49 @@ Welding weldedByPosition(std::span<const glm::vec3> positions) {
     }
     welding.count = static_cast<std::uint32_t>(table.size());
     return welding;
+}
+
+std::vector<std::uint32_t> UsedVertices::renumber(std::span<glm::uvec3> triangles,
+                                                  std::size_t vertexCount) {
+    if (placeOf_.size() < vertexCount) placeOf_.resize(vertexCount, kNone);
+    std::vector<std::uint32_t> used;
+    for (const glm::uvec3& triangle : triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            std::uint32_t& place = placeOf_[triangle[corner]];
+            if (place == kNone) used.push_back(triangle[corner]);
+            place = 0;
+        }
+    }
+    if (used.size() == vertexCount) {
+        std::iota(used.begin(), used.end(), 0U);
+    } else {
+        std::ranges::sort(used);
+        for (std::uint32_t i = 0; i < used.size(); ++i) placeOf_[used[i]] = i;
+        for (glm::uvec3& triangle : triangles) {
+            for (int corner = 0; corner < 3; ++corner) {
+                triangle[corner] = placeOf_[triangle[corner]];
+            }
+        }
+    }
+    for (const std::uint32_t vertex : used) placeOf_[vertex] = kNone;
+    return used;
+}
+
+std::size_t dropUnusedVertices(Mesh& mesh) {
+    const std::size_t before = mesh.positions.size();
+    const std::vector<std::uint32_t> used = UsedVertices().renumber(mesh.triangles, before);
+    if (used.size() == before) return 0;
+    const auto keep = [&](auto& values) {
+        if (values.empty()) return;
+        for (std::size_t i = 0; i < used.size(); ++i) values[i] = values[used[i]];
+        values.resize(used.size());
+        values.shrink_to_fit();
+    };
+    keep(mesh.positions);
+    keep(mesh.normals);
+    keep(mesh.texcoords);
+    keep(mesh.colors);
+    return before - used.size();
 }
 
 EdgeTable edgesOf(std::span<const glm::uvec3> triangles, const Welding& welding) {

@@ -74,6 +74,21 @@ Welding weldedByPosition(std::span<const glm::vec3> positions);
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
+/// Which vertices triangles use. One object serves many meshes over one large array: each takes
+/// time in proportion to its triangles.
+class UsedVertices {
+  public:
+    /// Those used, ascending; the triangles name their places among them afterwards. All corners
+    /// are below `vertexCount`.
+    std::vector<std::uint32_t> renumber(std::span<glm::uvec3> triangles, std::size_t vertexCount);
+
+  private:
+    std::vector<std::uint32_t> placeOf_;  // of each vertex; kNone between calls
+};
+
+/// Drops the vertices that no triangle uses; the others keep their order. Returns how many.
+std::size_t dropUnusedVertices(Mesh& mesh);
+
 /// Every edge once, with the corners that lie along it. Corner 3t+i is the side of triangle t from
 /// its vertex i to vertex (i+1) mod 3. Triangles with two corners at one position enclose nothing
 /// and take no part.

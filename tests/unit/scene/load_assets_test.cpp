@@ -1,4 +1,5 @@
-// Real models: what other programs counted in them.
+// Real models: what other programs counted in them, less the vertices that no triangle uses (1,113
+// of the bunny, 2 of the small dragon).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 struct Known {
     const char* file;
-    std::size_t vertices;
+    std::size_t vertices;  // that triangles use
     std::size_t triangles;
     glm::vec3 min;  // to three decimals
     glm::vec3 max;
@@ -66,14 +67,14 @@ TEST_P(LoadAssets, HaveTheirKnownCounts) {
 INSTANTIATE_TEST_SUITE_P(
     Files, LoadAssets,
     testing::Values(
-        Known{"bunny/bun_zipper.ply", 35947, 69451, {-0.095, 0.033, -0.062}, {0.061, 0.187, 0.059}},
+        Known{"bunny/bun_zipper.ply", 34834, 69451, {-0.095, 0.033, -0.062}, {0.061, 0.187, 0.059}},
         Known{"dragon/dragon_vrip.ply",
               437645,
               871414,
               {-0.108, 0.053, -0.05},
               {0.097, 0.197, 0.041}},
         Known{"dragon/dragon_vrip_res4.ply",
-              5205,
+              5203,
               11102,
               {-0.108, 0.053, -0.05},
               {0.095, 0.196, 0.041}},

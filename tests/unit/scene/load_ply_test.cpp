@@ -107,12 +107,67 @@ TEST_F(LoadPly, ReadsColoursByTheirTypeAndTexcoords) {
             "property float " +
                 u + "\nproperty float " + v + "\n");
         content = replaced(content, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n",
-                           "0 0 0 65535 .25 2 .5 1\n1 0 0 0 0 0 0 0\n1 1 0 0 0 0 0 0\n0 1 0 0 0 0 "
+                           "0 0 0 65535 .25 1 .5 1\n1 0 0 0 0 0 0 0\n1 1 0 0 0 0 0 0\n0 1 0 0 0 0 "
                            "0 0\n");
         const Mesh mesh = load(content).meshes.at(0);
-        EXPECT_EQ(mesh.colors[0], glm::vec3(1, 0.25F, 2));
+        EXPECT_EQ(mesh.colors[0].r, 1.0F);
+        EXPECT_NEAR(mesh.colors[0].g, 0.0509F, 1e-4F);  // 0.25 in sRGB
         EXPECT_EQ(mesh.texcoords[0], glm::vec2(0.5F, 1));
     }
+}
+
+TEST_F(LoadPly, TakesColoursAsADisplayShowsThem) {
+    const auto red = [&](const std::string& type, const std::string& names,
+                         const std::string& value) {
+        std::string content = kAscii;
+        for (const char* channel : {"blue", "green", "red"}) {
+            const std::string name = names == "r" ? std::string(1, *channel) : names + channel;
+            content =
+                replaced(content, "float z\n", "float z\nproperty " + type + ' ' + name + '\n');
+        }
+        for (const char* place : {"0 0 0\n", "1 0 0\n", "1 1 0\n", "0 1 0\n"}) {
+            const std::string line(place, 5);
+            content = replaced(content, "\n" + line + '\n', "\n" + line + ' ' + value + " 0 0\n");
+        }
+        return load(content).meshes.at(0).colors.at(0).r;
+    };
+    EXPECT_NEAR(red("uchar", "", "128"), 0.2159F, 1e-4F);
+    EXPECT_NEAR(red("float", "", "128"), 0.2159F, 1e-4F);
+    EXPECT_NEAR(red("float", "", "0.501961"), 0.2159F, 1e-4F);
+    EXPECT_NEAR(red("ushort", "", "32896"), 0.2159F, 1e-4F);
+    EXPECT_NEAR(red("uchar", "diffuse_", "128"), 0.2159F, 1e-4F);
+    EXPECT_NEAR(red("uchar", "r", "128"), 0.2159F, 1e-4F);
+}
+
+TEST_F(LoadPly, DropsVerticesThatNoFaceUses) {
+    std::string content = replaced(kAscii, "element vertex 4", "element vertex 6");
+    content = replaced(content, "0 0 0\n1 0 0", "9 9 9\n0 0 0\n1 0 0");
+    content = replaced(content, "4 0 1 2 3", "1000 1000 1000\n4 1 2 3 4");
+    const Scene scene = load(content);
+    EXPECT_EQ(scene.bounds().max, glm::vec3(1, 1, 0));
+    EXPECT_EQ(scene.vertexCount(), 4U);
+    EXPECT_EQ(scene.meshes.at(0).triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_EQ(scene.warnings,
+              std::vector<std::string>{"left out: a vertex that no face uses (2 times)"});
+}
+
+TEST_F(LoadPly, FillsConcavePolygons) {
+    std::string content = replaced(kAscii, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3",
+                                   "2 0 0\n1 .5 0\n0 0 0\n1 2 0\n4 0 1 2 3");
+    EXPECT_EQ(load(content).meshes.at(0).triangles, (std::vector<glm::uvec3>{{3, 0, 1}, {3, 1, 2}}))
+        << "the diagonal from 0 to 2 lies outside";
+}
+
+TEST_F(LoadPly, ReadsEveryElementThatHasFaces) {
+    const std::string content = replaced(replaced(kAscii, "end_header",
+                                                  "element triangle 1\nproperty list uchar int "
+                                                  "vertex_indices\nend_header"),
+                                         "4 0 1 2 3", "3 0 1 2\n3 0 2 3");
+    EXPECT_EQ(load(content).triangleCount(), 2U);
+}
+
+TEST_F(LoadPly, SkipsAByteOrderMark) {
+    EXPECT_EQ(load("\xEF\xBB\xBF" + kAscii).triangleCount(), 2U);
 }
 
 TEST_F(LoadPly, ReadsStrips) {
@@ -177,6 +232,9 @@ TEST_F(LoadPly, SaysWhereARowIsWrong) {
               "DIR/a.ply:15: face 0: 300 does not fit into uchar");
     EXPECT_EQ(error(replaced(kAscii, "4 0 1 2 3", "4 0 1 2 4")),
               "DIR/a.ply:15: face 0: index 4 is not one of the 4 vertices");
+    EXPECT_EQ(
+        error(replaced(replaced(kAscii, "uchar int", "uchar float"), "4 0 1 2 3", "4 0 1.5 2 3")),
+        "DIR/a.ply:15: face 0: index 1.5 is not one of the 4 vertices");
     EXPECT_EQ(error(replaced(kAscii, "4 0 1 2 3", "4 0 1 2 -1")),
               "DIR/a.ply:15: face 0: index -1 is not one of the 4 vertices");
     EXPECT_EQ(error(replaced(kAscii, "4 0 1 2 3\n", "4 0 1 2")),

@@ -21,12 +21,12 @@ Mesh randomMesh(std::uint64_t seed) {
     };
     Mesh mesh;
     mesh.name = "mesh" + std::to_string(seed);
-    for (int i = 0; i < 100; ++i) {
+    for (std::uint32_t i = 0; i < 100; ++i) {
         mesh.positions.push_back(vec3());
         mesh.normals.push_back(glm::normalize(vec3()));
         mesh.texcoords.push_back({random.uniform(-1, 2), random.uniform()});
         mesh.colors.push_back(glm::abs(vec3()));
-        mesh.triangles.push_back({random.index(100), random.index(100), random.index(100)});
+        mesh.triangles.push_back({i, random.index(100), random.index(100)});  // all are used
     }
     return mesh;
 }
@@ -104,6 +104,7 @@ TEST(SaveGlb, KeepsInstancesMaterialsTexturesAndCameras) {
     scene.materials = {Material{}, unusualMaterial()};
     scene.textures.emplace_back(3, 2, 4, std::uint8_t{77});
     scene.textures.emplace_back(1, 1, 3, std::uint8_t{7});  // used by nothing
+    scene.samplings = {{Sampling::Wrap::Mirror, Sampling::Wrap::Clamp, true}};
     scene.instances = {{0, glm::mat4(1.0F)},
                        {1, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F, 2, 3))},
                        {0, glm::scale(glm::mat4(1.0F), glm::vec3(-0.3F, 1, 1))}};
@@ -127,6 +128,7 @@ TEST(SaveGlb, KeepsInstancesMaterialsTexturesAndCameras) {
         EXPECT_EQ(back.instances[i].worldFromMesh, scene.instances[i].worldFromMesh);
     }
     EXPECT_EQ(back.textures.at(0), scene.textures[0]);
+    EXPECT_EQ(back.samplings, scene.samplings);
     const Camera& eye = back.cameras.at(0);
     EXPECT_EQ(eye.position, camera.position);
     EXPECT_LT(

@@ -1,0 +1,153 @@
+// Text files of lines and words.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "engine/scene/load_text.h"
+
+namespace gfxrepro::scene {
+
+/// Goes through a text line by line and through a line word by word. A backslash at the end of a
+/// line continues it; '#' begins a comment at the start of a line and behind a blank. A byte order
+/// mark is skipped.
+class LineReader {
+  public:
+    LineReader(std::string_view text, std::string file)
+        : text_(withoutByteOrderMark(text)), file_(std::move(file)) {}
+
+    /// False at the end of the text.
+    bool nextLine() {
+        line_ = nextLine_;
+        if (text_.empty()) return false;
+        rest_ = takeLine();
+        if (endsWithBackslash(rest_)) joinContinuations();
+        lineEnd_ = rest_.data() + rest_.size();
+        rest_ = withoutComment(rest_);
+        return true;
+    }
+
+    /// Empty at the end of the line.
+    std::string_view word() {
+        skipBlanks();
+        std::size_t end = 0;
+        while (end < rest_.size() && !isBlank(rest_[end])) ++end;
+        const std::string_view result = rest_.substr(0, end);
+        rest_.remove_prefix(end);
+        return result;
+    }
+
+    /// What is left of the line, without blanks around it: a name, which may hold blanks and '#'.
+    std::string_view name() {
+        skipBlanks();
+        std::string_view name(rest_.data(), static_cast<std::size_t>(lineEnd_ - rest_.data()));
+        while (!name.empty() && isBlank(name.back())) name.remove_suffix(1);
+        return name;
+    }
+
+    /// What stands before a comment.
+    static std::string_view withoutComment(std::string_view line) {
+        for (std::size_t at = line.find('#'); at != line.npos; at = line.find('#', at + 1)) {
+            if (at > 0 && !isBlank(line[at - 1])) continue;
+            line = line.substr(0, at);
+            while (!line.empty() && isBlank(line.back())) line.remove_suffix(1);
+            break;
+        }
+        return line;
+    }
+
+    /// The next word as a finite number; empty at the end of the line.
+    template <class T = float>
+    std::optional<T> optionalNumber() {
+        const std::string_view text = word();
+        if (text.empty()) return std::nullopt;
+        const T value = parsed<T>(text);
+        if (!std::isfinite(value)) failNumber(text);
+        return value;
+    }
+
+    template <class T = float>
+    T number() {
+        const auto value = optionalNumber<T>();
+        if (!value) fail("the line lacks a number");
+        return *value;
+    }
+
+    /// It may be infinite or not a number, as "nan" is none.
+    float anyNumber() {
+        const std::string_view text = word();
+        if (text.empty()) fail("the line lacks a number");
+        return parsed<float>(text);
+    }
+
+    /// Behind the line.
+    std::size_t unreadBytes() const { return text_.size(); }
+
+    [[noreturn]] void fail(const std::string& message) const {
+        throw Error({file_, line_, 0}, message);
+    }
+
+  private:
+    static constexpr std::size_t kMostLineBytes = std::size_t{64} << 20;
+
+    static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+    static bool endsWithBackslash(std::string_view line) {
+        while (!line.empty() && isBlank(line.back())) line.remove_suffix(1);
+        return !line.empty() && line.back() == '\\';
+    }
+
+    [[noreturn]] void failNumber(std::string_view text) const {
+        fail(fmt::format("{} is not a finite number", inQuotes(text)));
+    }
+
+    template <class T>
+    T parsed(std::string_view text) const {
+        const auto value = parsedNumber<T>(text);
+        if (!value) failNumber(text);
+        return *value;
+    }
+
+    void skipBlanks() {
+        while (!rest_.empty() && isBlank(rest_.front())) rest_.remove_prefix(1);
+    }
+
+    std::string_view takeLine() {
+        ++nextLine_;
+        const std::size_t end = text_.find('\n');
+        const std::string_view line = text_.substr(0, end);
+        if (line.size() > kMostLineBytes) {
+            line_ = nextLine_ - 1;
+            fail(fmt::format("a line of {} bytes; at most {} are read", line.size(),
+                             kMostLineBytes));
+        }
+        text_.remove_prefix(end == text_.npos ? text_.size() : end + 1);
+        return line;
+    }
+
+    void joinContinuations() {
+        joined_.clear();
+        while (endsWithBackslash(rest_)) {
+            joined_ += rest_.substr(0, rest_.rfind('\\'));
+            joined_ += ' ';
+            rest_ = text_.empty() ? std::string_view{} : takeLine();
+        }
+        joined_ += rest_;
+        rest_ = joined_;
+    }
+
+    std::string_view text_;
+    std::string file_;
+    std::string_view rest_;
+    const char* lineEnd_ = nullptr;  // behind its comment
+    std::string joined_;
+    int line_ = 1;
+    int nextLine_ = 1;
+};
+
+}  // namespace gfxrepro::scene

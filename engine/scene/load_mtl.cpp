@@ -1,0 +1,152 @@
+// Material files of Wavefront OBJ, and which files an OBJ file draws in.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/core/files.h"
+#include "engine/scene/load_lines.h"
+#include "engine/scene/load_obj.h"
+#include "engine/scene/model_files.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+/// "Kd r g b" or "Kd grey"; nothing of "Kd spectral file" and "Kd xyz x y z".
+std::optional<glm::vec3> colour(LineReader& lines) {
+    if (const std::string_view rest = lines.name();
+        rest.starts_with("spectral") || rest.starts_with("xyz")) {
+        return std::nullopt;
+    }
+    const float red = lines.number();
+    const auto green = lines.optionalNumber();
+    const auto blue = green ? lines.optionalNumber() : std::nullopt;
+    return blue ? glm::vec3(red, *green, *blue) : glm::vec3(red);
+}
+
+/// "d 0.5", or "d -halo 0.5", which fades with the angle.
+float opacity(LineReader& lines, LeftOut& leftOut) {
+    if (lines.name().starts_with("-halo")) {
+        leftOut.add("'d -halo' of a material file, taken as 'd'");
+        lines.word();
+    }
+    return lines.number();
+}
+
+/// The GGX roughness whose lobe is as wide as that of a Blinn-Phong exponent: α² = 2 / (Ns + 2),
+/// and glTF's roughness is √α.
+float roughnessOf(float exponent) {
+    return std::pow(2.0F / (std::max(exponent, 0.0F) + 2.0F), 0.25F);
+}
+
+/// The file name may hold blanks; behind options ("-s 1 1 1 wood.png") it is the last word.
+std::string textureName(std::string_view rest) {
+    if (rest.starts_with('-')) rest.remove_prefix(rest.find_last_of(" \t") + 1);
+    return std::string(rest);
+}
+
+std::string_view withoutQuotes(std::string_view name) {
+    const bool isQuoted = name.size() >= 2 && name.front() == '"' && name.back() == '"';
+    return isQuoted ? name.substr(1, name.size() - 2) : name;
+}
+
+}  // namespace
+
+std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, LeftOut& leftOut) {
+    requireReadAtOnce(path);
+    const MappedFile file(path);
+    LineReader lines(file.text(), path.string());
+    std::map<std::string, MtlMaterial> materials;
+    MtlMaterial ignored;  // what stands before the first newmtl
+    MtlMaterial* current = &ignored;
+    while (lines.nextLine()) {
+        const std::string_view key = lines.word();
+        Material& material = current->material;
+        if (key == "newmtl") {
+            const std::string name(lines.name());
+            current = &materials[name];
+            current->material.name = name;
+        } else if (key == "Kd" || key == "Ke") {
+            const auto read = colour(lines);
+            if (!read) leftOut.add(fmt::format("'{}' by a spectrum in a material file", key));
+            if (read && key == "Kd") {
+                material.baseColor = glm::vec4(*read, material.baseColor.a);
+            } else if (read) {
+                material.emissive = *read;
+            }
+        } else if (key == "Ns") {
+            material.roughness = roughnessOf(lines.number());
+        } else if (key == "Ni") {
+            material.indexOfRefraction = lines.number();
+        } else if (key == "d") {
+            material.baseColor.a = opacity(lines, leftOut);
+        } else if (key == "Tr") {
+            material.baseColor.a = 1.0F - lines.number();
+        } else if (key == "map_Kd") {
+            current->colourFile = textureName(lines.name());
+        } else if (!key.empty() && key != "Ka" && key != "map_Ka" && key != "illum") {
+            // No light here is ambient, and each term of `illum` follows from the others.
+            leftOut.add(fmt::format("{} of a material file", inQuotes(key)));
+        }
+    }
+    return materials;
+}
+
+std::vector<std::string> libraryNames(std::string_view line, const std::filesystem::path& folder) {
+    for (const std::string_view whole : {line, LineReader::withoutComment(line)}) {
+        const std::string name(withoutQuotes(whole));
+        if (fileInside(folder, name)) return {name};
+    }
+    std::vector<std::string> names;
+    bool isOneThere = false;
+    LineReader words(line, "");
+    words.nextLine();
+    for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
+        names.emplace_back(withoutQuotes(word));
+        isOneThere = isOneThere || fileInside(folder, names.back());
+    }
+    return isOneThere ? names : std::vector<std::string>{std::string(line)};
+}
+
+std::optional<std::filesystem::path> textureFile(const std::string& name,
+                                                 const std::filesystem::path& folder) {
+    const auto whole = fileInside(folder, name);
+    return whole ? whole : fileInside(folder, std::string(LineReader::withoutComment(name)));
+}
+
+std::set<std::filesystem::path> filesOfObj(std::string_view text,
+                                           const std::filesystem::path& folder) {
+    constexpr std::string_view kKey = "mtllib";
+    constexpr std::size_t kMostBytes = 65536;  // of a line of names
+    std::set<std::filesystem::path> files;
+    std::set<std::string> known;
+    text = withoutByteOrderMark(text);
+    for (std::size_t at = text.find(kKey); at != text.npos; at = text.find(kKey, at)) {
+        const std::size_t before = text.find_last_not_of(" \t", at - (at > 0 ? 1 : 0));
+        const bool beginsLine = at == 0 || before == text.npos || text[before] == '\n';
+        const std::string_view rest = text.substr(at, beginsLine ? kMostBytes : kKey.size());
+        LineReader reader(rest, "");
+        reader.nextLine();
+        at += rest.size() - reader.unreadBytes();
+        if (!beginsLine || reader.word() != kKey) continue;
+        const std::string line(reader.name());
+        if (!known.insert(line).second) continue;
+        for (const std::string& name : libraryNames(line, folder)) {
+            const auto library = fileInside(folder, name);
+            if (!library || !files.insert(*library).second) continue;
+            try {
+                LeftOut ignored;
+                for (const auto& [material, read] : loadMtl(*library, ignored)) {
+                    if (const auto file = textureFile(read.colourFile, folder)) files.insert(*file);
+                }
+            } catch (const Error&) {  // its loader says what is wrong
+            }
+        }
+    }
+    return files;
+}
+
+}  // namespace gfxrepro::scene
