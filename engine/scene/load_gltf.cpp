@@ -4,15 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <utility>
 
+#include "engine/scene/left_out.h"
 #include "engine/scene/load.h"
 #include "engine/scene/load_gltf_file.h"
 #include "engine/scene/load_gltf_material.h"
+#include "engine/scene/load_gltf_pose.h"
 #include "engine/scene/load_text.h"
+#include "engine/scene/topology.h"
 
 namespace gfxrepro::scene {
 namespace {
@@ -45,18 +54,38 @@ std::vector<glm::uvec3> trianglesOf(const std::vector<std::uint32_t>& indices, i
 
 class SceneBuilder {
   public:
-    explicit SceneBuilder(const gltf::File& file) : file_(file), accessors_(file), lights_(file) {}
+    /// `offset` is subtracted from everything in world space.
+    SceneBuilder(const gltf::File& file, const glm::dvec3& offset)
+        : file_(file),
+          worldFromFile_(glm::translate(glm::dmat4(1.0), -offset)),
+          isMoved_(offset != glm::dvec3(0.0)),
+          leftOut_(file.leftOut),
+          accessors_(file),
+          lights_(file) {}
 
     Scene build() {
-        textureUses_ = gltf::addMaterials(file_, accessors_, scene_);
-        for (std::size_t i = 0; i < model().meshes.size(); ++i) parts_.push_back(partsOf(i));
-        wasVisited_.assign(model().nodes.size(), false);
+        textureUses_ = gltf::addMaterials(file_, accessors_, scene_, leftOut_);
+        std::vector<bool> isPosed(model().meshes.size(), false);  // by each of its nodes
+        for (const tinygltf::Node& node : model().nodes) {
+            const bool hasMesh = node.mesh >= 0 && node.mesh < static_cast<int>(isPosed.size());
+            if (hasMesh && (node.skin >= 0 || !node.weights.empty())) isPosed[node.mesh] = true;
+        }
+        for (int i = 0; i < static_cast<int>(isPosed.size()); ++i) {
+            if (!isPosed[i]) partsOf({i, -1, model().meshes[i].weights});
+        }
+        worldFromNode_.resize(model().nodes.size());
         for (const int root : roots()) visit(root);
+        for (const int node : drawn_) addContent(model().nodes[node], node, *worldFromNode_[node]);
         if (scene_.triangleCount() == 0 && scene_.points.positions.empty()) {
             fail("no triangles or points in the scene");
         }
         for (const std::size_t camera : unaimed_) aim(scene_.cameras[camera], scene_.bounds());
         lights_.moveTo(scene_);
+        for (const auto& [accessor, isUsed] : usedPositions_) {
+            leftOut_.add("a vertex that no triangle uses", std::ranges::count(isUsed, false));
+        }
+        leftOut_.tell(scene_.warnings);
+        scene_.filesBeside = file_.opened;
         return std::move(scene_);
     }
 
@@ -69,18 +98,37 @@ class SceneBuilder {
 
     // ---- meshes
 
-    Parts partsOf(std::size_t meshIndex) {
-        const tinygltf::Mesh& from = model().meshes[meshIndex];
-        Parts parts;
+    /// A mesh as one of its nodes has it: nodes with the same share what it becomes.
+    struct PosedMesh {
+        int mesh = 0;
+        int skin = -1;
+        std::vector<double> weights;  // of morph targets
+
+        auto operator<=>(const PosedMesh&) const = default;
+    };
+
+    const Parts& partsOf(const PosedMesh& posed) {
+        const auto [found, isNew] = parts_.try_emplace(posed);
+        Parts& parts = found->second;
+        if (!isNew) return parts;
+        const tinygltf::Mesh& from = model().meshes[static_cast<std::size_t>(posed.mesh)];
+        std::vector<glm::mat4> joints;
+        if (posed.skin >= 0) {
+            joints = gltf::jointMatrices(file_, accessors_, posed.skin, worldFromNode_);
+        }
         for (std::size_t i = 0; i < from.primitives.size(); ++i) {
             const tinygltf::Primitive& primitive = from.primitives[i];
             const bool isPoints = primitive.mode == TINYGLTF_MODE_POINTS;
             const bool isTriangles = primitive.mode >= TINYGLTF_MODE_TRIANGLES &&
                                      primitive.mode <= TINYGLTF_MODE_TRIANGLE_FAN;
             // Without positions an extension gives the geometry; lines have no surface.
-            if (primitive.attributes.count("POSITION") == 0 || !(isPoints || isTriangles)) continue;
-            const std::string where = fmt::format("mesh {} primitive {}", meshIndex, i);
-            Mesh mesh = meshOf(primitive, where);
+            if (primitive.attributes.count("POSITION") == 0 || !(isPoints || isTriangles)) {
+                leftOut_.add(isPoints || isTriangles ? "a primitive without positions"
+                                                     : "a primitive of lines");
+                continue;
+            }
+            const std::string where = fmt::format("mesh {} primitive {}", posed.mesh, i);
+            Mesh mesh = meshOf(primitive, posed, joints, where);
             const Box bounds = mesh.bounds();
             checkReach(glm::mat4(1.0F), bounds, where);
             parts.bounds.add(bounds);
@@ -91,54 +139,71 @@ class SceneBuilder {
                                         std::move(mesh.colors)});
                 continue;
             }
-            mesh.name = from.name;
-            mesh.triangles = checkedTriangles(primitive, mesh.positions.size(), where);
             if (mesh.triangles.empty()) continue;
+            mesh.name = from.name;
             parts.meshes.push_back(static_cast<int>(scene_.meshes.size()));
             scene_.meshes.push_back(std::move(mesh));
         }
         return parts;
     }
 
-    /// The attributes and the material.
-    Mesh meshOf(const tinygltf::Primitive& primitive, const std::string& where) {
+    /// Triangles, the vertices that they use, posed, and the material.
+    Mesh meshOf(const tinygltf::Primitive& primitive, const PosedMesh& posed,
+                std::span<const glm::mat4> joints, const std::string& where) {
         Mesh mesh;
         mesh.material = primitive.material;
         if (mesh.material != -1) {
             gltf::elementOf(scene_.materials, mesh.material, "{}: {}: material {}", file_.name,
                             where, mesh.material);
         }
-        mesh.positions = accessors_.vectors<3>(primitive.attributes.at("POSITION"));
-        const std::size_t count = mesh.positions.size();
+        const int positions = primitive.attributes.at("POSITION");
+        const auto& allPositions = accessors_.values<glm::vec3>(positions);
+        const std::size_t count = allPositions.size();
         if (count > std::numeric_limits<std::uint32_t>::max()) {
             fail(fmt::format("{}: {} vertices; at most 4294967295 are allowed", where, count));
         }
-        mesh.normals = attribute<3>(primitive, "NORMAL", count, where);
+        std::vector<std::uint32_t> used;
+        if (primitive.mode == TINYGLTF_MODE_POINTS) {
+            used.resize(count);
+            std::iota(used.begin(), used.end(), 0U);
+        } else {
+            mesh.triangles = checkedTriangles(primitive, count, where);
+            used = usedVertices_.renumber(mesh.triangles, count);
+        }
+        std::vector<bool>& isUsed = usedPositions_[positions];
+        isUsed.resize(count, false);
+        for (const std::uint32_t vertex : used) isUsed[vertex] = true;
+
+        const gltf::UsedPart part{primitive, count, used, fmt::format("{}: {}", file_.name, where)};
+        accessors_.charge(used.size(), sizeof(glm::vec3));
+        mesh.positions = part.of(allPositions, "POSITION");
+        mesh.normals = attribute<glm::vec3>(part, "NORMAL");
         for (glm::vec3& normal : mesh.normals) normal = unitNormal(normal);
-        mesh.colors = attribute<3>(primitive, "COLOR_0", count, where);
+        mesh.colors = attribute<glm::vec3>(part, "COLOR_0");
         const gltf::TextureUse use =
             mesh.material < 0 ? gltf::TextureUse{} : textureUses_[mesh.material];
         mesh.texcoords =
-            attribute<2>(primitive, fmt::format("TEXCOORD_{}", use.texcoordSet), count, where);
+            attribute<glm::vec2>(part, fmt::format("TEXCOORD_{}", use.texcoordSet).c_str());
         if (use.isTransformed) {
             for (glm::vec2& uv : mesh.texcoords) uv = use.transform * glm::vec3(uv, 1.0F);
         }
+        gltf::morph(accessors_, part, posed.weights, mesh);
+        if (posed.skin >= 0) gltf::moveToJoints(accessors_, part, joints, mesh);
         return mesh;
     }
 
     /// Empty when the primitive does not have it.
-    template <int N>
-    std::vector<glm::vec<N, float>> attribute(const tinygltf::Primitive& primitive,
-                                              const std::string& name, std::size_t count,
-                                              const std::string& where) {
-        const auto found = primitive.attributes.find(name);
-        if (found == primitive.attributes.end()) return {};
-        auto values = accessors_.vectors<N>(found->second, name == "COLOR_0");
-        if (values.size() != count) {
-            fail(fmt::format("{}: {} values of {} for {} vertices", where, values.size(), name,
-                             count));
+    template <class T>
+    std::vector<T> attribute(const gltf::UsedPart& part, const char* name) {
+        const auto found = part.primitive.attributes.find(name);
+        if (found == part.primitive.attributes.end()) return {};
+        const bool isColour = std::string_view(name) == "COLOR_0";
+        const auto& values = accessors_.values<T>(found->second, isColour);
+        if (isColour && model().accessors[found->second].type == TINYGLTF_TYPE_VEC4) {
+            leftOut_.add("the alpha of vertex colours");
         }
-        return values;
+        accessors_.charge(part.used.size(), sizeof(T));
+        return part.of(values, name);
     }
 
     std::vector<glm::uvec3> checkedTriangles(const tinygltf::Primitive& primitive,
@@ -148,9 +213,7 @@ class SceneBuilder {
             indices = accessors_.indices(primitive.indices);
         } else {
             indices.resize(vertexCount);
-            for (std::size_t i = 0; i < vertexCount; ++i) {
-                indices[i] = static_cast<std::uint32_t>(i);
-            }
+            std::iota(indices.begin(), indices.end(), 0U);
         }
         for (const std::uint32_t index : indices) {
             if (index >= vertexCount) {
@@ -185,25 +248,51 @@ class SceneBuilder {
         return nodes;
     }
 
-    /// The tree below `root`, without recursion: files decide how deep it is.
+    /// A node whose parent has been visited.
+    struct Open {
+        int node = 0;
+        glm::mat4 worldFromParent{1.0F};
+        glm::dmat4 exactFromParent{1.0};
+        bool isVisible = true;
+    };
+
+    /// The tree below `root`, without recursion: files decide how deep it is. Transforms are
+    /// composed in floats; where the scene is moved, in double until the offset is subtracted.
     void visit(int root) {
-        std::vector<std::pair<int, glm::mat4>> open{{root, glm::mat4(1.0F)}};
+        std::vector<Open> open{{root, glm::mat4(1.0F), worldFromFile_}};
         while (!open.empty()) {
-            const auto [index, worldFromParent] = open.back();
+            const Open parent = open.back();
             open.pop_back();
+            const int index = parent.node;
             const tinygltf::Node& node =
                 gltf::elementOf(model().nodes, index, "{}: node {}", file_.name, index);
-            if (wasVisited_[static_cast<std::size_t>(index)]) {
+            std::optional<glm::mat4>& worldFromNode = worldFromNode_[index];
+            if (worldFromNode) {
                 fail(fmt::format("node {} has two parents or is its own ancestor", index));
             }
-            wasVisited_[static_cast<std::size_t>(index)] = true;
-            const glm::mat4 worldFromNode = worldFromParent * localMatrix(node, index);
-            checkFinite(worldFromNode, index);
-            addContent(node, index, worldFromNode);
+            const glm::dmat4 local = localMatrix(node, index);
+            Open inner{0, parent.worldFromParent * glm::mat4(local), parent.exactFromParent * local,
+                       parent.isVisible && isVisible(node)};
+            if (isMoved_) inner.worldFromParent = glm::mat4(inner.exactFromParent);
+            worldFromNode = inner.worldFromParent;
+            checkFinite(*worldFromNode, index);
+            if (inner.isVisible) {
+                drawn_.push_back(index);
+            } else {
+                leftOut_.add("a node that KHR_node_visibility hides");
+            }
             for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-                open.emplace_back(*child, worldFromNode);
+                inner.node = *child;
+                open.push_back(inner);
             }
         }
+    }
+
+    static bool isVisible(const tinygltf::Node& node) {
+        const auto extension = node.extensions.find("KHR_node_visibility");
+        if (extension == node.extensions.end() || !extension->second.Has("visible")) return true;
+        const tinygltf::Value& visible = extension->second.Get("visible");
+        return !visible.IsBool() || visible.Get<bool>();
     }
 
     void checkFinite(const glm::mat4& matrix, int node) const {
@@ -223,7 +312,7 @@ class SceneBuilder {
         }
     }
 
-    glm::mat4 localMatrix(const tinygltf::Node& node, int index) const {
+    glm::dmat4 localMatrix(const tinygltf::Node& node, int index) const {
         const auto has = [&](const std::vector<double>& values, std::size_t count) {
             if (!values.empty() && values.size() != count) {
                 fail(fmt::format("node {}: {} numbers where {} are needed", index, values.size(),
@@ -231,7 +320,7 @@ class SceneBuilder {
             }
             return !values.empty();
         };
-        if (has(node.matrix, 16)) return glm::mat4(glm::make_mat4(node.matrix.data()));
+        if (has(node.matrix, 16)) return glm::make_mat4(node.matrix.data());
         glm::dmat4 matrix(1.0);
         if (has(node.translation, 3)) {
             matrix[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1.0);
@@ -244,21 +333,27 @@ class SceneBuilder {
             const glm::dvec3 scale = glm::make_vec3(node.scale.data());
             for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];
         }
-        return glm::mat4(matrix);
+        return matrix;
     }
 
     void addContent(const tinygltf::Node& node, int index, const glm::mat4& worldFromNode) {
         if (node.camera >= 0) addCamera(node, index, worldFromNode);
         lights_.add(node, index, worldFromNode);
         if (node.mesh < 0) return;
-        const Parts& parts = gltf::elementOf(parts_, node.mesh, "{}: node {}: mesh {}", file_.name,
-                                             index, node.mesh);
-        for (const glm::mat4& nodeFromInstance : instanceMatrices(node)) {
-            const glm::mat4 worldFromMesh = worldFromNode * nodeFromInstance;
+        const tinygltf::Mesh& mesh = gltf::elementOf(
+            model().meshes, node.mesh, "{}: node {}: mesh {}", file_.name, index, node.mesh);
+        const Parts& parts =
+            partsOf({node.mesh, node.skin, node.weights.empty() ? mesh.weights : node.weights});
+        // Joints say where a skinned mesh is, whatever its node says.
+        const bool isInWorld = node.skin >= 0;
+        const auto matrices = isInWorld ? std::vector{glm::mat4(1.0F)} : instanceMatrices(node);
+        for (const glm::mat4& nodeFromInstance : matrices) {
+            const glm::mat4 worldFromMesh =
+                isInWorld ? glm::mat4(1.0F) : worldFromNode * nodeFromInstance;
             checkFinite(worldFromMesh, index);
             checkReach(worldFromMesh, parts.bounds, fmt::format("node {}", index));
             accessors_.charge(parts.meshes.size(), sizeof(Instance));
-            for (const int mesh : parts.meshes) scene_.instances.push_back({mesh, worldFromMesh});
+            for (const int part : parts.meshes) scene_.instances.push_back({part, worldFromMesh});
             for (const PointCloud& cloud : parts.clouds) addPoints(cloud, worldFromMesh);
         }
     }
@@ -276,9 +371,10 @@ class SceneBuilder {
         std::vector<glm::vec3> translations;
         std::vector<glm::vec4> rotations;
         std::vector<glm::vec3> scales;
-        if (const int i = accessor("TRANSLATION"); i >= 0) translations = accessors_.vectors<3>(i);
-        if (const int i = accessor("ROTATION"); i >= 0) rotations = accessors_.vectors<4>(i);
-        if (const int i = accessor("SCALE"); i >= 0) scales = accessors_.vectors<3>(i);
+        if (const int i = accessor("TRANSLATION"); i >= 0)
+            translations = accessors_.values<glm::vec3>(i);
+        if (const int i = accessor("ROTATION"); i >= 0) rotations = accessors_.values<glm::vec4>(i);
+        if (const int i = accessor("SCALE"); i >= 0) scales = accessors_.values<glm::vec3>(i);
         const std::size_t count = std::max({translations.size(), rotations.size(), scales.size()});
         for (const std::size_t size : {translations.size(), rotations.size(), scales.size()}) {
             if (size != 0 && size != count) fail("instance attributes differ in their counts");
@@ -357,11 +453,17 @@ class SceneBuilder {
     }
 
     const gltf::File& file_;
+    glm::dmat4 worldFromFile_;
+    bool isMoved_;
+    LeftOut leftOut_;
     gltf::Accessors accessors_;
     gltf::Lights lights_;
     std::vector<gltf::TextureUse> textureUses_;
-    std::vector<Parts> parts_;
-    std::vector<bool> wasVisited_;
+    std::map<PosedMesh, Parts> parts_;
+    UsedVertices usedVertices_;
+    std::map<int, std::vector<bool>> usedPositions_;       // by their accessors
+    std::vector<std::optional<glm::mat4>> worldFromNode_;  // of those visited
+    std::vector<int> drawn_;                               // in the order of their visits
     std::vector<std::size_t> unaimed_;  // cameras whose file does not say how far they look
     Scene scene_;
 };
@@ -370,7 +472,8 @@ class SceneBuilder {
 
 Scene loadGltf(const std::filesystem::path& path) {
     const gltf::File file = gltf::readFile(path);
-    return SceneBuilder(file).build();
+    return loadedNearOrigin(
+        [&](const glm::dvec3& offset) { return SceneBuilder(file, offset).build(); });
 }
 
 }  // namespace gfxrepro::scene

@@ -7,35 +7,55 @@
 #include <cmath>
 #include <cstring>
 #include <exception>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
+#include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/text.h"
+#include "engine/scene/load_gltf_keys.h"
+#include "engine/scene/load_text.h"
 #include "engine/scene/model_files.h"
 
 namespace gfxrepro::scene::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 8> kSupportedExtensions{
+constexpr std::array<std::string_view, 9> kSupportedExtensions{
     "EXT_mesh_gpu_instancing", "KHR_lights_punctual",        "KHR_materials_emissive_strength",
     "KHR_materials_ior",       "KHR_materials_transmission", "KHR_materials_unlit",
-    "KHR_mesh_quantization",   "KHR_texture_transform"};
+    "KHR_mesh_quantization",   "KHR_node_visibility",        "KHR_texture_transform"};
 
-/// tinygltf gives URIs, percent signs decoded, to these callbacks; they resolve them in the file's
-/// folder only.
+/// What the callbacks of tinygltf may open. It decodes URIs itself, some versions '+' to a blank,
+/// too, and gives them what comes out: they look it up.
 struct Folder {
     std::filesystem::path path;
-    std::string refused;  // the first URI that leaves the folder
+    std::map<std::string, std::filesystem::path> files;  // by their URIs, decoded
+    std::string refused;                                 // the first URI that leaves the folder
+    std::set<std::filesystem::path> opened;
+
+    Folder(std::filesystem::path folder, std::string_view json) : path(std::move(folder)) {
+        for (const std::string& uri : urisOfGltf(json)) {
+            std::string name = decodedUri(uri);
+            const auto file = fileInside(path, name);
+            if (!file) continue;
+            files.emplace(name, *file);
+            std::string spaced = uri;
+            std::ranges::replace(spaced, '+', ' ');
+            files.emplace(decodedUri(spaced), *file);
+        }
+    }
 
     std::optional<std::filesystem::path> find(const std::string& uri) {
-        const auto inside = pathInside(path, uri);
-        if (!inside && refused.empty()) refused = uri;
-        std::error_code ignored;
-        return inside && std::filesystem::is_regular_file(*inside, ignored) ? inside : std::nullopt;
+        const auto found = files.find(uri);
+        if (found != files.end()) return found->second;
+        if (!pathInside(path, uri) && refused.empty()) refused = uri;
+        return std::nullopt;
     }
 };
 
@@ -52,6 +72,7 @@ bool readWholeFile(std::vector<unsigned char>* content, std::string*, const std:
     const auto path = static_cast<Folder*>(folder)->find(uri);
     if (!path) return false;
     requireReadAtOnce(*path);
+    static_cast<Folder*>(folder)->opened.insert(*path);
     const MappedFile file(*path);
     const auto* begin = reinterpret_cast<const unsigned char*>(file.bytes().data());
     content->assign(begin, begin + file.bytes().size());
@@ -136,8 +157,7 @@ void checkExtensions(const tinygltf::Model& model, const std::string& name) {
 
 /// A JSON object, perhaps behind a byte order mark.
 bool beginsAsJson(std::string_view content) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (content.starts_with(kByteOrderMark)) content.remove_prefix(kByteOrderMark.size());
+    content = withoutByteOrderMark(content);
     const std::size_t begin = content.find_first_not_of(" \t\r\n");
     return begin != content.npos && content[begin] == '{';
 }
@@ -180,9 +200,11 @@ File readFile(const std::filesystem::path& path) {
                         "'glTF'",
                         file.name, content.empty() ? "is empty" : "is no glTF"));
     }
-    checkNesting(isBinary ? jsonOfGlb(content) : content, file.name);
+    const std::string_view json = isBinary ? jsonOfGlb(content) : content;
+    checkNesting(json, file.name);
+    addUnknownKeys(json, file.leftOut);
 
-    Folder folder{path.parent_path(), ""};
+    Folder folder(path.parent_path(), json);
     std::string message;
     const bool isParsed = parse(content, isBinary, folder, file.model, message);
     checkExtensions(file.model, file.name);  // the better reason, when it is one
@@ -194,10 +216,15 @@ File readFile(const std::filesystem::path& path) {
         const std::string_view reason = trimmed(message);
         throw Error(fmt::format("{}: {}", file.name, reason.substr(0, reason.find('\n'))));
     }
-    if (!file.model.asset.version.starts_with("2.")) {
-        throw Error(
-            fmt::format("{}: glTF version '{}'; 2.0 is read", file.name, file.model.asset.version));
+    const tinygltf::Asset& asset = file.model.asset;
+    if (!asset.version.starts_with("2.")) {
+        throw Error(fmt::format("{}: glTF version '{}'; 2.0 is read", file.name, asset.version));
     }
+    if (!asset.minVersion.empty() && asset.minVersion != "2.0") {
+        throw Error(fmt::format("{}: needs glTF version '{}' at least; 2.0 is read", file.name,
+                                asset.minVersion));
+    }
+    file.opened.assign(folder.opened.begin(), folder.opened.end());
     file.sizeBytes = content.size();
     for (const tinygltf::Buffer& buffer : file.model.buffers) file.sizeBytes += buffer.data.size();
     return file;
@@ -385,31 +412,35 @@ std::span<const unsigned char> Accessors::view(int bufferView) const {
     return data.subspan(view.byteOffset, view.byteLength);
 }
 
-template <int N>
-std::vector<glm::vec<N, float>> Accessors::vectors(int accessor, bool mayHaveAlpha) {
+template <class T>
+const std::vector<T>& Accessors::values(int accessor, bool mayHaveAlpha) {
+    constexpr int kCount = sizeof(T) / sizeof(float);
     const Elements elements(*this, file_, accessor);
-    if (elements.components() != N && !(mayHaveAlpha && elements.components() == N + 1)) {
-        elements.fail(fmt::format("has {} components; {} are needed", elements.components(), N));
+    if (elements.components() != kCount && !(mayHaveAlpha && elements.components() == kCount + 1)) {
+        elements.fail(
+            fmt::format("has {} components; {} are needed", elements.components(), kCount));
     }
-    charge(elements.count(), sizeof(glm::vec<N, float>));
-    std::vector<glm::vec<N, float>> values(elements.count(), glm::vec<N, float>(0.0F));
+    const auto [found, isNew] = std::get<Decoded<T>>(decoded_).try_emplace(accessor);
+    if (!isNew) return found->second;
+    charge(elements.count(), sizeof(T));
+    std::vector<T>& values = found->second;
+    values.assign(elements.count(), T(0.0F));
     const std::size_t bytes = componentBytes(elements.componentType());
     elements.forEach([&](std::size_t i, const unsigned char* from) {
-        for (int c = 0; c < N; ++c) {
-            const float value = component(from + static_cast<std::size_t>(c) * bytes,
-                                          elements.componentType(), elements.isNormalized());
-            if (!std::isfinite(value)) {
-                elements.fail(fmt::format("element {} is not finite", i));
-            }
-            values[i][c] = value;
+        float* to = glm::value_ptr(values[i]);
+        for (int c = 0; c < kCount; ++c) {
+            to[c] = component(from + static_cast<std::size_t>(c) * bytes, elements.componentType(),
+                              elements.isNormalized());
+            if (!std::isfinite(to[c])) elements.fail(fmt::format("element {} is not finite", i));
         }
     });
     return values;
 }
 
-template std::vector<glm::vec2> Accessors::vectors<2>(int, bool);
-template std::vector<glm::vec3> Accessors::vectors<3>(int, bool);
-template std::vector<glm::vec4> Accessors::vectors<4>(int, bool);
+template const std::vector<glm::vec2>& Accessors::values<glm::vec2>(int, bool);
+template const std::vector<glm::vec3>& Accessors::values<glm::vec3>(int, bool);
+template const std::vector<glm::vec4>& Accessors::values<glm::vec4>(int, bool);
+template const std::vector<glm::mat4>& Accessors::values<glm::mat4>(int, bool);
 
 std::vector<std::uint32_t> Accessors::indices(int accessor) {
     const Elements elements(*this, file_, accessor);

@@ -8,11 +8,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <map>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/scene/left_out.h"
 
 namespace gfxrepro::scene::gltf {
 
@@ -25,7 +28,9 @@ inline constexpr const char* kTargetM = "target_m";
 struct File {
     std::string name;  // for messages
     tinygltf::Model model;
-    std::size_t sizeBytes = 0;  // of the file and its buffers
+    std::size_t sizeBytes = 0;                  // of the file and its buffers
+    std::vector<std::filesystem::path> opened;  // beside it
+    LeftOut leftOut;                            // keys that nobody reads
 };
 
 /// Of `all`, that with this number. Throws Error where there is none; `what` and the arguments name
@@ -50,10 +55,10 @@ class Accessors {
   public:
     explicit Accessors(const File& file);
 
-    /// Values of exactly N components; VEC4 is allowed for N = 3 with `mayHaveAlpha`, which is
-    /// dropped. All are finite.
-    template <int N>
-    std::vector<glm::vec<N, float>> vectors(int accessor, bool mayHaveAlpha = false);
+    /// Values of T's number of components: vec2, vec3, vec4 or mat4. VEC4 is allowed for vec3 with
+    /// `mayHaveAlpha`, which is dropped. All are finite. Decoded once, and kept.
+    template <class T>
+    const std::vector<T>& values(int accessor, bool mayHaveAlpha = false);
 
     /// Unsigned integers of a SCALAR accessor.
     std::vector<std::uint32_t> indices(int accessor);
@@ -66,8 +71,13 @@ class Accessors {
     void charge(std::uint64_t count, std::size_t bytesEach);
 
   private:
+    template <class T>
+    using Decoded = std::map<int, std::vector<T>>;
+
     const File& file_;
     std::uint64_t budgetBytes_;
+    std::tuple<Decoded<glm::vec2>, Decoded<glm::vec3>, Decoded<glm::vec4>, Decoded<glm::mat4>>
+        decoded_;
 };
 
 }  // namespace gfxrepro::scene::gltf

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "engine/scene/model_files.h"
@@ -58,22 +59,45 @@ TextureUse textureUse(const Info& info) {
 
 class TextureTable {
   public:
-    TextureTable(const File& file, const Accessors& accessors, Scene& scene)
-        : file_(file), accessors_(accessors), scene_(scene) {}
+    TextureTable(const File& file, const Accessors& accessors, Scene& scene, LeftOut& leftOut)
+        : file_(file), accessors_(accessors), scene_(scene), leftOut_(leftOut) {}
 
     /// Into Scene::textures; −1 when the material has none, or one that only an extension gives.
     int find(int texture) {
         if (texture < 0) return -1;
-        const int image =
-            elementOf(file_.model.textures, texture, "{}: texture {}", file_.name, texture).source;
-        if (image < 0) return -1;
+        const tinygltf::Texture& from =
+            elementOf(file_.model.textures, texture, "{}: texture {}", file_.name, texture);
+        if (from.source < 0) {
+            leftOut_.add("a texture that only an extension gives");
+            return -1;
+        }
+        const Sampling sampling = samplingOf(from);
         const auto [found, isNew] =
-            textureOf_.try_emplace(image, static_cast<int>(scene_.textures.size()));
-        if (isNew) scene_.textures.push_back(decoded(image));
+            textureOf_.try_emplace({from.source, sampling.u, sampling.v, sampling.isNearest},
+                                   static_cast<int>(scene_.textures.size()));
+        if (!isNew) return found->second;
+        scene_.textures.push_back(decoded(from.source));
+        if (sampling != Sampling{}) {
+            scene_.samplings.resize(scene_.textures.size());
+            scene_.samplings.back() = sampling;
+        }
         return found->second;
     }
 
   private:
+    Sampling samplingOf(const tinygltf::Texture& texture) const {
+        if (texture.sampler < 0) return {};
+        const tinygltf::Sampler& from = elementOf(file_.model.samplers, texture.sampler,
+                                                  "{}: sampler {}", file_.name, texture.sampler);
+        const auto wrap = [](int mode) {
+            return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Sampling::Wrap::Clamp
+                   : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Sampling::Wrap::Mirror
+                                                                   : Sampling::Wrap::Repeat;
+        };
+        return {wrap(from.wrapS), wrap(from.wrapT),
+                from.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST};
+    }
+
     image::Image8 decoded(int index) const {
         const std::string where = fmt::format("{}: image {}", file_.name, index);
         const tinygltf::Image& image = elementOf(file_.model.images, index, "{}", where);
@@ -86,7 +110,8 @@ class TextureTable {
     const File& file_;
     const Accessors& accessors_;
     Scene& scene_;
-    std::map<int, int> textureOf_;
+    LeftOut& leftOut_;
+    std::map<std::tuple<int, Sampling::Wrap, Sampling::Wrap, bool>, int> textureOf_;
 };
 
 Material gltfMaterial(const tinygltf::Material& from) {
@@ -154,11 +179,13 @@ TextureUse addTextures(const tinygltf::Material& from, TextureTable& textures, M
 
 }  // namespace
 
-std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessors, Scene& scene) {
-    TextureTable textures(file, accessors, scene);
+std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessors, Scene& scene,
+                                     LeftOut& leftOut) {
+    TextureTable textures(file, accessors, scene, leftOut);
     std::vector<TextureUse> uses;
     for (const tinygltf::Material& from : file.model.materials) {
         scene.materials.push_back(gltfMaterial(from));
+        if (from.alphaMode == "BLEND") leftOut.add("a material's alphaMode BLEND, drawn as solid");
         uses.push_back(addTextures(from, textures, scene.materials.back(), scene.warnings));
     }
     return uses;

@@ -22,7 +22,8 @@ struct TextureUse {
 /// normal and emissive, not occlusion. Returns how each reads them: as its first texture in this
 /// order does. One that reads other coordinates is left out, with a line in Scene::warnings. Throws
 /// Error for textures and images that are not there or broken.
-std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessors, Scene& scene);
+std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessors, Scene& scene,
+                                     LeftOut& leftOut);
 
 // KHR_lights_punctual of glTF files.
 

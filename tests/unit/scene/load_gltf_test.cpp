@@ -3,56 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <string>
 
 #include "engine/scene/load.h"
 #include "tests/support/support.h"
+#include "tests/unit/scene/gltf_document.h"
 
 namespace gfxrepro::scene {
 namespace {
 
 using test::errorText;
 using test::TemporaryFolder;
-
-/// The top-level members of a file, without their names' quotes: {"nodes", "[…]"}.
-using Document = std::map<std::string, std::string>;
-
-std::string text(const Document& document) {
-    std::string result;
-    for (const auto& [key, value] : document) {
-        result += (result.empty() ? "{\"" : ",\"") + key + "\":" + value;
-    }
-    return result + "}";
-}
-
-/// One buffer with, from byte 0, the positions of the unit square's corners (float), then the
-/// indices 0 1 2 0 2 3 (byte 48, unsigned short), then 4 normalized bytes a corner (byte 60).
-Document square() {
-    return {
-        {"asset", R"({"version":"2.0"})"},
-        {"buffers", R"([{"byteLength":76,"uri":"square.bin"}])"},
-        {"bufferViews",
-         R"([{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12},
-                 {"buffer":0,"byteOffset":60,"byteLength":16,"byteStride":4}])"},
-        {"accessors",
-         R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
-                 {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"},
-                 {"bufferView":2,"componentType":5121,"count":4,"type":"VEC4","normalized":true},
-                 {"bufferView":2,"componentType":5120,"count":4,"type":"VEC2","normalized":true}])"},
-        {"meshes", R"([{"name":"m","primitives":[{"attributes":{"POSITION":0},"indices":1}]}])"},
-        {"nodes", R"([{"mesh":0}])"},
-        {"scenes", R"([{"nodes":[0]}])"}};
-}
-
-std::string squareBytes() {
-    const float positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
-    const std::uint16_t indices[] = {0, 1, 2, 0, 2, 3};
-    const std::uint8_t small[] = {255, 0, 51, 255, 127, 129, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-    return std::string(reinterpret_cast<const char*>(positions), sizeof(positions)) +
-           std::string(reinterpret_cast<const char*>(indices), sizeof(indices)) +
-           std::string(reinterpret_cast<const char*>(small), sizeof(small));
-}
 
 class LoadGltf : public testing::Test {
   protected:
@@ -252,7 +213,26 @@ TEST_F(LoadGltf, ReadsTexturesOfMaterials) {
                   "material 'two sets': its metallic-roughness texture is left out, as it reads "
                   "other texture coordinates than those before it",
                   "material 'two sets': its normal texture is left out, as it reads other texture "
-                  "coordinates than those before it"}));
+                  "coordinates than those before it",
+                  "left out: the key 'materials.occlusionTexture'"}));
+}
+
+TEST_F(LoadGltf, ReadsSamplers) {
+    Document document = square();
+    document["images"] = kWhitePixel;
+    document["samplers"] = R"([{"wrapS":33071,"magFilter":9728},{"wrapT":33648},{}])";
+    document["textures"] = R"([{"source":0},{"source":0,"sampler":0},{"source":0,"sampler":1},
+        {"source":0,"sampler":2}])";
+    document["materials"] = R"([{"normalTexture":{"index":0},"emissiveTexture":{"index":1}},
+        {"normalTexture":{"index":2},"emissiveTexture":{"index":3}}])";
+    const Scene scene = load(document);
+    EXPECT_EQ(scene.textures.size(), 3U) << "one for each way to read the image";
+    EXPECT_EQ(scene.materials.at(1).emissiveTexture, scene.materials.at(0).normalTexture);
+    const Sampling clamped{Sampling::Wrap::Clamp, Sampling::Wrap::Repeat, true};
+    EXPECT_EQ(samplingOf(scene, scene.materials[0].emissiveTexture), clamped);
+    const Sampling mirrored{Sampling::Wrap::Repeat, Sampling::Wrap::Mirror, false};
+    EXPECT_EQ(samplingOf(scene, scene.materials[1].normalTexture), mirrored);
+    EXPECT_EQ(samplingOf(scene, scene.materials[0].normalTexture), Sampling{});
 }
 
 TEST_F(LoadGltf, TakesPointLightsWithTheirShareOfWhatAllGive) {
@@ -354,11 +334,13 @@ TEST_F(LoadGltf, ReadsNothingOutsideOfItsFolder) {
 TEST_F(LoadGltf, RefusesWhatItCannotRead) {
     EXPECT_EQ(errorWith("asset", R"({"version":"1.0"})"),
               "DIR/a.gltf: glTF version '1.0'; 2.0 is read");
+    EXPECT_EQ(errorWith("asset", R"({"version":"2.0","minVersion":"2.1"})"),
+              "DIR/a.gltf: needs glTF version '2.1' at least; 2.0 is read");
     EXPECT_EQ(errorWith("extensionsRequired", R"(["KHR_draco_mesh_compression","X"])"),
               "DIR/a.gltf: requires the extension KHR_draco_mesh_compression, X; supported are "
               "EXT_mesh_gpu_instancing, KHR_lights_punctual, KHR_materials_emissive_strength, "
               "KHR_materials_ior, KHR_materials_transmission, KHR_materials_unlit, "
-              "KHR_mesh_quantization, KHR_texture_transform");
+              "KHR_mesh_quantization, KHR_node_visibility, KHR_texture_transform");
     EXPECT_EQ(errorWith("extras", std::string(300, '[') + std::string(300, ']')),
               "DIR/a.gltf: JSON nested deeper than 256");
     EXPECT_THAT(error("{\"asset\": {\"version\": 2"), testing::StartsWith("DIR/a.gltf: "));

@@ -1,0 +1,101 @@
+// Coordinates far from the origin, as surveys have them.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "engine/scene/load.h"
+#include "tests/support/support.h"
+#include "tests/unit/scene/gltf_document.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+using test::TemporaryFolder;
+
+/// 400 points 2 cm apart, at 500 000, 4 500 000.
+std::string points(const char* type) {
+    std::string content = "ply\nformat ascii 1.0\nelement vertex 400\n";
+    for (const char* axis : {"x", "y", "z"}) content += fmt::format("property {} {}\n", type, axis);
+    content += "end_header\n";
+    for (int i = 0; i < 400; ++i) {
+        content += fmt::format("{:.3f} {:.3f} 10\n", 500'000 + 0.02 * (i % 20),
+                               4'500'000 + 0.02 * (i / 20));
+    }
+    return content;
+}
+
+std::size_t differentPoints(const std::vector<glm::vec3>& positions) {
+    std::set<std::pair<float, float>> different;
+    for (const glm::vec3& p : positions) different.emplace(p.x, p.y);
+    return different.size();
+}
+
+TEST(FarFiles, PointsKeepTheirPlaces) {
+    const TemporaryFolder folder;
+    for (const char* type : {"double", "float"}) {  // text has the digits, whatever it declares
+        const Scene scene = loadPly(folder.write("a.ply", points(type)));
+        EXPECT_EQ(differentPoints(scene.points.positions), 400U) << type;
+        EXPECT_LT(glm::length(scene.bounds().size() - glm::vec3(0.38F, 0.38F, 0)), 1e-5F);
+        const glm::dvec3 first = glm::dvec3(scene.points.positions[0]) + scene.offset;
+        EXPECT_LT(glm::length(first - glm::dvec3(500'000, 4'500'000, 10)), 1e-6);
+        ASSERT_EQ(scene.warnings.size(), 1U);
+        EXPECT_THAT(scene.warnings[0],
+                    testing::StartsWith("its coordinates lie far from the origin: ("));
+    }
+}
+
+TEST(FarFiles, FacesKeepTheirShape) {
+    const TemporaryFolder folder;
+    const Scene scene =
+        loadObj(folder.write("a.obj",
+                             "v 0 0 0\nv 500000.12 4500000.12 10\nv 500000.22 4500000.12 10\n"
+                             "v 500000.22 4500000.22 10\nv 500000.12 4500000.22 10\nf 2 3 4 5\n"));
+    EXPECT_LT(glm::length(scene.bounds().size() - glm::vec3(0.1F, 0.1F, 0)), 1e-6F);
+    EXPECT_EQ(scene.triangleCount(), 2U);
+}
+
+TEST(FarFiles, NodesFarAwayKeepTheirDistance) {
+    const TemporaryFolder folder;
+    folder.write("square.bin", squareBytes());
+    Document document = square();
+    document["nodes"] = R"([{"children":[1,2],"translation":[500000,4500000,0]},
+        {"mesh":0,"translation":[0.12,0.1,0]},{"mesh":0,"translation":[0.14,0.1,0]}])";
+    const Scene scene = loadGltf(folder.write("a.gltf", text(document)));
+    ASSERT_EQ(scene.instances.size(), 2U);
+    const glm::vec3 apart(scene.instances[1].worldFromMesh[3] -
+                          scene.instances[0].worldFromMesh[3]);
+    EXPECT_LT(glm::length(apart - glm::vec3(0.02F, 0, 0)), 1e-6F);
+    EXPECT_EQ(scene.offset, glm::dvec3(500'001, 4'500'001, 0));
+}
+
+TEST(FarFiles, OthersStayAsTheyAre) {
+    const TemporaryFolder folder;
+    const std::string face = "\nv 21 0 0\nv 20 1 0\nf 1 2 3\n";
+    EXPECT_EQ(loadObj(folder.write("a.obj", "v 20 0 0" + face)).offset, glm::dvec3(0.0));
+    EXPECT_EQ(loadObj(folder.write("a.obj", "v 500000 1 2")).points.positions.at(0),
+              glm::vec3(500'000, 1, 2))
+        << "one point";
+}
+
+TEST(FarFiles, ComeBackFromWhatIsSaved) {
+    const TemporaryFolder folder;
+    const Scene scene = loadPly(folder.write("a.ply", points("double")));
+    savePly(folder.path() / "b.ply", scene);
+    saveGlb(folder.path() / "b.glb", scene);
+    for (const char* name : {"b.ply", "b.glb"}) {
+        const Scene back = loadScene(folder.path() / name);
+        ASSERT_EQ(back.points.positions.size(), 400U) << name;
+        for (std::size_t i = 0; i < 400; i += 57) {
+            EXPECT_LT(glm::length(glm::dvec3(back.points.positions[i]) + back.offset -
+                                  glm::dvec3(scene.points.positions[i]) - scene.offset),
+                      1e-6)
+                << name;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::scene
