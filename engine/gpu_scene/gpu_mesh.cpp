@@ -48,6 +48,17 @@ void GpuMesh::draw(int first, int count) const {
                    reinterpret_cast<const void*>(offsetBytes));
 }
 
+gl::Texture uploadedTexture(const scene::Scene& scene, int texture) {
+    const scene::Sampling sampling = samplingOf(scene, texture);
+    gl::Texture uploaded =
+        gl::Texture::fromImage(scene.textures[static_cast<std::size_t>(texture)], true);
+    constexpr GLint kWraps[] = {GL_REPEAT, GL_MIRRORED_REPEAT, GL_CLAMP_TO_EDGE};
+    glTextureParameteri(uploaded.id(), GL_TEXTURE_WRAP_S, kWraps[static_cast<int>(sampling.u)]);
+    glTextureParameteri(uploaded.id(), GL_TEXTURE_WRAP_T, kWraps[static_cast<int>(sampling.v)]);
+    if (sampling.isNearest) uploaded.setFilter(GL_LINEAR_MIPMAP_LINEAR, GL_NEAREST);
+    return uploaded;
+}
+
 namespace {
 
 constexpr glm::vec4 kBackground{0.18F, 0.20F, 0.24F, 1.0F};
@@ -71,9 +82,9 @@ class Uploads {
         if (index < 0) return white_;
         auto found = textures_.find(index);
         if (found == textures_.end()) {
-            const image::Image8& image = scene_.textures[static_cast<std::size_t>(index)];
-            found = textures_.emplace(index, gl::Texture::fromImage(image, true)).first;
-            found->second.setFilter(GL_LINEAR, GL_LINEAR);
+            found = textures_.emplace(index, uploadedTexture(scene_, index)).first;
+            const GLenum filter = samplingOf(scene_, index).isNearest ? GL_NEAREST : GL_LINEAR;
+            found->second.setFilter(filter, filter);
         }
         return found->second;
     }

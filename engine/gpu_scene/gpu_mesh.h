@@ -32,6 +32,9 @@ struct GpuMesh {
     void draw() const { draw(0, triangleCount); }
 };
 
+/// A texture of the scene as gl::Texture::fromImage() makes it of sRGB, read as its Sampling says.
+gl::Texture uploadedTexture(const scene::Scene& scene, int texture);
+
 /// A look at a scene: one sample at the centre of each pixel, 3 channels, linear, rows from the
 /// top.
 ///
@@ -40,9 +43,10 @@ struct GpuMesh {
 /// `color` is the interpolated vertex colour (linear), 1 where the mesh has none. N is the
 /// interpolated vertex normal, the triangle's where that is missing or zero; V is the unit
 /// direction to the camera (a headlight). The texture is decoded from sRGB texel by texel, filtered
-/// bilinearly, repeated, v downwards. Where baseColor.a · texture.a < alphaCutoff what is behind
-/// shows. Background: (0.18, 0.20, 0.24). Points are not drawn. `shaders` holds
-/// gpu_scene/preview.*.glsl. Throws Error for shaders, UnsupportedError for sizes beyond limits.
+/// bilinearly if its Sampling does not say otherwise, v downwards. Where baseColor.a · texture.a <
+/// alphaCutoff what is behind shows. Background: (0.18, 0.20, 0.24). Points are not drawn.
+/// `shaders` holds gpu_scene/preview.*.glsl. Throws Error for shaders, UnsupportedError for sizes
+/// beyond limits.
 image::ImageF renderPreview(const scene::Scene& scene, const scene::Camera& camera, int width,
                             int height, const gl::ShaderLibrary& shaders);
 

@@ -73,7 +73,7 @@ DrawableScene::DrawableScene(const scene::Scene& scene)
             const auto index = static_cast<std::size_t>(material.baseColorTexture);
             if (uploaded[index] < 0) {
                 uploaded[index] = static_cast<int>(textures_.size());
-                textures_.push_back(gl::Texture::fromImage(scene.textures[index], true));
+                textures_.push_back(gpu_scene::uploadedTexture(scene, material.baseColorTexture));
             }
             texture = uploaded[index];
         }

@@ -142,6 +142,14 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
                 glm::vec3(scene_.instances[i].worldFromMesh * glm::vec4(position, 1.0F)));
         }
     }
+    const auto otherwise = std::ranges::count_if(
+        scene_.samplings, [](const auto& each) { return each != scene::Sampling{}; });
+    if (otherwise > 0) {
+        warn(
+            fmt::format("{} textures are repeated and interpolated, though the file has it "
+                        "otherwise",
+                        otherwise));
+    }
     addLights();
     fillLayers(textureLayers_);
     fillLayers(valueLayers_);

@@ -118,6 +118,27 @@ TEST_F(PreviewTest, TexturesAreDecodedFromSrgb) {
     EXPECT_NEAR(image.at(12, 20), 0.502886F * facingAt(12, 20), 1e-3F);
 }
 
+TEST_F(PreviewTest, TexturesAreReadAsTheirSamplingSays) {
+    using Wrap = scene::Sampling::Wrap;
+    Scene scene = scene::sceneOf(square());
+    scene.meshes[0].texcoords = {{0, 0}, {4, 0}, {4, 0.4F}, {0, 0.4F}};
+    scene.meshes[0].material = 0;
+    scene.materials.emplace_back().baseColor = glm::vec4(1.0F);
+    scene.materials[0].baseColorTexture = 0;
+    scene.textures.emplace_back(2, 1, 3, std::uint8_t{0});
+    scene.textures[0].at(0, 0, 0) = 255;  // red beside black, two pixels each
+    for (const auto& [wrap, expected] : {std::pair{Wrap::Repeat, "r.r.r.r."},
+                                         {Wrap::Mirror, "r..rr..r"},
+                                         {Wrap::Clamp, "r......."}}) {
+        scene.samplings = {{wrap, Wrap::Clamp, true}};
+        const image::ImageF image = gpu_scene::renderPreview(scene, frontCamera(), 32, 32, shaders);
+        for (int x = 8; x < 24; ++x) {
+            const float red = expected[(x - 8) / 2] == 'r' ? facingAt(x, 16) : 0.0F;
+            expectPixel(image, x, 16, {red, 0, 0});
+        }
+    }
+}
+
 TEST_F(PreviewTest, CutOutsShowWhatIsBehind) {
     Scene scene = scene::sceneOf(square());
     scene.meshes[0].material = 0;
