@@ -193,7 +193,7 @@ SceneEntry readEntry(const fs::path& path, const std::string& expectedName,
 /// Goes up when resampled() makes other heights.
 constexpr int kResamplingVersion = 1;
 /// Goes up when loadHeightMap() makes other heights.
-constexpr int kReadingVersion = 1;
+constexpr int kReadingVersion = 2;
 
 /// "the file s.obj", "generator grass".
 std::string kindOf(const SceneSource& source) {
@@ -305,9 +305,10 @@ std::string heightMapKey(const fs::path& assetsFolder, const SceneSource& source
         (fs::is_regular_file(sidecar) ? " sidecar " + sha256AtOnce(sidecar) : "") +
         (how.units.noData == 0.0F ? " no data 0" : "");
     return colours + reading +
-           fmt::format(" heights {} {} {} {} {} {}", how.units.spacingM, how.units.heightScaleM,
-                       how.units.noData.value_or(0.0F), how.resampleTo.value_or(0), how.detailM,
-                       source.seed);
+           fmt::format(" heights {} {} {} {} {} {}",
+                       how.units.spacingM ? fmt::format("{}", *how.units.spacingM) : "as it says",
+                       how.units.heightScaleM, how.units.noData.value_or(0.0F),
+                       how.resampleTo.value_or(0), how.detailM, source.seed);
 }
 
 Scene loadTerrain(const fs::path& assetsFolder, const SceneSource& source) {

@@ -129,7 +129,8 @@ class Metres {
             for (int column = 0; column < rows_->sizeSamples.x; ++column) {
                 float& height = heightsM[column];
                 const bool isHole = std::find(none.begin(), none.end(), height) != none.end();
-                height = isHole ? NAN : height * units_.heightScaleM;
+                height =
+                    isHole ? NAN : (height * rows_->scale + rows_->offset) * units_.heightScaleM;
             }
         }
     }
@@ -142,7 +143,8 @@ class Metres {
 HeightMap withoutHeights(const HeightRows& source, const HeightMapUnits& units) {
     HeightMap map;
     map.sizeSamples = source.sizeSamples;
-    map.spacingM = units.spacingM;
+    map.spacingM = units.spacingM.value_or(source.spacingM.value_or(1.0F));
+    map.isSpacingOfFile = !units.spacingM && source.spacingM;
     map.isEightBit = source.isEightBit;
     return map;
 }

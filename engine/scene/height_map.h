@@ -23,7 +23,8 @@ struct Mesh;
 struct HeightMap {
     glm::ivec2 sizeSamples{0};  // x: columns from west to east, y: rows from north to south
     float spacingM = 1.0F;
-    std::vector<float> heightsM;  // row by row, the northernmost first; empty with a file
+    bool isSpacingOfFile = false;  // the file's own, as nobody else said it
+    std::vector<float> heightsM;   // row by row, the northernmost first; empty with a file
     // Shared, against the house's rule: copies of a scene look at one file.
     std::shared_ptr<const HeightFile> file;
     std::size_t filledCount = 0;  // samples without data in the source, filled from around
@@ -67,9 +68,10 @@ constexpr int kMaxHeightMapSide = 16385, kMaxHeightFileSide = 65537;
 /// Maps with longer sides are kept in a file where there is a choice: 64 MiB of heights.
 constexpr int kMostSamplesInMemory = 4097;
 
-/// How a file's values become metres: height = value · heightScaleM.
+/// How a file's values become metres: height = (value · scale + offset) · heightScaleM, with the
+/// scale and the offset that a GeoTIFF may state.
 struct HeightMapUnits {
-    float spacingM = 1.0F;
+    std::optional<float> spacingM;  // none: what a GeoTIFF or an SRTM tile says, else 1
     float heightScaleM = 1.0F;
     std::optional<float> noData;  // a further value, before scaling, that means "none"
 };

@@ -41,6 +41,8 @@ void checkHeightMapSize(std::int64_t width, std::int64_t height, const std::stri
 namespace {
 
 constexpr float kSrtmVoid = -32768.0F;
+/// Along a meridian, whose length is 40,007,863 m (WGS 84).
+constexpr double kMetresPerDegree = 40'007'863.0 / 360.0;
 
 class PngHeightRows : public HeightRows {
   public:
@@ -59,6 +61,8 @@ class PngHeightRows : public HeightRows {
                             kMaxHeightMapSide, kMaxHeightFileSide));
         }
         isEightBit = rows_.bitDepth() != 16;
+        // Fewer bits come as parts of 16: heights are the numbers that are stored.
+        step_ = 65535 / ((1 << std::min(rows_.bitDepth(), 8)) - 1);
         canBeNan = rows_.channels() == 2;
         row_.resize(static_cast<std::size_t>(rows_.width()) *
                     static_cast<std::size_t>(rows_.channels()));
@@ -69,13 +73,14 @@ class PngHeightRows : public HeightRows {
         const auto channels = static_cast<std::size_t>(rows_.channels());
         for (std::size_t i = 0; i < row_.size(); i += channels) {
             const bool isHole = channels == 2 && row_[i + 1] == 0;
-            const int value = isEightBit ? row_[i] / 257 : row_[i];
+            const int value = isEightBit ? row_[i] / step_ : row_[i];
             *values++ = isHole ? NAN : static_cast<float>(value);
         }
     }
 
   private:
     image::PngRows rows_;
+    int step_ = 257;
     std::vector<std::uint16_t> row_;
 };
 
@@ -142,7 +147,9 @@ std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path) {
         if (bytes != 2 * static_cast<std::uintmax_t>(side) * static_cast<std::uintmax_t>(side)) {
             continue;
         }
-        return std::make_unique<BareRows>(path, glm::ivec2(side), ValueType::I16, true);
+        auto rows = std::make_unique<BareRows>(path, glm::ivec2(side), ValueType::I16, true);
+        rows->spacingM = static_cast<float>(kMetresPerDegree / (side - 1));  // of a tile's degree
+        return rows;
     }
     throw Error(
         fmt::format("{}: {} bytes; an SRTM tile has 2884802 (1201 x 1201) or 25934402 "
@@ -203,7 +210,8 @@ std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
     return rows;
 }
 
-constexpr std::uint32_t kGdalNoData = 42113;
+constexpr std::uint32_t kGdalNoData = 42113, kGdalMetadata = 42112;
+constexpr std::uint32_t kGeoPixelScale = 33550, kGeoKeys = 34735;
 /// Tiles of 1,024² of floats across the widest map.
 constexpr std::size_t kMostTileRowBytes = std::size_t{260} << 20;
 
@@ -248,6 +256,7 @@ class TiffRows : public HeightRows {
             if (band_.size() < rowBytes()) fail();
         }
         findNoData();
+        findUnits();
     }
 
     void read(float* values) override {
@@ -341,13 +350,61 @@ class TiffRows : public HeightRows {
 
     void findNoData() {
         if (format_ != SAMPLEFORMAT_UINT) noData.push_back(-32768.0F);
+        if (const auto value = numberIn(textOf(kGdalNoData))) noData.push_back(*value);
+    }
+
+    static std::optional<float> numberIn(const std::string& text) {
+        char* end = nullptr;
+        const float value = std::strtof(text.c_str(), &end);
+        return end != text.c_str() ? std::optional(value) : std::nullopt;
+    }
+
+    /// Scale and offset of GDAL, and the distance of samples, where a GeoTIFF says them.
+    void findUnits() {
+        const std::string metadata = textOf(kGdalMetadata);
+        const auto item = [&](const char* role) -> std::optional<float> {
+            const std::size_t at = metadata.find(fmt::format("role=\"{}\"", role));
+            const std::size_t begin = at == metadata.npos ? at : metadata.find('>', at);
+            return begin == metadata.npos ? std::nullopt : numberIn(metadata.substr(begin + 1));
+        };
+        scale = item("scale").value_or(1.0F);
+        offset = item("offset").value_or(0.0F);
+        if (!std::isfinite(scale) || !std::isfinite(offset)) {
+            throw Error(fmt::format("{}: scale {} and offset {}; finite numbers are allowed", name_,
+                                    scale, offset));
+        }
+        // Values of another type than GeoTIFF's would be read beyond their end.
+        const auto steps = valuesOf<double>(kGeoPixelScale, TIFF_DOUBLE);
+        if (steps.size() < 2) return;
+        double unitM = 1.0;
+        const auto keys = valuesOf<std::uint16_t>(kGeoKeys, TIFF_SHORT);
+        for (std::size_t i = 4; i + 3 < keys.size(); i += 4) {  // key, where, count, value
+            constexpr std::uint16_t kModelType = 1024, kGeographic = 2, kLinearUnit = 3076;
+            if (keys[i] == kModelType && keys[i + 3] == kGeographic) unitM = kMetresPerDegree;
+            if (keys[i] == kLinearUnit && keys[i + 3] == 9002) unitM = 0.3048;           // foot
+            if (keys[i] == kLinearUnit && keys[i + 3] == 9003) unitM = 1200.0 / 3937.0;  // US foot
+        }
+        // Along the meridian: degrees of longitude are shorter.
+        const auto spacing = static_cast<float>(steps[1] * unitM);
+        if (spacing > 0.0F && std::isfinite(spacing)) spacingM = spacing;
+    }
+
+    /// Of a tag that libtiff itself does not know; empty where there is none.
+    std::string textOf(std::uint32_t tag) {
         std::uint32_t count = 0;
         const char* text = nullptr;
-        if (TIFFGetField(tiff_.get(), kGdalNoData, &count, &text) != 1 || text == nullptr) return;
-        const std::string number(text, strnlen(text, count));
-        char* end = nullptr;
-        const float value = std::strtof(number.c_str(), &end);
-        if (end != number.c_str()) noData.push_back(value);
+        if (TIFFGetField(tiff_.get(), tag, &count, &text) != 1 || text == nullptr) return {};
+        return {text, strnlen(text, count)};
+    }
+
+    template <class T>
+    std::vector<T> valuesOf(std::uint32_t tag, TIFFDataType type) {
+        std::uint32_t count = 0;
+        const T* values = nullptr;
+        if (TIFFGetField(tiff_.get(), tag, &count, &values) != 1 || values == nullptr) return {};
+        const TIFFField* field = TIFFFindField(tiff_.get(), tag, TIFF_ANY);
+        if (field == nullptr || TIFFFieldDataType(field) != type) return {};
+        return {values, values + count};
     }
 
     std::string name_;

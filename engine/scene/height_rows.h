@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ class HeightRows {
 
     glm::ivec2 sizeSamples{0};
     std::vector<float> noData;  // further values that mean "no data"
+    float scale = 1.0F;         // as the file says: height = value · scale + offset
+    float offset = 0.0F;
+    std::optional<float> spacingM;  // as the file says
     bool canBeNan = false;
     bool isEightBit = false;
 };

@@ -33,8 +33,9 @@ void printScene(const scene::Scene& scene) {
         scene.instances.size(), scene.materials.size(), scene.textures.size(),
         scene.cameras.size());
     if (scene.heights) {
-        say("heights    {} x {} samples, {:g} m apart, {} filled{}\n", scene.heights->sizeSamples.x,
-            scene.heights->sizeSamples.y, scene.heights->spacingM, scene.heights->filledCount,
+        say("heights    {} x {} samples, {:g} m apart{}, {} filled{}\n",
+            scene.heights->sizeSamples.x, scene.heights->sizeSamples.y, scene.heights->spacingM,
+            scene.heights->isSpacingOfFile ? " as the file says" : "", scene.heights->filledCount,
             scene.heights->isEightBit ? ", of 8 bits" : "");
     }
     say("box        ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n", box.min.x, box.min.y, box.min.z,

@@ -1,0 +1,117 @@
+// What files say of their heights' units.
+#include <gtest/gtest.h>
+#include <png.h>
+#include <tiffio.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "engine/core/files.h"
+#include "engine/scene/height_map.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+
+/// 2 x 2 values 0, 10, 20, 30 with tags of GDAL and GeoTIFF.
+fs::path writeGeoTiff(const fs::path& path, const char* metadata, std::vector<double> scale,
+                      std::vector<std::uint16_t> keys) {
+    TIFF* tiff = TIFFOpen(path.c_str(), "w");
+    static const TIFFFieldInfo kInfo[] = {
+        {33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("PixelScale")},
+        {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("Keys")},
+        {42112, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("Metadata")}};
+    TIFFMergeFieldInfo(tiff, kInfo, 3);
+    for (const int tag : {TIFFTAG_IMAGEWIDTH, TIFFTAG_IMAGELENGTH}) TIFFSetField(tiff, tag, 2);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
+    TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_INT);
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    if (metadata != nullptr) TIFFSetField(tiff, 42112, metadata);
+    if (!scale.empty()) TIFFSetField(tiff, 33550, static_cast<int>(scale.size()), scale.data());
+    if (!keys.empty()) TIFFSetField(tiff, 34735, static_cast<int>(keys.size()), keys.data());
+    std::int16_t rows[2][2] = {{0, 10}, {20, 30}};
+    for (std::uint32_t y = 0; y < 2; ++y) TIFFWriteScanline(tiff, rows[y], y, 0);
+    TIFFClose(tiff);
+    return path;
+}
+
+TEST(HeightUnits, ScaleAndOffsetOfAGeoTiffAreApplied) {
+    const TemporaryFolder folder;
+    const fs::path path =
+        writeGeoTiff(folder.path() / "a.tif",
+                     "<GDALMetadata>\n"
+                     "  <Item name=\"OFFSET\" sample=\"0\" role=\"offset\">100</Item>\n"
+                     "  <Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.1</Item>\n"
+                     "</GDALMetadata>",
+                     {}, {});
+    const HeightMap map = loadHeightMap(path, {});
+    EXPECT_FLOAT_EQ(map.heightM(0, 0), 100.0F);
+    EXPECT_FLOAT_EQ(map.heightM(1, 1), 103.0F);
+    EXPECT_FLOAT_EQ(loadHeightMap(path, {1.0F, 2.0F, 10.0F}).heightM(1, 1), 206.0F);
+    EXPECT_EQ(map.spacingM, 1.0F);
+    EXPECT_FALSE(map.isSpacingOfFile);
+}
+
+TEST(HeightUnits, SpacingComesFromTheFileUnlessItIsGiven) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.tif";
+    const auto spacing = [&](std::vector<double> scale, std::vector<std::uint16_t> keys) {
+        return loadHeightMap(writeGeoTiff(path, nullptr, std::move(scale), std::move(keys)), {})
+            .spacingM;
+    };
+    const std::vector<std::uint16_t> projected{1, 1, 0, 1, 1024, 0, 1, 1};
+    EXPECT_EQ(spacing({30, 30, 0}, projected), 30.0F);
+    EXPECT_EQ(spacing({30, 30, 0}, {}), 30.0F);
+    EXPECT_FLOAT_EQ(spacing({30, 30, 0}, {1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, 9002}), 9.144F);
+    EXPECT_NEAR(spacing({1.0 / 3600, 1.0 / 3600, 0}, {1, 1, 0, 1, 1024, 0, 1, 2}), 30.87F, 0.01F);
+    EXPECT_EQ(spacing({}, projected), 1.0F);
+    writeGeoTiff(path, nullptr, {30, 30, 0}, projected);
+    EXPECT_TRUE(loadHeightMap(path, {}).isSpacingOfFile);
+    EXPECT_EQ(loadHeightMap(path, {2.0F, 1.0F, {}}).spacingM, 2.0F);
+    EXPECT_FALSE(loadHeightMap(path, {2.0F, 1.0F, {}}).isSpacingOfFile);
+}
+
+TEST(HeightUnits, SrtmTilesHaveTheSpacingOfTheirFormat) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.write("N00E000.hgt", "");
+    fs::resize_file(path, 2884802);
+    EXPECT_NEAR(loadHeightMap(path, {}).spacingM, 92.61F, 0.01F);
+    fs::resize_file(path, 25934402);
+    EXPECT_NEAR(loadHeightMap(path, {}).spacingM, 30.87F, 0.01F);
+}
+
+/// Two rows of two samples, `bits` each.
+void writeGrey(const fs::path& path, int bits, unsigned char row) {
+    std::FILE* file = std::fopen(path.c_str(), "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, file);
+    png_set_IHDR(png, info, 2, 2, bits, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    for (int y = 0; y < 2; ++y) png_write_row(png, &row);
+    png_write_end(png, nullptr);
+    png_destroy_write_struct(&png, &info);
+    std::fclose(file);
+}
+
+TEST(HeightUnits, PngOfFewBitsHasTheNumbersThatItStores) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.png";
+    const auto heights = [&](int bits, unsigned char row) {
+        writeGrey(path, bits, row);
+        const HeightMap map = loadHeightMap(path, {});
+        return std::vector<float>{map.heightM(0, 0), map.heightM(1, 1)};
+    };
+    EXPECT_EQ(heights(4, 0xF3), (std::vector<float>{15, 3}));
+    EXPECT_EQ(heights(2, 0x90), (std::vector<float>{2, 1}));
+    EXPECT_EQ(heights(1, 0x40), (std::vector<float>{0, 1}));
+}
+
+}  // namespace
+}  // namespace gfxrepro::scene
