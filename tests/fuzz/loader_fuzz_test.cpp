@@ -316,26 +316,53 @@ TEST(LoaderFuzz, Obj) {
     const fs::path seed =
         own.write("a.obj",
                   "mtllib a.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl a\n"
-                  "f 1/1/1 2/1/1 3/1/1\nf -1 -2 \\\n -3\nf 1//1 2//1 3//1\n");
+                  "f 1/1/1 2/1/1 3/1/1\nf -1 -2 \\\n -3\nf 1//1 2//1 3//1\n"
+                  "v 1 1 0\nv 0.1 0.1 0\nf 1 2 5 4 3\nf 2 5 3 4\n");
+    const fs::path far =
+        own.write("far.obj", "v 500000.1 1 2\nv 500000.2 1 2\nv 500000.15 2 2\nv 0 0 0\nf 1 2 3\n");
     const test::TemporaryFolder work;
     std::uint64_t number = 0;
-    for (const fs::path& each : seeds("obj", {seed})) {
+    for (const fs::path& each : seeds("obj", {seed, far})) {
         if (hasExtension(each, {".obj"})) {
             for (int round = 0; round < 2; ++round) fuzz(kLoadObj, each, ++number, work.path());
         }
     }
 }
 
+/// A triangle with a joint for each corner and a morph target.
+constexpr std::string_view kPosedGltf = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1,2]}],
+"buffers":[{"byteLength":96,"uri":"posed%20triangle.bin"}],"bufferViews":[
+ {"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":12},
+ {"buffer":0,"byteOffset":48,"byteLength":48}],"accessors":[
+ {"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+ {"bufferView":1,"componentType":5121,"count":3,"type":"VEC4"},
+ {"bufferView":2,"componentType":5126,"count":3,"type":"VEC4"}],
+"meshes":[{"weights":[0.5],"primitives":[{"attributes":{"POSITION":0,"NORMAL":0,"JOINTS_0":1,
+ "WEIGHTS_0":2},"targets":[{"POSITION":0,"NORMAL":0}]}]}],"skins":[{"joints":[1,2]}],
+"nodes":[{"mesh":0,"skin":0},{"translation":[500000,0,4e6]},{"children":[3]},{"scale":[2,2,2]}]})";
+
 TEST(LoaderFuzz, Gltf) {
     const test::TemporaryFolder own;
     scene::saveGlb(own.path() / "a.glb", smallScene());
+    const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::uint8_t joints[] = {0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0};
+    const float weights[] = {1, 0, 0, 0, 1, 0, 0, 0, 0.5F, 0.5F, 0, 0};
+    const auto bytes = [](const auto& values) {
+        return std::string(reinterpret_cast<const char*>(values), sizeof(values));
+    };
+    own.write("posed triangle.bin", bytes(positions) + bytes(joints) + bytes(weights));
+    const fs::path posed = own.write("posed.gltf", kPosedGltf);
+    EXPECT_EQ(scene::loadGltf(posed).triangleCount(), 1U);
     const test::TemporaryFolder work;
     std::uint64_t number = 0;
-    for (const fs::path& seed : seeds("gltf", {own.path() / "a.glb"})) {
+    for (const fs::path& seed : seeds("gltf", {own.path() / "a.glb", posed})) {
         if (hasExtension(seed, {".gltf", ".glb"})) fuzz(kLoadGltf, seed, ++number, work.path());
     }
-    for (int round = 0; round < 100; ++round)
+    fs::create_symlink(own.path() / "posed triangle.bin", work.path() / "posed triangle.bin");
+    for (int round = 0; round < 100; ++round) {
         fuzz(kLoadGltf, own.path() / "a.glb", ++number, work.path());
+        fuzz(kLoadGltf, posed, ++number, work.path());
+    }
 }
 
 TEST(LoaderFuzz, Png) {
