@@ -259,6 +259,11 @@ TEST(ReflectiveSceneTest, PassesOnWhatTheLoaderLeftOut) {
     scene.warnings = {"something is left out"};
     EXPECT_EQ(ReflectiveScene(scene).warnings(),
               std::vector<std::string>{"scene 'test': something is left out"});
+    scene.warnings.clear();
+    scene.samplings = {{scene::Sampling::Wrap::Clamp, scene::Sampling::Wrap::Clamp, false}, {}};
+    EXPECT_EQ(ReflectiveScene(scene).warnings(),
+              std::vector<std::string>{"scene 'test': 1 textures are repeated and interpolated, "
+                                       "though the file has it otherwise"});
 }
 
 /// A texture whose left half has one roughness and metalness, and whose right half another.
