@@ -443,6 +443,20 @@ void VertexArray::setInstanceIndex(GLuint location, const Buffer& buffer) {
     glEnableVertexArrayAttrib(id(), location);
 }
 
+void VertexArray::setInstanceColumns(GLuint location, const Buffer& records, GLuint columns,
+                                     int components, std::size_t strideBytes,
+                                     std::size_t offsetBytes) {
+    glVertexArrayVertexBuffer(id(), location, records.id(), static_cast<GLintptr>(offsetBytes),
+                              static_cast<GLsizei>(strideBytes));
+    glVertexArrayBindingDivisor(id(), location, 1);
+    for (GLuint column = 0; column < columns; ++column) {
+        glVertexArrayAttribFormat(id(), location + column, components, GL_FLOAT, GL_FALSE,
+                                  column * 4 * sizeof(float));
+        glVertexArrayAttribBinding(id(), location + column, location);
+        glEnableVertexArrayAttrib(id(), location + column);
+    }
+}
+
 void VertexArray::setIndices(const Buffer& indices) {
     glVertexArrayElementBuffer(id(), indices.id());
 }

@@ -248,6 +248,10 @@ class VertexArray {
     void setAttribute(GLuint location, const Buffer& buffer, int components);
     /// One 32-bit unsigned integer an instance.
     void setInstanceIndex(GLuint location, const Buffer& buffer);
+    /// A matrix an instance: a location a column of `components` floats, 16 bytes from the next,
+    /// the first at `offsetBytes` of records of `strideBytes`.
+    void setInstanceColumns(GLuint location, const Buffer& records, GLuint columns, int components,
+                            std::size_t strideBytes, std::size_t offsetBytes);
     /// 32-bit indices.
     void setIndices(const Buffer& indices);
     void bind() const;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "engine/core/error.h"
+#include "engine/gl/device.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -131,16 +133,21 @@ std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene&
 OneByOnePainter::OneByOnePainter(const gl::ShaderLibrary& shaders,
                                  const reflections::ReflectiveScene& scene)
     : families_(reflectorFamilies(scene)) {
+    // llvmpipe runs both sides of a branch, and samples textures where an object has none. Other
+    // devices do not, and would pay for changing programs.
+    const bool branchesAreRun = gl::isSoftwareContext();
     for (const reflections::Object& object : scene.objects()) {
         reflectorOfObject_.push_back(static_cast<std::uint32_t>(object.reflector));
         trianglesOfObject_.push_back(object.triangleCount);
+        isPlain_.push_back(branchesAreRun && !object.isTextured() ? 1 : 0);
     }
+    const std::vector<std::string> files = {"clustered_reflections/cluster_image.vert.glsl",
+                                            "clustered_reflections/cluster_image.frag.glsl"};
     gl::Defines defines = shadedImageDefines(scene);
     defines["ATLAS"] = 0;
-    pass_ = gl::Pass(shaders,
-                     {"clustered_reflections/cluster_image.vert.glsl",
-                      "clustered_reflections/cluster_image.frag.glsl"},
-                     defines);
+    pass_ = gl::Pass(shaders, files, defines);
+    defines["TEXTURES"] = 0;
+    plainPass_ = gl::Pass(shaders, files, defines);
 }
 
 std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuObjects& objects,
@@ -172,16 +179,39 @@ std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuOb
     return seen;
 }
 
+namespace {
+
+/// ClusterCamera of shaders/cluster_camera.glsl, what cluster_image reads of it: as uniforms, which
+/// llvmpipe fetches once a draw and of a block once a vertex and a fragment.
+void setCamera(const gl::Pass& pass, const ClusterCamera& camera) {
+    pass.set("camera.clipFromWorld", camera.clipFromWorld);
+    pass.set("camera.eyeWorld", camera.eyeWorld);
+    pass.set("camera.planeNormal", camera.planeNormal);
+    pass.set("camera.reflector", camera.reflector);
+    pass.set("camera.flags", camera.flags);
+}
+
+}  // namespace
+
 std::uint64_t OneByOnePainter::draw(const reflections::GpuObjects& objects,
-                                    const gl::Buffer& cameras, std::uint32_t cluster,
                                     const ClusterCamera& camera, glm::ivec2 sizePx,
                                     ClusterImages& target) {
     const std::vector<std::uint32_t> seen = objectsSeen(objects, camera);
     target.beginDrawing(sizePx);
     glViewport(0, 0, sizePx.x, sizePx.y);
-    pass_.set("cluster", cluster);
-    pass_.use(gl::Resources{{"Cameras", cameras}}.with(objects.resources()));
-    objects.draw(seen);
+    const gl::Resources resources = gl::Resources{}.with(objects.resources());
+    // In their order: of equal depths the first stays.
+    for (auto first = seen.begin(); first != seen.end();) {
+        const bool isPlain = isPlain_[*first] != 0;
+        const auto last = std::find_if(first, seen.end(), [&](std::uint32_t object) {
+            return (isPlain_[object] != 0) != isPlain;
+        });
+        const gl::Pass& pass = isPlain ? plainPass_ : pass_;
+        setCamera(pass, camera);
+        pass.use(resources);
+        objects.draw(std::span(first, last));
+        first = last;
+    }
     target.endDrawing(sizePx);
     std::uint64_t triangles = 0;
     for (const std::uint32_t object : seen) triangles += trianglesOfObject_[object];

@@ -87,10 +87,9 @@ constexpr bool areBackToBack(std::uint32_t family, std::uint32_t other) {
 class OneByOnePainter {
   public:
     OneByOnePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene);
-    /// `camera` is the cluster's of `cameras`. Returns how many triangles were drawn.
-    std::uint64_t draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
-                       std::uint32_t cluster, const ClusterCamera& camera, glm::ivec2 sizePx,
-                       ClusterImages& target);
+    /// Returns how many triangles were drawn.
+    std::uint64_t draw(const reflections::GpuObjects& objects, const ClusterCamera& camera,
+                       glm::ivec2 sizePx, ClusterImages& target);
     /// Objects in the frustum, without the own reflector unless the camera shows it, and without
     /// what lies back to back with it.
     std::vector<std::uint32_t> objectsSeen(const reflections::GpuObjects& objects,
@@ -98,7 +97,8 @@ class OneByOnePainter {
 
   private:
     std::vector<std::uint32_t> reflectorOfObject_, trianglesOfObject_, families_;
-    gl::Pass pass_;
+    std::vector<std::uint8_t> isPlain_;  // by object: drawn by plainPass_
+    gl::Pass pass_, plainPass_;          // which samples no texture
 };
 
 /// Of a painter's last draw; in front of the order in which images are placed, as

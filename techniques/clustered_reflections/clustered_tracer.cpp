@@ -148,8 +148,7 @@ void ClusteredTracer::drawOneByOne(const reflections::GBuffer& gbuffer,
         const glm::ivec2 sizePx(sizes_[cluster].z, sizes_[cluster].w);
         if (sizePx.x > 0) {
             const gl::GpuScope scope(profiler, "depth_images");
-            trianglesDrawn_ +=
-                oneByOne_->draw(*objects_, cameraTable, cluster, table[cluster], sizePx, images_);
+            trianglesDrawn_ += oneByOne_->draw(*objects_, table[cluster], sizePx, images_);
         }
         const gl::GpuScope scope(profiler, "intersection");
         intersectCluster(

@@ -1,6 +1,7 @@
 #include "techniques/reflections/gpu_objects.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -47,13 +48,6 @@ struct LightRecord {
     glm::vec4 intensity;
 };
 static_assert(sizeof(LightRecord) == 32);
-struct LightsRecord {
-    LightRecord lights[kMaxLights];
-    std::int32_t lightCount;
-    std::int32_t padding[3];
-};
-static_assert(offsetof(LightsRecord, lightCount) == kMaxLights * sizeof(LightRecord));
-static_assert(sizeof(LightsRecord) % 16 == 0);
 
 /// scene::normalMatrix(), scaled so that small instances do not underflow.
 glm::mat4 normalMatrix(const glm::mat4& worldFromMesh) {
@@ -110,13 +104,12 @@ ObjectRecord recordOf(const Object& object, const glm::mat4& pose, const scene::
 
 gl::Buffer lightsBuffer(std::span<const scene::PointLight> lights) {
     GFXREPRO_ASSERT(lights.size() <= kMaxLights);
-    LightsRecord record{};
+    std::array<LightRecord, kMaxLights> records{};
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        record.lights[i] = {glm::vec4(lights[i].position, lights[i].radiusM),
-                            glm::vec4(lights[i].intensity, 0.0F)};
+        records[i] = {glm::vec4(lights[i].position, lights[i].radiusM),
+                      glm::vec4(lights[i].intensity, 0.0F)};
     }
-    record.lightCount = static_cast<std::int32_t>(lights.size());
-    return gl::Buffer::of(std::span<const LightsRecord>(&record, 1));
+    return gl::Buffer::of(std::span<const LightRecord>(records));
 }
 
 gl::Texture layersTexture(const TextureLevels& levels, GLenum format) {
@@ -144,7 +137,7 @@ gl::Texture layersTexture(const TextureLevels& levels, GLenum format) {
 
 gl::Defines objectDefines() {
     gl::Defines defines = gpu_scene::attributeDefines();
-    defines["MAX_LIGHTS"] = kMaxLights;
+    defines["kMatrix"] = static_cast<int>(kMatrixAttribute);
     defines["kObjectIndex"] = static_cast<int>(kObjectIndexAttribute);
     return defines;
 }
@@ -152,7 +145,10 @@ gl::Defines objectDefines() {
 gl::Defines surfaceDefines(const ReflectiveScene& scene) {
     gl::Defines defines = objectDefines();
     defines["FILTERS_TEXTURES"] = scene.textureFilter() == TextureFilter::Footprint ? 1 : 0;
+    defines["LIGHT_COUNT"] = static_cast<int>(scene.lights().size());
     defines["MATERIAL_TEXTURES"] = scene.hasMaterialTextures() ? 1 : 0;
+    defines["MAX_LIGHTS"] = kMaxLights;
+    defines["TEXTURES"] = std::ranges::any_of(scene.objects(), &Object::isTextured) ? 1 : 0;
     return defines;
 }
 
@@ -175,6 +171,10 @@ GpuObjects::GpuObjects(const ReflectiveScene& scene, bool splitsDraws)
     std::iota(indices.begin(), indices.end(), 0U);
     objectIndices_ = gl::Buffer::of(indices);
     vertexArray_ = makeVertexArray(objectIndices_);
+    vertexArray_.setInstanceColumns(kMatrixAttribute, records_, 4, 4, sizeof(ObjectRecord),
+                                    offsetof(ObjectRecord, worldFromMesh));
+    vertexArray_.setInstanceColumns(kMatrixAttribute + 4, records_, 3, 3, sizeof(ObjectRecord),
+                                    offsetof(ObjectRecord, normalFromMesh));
     std::vector<glm::mat4> restPose;
     for (const scene::Instance& instance : scene.scene().instances) {
         restPose.push_back(instance.worldFromMesh);

@@ -17,8 +17,11 @@ namespace gfxrepro::reflections {
 /// Attribute location of the object's index: an instanced unsigned integer, so that one draw names
 /// its object by base instance, and a multi-draw gives each its own.
 constexpr unsigned kObjectIndexAttribute = 4;
+/// Of the columns of worldFromMesh and of normalFromMesh, an instance each, too: draw() and
+/// drawAll() have them, so that no vertex looks its object up.
+constexpr unsigned kMatrixAttribute = 5;
 
-/// Defines of gpu_scene::attributeDefines() and of the attribute above.
+/// Defines of gpu_scene::attributeDefines() and of the attributes above.
 gl::Defines objectDefines();
 /// Those, and what shading.glsl asks of the scene.
 gl::Defines surfaceDefines(const ReflectiveScene& scene);
@@ -48,8 +51,8 @@ class GpuObjects {
     /// Objects, lights and textures for passes that include objects.glsl and shading.glsl: base
     /// colours and emission, sRGB, and roughness, metalness and normals, linear.
     gl::Resources resources() const;
-    /// Draws objects with the program in use, in pieces of mostTrianglesPerDraw(). Culling, depth
-    /// test and target are the caller's.
+    /// Draws objects in their order with the program in use, in pieces of mostTrianglesPerDraw().
+    /// Culling, depth test and target are the caller's.
     void draw(std::span<const std::uint32_t> objects) const;
     void drawAll() const;
     /// The vertex array with all attributes and indices, for indirect draws; the object index comes

@@ -70,6 +70,8 @@ struct Object {
     bool isPlanar = false;      // reflectors: all normals the same, to 1e-3, and all vertices in
                                 // one plane, to 1e-3 of the diagonal of boundsMesh; no normal
                                 // texture
+
+    bool isTextured() const { return textureLayer >= 0; }
 };
 
 /// Vertices and triangles of all objects, in mesh space, in the order of scene::flattened(). Every

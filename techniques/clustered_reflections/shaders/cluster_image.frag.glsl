@@ -9,20 +9,26 @@
 #include "reflections/surface.glsl"
 #include "clustered_reflections/cluster_camera.glsl"
 
+#if ATLAS
 layout(std430) readonly buffer Cameras {
     ClusterCamera cameras[];
 };
-
 flat in uint clusterOfPoint;
+#else
+uniform ClusterCamera camera;
+#endif
 
 layout(location = 0) out vec4 colour;
 
 void main() {
-    vec3 eyeWorld = cameras[clusterOfPoint].eyeWorld.xyz;
+#if ATLAS
+    ClusterCamera camera = cameras[clusterOfPoint];
+#endif
+    vec3 eyeWorld = camera.eyeWorld.xyz;
     float footprint = footprintFrom(eyeWorld);
-    bool isOwn = (objects[point.object].surface & 0xFFFFu) == cameras[clusterOfPoint].reflector;
+    bool isOwn = (objects[point.object].surface & 0xFFFFu) == camera.reflector;
     bool isBack = isOwn && dot(point.normalWorld, eyeWorld - point.positionWorld) < 0.0;
-    if (isBack && (cameras[clusterOfPoint].flags & kShowsOwnBack) == 0u) discard;
+    if (isBack && (camera.flags & kShowsOwnBack) == 0u) discard;
     vec3 normalWorld = unitNormalTowards(eyeWorld, footprint);
     colour = vec4(keptColour(diffuseOf(normalWorld, footprint)), isOwn ? 1.0 : 0.0);
 }

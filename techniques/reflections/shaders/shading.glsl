@@ -1,6 +1,7 @@
-// Light of diffuse surfaces, as surfaces.h has it. MATERIAL_TEXTURES is 1 where some object of the
-// scene has a texture of roughness and metalness, of normals or of emission: asking each object for
-// them costs every scene. A footprint is a width in texture coordinates, as footprintOf() has it.
+// Light of diffuse surfaces, as surfaces.h has it. TEXTURES is 1 where some object of the scene has a
+// texture of colour, MATERIAL_TEXTURES where one has a texture of roughness and metalness, of normals
+// or of emission: asking each object for them costs every scene. A footprint is a width in texture
+// coordinates, as footprintOf() has it.
 #include "reflections/objects.glsl"
 
 struct Light {
@@ -9,8 +10,7 @@ struct Light {
 };
 
 layout(std140) uniform Lights {
-    Light lights[MAX_LIGHTS];
-    int lightCount;
+    Light lights[MAX_LIGHTS];  // the first LIGHT_COUNT are the scene's
 };
 
 uniform sampler2DArray textureLayers;
@@ -55,10 +55,12 @@ vec4 filteredTexel(sampler2DArray layers, vec3 place, float footprint) {
 // Base colour times vertex colour times texture.
 vec3 albedoOf(Object object, vec2 texcoord, float footprint, vec3 vertexColor) {
     vec3 albedo = object.baseColor.rgb * vertexColor;
+#if TEXTURES
     if (object.textureLayer >= 0) {
         albedo *=
             filteredTexel(textureLayers, vec3(texcoord, object.textureLayer), footprint).rgb;
     }
+#endif
     return albedo;
 }
 
@@ -124,7 +126,8 @@ vec3 texturedNormal(Object object, vec2 texcoord, float footprint, vec3 normal, 
 // normalWorld is of unit length and turned to the viewer.
 vec3 shadeDiffuse(vec3 positionWorld, vec3 normalWorld, vec3 albedo, vec3 emissive) {
     vec3 irradiance = vec3(0.30 + 0.10 * normalWorld.y);
-    for (int i = 0; i < lightCount; ++i) {
+    // A constant, so that compilers unroll: llvmpipe then fetches a light once and not by fragment.
+    for (int i = 0; i < LIGHT_COUNT; ++i) {
         vec3 toLight = lights[i].position.xyz - positionWorld;
         float distance = length(toLight);
         float cosine = max(dot(normalWorld, toLight) / max(distance, 1e-6), 0.0);

@@ -1,13 +1,14 @@
 #version 450 core
 // Surfaces, vertices: from mesh space to the world and to clip space. For every pass that draws the
 // scene from one point; fragments include surface.glsl.
-#include "reflections/objects.glsl"
 
 layout(location = kPosition) in vec3 position;
 layout(location = kNormal) in vec3 normal;
 layout(location = kTexcoord) in vec2 texcoord;
 layout(location = kColor) in vec3 color;
 layout(location = kObjectIndex) in uint objectIndex;
+layout(location = kMatrix) in mat4 worldFromMesh;  // of objects[objectIndex]
+layout(location = kMatrix + 4) in mat3 normalFromMesh;
 
 uniform mat4 clipFromWorld;
 
@@ -23,9 +24,9 @@ out SurfacePoint {
 invariant gl_Position;
 
 void main() {
-    vec4 positionWorld = objects[objectIndex].worldFromMesh * vec4(position, 1.0);
+    vec4 positionWorld = worldFromMesh * vec4(position, 1.0);
     point.positionWorld = positionWorld.xyz;
-    point.normalWorld = mat3(objects[objectIndex].normalFromMesh) * normal;
+    point.normalWorld = normalFromMesh * normal;
     point.texcoord = texcoord;
     point.color = color;
     point.object = objectIndex;

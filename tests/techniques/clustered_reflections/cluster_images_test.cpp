@@ -212,7 +212,12 @@ TEST_F(ClusterImagesTest, PlacesLieInTheAtlasAndApart) {
 }
 
 TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
-    const ReflectiveScene scene = furnishedRoom();
+    scene::Scene room = rooms::room();
+    rooms::addFurniture(room);
+    room.textures.emplace_back(1, 1, 3, std::uint8_t{90});
+    // Of objects with and without texture, as they come.
+    for (const std::size_t i : {1U, 2U, 6U, 8U}) room.materials[i].baseColorTexture = 0;
+    const ReflectiveScene scene(room);
     const GpuObjects objects(scene);
     Random random(3);
     const std::vector<ClusterCamera> cameras = randomCameras(random, 30, 80);
@@ -231,7 +236,7 @@ TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
     float worst = 0.0F;  // in steps between neighbours
     for (std::uint32_t i = 0; i < cameras.size(); ++i) {
         const glm::ivec4 place = places[i];
-        one.draw(objects, buffer, i, cameras[i], {place.z, place.w}, alone);
+        one.draw(objects, cameras[i], {place.z, place.w}, alone);
         const auto depth = alone.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
         const auto colour = alone.colour().read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
         const glm::ivec2 last = glm::ivec2(place.z, place.w) - 1;
@@ -272,10 +277,9 @@ TEST_F(ClusterImagesTest, DepthsAreNearOverTheDistanceAlongTheAxis) {
     const ReflectiveScene scene(rooms::room());
     const GpuObjects objects(scene);
     const ClusterCamera camera = cameraLooking({0.1F, 0.2F, 0.3F}, {0.0F, 0.0F, -1.0F}, {40, 30});
-    const gl::Buffer buffer = cameraBuffer({camera});
     ClusterImages images(shaders(), glm::ivec2(64), false);
     OneByOnePainter painter(shaders(), scene);
-    painter.draw(objects, buffer, 0, camera, camera.sizePx, images);
+    painter.draw(objects, camera, camera.sizePx, images);
     const auto depths = images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
     const glm::dmat4 worldFromClip = glm::inverse(glm::dmat4(camera.clipFromWorld));
     for (int y = 0; y < 30; ++y) {
@@ -299,8 +303,7 @@ TEST_F(ClusterImagesTest, WhatLiesBeyondTheFarPlaneIsNotDrawn) {
     ClusterImages images(shaders(), glm::ivec2(64), false);
     OneByOnePainter painter(shaders(), scene);
     const auto drawnTexels = [&] {
-        const gl::Buffer buffer = cameraBuffer({camera});
-        painter.draw(objects, buffer, 0, camera, camera.sizePx, images);
+        painter.draw(objects, camera, camera.sizePx, images);
         const auto depths = images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
         int drawn = 0;
         for (int y = 0; y < 30; ++y) {

@@ -305,7 +305,7 @@ TEST_F(GBufferTest, ClearsWhatWasThere) {
 TEST_F(GBufferTest, DrawsSomeObjectsOnly) {
     const gl::Pass draw(shaders,
                         {"reflections/surface.vert.glsl", "reflections/environment_map.frag.glsl"},
-                        objectDefines());
+                        surfaceDefines(prepared));
     const gl::SampleQuery query;
     const auto samplesOf = [&](std::vector<std::uint32_t> drawn) {
         const gl::Texture colour = gl::Texture::make2D(GL_RGBA8, kBufferSize);
