@@ -86,9 +86,14 @@ Measures PixelExperiment::measure(const MeasureSettings& settings) {
         marks_.push_back(measures_.makeMarks(images_[i]));
         markImage(i);
     }
+    // Of an image without occluded samples none can be useful: often of all conventional ones.
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; settings.usefulness && i < images_.size(); ++i) {
+        if (measures_.count(marks_[i], kOccluded) > 0) open.push_back(i);
+    }
     Measures result;
     const std::vector<const DepthImage*> images = first(images_, images_.size());
-    const bool needsFrames = settings.usefulness || settings.availability;
+    const bool needsFrames = settings.availability || !open.empty();
     const std::size_t frameCount = needsFrames ? views_.frames.size() : 0;
     std::vector<DepthImage> frames;  // samples are tested with as many at once as a test takes
     for (std::size_t f = 0; f < frameCount; ++f) {
@@ -96,13 +101,14 @@ Measures PixelExperiment::measure(const MeasureSettings& settings) {
         const std::size_t slot = f % PixelMeasures::kMaxImages;
         if (slot == frames.size()) frames.push_back(renderer_.makeImage(view));
         frames[slot].view = view;  // all frames are of one size
-        renderer_.render(scene_, frames[slot]);
+        renderer_.render(scene_, frames[slot], {}, kit::Redundancy::Pixel,
+                         kit::DepthImageRenderer::Content::Samples);
         if (settings.availability) {
             measures_.beginAvailability(frames[slot], images);
             result.frames.push_back(measures_.finishAvailability());
         }
         if (slot + 1 < PixelMeasures::kMaxImages && f + 1 < frameCount) continue;
-        for (std::size_t i = 0; settings.usefulness && i < images_.size(); ++i) {
+        for (const std::size_t i : open) {
             measures_.mark(images_[i], marks_[i], first(frames, slot + 1), true, kOccluded,
                            kUseful);
         }

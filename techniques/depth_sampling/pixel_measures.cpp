@@ -29,6 +29,7 @@ gl::Resources testOf(const gl::Pass& pass, const DepthImage& image, ImageSpan im
 
 PixelMeasures::PixelMeasures(const gl::ShaderLibrary& shaders)
     : shaders_(shaders),
+      choosePass_(wholeImagePass(shaders, "depth_sampling/choose.frag.glsl")),
       countPass_(wholeImagePass(shaders, "depth_sampling/count.frag.glsl")),
       samplesPass_(wholeImagePass(shaders, "depth_sampling/samples.frag.glsl")) {}
 
@@ -50,19 +51,35 @@ gl::Texture PixelMeasures::makeMarks(const DepthImage& image) {
     return marks;
 }
 
+void PixelMeasures::choose(const gl::Texture& marks, std::uint32_t among, Mark without) {
+    if (chosen_.size() != marks.size()) {
+        chosen_ = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(marks.size()));
+    }
+    const gl::Framebuffer framebuffer(std::span<const gl::Texture* const>(), &chosen_);
+    framebuffer.bind();
+    glDisable(GL_SCISSOR_TEST);
+    glDepthMask(GL_TRUE);
+    framebuffer.clearDepth(0.0F);
+    choosePass_.set("among", among);
+    choosePass_.set("without", static_cast<unsigned>(without));
+    choosePass_.use({{"marks", marks}});
+    wholeImage_.drawChoosing();
+}
+
 void PixelMeasures::mark(const DepthImage& image, gl::Texture& marks, ImageSpan images,
                          bool isRedundant, std::uint32_t among, Mark bit) {
     GFXREPRO_ASSERT(marks.size() == glm::ivec3(image.view.sizePx, 1));
     const gl::Pass& pass = variant(markPasses_, "depth_sampling/mark.frag.glsl", images.size());
+    choose(marks, among, bit);
     const gl::Texture* target[] = {&marks};
-    const gl::Framebuffer framebuffer(target);
+    const gl::Framebuffer framebuffer(target, &chosen_);
     framebuffer.bind();
     pass.set("isRedundant", isRedundant ? 1 : 0);
     pass.set("among", among);
     pass.set("bit", static_cast<unsigned>(bit));
     pass.use(gl::Resources{{"marks", marks}}.with(testOf(pass, image, images)));
     glTextureBarrier();  // before marks that were drawn are read
-    wholeImage_.draw();
+    wholeImage_.drawChosen();
 }
 
 std::uint64_t PixelMeasures::count(const gl::Texture& marks, std::uint32_t bits) {

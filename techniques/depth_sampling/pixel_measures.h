@@ -59,11 +59,14 @@ class PixelMeasures {
   private:
     /// One variant for each number of images, so that the shader's loop over them is unrolled.
     using Variants = std::map<std::size_t, gl::Pass>;
+    /// Into chosen_: the pixels whose marks have all bits of `among` and not `without`.
+    void choose(const gl::Texture& marks, std::uint32_t among, Mark without);
     const gl::Pass& variant(Variants& variants, const char* file, std::size_t imageCount);
 
     const gl::ShaderLibrary& shaders_;
     Variants markPasses_, availabilityPasses_;
-    gl::Pass countPass_, samplesPass_;
+    gl::Pass choosePass_, countPass_, samplesPass_;
+    gl::Texture chosen_;  // a depth buffer of the size of the marks that were made last
     kit::WholeImage wholeImage_;
     gl::SampleQuery countQuery_, samplesQuery_, availableQuery_;
 };

@@ -74,12 +74,12 @@ glm::mat4 viewFromPixels(const View& view) {
     return worldFromPixels(own);
 }
 
-void clear(const DepthImage& target, DepthFormat format) {
+void clear(const DepthImage& target, DepthFormat format, bool isShaded) {
     constexpr GLuint kNoTriangle[4] = {};
     glDisable(GL_SCISSOR_TEST);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDepthMask(GL_TRUE);
-    target.framebuffer.clearColour(kShadingTarget, glm::vec4(0.0F));
+    if (isShaded) target.framebuffer.clearColour(kShadingTarget, glm::vec4(0.0F));
     target.framebuffer.clearColour(kDepthTarget, glm::vec4(0.0F));
     glClearNamedFramebufferuiv(target.framebuffer.id(), GL_COLOR, kTriangleIdTarget, kNoTriangle);
     target.framebuffer.clearDepth(isReversed(format) ? 0.0F : 1.0F);
@@ -117,8 +117,9 @@ const gl::Pass& DepthImageRenderer::passFor(const Variant& variant) {
     gl::Defines defines = gpu_scene::attributeDefines();
     defines["ALPHA_TEST"] = variant.isAlphaTested ? 1 : 0;
     defines["EARLIER_COUNT"] = variant.earlierCount;
-    defines["FLAT_PARTS"] = variant.hasFlatParts ? 1 : 0;
+    defines["FLAT_PARTS"] = variant.hasFlatParts && variant.isShaded ? 1 : 0;
     defines["GEOMETRY_STAGE"] = hasGeometryStage ? 1 : 0;
+    defines["SHADED"] = variant.isShaded ? 1 : 0;
     defines["TEXTURES"] = variant.hasTextures ? 1 : 0;
     defines["VISIBILITY_TEST"] = variant.redundancy == Redundancy::Visibility ? 1 : 0;
     defines["kDepthTarget"] = kDepthTarget;
@@ -130,20 +131,24 @@ const gl::Pass& DepthImageRenderer::passFor(const Variant& variant) {
 }
 
 void DepthImageRenderer::render(const DrawableScene& scene, DepthImage& target,
-                                std::span<const DepthImage* const> earlier, Redundancy redundancy) {
+                                std::span<const DepthImage* const> earlier, Redundancy redundancy,
+                                Content content) {
     GFXREPRO_ASSERT(earlier.size() <= kMaxEarlierImages);
     const View& view = target.view;
+    const bool isShaded = content == Content::All;
     const gl::Pass& pass =
         passFor({static_cast<int>(earlier.size()), redundancy, scene.hasTextures(),
-                 scene.isAlphaTested(), scene.hasFlatParts()});
+                 scene.isAlphaTested(), scene.hasFlatParts(), isShaded});
     const glm::mat4 clipFromWorld = clipFromView(view, format_) * view.viewFromWorld;
     pass.set("clipFromWorld", clipFromWorld);
-    pass.set("viewFromWorld", view.viewFromWorld);
-    pass.set("lightDirectionView",
-             glm::normalize(glm::mat3(view.viewFromWorld) * kLightDirectionWorld));
+    if (isShaded) {
+        pass.set("viewFromWorld", view.viewFromWorld);
+        pass.set("lightDirectionView",
+                 glm::normalize(glm::mat3(view.viewFromWorld) * kLightDirectionWorld));
+    }
     pass.setIfActive("viewFromPixels", viewFromPixels(view));
 
-    clear(target, format_);
+    clear(target, format_, isShaded);
     target.framebuffer.bind();
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
@@ -153,8 +158,11 @@ void DepthImageRenderer::render(const DrawableScene& scene, DepthImage& target,
     } else {
         glDepthFunc(GL_LESS);
     }
+    const GLboolean writesShading = isShaded ? GL_TRUE : GL_FALSE;
+    glColorMaski(kShadingTarget, writesShading, writesShading, writesShading, writesShading);
     scene.draw(pass, earlierImages(pass, view, earlier, redundancy));
     // The defaults, which other passes take for granted.
+    glColorMaski(kShadingTarget, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     glDepthFunc(GL_LESS);
 }

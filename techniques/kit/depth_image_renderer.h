@@ -35,6 +35,9 @@ constexpr glm::vec3 kLightDirectionWorld{0.397F, 0.794F, 0.461F};  // towards th
 /// where the fragment lands in it.
 class DepthImageRenderer {
   public:
+    /// What of an image is drawn: all, or depths and ids alone, which leaves its shading undefined.
+    enum class Content { All, Samples };
+
     DepthImageRenderer(const gl::ShaderLibrary& shaders, TriangleIds ids, DepthFormat format);
 
     DepthImage makeImage(const View& view) const { return {view, format_}; }
@@ -46,7 +49,7 @@ class DepthImageRenderer {
     ///   - non-redundant by visibility: `earlier` is conventional images of the views before
     void render(const DrawableScene& scene, DepthImage& target,
                 std::span<const DepthImage* const> earlier = {},
-                Redundancy redundancy = Redundancy::Pixel);
+                Redundancy redundancy = Redundancy::Pixel, Content content = Content::All);
 
   private:
     /// What the pass for an image is made for; the rest is uniforms.
@@ -56,6 +59,7 @@ class DepthImageRenderer {
         bool hasTextures = false;
         bool isAlphaTested = false;
         bool hasFlatParts = false;
+        bool isShaded = true;
         auto operator<=>(const Variant&) const = default;
     };
     const gl::Pass& passFor(const Variant& variant);

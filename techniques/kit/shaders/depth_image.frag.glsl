@@ -2,8 +2,8 @@
 // Depth images, fragments: [xie2017] Algorithm 1 with the test of Algorithm 3, or of 2. A fragment
 // that gets here has passed the depth test; it is discarded when an earlier image holds its triangle
 // where it lands, or by 2 when the earlier view sees it. So the nearest fragment that is not redundant
-// stays: a discarded one leaves the depth buffer as it was. Writes shading, distance along the view
-// axis, and triangle id.
+// stays: a discarded one leaves the depth buffer as it was. Writes shading (SHADED), distance along
+// the view axis, and triangle id.
 
 #include "kit/redundancy_tests.glsl"
 
@@ -41,7 +41,9 @@ uniform usampler2D earlierIds[EARLIER_COUNT];
 #endif
 #endif
 
+#if SHADED
 layout(location = kShadingTarget) out vec4 shading;
+#endif
 layout(location = kDepthTarget) out float depth;
 layout(location = kTriangleIdTarget) out uint triangleId;
 
@@ -57,6 +59,7 @@ bool isRedundant(int j, vec3 sampleHere) {
 }
 #endif
 
+#if SHADED
 vec3 facingNormal() {
     // Towards the eye also where a double-sided triangle is seen from behind.
     vec3 normal = gl_FrontFacing ? vertex.normalView : -vertex.normalView;
@@ -70,6 +73,7 @@ vec3 facingNormal() {
 #endif
     return normalize(normal);
 }
+#endif
 
 void main() {
     depth = 1.0 / gl_FragCoord.w;
@@ -78,11 +82,15 @@ void main() {
 #else
     triangleId = firstTriangle + uint(gl_PrimitiveID) + 1u;
 #endif
+#if SHADED || ALPHA_TEST
     vec4 base = vertex.color;
 #if TEXTURES
     base *= texture(baseColor, vertex.uv);
 #endif
+#endif
+#if SHADED
     shading = vec4(base.rgb * (0.3 + 0.7 * max(dot(facingNormal(), lightDirectionView), 0.0)), 1.0);
+#endif
 #if ALPHA_TEST
     if (base.a < alphaCutoff) discard;
 #endif

@@ -125,6 +125,32 @@ TEST_F(DepthImageTest, DecodesTexturesAndDiscardsTexelsBelowTheCutoff) {
     expectShading(image, {13, 8}, litFromFront(glm::vec3(0.8F)));
 }
 
+TEST_F(DepthImageTest, HoldsTheSameSamplesWithoutShading) {
+    scene::Scene scene = sceneOf({squareAt(1.0F), squareAt(0.5F), randomTriangles(60, 0.4F, 1)});
+    scene.materials.resize(1);
+    scene.materials[0].baseColorTexture = 0;
+    scene.materials[0].alphaCutoff = 0.5F;
+    scene.meshes[0].material = 0;
+    scene.textures.emplace_back(2, 2, 4, std::uint8_t{0});  // see-through
+    scene.textures[0].at(0, 0, 3) = 255;
+    for (const TriangleIds ids : {TriangleIds::PrimitiveId, TriangleIds::GeometryShader}) {
+        DepthImageRenderer renderer = makeRenderer(DepthFormat::Float32, ids);
+        for (const bool isTested : {true, false}) {
+            scene.materials[0].alphaCutoff = isTested ? 0.5F : 0.0F;
+            const DrawableScene drawable(scene);
+            DepthImage whole = renderer.makeImage(frontView()[0]);
+            DepthImage samples = renderer.makeImage(frontView()[0]);
+            renderer.render(drawable, whole);
+            renderer.render(drawable, samples, {}, Redundancy::Pixel,
+                            DepthImageRenderer::Content::Samples);
+            const HostDepthImage a = readDepthImage(whole), b = readDepthImage(samples);
+            EXPECT_EQ(a.triangleId, b.triangleId);
+            EXPECT_EQ(a.depthM, b.depthM);
+            EXPECT_NE(a.triangleId.front(), 0U);
+        }
+    }
+}
+
 // A part's triangles are counted on through parts that are drawn apart, instances and mirrors.
 TEST_F(DepthImageTest, NumbersTrianglesAsTheFlattenedScene) {
     scene::Scene scene = sceneOf({squareAt(0.0F), squareAt(0.0F, true)});
