@@ -1,6 +1,10 @@
 #include "engine/image/image.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 
 #include "engine/core/error.h"
 #include "engine/image/srgb.h"
@@ -40,6 +44,42 @@ float clampedToUnit(float value) {
     return value > 0.0F ? (value < 1.0F ? value : 1.0F) : 0.0F;
 }
 
+std::uint8_t srgb8Of(float unit) {
+    return quantized(srgbOf(unit));
+}
+
+/// srgb8Of() without a power for most values: a range of floats that differ in their lowest bits
+/// alone has one value, except where the next one begins.
+class SrgbRanges {
+  public:
+    SrgbRanges() {
+        // Far more than a power is rounded by, far less than the step from one value to the next.
+        constexpr float kMargin = 1e-3F;
+        for (std::uint32_t i = 0; i < values_.size(); ++i) {
+            const float least = std::bit_cast<float>((kFirst + i) << kLowestBits);
+            const float most = std::bit_cast<float>(((kFirst + i + 1) << kLowestBits) - 1);
+            const float from = std::floor(srgbOf(least) * 255.0F + 0.5F - kMargin);
+            const float to = std::floor(srgbOf(most) * 255.0F + 0.5F + kMargin);
+            values_[i] = from == to ? static_cast<std::int16_t>(from) : kSeveral;
+        }
+    }
+    std::uint8_t encode(float unit) const {
+        if (unit < kLeast) return srgb8Of(unit);  // no power there
+        const std::int16_t value =
+            values_[(std::bit_cast<std::uint32_t>(unit) >> kLowestBits) - kFirst];
+        return value == kSeveral ? srgb8Of(unit) : static_cast<std::uint8_t>(value);
+    }
+
+  private:
+    static constexpr std::int16_t kSeveral = -1;
+    static constexpr int kLowestBits = 12;  // 2,048 ranges an octave: one of twenty has two values
+    static constexpr float kLeast = 0x1p-9F;
+    static constexpr std::uint32_t kFirst = std::bit_cast<std::uint32_t>(kLeast) >> kLowestBits;
+    static constexpr std::uint32_t kLast = std::bit_cast<std::uint32_t>(1.0F) >> kLowestBits;
+
+    std::array<std::int16_t, kLast - kFirst + 1> values_{};
+};
+
 }  // namespace
 
 Image8 toSrgb8(const ImageF& linear) {
@@ -47,9 +87,12 @@ Image8 toSrgb8(const ImageF& linear) {
     const auto channels = static_cast<std::size_t>(linear.channels());
     const std::span<const float> from = linear.values();
     const std::span<std::uint8_t> to = result.values();
-    for (std::size_t i = 0; i < from.size(); ++i) {
-        const float value = clampedToUnit(from[i]);
-        to[i] = quantized(i % channels == 3 ? value : srgbOf(value));
+    static const SrgbRanges kRanges;
+    for (std::size_t i = 0; i < from.size(); i += channels) {
+        for (std::size_t c = 0; c < channels; ++c) {
+            const float value = clampedToUnit(from[i + c]);
+            to[i + c] = c == 3 ? quantized(value) : kRanges.encode(value);
+        }
     }
     return result;
 }

@@ -2,10 +2,12 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "engine/core/files.h"
 #include "engine/core/random.h"
@@ -42,6 +44,26 @@ TEST(ToSrgb8, FollowsTheCurveAndKeepsAlphaLinear) {
 TEST(ToSrgb8, MakesNotANumberBlack) {
     ImageF linear(1, 1, 1, std::numeric_limits<float>::quiet_NaN());
     EXPECT_EQ(toSrgb8(linear).at(0, 0), 0);
+}
+
+/// By the curve itself, of floats all over, and of all about where a value goes over to the next.
+TEST(ToSrgb8, RoundsEachFloatAsTheCurveDoes) {
+    std::vector<float> values;
+    const auto add = [&](std::uint32_t bits) { values.push_back(std::bit_cast<float>(bits)); };
+    const auto one = std::bit_cast<std::uint32_t>(1.0F);
+    for (std::uint32_t bits = 0; bits <= one; bits += 1013) add(bits);
+    for (int level = 0; level < 255; ++level) {
+        const auto next =
+            std::bit_cast<std::uint32_t>(linearOf((static_cast<float>(level) + 0.5F) / 255.0F));
+        for (std::uint32_t bits = next - 200; bits <= next + 200; ++bits) add(bits);
+    }
+    ImageF linear(static_cast<int>(values.size()), 1, 1);
+    std::copy(values.begin(), values.end(), linear.values().begin());
+    const Image8 srgb = toSrgb8(linear);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto expected = static_cast<std::uint8_t>(srgbOf(values[i]) * 255.0F + 0.5F);
+        ASSERT_EQ(srgb.values()[i], expected) << values[i];
+    }
 }
 
 TEST(Png, KeepsEightBitsOfEveryChannelCount) {
