@@ -161,8 +161,6 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
     CLI::App* runApp = app.add_subcommand("run", "measure the cases of configs into records.csv");
     addTables(runApp, o.run.selection.names);
     addRunOptions(runApp, o.run);
-    runApp->add_option("--plan", o.run.plan, "measure this submitted plan, not configs")
-        ->option_text("FILE");
     runApp->callback([&] { o.command = [&] { return run(context, o.run); }; });
 
     CLI::App* reproduceApp =
@@ -202,10 +200,11 @@ void addRuns(CLI::App& app, const Context& context, Options& o) {
 void addCluster(CLI::App& app, const Context& context, Options& o) {
     CLI::App* mergeApp =
         app.add_subcommand("merge", "join shards into one run; tells what is missing");
-    mergeApp->add_option("shards", o.shards, "run directories of the shards")
+    mergeApp->add_option("shards", o.shards, "the shards' run directories; or a submission")
         ->required()
         ->option_text("RUN");
-    mergeApp->add_option("--out", o.out, "folder of the whole run")->required()->option_text("DIR");
+    mergeApp->add_option("--out", o.out, "folder of the whole run; default: the submission")
+        ->option_text("DIR");
     mergeApp->callback([&] { o.command = [&] { return merge(context, o.out, o.shards); }; });
 
     SubmitOptions& s = o.submit;

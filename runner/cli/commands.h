@@ -48,7 +48,6 @@ struct RunOptions {
     std::string budget;  // "20m": only the tables that decide most claims in this time
     std::string out;
     std::string resume;
-    std::string plan;               // of a submission, in place of configs
     std::string shard;              // "k/n"; empty: everything
     std::vector<std::string> from;  // runs or a file to predict times from
     int jobs = 0;                   // 0: one a core on up to two cores, else half of them
@@ -135,7 +134,8 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs,
            const std::string& out);
 /// Of several folders side by side: to `out`, or report.html where one is.
 int report(const std::vector<std::string>& runDirs, const std::string& out, bool embeds);
-int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards);
+/// Without `out`: one submission, into its own folder.
+int merge(const Context& context, std::string out, const std::vector<std::string>& shards);
 int submit(const Context& context, const SubmitOptions& options);
 int compare(const CompareOptions& options);
 int sensitivity(const Context& context, const SensitivityOptions& options);

@@ -224,10 +224,15 @@ run::Plan planFor(const Context& context, const run::Request& request, const std
 }
 
 void warnOfChangedConfigs(const run::Plan& plan, const std::string& consequence) {
+    run::Request request = plan.request;
+    request.configs.clear();  // a shard has not all of them
+    for (const config::Experiment& experiment : plan.experiments) {
+        request.configs.push_back(experiment.file);
+    }
     std::vector<config::Experiment> now;
     std::string problem;
     try {
-        now = loadExperiments(plan.request, plan.profile);
+        now = loadExperiments(request, plan.profile);
     } catch (const std::exception& error) {
         problem = error.what();
     }
@@ -237,18 +242,6 @@ void warnOfChangedConfigs(const run::Plan& plan, const std::string& consequence)
         problem = planned.file.string() + " changed";
     }
     if (!problem.empty()) tell("warning: {}; {}\n", problem, consequence);
-}
-
-run::Plan submittedPlan(const Context& context, const std::string& file,
-                        const std::string& assets) {
-    run::Plan plan = run::Plan::fromJsonFile(file);
-    const std::string reason =
-        run::whyNotResumable(plan, plan.deviceClass, openCatalog(context, assets));
-    if (!reason.empty()) {
-        throw Error(file + ": cannot be measured: " + reason + "; submit again, to another folder");
-    }
-    warnOfChangedConfigs(plan, "what was submitted is measured");
-    return plan;
 }
 
 std::string runSlug(const run::Plan& plan) {

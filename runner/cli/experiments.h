@@ -57,10 +57,6 @@ run::Plan planFor(const Context& context, const run::Request& request, const std
 /// with what comes of it.
 void warnOfChangedConfigs(const run::Plan& plan, const std::string& consequence);
 
-/// A plan as it was frozen when it was submitted; warns of changed configs. Throws Error where the
-/// program or a scene is another by now, or the plan itself was changed.
-run::Plan submittedPlan(const Context& context, const std::string& file, const std::string& assets);
-
 /// "zju2005-2.1" for one experiment, "zju2005" for several of a paper.
 std::string runSlug(const run::Plan& plan);
 

@@ -77,7 +77,7 @@ std::string forecastText(const run::Plan& plan, const History& history, int jobs
     const std::vector<std::size_t> firsts = run::firstTwins(plan.cases);
     for (std::size_t i = 0; i < firsts.size(); ++i) {
         const config::Case& item = plan.cases[i];
-        if (!plan.measures(item) || firsts[i] != i) continue;
+        if (firsts[i] != i) continue;
         const std::optional<cluster::Prediction> known = history.predictor.predict(item);
         if (!known || !known->isTold) return "";
         isAnyKnown = true;

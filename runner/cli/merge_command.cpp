@@ -8,6 +8,7 @@
 #include "runner/cli/console.h"
 #include "runner/cli/reading_commands.h"
 #include "runner/cluster/shards.h"
+#include "runner/cluster/submission.h"
 #include "runner/run/manifest.h"
 
 namespace gfxrepro::cli {
@@ -18,13 +19,21 @@ namespace {
 
 constexpr std::size_t kMostNamed = 20;
 
-/// Those of the folders that hold a run; the others are said.
+bool isSubmission(const fs::path& folder) {
+    return fs::exists(folder / cluster::kSubmittedPlan);
+}
+
+/// Those of the folders that hold a run; the others are said. A submission stands for its shards,
+/// of which some may not be begun.
 std::vector<cluster::ShardRun> readShards(const std::vector<std::string>& folders) {
     std::vector<cluster::ShardRun> shards;
-    for (const std::string& name : folders) {
-        const fs::path folder = name;
-        if (fs::exists(folder / "plan.json")) {
-            shards.push_back({folder, run::readRun(folder)});
+    for (const fs::path folder : folders) {
+        if (isSubmission(folder)) {
+            for (const fs::path& shard : cluster::shardFolders(folder)) {
+                if (run::holdsRun(shard)) shards.push_back({shard, run::readOutlined(shard)});
+            }
+        } else if (run::holdsRun(folder)) {
+            shards.push_back({folder, run::readOutlined(folder)});
         } else {
             tell("{}: holds no run\n", folder.string());
         }
@@ -36,8 +45,8 @@ std::vector<cluster::ShardRun> readShards(const std::vector<std::string>& folder
 /// A merge may be made again, unless something was measured into it since.
 run::RunDirectory openTarget(const fs::path& out, const run::Plan& plan) {
     if (!fs::exists(out / "plan.json")) return run::RunDirectory::create(out);
-    const run::StoredRun before = run::readRun(out);
-    if (before.plan.hash == plan.hash && run::isOnlyMerged(before.manifest)) {
+    const run::Json before = run::readManifest(out / "manifest.json");
+    if (before.value("plan", "") == plan.hash && run::isOnlyMerged(before)) {
         return run::RunDirectory::open(out);
     }
     throw Error(out.string() +
@@ -58,9 +67,16 @@ void printMissing(const std::vector<cluster::ShardRun>& shards,
 
 }  // namespace
 
-int merge(const Context& context, const std::string& out, const std::vector<std::string>& shards) {
+int merge(const Context& context, std::string out, const std::vector<std::string>& shards) {
+    if (out.empty() && shards.size() == 1 && isSubmission(shards.front())) out = shards.front();
+    if (out.empty()) {
+        throw UsageError(
+            "merge: --out is missing: folder of the whole run; for example: gfxrepro merge "
+            "shard-1 shard-2 --out whole");
+    }
     const std::vector<cluster::ShardRun> runs = readShards(shards);
-    const run::StoredRun merged = cluster::mergeRuns(runs, context.commandLine);
+    const run::StoredRun merged =
+        cluster::mergeRuns(cluster::wholePlan(runs), runs, context.commandLine);
     {
         const run::RunDirectory directory = openTarget(out, merged.plan);
         cluster::writeMerged(directory, runs, merged);

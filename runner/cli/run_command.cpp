@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "engine/core/files.h"
+#include "engine/core/hash.h"
 #include "engine/core/processors.h"
 #include "engine/gl/nvml.h"
 #include "engine/scene/height_map.h"
@@ -229,41 +230,55 @@ void warnOfSteepTerrain(const run::Plan& plan, const scene::Catalog& catalog) {
     }
 }
 
-/// `submitted`: the plan that was frozen then; else one is made of what is asked for.
+/// Of a plan that was not cut before. The whole of it stays beside the shard's own for the merge:
+/// shards that are cut by hand share no folder.
+void cutByHand(const RunOptions& options, const std::string& device,
+               const run::RunDirectory& directory, run::Plan& plan) {
+    // By what was named alone: whatever else lies here may differ between the shards.
+    const auto predictor = cluster::Predictor::from({options.from.begin(), options.from.end()});
+    run::Shard shard = cluster::parseShard(options.shard);
+    const fs::path file = directory.path() / cluster::kWholePlan;
+    plan.writeFile(file);
+    shard.whole = sha256OfFile(file);
+    shard.device = device;
+    const std::vector<double> timesS =
+        run::withoutTwins(plan.cases, cluster::caseTimesS(plan, predictor));
+    plan = cluster::shardPlan(plan, shard, cluster::cutShards(plan.cases, timesS, shard.count));
+}
+
+/// The manifest of a run that begins, on the disk.
+run::Json begunManifest(const Context& context, const gl::DeviceInfo& device, const run::Plan& plan,
+                        const run::RunDirectory& directory) {
+    run::Json manifest = run::newManifest(plan, device);
+    run::beginInvocation(manifest, context.commandLine);
+    writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
+    return manifest;
+}
+
 Prepared prepareNew(const Context& context, const RunOptions& options, const run::Request& request,
-                    std::optional<run::Plan> submitted, run::PhaseClock& phases) {
+                    run::PhaseClock& phases) {
     const Selection& selection = options.selection;
     // Experiments are read first: what is wrong in a config is said before a device is asked for.
     const std::string choice =
-        deviceFor(context, request.device,
-                  submitted ? submitted->experiments : loadExperiments(request, selection.profile));
+        deviceFor(context, request.device, loadExperiments(request, selection.profile));
     run::SchedulerOptions scheduler{choice, fs::absolute(assetsFolder(selection.assets)),
                                     jobsOf(options), context.commandLine};
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
-    run::Plan plan = submitted ? std::move(*submitted)
-                               : planFor(context, request, selection.profile,
-                                         scheduler.assetsFolder, deviceClassOf(device));
+    run::Plan plan =
+        planFor(context, request, selection.profile, scheduler.assetsFolder, deviceClassOf(device));
     warnOfSteepTerrain(plan, openCatalog(context, selection.assets));
-    if (plan.deviceClass != deviceClassOf(device)) run::rebind(plan, deviceClassOf(device));
     if (!options.budget.empty()) {
         const run::Request affordable =
             withinBudget(plan, request, options.from, studies::parseBudgetS(options.budget));
         plan = planFor(context, affordable, selection.profile, scheduler.assetsFolder,
                        deviceClassOf(device));
     }
-    if (!options.shard.empty()) {
-        // By what was named alone: whatever else lies here may differ between the shards.
-        const auto predictor = cluster::Predictor::from({options.from.begin(), options.from.end()});
-        cluster::takeShard(plan, cluster::parseShard(options.shard),
-                           run::withoutTwins(plan.cases, cluster::caseTimesS(plan, predictor)));
-    }
     fs::path path = options.resume.empty() ? options.out : options.resume;
     if (path.empty()) path = run::defaultRunPath(runSlug(plan));
     run::RunDirectory directory = run::RunDirectory::create(path);
-    run::Json manifest = run::newManifest(plan, device);
-    run::beginInvocation(manifest, context.commandLine);
+    if (!options.shard.empty()) cutByHand(options, choice, directory, plan);
     // The plan last: a folder with a plan has all that a resumed run needs.
-    writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
+    run::Json manifest = begunManifest(context, device, plan, directory);
     plan.writeFile(directory.planFile());
     return {std::move(plan), std::move(directory), std::move(manifest), scheduler};
 }
@@ -312,26 +327,50 @@ void settleMachine(const std::string& commandLine, const gl::DeviceInfo& device,
     }
 }
 
+/// Throws Error where the plan may not be measured here; warns where its configs have changed.
+void requireMeasurable(const Context& context, const RunOptions& options, const run::Plan& plan,
+                       const gl::DeviceInfo& device, bool isBegun) {
+    const std::string reason = run::whyNotResumable(plan, deviceClassOf(device),
+                                                    openCatalog(context, options.selection.assets));
+    if (!reason.empty()) {
+        throw Error(fmt::format(
+            "{}: cannot be {}: {}; {}", options.resume, isBegun ? "resumed" : "measured", reason,
+            isBegun ? "start a new run instead" : "submit again, to another folder"));
+    }
+    warnOfChangedConfigs(plan, isBegun
+                                   ? "the run goes on with its configs as they were when it began"
+                                   : "what was submitted is measured");
+}
+
+/// A run that was begun; or a shard of a submission, whose plan is there before its task begins.
 Prepared prepareResumed(const Context& context, const RunOptions& options,
                         const run::Request& request, run::PhaseClock& phases) {
     run::RunDirectory directory = run::RunDirectory::open(options.resume);
-    run::StoredRun stored = run::readRun(options.resume);
-    conclusion::requireNotImported(stored.manifest, options.resume, "go on with");
+    const bool isBegun = run::holdsRun(options.resume);
+    run::StoredRun stored;
+    if (isBegun) {
+        stored = run::readRun(options.resume);
+        conclusion::requireNotImported(stored.manifest, options.resume, "go on with");
+    } else {
+        stored.plan = run::Plan::fromJsonFile(directory.planFile());
+    }
     requireSameRequest(options, request, stored.plan);
     run::SchedulerOptions scheduler{
-        deviceFor(context, stored.plan.request.device, stored.plan.experiments),
+        stored.plan.shard ? stored.plan.shard->device
+                          : deviceFor(context, stored.plan.request.device, stored.plan.experiments),
         fs::absolute(assetsFolder(options.selection.assets)), jobsOf(options), context.commandLine};
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
-    const std::string reason = run::whyNotResumable(stored.plan, deviceClassOf(device),
-                                                    openCatalog(context, options.selection.assets));
-    if (!reason.empty()) {
-        throw Error(options.resume + ": cannot be resumed: " + reason +
-                    "; start a new run instead");
-    }
-    warnOfChangedConfigs(stored.plan,
-                         "the run goes on with its configs as they were when it began");
+    const bool isRebound = !isBegun && stored.plan.deviceClass != deviceClassOf(device);
+    if (isRebound) run::rebind(stored.plan, deviceClassOf(device));
+    requireMeasurable(context, options, stored.plan, device, isBegun);
     Prepared run{std::move(stored.plan), std::move(directory), std::move(stored.manifest),
                  scheduler};
+    if (!isBegun) {
+        warnOfSteepTerrain(run.plan, openCatalog(context, options.selection.assets));
+        if (isRebound) run.plan.writeFile(run.directory.planFile());
+        run.manifest = begunManifest(context, device, run.plan, run.directory);
+        return run;
+    }
     // Before anything is written: a journal that cannot be read leaves the folder as it is.
     run.journal = run::readJournal(run.directory.path() / "journal.jsonl");
     if (!options.triesAgain) run.scheduler.givenUp = run::casesNotSurvived(run.plan, run.journal);
@@ -353,6 +392,7 @@ std::string countText(int count, std::string_view what) {
 
 /// Says what is ahead, and gives the predicted time of a unit of each case.
 std::map<const config::Case*, double> forecast(const RunOptions& options, const Prepared& run) {
+    if (options.isQuiet && options.from.empty()) return {};  // nobody sees what runs/ would tell
     const History history = openHistory(options.from, run.plan.deviceClass);
     std::map<const config::Case*, double> unitTimesS;
     const std::vector<std::size_t> firsts = run::firstTwins(run.plan.cases);
@@ -385,13 +425,13 @@ void putFailedLast(const std::vector<run::Json>& journal, std::vector<run::Unit>
 
 /// Runs what is left; with `results`, makes tables, claims and report from it.
 int execute(const Context& context, const RunOptions& options, const run::Request& request,
-            bool results, std::optional<run::Plan> submitted = {}) {
+            bool results) {
     std::signal(SIGPIPE, SIG_IGN);  // a reader of the progress that is gone ends no run
     run::PhaseClock phases;
     const bool isNew =
         options.resume.empty() ||
         (!request.configs.empty() && !fs::exists(fs::path(options.resume) / "plan.json"));
-    Prepared run = isNew ? prepareNew(context, options, request, std::move(submitted), phases)
+    Prepared run = isNew ? prepareNew(context, options, request, phases)
                          : prepareResumed(context, options, request, phases);
     run.scheduler.failuresAtMost = options.failuresAtMost;
     std::vector<run::Unit> units = run::remainingUnits(run.plan, run.directory);
@@ -428,6 +468,8 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
     }
     const run::StoredRun stored = run::readRun(path);
     const run::Completeness counts = run::completeness(stored);
+    run::noteCompleteness(run.manifest, counts);
+    writeFileAtomic(run.directory.manifestFile(), run.manifest.dump(2) + '\n');
     for (const std::string& line : outcome.warnings) tell("warning: {}\n", line);
     if (const std::string line = watch.warning(); !line.empty()) tell("warning: {}\n", line);
     say("{} of {} finished{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
@@ -457,30 +499,12 @@ void requireUsable(const RunOptions& options) {
     if (!options.budget.empty()) studies::parseBudgetS(options.budget);
 }
 
-/// What the tasks of a submission run.
-int runSubmitted(const Context& context, RunOptions options) {
-    Selection& selection = options.selection;
-    if (!selection.names.empty() || !selection.sets.empty() || !selection.sweeps.empty() ||
-        !selection.only.empty() || !options.budget.empty()) {
-        throw UsageError("run: --plan has configs and options of its own; give none");
-    }
-    run::Plan plan = submittedPlan(context, options.plan, selection.assets);
-    selection.profile = plan.profile;
-    const run::Request request = plan.request;
-    return execute(context, options, request, false, std::move(plan));
-}
-
 }  // namespace
 
 int run(const Context& context, const RunOptions& options) {
     const std::vector<std::string>& files = options.selection.names;
-    if (!options.plan.empty()) {
-        requireUsable(options);
-        return runSubmitted(context, options);
-    }
     if (options.resume.empty() && files.empty()) {
-        throw UsageError(
-            "run: give PAPER, PAPER/TABLE or config files, --plan FILE or --resume RUN");
+        throw UsageError("run: give PAPER, PAPER/TABLE or config files, or --resume RUN");
     }
     requireUsable(options);
     return execute(context, options, requestOf(options.selection, configsOf(files)), false);

@@ -13,6 +13,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/hash.h"
 #include "engine/core/json_shape.h"
 #include "engine/core/text.h"
 #include "runner/cli/commands.h"
@@ -121,7 +122,7 @@ std::optional<Stored> readStored(const fs::path& out) {
 
 /// What its tasks measure, whatever becomes of the configs.
 fs::path frozenPlan(const fs::path& out) {
-    return out / "submitted-plan.json";
+    return out / cluster::kSubmittedPlan;
 }
 
 /// The program that they run, whatever is built later.
@@ -169,6 +170,7 @@ int shardCountOf(const SubmitOptions& options, const run::Plan& plan,
 struct Cut {
     Submission submission;
     std::vector<std::string> asked;
+    std::vector<int> shardOf;  // of each case of the plan
     std::vector<int> unitCounts;
     std::vector<double> timesS;  // predicted, a shard each
     cluster::Predictor predictor;
@@ -201,7 +203,7 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     Submission& s = cut.submission;
     s.name = runSlug(cut.plan);
     s.program = cluster::keptProgram(programFolder(out));
-    s.runArguments = {"--plan", frozenPlan(out), "--assets", fs::absolute(assetsFolder(assets))};
+    s.runArguments = {"--assets", fs::absolute(assetsFolder(assets))};
     if (options.jobs > 0)
         s.runArguments.insert(s.runArguments.end(), {"--jobs", std::to_string(options.jobs)});
     s.out = out;
@@ -211,15 +213,16 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     s.sbatchFlags.insert(s.sbatchFlags.end(), options.sbatchFlags.begin(),
                          options.sbatchFlags.end());
 
-    const std::vector<int> shardOf = cluster::cutShards(cut.plan.cases, timesS, s.shardCount);
-    s.timeLimitMin = cluster::timeLimitMin(cut.plan, shardOf, timesS, arePredicted);
+    cut.shardOf = cluster::cutShards(cut.plan.cases, timesS, s.shardCount);
+    s.timeLimitMin = cluster::timeLimitMin(cut.plan, cut.shardOf, timesS, arePredicted);
     cut.unitCounts.resize(static_cast<std::size_t>(s.shardCount));
     cut.timesS.resize(cut.unitCounts.size());
     for (std::size_t i = 0; i < cut.plan.cases.size(); ++i) {
         const config::Measure& measure = cut.plan.cases[i].measure;
         s.isExclusive = s.isExclusive || measure.lane == config::Measure::Lane::Timing;
-        cut.unitCounts[static_cast<std::size_t>(shardOf[i])] += measure.certainRounds();
-        cut.timesS[static_cast<std::size_t>(shardOf[i])] += timesS[i];
+        const auto shard = static_cast<std::size_t>(cut.shardOf[i]);
+        cut.unitCounts[shard] += measure.certainRounds();
+        cut.timesS[shard] += timesS[i];
     }
     tell("{} cases in {} shard{} of {} to {} units{}\n", cut.plan.cases.size(), s.shardCount,
          s.shardCount == 1 ? "" : "s", *std::ranges::min_element(cut.unitCounts),
@@ -233,13 +236,9 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
 
 cluster::ShardProgress progressOf(const fs::path& folder, int unitCount) {
     cluster::ShardProgress progress{unitCount, 0, 0};
-    if (!fs::exists(folder / "plan.json")) return progress;
-    const run::StoredRun run = run::readRun(folder);
-    const run::Completeness counts = run::completeness(run);
-    progress.unitCount = counts.units;
-    progress.failed = counts.failed;
-    progress.finished = progress.unitCount - counts.failed - counts.missing;
-    return progress;
+    if (!run::holdsRun(folder)) return progress;
+    const run::Completeness counts = run::readCompleteness(folder);
+    return {counts.units, counts.measured(), counts.failed};
 }
 
 std::vector<std::string> storedJobs(const Stored& stored) {
@@ -289,15 +288,37 @@ int printStatus(const fs::path& out) {
                                                                          : kExitIncomplete;
 }
 
+/// Plan and cut are there once; a shard gets its own cases with the hash of the whole, so that its
+/// task reads nothing else.
+void freeze(const Context& context, const Cut& cut, bool isBegun) {
+    const Submission& s = cut.submission;
+    const fs::path file = frozenPlan(s.out);
+    if (!isBegun || !fs::exists(file)) cut.plan.writeFile(file);
+    run::Shard shard{1, s.shardCount, sha256OfFile(file),
+                     deviceFor(context, cut.plan.request.device, cut.plan.experiments)};
+    for (; shard.index <= s.shardCount; ++shard.index) {
+        const fs::path folder = s.shardFolder(shard.index);
+        if (isBegun && fs::exists(folder / "plan.json")) continue;
+        if (run::holdsRun(folder)) {
+            throw Error(folder.string() + ": holds a run already; give another folder");
+        }
+        cluster::shardPlan(cut.plan, shard, cut.shardOf).writeFile(folder / "plan.json");
+    }
+}
+
 /// Of a submission that was refused nothing stays that could be taken for queued.
 void removeRefused(const fs::path& out) {
+    std::error_code isNotEmpty;
+    for (const fs::path& shard : cluster::shardFolders(out)) {
+        if (!run::holdsRun(shard)) fs::remove(shard / "plan.json");
+        fs::remove(shard, isNotEmpty);
+    }
     for (const fs::path& file : {storedFile(out), frozenPlan(out), out / "predictions.csv",
                                  out / "task.sh", out / "merge.sh"}) {
         fs::remove(file);
     }
     fs::remove_all(programFolder(out));
-    std::error_code isNotEmpty;
-    fs::remove(out, isNotEmpty);
+    for (const fs::path& folder : {out / "shards", out}) fs::remove(folder, isNotEmpty);
 }
 
 /// The array job's and the merge job's arguments; `arrayJob` is known when the second is asked for.
@@ -444,9 +465,7 @@ int submit(const Context& context, const SubmitOptions& options) {
         if (!before) fs::remove_all(programFolder(s.out));
         cluster::keepProgram(programFolder(s.out), cut.plan.buildId);
         if (!before) cluster::writePredictions(s.out / "predictions.csv", cut.plan, cut.predictor);
-    }
-    if (!options.isDryRun && (!before || !fs::exists(frozenPlan(s.out)))) {
-        cut.plan.writeFile(frozenPlan(s.out));
+        freeze(context, cut, before.has_value());
     }
     if (options.engine == "commands") return writeCommands(cut, options.isDryRun);
     return submitToSlurm(cut, before, options);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/core/files.h"
+#include "engine/core/hash.h"
 #include "engine/core/text.h"
 #include "runner/records/images.h"
 #include "runner/run/manifest.h"
@@ -74,12 +75,29 @@ std::vector<int> cutShards(std::span<const config::Case> cases, std::span<const 
     return shardOf;
 }
 
-void takeShard(run::Plan& plan, const run::Shard& shard, std::span<const double> timesS) {
-    const std::vector<int> shardOf = cutShards(plan.cases, timesS, shard.count);
-    plan.shard = {shard.index, shard.count, {}};
-    for (std::size_t i = 0; i < plan.cases.size(); ++i) {
-        if (shardOf[i] == shard.index - 1) plan.shard->caseIds.insert(plan.cases[i].id);
+run::Plan shardPlan(const run::Plan& whole, const run::Shard& shard, std::span<const int> shardOf) {
+    GFXREPRO_ASSERT_EQ(whole.cases.size(), shardOf.size());
+    run::Plan plan;
+    plan.request = whole.request;
+    plan.profile = whole.profile;
+    plan.deviceClass = whole.deviceClass;
+    plan.seed = whole.seed;
+    plan.hash = whole.hash;
+    plan.buildId = whole.buildId;
+    plan.shard = shard;
+    std::set<std::string_view> experiments;
+    for (std::size_t i = 0; i < shardOf.size(); ++i) {
+        if (shardOf[i] != shard.index - 1) continue;
+        const config::Case& item = whole.cases[i];
+        plan.cases.push_back(item);
+        experiments.insert(item.experiment);
+        if (item.scene.isNull()) continue;
+        const auto scene = whole.sceneKeys.find(item.scene.text());
+        if (scene != whole.sceneKeys.end()) plan.sceneKeys.insert(*scene);
     }
+    std::ranges::copy_if(whole.experiments, std::back_inserter(plan.experiments),
+                         [&](const auto& one) { return experiments.contains(one.id); });
+    return plan;
 }
 
 namespace {
@@ -97,26 +115,23 @@ void requireOnePlan(const std::vector<ShardRun>& shards) {
     }
 }
 
-/// Cases that a shard was to measure, and those that it has rows of.
-std::set<std::string> casesOf(const run::StoredRun& run) {
-    std::set<std::string> ids;
-    for (const config::Case& item : run.plan.cases) {
-        if (run.plan.measures(item)) ids.insert(item.id);
-    }
-    for (const records::Record& row : run.records) ids.insert(row.caseId);
-    return ids;
-}
-
-void requireDisjoint(const std::vector<ShardRun>& shards) {
-    std::map<std::string, const ShardRun*> owners;
+/// Each case of the shards is one of the plan, and of one of them alone.
+void requireParts(const run::Plan& whole, const std::vector<ShardRun>& shards) {
+    std::map<std::string_view, std::pair<const config::Case*, const ShardRun*>> owners;
+    for (const config::Case& item : whole.cases) owners[item.id] = {&item, nullptr};
     for (const ShardRun& shard : shards) {
-        for (const std::string& id : casesOf(shard.run)) {
-            const auto [owner, isNew] = owners.try_emplace(id, &shard);
-            if (isNew) continue;
-            const auto item = std::ranges::find(shard.run.plan.cases, id, &config::Case::id);
-            throw Error("the case '" + (item == shard.run.plan.cases.end() ? id : item->title()) +
-                        "' is in both " + owner->second->path.string() + " and " +
-                        shard.path.string() + ": these are no shards of one cut");
+        for (const config::Case& outlined : shard.run.plan.cases) {
+            const auto found = owners.find(outlined.id);
+            if (found == owners.end()) {
+                throw Error(fmt::format("{}: its case {} of {} is not in the plan of the shards",
+                                        shard.path.string(), outlined.id, outlined.experiment));
+            }
+            auto& [item, owner] = found->second;
+            if (owner) {
+                throw Error("the case '" + item->title() + "' is in both " + owner->path.string() +
+                            " and " + shard.path.string() + ": these are no shards of one cut");
+            }
+            owner = &shard;
         }
     }
 }
@@ -237,13 +252,36 @@ std::string mergedJournal(const std::vector<ShardRun>& shards) {
 
 }  // namespace
 
-run::StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string& commandLine) {
+run::Plan wholePlan(const std::vector<ShardRun>& shards) {
+    for (const ShardRun& shard : shards) {
+        if (!shard.run.plan.shard) return run::Plan::fromJsonFile(shard.path / "plan.json");
+        const fs::path folder = fs::canonical(shard.path);
+        for (const fs::path& file :
+             {folder / kWholePlan, folder.parent_path().parent_path() / kSubmittedPlan}) {
+            if (!fs::exists(file)) continue;
+            if (sha256OfFile(file) != shard.run.plan.shard->whole) {
+                throw Error(fmt::format("{}: is not the plan that {} is a shard of: it was changed",
+                                        file.string(), shard.path.string()));
+            }
+            run::Plan whole = run::Plan::fromJsonFile(file);
+            const std::string& deviceClass = shard.run.plan.deviceClass;
+            if (whole.deviceClass != deviceClass) run::rebind(whole, deviceClass);
+            return whole;
+        }
+    }
+    throw Error(fmt::format(
+        "{}: the plan that it is a shard of is neither in it ({}) nor two folders above it ({}): "
+        "a shard of a submission is merged with the submission's folder",
+        shards.front().path.string(), kWholePlan, kSubmittedPlan));
+}
+
+run::StoredRun mergeRuns(run::Plan whole, const std::vector<ShardRun>& shards,
+                         const std::string& commandLine) {
     GFXREPRO_ASSERT(!shards.empty());
     requireOnePlan(shards);
-    requireDisjoint(shards);
+    requireParts(whole, shards);
     run::StoredRun merged;
-    merged.plan = shards.front().run.plan;
-    merged.plan.shard.reset();
+    merged.plan = std::move(whole);
     merged.manifest = mergedManifest(shards, commandLine);
     UnitRows rows = rowsByUnit(shards);
     for (const run::Unit& unit : run::unitsOf(merged.plan, allRecords(shards))) {
@@ -294,6 +332,7 @@ void writeMerged(const run::RunDirectory& directory, const std::vector<ShardRun>
     writeFileAtomic(directory.path() / "journal.jsonl", mergedJournal(shards));
     run::Json manifest = merged.manifest;
     run::sealRecords(manifest, directory.path());
+    run::noteCompleteness(manifest, run::completeness(merged));
     writeFileAtomic(directory.manifestFile(), manifest.dump(2) + '\n');
     merged.plan.writeFile(directory.planFile());
 }

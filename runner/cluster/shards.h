@@ -28,20 +28,31 @@ std::vector<std::vector<std::size_t>> indivisibleGroups(std::span<const config::
 std::vector<int> cutShards(std::span<const config::Case> cases, std::span<const double> timesS,
                            int count);
 
-/// Marks the plan as shard `shard` of a cut by these times.
-void takeShard(run::Plan& plan, const run::Shard& shard, std::span<const double> timesS);
+/// The plan of one shard: the cases that `shardOf` gives it, with their experiments and scenes. It
+/// has the size of what the shard measures, however large the whole is.
+run::Plan shardPlan(const run::Plan& whole, const run::Shard& shard, std::span<const int> shardOf);
 
-/// A shard's run and where it lies.
+/// Where the whole plan of shards lies: two folders above those of a submission, and in the folder
+/// of one that was cut by hand.
+inline constexpr const char* kSubmittedPlan = "submitted-plan.json";
+inline constexpr const char* kWholePlan = "whole-plan.json";
+
+/// A shard's run, with the outline of its plan, and where it lies.
 struct ShardRun {
     std::filesystem::path path;
     run::StoredRun run;
 };
 
+/// The plan that the runs were cut from, for the class of device that they measured on. Throws
+/// Error where it is at hand of none of them, or is another than was cut.
+run::Plan wholePlan(const std::vector<ShardRun>& shards);
+
 /// One run of the whole plan: the records in the order of the plan, the manifests together.
 /// `commandLine` is the one invocation of the new manifest. Throws Error for shards of different
-/// plans, for a case that two of them have, and where the times of one table are from different
-/// machines.
-run::StoredRun mergeRuns(const std::vector<ShardRun>& shards, const std::string& commandLine);
+/// plans, for a case that two of them have or the plan has not, and where the times of one table
+/// are from different machines.
+run::StoredRun mergeRuns(run::Plan whole, const std::vector<ShardRun>& shards,
+                         const std::string& commandLine);
 
 /// Of the units of the plan those without a row: "zju2005/2.1 scene=models/duck".
 std::vector<std::string> missingUnits(const run::StoredRun& run);

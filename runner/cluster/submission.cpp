@@ -28,16 +28,14 @@ std::string programCommand(const Submission& submission) {
                        shellQuoted(submission.program));
 }
 
-/// `shard` and `folder` are shell words.
-std::string runCommand(const Submission& submission, const std::string& shard,
-                       const std::string& folder) {
+/// `folder` is a shell word.
+std::string runCommand(const Submission& submission, const std::string& folder) {
     std::string arguments;
     for (const std::string& argument : submission.runArguments) {
         arguments += shellQuoted(argument) + ' ';
     }
-    return fmt::format("{} run --quiet {}--from {} --shard {} --resume {}",
-                       programCommand(submission), arguments,
-                       shellQuoted(submission.out / "predictions.csv"), shard, folder);
+    return fmt::format("{} run --quiet {}--resume {}", programCommand(submission), arguments,
+                       folder);
 }
 
 /// What both scripts begin with. A task of a lost node runs again; its output goes on in the file.
@@ -60,18 +58,24 @@ fs::path Submission::shardFolder(int index) const {
     return out / "shards" / std::to_string(index);
 }
 
+std::vector<fs::path> shardFolders(const fs::path& out) {
+    std::map<long long, fs::path> folders;
+    std::error_code isAbsent;
+    for (const auto& entry : fs::directory_iterator(out / "shards", isAbsent)) {
+        const auto index = parseInteger(entry.path().filename().string());
+        if (index) folders[*index] = entry.path();
+    }
+    std::vector<fs::path> ordered;
+    for (auto& [index, folder] : folders) ordered.push_back(std::move(folder));
+    return ordered;
+}
+
 std::string shardCommand(const Submission& submission, int index) {
-    return runCommand(submission, fmt::format("{}/{}", index, submission.shardCount),
-                      shellQuoted(submission.shardFolder(index)));
+    return runCommand(submission, shellQuoted(submission.shardFolder(index)));
 }
 
 std::string mergeCommand(const Submission& submission) {
-    std::string command =
-        fmt::format("{} merge --out {}", programCommand(submission), shellQuoted(submission.out));
-    for (int index = 1; index <= submission.shardCount; ++index) {
-        command += ' ' + shellQuoted(submission.shardFolder(index));
-    }
-    return command;
+    return fmt::format("{} merge {}", programCommand(submission), shellQuoted(submission.out));
 }
 
 std::string taskScript(const Submission& submission) {
@@ -80,10 +84,9 @@ std::string taskScript(const Submission& submission) {
     for (const std::string& flag : submission.sbatchFlags) {
         script += fmt::format("#SBATCH {}\n", flag);
     }
-    const std::string shard = fmt::format("\"$SLURM_ARRAY_TASK_ID\"/{}", submission.shardCount);
     const std::string folder =
         fmt::format("{}/\"$SLURM_ARRAY_TASK_ID\"", shellQuoted(submission.out / "shards"));
-    return fmt::format("{}exec {}\n", script, runCommand(submission, shard, folder));
+    return fmt::format("{}exec {}\n", script, runCommand(submission, folder));
 }
 
 std::string mergeScript(const Submission& submission) {

@@ -15,12 +15,13 @@ namespace gfxrepro::cluster {
 /// Everything that the commands and scripts of a submission say.
 ///
 /// Files: OUT/submitted-plan.json and OUT/submitted-program (what is measured, and by which build),
-/// OUT/predictions.csv (by which every shard is cut), OUT/submission.json, OUT/shards/<k>,
-/// OUT/task.sh and merge.sh (Slurm), OUT/commands.txt; OUT itself becomes the merged run.
+/// OUT/predictions.csv (by which the shards were cut), OUT/submission.json, OUT/shards/<k> (a run
+/// each, whose plan is there before its task), OUT/task.sh and merge.sh (Slurm), OUT/commands.txt;
+/// OUT itself becomes the merged run.
 struct Submission {
     std::string name;                       // of the job: "zju2005"
     std::filesystem::path program;          // absolute; shaders/ and configs/ lie beside it
-    std::vector<std::string> runArguments;  // configs, profile, device, …: of every shard
+    std::vector<std::string> runArguments;  // of every shard: where models lie, how many jobs
     std::filesystem::path out;              // absolute
     int shardCount = 1;
     int timeLimitMin = 60;                 // of the longest shard
@@ -29,6 +30,9 @@ struct Submission {
 
     std::filesystem::path shardFolder(int index) const;
 };
+
+/// The folders of the shards below a submission's, by their numbers.
+std::vector<std::filesystem::path> shardFolders(const std::filesystem::path& out);
 
 /// The command of shard `index` (from 1): begins it, or goes on where it is begun.
 std::string shardCommand(const Submission& submission, int index);

@@ -100,6 +100,14 @@ void sealRecords(Json& manifest, const std::filesystem::path& runDir) {
 
 void breakSeal(Json& manifest) {
     manifest.erase("sha256");
+    manifest.erase("units");
+}
+
+bool areRecordsSealed(const Json& manifest, const std::filesystem::path& runDir) {
+    const std::string file = kSealedFiles[0];
+    const auto sums = manifest.find("sha256");
+    return sums != manifest.end() && sums->contains(file) &&
+           std::filesystem::exists(runDir / file) && sums->at(file) == sha256OfFile(runDir / file);
 }
 
 void noteChanges(Json& manifest, const std::filesystem::path& runDir) {

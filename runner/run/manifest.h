@@ -25,8 +25,11 @@ void endInvocation(Json& manifest, const PhaseClock& phases, double wallS);
 /// Notes at the end of a run what records.csv and images/index.csv are (`sha256`), so that a later
 /// change of them is seen.
 void sealRecords(Json& manifest, const std::filesystem::path& runDir);
-/// Before a run goes on, which changes them: the seal goes. What was noted of them stays.
+/// Before a run goes on, which changes them: the seal goes, with what the records came to. What was
+/// noted of them stays.
 void breakSeal(Json& manifest);
+/// Whether records.csv is still what the seal is of.
+bool areRecordsSealed(const Json& manifest, const std::filesystem::path& runDir);
 /// Adds a note that every reader of the run's results is told; once.
 void addNote(Json& manifest, const std::string& note);
 /// Adds to the manifest's `notes` which of the sealed files are others than at the end of the run.

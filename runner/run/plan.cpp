@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
@@ -36,10 +37,6 @@ void requireNoImport(const config::Experiment& experiment) {
 
 std::string Shard::name() const {
     return std::to_string(index) + '/' + std::to_string(count);
-}
-
-bool Plan::measures(const Case& item) const {
-    return !shard || shard->caseIds.contains(item.id);
 }
 
 Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::Catalog& catalog,
@@ -102,7 +99,6 @@ std::string programKeyOf(const Case& item, config::FileDigests& digests) {
 void rebind(Plan& plan, const std::string& deviceClass) {
     plan.deviceClass = deviceClass;
     for (Case& item : plan.cases) item.id = caseId(item, toJson(item), plan);
-    plan.hash = hashOf(plan);
 }
 
 std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
@@ -131,7 +127,6 @@ std::string whyNotResumable(const Plan& plan, const std::string& deviceClass,
 }
 
 std::string planDifference(const Plan& then, const Plan& now) {
-    if (then.hash == now.hash) return "";
     if (then.buildId != now.buildId) {
         return "the program or a shader changed (build " + then.buildId.substr(0, 12) + " then, " +
                now.buildId.substr(0, 12) + " now)";
@@ -140,15 +135,18 @@ std::string planDifference(const Plan& then, const Plan& now) {
         return "the run began on a " + then.deviceClass + " device, this one is a " +
                now.deviceClass + " device";
     }
+    if (then.hash == now.hash) return "";
     for (const auto& [reference, key] : then.sceneKeys) {
         const auto found = now.sceneKeys.find(reference);
         if (found != now.sceneKeys.end() && found->second != key) {
             return "the scene '" + reference + "' changed";
         }
     }
-    for (std::size_t i = 0; i < std::min(then.experiments.size(), now.experiments.size()); ++i) {
-        const config::Experiment& before = then.experiments[i];
-        if (before.document.toJson() != now.experiments[i].document.toJson()) {
+    for (const config::Experiment& before : then.experiments) {
+        const auto after =
+            std::ranges::find(now.experiments, before.file, &config::Experiment::file);
+        if (after == now.experiments.end()) continue;
+        if (before.document.toJson() != after->document.toJson()) {
             return "the config " + before.file.string() + " changed";
         }
     }

@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,11 +29,12 @@ struct Request {
     std::string device = "auto";
 };
 
-/// The part of a plan that one of several runs measures.
+/// Of a plan that has the cases of one of several runs alone: which of them it is.
 struct Shard {
     int index = 1;  // from 1
     int count = 1;
-    std::set<std::string> caseIds = {};
+    std::string whole = {};       // the SHA-256 of the file with the plan that was cut
+    std::string device = "auto";  // to open, as all of that plan ask: a part may need none
 
     std::string name() const;  // "2/4"
 };
@@ -44,7 +44,8 @@ struct Plan {
     std::string profile;
     std::string deviceClass;  // "software" | "gpu"
     std::uint64_t seed = 1;
-    /// Of everything that a result depends on; with --only that of the plan before.
+    /// Of everything that a result depends on; with --only, and of a shard, that of the plan
+    /// before.
     std::string hash;
     std::string buildId;                           // of the program and its shaders
     std::map<std::string, std::string> sceneKeys;  // scene reference → identity of its content
@@ -52,15 +53,16 @@ struct Plan {
     /// The experiments as loaded (file text after merging), so that tables can be made again from
     /// the run directory alone; with their cases under the profile `paper`, which no worker sees.
     std::vector<config::Experiment> experiments;
-    std::optional<Shard> shard;  // none: all cases
+    std::optional<Shard> shard;  // none: it was not cut
 
-    /// Whether a run of this plan measures the case: all do but those of other shards.
-    bool measures(const Case& item) const;
     /// As JSON, in pieces: of 100,000 cases the whole text would take a fifth of the memory.
     void write(const std::function<void(std::string_view)>& to) const;
     /// The same to a file, which is there as a whole or not at all. Throws Error.
     void writeFile(const std::filesystem::path& path) const;
     static Plan fromJsonFile(const std::filesystem::path& path);
+    /// The same in a tenth of the time: a case has only its id and its experiment, and an
+    /// experiment its file and document.
+    static Plan outlineFromJsonFile(const std::filesystem::path& path);
 };
 
 /// Of a plan: one of more could be written, and would be refused when it is read.
@@ -99,6 +101,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
 std::string programKeyOf(const Case& item, config::FileDigests& digests);
 
 /// Makes it a plan for another class of device: the same cases, under the ids that they have there.
+/// Its hash stays: all shards of a plan have one, and none of them knows the others' cases.
 void rebind(Plan& plan, const std::string& deviceClass);
 
 /// Why a run of this plan may not go on with this program, this class of device and these scenes;

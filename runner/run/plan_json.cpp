@@ -45,8 +45,11 @@ constexpr JsonMember kMetric[] = {{"/name", JsonKind::Text},
                                   {"/doc", JsonKind::Text},
                                   {"/better", JsonKind::Text},
                                   {"/detail", JsonKind::Boolean}};
-constexpr JsonMember kShard[] = {
-    {"/index", JsonKind::Int}, {"/count", JsonKind::Int}, {"/cases", JsonKind::Texts}};
+constexpr JsonMember kShard[] = {{"/index", JsonKind::Int},
+                                 {"/count", JsonKind::Int},
+                                 {"/whole", JsonKind::Text},
+                                 {"/device", JsonKind::Text}};
+constexpr JsonMember kOutlinedCase[] = {{"/id", JsonKind::Text}, {"/experiment", JsonKind::Text}};
 constexpr JsonMember kCase[] = {{"/id", JsonKind::Text},
                                 {"/experiment", JsonKind::Text},
                                 {"/technique", JsonKind::Text},
@@ -197,26 +200,31 @@ class ExperimentReader {
     std::string prefix_;
 };
 
-/// Throws Error for a plan that is not as it was written. (The plan's own hash has neither
-/// assumptions nor published parameters, and with --only it is that of all cases, which the plan
-/// does not have.)
-void requireAsPlanned(const SourceLocation& where, Json json, const Plan& plan) {
-    const auto fail = [&](const std::string& what) {
-        throw Error(where,
-                    what + " planned: " + fs::path(std::string(where.file)).filename().string() +
-                        " was changed");
-    };
+[[noreturn]] void failAsChanged(const SourceLocation& where, const std::string& what) {
+    const std::string name = fs::path(std::string(where.file)).filename().string();
+    throw Error(where, what + " planned: " + name + " was changed");
+}
+
+/// Throws Error for a case that is not as it was written.
+void requireCases(const SourceLocation& where, const Json& json, const Plan& plan) {
     for (std::size_t i = 0; i < plan.cases.size(); ++i) {
         const Case& item = plan.cases[i];
         if (caseId(item, json.at("cases").at(i), plan) == item.id) continue;
-        fail("the case " + item.id + ", " + item.title() + ", is not the one that was");
+        failAsChanged(where,
+                      "the case " + item.id + ", " + item.title() + ", is not the one that was");
     }
+}
+
+/// Throws Error where anything else is not. (The plan's own hash has neither assumptions nor
+/// published parameters, and with --only or of a shard it is that of all cases, which the plan does
+/// not have.)
+void requireFrozen(const SourceLocation& where, Json json, const Plan& plan) {
     const Json::json_pointer frozen(kFrozenHash);
     const auto hash = json.at(frozen).get<std::string>();
     json.erase(frozen.back());
     json.erase("cases");
     if (frozenHash(json, plan.cases) == hash) return;
-    fail("the experiments, their cases or the profile are not those that were");
+    failAsChanged(where, "the experiments, their cases or the profile are not those that were");
 }
 
 std::vector<std::string> textsFrom(const Json& list) {
@@ -340,8 +348,10 @@ void Plan::write(const std::function<void(std::string_view)>& to) const {
         }
     }
     if (shard) {
-        json["shard"] = {
-            {"index", shard->index}, {"count", shard->count}, {"cases", shard->caseIds}};
+        json["shard"] = {{"index", shard->index},
+                         {"count", shard->count},
+                         {"whole", shard->whole},
+                         {"device", shard->device}};
     }
     json[Json::json_pointer(kFrozenHash)] = frozenHash(json, cases);
     std::string text = json.dump(1);
@@ -359,9 +369,10 @@ void Plan::writeFile(const fs::path& path) const {
     file.commit();
 }
 
-Plan Plan::fromJsonFile(const fs::path& path) {
-    const SourceLocation where{path.string(), 0, 0};
-    Json json = parseJsonObject(MappedFile(path).text(), where);
+namespace {
+
+/// All of a plan but its experiments and cases.
+Plan headFrom(const Json& json, const SourceLocation& where) {
     requireMembers(json, kPlan, where);
     if (json.at("schema") != kPlanSchema) {
         throw Error(where, fmt::format("schema {}; this program reads schema {}",
@@ -380,18 +391,48 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     for (const auto& [reference, key] : json.at("scenes").items()) {
         plan.sceneKeys[reference] = key.get<std::string>();
     }
+    if (const auto shard = json.find("shard"); shard != json.end()) {
+        requireMembers(*shard, kShard, where, "/shard");
+        plan.shard =
+            Shard{shard->at("index"), shard->at("count"), shard->at("whole"), shard->at("device")};
+    }
+    return plan;
+}
+
+}  // namespace
+
+Plan Plan::fromJsonFile(const fs::path& path) {
+    const SourceLocation where{path.string(), 0, 0};
+    Json json = parseJsonObject(MappedFile(path).text(), where);
+    Plan plan = headFrom(json, where);
     for (const auto& [place, item] : json.at("experiments").items()) {
         plan.experiments.push_back(ExperimentReader(item, where, "/experiments/" + place).read());
     }
     for (const auto& [place, item] : json.at("cases").items()) {
         plan.cases.push_back(caseFromJson(item, where, "/cases/" + place));
     }
-    if (const auto shard = json.find("shard"); shard != json.end()) {
-        requireMembers(*shard, kShard, where, "/shard");
-        const std::vector<std::string> ids = textsFrom(shard->at("cases"));
-        plan.shard = Shard{shard->at("index"), shard->at("count"), {ids.begin(), ids.end()}};
+    requireCases(where, json, plan);
+    requireFrozen(where, std::move(json), plan);
+    return plan;
+}
+
+Plan Plan::outlineFromJsonFile(const fs::path& path) {
+    const SourceLocation where{path.string(), 0, 0};
+    Json json = parseJsonObject(MappedFile(path).text(), where);
+    Plan plan = headFrom(json, where);
+    requireEach(json, "/experiments", kExperiment, where);
+    for (const Json& item : json.at("experiments")) {
+        config::Experiment& experiment = plan.experiments.emplace_back();
+        experiment.file = item.at("file").get<std::string>();
+        experiment.document = nodeFromJson(item.at("document"), where);
     }
-    requireAsPlanned(where, std::move(json), plan);
+    requireEach(json, "/cases", kOutlinedCase, where);
+    for (const Json& item : json.at("cases")) {
+        Case& outlined = plan.cases.emplace_back();
+        item.at("id").get_to(outlined.id);
+        item.at("experiment").get_to(outlined.experiment);
+    }
+    requireFrozen(where, std::move(json), plan);
     return plan;
 }
 

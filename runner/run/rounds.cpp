@@ -101,7 +101,7 @@ std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& 
                                        complete != recorded.complete.end() &&
                                        hasAllBefore(complete->second, process);
                 const bool isCertain = process < item->measure.certainRounds();
-                if (plan.measures(*item) && (isCertain || isFurther)) round.cases.push_back(item);
+                if (isCertain || isFurther) round.cases.push_back(item);
             }
             if (isTimed(*all.front())) {
                 timed.push_back(std::move(round));
@@ -119,7 +119,7 @@ std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& 
 Rounds::Rounds(const Plan& plan, const std::vector<records::Record>& records,
                const std::vector<Json>& journal) {
     for (const Case& item : plan.cases) {
-        if (!isTimed(item) || !plan.measures(item)) continue;
+        if (!isTimed(item)) continue;
         const auto [table, isNew] = tables_.try_emplace(item.experiment);
         if (isNew) {
             order_.push_back(item.experiment);

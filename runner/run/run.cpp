@@ -121,14 +121,24 @@ void requirePlanned(const fs::path& file, const Plan& plan,
 
 }  // namespace
 
-StoredRun readRun(const fs::path& runDir) {
+bool holdsRun(const fs::path& folder) {
+    return fs::exists(folder / "plan.json") &&
+           (fs::exists(folder / "manifest.json") || fs::exists(folder / "records.csv"));
+}
+
+namespace {
+
+StoredRun readWith(Plan (*readPlan)(const fs::path&), const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
         throw Error(runDir.string() + ": is not a run directory (it has no plan.json)");
+    }
+    if (!holdsRun(runDir)) {
+        throw Error(runDir.string() + ": was planned, and not begun (it has no manifest.json)");
     }
     requirePlainFiles(runDir);
     requireModestFiles(runDir);
     StoredRun run;
-    run.plan = Plan::fromJsonFile(runDir / "plan.json");
+    run.plan = readPlan(runDir / "plan.json");
     run.manifest = readManifest(runDir / "manifest.json");
     noteChanges(run.manifest, runDir);
     noteMachines(run.manifest);
@@ -137,6 +147,16 @@ StoredRun readRun(const fs::path& runDir) {
         requirePlanned(runDir / "records.csv", run.plan, run.records);
     }
     return run;
+}
+
+}  // namespace
+
+StoredRun readRun(const fs::path& runDir) {
+    return readWith(Plan::fromJsonFile, runDir);
+}
+
+StoredRun readOutlined(const fs::path& runDir) {
+    return readWith(Plan::outlineFromJsonFile, runDir);
 }
 
 Completeness completeness(const StoredRun& run) {
@@ -155,6 +175,22 @@ Completeness completeness(const StoredRun& run) {
         ++counts.failures[status];
     }
     return counts;
+}
+
+void noteCompleteness(Json& manifest, const Completeness& counts) {
+    manifest["units"] = {
+        {"planned", counts.units}, {"missing", counts.missing}, {"failed", counts.failed}};
+}
+
+Completeness readCompleteness(const fs::path& runDir) {
+    requirePlainFiles(runDir);
+    requireModestFiles(runDir);
+    const Json manifest = readManifest(runDir / "manifest.json");
+    if (!manifest.contains("units") || !areRecordsSealed(manifest, runDir)) {
+        return completeness(readRun(runDir));
+    }
+    const Json& units = manifest.at("units");
+    return {units.at("planned"), units.at("missing"), units.at("failed")};
 }
 
 namespace {

@@ -41,6 +41,13 @@ struct StoredRun {
 /// (noteChanges), and that several machines measured (noteMachines).
 StoredRun readRun(const std::filesystem::path& runDir);
 
+/// Of a shard, for a merge: its plan is an outline (Plan::outlineFromJsonFile).
+StoredRun readOutlined(const std::filesystem::path& runDir);
+
+/// Whether something was begun to be measured there. A plan alone is a shard that waits for its
+/// task.
+bool holdsRun(const std::filesystem::path& folder);
+
 /// What became of the units of the run's plan, or of its shard. Every exit code that says whether a
 /// run is complete is of this.
 struct Completeness {
@@ -53,6 +60,12 @@ struct Completeness {
     int measured() const { return units - missing - failed; }
 };
 Completeness completeness(const StoredRun& run);
+
+/// Keeps the sums in the manifest, until breakSeal(): what many shards came to is read from there.
+void noteCompleteness(Json& manifest, const Completeness& counts);
+/// … without `failures`: from the manifest where the run ended and its records are as they were
+/// then, else from the whole run. Throws Error.
+Completeness readCompleteness(const std::filesystem::path& runDir);
 
 /// How every case of the run's plan, or of its shard, ended: by its worst process.
 std::vector<records::CaseEnd> caseResults(const StoredRun& run);

@@ -46,6 +46,7 @@ constexpr JsonMember kManifest[] = {{"/commit", JsonKind::Line},
                                     {"/programs", JsonKind::List, false},
                                     {"/programs", JsonKind::Objects, false},
                                     {"/sha256", JsonKind::Texts, false},
+                                    {"/units", JsonKind::Object, false},
                                     {"/notes", JsonKind::List, false},
                                     {"/notes", JsonKind::Lines, false},
                                     {"/timing_machines", JsonKind::Object, false},
@@ -57,6 +58,8 @@ constexpr JsonMember kManifest[] = {{"/commit", JsonKind::Line},
                                     {"/imported/machine", JsonKind::Line, false},
                                     {"/merged", JsonKind::List, false},
                                     {"/merged", JsonKind::Objects, false}};
+constexpr JsonMember kUnits[] = {
+    {"/planned", JsonKind::Int}, {"/missing", JsonKind::Int}, {"/failed", JsonKind::Int}};
 constexpr JsonMember kInvocation[] = {{"/command", JsonKind::Text},
                                       {"/started", JsonKind::Line, false},
                                       {"/machine", JsonKind::Line, false}};
@@ -100,6 +103,7 @@ Json readManifest(const fs::path& file) {
     if (const auto& gl = manifest["gl"]; gl.contains("balance")) {
         balanceFromJson(gl["balance"], where, "/gl/balance");
     }
+    if (manifest.contains("units")) requireMembers(manifest["units"], kUnits, where, "/units");
     requireEach(manifest, "/invocations", kInvocation, where);
     requireEach(manifest, "/scenes", kSceneMembers, where);
     requireEach(manifest, "/programs", kProgramMembers, where);

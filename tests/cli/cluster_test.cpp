@@ -348,26 +348,167 @@ TEST(Submit, WhatWasSubmittedIsMeasured) {
     EXPECT_THAT(again.err, HasSubstr(warning));
     EXPECT_EQ(again.out, submitted.out);
 
-    const std::string file = out + "/submitted-plan.json";
+    // A shard that was removed is there again, as it was submitted.
+    const std::string shard = out + "/shards/1", file = shard + "/plan.json";
+    const std::string plan = readFile(file);
     fs::remove_all(out + "/shards");
+    ASSERT_EQ(mockGfxrepro(command).exitCode, 0);
+    EXPECT_EQ(readFile(file), plan);
     folder.write("out/submitted-program/shaders/other.glsl", "");
     const ProcessResult other = runProgram({"/bin/sh", "-c", lines[0]});
     EXPECT_EQ(other.exitCode, 2);
-    EXPECT_THAT(other.err, HasSubstr(file + ": cannot be measured: the program or a shader changed "
-                                            "(build "));
+    EXPECT_THAT(other.err,
+                HasSubstr(shard + ": cannot be measured: the program or a shader changed "
+                                  "(build "));
     EXPECT_THAT(other.err, HasSubstr(" now); submit again, to another folder\n"));
     EXPECT_THAT(
         mockGfxrepro(command).err,
         HasSubstr(out + "/submitted-program: is not the program that was submitted (build "));
     fs::remove(out + "/submitted-program/shaders/other.glsl");
-    std::string changed = readFile(file);
+    std::string changed = plan;
     changed.replace(changed.find("\"build\": \"") + 10, 12, "000000000000");
     writeFileAtomic(file, changed);
     EXPECT_THAT(runProgram({"/bin/sh", "-c", lines[0]}).err,
-                HasSubstr("is not the one that was planned: submitted-plan.json was changed\n"));
-    EXPECT_FALSE(fs::exists(out + "/shards/1"));
-    EXPECT_EQ(mockGfxrepro({"run", config, "--plan", file}).err,
-              "gfxrepro: run: --plan has configs and options of its own; give none\n");
+                HasSubstr("is not the one that was planned: plan.json was changed\n"));
+    EXPECT_FALSE(fs::exists(shard + "/records.csv"));
+}
+
+/// Submits `number` from 1 to `count` in shards of two cases each.
+std::vector<std::string> submitPairs(const TemporaryFolder& folder, int count,
+                                     const std::string& out) {
+    const ProcessResult result =
+        mockGfxrepro({"submit", writeNumbers(folder, count), "--device", "software", "--out", out,
+                      "--engine", "commands", "--shards", std::to_string(count / 2)});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    std::vector<std::string> lines = split(trimmed(result.out), '\n');
+    EXPECT_EQ(lines.size(), static_cast<std::size_t>(count / 2 + 1));
+    return lines;
+}
+
+std::uintmax_t sizeOf(const fs::path& folder) {
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) bytes += entry.file_size();
+    }
+    return bytes;
+}
+
+/// What a shard keeps and says is of its own two cases, whatever the others have.
+TEST(Submit, AShardHasTheSizeOfItsOwnCases) {
+    const TemporaryFolder folder;
+    std::uintmax_t planned[2], measured[2], command[2];
+    for (const int i : {0, 1}) {
+        const std::string out = folder.path() / std::to_string(i);
+        const std::vector<std::string> lines = submitPairs(folder, i == 0 ? 8 : 800, out);
+        planned[i] = sizeOf(out + "/shards/1");
+        ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
+        measured[i] = sizeOf(out + "/shards/1");
+        command[i] = lines.back().size();
+        EXPECT_EQ(paramsOf(out + "/shards/1").size(), 2U);
+    }
+    EXPECT_GT(planned[0], 0U);
+    EXPECT_LE(planned[1], planned[0] + 20) << "but for longer numbers";
+    EXPECT_LE(measured[1], measured[0] + 500) << "but for what differs between two runs";
+    EXPECT_EQ(command[1], command[0]) << "the merge names no shard";
+}
+
+TEST(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path() / "out", alone = folder.path() / "alone";
+    const std::vector<std::string> lines = submitPairs(folder, 4, out);
+    const ProcessResult early = mockGfxrepro({"table", out + "/shards/1"});
+    EXPECT_EQ(early.exitCode, 2);
+    EXPECT_EQ(early.err, "gfxrepro: " + out +
+                             "/shards/1: was planned, and not begun (it has no manifest.json)\n");
+    EXPECT_EQ(mockGfxrepro({"merge", out}).err,
+              "gfxrepro: merge: none of the folders holds a run\n");
+    ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
+    fs::copy(out + "/shards/1", alone, fs::copy_options::recursive);
+    for (const char* command : {"table", "report"}) {
+        EXPECT_EQ(mockGfxrepro({command, alone}).exitCode, 0) << command;
+    }
+    fs::remove(alone + "/records.csv");
+    const ProcessResult rest = mockGfxrepro({"run", "--resume", alone});
+    EXPECT_EQ(rest.out, "2 of 2 finished; records: " + alone + "/records.csv\n");
+    const ProcessResult merge = mockGfxrepro({"merge", alone, "--out", folder.path() / "merged"});
+    EXPECT_EQ(merge.exitCode, 2);
+    EXPECT_EQ(merge.err,
+              "gfxrepro: " + alone +
+                  ": the plan that it is a shard of is neither in it (whole-plan.json) nor two "
+                  "folders above it (submitted-plan.json): a shard of a submission is merged with "
+                  "the submission's folder\n");
+    // With its submission it may lie anywhere, and what was not begun is missing.
+    fs::rename(out, folder.path() / "moved");
+    const ProcessResult moved = mockGfxrepro({"merge", folder.path() / "moved"});
+    EXPECT_EQ(moved.exitCode, 4);
+    EXPECT_EQ(moved.err, "");
+    EXPECT_THAT(moved.out, HasSubstr("missing: shard 2/2\n"));
+    EXPECT_THAT(moved.out, HasSubstr("merged 1 shard into " + (folder.path() / "moved").string() +
+                                     ": 2 of 4 measured, 0 failed, 2 missing\n"));
+}
+
+TEST(Submit, AReplacedPlanIsNotMerged) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path() / "out", other = folder.path() / "other";
+    for (const std::string& line : submitPairs(folder, 4, out)) {
+        ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
+    }
+    const std::string file = out + "/submitted-plan.json", plan = readFile(file);
+    submitPairs(folder, 6, other);
+    const auto expectRefused = [&](const std::string& problem) {
+        const ProcessResult merge = mockGfxrepro({"merge", out, "--out", folder.path() / "merged"});
+        EXPECT_EQ(merge.exitCode, 2);
+        EXPECT_THAT(merge.err, HasSubstr(problem));
+        EXPECT_FALSE(fs::exists(folder.path() / "merged/plan.json"));
+    };
+    fs::copy_file(other + "/submitted-plan.json", file, fs::copy_options::overwrite_existing);
+    expectRefused(file + ": is not the plan that " + out +
+                  "/shards/1 is a shard of: it was changed\n");
+    writeFileAtomic(file, plan + ' ');
+    expectRefused(": it was changed\n");
+    // So it is with a shard of another submission, and one that is there twice.
+    writeFileAtomic(file, plan);
+    fs::rename(out + "/shards/2", folder.path() / "kept");
+    for (const std::string& line : submitPairs(folder, 6, other)) {
+        ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
+    }
+    fs::copy(other + "/shards/2", out + "/shards/2", fs::copy_options::recursive);
+    expectRefused("/shards/2 are shards of different plans (");
+    fs::remove_all(out + "/shards/2");
+    fs::copy(out + "/shards/1", out + "/shards/2", fs::copy_options::recursive);
+    expectRefused("/shards/2: these are no shards of one cut\n");
+    fs::remove_all(out + "/shards/2");
+    fs::rename(folder.path() / "kept", out + "/shards/2");
+    EXPECT_EQ(mockGfxrepro({"merge", out, "--out", folder.path() / "merged"}).exitCode, 0);
+}
+
+/// What has ended says itself what it came to; what was changed since is counted anew.
+TEST(Submit, TheStatusOfWhatEndedNeedsNoPlan) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path() / "out";
+    for (const std::string& line : submitPairs(folder, 4, out)) {
+        ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
+    }
+    for (const char* file : {"/shards/1/plan.json", "/plan.json", "/submitted-plan.json"}) {
+        writeFileAtomic(out + file, "of a thousand shards this would take long");
+    }
+    const ProcessResult status = mockGfxrepro({"submit", "--status", out});
+    EXPECT_EQ(status.exitCode, 0) << status.err;
+    EXPECT_EQ(status.out,
+              "shard  done  failed  state\n1/2    2/2   0       complete\n"
+              "2/2    2/2   0       complete\nmerge  4/4   0       complete\n");
+    const std::string records = out + "/shards/2/records.csv";
+    std::vector<records::Record> rows = records::readRecords(records);
+    std::erase_if(rows, [&](const auto& row) { return row.caseId == rows.front().caseId; });
+    fs::remove(records);
+    records::RecordWriter(records).append(rows);
+    EXPECT_THAT(mockGfxrepro({"submit", "--status", out}).out,
+                HasSubstr("2/2    1/2   0       not complete\n"));
+    // A run that lost its manifest is none that waits for its task.
+    fs::remove(out + "/shards/2/manifest.json");
+    EXPECT_THAT(mockGfxrepro({"run", "--resume", out + "/shards/2"}).err,
+                HasSubstr("manifest.json"));
+    EXPECT_TRUE(fs::exists(records));
 }
 
 TEST(Submit, TheProgramThatWasSubmittedRunsWhateverIsBuiltLater) {
@@ -429,8 +570,7 @@ TEST(Submit, DryRunWritesNothing) {
     EXPECT_THAT(result.out, HasSubstr("#SBATCH --exclusive\n#SBATCH --partition=gpus\n"
                                       "#SBATCH --gres=gpu:1\n#SBATCH --account=x\n"
                                       "#SBATCH --mem=8G\nexec "));
-    EXPECT_THAT(result.out, HasSubstr("--shard \"$SLURM_ARRAY_TASK_ID\"/1 --resume " + out +
-                                      "/shards/\"$SLURM_ARRAY_TASK_ID\"\n"));
+    EXPECT_THAT(result.out, HasSubstr(" --resume " + out + "/shards/\"$SLURM_ARRAY_TASK_ID\"\n"));
     EXPECT_THAT(result.out, HasSubstr("sbatch --array=1 --output=" + out + "/task-%a.txt " + out +
                                       "/task.sh\nsbatch --dependency=afterany:JOB --output=" + out +
                                       "/merge.txt " + out + "/merge.sh\n"));

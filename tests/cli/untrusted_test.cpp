@@ -305,14 +305,14 @@ TEST_F(Untrusted, APlanWithoutItsHashIsNotMeasured) {
                             "software", "--out", submitted})
                   .exitCode,
               0);
-    const std::string file = submitted + "/submitted-plan.json";
+    const std::string shard = submitted + "/shards/1", file = shard + "/plan.json";
     auto plan = nlohmann::ordered_json::parse(readFile(file));
     plan.erase("frozen_hash");
     plan["request"]["only"] = {"number=1"};
     plan["cases"].erase(1);
     writeFileAtomic(file, plan.dump());
-    expectRefused({"run", "--plan", file, "--out", out}, "'/frozen_hash' is missing\n");
-    EXPECT_FALSE(fs::exists(out));
+    expectRefused({"run", "--resume", shard}, "'/frozen_hash' is missing\n");
+    EXPECT_FALSE(fs::exists(shard + "/records.csv"));
 }
 
 /// GitHub's runner takes what begins a line with "::", and what has "##[" anywhere, for a command.

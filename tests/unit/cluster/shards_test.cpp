@@ -3,10 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
 
+#include "engine/core/hash.h"
 #include "runner/run/manifest.h"
+#include "runner/run/plan_json.h"
 #include "tests/support/support.h"
 #include "tests/unit/run/plan_fixture.h"
 
@@ -118,9 +122,10 @@ TEST(Shards, AllShardsTogetherHaveEachUnitOnce) {
     plan.cases[3].measure.processes = 2;
     const std::vector<double> timesS = {5, 1, 1, 8, 1, 1, 1, 2, 2, 3};
     std::multiset<std::string> units;
+    const std::vector<int> shardOf = cluster::cutShards(plan.cases, timesS, 3);
     for (int k = 1; k <= 3; ++k) {
-        run::Plan part = plan;
-        cluster::takeShard(part, {k, 3, {}}, timesS);
+        const run::Plan part = cluster::shardPlan(plan, {k, 3, "hash"}, shardOf);
+        EXPECT_EQ(part.shard->whole, "hash");
         for (const run::Unit& unit : run::unitsOf(part)) {
             units.insert(unit.item->id + '#' + std::to_string(unit.process));
         }
@@ -131,6 +136,28 @@ TEST(Shards, AllShardsTogetherHaveEachUnitOnce) {
     }
     EXPECT_EQ(whole.size(), 11U);
     EXPECT_EQ(units, whole);
+}
+
+/// Two shards of tables with scenes of their own: neither has what only the other measures.
+TEST(Shards, APlanOfAShardHasItsOwnAlone) {
+    run::Plan plan;
+    for (const char* name : {"q/1", "q/2"}) {
+        plan.experiments.emplace_back().id = name;
+        Case item = makeCase(name, "a", 1);
+        item.scene = Node::scalar(std::string("models/of-") + name);
+        plan.sceneKeys[item.scene.text()] = "key";
+        plan.cases.push_back(item);
+    }
+    plan.hash = "of the whole";
+    const run::Plan part = cluster::shardPlan(plan, {2, 2}, std::vector<int>{0, 1});
+    ASSERT_EQ(part.cases.size(), 1U);
+    EXPECT_EQ(part.cases[0].id, plan.cases[1].id);
+    ASSERT_EQ(part.experiments.size(), 1U);
+    EXPECT_EQ(part.experiments[0].id, "q/2");
+    EXPECT_EQ(part.sceneKeys.size(), 1U);
+    EXPECT_TRUE(part.sceneKeys.contains("models/of-q/2"));
+    EXPECT_EQ(part.hash, plan.hash);
+    EXPECT_EQ(part.shard->name(), "2/2");
 }
 
 using cluster::mergeRuns;
@@ -151,8 +178,8 @@ run::Plan makePlan() {
 
 TEST(Merge, RecordsAreInTheOrderOfThePlan) {
     const run::Plan plan = makePlan();
-    const run::StoredRun merged =
-        mergeRuns({makeShard(plan, 2, 2, {5, 4, 1}), makeShard(plan, 1, 2, {3, 0, 2})}, "merge");
+    const run::StoredRun merged = mergeRuns(
+        plan, {makeShard(plan, 2, 2, {5, 4, 1}), makeShard(plan, 1, 2, {3, 0, 2})}, "merge");
     std::vector<double> values;
     for (const records::Record& row : merged.records) values.push_back(row.value);
     EXPECT_THAT(values, ElementsAre(0, 1, 2, 3, 4, 5));
@@ -184,7 +211,7 @@ TEST(Merge, KeepsFurtherRounds) {
     shards[1].run.manifest["rounds"] = {{"t/1", {{"rounds", 8}}}};
     shards[0].run.manifest["machine_states"] = {{"t/2", {{"hottest_c", 40.0}}}};
     shards[1].run.manifest["machine_states"] = {{"t/1", {{"hottest_c", 50.0}}}};
-    const run::StoredRun merged = mergeRuns(shards, "merge");
+    const run::StoredRun merged = mergeRuns(plan, shards, "merge");
     EXPECT_EQ(merged.records.size(), 4U + 16U);
     EXPECT_EQ(merged.records.back().process, 7);
     EXPECT_EQ(merged.records.back().caseId, plan.cases[4].id) << "odd rounds go backwards";
@@ -194,7 +221,7 @@ TEST(Merge, KeepsFurtherRounds) {
     EXPECT_EQ(run::completeness(merged).units, 20);
     EXPECT_EQ(run::completeness(merged).missing, 0);
     shards[1].run.records.pop_back();  // round 7 was interrupted
-    EXPECT_THAT(cluster::missingUnits(mergeRuns(shards, "merge")),
+    EXPECT_THAT(cluster::missingUnits(mergeRuns(plan, shards, "merge")),
                 ElementsAre("t/1 method=a size=1 process 8"));
 }
 
@@ -203,7 +230,7 @@ TEST(Merge, NamesWhatIsMissing) {
     std::vector<cluster::ShardRun> shards = {makeShard(plan, 1, 3, {0, 2}),
                                              makeShard(plan, 3, 3, {4, 5})};
     shards[0].run.records.pop_back();  // planned there, not measured
-    EXPECT_THAT(cluster::missingUnits(mergeRuns(shards, "merge")),
+    EXPECT_THAT(cluster::missingUnits(mergeRuns(plan, shards, "merge")),
                 ElementsAre("q/1 method=a size=2", "q/1 method=a size=3", "q/1 method=a size=4"));
     EXPECT_THAT(cluster::missingShards(shards), ElementsAre("2/3"));
 }
@@ -212,7 +239,7 @@ TEST(Merge, AMissingProcessIsMissing) {
     run::Plan plan = makePlan();
     plan.cases.resize(1);
     plan.cases[0].measure.processes = 2;
-    EXPECT_THAT(cluster::missingUnits(mergeRuns({makeShard(plan, 1, 1, {0})}, "merge")),
+    EXPECT_THAT(cluster::missingUnits(mergeRuns(plan, {makeShard(plan, 1, 1, {0})}, "merge")),
                 ElementsAre("q/1 method=a size=1 process 2"));
 }
 
@@ -221,18 +248,19 @@ TEST(Merge, RefusesDifferentPlans) {
     run::Plan other = plan;
     other.hash = "fedcba9876543210";
     other.buildId = "another build";
-    EXPECT_EQ(errorText([&] {
-                  mergeRuns({makeShard(plan, 1, 2, {0}), makeShard(other, 2, 2, {1})}, "merge");
-              }),
-              "s1 and s2 are shards of different plans (0123456789ab, fedcba987654): the program "
-              "or a shader changed (build  then, another buil now)");
+    EXPECT_EQ(
+        errorText([&] {
+            mergeRuns(plan, {makeShard(plan, 1, 2, {0}), makeShard(other, 2, 2, {1})}, "merge");
+        }),
+        "s1 and s2 are shards of different plans (0123456789ab, fedcba987654): the program "
+        "or a shader changed (build  then, another buil now)");
 }
 
 TEST(Merge, RefusesACaseThatTwoHave) {
     const run::Plan plan = makePlan();
     EXPECT_EQ(
         errorText([&] {
-            mergeRuns({makeShard(plan, 1, 2, {0, 1}), makeShard(plan, 2, 3, {1, 2})}, "");
+            mergeRuns(plan, {makeShard(plan, 1, 2, {0, 1}), makeShard(plan, 2, 3, {1, 2})}, "");
         }),
         "the case 'q/1 method=a size=2' is in both s1 and s2: these are no shards of one cut");
     // Planned in one and measured in the other is no better.
@@ -240,14 +268,53 @@ TEST(Merge, RefusesACaseThatTwoHave) {
                                              makeShard(plan, 2, 2, {1})};
     shards[0].run.records.pop_back();
     EXPECT_EQ(
-        errorText([&] { mergeRuns(shards, ""); }),
+        errorText([&] { mergeRuns(plan, shards, ""); }),
         "the case 'q/1 method=a size=2' is in both s1 and s2: these are no shards of one cut");
+}
+
+TEST(Merge, RefusesACaseThatThePlanHasNot) {
+    run::Plan plan = makePlan();
+    const std::vector<cluster::ShardRun> shards = {makeShard(plan, 1, 2, {0, 3})};
+    plan.cases.erase(plan.cases.begin() + 3);
+    EXPECT_EQ(errorText([&] { mergeRuns(plan, shards, ""); }),
+              "s1: its case q/1 a 4 of q/1 is not in the plan of the shards");
+}
+
+/// Submitted where no GPU is, measured where one is: the shards say so, and no file is written
+/// anew.
+TEST(Merge, TheWholePlanIsOfTheDevicesThatMeasured) {
+    const TemporaryFolder folder;
+    run::Plan whole = makePlan();
+    whole.deviceClass = "software";
+    for (config::Case& item : whole.cases) {
+        item.given = Node::map({});
+        item.id = run::caseId(item, run::toJson(item), whole);
+    }
+    const auto file = folder.path() / cluster::kSubmittedPlan;
+    whole.writeFile(file);
+    cluster::ShardRun shard{folder.path() / "shards/2", {}};
+    std::filesystem::create_directories(shard.path);
+    shard.run.plan =
+        cluster::shardPlan(whole, {2, 2, sha256OfFile(file)}, std::vector<int>{0, 0, 1, 1, 0, 0});
+    run::rebind(shard.run.plan, "gpu");
+    const run::Plan found = cluster::wholePlan({shard});
+    EXPECT_EQ(found.deviceClass, "gpu");
+    EXPECT_EQ(found.hash, whole.hash);
+    EXPECT_EQ(found.cases[2].id, shard.run.plan.cases[0].id);
+    EXPECT_NE(found.cases[2].id, whole.cases[2].id);
+    EXPECT_EQ(run::planDifference(whole, shard.run.plan),
+              "the run began on a software device, this one is a gpu device");
+    shard.run.plan.shard->whole = "another";
+    EXPECT_EQ(errorText([&] { cluster::wholePlan({shard}); }),
+              file.string() + ": is not the plan that " + shard.path.string() +
+                  " is a shard of: it was changed");
 }
 
 TEST(Merge, RefusesToMixDevicesInOneTable) {
     const run::Plan plan = makePlan();
     EXPECT_EQ(errorText([&] {
-                  mergeRuns({makeShard(plan, 1, 2, {0, 4}, "GPU A"),
+                  mergeRuns(plan,
+                            {makeShard(plan, 1, 2, {0, 4}, "GPU A"),
                              makeShard(plan, 2, 2, {1, 5}, "GPU B")},
                             "merge");
               }),
@@ -258,6 +325,7 @@ TEST(Merge, RefusesToMixDevicesInOneTable) {
 TEST(Merge, DevicesMayDifferElsewhere) {
     const run::Plan plan = makePlan();
     const run::StoredRun merged = mergeRuns(
+        plan,
         {makeShard(plan, 1, 2, {0, 2, 4, 5}, "GPU A"), makeShard(plan, 2, 2, {1, 3}, "GPU B")},
         "merge");
     EXPECT_EQ(merged.manifest["gl"]["renderer"], "GPU A; GPU B");
@@ -269,7 +337,7 @@ TEST(Merge, AShardThatMovedTellsTheMachineOfItsTimes) {
     std::vector<cluster::ShardRun> shards = {makeShard(plan, 1, 2, {0, 4}, "GPU A"),
                                              makeShard(plan, 2, 2, {1, 5}, "GPU A")};
     shards[1].run.manifest["timing_machines"]["t/1"] = "another node";
-    EXPECT_EQ(errorText([&] { mergeRuns(shards, "merge"); }),
+    EXPECT_EQ(errorText([&] { mergeRuns(plan, shards, "merge"); }),
               "the times of t/1 would mix devices: s1 was measured on CPU, 2 cores, GPU A, 4.5; s2 "
               "on another node");
 }

@@ -14,7 +14,7 @@ cluster::Submission makeSubmission() {
     cluster::Submission s;
     s.name = "zju2005";
     s.program = "/opt/kept it/gfxrepro";
-    s.runArguments = {"/c/t.yaml", "--set", "a=[1, 2]"};
+    s.runArguments = {"--assets", "/a b", "--jobs", "2"};
     s.out = "/out put";
     s.shardCount = 2;
     s.timeLimitMin = 12;
@@ -31,13 +31,11 @@ TEST(Submission, QuotesForTheShell) {
 
 TEST(Submission, Commands) {
     EXPECT_EQ(cluster::shardCommand(makeSubmission(), 2),
-              "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' run --quiet /c/t.yaml "
-              "--set 'a=[1, 2]' --from '/out put/predictions.csv' "
-              "--shard 2/2 --resume '/out put/shards/2'");
-    EXPECT_EQ(
-        cluster::mergeCommand(makeSubmission()),
-        "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge --out '/out put' '/out "
-        "put/shards/1' '/out put/shards/2'");
+              "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' run --quiet --assets "
+              "'/a b' --jobs 2 --resume '/out put/shards/2'");
+    // As short for a thousand shards.
+    EXPECT_EQ(cluster::mergeCommand(makeSubmission()),
+              "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge '/out put'");
 }
 
 TEST(Submission, Scripts) {
@@ -49,17 +47,13 @@ TEST(Submission, Scripts) {
               "#SBATCH --time=12\n#SBATCH --requeue\n#SBATCH --open-mode=append\n"
               "#SBATCH --exclusive\n#SBATCH --partition=p\n#SBATCH --gres=gpu:1\n"
               "#SBATCH --account=x\n#SBATCH --mem=8G\n"
-              "exec env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' run --quiet /c/t.yaml "
-              "--set 'a=[1, 2]' --from "
-              "'/out put/predictions.csv' --shard \"$SLURM_ARRAY_TASK_ID\"/2 --resume "
-              "'/out put/shards'/\"$SLURM_ARRAY_TASK_ID\"\n");
-    EXPECT_EQ(
-        cluster::mergeScript(s),
-        "#!/bin/sh\n#SBATCH --job-name=gfxrepro-zju2005-merge\n#SBATCH --ntasks=1\n"
-        "#SBATCH --time=60\n#SBATCH --requeue\n#SBATCH --open-mode=append\n"
-        "#SBATCH --partition=p\n#SBATCH --account=x\n"
-        "exec env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge --out '/out put' "
-        "'/out put/shards/1' '/out put/shards/2'\n");
+              "exec env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' run --quiet --assets "
+              "'/a b' --jobs 2 --resume '/out put/shards'/\"$SLURM_ARRAY_TASK_ID\"\n");
+    EXPECT_EQ(cluster::mergeScript(s),
+              "#!/bin/sh\n#SBATCH --job-name=gfxrepro-zju2005-merge\n#SBATCH --ntasks=1\n"
+              "#SBATCH --time=60\n#SBATCH --requeue\n#SBATCH --open-mode=append\n"
+              "#SBATCH --partition=p\n#SBATCH --account=x\n"
+              "exec env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge '/out put'\n");
 }
 
 TEST(Submission, ArrayIndices) {

@@ -38,13 +38,14 @@ cluster::ShardRun makeShard(const run::Plan& plan, int index, int count,
     shard.path = "s" + std::to_string(index);
     shard.run.plan = plan;
     shard.run.plan.shard = run::Shard{index, count, {}};
+    shard.run.plan.cases.clear();
     shard.run.manifest = {{"cpu", "CPU"},
                           {"cores", 2},
                           {"gl", {{"vendor", "V"}, {"renderer", renderer}, {"version", "4.5"}}},
                           {"scenes", run::Json::object()},
                           {"invocations", run::Json::array()}};
     for (const std::size_t i : cases) {
-        shard.run.plan.shard->caseIds.insert(plan.cases[i].id);
+        shard.run.plan.cases.push_back(plan.cases[i]);
         shard.run.records.push_back(makeRow(plan.cases[i], static_cast<double>(i)));
     }
     return shard;
