@@ -254,7 +254,7 @@ std::string mergedJournal(const std::vector<ShardRun>& shards) {
 
 run::Plan wholePlan(const std::vector<ShardRun>& shards) {
     for (const ShardRun& shard : shards) {
-        if (!shard.run.plan.shard) return run::Plan::fromJsonFile(shard.path / "plan.json");
+        if (!shard.run.plan.shard) return shard.run.plan;
         const fs::path folder = fs::canonical(shard.path);
         for (const fs::path& file :
              {folder / kWholePlan, folder.parent_path().parent_path() / kSubmittedPlan}) {

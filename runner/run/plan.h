@@ -60,8 +60,8 @@ struct Plan {
     /// The same to a file, which is there as a whole or not at all. Throws Error.
     void writeFile(const std::filesystem::path& path) const;
     static Plan fromJsonFile(const std::filesystem::path& path);
-    /// The same, as far as a merge asks it of a shard: a case has only its id and its experiment,
-    /// an experiment its file and document.
+    /// The same, but of a shard only what a merge asks of it: of a case its id and its experiment,
+    /// of an experiment its file and document.
     static Plan outlineFromJsonFile(const std::filesystem::path& path);
 };
 

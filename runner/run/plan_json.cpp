@@ -420,6 +420,7 @@ Plan Plan::outlineFromJsonFile(const fs::path& path) {
     const SourceLocation where{path.string(), 0, 0};
     Json json = parseJsonObject(MappedFile(path).text(), where);
     Plan plan = headFrom(json, where);
+    if (!plan.shard) return fromJsonFile(path);
     requireEach(json, "/experiments", kExperiment, where);
     for (const Json& item : json.at("experiments")) {
         config::Experiment& experiment = plan.experiments.emplace_back();

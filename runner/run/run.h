@@ -41,7 +41,7 @@ struct StoredRun {
 /// (noteChanges), and that several machines measured (noteMachines).
 StoredRun readRun(const std::filesystem::path& runDir);
 
-/// Of a shard, for a merge: its plan is an outline (Plan::outlineFromJsonFile).
+/// For a merge: a shard's plan is an outline (Plan::outlineFromJsonFile).
 StoredRun readOutlined(const std::filesystem::path& runDir);
 
 /// Whether something was begun to be measured there. A plan alone is a shard that waits for its
