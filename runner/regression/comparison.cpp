@@ -4,20 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <string_view>
 #include <utility>
 
-#include "engine/core/text.h"
+#include "engine/metrics/mean_test.h"
 #include "runner/records/records.h"
-#include "runner/report/markup.h"
-#include "runner/report/writers.h"
 
 namespace gfxrepro::regression {
 
 namespace {
+
+/// Processes a side of which an interval can be made.
+constexpr std::size_t kFewestApart = 4;
 
 Series logarithms(const Series& values) {
     Series logs;
@@ -84,8 +84,11 @@ std::optional<Difference> voidTime(const SeriesKey& key, const Series& before,
 /// A time of both sides, and how it was tested.
 struct TestedTime {
     Difference difference;
-    RankTest test;
+    RankTest test;                   // apart: its chance is that of the means
     std::size_t rounds[2] = {0, 0};  // alternate: of pairs, twice the same
+    double t = 0.0;                  // apart, of the means
+    /// Beyond the floor: alternate the ratio, apart its bound on that side.
+    bool isSlower = false, isFaster = false;
 };
 
 TestedTime testTime(const SeriesKey& key, const Series& allBefore, const Series& allAfter,
@@ -116,16 +119,24 @@ TestedTime testTime(const SeriesKey& key, const Series& allBefore, const Series&
         time.rounds[1] = after.size();
         time.test = rankSum(logarithms(before), logarithms(after));
         difference.floor = rules.driftApart;
+        if (std::min(before.size(), after.size()) > 1) {
+            const WelchTest means = welch(logarithms(before), logarithms(after));
+            time.t = means.t;
+            time.test.chance = means.chance;
+        }
     }
     difference.ratio = std::exp(time.test.shift);
     difference.interval = {std::exp(time.test.interval.low), std::exp(time.test.interval.high)};
+    const double shift = time.test.shift, floor = std::log1p(difference.floor);
+    const bool isApart = pairing == Pairing::Apart;
+    time.isSlower = (isApart ? time.test.bounds.low : shift) > floor;
+    time.isFaster = (isApart ? time.test.bounds.high : shift) < -floor;
     return time;
 }
 
 /// Whether the chances are too small for none, all together: by turns by steps down [Holm 1979],
 /// with `level` the chance of one false alarm. Apart by steps up [Benjamini and Hochberg 1995]: the
-/// chance where nothing changed, else the share of false ones; the processes of two runs that are
-/// there reach no smaller one.
+/// chance where nothing changed, else the share of false ones.
 std::vector<bool> rejections(const std::vector<TestedTime*>& times, Pairing pairing, double level) {
     std::vector<std::size_t> order(times.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -143,29 +154,49 @@ std::vector<bool> rejections(const std::vector<TestedTime*>& times, Pairing pair
     return isRejected;
 }
 
+/// How many rounds, or processes a side, would make the chance so small, were all as it is; as far
+/// as a thousand.
+std::size_t countNeeded(const TestedTime& time, Pairing pairing, double level) {
+    const std::size_t had = std::min(time.rounds[0], time.rounds[1]);
+    const auto chance = [&](std::size_t count) {
+        const auto now = static_cast<double>(count);
+        if (pairing == Pairing::ByTurns) return std::exp2(1.0 - now);
+        const double t = time.t * std::sqrt(now / static_cast<double>(had));
+        return metrics::studentP(t, 2 * static_cast<int>(count) - 2);
+    };
+    std::size_t count = had;
+    while (count < 1000 && chance(count) > level) ++count;
+    return count;
+}
+
 std::string whyUndecided(const TestedTime& time, std::size_t seriesCount, Pairing pairing,
                          double level) {
     const std::string among =
         seriesCount == 1 ? "one series" : fmt::format("{} series", seriesCount);
-    if (pairing == Pairing::Apart) {
-        if (time.test.attainable > level) {
-            return fmt::format("{} and {} processes cannot decide", time.rounds[0], time.rounds[1]);
-        }
-        return fmt::format("measured apart: a machine may drift by {:.0f} %",
-                           100.0 * time.difference.floor);
+    const std::size_t needed = countNeeded(time, pairing, level / static_cast<double>(seriesCount));
+    if (pairing == Pairing::ByTurns) {
+        if (needed == time.rounds[0]) return "the interval is too wide";
+        return fmt::format("{} rounds cannot decide among {}: {} are needed", time.rounds[0], among,
+                           needed);
     }
-    const bool isTooFew = time.test.attainable > level / static_cast<double>(seriesCount);
-    if (isTooFew) return fmt::format("{} rounds cannot decide among {}", time.rounds[0], among);
-    return "the interval is too wide";
+    if (time.isSlower || time.isFaster) {
+        return fmt::format("{} and {} processes cannot decide among {}: {} a side are needed",
+                           time.rounds[0], time.rounds[1], among, needed);
+    }
+    const std::string drift = fmt::format("{:.0f} %", 100.0 * time.difference.floor);
+    if (std::abs(time.test.shift) <= std::log1p(time.difference.floor)) {
+        return fmt::format("measured apart: a machine may drift by {}", drift);
+    }
+    return fmt::format("the interval reaches into the {} by which a machine may drift", drift);
 }
 
 void judgeTime(TestedTime& time, bool isRejected, std::size_t seriesCount, Pairing pairing,
                double level, const Rules& rules) {
     Difference& difference = time.difference;
     const double same = rules.sameWithin;
-    if (isRejected && difference.ratio > 1.0 + difference.floor) {
+    if (isRejected && time.isSlower) {
         difference.verdict = Verdict::Slower;
-    } else if (isRejected && difference.ratio < 1.0 / (1.0 + difference.floor)) {
+    } else if (isRejected && time.isFaster) {
         difference.verdict = Verdict::Faster;
     } else if (pairing == Pairing::ByTurns && difference.interval.low >= 1.0 / (1.0 + same) &&
                difference.interval.high <= 1.0 + same) {
@@ -181,9 +212,12 @@ void judgeTimes(std::vector<TestedTime>& times, Pairing pairing, const Rules& ru
     std::vector<TestedTime*> tested;
     for (TestedTime& time : times) {
         if (!time.difference.reason.empty()) continue;
-        // What no outcome could decide shares in no chance [Tarone 1990].
-        if (pairing == Pairing::Apart && time.test.attainable > level) {
-            time.difference.reason = whyUndecided(time, 1, pairing, level);
+        // What has no interval, or no spread, shares in no chance.
+        const std::size_t fewest = std::min(time.rounds[0], time.rounds[1]);
+        if (pairing == Pairing::Apart && (time.test.attainable > level || fewest < 2)) {
+            time.difference.reason =
+                fmt::format("{} and {} processes cannot decide: {} a side are needed",
+                            time.rounds[0], time.rounds[1], kFewestApart);
             continue;
         }
         tested.push_back(&time);
@@ -419,157 +453,6 @@ void noteVoidTimes(std::vector<Difference>& differences, const CaseTexts& before
             one.reason += fmt::format(" (void in some rounds: {})", *either);
         }
     }
-}
-
-// For people and for other tools.
-
-namespace {
-
-std::size_t countOf(const std::vector<Difference>& differences, Verdict verdict) {
-    return static_cast<std::size_t>(std::ranges::count(differences, verdict, &Difference::verdict));
-}
-
-/// Whether both sides have a value.
-bool isOfTwo(const Difference& difference) {
-    return difference.verdict != Verdict::Missing && difference.verdict != Verdict::Lost &&
-           !difference.isOfNone();
-}
-
-std::string ratioText(const Difference& difference) {
-    if (!isOfTwo(difference) || difference.isPicture()) return "";
-    return fmt::format("{:.3f} [{:.3f}, {:.3f}]", difference.ratio, difference.interval.low,
-                       difference.interval.high);
-}
-
-std::string verdictText(const Difference& difference) {
-    const std::string_view name = verdictName(difference.verdict);
-    return difference.reason.empty() ? std::string(name)
-                                     : fmt::format("{}: {}", name, difference.reason);
-}
-
-/// " ([before](…), [after](…), [difference](…))" of a picture whose files are kept.
-std::string evidenceLinks(const Difference& difference) {
-    if (difference.evidence.empty()) return "";
-    std::string links;
-    for (const auto& [label, ending] :
-         {std::pair{"before", "-before.png"}, std::pair{"after", "-after.png"},
-          std::pair{"difference", "-flip.png"}}) {
-        if (!difference.picture && std::string_view(label) == "difference") continue;
-        links += fmt::format("{}[{}]({}{})", links.empty() ? "" : ", ", label, difference.evidence,
-                             ending);
-    }
-    return fmt::format(" ({})", links);
-}
-
-std::string markdownRow(const Difference& difference, const std::string& name) {
-    const std::string title = report::escapeMarkdown(name);
-    const std::string verdict =
-        report::escapeMarkdown(verdictText(difference)) + evidenceLinks(difference);
-    if (difference.isPicture() || difference.isOfNone()) {
-        return fmt::format("| {} | | | | | {} |\n", title, verdict);
-    }
-    return fmt::format("| {} | {:.4g} | {:.4g} {} | {} | {:.2g} | {} |\n", title, difference.before,
-                       difference.after, report::escapeMarkdown(difference.key.unit),
-                       ratioText(difference), difference.floor, verdict);
-}
-
-/// The names of tests: titles, and where several series have one, what else they differ in.
-std::vector<std::string> uniqueNames(const std::vector<const SeriesKey*>& keys) {
-    std::map<std::string, int> counts;
-    for (const SeriesKey* key : keys) ++counts[key->title()];
-    std::vector<std::string> names;
-    for (const SeriesKey* key : keys) {
-        names.push_back(key->title());
-        if (counts[names.back()] > 1) names.back() += fmt::format(" {} {}", key->unit, key->params);
-    }
-    return names;
-}
-
-}  // namespace
-
-std::string summaryLine(const std::vector<Difference>& differences) {
-    std::string text;
-    for (const Verdict verdict :
-         {Verdict::Lost, Verdict::Slower, Verdict::Faster, Verdict::Changed, Verdict::Same,
-          Verdict::CannotTell, Verdict::Missing, Verdict::Void, Verdict::Failed}) {
-        const std::size_t count = countOf(differences, verdict);
-        if (count == 0) continue;
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, verdictName(verdict));
-    }
-    return text.empty() ? "nothing to compare" : text;
-}
-
-std::string stepLine(const SeriesStep& found) {
-    return fmt::format("step in {}: × {:.3f} since night {} of {} (chance {:.1g})",
-                       found.key.title(), found.step.ratio, found.step.first + 1, found.nights,
-                       found.step.chance);
-}
-
-bool Comparison::isAlarm() const {
-    return std::ranges::any_of(differences, &Difference::isAlarm) ||
-           std::ranges::any_of(steps, &SeriesStep::isAlarm);
-}
-
-std::string markdown(const Comparison& comparison) {
-    const std::vector<Difference>& differences = comparison.differences;
-    std::string text = fmt::format("# Comparison\n\n{}\n\n", summaryLine(differences));
-    for (const std::string& note : comparison.notes) {
-        text += fmt::format("Note: {}\n\n", report::escapeMarkdown(note));
-    }
-    for (const SeriesStep& step : comparison.steps) {
-        text += fmt::format("{}\n\n", report::escapeMarkdown(stepLine(step)));
-    }
-    text += "| what | before | after | time after / before | floor | verdict |\n";
-    text += "| --- | ---: | ---: | ---: | ---: | --- |\n";
-    const std::vector<std::string> titles = titlesOf(keysOf(differences));
-    for (std::size_t i = 0; i < differences.size(); ++i) {
-        if (differences[i].verdict == Verdict::Same) continue;
-        text += markdownRow(differences[i], titles[i]);
-    }
-    return text;
-}
-
-std::string junitXml(const Comparison& comparison) {
-    using Outcome = records::CaseEnd::Outcome;
-    const std::vector<Difference>& differences = comparison.differences;
-    std::vector<report::JunitTest> tests;
-    std::vector<std::string> names = uniqueNames(keysOf(differences));
-    for (std::size_t i = 0; i < differences.size(); ++i) {
-        const Difference& one = differences[i];
-        const bool isPass = one.verdict == Verdict::Same || one.verdict == Verdict::Faster;
-        tests.push_back({one.key.table, names[i],
-                         isPass          ? Outcome::Measured
-                         : one.isAlarm() ? Outcome::Failed
-                                         : Outcome::Skipped,
-                         fmt::format("{} {}", verdictText(one), ratioText(one))});
-    }
-    names = uniqueNames(keysOf(comparison.steps));
-    for (std::size_t i = 0; i < comparison.steps.size(); ++i) {
-        const SeriesStep& step = comparison.steps[i];
-        tests.push_back({step.key.table, "history of " + names[i],
-                         step.isAlarm() ? Outcome::Failed : Outcome::Measured, stepLine(step)});
-    }
-    return std::string(report::kXmlHead) + report::junitSuite("regression", tests);
-}
-
-std::string smallerIsBetterJson(const std::vector<Difference>& differences) {
-    nlohmann::ordered_json entries = nlohmann::ordered_json::array();
-    for (const Difference& difference : differences) {
-        if (difference.isAlarm() && difference.picture) {
-            entries.push_back(
-                {{"name", fmt::format("{} {}", difference.key.title(), difference.key.params)},
-                 {"unit", "FLIP"},
-                 {"value", difference.picture->flip},
-                 {"range", fmt::format("largest difference {:.3g}", difference.picture->largest)}});
-        }
-        if (!difference.key.isTime() || difference.after <= 0.0) continue;
-        entries.push_back(
-            {{"name", fmt::format("{} {}", difference.key.title(), difference.key.params)},
-             {"unit", difference.key.unit},
-             {"value", difference.after},
-             {"range", fmt::format("× {}", ratioText(difference))}});
-    }
-    return entries.dump(2) + "\n";
 }
 
 }  // namespace gfxrepro::regression

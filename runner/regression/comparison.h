@@ -79,11 +79,12 @@ struct Difference {
 double detectableChange(const Series& values, const Rules& rules);
 
 /// Every series of both sides, after matchParams and chooseTimes, in the order of their keys.
-/// Times: the exact chance of such a difference without a change (signed ranks of the log ratios of
-/// alternate rounds, rank sums apart) is held against familyError / looks over all series [Holm
-/// 1979], apart over those that so many processes could decide [Benjamini and Hochberg 1995];
-/// slower and faster, when the ratio lies beyond the floor too. Otherwise same, where the interval
-/// says so, or cannot tell.
+/// Times measured by turns: the exact chance of such log ratios of rounds without a change (signed
+/// ranks) is held against familyError / looks over all series [Holm 1979]; slower and faster, when
+/// the ratio lies beyond the floor too. Apart: the chance of such means of logarithms [Welch 1947],
+/// against familyError over those that have an interval [Benjamini and Hochberg 1995]; slower and
+/// faster, when the ratio (rank sums) lies beyond the floor with 95 %, too. Otherwise same, where
+/// the interval says so, or cannot tell.
 std::vector<Difference> compare(const SeriesMap& before, const SeriesMap& after, Pairing pairing,
                                 const Rules& rules = {});
 

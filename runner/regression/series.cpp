@@ -11,6 +11,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "engine/metrics/mean_test.h"
 #include "engine/metrics/statistics.h"
 
 namespace gfxrepro::regression {
@@ -251,7 +252,7 @@ void chooseTimes(SeriesMap& before, SeriesMap& after, bool isSoftware) {
 
 namespace {
 
-constexpr double kTail = 0.025;  // of a 95 % interval
+constexpr double kTail = 0.025;  // of a 95 % interval; twice that of a bound
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr metrics::Interval kUnbounded{-kInfinity, kInfinity};
 
@@ -300,13 +301,13 @@ double twoSided(const Series& chances, double mean, double sum) {
     return std::min(chance, 1.0);
 }
 
-/// How many steps of two from `begin` on lie below a tail of kTail.
-std::size_t stepsInTail(const Series& chances, std::size_t begin) {
+/// How many steps of two from `begin` on lie within a tail of at most `most`.
+std::size_t stepsInTail(const Series& chances, std::size_t begin, double most) {
     double tail = 0.0;
     std::size_t steps = 0;
     for (std::size_t sum = begin; sum < chances.size(); sum += 2, ++steps) {
         tail += chances[sum];
-        if (tail > kTail) break;
+        if (tail > most) break;
     }
     return steps;
 }
@@ -381,9 +382,33 @@ RankTest rankSum(std::span<const double> before, std::span<const double> after) 
     }
     std::ranges::sort(steps);
     test.shift = medianOf(steps);
-    const std::size_t inTail = stepsInTail(untied, least);
-    test.interval = inTail > 0 ? metrics::Interval{steps[inTail - 1], steps[steps.size() - inTail]}
-                               : kUnbounded;
+    const auto within = [&](double tail) {
+        const std::size_t out = stepsInTail(untied, least, tail);
+        return out > 0 ? metrics::Interval{steps[out - 1], steps[steps.size() - out]} : kUnbounded;
+    };
+    test.interval = within(kTail);
+    test.bounds = within(2.0 * kTail);
+    return test;
+}
+
+WelchTest welch(std::span<const double> before, std::span<const double> after) {
+    GFXREPRO_ASSERT(before.size() > 1 && after.size() > 1);
+    double means[2], errors[2], freedoms = 0.0;  // errors: squared, of the means
+    for (const std::size_t side : {0U, 1U}) {
+        const std::span<const double> values = side == 0 ? before : after;
+        const auto count = static_cast<double>(values.size());
+        means[side] = std::accumulate(values.begin(), values.end(), 0.0) / count;
+        double squares = 0.0;
+        for (const double value : values) squares += (value - means[side]) * (value - means[side]);
+        errors[side] = squares / (count - 1.0) / count;
+        freedoms += errors[side] * errors[side] / (count - 1.0);
+    }
+    const double difference = means[1] - means[0], error = errors[0] + errors[1];
+    if (difference == 0.0) return {};
+    if (error == 0.0) return {std::copysign(kInfinity, difference), 1, 0.0};
+    WelchTest test{difference / std::sqrt(error)};
+    test.freedom = static_cast<int>(error * error / freedoms);
+    test.chance = metrics::studentP(test.t, test.freedom);
     return test;
 }
 

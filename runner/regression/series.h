@@ -110,6 +110,8 @@ struct RankTest {
     double attainable = 1.0;
     /// Unbounded where there are too few values for 95 %: below 6 pairs, or 4 and 4 values.
     metrics::Interval interval;
+    /// Of rank sums: above the one, and below the other, it lies with 95 % each.
+    metrics::Interval bounds{};
 };
 
 /// The differences of pairs against none: signed ranks. At least one.
@@ -117,6 +119,15 @@ RankTest signedRank(std::span<const double> differences);
 
 /// `after` against `before`, which are no pairs: rank sums. At least one value each.
 RankTest rankSum(std::span<const double> before, std::span<const double> after);
+
+/// Two sides that may scatter differently [Welch 1947].
+struct WelchTest {
+    double t = 0.0;       // difference of the means over its standard error; ±∞ where that is 0
+    int freedom = 1;      // degrees of it, rounded down
+    double chance = 1.0;  // two-sided, under equal means
+};
+/// At least two values each.
+WelchTest welch(std::span<const double> before, std::span<const double> after);
 
 /// The exact two-sided chance that as many values as `first`, drawn from both, have a rank sum as
 /// far from its mean as `first`'s.

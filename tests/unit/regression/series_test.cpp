@@ -49,5 +49,15 @@ TEST(RankTests, RankSumsAreExact) {
     EXPECT_EQ(test.shift, -2.5);
 }
 
+TEST(RankTests, WelchesMeansScatterDifferently) {
+    // Means 3 and 8, squared errors 0.5 and 2: t = 5 / √2.5, 5.88 degrees of freedom.
+    const WelchTest test = welch(Series{1, 2, 3, 4, 5}, Series{4, 6, 8, 10, 12});
+    EXPECT_NEAR(test.t, 3.162278, 1e-6);
+    EXPECT_EQ(test.freedom, 5);
+    EXPECT_NEAR(test.chance, 0.025031, 1e-6);  // R: 2 * pt(-3.162278, 5)
+    EXPECT_EQ(welch(Series{1, 1}, Series{1, 1}).chance, 1.0);
+    EXPECT_EQ(welch(Series{1, 1}, Series{2, 2}).chance, 0.0);
+}
+
 }  // namespace
 }  // namespace gfxrepro::regression

@@ -1,0 +1,168 @@
+// A comparison for people and for other tools: Markdown, JUnit, JSON.
+#include <fmt/format.h>
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "runner/records/records.h"
+#include "runner/regression/comparison.h"
+#include "runner/report/markup.h"
+#include "runner/report/writers.h"
+
+namespace gfxrepro::regression {
+
+namespace {
+
+std::size_t countOf(const std::vector<Difference>& differences, Verdict verdict) {
+    return static_cast<std::size_t>(std::ranges::count(differences, verdict, &Difference::verdict));
+}
+
+/// Whether both sides have a value.
+bool isOfTwo(const Difference& difference) {
+    return difference.verdict != Verdict::Missing && difference.verdict != Verdict::Lost &&
+           !difference.isOfNone();
+}
+
+std::string ratioText(const Difference& difference) {
+    if (!isOfTwo(difference) || difference.isPicture()) return "";
+    return fmt::format("{:.3f} [{:.3f}, {:.3f}]", difference.ratio, difference.interval.low,
+                       difference.interval.high);
+}
+
+std::string verdictText(const Difference& difference) {
+    const std::string_view name = verdictName(difference.verdict);
+    return difference.reason.empty() ? std::string(name)
+                                     : fmt::format("{}: {}", name, difference.reason);
+}
+
+/// " ([before](…), [after](…), [difference](…))" of a picture whose files are kept.
+std::string evidenceLinks(const Difference& difference) {
+    if (difference.evidence.empty()) return "";
+    std::string links;
+    for (const auto& [label, ending] :
+         {std::pair{"before", "-before.png"}, std::pair{"after", "-after.png"},
+          std::pair{"difference", "-flip.png"}}) {
+        if (!difference.picture && std::string_view(label) == "difference") continue;
+        links += fmt::format("{}[{}]({}{})", links.empty() ? "" : ", ", label, difference.evidence,
+                             ending);
+    }
+    return fmt::format(" ({})", links);
+}
+
+std::string markdownRow(const Difference& difference, const std::string& name) {
+    const std::string title = report::escapeMarkdown(name);
+    const std::string verdict =
+        report::escapeMarkdown(verdictText(difference)) + evidenceLinks(difference);
+    if (difference.isPicture() || difference.isOfNone()) {
+        return fmt::format("| {} | | | | | {} |\n", title, verdict);
+    }
+    const bool isMissing = difference.verdict == Verdict::Missing;
+    const bool isLost = difference.verdict == Verdict::Lost;
+    const std::string before = isMissing ? "" : fmt::format(" {:.4g}", difference.before);
+    const std::string after = isLost ? ""
+                                     : fmt::format(" {:.4g} {}", difference.after,
+                                                   report::escapeMarkdown(difference.key.unit));
+    return fmt::format("| {} |{} |{} | {} | {:.2g} | {} |\n", title, before, after,
+                       ratioText(difference), difference.floor, verdict);
+}
+
+/// The names of tests: titles, and where several series have one, what else they differ in.
+std::vector<std::string> uniqueNames(const std::vector<const SeriesKey*>& keys) {
+    std::map<std::string, int> counts;
+    for (const SeriesKey* key : keys) ++counts[key->title()];
+    std::vector<std::string> names;
+    for (const SeriesKey* key : keys) {
+        names.push_back(key->title());
+        if (counts[names.back()] > 1) names.back() += fmt::format(" {} {}", key->unit, key->params);
+    }
+    return names;
+}
+
+}  // namespace
+
+std::string summaryLine(const std::vector<Difference>& differences) {
+    std::string text;
+    for (const Verdict verdict :
+         {Verdict::Lost, Verdict::Slower, Verdict::Faster, Verdict::Changed, Verdict::Same,
+          Verdict::CannotTell, Verdict::Missing, Verdict::Void, Verdict::Failed}) {
+        const std::size_t count = countOf(differences, verdict);
+        if (count == 0) continue;
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, verdictName(verdict));
+    }
+    return text.empty() ? "nothing to compare" : text;
+}
+
+std::string stepLine(const SeriesStep& found) {
+    return fmt::format("step in {}: × {:.3f} since night {} of {} (chance {:.1g})",
+                       found.key.title(), found.step.ratio, found.step.first + 1, found.nights,
+                       found.step.chance);
+}
+
+bool Comparison::isAlarm() const {
+    return std::ranges::any_of(differences, &Difference::isAlarm) ||
+           std::ranges::any_of(steps, &SeriesStep::isAlarm);
+}
+
+std::string markdown(const Comparison& comparison) {
+    const std::vector<Difference>& differences = comparison.differences;
+    std::string text = fmt::format("# Comparison\n\n{}\n\n", summaryLine(differences));
+    for (const std::string& note : comparison.notes) {
+        text += fmt::format("Note: {}\n\n", report::escapeMarkdown(note));
+    }
+    for (const SeriesStep& step : comparison.steps) {
+        text += fmt::format("{}\n\n", report::escapeMarkdown(stepLine(step)));
+    }
+    text += "| what | before | after | time after / before | floor | verdict |\n";
+    text += "| --- | ---: | ---: | ---: | ---: | --- |\n";
+    const std::vector<std::string> titles = titlesOf(keysOf(differences));
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+        if (differences[i].verdict == Verdict::Same) continue;
+        text += markdownRow(differences[i], titles[i]);
+    }
+    return text;
+}
+
+std::string junitXml(const Comparison& comparison) {
+    using Outcome = records::CaseEnd::Outcome;
+    const std::vector<Difference>& differences = comparison.differences;
+    std::vector<report::JunitTest> tests;
+    std::vector<std::string> names = uniqueNames(keysOf(differences));
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+        const Difference& one = differences[i];
+        const bool isPass = one.verdict == Verdict::Same || one.verdict == Verdict::Faster;
+        tests.push_back({one.key.table, names[i],
+                         isPass          ? Outcome::Measured
+                         : one.isAlarm() ? Outcome::Failed
+                                         : Outcome::Skipped,
+                         fmt::format("{} {}", verdictText(one), ratioText(one))});
+    }
+    names = uniqueNames(keysOf(comparison.steps));
+    for (std::size_t i = 0; i < comparison.steps.size(); ++i) {
+        const SeriesStep& step = comparison.steps[i];
+        tests.push_back({step.key.table, "history of " + names[i],
+                         step.isAlarm() ? Outcome::Failed : Outcome::Measured, stepLine(step)});
+    }
+    return std::string(report::kXmlHead) + report::junitSuite("regression", tests);
+}
+
+std::string smallerIsBetterJson(const std::vector<Difference>& differences) {
+    nlohmann::ordered_json entries = nlohmann::ordered_json::array();
+    for (const Difference& difference : differences) {
+        if (difference.isAlarm() && difference.picture) {
+            entries.push_back(
+                {{"name", fmt::format("{} {}", difference.key.title(), difference.key.params)},
+                 {"unit", "FLIP"},
+                 {"value", difference.picture->flip},
+                 {"range", fmt::format("largest difference {:.3g}", difference.picture->largest)}});
+        }
+        if (!difference.key.isTime() || difference.after <= 0.0) continue;
+        entries.push_back(
+            {{"name", fmt::format("{} {}", difference.key.title(), difference.key.params)},
+             {"unit", difference.key.unit},
+             {"value", difference.after},
+             {"range", fmt::format("× {}", ratioText(difference))}});
+    }
+    return entries.dump(2) + "\n";
+}
+
+}  // namespace gfxrepro::regression
