@@ -32,8 +32,10 @@ def apptainer_stages(text):
 
 ignored = (pathlib.Path(sys.argv[1]) / ".containerignore").read_text().split()
 folder = pathlib.Path(sys.argv[1]) / "containers"
-container = container_stages((folder / "Containerfile").read_text())
+text = (folder / "Containerfile").read_text()
+assert "USER root" not in text and "\nUSER " in text.rpartition("\nRUN ")[2], "the image runs as root"
+container = container_stages(text)
 apptainer = apptainer_stages((folder / "gfxrepro.def").read_text())
-assert [len(stage) for stage in container] == [1, 2], container
+assert [len(stage) for stage in container] == [1, 3], container
 assert apptainer[0].pop(0) == "rm -rf " + " ".join(ignored), apptainer
 assert container == apptainer, f"Containerfile: {container}\ngfxrepro.def: {apptainer}"

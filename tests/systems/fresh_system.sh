@@ -121,7 +121,8 @@ for step in $steps; do
         mkdir -p "$root-final/usr/share/glvnd/egl_vendor.d"
         cp "$source/containers/10_nvidia.json" "$root-final/usr/share/glvnd/egl_vendor.d/"
         inside "$root-final" "$(stage_commands 2)"
-        inside "$root-final" "gfxrepro doctor; gfxrepro run /usr/share/gfxrepro/configs/smoke/template.yaml --device software --quiet --out run; gfxrepro table run"
+        inside "$root-final" "cd /work; exec runuser -u $(sed -n 's/^USER //p' "$source/containers/Containerfile") -- env HOME=/tmp sh -ec 'gfxrepro doctor
+            gfxrepro run /usr/share/gfxrepro/configs/smoke/template.yaml --device software --quiet --out run; gfxrepro table run'"
         ;;
     arm64)
         with_source "$root-arm64"
