@@ -6,6 +6,19 @@
 
 namespace gfxrepro::records {
 
+namespace {
+
+/// Behind any apostrophes; "-" and "+" begin numbers and ranges, too, which do no harm.
+bool isFormula(std::string_view field) {
+    field.remove_prefix(std::min(field.find_first_not_of('\''), field.size()));
+    if (field.empty()) return false;
+    const bool isSigned = field[0] == '+' || field[0] == '-';
+    return isSigned ? field.find_first_not_of(" 0123456789.,eE+-[]%") != std::string_view::npos
+                    : std::string_view("=@\t\r").find(field[0]) != std::string_view::npos;
+}
+
+}  // namespace
+
 void CsvRow::separate() {
     if (!isFirst_) out_ += ',';
     isFirst_ = false;
@@ -13,11 +26,12 @@ void CsvRow::separate() {
 
 CsvRow& CsvRow::text(std::string_view field) {
     separate();
+    const std::string_view mark = isFormula(field) ? "'" : "";
     if (field.find_first_of(",\"\r\n") == std::string_view::npos) {
-        out_ += field;
+        out_.append(mark).append(field);
         return *this;
     }
-    out_ += '"';
+    out_.append("\"").append(mark);
     for (const char c : field) {
         if (c == '"') out_ += '"';
         out_ += c;
@@ -89,6 +103,7 @@ void CsvReader::readField(std::string& field) {
         }
         field = text_.substr(begin, at_ - begin);
     }
+    if (field.starts_with('\'') && isFormula(field)) field.erase(0, 1);
     if (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n') {
         throw Error(location(), "expected a comma or the end of the line after '" +
                                     field.substr(0, 40) + "', found '" + text_[at_] + "'");

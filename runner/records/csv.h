@@ -15,6 +15,8 @@ class CsvRow {
   public:
     explicit CsvRow(std::string& out) : out_(out) {}
 
+    /// What a spreadsheet would run as a formula ("=1+1", "@x", "-x") gets an apostrophe before it,
+    /// by which that takes it for text; CsvReader takes one off again.
     CsvRow& text(std::string_view field);
     CsvRow& integer(long long field);
     /// The shortest text that reads back as the same number; not-a-number becomes an empty field.

@@ -35,6 +35,22 @@ TEST(Csv, RowsAndColumnsHaveTheirLimits) {
     EXPECT_EQ(errorText([&] { columns.next(fields); }), "f.csv:2: more than 4096 columns");
 }
 
+TEST(Csv, NothingOfItIsRunByASpreadsheet) {
+    for (const std::string text :
+         {"=1+1", "@SUM(A1)", "+x", "-cmd|' /C calc'!A0", "\tx", "'=1", "''@x"}) {
+        std::string line;
+        CsvRow(line).text(text).text("a, " + text).end();
+        EXPECT_EQ(line, "'" + text + ",\"a, " + text + "\"\n");
+        std::vector<std::string> fields;
+        CsvReader reader(line, "f.csv");
+        ASSERT_TRUE(reader.next(fields));
+        EXPECT_EQ(fields, (std::vector<std::string>{text, "a, " + text})) << "as it was";
+    }
+    std::string line;
+    CsvRow(line).text("-0.41 [-0.5, -0.3]").text("+5 %").text("'tis").text("-").text("=a, b").end();
+    EXPECT_EQ(line, "\"-0.41 [-0.5, -0.3]\",+5 %,'tis,-,\"'=a, b\"\n");
+}
+
 Record sample(const std::string& caseId, double value) {
     Record record;
     record.caseId = caseId;
