@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "engine/core/files.h"
+#include "engine/core/hash.h"
 #include "runner/claims/claims.h"
 #include "runner/records/records.h"
 #include "runner/report/markup.h"
@@ -256,6 +257,20 @@ class ScratchFolder {
     fs::path path_;
 };
 
+std::string script() {
+    return fmt::format("\n{}", kScript);
+}
+
+/// The script that the page may run, and no other: its SHA-256, base64.
+std::string scriptDigest() {
+    const std::string digits = sha256(script());
+    std::string bytes;
+    for (std::size_t i = 0; i < digits.size(); i += 2) {
+        bytes += static_cast<char>(std::stoi(digits.substr(i, 2), nullptr, 16));
+    }
+    return base64(bytes);
+}
+
 }  // namespace
 
 std::string pageLink(const Page& page) {
@@ -266,9 +281,13 @@ std::string headOfFile(const std::string& title) {
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; base-uri "
+        "'none'; "
+        "form-action 'none'; img-src 'self' file: data:; style-src 'unsafe-inline'; "
+        "script-src 'sha256-{}'\">\n"
         "<link rel=\"icon\" href=\"data:,\">\n"
         "<title>gfxrepro: {}</title>\n<style>\n{}</style>\n</head>\n<body>\n",
-        escapeXml(title), kStyle);
+        scriptDigest(), escapeXml(title), kStyle);
 }
 
 std::string caseAnchor(std::size_t run, const std::string& caseId) {
@@ -286,9 +305,9 @@ void writeReport(const fs::path& file, std::span<const ReportRun> runs,
     for (const Page& page : model.pages) html += pageHtml(page, model);
     if (model.isOneTable()) html += overviewHtml(model);
     html += fmt::format(
-        "</main>\n<aside class=\"cases-shown\" hidden></aside>\n{}<script>\n{}"
+        "</main>\n<aside class=\"cases-shown\" hidden></aside>\n{}<script>{}"
         "</script>\n</body>\n</html>\n",
-        kViewer, kScript);
+        kViewer, script());
     writeFileAtomic(file, html);
 }
 

@@ -9,10 +9,12 @@
 #include <set>
 
 #include "engine/core/files.h"
+#include "engine/core/hash.h"
 #include "engine/image/png_io.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
 #include "runner/records/images.h"
+#include "runner/report/markup.h"
 #include "runner/tables/labels.h"
 #include "runner/tables/table.h"
 #include "tests/support/support.h"
@@ -131,6 +133,16 @@ TEST(Report, IsOneSafeFile) {
                                   "href=\"http", "url(http", "@import", "<link rel=\"style"}) {
         EXPECT_THAT(html, Not(HasSubstr(forbidden)));
     }
+    // A browser runs its own script alone, and fetches nothing.
+    const std::size_t begin = html.find("<script>") + 8, end = html.find("</script>", begin);
+    const std::string digits = sha256(html.substr(begin, end - begin));
+    std::string digest;
+    for (std::size_t i = 0; i < digits.size(); i += 2) {
+        digest += static_cast<char>(std::stoi(digits.substr(i, 2), nullptr, 16));
+    }
+    EXPECT_THAT(html, HasSubstr("<meta http-equiv=\"Content-Security-Policy\" "
+                                "content=\"default-src 'none'; "));
+    EXPECT_THAT(html, HasSubstr("; script-src 'sha256-" + base64(digest) + "'\">"));
 }
 
 /// What an input was fitted to is no finding.
