@@ -243,7 +243,8 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
                 "mark");
         }
         const bool isOfTheDocument = claim.origin == ClaimSpec::Origin::Document ||
-                                     claim.origin == ClaimSpec::Origin::Derived;
+                                     claim.origin == ClaimSpec::Origin::Derived ||
+                                     claim.origin == ClaimSpec::Origin::Existence;
         if (isOfTheDocument && reader.readsCalibrated()) {
             complain(
                 "reads nothing but cells that an input of ours was fitted to "

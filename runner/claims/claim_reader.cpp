@@ -331,6 +331,16 @@ bool ClaimReader::isPlanned(const ClaimPart& part, std::size_t row) const {
     return true;
 }
 
+Rows ClaimReader::plannedRows() const {
+    const std::vector<ClaimPart> parts = partsOf(claim_);
+    Rows planned = rows();
+    std::erase_if(planned, [&](std::size_t row) {
+        return std::ranges::none_of(parts,
+                                    [&](const ClaimPart& part) { return isPlanned(part, row); });
+    });
+    return planned;
+}
+
 std::string ClaimReader::problemOf(const Operand& operand, std::size_t row) const {
     for (const std::size_t column : operand.columns()) {
         const tables::Cell& cell = table_.rows[row].cells[column];

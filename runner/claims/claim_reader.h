@@ -111,6 +111,8 @@ class ClaimReader {
     }
     /// Whether its operands are columns alone, no arithmetic, and show that metric as recorded.
     bool readsOnly(const std::string& metric) const;
+    /// The rows of which the sweep has what some part of it reads.
+    Rows plannedRows() const;
     /// How many rows it reads.
     std::size_t rowCount() const { return rows().size(); }
     /// A label along `over` that is no number, where a trend or a crossing needs numbers.

@@ -6,11 +6,13 @@
 #include <array>
 #include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "engine/core/text.h"
 #include "runner/claims/claim_reader.h"
 #include "runner/config/schema.h"
+#include "runner/tables/labels.h"
 
 namespace gfxrepro::claims {
 
@@ -140,6 +142,7 @@ void takeKnown(const ClaimSpec& claim, const ReportContext& context, ClaimResult
 ClaimResult unjudged(const ClaimSpec& claim, const tables::Table& table,
                      const ReportContext& context) {
     ClaimResult result;
+    result.sameAs = claim.sameAs;
     result.id = claim.id;
     result.table = table.id;
     result.text = claim.text;
@@ -175,9 +178,44 @@ std::string calibratedNote(const ClaimSpec& claim, const ClaimReader& reader) {
                                     : "some of what it reads is calibrated";
 }
 
+/// The labels of these rows on an axis.
+std::set<std::string> labelsOf(const tables::Table& table, const Rows& rows, std::size_t axis) {
+    std::set<std::string> labels;
+    for (const std::size_t row : rows) labels.insert(table.rows[row].labels[axis]);
+    return labels;
+}
+
+/// "1 of 4 values of scene, 2 of 3 values of resolution": what it reads here of what it reads in
+/// the profile `paper`; empty of all of it.
+std::string partOfRows(const ClaimSpec& claim, const tables::Table& table,
+                       const tables::Table& paper) {
+    const tables::Table all = tableFor(claim, paper);
+    const Rows here = ClaimReader(claim, table).plannedRows();
+    const Rows there = ClaimReader(claim, all).plannedRows();
+    if (here.empty() || here.size() >= there.size()) return "";
+    std::vector<std::string> parts;
+    for (std::size_t axis = 0; table.rowAxes == all.rowAxes && axis < all.rowAxes.size(); ++axis) {
+        const std::size_t few = labelsOf(table, here, axis).size();
+        const std::size_t many = labelsOf(all, there, axis).size();
+        if (few >= many) continue;
+        const std::string name = tables::shownName(all.rowAxes[axis], all.words);
+        parts.push_back(fmt::format("{} of {} values of {}", few, many, name));
+    }
+    return parts.empty() ? fmt::format("{} of {} rows", here.size(), there.size()) : joined(parts);
+}
+
+/// The table of the profile `paper`, without a measurement; none where its cases are not known.
+std::optional<tables::Table> paperTable(const config::Experiment& experiment) {
+    if (experiment.paperCases.empty() || experiment.paperDocument.isNull()) return std::nullopt;
+    return tables::buildTable(
+        config::experimentFromDocument(experiment.paperDocument, experiment.file),
+        experiment.paperCases, {});
+}
+
 ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
-                          const ReportContext& context) {
+                          const std::optional<tables::Table>& paper, const ReportContext& context) {
     ClaimResult result = unjudged(claim, table, context);
+    if (paper) result.rows = partOfRows(claim, table, *paper);
     if (result.verdict == Verdict::NotApplicable) return result;
     ClaimReader reader(claim, table);
     result.timeKind = reader.timeKind();
@@ -211,8 +249,9 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
     result.measured = joined(measured, "; ");
     result.verdict = worst->judgement.verdict;
     result.reason = worst->reason;
+    const std::string part = result.rows.empty() ? "" : fmt::format("on {}", result.rows);
     for (const std::string& note :
-         {clock, balanceNote(result, context), calibratedNote(claim, reader)}) {
+         {clock, balanceNote(result, context), calibratedNote(claim, reader), part}) {
         if (!note.empty()) result.reason += (result.reason.empty() ? "" : "; ") + note;
     }
     return result;
@@ -220,10 +259,11 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
 
 /// The same of a table that may lack what the claim reads.
 ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const tables::Table& table,
+                                const std::optional<tables::Table>& paper,
                                 const ReportContext& context) {
     const tables::Table own = tableFor(claim, table);
     try {
-        return evaluateClaim(claim, own, context);
+        return evaluateClaim(claim, own, paper, context);
     } catch (const AbsentColumnError& error) {
         ClaimResult result = unjudged(claim, own, context);
         result.reason = "not among what was measured: " + error.text();
@@ -289,8 +329,9 @@ std::string whyText(const ClaimResult& claim) {
 std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
                                         const tables::Table& table, const ReportContext& context) {
     std::vector<ClaimResult> results;
+    const auto paper = experiment.claims.empty() ? std::nullopt : paperTable(experiment);
     for (const ClaimSpec& claim : experiment.claims) {
-        results.push_back(evaluateWhatIsThere(claim, table, context));
+        results.push_back(evaluateWhatIsThere(claim, table, paper, context));
         results.back().restsOn = restsOn(results.back(), context);
         const SourceLocation file{experiment.file.string(), 0, 0};  // of a plan: JSON has no lines
         results.back().where = claim.location.file == file.file ? claim.location : file;
@@ -304,6 +345,17 @@ std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {
         return ClaimReader(claim, own).readsAny() ? "" : "no row that it reads";
     } catch (const AbsentColumnError& error) {
         return error.text();
+    }
+}
+
+void markRepeats(std::vector<ClaimResult>& results) {
+    std::map<std::string, Verdict> verdicts;
+    for (const ClaimResult& result : results) {
+        verdicts.emplace(fmt::format("{} {}", result.table, result.id), result.verdict);
+    }
+    for (ClaimResult& result : results) {
+        const auto found = verdicts.find(result.sameAs);
+        result.isRepeat = found != verdicts.end() && found->second == result.verdict;
     }
 }
 
@@ -323,19 +375,27 @@ std::string claimSummaryLine(const std::vector<ClaimResult>& results) {
 
 std::string originSummaryLine(const std::vector<ClaimResult>& results) {
     using Origin = ClaimSpec::Origin;
-    static constexpr std::pair<Origin, const char*> kGroups[] = {
-        {Origin::Document, "of the documents' own claims"},
-        {Origin::Derived, "read off their numbers"},
-        {Origin::Ours, "our aims"},
-        {Origin::Definition, "definitions"},
-        {Origin::Calibrated, "calibrated inputs"}};
+    struct Group {
+        Origin origin;
+        bool isCounted;
+        const char* name;
+    };
+    static constexpr Group kGroups[] = {
+        {Origin::Document, true, "of the documents' own claims"},
+        {Origin::Document, false, "of these on part of their rows, or said twice"},
+        {Origin::Existence, false, "that can hardly fail"},
+        {Origin::Derived, false, "read off their numbers"},
+        {Origin::Ours, false, "our aims"},
+        {Origin::Definition, false, "definitions"},
+        {Origin::Calibrated, false, "calibrated inputs"}};
     std::vector<std::string> parts;
-    for (const auto& [origin, name] : kGroups) {
+    for (const Group& group : kGroups) {
         std::vector<ClaimResult> alike;
-        std::ranges::copy_if(
-            results, std::back_inserter(alike),
-            [origin = origin](const ClaimResult& result) { return result.origin == origin; });
-        if (!alike.empty()) parts.push_back(fmt::format("{} {}", name, claimSummaryLine(alike)));
+        std::ranges::copy_if(results, std::back_inserter(alike), [&](const ClaimResult& result) {
+            return result.origin == group.origin && result.isCounted() == group.isCounted;
+        });
+        if (alike.empty()) continue;
+        parts.push_back(fmt::format("{} {}", group.name, claimSummaryLine(alike)));
     }
     return parts.empty() ? claimSummaryLine(results) : joined(parts, "; ");
 }
@@ -350,6 +410,7 @@ std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& e
             results.push_back(std::move(result));
         }
     }
+    markRepeats(results);
     return results;
 }
 

@@ -75,8 +75,19 @@ struct ClaimResult {
     std::string because;       // why, where it does not hold
     std::string shownBy = {};  // and the place in results/findings that proves it
 
-    /// A statement of the document itself: what counts.
+    /// Of which part of the rows of the profile `paper` it is: "1 of 4 values of scene"; empty of
+    /// all of them, and where these are not known.
+    std::string rows;
+    std::string sameAs;     // "TABLE CLAIM": ClaimSpec
+    bool isRepeat = false;  // that one has the same verdict: markRepeats()
+
+    /// A statement of the document itself.
     bool isOfDocument() const { return origin == ClaimSpec::Origin::Document; }
+    /// What counts: of these what holds on all of its rows, and each truth once. What fails counts
+    /// on a part of them, too.
+    bool isCounted() const {
+        return isOfDocument() && !isRepeat && (verdict != Verdict::Holds || rows.empty());
+    }
     /// Another verdict than the known one. Ambiguous is none, and tells nothing against one; where
     /// it is the known one, failing is news.
     bool isNews() const {
@@ -93,6 +104,10 @@ struct ClaimResult {
     /// Which assumptions the verdict rests on: "bias (of 5 tried)", "none of the 5 tried", "not
     /// tried"; kRestsOnUnknown; empty where there is no verdict.
     std::string restsOn = {};
+    /// Whether another value of one of them turns it.
+    bool restsOnAssumption() const {
+        return !restsOn.empty() && !restsOn.starts_with("none ") && !restsOn.starts_with("not ");
+    }
 };
 
 /// Why it does not hold, for people: the known cause, then what the judging noted; where the cause
@@ -135,11 +150,15 @@ void requireJudgeable(const config::Experiment& experiment, const tables::Table&
 /// and what its kind refuses. `table` may have been built from no records.
 void requireProvenance(const config::Experiment& experiment, const tables::Table& table);
 
+/// Marks the claims whose `sameAs` is among them and has the same verdict.
+void markRepeats(std::vector<ClaimResult>& results);
+
 /// "12 hold, 1 fails, 2 unmeasured": only those that occur; "no claims" for none.
 std::string claimSummaryLine(const std::vector<ClaimResult>& results);
 
-/// "of the documents' own claims 40 hold, 12 fail; derived from their numbers 5 hold; …": by
-/// origin, only those that occur. A definition and a calibrated input are tests of ours.
+/// "of the documents' own claims 40 hold, 12 fail; on part of their rows, or said twice 3 hold;
+/// derived from their numbers 5 hold; …": those that are counted, then the others by origin, only
+/// those that occur. A definition and a calibrated input are tests of ours.
 std::string originSummaryLine(const std::vector<ClaimResult>& results);
 
 }  // namespace gfxrepro::claims

@@ -57,6 +57,8 @@ std::vector<ClaimResult> readClaims(const std::filesystem::path& file) {
         claim.reason = row["reason"];
         claim.because = row["because"];
         claim.restsOn = row["rests_on"];
+        claim.rows = row["rows"];
+        claim.sameAs = row["same_as"];
         claim.known.reset();
         if (!row["known"].empty()) claim.known = verdictAt(reader.location(), row["known"]);
         claim.origin =
@@ -64,6 +66,7 @@ std::vector<ClaimResult> readClaims(const std::filesystem::path& file) {
         claim.boundFrom = valueOf<Spec::BoundSource>(config::kBoundSources, row["bound_from"]);
         claim.timeKind = valueOf<Spec::TimeKind>(config::kTimeKinds, row["kind"]);
     }
+    markRepeats(claims);
     return claims;
 }
 

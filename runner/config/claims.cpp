@@ -139,6 +139,14 @@ class ClaimParser {
         if (!says) throw Error(claim_.location, what_ + " needs 'says'");
         claim_.text = lineOf(*says, what_ + ": says");
         claim_.profile = nameIn(node_, "profile", what_, kProfiles);
+        if (const Node* same = node_.find("same_as")) {
+            claim_.sameAs = lineOf(*same, what_ + ": same_as");
+            const std::size_t blank = claim_.sameAs.find(' ');
+            if (blank == std::string::npos ||
+                claim_.sameAs.find(' ', blank + 1) < std::string::npos) {
+                throwNotAllowed(*same, what_ + ": same_as", "TABLE CLAIM");
+            }
+        }
         if (const Node* across = node_.find("across")) {
             readAcross(*across, lineOf(*across, what_ + ": across"));
         }
@@ -236,11 +244,16 @@ SchemaSection common() {
           text()},
          {"profile", "quick | full | paper", "all", "the only profile it is judged in",
           choice(kProfiles)},
-         {"origin", "document | derived | ours | definition | calibrated",
+         {"origin", "document | derived | ours | definition | calibrated | existence",
           "document, in a sweep ours",
           "a statement of the document; read off its numbers; our aim; true by construction; "
-          "or of an input fitted to it",
+          "of an input fitted to it; or a statement that there is such a thing at all, which can "
+          "hardly fail. Only the first is counted",
           choice(kOrigins)},
+         {"same_as", "TABLE CLAIM", "none",
+          "another claim, of this table or another, that says the same truth: where both have one "
+          "verdict, one is counted",
+          text()},
          {"bound_from", "print | text | ours", "ours, in a sweep none",
           "where the number that it requires comes from; print: it is a printed value, or two "
           "numbers about one, at most its half and its double, and met by all, unless it is an "

@@ -18,8 +18,8 @@ inline constexpr std::array<std::string_view, 7> kStatistics = {"median", "mean"
                                                                 "sum",    "count", "rate"};
 
 /// The words of a claim, in the order of the enums of ClaimSpec.
-inline constexpr std::array<std::string_view, 5> kOrigins = {"document", "derived", "ours",
-                                                             "definition", "calibrated"};
+inline constexpr std::array<std::string_view, 6> kOrigins = {
+    "document", "derived", "ours", "definition", "calibrated", "existence"};
 inline constexpr std::array<std::string_view, 3> kBoundSources = {"print", "text", "ours"};
 inline constexpr std::array<std::string_view, 3> kTimeKinds = {"algorithmic", "architectural",
                                                                "absolute"};

@@ -176,7 +176,7 @@ std::string factsHtml(const Model& model) {
 /// The judged ones; the document's own come first, and of these those that fail.
 std::vector<const ClaimResult*> tellingClaims(const std::vector<ClaimResult>& claims) {
     const auto rank = [](const ClaimResult* claim) {
-        return (claim->isOfDocument() ? 2 : 0) + (claim->verdict == Verdict::Fails ? 1 : 0);
+        return (claim->isCounted() ? 2 : 0) + (claim->verdict == Verdict::Fails ? 1 : 0);
     };
     std::vector<const ClaimResult*> telling;
     for (const ClaimResult& claim : claims) {
@@ -308,12 +308,13 @@ std::size_t sumOf(const Counts& counts) {
     return sum;
 }
 
-/// The documents' own claims, or all the others, of one run.
-Counts countClaims(const std::vector<const Page*>& pages, std::size_t run, bool isOwn) {
+/// The verdicts of one run on such claims.
+Counts countClaims(const std::vector<const Page*>& pages, std::size_t run,
+                   const std::function<bool(const ClaimResult&)>& isSuch) {
     Counts counts;
     for (const Page* page : pages) {
         for (const ClaimResult& claim : page->parts[run].claims) {
-            if (claim.isOfDocument() == isOwn) ++counts[claim.verdict];
+            if (isSuch(claim)) ++counts[claim.verdict];
         }
     }
     return counts;
@@ -354,7 +355,7 @@ std::vector<std::pair<const Page*, const ClaimResult*>> examples(const DocumentP
         bool isFirst = true;
         for (const Page* page : chapter.pages) {
             for (const ClaimResult& claim : page->parts.front().claims) {
-                const bool isMeant = claim.isOfDocument() && claim.verdict == verdict;
+                const bool isMeant = claim.isCounted() && claim.verdict == verdict;
                 // A sentence that goes on from the one before says nothing alone.
                 if (!isMeant || claim.text.empty() || claim.text.starts_with("…")) continue;
                 (isFirst ? first : further).emplace_back(page, &claim);
@@ -389,6 +390,18 @@ std::string paragraphHtml(const DocumentPages& document, const Counts& own) {
         "<strong>{} fail{}</strong>. ",
         sumOf(own), sumOf(own) == 1 ? "" : "s", holding + failing, holding, holding == 1 ? "s" : "",
         failing, failing == 1 ? "s" : "");
+    const std::size_t resting =
+        countOf(countClaims(document.pages(), 0,
+                            [](const ClaimResult& claim) {
+                                return claim.isCounted() && claim.restsOnAssumption();
+                            }),
+                Verdict::Holds);
+    if (resting > 0) {
+        html += fmt::format(
+            "Of those that hold, {} rest{} on a value of ours that the document "
+            "leaves open. ",
+            resting, resting == 1 ? "s" : "");
+    }
     if (open > 0) html += fmt::format("The numbers of {} do not tell. ", open);
     if (elsewhere > 0) html += fmt::format("{} ask for a GPU or another profile. ", elsewhere);
     return html + examplesHtml("Reproduced", document, Verdict::Holds, holding) +
@@ -399,7 +412,7 @@ std::string chaptersHtml(const DocumentPages& document) {
     if (document.chapters.size() < 2) return "";
     std::string html;
     for (const DocumentPages::Chapter& chapter : document.chapters) {
-        const Counts own = countClaims(chapter.pages, 0, true);
+        const Counts own = countClaims(chapter.pages, 0, &ClaimResult::isCounted);
         if (own.empty()) continue;
         html +=
             fmt::format("<li><span>{}</span>{}</li>\n", escapeXml(chapter.title), tallyHtml(own));
@@ -429,8 +442,9 @@ std::string highlightsHtml(const DocumentPages& document, const Model& model) {
 std::string documentHtml(const DocumentPages& document, const Model& model) {
     std::string html;
     for (std::size_t run = 0; run < model.runs.size(); ++run) {
-        const Counts own = countClaims(document.pages(), run, true);
-        const Counts others = countClaims(document.pages(), run, false);
+        const Counts own = countClaims(document.pages(), run, &ClaimResult::isCounted);
+        const Counts others =
+            countClaims(document.pages(), run, std::not_fn(&ClaimResult::isCounted));
         if (own.empty() && others.empty()) continue;
         if (model.isComparison()) {
             html += fmt::format("<p><b>{}</b> {}</p>\n", Model::letter(run),
@@ -443,7 +457,9 @@ std::string documentHtml(const DocumentPages& document, const Model& model) {
         }
         if (!others.empty()) {
             html += fmt::format(
-                "<p class=\"soft small\">Not counted, as the document does not state it: {}.</p>\n",
+                "<p class=\"soft small\">Not counted: what the document does not state, what can "
+                "hardly fail, what holds on part of its rows, and what says the same as another: "
+                "{}.</p>\n",
                 countsText(others));
         }
     }

@@ -53,11 +53,13 @@ const ClaimResult* findClaim(const RunPart& part, const std::string& id) {
     return claim == part.claims.end() ? nullptr : &*claim;
 }
 
-/// Whose claim it is, and of a time what kind.
-std::string whoseText(const ClaimResult& claim) {
+/// Whose claim it is, of a time what kind, and why it is not counted although the document says it.
+std::string whoseHtml(const ClaimResult& claim) {
     std::string text(config::originName(claim.origin));
     if (claim.timeKind) text += fmt::format(", {}", config::timeKindName(*claim.timeKind));
-    return text;
+    if (!claim.rows.empty()) text += fmt::format(", on {}", claim.rows);
+    if (claim.isRepeat) text += fmt::format(", counted as {}", claim.sameAs);
+    return escapeXml(text);
 }
 
 std::string newsHtml(const ClaimResult& claim) {
@@ -144,9 +146,9 @@ std::string claimHtml(const Page& page, const std::string& id, const Model& mode
         "<li class=\"claim{}{}\" data-verdict=\"{}\" data-origin=\"{}\" data-text=\"{}\">"
         "<span class=\"verdicts\">{}</span> <span class=\"says\">{}</span> "
         "<span class=\"soft code\">{}, {}</span>\n{}</li>\n",
-        any->isOfDocument() ? "" : " uncounted", verdicts.size() > 1 ? " differs" : "",
-        verdictNames, config::originName(any->origin), escapeXml(id + ' ' + text), badges,
-        escapeXml(text), code, whoseText(*any), details);
+        any->isCounted() ? "" : " uncounted", verdicts.size() > 1 ? " differs" : "", verdictNames,
+        config::originName(any->origin), escapeXml(id + ' ' + text), badges, escapeXml(text), code,
+        whoseHtml(*any), details);
 }
 
 }  // namespace

@@ -321,7 +321,7 @@ std::string runsMarkdown(const std::vector<Outcome>& outcomes) {
 /// What a claim asks, without what is said about it.
 Json requirementOf(const Node& claim) {
     Json json = claim.toJson();
-    for (const char* key : {"says", "origin", "bound_from", "because"}) json.erase(key);
+    for (const char* key : {"says", "origin", "bound_from", "because", "same_as"}) json.erase(key);
     return json;
 }
 

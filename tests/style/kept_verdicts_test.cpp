@@ -160,6 +160,7 @@ TEST(KeptVerdicts, TheFullestQuickRunAsksWhatTheConfigsAsk) {
             const claims::ClaimResult& judged = *kept.at({claim.table, claim.id});
             EXPECT_EQ(judged.origin, claim.origin);
             EXPECT_EQ(judged.required, claim.required);
+            EXPECT_EQ(judged.sameAs, claim.sameAs);
         }
     });
     EXPECT_EQ(count, fullest.size());

@@ -17,8 +17,9 @@ struct Kind;
 /// ("a + b").
 struct ClaimSpec {
     /// Whose claim it is: a statement of the document; read off its printed numbers; an aim of
-    /// ours; true by construction (a self-test); or of an input that was fitted to it.
-    enum class Origin { Document, Derived, Ours, Definition, Calibrated };
+    /// ours; true by construction (a self-test); of an input that was fitted to it; or a statement
+    /// of the document that there is such a thing at all, which can hardly fail.
+    enum class Origin { Document, Derived, Ours, Definition, Calibrated, Existence };
     /// Where the number in its bound comes from.
     enum class BoundSource { Print, Text, Ours };
     /// Of a claim about time: what decides it. Algorithmic: counts of work, on any device.
@@ -53,6 +54,7 @@ struct ClaimSpec {
     /// axis `column` (kColumnAxis). So rows are compared with rows, a column at a time.
     std::optional<std::string> across;
     std::optional<std::string> profile;  // only in this one
+    std::string sameAs;                  // "TABLE CLAIM", which says the same truth; or empty
     Origin origin = Origin::Ours;
     std::optional<BoundSource> boundFrom;
     /// None: it reads no time, or is absolute as it holds one against a number (claims::timeKind).

@@ -1,5 +1,6 @@
 #include "runner/claims/claims.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -987,6 +988,75 @@ TEST(Claims, ANumberThatIsAColumnIsNoNumber) {
     EXPECT_EQ(absent.verdict, Verdict::Unmeasured);
     EXPECT_THAT(absent.reason,
                 testing::StartsWith("not among what was measured: '4' is no column"));
+}
+
+TEST(Claims, AClaimOnPartOfItsRowsSaysSoAndDoesNotCountAsAHold) {
+    const auto experiment = [](const char* scenes, const char* sizes) {
+        return tables::experimentFrom(fmt::format(
+            "sweep: {{scene: [{}], n: [{}]}}\nlayout: {{rows: [scene, n], columns: {{a: {{metric: "
+            "a}}}}}}\nclaims:\n  T: {{says: s, trend: a, over: n, direction: increasing}}\n  B: "
+            "{{says: s, bound: a, at_most: 1, at: {{scene: s}}}}\n",
+            scenes, sizes));
+    };
+    tables::RecordMaker maker;
+    for (const int n : {1, 2}) {
+        maker.beginCase("s", fmt::format("{{\"n\":{}}}", n)).add("a", {1.0 * n});
+    }
+    const config::Experiment paper = experiment("s, t", "1, 2, 4");
+    const auto judged = [&](const char* scenes, const char* sizes) {
+        config::Experiment own = experiment(scenes, sizes);
+        own.paperDocument = paper.paperDocument;
+        own.paperCases = tables::planOf(paper, {});
+        return evaluateClaims(own, tables::buildTable(own, maker.records()), kSoftware);
+    };
+    const auto part = judged("s", "1, 2");
+    EXPECT_EQ(part[0].rows, "1 of 2 values of scene, 2 of 3 values of n");
+    EXPECT_EQ(part[0].verdict, Verdict::Holds);
+    EXPECT_EQ(part[0].reason, "one sample; on 1 of 2 values of scene, 2 of 3 values of n");
+    EXPECT_FALSE(part[0].isCounted());
+    EXPECT_EQ(part[1].rows, "2 of 3 values of n");
+    EXPECT_EQ(part[1].verdict, Verdict::Fails);
+    EXPECT_TRUE(part[1].isCounted()) << "what fails on a part fails";
+    EXPECT_EQ(originSummaryLine(part),
+              "of the documents' own claims 1 fails; of these on part of their rows, or said twice "
+              "1 holds");
+    for (const ClaimResult& claim : judged("s, t", "1, 2, 4")) EXPECT_EQ(claim.rows, "");
+    for (const ClaimResult& claim : judged("s, t", "1, 2, 8, 16")) {
+        EXPECT_EQ(claim.rows, "") << "other values, and not fewer";
+    }
+}
+
+TEST(Claims, OneTruthCountsOnce) {
+    std::vector<ClaimResult> results(3);
+    for (ClaimResult& result : results) {
+        result.table = "p/1";
+        result.origin = config::ClaimSpec::Origin::Document;
+        result.verdict = Verdict::Holds;
+    }
+    results[0].id = "A";
+    results[1].sameAs = results[2].sameAs = "p/1 A";
+    results[2].verdict = Verdict::Fails;
+    markRepeats(results);
+    EXPECT_TRUE(results[0].isCounted());
+    EXPECT_FALSE(results[1].isCounted());
+    EXPECT_TRUE(results[2].isCounted()) << "another verdict";
+    results[1].sameAs = "p/2 A";
+    markRepeats(results);
+    EXPECT_TRUE(results[1].isCounted()) << "the other is not of this run";
+    results[1].origin = config::ClaimSpec::Origin::Existence;
+    EXPECT_EQ(originSummaryLine(results),
+              "of the documents' own claims 1 holds, 1 fails; that can hardly fail 1 holds");
+}
+
+TEST(Claims, WhatAVerdictRestsOn) {
+    ClaimResult result;
+    for (const char* none :
+         {"", "none of the 5 tried", "none (2 of 5 tried)", "not tried", kRestsOnUnknown}) {
+        result.restsOn = none;
+        EXPECT_FALSE(result.restsOnAssumption()) << none;
+    }
+    result.restsOn = "normal_bins (of 5 tried)";
+    EXPECT_TRUE(result.restsOnAssumption());
 }
 
 TEST(Claims, Summary) {

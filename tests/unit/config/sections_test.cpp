@@ -238,7 +238,7 @@ TEST_F(ExperimentTest, BadClaims) {
     EXPECT_EQ(claimError("{says: s, order: aa < bb, at_least: 1}"),
               head +
                   "32: claim 'C': unknown key 'at_least'; allowed: says, at, across, "
-                  "profile, origin, bound_from, kind, because, order");
+                  "profile, origin, same_as, bound_from, kind, because, order");
     EXPECT_EQ(claimError("{says: s, order: aa}"),
               head + "23: claim 'C': order is aa; allowed: a < b < …");
     EXPECT_EQ(claimError("{says: s, order: aa < bb < aa}"),
@@ -324,7 +324,8 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
     EXPECT_EQ(error("origin: mine"),
               head +
                   "49: claim 'C': origin is mine; allowed: document | derived | ours | "
-                  "definition | calibrated");
+                  "definition | calibrated | existence");
+    EXPECT_EQ(error("same_as: D"), head + "50: claim 'C': same_as is D; allowed: TABLE CLAIM");
     EXPECT_EQ(error("bound_from: paper"),
               head + "53: claim 'C': bound_from is paper; allowed: print | text | ours");
     EXPECT_EQ(
@@ -385,11 +386,14 @@ TEST_F(ExperimentTest, ProvenanceOfAClaim) {
     const Experiment table = load(
         "table: zju/1\ntitle: t\ntechnique: voxelization\nsweep: {scene: [s]}\n"
         "layout: {rows: scene, columns: {aa: m}}\nclaims:\n"
-        "  C: {says: s, bound: aa, more_than: 0, origin: derived, bound_from: print, kind: "
+        "  C: {says: s, bound: aa, more_than: 0, origin: derived, same_as: zju/2 D, bound_from: "
+        "print, "
+        "kind: "
         "architectural, because: [{verdict: fails, profile: quick, reason: r, shown_by: s, scenes: "
         "files}]}\n");
     const ClaimSpec& claim = table.claims.at(0);
     EXPECT_EQ(claim.origin, ClaimSpec::Origin::Derived);
+    EXPECT_EQ(claim.sameAs, "zju/2 D");
     EXPECT_EQ(claim.boundFrom, ClaimSpec::BoundSource::Print);
     EXPECT_EQ(claim.timeKind, ClaimSpec::TimeKind::Architectural);
     EXPECT_TRUE(claim.isLowExcluded);

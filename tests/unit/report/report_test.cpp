@@ -145,6 +145,23 @@ TEST(Report, IsOneSafeFile) {
     EXPECT_THAT(html, HasSubstr("; script-src 'sha256-" + base64(digest) + "'\">"));
 }
 
+TEST(Report, SaysWhyAStatementOfTheDocumentIsNotCounted) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.claims[0].origin = config::ClaimSpec::Origin::Document;
+    run.claims[0].sameAs = "zju2005/1 A";
+    run.claims[0].isRepeat = true;
+    run.claims[1].origin = config::ClaimSpec::Origin::Document;
+    run.claims[1].verdict = claims::Verdict::Holds;
+    run.claims[1].rows = "1 of 2 values of <scene>";
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(html, HasSubstr(">A, document, algorithmic, counted as zju2005/1 A</span>"));
+    EXPECT_THAT(html,
+                HasSubstr(">B, document, algorithmic, on 1 of 2 values of &lt;scene&gt;</span>"));
+    EXPECT_THAT(html, Not(HasSubstr("<li class=\"claim\"")));
+}
+
 /// What an input was fitted to is no finding.
 TEST(Report, MarksWhatIsCalibrated) {
     const test::TemporaryFolder folder;
@@ -495,6 +512,7 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
         .append({{"case", "zju2005/9.9", 0, "surface_0", "images/a.png", "", "t"}});
     const config::Document document{
         "zju2005", "Thesis on <models>", {{"Later", {"9.9"}}, {"Earlier", {"figure-1"}}}};
+    run.context.tried[{"zju2005/9.9", "A"}] = {claims::Verdict::Holds, "padding (of 3 tried)"};
     judge(run, records());
     const std::filesystem::path findings = folder.path().parent_path() / "a b";
     writeReport(folder.path() / "report.html", {&run, 1}, {{document}, false, {}, findings});
@@ -510,6 +528,7 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
              "<span class=\"holds\"",
              "<span class=\"fails\"",
              "could be judged here",
+             "Of those that hold, 1 rests on a value of ours that the document leaves open. ",
              "Not reproduced: “no” (<a href=\"#zju2005-9.9\">",
              "<span>Later</span>",
              "<span>Earlier</span>",

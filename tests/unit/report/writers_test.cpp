@@ -179,7 +179,9 @@ TEST(Writers, ClaimFiles) {
     claims::ReportContext context = kWritersContext;
     context.tried[{"zju2005/9.9", "A"}] = {claims::Verdict::Holds, "none of the 5 tried"};
     context.tried[{"zju2005/9.9", "B"}] = {claims::Verdict::Holds, "bias (of 5 tried)"};
-    const auto results = claims::evaluateClaims({writtenExperiment()}, tables, context);
+    auto results = claims::evaluateClaims({writtenExperiment()}, tables, context);
+    results[0].rows = "1 of 4 values of scene";
+    results[1].sameAs = "zju2005/1 A";
     using Outcome = records::CaseEnd::Outcome;
     const std::vector<records::CaseEnd> cases = {
         {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Measured},
@@ -191,20 +193,20 @@ TEST(Writers, ClaimFiles) {
     EXPECT_EQ(
         run.read("claims.csv"),
         "claim,says,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
-        "margin,reason,because,rests_on\n"
+        "margin,reason,because,rests_on,rows,same_as\n"
         "A,\"a < b & \"\"c\"\"\",zju2005/9.9,llvmpipe,quick,ours,ours,algorithmic,holds,holds,\"8 "
         "[8, "
         "8]\",draw_ms ≤ 10,2,by the clock: "
         "no CPU time was "
         "recorded of these,,"
-        "none of the 5 tried\n"
+        "none of the 5 tried,1 of 4 values of scene,\n"
         "B,no,zju2005/9.9,llvmpipe,quick,document,text,algorithmic,fails,fails,\"8 [8, "
         "8]\",draw_ms "
         "≤ 1,-7,by the clock: no CPU time was recorded of these,\"slow, measured\",not tried: "
-        "holds then\n"
+        "holds then,,zju2005/1 A\n"
         "C,maybe,zju2005/9.9,llvmpipe,quick,ours,ours,algorithmic,unmeasured,holds,,draw_ms ≤ "
         "1,,draw_ms at "
-        "scene=models/lost: crash (signal <11>),,\n");
+        "scene=models/lost: crash (signal <11>),,,,\n");
     const auto kept = claims::readClaims(run.folder.path() / "claims.csv");
     ASSERT_EQ(kept.size(), results.size());
     EXPECT_EQ(kept[1].origin, config::ClaimSpec::Origin::Document);
@@ -214,6 +216,8 @@ TEST(Writers, ClaimFiles) {
     EXPECT_EQ(kept[1].because, "slow, measured");
     EXPECT_EQ(kept[1].text, "no");
     EXPECT_EQ(kept[1].restsOn, "not tried: holds then");
+    EXPECT_EQ(kept[0].rows, "1 of 4 values of scene");
+    EXPECT_EQ(kept[1].sameAs, "zju2005/1 A");
     EXPECT_EQ(
         run.read("junit.xml"),
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
