@@ -46,7 +46,7 @@ function(gfxrepro_precompiled target cold)
     if(NOT TARGET ${common})
         file(CONFIGURE OUTPUT "${CMAKE_BINARY_DIR}/${common}.cpp" CONTENT "")
         add_library(${common} OBJECT "${CMAKE_BINARY_DIR}/${common}.cpp")
-        target_compile_options(${common} PRIVATE -fpch-preprocess $<$<AND:$<CONFIG:Release>,$<BOOL:${cold}>>:-O1>)
+        target_compile_options(${common} PRIVATE -fpch-preprocess $<$<BOOL:${cold}>:$<IF:$<CONFIG:Release>,-O1,-O0>>)
         target_link_libraries(${common} PRIVATE gfxrepro_options fmt::fmt nlohmann_json::nlohmann_json glm::glm)
         target_precompile_headers(${common} PRIVATE
             <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <sstream> <string> <vector>
@@ -88,7 +88,7 @@ function(gfxrepro_module name)
     cmake_parse_arguments(arg "COLD" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
     add_library(gfxrepro_${name} STATIC ${arg_SOURCES})
     if(arg_COLD)
-        target_compile_options(gfxrepro_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+        target_compile_options(gfxrepro_${name} PRIVATE $<IF:$<CONFIG:Release>,-O1,-O0>)
     endif()
     gfxrepro_precompiled(gfxrepro_${name} ${arg_COLD})
     target_link_libraries(gfxrepro_${name}
@@ -103,7 +103,7 @@ function(add_technique name)
     cmake_parse_arguments(arg "COLD" "" "SOURCES;SHADERS;PRIVATE" ${ARGN})
     add_library(technique_${name} STATIC ${arg_SOURCES})
     if(arg_COLD)
-        target_compile_options(technique_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+        target_compile_options(technique_${name} PRIVATE $<IF:$<CONFIG:Release>,-O1,-O0>)
     endif()
     gfxrepro_precompiled(technique_${name} ${arg_COLD})
     target_link_libraries(technique_${name}
@@ -131,10 +131,11 @@ function(gfxrepro_shaders target folder)
     endif()
 endfunction()
 
-# gfxrepro_test(NAME [SERIAL] LABEL label SOURCES … LINK targets …) → one GoogleTest program, one ctest entry a case;
-# SERIAL: beside no other test. A few sources are one unit, in every preset: most of what a test takes to compile are headers.
+# gfxrepro_test(NAME [SERIAL] [WHOLE] LABEL label SOURCES … LINK targets …) → one GoogleTest program, one ctest entry a case;
+# SERIAL: beside no other test. WHOLE: one entry for all, as cases share what takes long to make; none may be skipped.
+# A few sources are one unit, in every preset: most of what a test takes to compile are headers.
 function(gfxrepro_test name)
-    cmake_parse_arguments(arg "SERIAL" "LABEL" "SOURCES;LINK" ${ARGN})
+    cmake_parse_arguments(arg "SERIAL;WHOLE" "LABEL" "SOURCES;LINK" ${ARGN})
     add_executable(${name} ${arg_SOURCES})
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
     target_compile_options(${name} PRIVATE ${GFXREPRO_TEST_OPTIONS})
@@ -144,6 +145,11 @@ function(gfxrepro_test name)
     set(limit_s 300)
     if(GFXREPRO_SANITIZE_THREADS)
         set(limit_s 1800)
+    endif()
+    if(arg_WHOLE)
+        add_test(NAME ${name} COMMAND ${name})
+        set_tests_properties(${name} PROPERTIES LABELS "${arg_LABEL}" TIMEOUT 1800)
+        return()
     endif()
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${arg_LABEL}" TIMEOUT ${limit_s}
                          RUN_SERIAL ${arg_SERIAL})
