@@ -65,6 +65,11 @@ class SceneBuilder {
 
     Scene build() {
         textureUses_ = gltf::addMaterials(file_, accessors_, scene_, leftOut_);
+        for (const tinygltf::Mesh& mesh : model().meshes) {
+            for (const tinygltf::Primitive& primitive : mesh.primitives) {
+                for (const auto& [name, accessor] : primitive.attributes) ++readers_[accessor];
+            }
+        }
         std::vector<bool> isPosed(model().meshes.size(), false);  // by each of its nodes
         for (const tinygltf::Node& node : model().nodes) {
             const bool hasMesh = node.mesh >= 0 && node.mesh < static_cast<int>(isPosed.size());
@@ -157,8 +162,7 @@ class SceneBuilder {
                             where, mesh.material);
         }
         const int positions = primitive.attributes.at("POSITION");
-        const auto& allPositions = accessors_.values<glm::vec3>(positions);
-        const std::size_t count = allPositions.size();
+        const std::size_t count = accessors_.values<glm::vec3>(positions).size();
         if (count > std::numeric_limits<std::uint32_t>::max()) {
             fail(fmt::format("{}: {} vertices; at most 4294967295 are allowed", where, count));
         }
@@ -171,12 +175,15 @@ class SceneBuilder {
             used = usedVertices_.renumber(mesh.triangles, count);
         }
         std::vector<bool>& isUsed = usedPositions_[positions];
-        isUsed.resize(count, false);
-        for (const std::uint32_t vertex : used) isUsed[vertex] = true;
+        if (used.size() == count) {
+            isUsed.assign(count, true);
+        } else {
+            isUsed.resize(count, false);
+            for (const std::uint32_t vertex : used) isUsed[vertex] = true;
+        }
 
         const gltf::UsedPart part{primitive, count, used, fmt::format("{}: {}", file_.name, where)};
-        accessors_.charge(used.size(), sizeof(glm::vec3));
-        mesh.positions = part.of(allPositions, "POSITION");
+        mesh.positions = attribute<glm::vec3>(part, "POSITION");
         mesh.normals = attribute<glm::vec3>(part, "NORMAL");
         for (glm::vec3& normal : mesh.normals) normal = unitNormal(normal);
         mesh.colors = attribute<glm::vec3>(part, "COLOR_0");
@@ -198,12 +205,19 @@ class SceneBuilder {
         const auto found = part.primitive.attributes.find(name);
         if (found == part.primitive.attributes.end()) return {};
         const bool isColour = std::string_view(name) == "COLOR_0";
-        const auto& values = accessors_.values<T>(found->second, isColour);
+        const std::size_t count = accessors_.values<T>(found->second, isColour).size();
         if (isColour && model().accessors[found->second].type == TINYGLTF_TYPE_VEC4) {
-            leftOut_.add("the alpha of vertex colours");
+            const auto colours = accessors_.takenValues<glm::vec4>(found->second);
+            const bool isSolid =
+                std::ranges::all_of(colours, [](const glm::vec4& c) { return c.a >= 1.0F; });
+            leftOut_.add("the alpha of vertex colours", isSolid ? 0 : 1);
+        }
+        const bool isWhole = part.used.size() == part.vertexCount && count == part.vertexCount;
+        if (isWhole && readers_[found->second] == 1) {
+            return accessors_.takenValues<T>(found->second, isColour);
         }
         accessors_.charge(part.used.size(), sizeof(T));
-        return part.of(values, name);
+        return part.of(accessors_.values<T>(found->second, isColour), name);
     }
 
     std::vector<glm::uvec3> checkedTriangles(const tinygltf::Primitive& primitive,
@@ -460,6 +474,7 @@ class SceneBuilder {
     gltf::Lights lights_;
     std::vector<gltf::TextureUse> textureUses_;
     std::map<PosedMesh, Parts> parts_;
+    std::map<int, int> readers_;  // of each accessor: attributes of primitives
     UsedVertices usedVertices_;
     std::map<int, std::vector<bool>> usedPositions_;       // by their accessors
     std::vector<std::optional<glm::mat4>> worldFromNode_;  // of those visited

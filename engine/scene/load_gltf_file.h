@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -59,6 +60,13 @@ class Accessors {
     /// `mayHaveAlpha`, which is dropped. All are finite. Decoded once, and kept.
     template <class T>
     const std::vector<T>& values(int accessor, bool mayHaveAlpha = false);
+
+    /// The same, not kept: for an accessor that nobody else reads.
+    template <class T>
+    std::vector<T> takenValues(int accessor, bool mayHaveAlpha = false) {
+        values<T>(accessor, mayHaveAlpha);
+        return std::move(std::get<Decoded<T>>(decoded_).extract(accessor).mapped());
+    }
 
     /// Unsigned integers of a SCALAR accessor.
     std::vector<std::uint32_t> indices(int accessor);

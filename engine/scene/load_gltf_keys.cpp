@@ -151,7 +151,10 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
         bool isObject;
     };
 
+    /// False where the parsing ends: the loader refuses what is nested so deeply.
     bool enter(bool isObject) {
+        constexpr std::size_t kMostDepth = 256;
+        if (open_.size() + skippedDepth_ >= kMostDepth) return false;
         if (skippedDepth_ > 0 || skipsValue_) {
             ++skippedDepth_;
             return true;

@@ -13,6 +13,7 @@ void morph(Accessors& accessors, const UsedPart& part, std::span<const double> w
                           std::vector<glm::vec3>& values) {
         const auto accessor = target.find(name);
         if (accessor == target.end() || values.empty()) return;
+        accessors.charge(values.size(), sizeof(glm::vec3));
         const auto by = part.of(accessors.values<glm::vec3>(accessor->second), name);
         for (std::size_t i = 0; i < values.size(); ++i) {
             values[i] += static_cast<float>(weight) * by[i];
@@ -32,6 +33,7 @@ std::vector<glm::mat4> jointMatrices(const File& file, Accessors& accessors, int
                                      std::span<const std::optional<glm::mat4>> worldFromNode) {
     const std::string where = fmt::format("{}: skin {}", file.name, skin);
     const tinygltf::Skin& from = elementOf(file.model.skins, skin, "{}", where);
+    accessors.charge(from.joints.size(), sizeof(glm::mat4));
     std::vector<glm::mat4> inverseBinds;
     if (from.inverseBindMatrices >= 0) {
         inverseBinds = accessors.values<glm::mat4>(from.inverseBindMatrices);
@@ -55,6 +57,7 @@ std::vector<glm::mat4> jointMatrices(const File& file, Accessors& accessors, int
 
 void moveToJoints(Accessors& accessors, const UsedPart& part, std::span<const glm::mat4> joints,
                   Mesh& mesh) {
+    accessors.charge(part.used.size(), sizeof(glm::mat4));
     std::vector<glm::mat4> sums(part.used.size(), glm::mat4(0.0F));
     std::vector<float> totals(part.used.size(), 0.0F);
     for (int set = 0;; ++set) {  // four joints each
@@ -65,6 +68,7 @@ void moveToJoints(Accessors& accessors, const UsedPart& part, std::span<const gl
         if (joint == part.primitive.attributes.end() || weight == part.primitive.attributes.end()) {
             break;
         }
+        accessors.charge(part.used.size(), 2 * sizeof(glm::vec4));
         const auto numbers = part.of(accessors.values<glm::vec4>(joint->second), jointsName);
         const auto weights = part.of(accessors.values<glm::vec4>(weight->second), weightsName);
         for (std::size_t i = 0; i < sums.size(); ++i) {

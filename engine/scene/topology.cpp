@@ -24,6 +24,7 @@ std::vector<std::uint32_t> UsedVertices::renumber(std::span<glm::uvec3> triangle
                                                   std::size_t vertexCount) {
     if (placeOf_.size() < vertexCount) placeOf_.resize(vertexCount, kNone);
     std::vector<std::uint32_t> used;
+    used.reserve(std::min(vertexCount, 3 * triangles.size()));
     for (const glm::uvec3& triangle : triangles) {
         for (int corner = 0; corner < 3; ++corner) {
             std::uint32_t& place = placeOf_[triangle[corner]];

@@ -68,12 +68,13 @@ TEST_F(LoadGltf, ReadsBinaryFiles) {
 }
 
 TEST_F(LoadGltf, ConvertsNormalizedIntegers) {
-    const Mesh mesh =
-        loadWith("meshes",
-                 R"([{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":2,"TEXCOORD_0":3}}]}])")
-            .meshes.at(0);
+    const Scene scene = loadWith(
+        "meshes", R"([{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":2,"TEXCOORD_0":3}}]}])");
+    const Mesh& mesh = scene.meshes.at(0);
     EXPECT_EQ(mesh.colors[0], glm::vec3(1, 0, 0.2F));
     EXPECT_EQ(mesh.texcoords[1], glm::vec2(1, -1));  // 127 and −127
+    EXPECT_EQ(scene.warnings, (std::vector<std::string>{"left out: a vertex that no triangle uses",
+                                                        "left out: the alpha of vertex colours"}));
 }
 
 TEST_F(LoadGltf, ReadsStripsAndFansWithTheirOutside) {

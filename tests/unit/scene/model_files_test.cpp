@@ -43,6 +43,15 @@ TEST(ModelFiles, AFileThatNobodyHashedIsAnError) {
               "DIR/other.bin: belongs to DIR/a.gltf, but is not part of the model's identity");
 }
 
+/// A walk that kept the path of each level would take the square of the depth.
+TEST(ModelFiles, DeepNestingEndsTheSearch) {
+    const TemporaryFolder folder;
+    std::string nested;
+    for (int i = 0; i < 1'000'000; ++i) nested += "{\"extensions\":";
+    EXPECT_TRUE(filesBeside(folder.write("a.gltf", nested)).empty());
+    EXPECT_TRUE(filesBeside(folder.write("b.gltf", std::string(10'000'000, '['))).empty());
+}
+
 TEST(ModelFiles, AnObjFileHasThoseThatItsLoaderOpens) {
     const TemporaryFolder folder;
     folder.write("a.mtl", "newmtl a\nmap_Kd b.tga # bark\n");
