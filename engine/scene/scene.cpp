@@ -124,7 +124,8 @@ glm::mat3 normalMatrix(const glm::mat3& matrix) {
 }
 
 glm::dvec3 offsetOf(const Box& box) {
-    constexpr double kFarDiagonals = 16.0;
+    constexpr double kFarDiagonals = 16.0, kFarM = 1e4;  // a float's step there: a millimetre
+    constexpr double kVeryFarDiagonals = 4096.0;
     glm::dvec3 offset(0.0);
     if (box.isEmpty()) return offset;
     const glm::dvec3 low(box.min);
@@ -132,7 +133,8 @@ glm::dvec3 offsetOf(const Box& box) {
     const double diagonal = glm::length(high - low);
     for (int axis = 0; axis < 3; ++axis) {
         const double reach = std::max(std::abs(low[axis]), std::abs(high[axis]));
-        if (reach <= kFarDiagonals * diagonal) continue;
+        const bool isFar = reach > kFarDiagonals * diagonal && reach >= kFarM;
+        if (!isFar && reach <= kVeryFarDiagonals * diagonal) continue;
         // Floats of such a file may be steps apart: the diagonal is known no better than a step.
         const double known = std::max(diagonal, 1e-7 * reach);
         const double unit = std::pow(10.0, std::floor(std::log10(known)));

@@ -182,8 +182,9 @@ glm::mat3 normalMatrix(const glm::mat3& matrix);
 glm::vec3 unitOrZero(const glm::vec3& vector);
 
 /// What to subtract from coordinates in this box before they become floats: the middle, in round
-/// numbers, along each axis on which the box reaches farther from 0 than 16 of its diagonals. Up to
-/// there a float still tells a millionth of the diagonal.
+/// numbers, along each axis on which the box reaches farther from 0 than 16 of its diagonals and
+/// 10 km, or than 4096 diagonals. Up to there a float tells a millimetre and some thousandth of the
+/// diagonal, and files that belong together keep their places.
 glm::dvec3 offsetOf(const Box& box);
 
 /// All instances as one mesh in world space (attributes that not all have are dropped; normals by

@@ -73,7 +73,8 @@ TEST(FarFiles, NodesFarAwayKeepTheirDistance) {
 
 TEST(FarFiles, OthersStayAsTheyAre) {
     const TemporaryFolder folder;
-    const std::string face = "\nv 21 0 0\nv 20 1 0\nf 1 2 3\n";
+    // A knob of 1 cm among the files of a room.
+    const std::string face = "\nv 20.01 0 0\nv 20 0.01 0\nf 1 2 3\n";
     EXPECT_EQ(loadObj(folder.write("a.obj", "v 20 0 0" + face)).offset, glm::dvec3(0.0));
     EXPECT_EQ(loadObj(folder.write("a.obj", "v 500000 1 2")).points.positions.at(0),
               glm::vec3(500'000, 1, 2))
