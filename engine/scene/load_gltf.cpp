@@ -195,7 +195,10 @@ class SceneBuilder {
             for (glm::vec2& uv : mesh.texcoords) uv = use.transform * glm::vec3(uv, 1.0F);
         }
         gltf::morph(accessors_, part, posed.weights, mesh);
-        if (posed.skin >= 0) gltf::moveToJoints(accessors_, part, joints, mesh);
+        if (posed.skin >= 0) {
+            leftOut_.add("weights that a skinned vertex lacks: the first joint holds it",
+                         gltf::moveToJoints(accessors_, part, joints, mesh));
+        }
         return mesh;
     }
 

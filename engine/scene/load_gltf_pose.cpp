@@ -42,6 +42,7 @@ std::vector<glm::mat4> jointMatrices(const File& file, Accessors& accessors, int
         throw Error(fmt::format("{}: {} inverse bind matrices for {} joints", where,
                                 inverseBinds.size(), from.joints.size()));
     }
+    if (from.joints.empty()) throw Error(where + ": no joints; at least one is needed");
     std::vector<glm::mat4> matrices;
     for (std::size_t i = 0; i < from.joints.size(); ++i) {
         const int node = from.joints[i];
@@ -55,8 +56,8 @@ std::vector<glm::mat4> jointMatrices(const File& file, Accessors& accessors, int
     return matrices;
 }
 
-void moveToJoints(Accessors& accessors, const UsedPart& part, std::span<const glm::mat4> joints,
-                  Mesh& mesh) {
+std::size_t moveToJoints(Accessors& accessors, const UsedPart& part,
+                         std::span<const glm::mat4> joints, Mesh& mesh) {
     accessors.charge(part.used.size(), sizeof(glm::mat4));
     std::vector<glm::mat4> sums(part.used.size(), glm::mat4(0.0F));
     std::vector<float> totals(part.used.size(), 0.0F);
@@ -83,16 +84,16 @@ void moveToJoints(Accessors& accessors, const UsedPart& part, std::span<const gl
             }
         }
     }
+    std::size_t unheldCount = 0;
     for (std::size_t i = 0; i < sums.size(); ++i) {
-        if (!(totals[i] > 0.0F)) {
-            throw Error(
-                fmt::format("{}: vertex {} has no joint that holds it", part.where, part.used[i]));
-        }
-        const glm::mat4 worldFromMesh = sums[i] / totals[i];
+        const bool isHeld = totals[i] > 0.0F;
+        const glm::mat4 worldFromMesh = isHeld ? sums[i] / totals[i] : joints[0];
+        unheldCount += isHeld ? 0 : 1;
         mesh.positions[i] = glm::vec3(worldFromMesh * glm::vec4(mesh.positions[i], 1.0F));
         if (mesh.normals.empty()) continue;
         mesh.normals[i] = unitNormal(normalMatrix(glm::mat3(worldFromMesh)) * mesh.normals[i]);
     }
+    return unheldCount;
 }
 
 }  // namespace gfxrepro::scene::gltf

@@ -43,8 +43,9 @@ void morph(Accessors& accessors, const UsedPart& part, std::span<const double> w
 std::vector<glm::mat4> jointMatrices(const File& file, Accessors& accessors, int skin,
                                      std::span<const std::optional<glm::mat4>> worldFromNode);
 
-/// Moves positions and normals into the world, as their joints hold them.
-void moveToJoints(Accessors& accessors, const UsedPart& part, std::span<const glm::mat4> joints,
-                  Mesh& mesh);
+/// Moves positions and normals into the world, as their joints hold them. The first joint holds
+/// vertices without weights; returns how many.
+std::size_t moveToJoints(Accessors& accessors, const UsedPart& part,
+                         std::span<const glm::mat4> joints, Mesh& mesh);
 
 }  // namespace gfxrepro::scene::gltf

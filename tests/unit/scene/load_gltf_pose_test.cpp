@@ -89,6 +89,16 @@ TEST_F(PoseGltf, JointsShareAVertexByTheirWeights) {
     const Mesh mesh = load().meshes.at(0);
     EXPECT_EQ(mesh.positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 8}, {1, 1, 4}, {0, 1, 6}}));
 
+    document_["meshes"] = R"([{"primitives":[{"indices":1,"attributes":{"POSITION":0}}]}])";
+    document_["skins"] = R"([{"joints":[2,1]}])";
+    const Scene unheld = load();
+    EXPECT_EQ(unheld.bounds().min, glm::vec3(0, 0, 8))
+        << "the first joint holds what has no weights";
+    EXPECT_EQ(unheld.warnings,
+              std::vector<std::string>{"left out: weights that a skinned vertex lacks: the first "
+                                       "joint holds it (4 times)"});
+    document_["skins"] = R"([{"joints":[1,2]}])";
+
     const int bad = add("VEC4", 4, {0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
     document_["meshes"] = R"([{"primitives":[{"indices":1,"attributes":{"POSITION":0,"JOINTS_0":)" +
                           std::to_string(bad) + R"(,"WEIGHTS_0":)" + std::to_string(weights) +
