@@ -260,7 +260,7 @@ class ObjParser {
     std::size_t smoothingCount_ = 0;
 };
 
-/// The corners as they are, less the vertices that they leave out: these stay in their order.
+/// The corners as they are: vertex i of the mesh is line i of the file.
 Mesh meshOfPositions(ObjContent& content) {
     Mesh mesh;
     std::vector<Corner>& corners = content.groups.front().corners;
@@ -271,7 +271,6 @@ Mesh meshOfPositions(ObjContent& content) {
     }
     mesh.positions = std::move(content.positions);
     mesh.colors = std::move(content.colors);
-    dropUnusedVertices(mesh);
     return mesh;
 }
 
@@ -402,16 +401,13 @@ class MaterialTable {
 
 /// Lines of the file that no corner names.
 std::size_t unusedPositions(const ObjContent& content) {
-    std::vector<bool> isUsed(content.positions.size(), false);
-    std::size_t count = isUsed.size();
+    std::vector<char> isUsed(content.positions.size(), 0);
     for (const Group& group : content.groups) {
         for (const Corner& corner : group.corners) {
-            const auto position = static_cast<std::size_t>(corner.position);
-            count -= isUsed[position] ? 0 : 1;
-            isUsed[position] = true;
+            isUsed[static_cast<std::size_t>(corner.position)] = 1;
         }
     }
-    return count;
+    return static_cast<std::size_t>(std::ranges::count(isUsed, 0));
 }
 
 Scene sceneOf(ObjContent content, const std::filesystem::path& path, LeftOut& leftOut) {
@@ -427,7 +423,8 @@ Scene sceneOf(ObjContent content, const std::filesystem::path& path, LeftOut& le
         scene.points.colors = std::move(content.colors);
         return scene;
     }
-    leftOut.add("a vertex that no face uses", unusedPositions(content));
+    const std::size_t unusedCount = unusedPositions(content);
+    leftOut.add("a vertex that no face uses", unusedCount);
     MaterialTable materials(path.parent_path(), content.libraries, leftOut, scene);
     const bool asIs = content.groups.size() == 1 && !content.hasTriples;
     const auto addMesh = [&](Mesh mesh, const std::string& material) {
@@ -442,6 +439,7 @@ Scene sceneOf(ObjContent content, const std::filesystem::path& path, LeftOut& le
         if (!group.material.empty()) materials.add(group.material);
         if (asIs) {
             addMesh(meshOfPositions(content), group.material);
+            if (unusedCount > 0) dropUnusedVertices(scene.meshes.back());
             continue;
         }
         for (const std::vector<Corner>& corners : alike(std::move(group.corners))) {

@@ -352,11 +352,11 @@ class VertexParser {
 
     float read(const Property& property, PropertySlot slot) {
         const double number = reader_.number(property.type);
+        const bool isPosition = slot <= kZ;
         if (isColour(slot) && areBytes_) return linearBytes_[static_cast<std::size_t>(number)];
-        const bool isPosition = slot == kX || slot == kY || slot == kZ;
-        const auto value = isColour(slot) ? colourOf(property.type, number)
-                           : isPosition   ? static_cast<float>(number - offset_[slot - kX])
-                                          : static_cast<float>(number);
+        const auto value = isPosition       ? static_cast<float>(number - offset_[slot])
+                           : isColour(slot) ? colourOf(property.type, number)
+                                            : static_cast<float>(number);
         // Scanners write normals that are not numbers; unitNormal() takes those.
         const bool isNormal = slot == kNx || slot == kNy || slot == kNz;
         if (!std::isfinite(value) && !isNormal) {
@@ -479,9 +479,9 @@ void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCoun
         for (std::int64_t& corner : corners) {
             const double index = reader.number(property.type);
             const bool isRestart = isStrip && index == -1.0;
-            const bool isWhole = index == std::floor(index);
-            if (!isRestart &&
-                !(isWhole && index >= 0.0 && index < static_cast<double>(vertexCount))) {
+            const bool isVertex = index >= 0.0 && index < static_cast<double>(vertexCount) &&
+                                  index == static_cast<double>(static_cast<std::int64_t>(index));
+            if (!isRestart && !isVertex) {
                 reader.fail(
                     fmt::format("index {} is not one of the {} vertices", index, vertexCount));
             }

@@ -20,11 +20,28 @@ Welding weldedByPosition(std::span<const glm::vec3> positions) {
     return welding;
 }
 
+namespace {
+
+bool areAllUsed(std::span<const glm::uvec3> triangles, std::size_t vertexCount) {
+    if (3 * triangles.size() < vertexCount) return false;
+    std::vector<char> isUsed(vertexCount, 0);
+    for (const glm::uvec3& triangle : triangles) {
+        isUsed[triangle.x] = isUsed[triangle.y] = isUsed[triangle.z] = 1;
+    }
+    return std::ranges::find(isUsed, 0) == isUsed.end();
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> UsedVertices::renumber(std::span<glm::uvec3> triangles,
                                                   std::size_t vertexCount) {
-    if (placeOf_.size() < vertexCount) placeOf_.resize(vertexCount, kNone);
     std::vector<std::uint32_t> used;
-    used.reserve(std::min(vertexCount, 3 * triangles.size()));
+    if (areAllUsed(triangles, vertexCount)) {  // mostly: that is soon known
+        used.resize(vertexCount);
+        std::iota(used.begin(), used.end(), 0U);
+        return used;
+    }
+    if (placeOf_.size() < vertexCount) placeOf_.resize(vertexCount, kNone);
     for (const glm::uvec3& triangle : triangles) {
         for (int corner = 0; corner < 3; ++corner) {
             std::uint32_t& place = placeOf_[triangle[corner]];
@@ -32,16 +49,10 @@ std::vector<std::uint32_t> UsedVertices::renumber(std::span<glm::uvec3> triangle
             place = 0;
         }
     }
-    if (used.size() == vertexCount) {
-        std::iota(used.begin(), used.end(), 0U);
-    } else {
-        std::ranges::sort(used);
-        for (std::uint32_t i = 0; i < used.size(); ++i) placeOf_[used[i]] = i;
-        for (glm::uvec3& triangle : triangles) {
-            for (int corner = 0; corner < 3; ++corner) {
-                triangle[corner] = placeOf_[triangle[corner]];
-            }
-        }
+    std::ranges::sort(used);
+    for (std::uint32_t i = 0; i < used.size(); ++i) placeOf_[used[i]] = i;
+    for (glm::uvec3& triangle : triangles) {
+        for (int corner = 0; corner < 3; ++corner) triangle[corner] = placeOf_[triangle[corner]];
     }
     for (const std::uint32_t vertex : used) placeOf_[vertex] = kNone;
     return used;
