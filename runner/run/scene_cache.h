@@ -1,6 +1,8 @@
 // The scenes and programs that a worker holds, for the case at hand and for later ones.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <list>
 #include <map>
 #include <string>
@@ -15,6 +17,10 @@ namespace gfxrepro::run {
 
 /// Least recently used scenes go when the rest would exceed the budget; those of the present case
 /// stay whatever their size.
+///
+/// Generated scenes of a megabyte or more are kept as files in cacheFolder()/scenes, for the next
+/// process: by generator, parameters, seed and the program's hash. What cannot be written, or is
+/// torn, is made anew.
 class SceneCache : public technique::SceneProvider {
   public:
     struct Entry {
@@ -26,8 +32,10 @@ class SceneCache : public technique::SceneProvider {
         bool isOfThisCase = true;
     };
 
-    SceneCache(const scene::Catalog& catalog, std::size_t budgetBytes)
-        : catalog_(catalog), budgetBytes_(budgetBytes) {}
+    /// The files together take at most `mostKeptBytes`: those used longest ago go.
+    SceneCache(const scene::Catalog& catalog, std::size_t budgetBytes,
+               std::uintmax_t mostKeptBytes = std::uintmax_t{1} << 30)
+        : catalog_(catalog), budgetBytes_(budgetBytes), mostKeptBytes_(mostKeptBytes) {}
 
     /// Unpins everything; with a budget of zero, drops all scenes but `keep`.
     void beginCase(const std::string& keep);
@@ -43,6 +51,7 @@ class SceneCache : public technique::SceneProvider {
 
     const scene::Catalog& catalog_;
     std::size_t budgetBytes_;
+    std::uintmax_t mostKeptBytes_;
     std::list<Entry> entries_;  // the most recently used one first
 };
 
