@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -150,6 +154,16 @@ constexpr double kFlatRad = 1e-3;
 /// from those beside it along a curve that is drawn with few triangles.
 constexpr int kRounds = 3;
 
+/// Of vertices: places rounded to kWeld.
+using Cell = std::array<std::int64_t, 3>;
+/// Teschner et al. 2003, "Optimized Spatial Hashing for Collision Detection of Deformable Objects".
+struct CellHash {
+    std::size_t operator()(const Cell& cell) const {
+        const auto unsignedOf = [&](std::size_t i) { return static_cast<std::size_t>(cell[i]); };
+        return unsignedOf(0) * 73856093 ^ unsignedOf(1) * 19349663 ^ unsignedOf(2) * 83492791;
+    }
+};
+
 class Joined {
   public:
     explicit Joined(std::size_t count) : parent_(count) {
@@ -249,23 +263,24 @@ Border Division::borderOf(std::uint32_t a, std::uint32_t b, const dvec3& from,
 
 void Division::findBorders() {
     const double cell = std::max(kWeld * double{glm::length(mesh_.bounds().size())}, 1e-30);
-    std::map<std::tuple<std::int64_t, std::int64_t, std::int64_t>, std::uint32_t> vertexAt;
+    std::unordered_map<Cell, std::uint32_t, CellHash> vertexAt;
     std::vector<std::uint32_t> welded;
     for (const glm::vec3& position : mesh_.positions) {
         const dvec3 at = glm::round(dvec3(position) / cell);
-        const std::tuple key(static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y),
-                             static_cast<std::int64_t>(at.z));
+        const Cell key = {static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y),
+                          static_cast<std::int64_t>(at.z)};
         const auto next = static_cast<std::uint32_t>(vertexAt.size());
         welded.push_back(vertexAt.emplace(key, next).first->second);
     }
-    std::map<Edge, std::uint32_t> triangleAt;
+    std::unordered_map<std::uint64_t, std::uint32_t> triangleAt;  // by the edge's two vertices
+    triangleAt.reserve(2 * mesh_.triangles.size());
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t from = mesh_.triangles[t][k];
             const std::uint32_t to = mesh_.triangles[t][(k + 1) % 3];
             if (welded[from] == welded[to]) continue;
-            const auto [other, isNew] =
-                triangleAt.emplace(std::minmax(welded[from], welded[to]), t);
+            const auto [least, most] = std::minmax(welded[from], welded[to]);
+            const auto [other, isNew] = triangleAt.emplace(std::uint64_t{least} << 32 | most, t);
             if (isNew || other->second == t) continue;
             borders_.push_back(borderOf(other->second, t, dvec3(mesh_.positions[from]),
                                         dvec3(mesh_.positions[to])));
@@ -346,15 +361,16 @@ scene::Mesh partOf(const scene::Mesh& mesh, const std::vector<std::uint32_t>& pa
     scene::Mesh result;
     result.name = mesh.name;
     result.material = mesh.material;
-    std::map<std::uint32_t, std::uint32_t> newVertex;
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> newVertex(mesh.positions.size(), kNone);
     for (std::size_t t = 0; t < parts.size(); ++t) {
         if (parts[t] != part) continue;
         glm::uvec3 corners(0);
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t vertex = mesh.triangles[t][k];
-            const auto [at, isNew] =
-                newVertex.emplace(vertex, static_cast<std::uint32_t>(newVertex.size()));
-            corners[k] = at->second;
+            const bool isNew = newVertex[vertex] == kNone;
+            if (isNew) newVertex[vertex] = static_cast<std::uint32_t>(result.positions.size());
+            corners[k] = newVertex[vertex];
             if (!isNew) continue;
             result.positions.push_back(mesh.positions[vertex]);
             if (!mesh.normals.empty()) result.normals.push_back(mesh.normals[vertex]);
