@@ -185,8 +185,7 @@ TEST(Usage, UnknownPaperAndKind) {
 TEST(Usage, RunWantsConfigsOrARun) {
     const TemporaryFolder folder;
     EXPECT_EQ(refusal({"run"}, folder),
-              "gfxrepro: run: give PAPER, PAPER/TABLE or config files, --plan FILE or --resume "
-              "RUN\n");
+              "gfxrepro: run: give PAPER, PAPER/TABLE or config files, or --resume RUN\n");
     EXPECT_EQ(refusal({"table", folder.path()}, folder),
               "gfxrepro: DIR: is not a run directory (it has no plan.json)\n");
 }
