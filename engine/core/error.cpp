@@ -16,6 +16,10 @@ Error::Error(const SourceLocation& where, const std::string& message)
     : std::runtime_error(where.file.empty() ? message : toString(where) + ": " + message),
       where_(where) {}
 
+std::string textOf(const std::filesystem::filesystem_error& error) {
+    return error.path1().string() + ": " + error.code().message();
+}
+
 namespace detail {
 void assertionFailed(const char* condition, const std::string& values, const char* file, int line) {
     std::fprintf(stderr, "%s:%d: assertion failed: %s%s%s\n", file, line, condition,

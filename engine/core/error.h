@@ -2,6 +2,7 @@
 // assertion.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -70,10 +71,18 @@ class UnsupportedError : public Error {
     using Error::Error;
 };
 
+/// A file or a folder could not be written: the disk is full, or not ours to write to.
+class WriteError : public Error {
+    using Error::Error;
+};
+
 /// The device was lost or reset during a case (status `device-lost`).
 class DeviceLostError : public Error {
     using Error::Error;
 };
+
+/// "PATH: reason", without the words of the library that threw it.
+std::string textOf(const std::filesystem::filesystem_error& error);
 
 namespace detail {
 [[noreturn]] void assertionFailed(const char* condition, const std::string& values,

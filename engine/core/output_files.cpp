@@ -19,11 +19,12 @@ namespace {
 constexpr std::size_t kMostUnwrittenBytes = std::size_t{1} << 20;
 
 [[noreturn]] void failToWrite(const char* what, const fs::path& path) {
-    throw Error(std::string("cannot ") + what + ' ' + path.string() + ": " + std::strerror(errno));
+    throw WriteError(std::string("cannot ") + what + ' ' + path.string() + ": " +
+                     std::strerror(errno));
 }
 
 [[noreturn]] void failWriting(const fs::path& path, int reason) {
-    throw Error("cannot write " + path.string() + ": " + std::strerror(reason));
+    throw WriteError("cannot write " + path.string() + ": " + std::strerror(reason));
 }
 
 /// No link, no pipe's reader.
@@ -34,19 +35,39 @@ void requireReplaceable(const fs::path& path) {
     struct stat status {};
     if (::lstat(path.c_str(), &status) != 0) return;
     if (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) return;  // a folder refuses by itself
-    throw Error("cannot write " + path.string() + ": a link, a pipe or a device, not a file");
+    throw WriteError("cannot write " + path.string() + ": a link, a pipe or a device, not a file");
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
-    if (path_.has_parent_path()) {
-        std::error_code failure;
-        fs::create_directories(path_.parent_path(), failure);
-        if (failure) {
-            throw Error("cannot create " + path_.parent_path().string() + ": " + failure.message());
-        }
+void makeFolder(const fs::path& folder) {
+    std::error_code failure;
+    fs::create_directories(folder, failure);
+    if (failure) throw WriteError("cannot create " + folder.string() + ": " + failure.message());
+}
+
+void writeFolder(const fs::path& target, const std::function<void(const fs::path&)>& write) {
+    const fs::path plain = fs::absolute(target / "").lexically_normal().parent_path();
+    if (fs::exists(plain)) throw Error(target.string() + ": is there already; give another folder");
+    fs::path temporary = plain;
+    temporary += ".tmp" + std::to_string(::getpid());
+    std::error_code failure;
+    try {
+        const fs::path part = temporary / plain.filename();
+        makeFolder(part);
+        write(part);
+        fs::rename(part, plain, failure);
+    } catch (...) {
+        fs::remove_all(temporary, failure);
+        throw;
     }
+    std::error_code ignored;
+    fs::remove_all(temporary, ignored);
+    if (failure) throw WriteError("cannot write " + target.string() + ": " + failure.message());
+}
+
+AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
+    if (path_.has_parent_path()) makeFolder(path_.parent_path());
     requireReplaceable(path_);
     temporary_ = path_;
     temporary_ += ".tmp" + std::to_string(::getpid());

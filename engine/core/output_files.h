@@ -4,7 +4,9 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -16,16 +18,16 @@ namespace gfxrepro {
 /// old file or the new one, never a part.
 class AtomicFile {
   public:
-    /// Creates missing folders. Throws Error, also where `path` is a link, a pipe or a device.
+    /// Creates missing folders. Throws WriteError, also where `path` is a link, a pipe or a device.
     explicit AtomicFile(std::filesystem::path path);
     /// Without commit(), what was there stays.
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// Throws Error when the disk is full.
+    /// Throws WriteError when the disk is full.
     void write(std::string_view text);
-    /// Flushes it to the disk and renames it. Throws Error. Once.
+    /// Flushes it to the disk and renames it. Throws WriteError. Once.
     void commit();
 
   private:
@@ -36,6 +38,15 @@ class AtomicFile {
     std::string unwritten_;
     Descriptor file_;
 };
+
+/// With those above it. Throws WriteError.
+void makeFolder(const std::filesystem::path& folder);
+
+/// Lets `write` make and fill the folder that it is given, which has the name of `target` and lies
+/// in a temporary one beside it, and moves it there: `target` is there as a whole, or not at all.
+/// Throws Error where it is there already, WriteError, and what `write` throws.
+void writeFolder(const std::filesystem::path& target,
+                 const std::function<void(const std::filesystem::path&)>& write);
 
 /// Whether it is the name of a file that is being written: "a.exr.tmp123", "records.csv.tmp".
 inline bool isTemporary(const std::filesystem::path& file) {
@@ -58,6 +69,7 @@ class AppendedFile {
     /// Throws Error where the file is not what was written: somebody removed, replaced or changed
     /// it.
     void requireOurs() const;
+    std::uintmax_t sizeBytes() const { return static_cast<std::uintmax_t>(endBytes_); }
 
   private:
     std::filesystem::path path_;
