@@ -83,11 +83,11 @@ bool isStillAt(const fs::path& path, int fd) {
 void copyTree(const fs::path& from, const fs::path& to) {
     const fs::file_status status = fs::symlink_status(from);
     if (fs::is_regular_file(status)) {
-        constexpr std::uintmax_t kTooManyBytes = std::uintmax_t{4} << 30;
+        constexpr std::uintmax_t kMostBytes = std::uintmax_t{16} << 30;
         std::error_code failure;
-        if (const auto size = fs::file_size(from, failure); !failure && size >= kTooManyBytes) {
+        if (const auto size = fs::file_size(from, failure); !failure && size > kMostBytes) {
             throw Error("cannot copy " + from.string() + ": " + std::to_string(size) +
-                        " bytes; 4 GiB or more are not copied");
+                        " bytes; more than 16 GiB are not copied");
         }
         fs::create_directories(to.parent_path());
         fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);

@@ -40,7 +40,7 @@ bool isStillAt(const std::filesystem::path& path, int fd);
 
 /// Copies a file, or a folder with all that is in it, over what is there. Leaves out what is
 /// temporary (isTemporary()) and what goes away meanwhile. Throws Error for a link,
-/// a pipe or a device, and for a file of 4 GiB or more: one of holes would fill the disk.
+/// a pipe or a device, and for a file of more than 16 GiB: one of holes would fill the disk.
 void copyTree(const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// Where shaders/ and configs/ lie: beside the running program in a build tree, share/gfxrepro in

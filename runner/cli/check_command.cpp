@@ -16,6 +16,7 @@
 #include "runner/cli/experiments.h"
 #include "runner/config/external_program.h"
 #include "runner/config/schema.h"
+#include "runner/records/records.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/ledger.h"
 #include "runner/tables/figure.h"
@@ -229,6 +230,30 @@ void sayAbsent(const std::string& file, const std::vector<config::Case>& cases) 
     }
 }
 
+/// About how many rows a run of the cases has, where that is much of what a run takes: what a table
+/// is made of is known when it was measured.
+void sayRows(const Context& context, const std::string& file, const config::Experiment& experiment,
+             const std::vector<config::Case>& cases) {
+    constexpr double kOfCase = 8.0, kOfRepeat = 3.0, kOfPass = 2.0;  // scene, memory; times
+    if (cases.empty()) return;
+    const technique::TechniqueInfo& info =
+        technique::findTechnique(context.techniques, experiment.technique, {});
+    const config::Outputs outputs = technique::outputsOf(info, config::programOf(experiment));
+    const auto metrics =
+        static_cast<double>(outputs.metrics.size() - technique::commonMetrics().size());
+    const double ofRepeat = kOfRepeat + kOfPass * static_cast<double>(outputs.passes.size());
+    double rows = 0.0;
+    for (const config::Case& item : cases) {
+        const double ofFrame = metrics + ofRepeat * item.measure.repeats;
+        rows += item.measure.processes * (kOfCase + ofFrame * item.measure.frames);
+    }
+    const auto most = static_cast<double>(records::kMostRecords);
+    if (rows < 0.01 * most) return;
+    say("{}: about {:.2g} million rows of records, of at most {:.0f} million in a run{}\n", file,
+        1e-6 * rows, 1e-6 * most,
+        rows > most ? ": it will stop before its end; measure it in parts (--only, --shard)" : "");
+}
+
 }  // namespace
 
 int check(const Context& context, const Selection& selection) {
@@ -257,6 +282,7 @@ int check(const Context& context, const Selection& selection) {
         say("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
             caseCount == 1 ? "" : "s", experiment.claims.size(),
             experiment.claims.size() == 1 ? "" : "s");
+        sayRows(context, file, experiment, cases);
         const bool isReduced =
             !selection.sets.empty() || !selection.sweeps.empty() || selection.profile != "full";
         if (isReduced) sayUnread(context, catalog, file, experiment, table);

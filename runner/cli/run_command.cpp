@@ -350,6 +350,7 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     run::StoredRun stored;
     if (isBegun) {
         stored = run::readRun(options.resume);
+        stored.records = {};  // millions, and each step reads them for itself
         conclusion::requireNotImported(stored.manifest, options.resume, "go on with");
     } else {
         stored.plan = run::Plan::fromJsonFile(directory.planFile());
@@ -462,7 +463,9 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
              path);
         return kExitInterrupted;
     }
-    if (!outcome.stopReason.empty()) {
+    if (outcome.isFull) {
+        tell("stopped: {}\n", outcome.stopReason);
+    } else if (!outcome.stopReason.empty()) {
         tell("stopped: {}; continue with: gfxrepro {} --resume {}\n", outcome.stopReason,
              results ? "reproduce" : "run", path);
     }

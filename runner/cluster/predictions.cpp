@@ -65,10 +65,10 @@ run::Cost medianOf(const std::vector<run::Cost>& costs) {
 /// The costs in a run's log, by case. Lines that are torn or without a cost are passed over.
 std::map<std::string, std::vector<run::Cost>> loggedCosts(const fs::path& runDir) {
     std::map<std::string, std::vector<run::Cost>> costs;
-    for (const run::Json& event : run::readJournal(runDir / "journal.jsonl")) {
-        if (!event.contains("cost") || !event.contains("case")) continue;
+    run::forEachEvent(runDir / "journal.jsonl", [&](const run::Json& event) {
+        if (!event.contains("cost") || !event.contains("case")) return;
         costs[event.at("case").get<std::string>()].push_back(run::costFromJson(event.at("cost")));
-    }
+    });
     return costs;
 }
 

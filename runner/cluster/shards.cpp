@@ -323,11 +323,7 @@ void writeMerged(const run::RunDirectory& directory, const std::vector<ShardRun>
                  const run::StoredRun& merged) {
     // A merge that is made again begins anew; without a plan the folder is no run meanwhile.
     for (const fs::path& old : {directory.planFile(), directory.recordsFile()}) fs::remove(old);
-    fs::path records = directory.recordsFile();
-    records += ".tmp";
-    fs::remove(records);
-    records::RecordWriter(records).append(merged.records);
-    fs::rename(records, directory.recordsFile());
+    records::writeRecords(directory.recordsFile(), merged.records);
     copyImages(directory, shards, merged.plan);
     writeFileAtomic(directory.path() / "journal.jsonl", mergedJournal(shards));
     run::Json manifest = merged.manifest;

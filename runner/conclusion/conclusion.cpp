@@ -110,10 +110,9 @@ std::string eventText(const run::Json& event) {
 /// Of each case, what the journal says; a torn or foreign line is passed over.
 std::map<std::string, std::vector<std::string>> eventsOfCases(const fs::path& runDir) {
     std::map<std::string, std::vector<std::string>> events;
-    for (const run::Json& event : run::readJournal(runDir / "journal.jsonl")) {
-        if (!event.contains("case")) continue;
-        events[event.value("case", "")].push_back(eventText(event));
-    }
+    run::forEachEvent(runDir / "journal.jsonl", [&](const run::Json& event) {
+        if (event.contains("case")) events[event.value("case", "")].push_back(eventText(event));
+    });
     return events;
 }
 

@@ -343,7 +343,7 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
 
 void writeImported(const run::RunDirectory& directory, const run::StoredRun& run) {
     run.plan.writeFile(directory.planFile());
-    records::RecordWriter(directory.recordsFile()).append(run.records);
+    records::writeRecords(directory.recordsFile(), run.records);
     directory.note(
         run::Json{{"event", "imported"}, {"message", run::notesOf(run.manifest).front()}});
     run::Json manifest = run.manifest;

@@ -79,7 +79,7 @@ std::pair<Fields, std::vector<std::string>> paramsOf(const config::Case& item) {
     return {std::move(fields), std::move(columns)};
 }
 
-void writeRecords(const fs::path& file, const std::vector<records::Record>& records) {
+void writeNumbers(const fs::path& file, const std::vector<records::Record>& records) {
     CsvFile out(file, kNumberColumns);
     for (const records::Record& record : records) {
         out.add([&](records::CsvRow& row) {

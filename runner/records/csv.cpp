@@ -1,8 +1,13 @@
 #include "runner/records/csv.h"
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 namespace gfxrepro::records {
 
@@ -59,8 +64,15 @@ std::string shortestText(double value) {
     return {buffer, end};
 }
 
-CsvReader::CsvReader(std::string_view text, std::string fileName, std::size_t mostRows)
-    : text_(text), fileName_(std::move(fileName)), mostRows_(mostRows) {}
+CsvReader::CsvReader(std::string_view text, const std::string& fileName, std::size_t mostRows)
+    : text_(text), fileName_(fileName), mostRows_(mostRows) {}
+
+void CsvReader::goOn(std::string_view text) {
+    text_ = text;
+    at_ = 0;
+    begin_ = rowEnd_;
+    line_ = std::max(rowLine_, 1);
+}
 
 bool CsvReader::next(std::vector<std::string>& fields) {
     rowLine_ = line_;
@@ -79,7 +91,7 @@ bool CsvReader::next(std::vector<std::string>& fields) {
                         "more than " + std::to_string(mostRows_) + " rows, which are not read");
         }
         ++line_;
-        rowEnd_ = at_;
+        rowEnd_ = begin_ + at_;
         return true;
     }
 }
@@ -108,6 +120,43 @@ void CsvReader::readField(std::string& field) {
         throw Error(location(), "expected a comma or the end of the line after '" +
                                     field.substr(0, 40) + "', found '" + text_[at_] + "'");
     }
+}
+
+namespace {
+
+[[noreturn]] void failToRead(const std::filesystem::path& path) {
+    throw Error("cannot read " + path.string() + ": " + std::strerror(errno));
+}
+
+}  // namespace
+
+CsvFile::CsvFile(const std::filesystem::path& path, std::size_t mostRows)
+    : path_(path),
+      file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)),
+      reader_({}, path.string(), mostRows) {
+    if (file_.get() < 0) failToRead(path_);
+}
+
+bool CsvFile::next(std::vector<std::string>& fields) {
+    while (!reader_.next(fields)) {
+        if (!readMore()) return false;
+    }
+    return true;
+}
+
+bool CsvFile::readMore() {
+    constexpr std::size_t kFewestBytes = std::size_t{1} << 20;
+    part_.erase(0, reader_.rowEnd() - std::exchange(partBegin_, reader_.rowEnd()));
+    const std::size_t rest = part_.size();
+    part_.resize(rest + std::max(rest, kFewestBytes));  // a long row is not begun too often
+    ssize_t count = 0;
+    do {
+        count = ::read(file_.get(), part_.data() + rest, part_.size() - rest);
+    } while (count < 0 && errno == EINTR);
+    if (count < 0) failToRead(path_);
+    part_.resize(rest + static_cast<std::size_t>(count));
+    reader_.goOn(part_);
+    return count > 0;
 }
 
 }  // namespace gfxrepro::records

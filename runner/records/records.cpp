@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <functional>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <tuple>
+#include <unordered_set>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -70,7 +73,14 @@ double numberField(const SourceLocation& where, const std::string& text) {
     return value;
 }
 
-Record recordFromFields(const SourceLocation& where, std::vector<std::string>& fields) {
+/// Neighbouring rows have most texts in common.
+void take(Text& text, const std::string& field) {
+    if (text != field) text = field;
+}
+
+/// Over the record of another row.
+void readRecord(const SourceLocation& where, const std::vector<std::string>& fields,
+                Record& record) {
     static const auto count = static_cast<std::size_t>(std::ranges::count(kHeader, ',') + 1);
     if (fields.size() != count) {
         throw Error(where, "expected " + std::to_string(count) + " columns, found " +
@@ -80,12 +90,11 @@ Record recordFromFields(const SourceLocation& where, std::vector<std::string>& f
         throw Error(where, "expected records of schema " + std::to_string(Record::kSchema) +
                                ", found " + std::to_string(schema));
     }
-    Record record;
-    record.caseId = std::move(fields[1]);
-    record.table = std::move(fields[2]);
-    record.technique = std::move(fields[3]);
-    record.method = std::move(fields[4]);
-    record.scene = std::move(fields[5]);
+    take(record.caseId, fields[1]);
+    take(record.table, fields[2]);
+    take(record.technique, fields[3]);
+    take(record.method, fields[4]);
+    take(record.scene, fields[5]);
     record.frame = integerField(where, "frame", fields[6]);
     record.repeat = integerField(where, "repeat", fields[7]);
     record.process = integerField(where, "process", fields[8]);
@@ -93,10 +102,10 @@ Record recordFromFields(const SourceLocation& where, std::vector<std::string>& f
         throw Error(where, "column 'process': expected 0 to " + std::to_string(kMostProcesses - 1) +
                                ", found '" + fields[8] + "'");
     }
-    record.lane = std::move(fields[9]);
-    record.pass = std::move(fields[10]);
-    record.metric = std::move(fields[11]);
-    record.unit = std::move(fields[12]);
+    take(record.lane, fields[9]);
+    take(record.pass, fields[10]);
+    take(record.metric, fields[11]);
+    take(record.unit, fields[12]);
     record.value = numberField(where, fields[13]);
     const auto status = findStatus(fields[14]);
     if (!status) {
@@ -104,16 +113,13 @@ Record recordFromFields(const SourceLocation& where, std::vector<std::string>& f
                     "column 'status': found '" + fields[14] + "'; allowed: " + statusNames());
     }
     record.status = *status;
-    record.message = std::move(fields[15]);
-    return record;
+    take(record.message, fields[15]);
 }
 
-void checkHeader(const fs::path& path, std::string_view text) {
-    const std::string_view first = text.substr(0, text.find('\n'));
+void requireColumns(const fs::path& path, const std::string& first) {
     if (first != kHeader) {
         throw Error({path.string(), 1, 0}, "expected the header '" + std::string(kHeader) +
-                                               "', found '" + std::string(first.substr(0, 200)) +
-                                               "'");
+                                               "', found '" + first.substr(0, 200) + "'");
     }
 }
 
@@ -129,82 +135,127 @@ auto keyOf(const Record& record) {
                     record.metric);
 }
 
-struct Row {
-    Record record;
-    int line = 0;
-    int unitRows = 0;         // as written
-    std::size_t endByte = 0;  // in the file
+/// What was read of a unit.
+struct UnitRows {
+    std::size_t first = 0;      // its first row, from 0
+    std::size_t beginByte = 0;  // where that begins in the file
+    int count = 0;
+    int expected = 0;  // as its rows say
+    int lastLine = 0;
 };
-
-/// Throws Error where a value is given again.
-void checkKeys(const fs::path& path, const std::vector<Row>& rows) {
-    std::vector<const Row*> order;
-    for (const Row& row : rows) {
-        if (row.record.status == Status::Ok) order.push_back(&row);
-    }
-    std::ranges::stable_sort(order, {}, [](const Row* row) { return keyOf(row->record); });
-    const auto twice =
-        std::ranges::adjacent_find(order, {}, [](const Row* row) { return keyOf(row->record); });
-    if (twice == order.end()) return;
-    const Record& record = (*twice)->record;
-    throw Error({path.string(), (*(twice + 1))->line, 0},
-                "'" + record.metric + "' of case " + record.caseId + ", process " +
-                    std::to_string(record.process) + ", frame " + std::to_string(record.frame) +
-                    ", repeat " + std::to_string(record.repeat) + " was given in line " +
-                    std::to_string((*twice)->line) + " already; a value is recorded once");
-}
-
-/// Leaves out the last unit where rows of it are missing: its write was cut. Throws Error where
-/// rows of another one are.
-void requireWholeUnits(const fs::path& path, std::vector<Row>& rows) {
-    if (rows.empty()) return;
-    std::map<UnitKey, int> counts;
-    for (const Row& row : rows) ++counts[unitOf(row.record)];
-    const UnitKey last = unitOf(rows.back().record);
-    std::size_t whole = rows.size();
-    for (std::size_t i = rows.size(); i-- > 0;) {
-        const Row& row = rows[i];
-        const int count = counts.at(unitOf(row.record));
-        if (count == row.unitRows) continue;
-        if (unitOf(row.record) != last || count > row.unitRows) {
-            throw Error({path.string(), row.line, 0}, "case " + row.record.caseId + ", process " +
-                                                          std::to_string(row.record.process) +
-                                                          " has " + std::to_string(count) + " of " +
-                                                          std::to_string(row.unitRows) + " rows");
-        }
-        whole = i;
-    }
-    rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(whole), rows.end());
-}
 
 /// The whole units of a file, and where they end.
 struct WholeUnits {
+    bool hasHeader = false;
     std::vector<Record> records;
     std::size_t endBytes = 0;
 };
-WholeUnits readWholeUnits(const fs::path& path, std::string_view text) {
-    checkHeader(path, text);
-    CsvReader reader(text, path.string());
-    std::vector<std::string> fields;
-    std::vector<Row> rows;
-    WholeUnits result;
-    while (reader.next(fields)) {
-        if (result.endBytes == 0) {
-            result.endBytes = reader.rowEnd();  // the header's
-            continue;
+
+/// Reads a file row by row, and sees to it that each of its units is whole and says nothing twice.
+class UnitReader {
+  public:
+    UnitReader(const fs::path& path, std::size_t mostRows) : path_(path), file_(path, mostRows) {}
+
+    WholeUnits read() {
+        std::vector<std::string> fields;
+        result_.hasHeader = file_.next(fields);
+        const std::string first = joined(fields, ",");
+        if (!result_.hasHeader && kHeader.starts_with(first)) return {};  // killed as it was made
+        requireColumns(path_, first);
+        result_.endBytes = file_.rowEnd();
+        Record record;
+        while (file_.next(fields)) {
+            const SourceLocation where = file_.location();
+            readRecord(where, fields, record);
+            add(record, where, integerField(where, "rows", fields.back()));
+            result_.endBytes = file_.rowEnd();
+            reserve(lines_.size());
         }
-        const SourceLocation where = reader.location();
-        Record record = recordFromFields(where, fields);
-        rows.push_back({std::move(record), where.line, integerField(where, "rows", fields.back()),
-                        reader.rowEnd()});
+        endBlock();
+        if (isScattered_) requireSaidOnce(0);
+        requireWholeUnits();
+        return std::move(result_);
     }
-    checkKeys(path, rows);
-    requireWholeUnits(path, rows);
-    if (!rows.empty()) result.endBytes = rows.back().endByte;
-    result.records.reserve(rows.size());
-    for (Row& row : rows) result.records.push_back(std::move(row.record));
-    return result;
-}
+
+  private:
+    /// Of a large file: a vector that grows is there twice for a moment.
+    void reserve(std::size_t readRows) {
+        constexpr std::size_t kSample = 4096;
+        std::error_code unknown;
+        if (readRows != kSample) return;
+        const auto bytes = static_cast<double>(fs::file_size(path_, unknown));
+        if (unknown) return;
+        const double share = bytes / static_cast<double>(result_.endBytes);
+        const auto rows = static_cast<std::size_t>(1.05 * share * static_cast<double>(readRows));
+        result_.records.reserve(std::min(rows, kMostRecords));
+        lines_.reserve(std::min(rows, kMostRecords));
+    }
+
+    void add(const Record& record, const SourceLocation& where, int expected) {
+        const std::size_t row = result_.records.size();
+        if (!unit_ || unitOf(record) != unit_->first) {
+            endBlock();
+            blockBegin_ = row;
+            const auto [unit, isNew] =
+                units_.try_emplace(unitOf(record), UnitRows{row, result_.endBytes, 0, expected, 0});
+            isScattered_ |= !isNew;  // as an import's may be
+            unit_ = &*unit;
+        }
+        UnitRows& rows = unit_->second;
+        ++rows.count;
+        rows.lastLine = where.line;
+        rows.expected = std::max(rows.expected, expected);
+        result_.records.push_back(record);
+        lines_.push_back(where.line);
+    }
+
+    void endBlock() { requireSaidOnce(blockBegin_); }
+
+    /// Throws Error where a row from `begin` on gives a value again.
+    void requireSaidOnce(std::size_t begin) const {
+        std::vector<std::size_t> order;
+        for (std::size_t i = begin; i < result_.records.size(); ++i) {
+            if (result_.records[i].status == Status::Ok) order.push_back(i);
+        }
+        const auto key = [&](std::size_t row) { return keyOf(result_.records[row]); };
+        std::ranges::stable_sort(order, {}, key);
+        const auto twice = std::ranges::adjacent_find(order, {}, key);
+        if (twice == order.end()) return;
+        const Record& record = result_.records[*twice];
+        throw Error({path_.string(), lines_[*(twice + 1)], 0},
+                    "'" + record.metric + "' of case " + record.caseId + ", process " +
+                        std::to_string(record.process) + ", frame " + std::to_string(record.frame) +
+                        ", repeat " + std::to_string(record.repeat) + " was given in line " +
+                        std::to_string(lines_[*twice]) + " already; a value is recorded once");
+    }
+
+    /// Leaves out the last unit where rows of it are missing: its write was cut. Throws Error where
+    /// rows of another one are.
+    void requireWholeUnits() {
+        for (const auto& unit : units_) {
+            const auto& [key, rows] = unit;
+            const bool isCut = &unit == unit_ && rows.count < rows.expected &&
+                               rows.first + static_cast<std::size_t>(rows.count) == lines_.size();
+            if (rows.count == rows.expected || isCut) continue;
+            throw Error({path_.string(), rows.lastLine, 0},
+                        "case " + std::string(key.first) + ", process " +
+                            std::to_string(key.second) + " has " + std::to_string(rows.count) +
+                            " of " + std::to_string(rows.expected) + " rows");
+        }
+        if (!unit_ || unit_->second.count == unit_->second.expected) return;
+        result_.records.resize(unit_->second.first);
+        result_.endBytes = unit_->second.beginByte;
+    }
+
+    fs::path path_;
+    CsvFile file_;
+    WholeUnits result_;
+    std::vector<int> lines_;  // of the rows
+    std::map<UnitKey, UnitRows> units_;
+    std::pair<const UnitKey, UnitRows>* unit_ = nullptr;  // of the row that was read last
+    std::size_t blockBegin_ = 0;                          // its first row of those together
+    bool isScattered_ = false;                            // a unit's rows are not all together
+};
 
 }  // namespace
 
@@ -220,32 +271,86 @@ Status statusFromName(std::string_view name) {
 namespace {
 
 fs::path inItsFolder(const fs::path& path) {
-    if (path.has_parent_path()) fs::create_directories(path.parent_path());
+    if (path.has_parent_path()) makeFolder(path.parent_path());
     return path;
 }
 
-}  // namespace
+struct TextHash {
+    using is_transparent = void;
+    std::size_t operator()(std::string_view text) const {
+        return std::hash<std::string_view>{}(text);
+    }
+};
 
-RecordWriter::RecordWriter(const fs::path& path) : file_(inItsFolder(path)) {
-    const std::string header = std::string(kHeader) + '\n';
-    const MappedFile file(path);
-    const bool isNew = header != file.text() && header.starts_with(file.text());
-    file_.cut(isNew ? 0 : readWholeUnits(path, file.text()).endBytes);
-    if (isNew) file_.append(header);
+/// Of a records.csv with so many rows, its header among them, and bytes.
+void requireReadable(const fs::path& path, std::size_t rows, std::uintmax_t bytes,
+                     std::size_t mostRows) {
+    if (rows <= mostRows && bytes <= kMostRecordBytes) return;
+    throw FullError(
+        fmt::format("{}: would have {} rows and {} bytes; at most {} rows and {} bytes are read. "
+                    "Measure the rest in a run of its own (--only, --shard)",
+                    path.string(), rows, bytes, mostRows, kMostRecordBytes));
 }
 
-void RecordWriter::append(const std::vector<Record>& rows) {
+/// The rows as the file has them.
+std::string blockOf(const std::vector<Record>& rows) {
     std::map<UnitKey, int> counts;
     for (const Record& row : rows) ++counts[unitOf(row)];
     std::string block;
     for (const Record& row : rows) appendRow(block, row, counts.at(unitOf(row)));
+    return block;
+}
+
+}  // namespace
+
+RecordWriter::RecordWriter(const fs::path& path, std::size_t mostRows)
+    : path_(path), file_(inItsFolder(path)), mostRows_(mostRows) {
+    const WholeUnits found = UnitReader(path, kMostRecords).read();
+    file_.cut(found.endBytes);
+    if (!found.hasHeader) file_.append(std::string(kHeader) + '\n');
+    rowCount_ = 1 + found.records.size();
+}
+
+void RecordWriter::requireRoom(const std::vector<Record>& rows) const {
+    requireReadable(path_, rowCount_ + rows.size(), file_.sizeBytes() + blockOf(rows).size(),
+                    mostRows_);
+}
+
+void RecordWriter::append(const std::vector<Record>& rows) {
+    const std::string block = blockOf(rows);
+    requireReadable(path_, rowCount_ + rows.size(), file_.sizeBytes() + block.size(), mostRows_);
     if (!block.empty()) file_.append(block);
+    rowCount_ += rows.size();
+}
+
+void writeRecords(const fs::path& path, const std::vector<Record>& rows) {
+    std::map<UnitKey, int> counts;
+    for (const Record& row : rows) ++counts[unitOf(row)];
+    AtomicFile file(path);
+    std::string line = std::string(kHeader) + '\n';
+    std::uintmax_t bytes = line.size();
+    file.write(line);
+    for (const Record& row : rows) {
+        line.clear();
+        appendRow(line, row, counts.at(unitOf(row)));
+        bytes += line.size();
+        file.write(line);
+    }
+    requireReadable(path, rows.size() + 1, bytes, kMostRecords);
+    file.commit();
 }
 
 std::vector<Record> readRecords(const fs::path& path) {
-    const MappedFile file(path);
-    if (std::string_view(kHeader).starts_with(file.text())) return {};  // killed while it was made
-    return readWholeUnits(path, file.text()).records;
+    return UnitReader(path, kMostRecords).read().records;
+}
+
+Text::Text(std::string_view text) {
+    // Break of the rule of no global state: what is in it never changes, and rows outlive readers.
+    static std::unordered_set<std::string, TextHash, std::equal_to<>> texts;
+    static std::mutex isInUse;
+    const std::scoped_lock lock(isInUse);
+    const auto known = texts.find(text);
+    text_ = known != texts.end() ? &*known : &*texts.emplace(text).first;
 }
 
 }  // namespace gfxrepro::records

@@ -2,9 +2,14 @@
 // data frame library.
 #pragma once
 
+#include <fmt/format.h>
+#include <compare>
+#include <concepts>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -13,6 +18,49 @@
 namespace gfxrepro::records {
 
 inline constexpr int kMostProcesses = 1'000'000;  // of a case: config::readMeasure
+
+/// Of a records.csv, its header among them: what a million units have at 63 rows each. More are
+/// neither written nor read.
+inline constexpr std::size_t kMostRecords = 64'000'000;
+inline constexpr std::uintmax_t kMostRecordBytes = std::uintmax_t{16} << 30;
+
+/// A file of a run that takes no more: it would not be read again.
+class FullError : public Error {
+    using Error::Error;
+};
+
+/// A text that many rows have: it is kept once, for as long as the program runs.
+class Text {
+  public:
+    Text() {
+        static const Text kNone{std::string_view()};
+        text_ = kNone.text_;
+    }
+    Text(std::string_view text);
+    Text(const std::string& text) : Text(std::string_view(text)) {}
+    Text(const char* text) : Text(std::string_view(text)) {}
+
+    const std::string& string() const { return *text_; }
+    operator const std::string&() const { return *text_; }
+    operator std::string_view() const { return *text_; }
+    bool empty() const { return text_->empty(); }
+
+    bool operator==(const Text& other) const { return text_ == other.text_; }
+    template <std::convertible_to<std::string_view> T>
+    bool operator==(const T& other) const {
+        return *text_ == std::string_view(other);
+    }
+    auto operator<=>(const Text& other) const { return *text_ <=> *other.text_; }
+    friend std::string operator+(std::string first, const Text& second) {
+        return std::move(first) + *second.text_;
+    }
+    friend std::string operator+(const Text& first, std::string_view second) {
+        return std::string(*first.text_).append(second);
+    }
+
+  private:
+    const std::string* text_;
+};
 
 /// How a case ended. `ok` rows carry values; the others one row a case with the message.
 enum class Status {
@@ -41,22 +89,22 @@ inline constexpr int kSetup = -1;
 struct Record {
     static constexpr int kSchema = 3;
 
-    std::string caseId;
-    std::string table;  // "zju2005/2.1"
-    std::string technique;
-    std::string method;
-    std::string scene;
-    int frame = 0;     // or kSetup
-    int repeat = 0;    // or kSetup
-    int process = 0;   // from 0
-    std::string lane;  // "timing" | "quality"
-    std::string pass;  // the paper's step; empty for whole-case metrics
-    std::string metric;
-    std::string unit;
+    Text caseId;
+    Text table;  // "zju2005/2.1"
+    Text technique;
+    Text method;
+    Text scene;
+    int frame = 0;    // or kSetup
+    int repeat = 0;   // or kSetup
+    int process = 0;  // from 0
+    Text lane;        // "timing" | "quality"
+    Text pass;        // the paper's step; empty for whole-case metrics
+    Text metric;
+    Text unit;
     /// Not-a-number for failed cases, written as an empty field; +∞ ("inf") of equal pictures.
     double value = 0.0;
     Status status = Status::Ok;
-    std::string message;
+    Text message;
     bool operator==(const Record&) const = default;
 };
 
@@ -64,22 +112,32 @@ struct Record {
 class RecordWriter {
   public:
     /// Creates the file with its header, or opens it for appending after cutting off a last unit
-    /// that is not whole.
-    explicit RecordWriter(const std::filesystem::path& path);
+    /// that is not whole. It never has more than `mostRows` rows, its header among them.
+    explicit RecordWriter(const std::filesystem::path& path, std::size_t mostRows = kMostRecords);
+    /// Throws FullError where the file would have too many rows or bytes with these.
+    void requireRoom(const std::vector<Record>& rows) const;
     /// One write, then flushed to the disk; of a unit, all rows. Throws Error, leaving the file as
-    /// it was; also as requireOurs().
+    /// it was; also as requireRoom() and requireOurs().
     void append(const std::vector<Record>& rows);
 
     /// As AppendedFile's.
     void requireOurs() const { file_.requireOurs(); }
 
   private:
+    std::filesystem::path path_;
     AppendedFile file_;
+    std::size_t mostRows_;
+    std::size_t rowCount_ = 0;
 };
 
-/// Reads records.csv. A header or a last unit whose write was cut, be it at a line's end, is left
-/// out. Throws Error with file and line for any other unit without all of its rows, for a malformed
-/// row, and for a value (case, process, frame, repeat, pass, metric) that is there twice.
+/// Writes a whole records.csv in the place of one that may be there: all of it or nothing. Throws
+/// Error, and FullError for what would not be read.
+void writeRecords(const std::filesystem::path& path, const std::vector<Record>& rows);
+
+/// Reads records.csv, row by row. A header or a last unit whose write was cut, be it at a line's
+/// end, is left out. Throws Error with file and line for any other unit without all of its rows,
+/// for a malformed row, and for a value (case, process, frame, repeat, pass, metric) that is there
+/// twice.
 std::vector<Record> readRecords(const std::filesystem::path& path);
 
 /// How a case ended over all its processes.
@@ -93,3 +151,10 @@ struct CaseEnd {
 };
 
 }  // namespace gfxrepro::records
+
+template <>
+struct fmt::formatter<gfxrepro::records::Text> : fmt::formatter<std::string_view> {
+    auto format(const gfxrepro::records::Text& text, auto& context) const {
+        return fmt::formatter<std::string_view>::format(text.string(), context);
+    }
+};

@@ -49,8 +49,9 @@ bool isOfTheMachine(const std::string& metric) {
 /// A time, or made from times: no two measurements give the same.
 bool isMadeOfTimes(const records::Record& record) {
     static constexpr std::array kUnits = {"s", "ms", "us", "ns"};
-    return std::ranges::find(kUnits, record.unit) != kUnits.end() || record.unit.ends_with("/s") ||
-           record.metric.find("time") != std::string::npos;
+    const std::string &unit = record.unit, &metric = record.metric;
+    return std::ranges::find(kUnits, unit) != kUnits.end() || unit.ends_with("/s") ||
+           metric.find("time") != std::string::npos;
 }
 
 using Json = nlohmann::ordered_json;
@@ -178,7 +179,7 @@ CaseTexts voidTimesOf(const std::vector<records::Record>& records, const CasePar
 std::size_t untimedCases(const std::vector<records::Record>& records) {
     std::set<std::string> cases;
     for (const records::Record& record : records) {
-        if (record.lane == "quality") cases.insert(record.table + ' ' + record.caseId);
+        if (record.lane == "quality") cases.insert(record.table + " " + record.caseId.string());
     }
     return cases.size();
 }

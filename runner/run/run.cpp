@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <unordered_map>
 #include <utility>
 
+#include "engine/core/text.h"
+#include "runner/records/images.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run_directory.h"
 #include "runner/run/twins.h"
@@ -35,12 +38,16 @@ WorstRows worstRows(const std::vector<records::Record>& records) {
     return worst;
 }
 
-void rewriteRecords(const RunDirectory& directory, const std::vector<records::Record>& rows) {
-    fs::path rewritten = directory.recordsFile();
-    rewritten += ".tmp";
-    fs::remove(rewritten);
-    records::RecordWriter(rewritten).append(rows);
-    fs::rename(rewritten, directory.recordsFile());
+/// Leaves in records.csv the units whose worst row has a status that stays.
+void keepUnits(const RunDirectory& directory, const std::vector<records::Record>& records,
+               const WorstRows& worst, bool (*stays)(records::Status)) {
+    const auto isKept = [&](const records::Record& row) {
+        return stays(worst.at({row.caseId, row.process})->status);
+    };
+    if (std::ranges::all_of(records, isKept)) return;
+    std::vector<records::Record> kept;
+    std::ranges::copy_if(records, std::back_inserter(kept), isKept);
+    records::writeRecords(directory.recordsFile(), kept);
 }
 
 }  // namespace
@@ -49,11 +56,7 @@ std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory
     if (!fs::exists(directory.recordsFile())) return unitsOf(plan);
     const std::vector<records::Record> records = records::readRecords(directory.recordsFile());
     const WorstRows worst = worstRows(records);
-    std::vector<records::Record> kept;
-    for (const records::Record& row : records) {
-        if (hasValues(worst.at({row.caseId, row.process})->status)) kept.push_back(row);
-    }
-    if (kept.size() != records.size()) rewriteRecords(directory, kept);
+    keepUnits(directory, records, worst, hasValues);
     std::vector<Unit> units = unitsOf(plan, records);
     std::erase_if(units, [&](const Unit& unit) {
         const auto found = worst.find({unit.item->id, unit.process});
@@ -96,7 +99,7 @@ std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirector
     }
     if (!replaced.empty()) {
         records::RecordWriter(directory.path() / "records-replaced.csv").append(replaced);
-        rewriteRecords(directory, kept);
+        records::writeRecords(directory.recordsFile(), kept);
     }
     for (const std::string& experiment : unfinished) {
         manifest["timing_machines"][experiment] = machine;

@@ -21,6 +21,8 @@
 #include "engine/core/files.h"
 #include "engine/core/json_shape.h"
 #include "engine/core/output_files.h"
+#include "runner/records/images.h"
+#include "runner/records/records.h"
 
 namespace gfxrepro::run {
 
@@ -71,11 +73,12 @@ constexpr JsonMember kMerged[] = {{"/machine", JsonKind::Line},
                                   {"/invocations", JsonKind::List},
                                   {"/invocations", JsonKind::Objects}};
 constexpr JsonMember kEvent[] = {
-    {"/time", JsonKind::Text, false},   {"/event", JsonKind::Text, false},
-    {"/case", JsonKind::Text, false},   {"/table", JsonKind::Text, false},
-    {"/process", JsonKind::Int, false}, {"/status", JsonKind::Text, false},
-    {"/as", JsonKind::Text, false},     {"/message", JsonKind::Text, false},
-    {"/output", JsonKind::Text, false}, {"/cost", JsonKind::Object, false}};
+    {"/time", JsonKind::Text, false},    {"/event", JsonKind::Text, false},
+    {"/unit", JsonKind::Text, false},    {"/case", JsonKind::Text, false},
+    {"/table", JsonKind::Text, false},   {"/process", JsonKind::Int, false},
+    {"/status", JsonKind::Text, false},  {"/as", JsonKind::Text, false},
+    {"/message", JsonKind::Text, false}, {"/output", JsonKind::Text, false},
+    {"/cost", JsonKind::Object, false}};
 constexpr JsonMember kCost[] = {{"/load_s", JsonKind::Number},
                                 {"/setup_s", JsonKind::Number},
                                 {"/render_s", JsonKind::Number},
@@ -85,14 +88,20 @@ constexpr JsonMember kCost[] = {{"/load_s", JsonKind::Number},
 }  // namespace
 
 void requireModestFiles(const fs::path& runDir) {
-    for (const char* name :
-         {"plan.json", "manifest.json", "records.csv", "journal.jsonl", "images/index.csv"}) {
+    constexpr std::uintmax_t kWholeBytes = std::uintmax_t{1} << 30;  // of what is parsed whole
+    constexpr std::pair<const char*, std::uintmax_t> kMostBytes[] = {
+        {"plan.json", kWholeBytes},
+        {"manifest.json", kWholeBytes},
+        {"records.csv", records::kMostRecordBytes},
+        {"journal.jsonl", kMostJournalBytes},
+        {"images/index.csv", records::kMostIndexBytes}};
+    for (const auto& [name, most] : kMostBytes) {
         const fs::path file = runDir / name;
         std::error_code isAbsent;
         const std::uintmax_t size = fs::file_size(file, isAbsent);
-        if (isAbsent || size <= kMostFileBytes) continue;
+        if (isAbsent || size <= most) continue;
         throw Error({file.string(), 0, 0},
-                    fmt::format("{} bytes; at most {} are read", size, kMostFileBytes));
+                    fmt::format("{} bytes; at most {} are read", size, most));
     }
 }
 
@@ -112,9 +121,8 @@ Json readManifest(const fs::path& file) {
     return manifest;
 }
 
-std::vector<Json> readJournal(const fs::path& file) {
-    std::vector<Json> events;
-    if (!fs::exists(file)) return events;
+void forEachEvent(const fs::path& file, const std::function<void(Json&&)>& take) {
+    if (!fs::exists(file)) return;
     const std::string name = file.string();
     const MappedFile mapped(file);
     std::string_view rest = mapped.text();
@@ -127,15 +135,27 @@ std::vector<Json> readJournal(const fs::path& file) {
         if (!event.is_object()) continue;
         requireMembers(event, kEvent, {name, line, 0});
         if (event.contains("cost")) requireMembers(event["cost"], kCost, {name, line, 0}, "/cost");
-        events.push_back(std::move(event));
+        take(std::move(event));
     }
+}
+
+std::vector<Json> readJournal(const fs::path& file) {
+    std::vector<Json> events;
+    forEachEvent(file, [&](Json&& event) {
+        if (event.contains("case")) {
+            for (const char* text : {"time", "title", "as", "message", "output", "cost"}) {
+                event.erase(text);
+            }
+        }
+        events.push_back(std::move(event));
+    });
     return events;
 }
 
 namespace {
 
 constexpr std::size_t kMostTextBytes = std::size_t{32} << 10;
-// In a journal of this size what drivers print is left out: one of kMostFileBytes is not read.
+// In a journal of this size what drivers print is left out.
 constexpr off_t kMostBytesWithOutput = off_t{64} << 20;
 
 /// A worker that its runner began when it was killed has the lock until it is its own program.
@@ -247,8 +267,8 @@ void requirePlainFiles(const fs::path& runDir) {
     if (problem) throw Error("cannot read " + runDir.string() + ": " + problem.message());
 }
 
-RunDirectory::RunDirectory(const fs::path& path)
-    : path_(path), lock_(openFile(path / "lock", O_RDWR)) {
+RunDirectory::RunDirectory(const fs::path& path, std::uintmax_t fullJournalBytes)
+    : path_(path), fullJournalBytes_(fullJournalBytes), lock_(openFile(path / "lock", O_RDWR)) {
     const auto until = std::chrono::steady_clock::now() + kLockPatience;
     while (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0) {
         if (std::chrono::steady_clock::now() >= until) {
@@ -259,7 +279,7 @@ RunDirectory::RunDirectory(const fs::path& path)
     journal_ = openFile(path_ / "journal.jsonl", O_WRONLY | O_APPEND);
 }
 
-RunDirectory RunDirectory::create(const fs::path& path) {
+RunDirectory RunDirectory::create(const fs::path& path, std::uintmax_t fullJournalBytes) {
     std::error_code problem;
     fs::create_directories(path, problem);
     if (problem) throw Error("cannot make the folder " + path.string() + ": " + problem.message());
@@ -269,7 +289,7 @@ RunDirectory RunDirectory::create(const fs::path& path) {
     }
     const bool wasBegun = isBegun(path);
     if (wasBegun) requirePlainFiles(path);
-    RunDirectory directory(path);
+    RunDirectory directory(path, fullJournalBytes);
     if (fs::exists(directory.planFile())) {
         throw Error(path.string() + ": holds a run already; continue it with --resume " +
                     path.string() + ", or give another folder");
@@ -283,7 +303,7 @@ RunDirectory RunDirectory::open(const fs::path& path) {
         throw Error(path.string() + ": is not a run directory (it has no plan.json)");
     }
     requirePlainFiles(path);
-    RunDirectory directory(path);
+    RunDirectory directory(path, kFullJournalBytes);
     removeTemporaryFiles(path);
     return directory;
 }
@@ -297,6 +317,15 @@ void RunDirectory::requireOurs() const {
     throw Error(path_.string() +
                 ": was removed or moved, or its lock was, while a run wrote to it; nothing is "
                 "measured into it any more");
+}
+
+void RunDirectory::requireRoom() const {
+    const auto bytes = static_cast<std::uintmax_t>(sizeOf(journal_.get()));
+    if (bytes < fullJournalBytes_) return;
+    throw records::FullError(
+        fmt::format("{}: has {} bytes; with {} or more it takes no further case. Measure the rest "
+                    "in a run of its own (--only, --shard)",
+                    (path_ / "journal.jsonl").string(), bytes, fullJournalBytes_));
 }
 
 void RunDirectory::note(const nlohmann::ordered_json& event) const {

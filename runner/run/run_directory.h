@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -12,6 +13,10 @@
 
 namespace gfxrepro::run {
 
+inline constexpr std::uintmax_t kMostJournalBytes = std::uintmax_t{4} << 30;
+/// A journal of this size takes no further unit; the end of those under way has its place.
+inline constexpr std::uintmax_t kFullJournalBytes = kMostJournalBytes - (std::uintmax_t{64} << 20);
+
 /// plan.json, manifest.json, records.csv, journal.jsonl, images/, artifacts/, tables/, … under one
 /// folder, locked for writing as long as the object lives.
 class RunDirectory {
@@ -19,7 +24,8 @@ class RunDirectory {
     /// Makes the folder; of one whose run was killed before it had a plan, removes the temporary
     /// files. Throws Error when it holds a run already, when another run writes to it, and when it
     /// is no run's but has a file that a run writes.
-    static RunDirectory create(const std::filesystem::path& path);
+    static RunDirectory create(const std::filesystem::path& path,
+                               std::uintmax_t fullJournalBytes = kFullJournalBytes);
     /// A run that was begun; removes the temporary files of processes that were killed. Throws
     /// Error when there is none, when another run writes to it, and as requirePlainFiles().
     static RunDirectory open(const std::filesystem::path& path);
@@ -37,14 +43,18 @@ class RunDirectory {
     /// … and waits until it is on the disk.
     void noteFlushed(const nlohmann::ordered_json& event) const;
 
+    /// Throws FullError where the journal is so large that it takes no further unit.
+    void requireRoom() const;
+
     /// Throws Error where the folder is no longer this run's: removed, moved, or without its lock,
     /// so that another one may write to it.
     void requireOurs() const;
 
   private:
-    explicit RunDirectory(const std::filesystem::path& path);
+    RunDirectory(const std::filesystem::path& path, std::uintmax_t fullJournalBytes);
 
     std::filesystem::path path_;
+    std::uintmax_t fullJournalBytes_;
     Descriptor lock_, journal_;
 };
 
@@ -61,9 +71,8 @@ std::string utcTime();
 /// "runs/20261121-031400-zju2005": where a run goes when no folder is given.
 std::filesystem::path defaultRunPath(const std::string& slug);
 
-/// Of a file of a run's folder: the largest so far had records of 75 MB, a plan of 15 MB.
-inline constexpr std::uintmax_t kMostFileBytes = std::uintmax_t{1} << 30;
-/// Throws Error for a larger one.
+/// Throws Error for a file of a run that is larger than any that is written: plan and manifest of
+/// more than 1 GiB, a journal of more than kMostJournalBytes, records, a list of images.
 void requireModestFiles(const std::filesystem::path& runDir);
 
 /// manifest.json: what is there that others read (machine, invocations, scenes, notes, …) is of its
@@ -71,9 +80,11 @@ void requireModestFiles(const std::filesystem::path& runDir);
 /// the member.
 Json readManifest(const std::filesystem::path& file);
 
-/// The events of journal.jsonl; none where there is no such file. Lines that are no JSON object are
-/// passed over: a killed runner has torn them. Throws Error with file and line for a member of
-/// another kind than the runner writes.
+/// Gives `take` the events of journal.jsonl, one after another; none where there is no such file.
+/// Lines that are no JSON object are passed over: a killed runner has torn them. Throws Error with
+/// file and line for a member of another kind than the runner writes.
+void forEachEvent(const std::filesystem::path& file, const std::function<void(Json&&)>& take);
+/// All of them, those of units without their texts and costs.
 std::vector<Json> readJournal(const std::filesystem::path& file);
 
 }  // namespace gfxrepro::run

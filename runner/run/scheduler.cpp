@@ -87,13 +87,32 @@ class Scheduler {
           phases_(phases),
           observer_(observer),
           images_(directory.path()),
-          records_(directory.recordsFile()) {
+          records_(directory.recordsFile(), options.mostRecords) {
         std::set<const Case*> cases;
         for (const Unit& unit : units) cases.insert(unit.item);
         workKeys_ = keysOfTwins(cases);
     }
 
     RunOutcome run() {
+        try {
+            runAll();
+        } catch (const records::FullError& error) {
+            outcome_.stopReason = error.what();
+            outcome_.isFull = true;
+        } catch (const Error& error) {
+            noteEndBy(error);
+            throw;
+        }
+        workers_.clear();
+        images_.requireOurs();
+        records_.requireOurs();
+        outcome_.warnings.assign(warnings_.begin(), warnings_.end());
+        std::ranges::copy(rounds_.warnings(), std::back_inserter(outcome_.warnings));
+        return std::move(outcome_);
+    }
+
+  private:
+    void runAll() {
         while (true) {
             dispatch();
             if (waiting_.empty() && busyCount() == 0) break;
@@ -105,15 +124,16 @@ class Scheduler {
             observer_.tick(workers_.empty() ? "" : workers_.front()->phase());
             if (!outcome_.stopReason.empty()) break;
         }
-        workers_.clear();
-        images_.requireOurs();
-        records_.requireOurs();
-        outcome_.warnings.assign(warnings_.begin(), warnings_.end());
-        std::ranges::copy(rounds_.warnings(), std::back_inserter(outcome_.warnings));
-        return std::move(outcome_);
     }
 
-  private:
+    /// What is under way did not take the runner with it, and is not held against its cases.
+    void noteEndBy(const Error& error) const {
+        try {
+            directory_.note({{"event", "interrupted"}, {"message", error.what()}});
+        } catch (const Error&) {  // the folder is gone: `error` says so
+        }
+    }
+
     int busyCount() const {
         return static_cast<int>(
             std::ranges::count_if(workers_, [](auto& w) { return w->isBusy(); }));
@@ -156,6 +176,7 @@ class Scheduler {
             });
             const int allowed = lane == Lane::Timing || timingRuns ? 1 : options_.jobs;
             if (busyCount() >= allowed) return;
+            directory_.requireRoom();
             Unit unit = std::move(waiting_.front());
             waiting_.pop_front();
             takeTwins(unit);
@@ -301,11 +322,14 @@ class Scheduler {
         directory_.requireOurs();
         const bool hasValues =
             result.status == records::Status::Ok || result.status == records::Status::Flaky;
-        images_.append(
+        const std::vector<records::ImageEntry> images =
             unit.measuredAs && hasValues
                 ? shareFiles(directory_.path(), *unit.measuredAs, *unit.item, result.images)
-                : result.images);
+                : result.images;
         const std::vector<records::Record> rows = recordsOf(unit, result);
+        images_.requireRoom(images);
+        records_.requireRoom(rows);
+        images_.append(images);
         records_.append(rows);
         rounds_.add(rows);
         logCase(event, unit, result, output);
@@ -344,13 +368,13 @@ class Scheduler {
 
 std::vector<std::string> workerCommand(const SchedulerOptions& options, Lane lane,
                                        const std::filesystem::path& runDir) {
-    return {"/proc/self/exe", "worker",
-            "--device",       options.device,
-            "--assets",       options.assetsFolder,
-            "--lane",         lane == Lane::Timing ? "timing" : "quality",
-            "--run",          runDir.string(),
-            "--command",      options.command,
-            "--jobs",         std::to_string(options.jobs)};
+    return {options.program, "worker",
+            "--device",      options.device,
+            "--assets",      options.assetsFolder,
+            "--lane",        lane == Lane::Timing ? "timing" : "quality",
+            "--run",         runDir.string(),
+            "--command",     options.command,
+            "--jobs",        std::to_string(options.jobs)};
 }
 
 gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,

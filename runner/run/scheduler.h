@@ -1,6 +1,7 @@
 // Runs the units of a plan in worker processes: timing units alone, quality units side by side.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <set>
 #include <string>
@@ -37,7 +38,9 @@ struct SchedulerOptions {
     std::string command = {};  // as typed: images say what measured them
     /// Cases, by id, that are not tried (again), and are recorded as crashes with this message.
     std::map<std::string, std::string> givenUp = {};
-    int failuresAtMost = 0;  // with as many failed units the run stops; 0: never
+    int failuresAtMost = 0;                  // with as many failed units the run stops; 0: never
+    std::string program = "/proc/self/exe";  // of the workers
+    std::size_t mostRecords = records::kMostRecords;
 };
 
 struct RunOutcome {
@@ -50,6 +53,7 @@ struct RunOutcome {
     std::vector<std::string> warnings;  // of units, each once; then about times
     bool isInterrupted = false;         // by SIGINT, SIGTERM or SIGHUP
     std::string stopReason;             // of a stop before the end that nobody asked for then
+    bool isFull = false;                // of these: the run's files take no more
     std::vector<SceneUse> scenes;
     std::set<ProgramUse> programs;
 };

@@ -37,8 +37,8 @@ std::string writeRun(const TemporaryFolder& folder, int count) {
     const auto plan = nlohmann::ordered_json::parse(readFile(dir + "/plan.json"));
     for (const auto& item : plan["cases"]) {
         records::Record row;
-        row.caseId = item["id"];
-        row.table = item["experiment"];
+        row.caseId = item["id"].get<std::string>();
+        row.table = item["experiment"].get<std::string>();
         row.technique = row.table;
         row.lane = "quality";
         row.unit = "1";

@@ -7,6 +7,8 @@
 #include <functional>
 
 #include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "runner/records/records.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::records {
@@ -35,6 +37,33 @@ TEST(Images, TornLineIsPassedOver) {
     EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(entry));
     ImageWriter(folder.path()).append({{"def", "t", 0, "n", "images/p", "images/e", "title"}});
     EXPECT_EQ(readImages(folder.path()).size(), 2u);
+}
+
+TEST(Images, AListStopsBeforeWhatIsNotRead) {
+    const test::TemporaryFolder folder;
+    const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
+    ImageWriter writer(folder.path(), 3);
+    writer.append({entry});
+    EXPECT_THROW(writer.append({entry, entry}), FullError);
+    writer.append({entry});
+    EXPECT_THROW(ImageWriter(folder.path(), 3).append({entry}), FullError)
+        << "rows of before count";
+}
+
+TEST(Images, WhatIsNotAsItWasWrittenIsNamed) {
+    const test::TemporaryFolder folder;
+    const auto written = [&](const std::string& name) {
+        return sha256OfFile(folder.write(name, name));
+    };
+    ImageEntry entry{"abc", "t", 0, "n", "images/a.png", "images/a.exr", "title"};
+    entry.pngSha256 = written("images/a.png");
+    entry.exrSha256 = written("images/a.exr");
+    ImageWriter(folder.path()).append({entry});
+    EXPECT_THAT(changedImages(folder.path()), testing::IsEmpty());
+    folder.write("images/a.png", "another");
+    std::filesystem::remove(folder.path() / "images/a.exr");
+    EXPECT_THAT(changedImages(folder.path()),
+                testing::ElementsAre("images/a.png was changed", "images/a.exr is missing"));
 }
 
 TEST(Images, AListThatIsNoLongerTheWritersIsNotWrittenTo) {
@@ -84,9 +113,10 @@ TEST(Images, ACutHeadIsWrittenAgain) {
 TEST(Images, OtherColumnsAreAnError) {
     const test::TemporaryFolder folder;
     folder.write("images/index.csv", "case,table\na,b\n");
-    EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),
-              "DIR/images/index.csv:1: expected the columns "
-              "case,table,frame,name,png,exr,title,truth_of, found case,table");
+    EXPECT_EQ(
+        test::errorText([&] { readImages(folder.path()); }, folder.path()),
+        "DIR/images/index.csv:1: expected the columns "
+        "case,table,frame,name,png,exr,title,truth_of,png_sha256,exr_sha256, found case,table");
 }
 
 TEST(Images, MalformedRowIsAnError) {

@@ -209,6 +209,69 @@ TEST(Records, AValueGivenTwiceIsAnError) {
               "already; a value is recorded once");
 }
 
+/// As an import may have them.
+TEST(Records, TheRowsOfAUnitNeedNotStandTogether) {
+    const TemporaryFolder folder;
+    const std::string rows = rowText("c", 0, 0, 2) + rowText("d", 0, 0, 1) + rowText("c", 1, 0, 2);
+    EXPECT_EQ(readRecords(folder.write("records.csv", kHeader + rows)).size(), 3U);
+}
+
+/// What is read is what may be written, and no more is.
+TEST(Records, AWriterStopsBeforeWhatIsNotRead) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "records.csv";
+    const auto unit = [](int process) {
+        std::vector<Record> rows(33, sample("abc", 1.0));
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            rows[i].frame = static_cast<int>(i);
+            rows[i].process = process;
+        }
+        return rows;
+    };
+    {
+        RecordWriter writer(path, 100);  // the header and three units
+        for (const int process : {0, 1, 2}) writer.append(unit(process));
+        const std::size_t bytes = readFile(path).size();
+        const std::size_t ofUnit = (bytes - std::string(kHeader).size()) / 3;
+        EXPECT_THROW(writer.requireRoom({sample("def", 1.0)}), FullError);
+        EXPECT_EQ(
+            errorText([&] { writer.append(unit(3)); }, folder.path()),
+            "DIR/records.csv: would have 133 rows and " + std::to_string(bytes + ofUnit) +
+                " bytes; at most 100 rows and 17179869184 bytes are read. Measure the rest in "
+                "a run of its own (--only, --shard)");
+    }
+    EXPECT_EQ(readRecords(path).size(), 99U);
+    RecordWriter again(path, 101);  // rows of before count
+    EXPECT_THROW(again.append({sample("def", 1.0), sample("ghi", 2.0)}), FullError);
+    again.append({sample("def", 1.0)});
+    EXPECT_EQ(readRecords(path).size(), 100U);
+}
+
+TEST(Records, AWholeFileTakesThePlaceOfAnother) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "records.csv";
+    RecordWriter(path).append({sample("abc", 1.0)});
+    writeRecords(path, {sample("def", 2.0), sample("ghi", 3.0)});
+    EXPECT_THAT(readRecords(path), testing::ElementsAre(sample("def", 2.0), sample("ghi", 3.0)));
+}
+
+TEST(Csv, AFileIsReadAsItsText) {
+    std::string text = "a,b\n";
+    for (int i = 0; i < 90'000; ++i) text += "\"" + std::string(i % 40, 'x') + "\"\"\n\",y\n";
+    text += std::string(3 << 20, 'z') + ",\"a row longer than what is read at once\"\ntorn,\"";
+    const TemporaryFolder folder;
+    CsvFile file(folder.write("f.csv", text), CsvReader::kMostRows);
+    CsvReader whole(text, "f.csv");
+    std::vector<std::string> fields, expected;
+    for (bool isRow = true; isRow;) {
+        isRow = whole.next(expected);
+        ASSERT_EQ(file.next(fields), isRow);
+        ASSERT_EQ(fields, expected);
+        ASSERT_EQ(file.location().line, whole.location().line);
+        ASSERT_EQ(file.rowEnd(), whole.rowEnd());
+    }
+}
+
 TEST(Records, AUnitThatLacksRowsIsAnErrorUnlessItIsTheLast) {
     const TemporaryFolder folder;
     const std::string whole = rowText("c", 0, 0, 2) + rowText("c", 1, 0, 2);
