@@ -40,6 +40,17 @@ class Nightly : public ::testing::Test {
         arguments.insert(arguments.end(), {"--rounds", "8", "--program", bundle(extraMs), config});
         return runProgram(arguments);
     }
+    /// A night of a bundle whose program is this script.
+    ProcessResult nightOf(const std::string& script) const {
+        const fs::path program = folder.write("broken/gfxrepro", "#!/bin/sh\n" + script);
+        fs::permissions(program, fs::perms::owner_all);
+        const fs::path config = writeMockConfig(folder,
+                                                "params: {busy_ms: 80}\n"
+                                                "measure: {lane: timing, repeats: 2}\n");
+        return runProgram({"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
+                           GFXREPRO_SOURCE "/scripts/nightly", "--rounds", "8", "--program",
+                           program.parent_path(), config});
+    }
     /// The program that later nights are compared with.
     std::string landed() const { return readFile(state + "/landed/gfxrepro"); }
     /// Runs below all nights.
@@ -76,6 +87,38 @@ TEST_F(Nightly, TheFirstNightLandsNothingThatCrashes) {
     isCrashing = false;
     EXPECT_EQ(night(0).exitCode, 0);
     EXPECT_EQ(landed(), readFile(state + "/fixed/gfxrepro"));
+}
+
+TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
+    const ProcessResult first = nightOf("exit 0\n");
+    EXPECT_EQ(first.exitCode, 2) << first.out << first.err;
+    EXPECT_NE(first.err.find("/first has no record of some case\n"), std::string::npos)
+        << first.err;
+    EXPECT_FALSE(fs::exists(state + "/landed"));
+    ASSERT_EQ(night(0).exitCode, 0);
+    EXPECT_EQ(nightOf("exit 0\n").exitCode, 2);
+    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+}
+
+TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustComeToTheSame) {
+    ASSERT_EQ(night(0).exitCode, 0);
+    const std::string mock = "exec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n";
+    // It measures, and finds everything well: silently, and with a file.
+    for (const std::string compare :
+         {"exit 0", "mkdir -p \"$3\"; echo '<testsuite tests=\"0\">' >\"$3/junit.xml\"; exit 0"}) {
+        const ProcessResult blind = nightOf("[ $1 != compare ] || { " + compare + "; }\n" + mock);
+        EXPECT_EQ(blind.exitCode, 2) << blind.out << blind.err;
+        EXPECT_NE(blind.err.find(" (code, tests), tonight's 0 0\n"), std::string::npos)
+            << blind.err;
+        EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+    }
+    // One that is slower is found, whatever it says itself.
+    const ProcessResult slow = nightOf(
+        "[ $1 != compare ] || exit 0\n"
+        "export GFXREPRO_MOCK_EXTRA_MS=60\n" +
+        mock);
+    EXPECT_EQ(slow.exitCode, 1) << slow.out << slow.err;
+    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
 }
 
 /// The step of the workflow that shows a night.
