@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <functional>
@@ -381,6 +382,8 @@ int runCommand(int argc, const char* const* argv,
 // The catch of the program stands here, not in main.cpp, so that tests' programs exit alike.
 int run(int argc, const char* const* argv, std::span<const technique::TechniqueInfo> techniques,
         std::span<const scene::GeneratorInfo> generators) {
+    // Inherited as ignored, the ends of children would be known to nobody: a crash would be "ok".
+    std::signal(SIGCHLD, SIG_DFL);
     try {
         const int code = runCommand(argc, argv, techniques, generators);
         if (std::fflush(stdout) == 0) return code;

@@ -85,7 +85,10 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments) {
 }
 
 ChildProcess::~ChildProcess() {
-    kill();
+    try {
+        kill();
+    } catch (const Error&) {  // it cannot be waited for, nor is it any more
+    }
 }
 
 void ChildProcess::sendLine(std::string_view line) {
@@ -134,6 +137,9 @@ std::optional<int> ChildProcess::wait(std::chrono::milliseconds patience) {
         if (hasEndedAlone()) {
             const pid_t ended = ::waitpid(pid_, &waitStatus_, WNOHANG);
             isReaped_ = ended == pid_ || (ended < 0 && errno != EINTR);
+            if (isReaped_ && ended < 0) {
+                throw Error("cannot wait for a worker: " + std::string(std::strerror(errno)));
+            }
             if (isReaped_) break;
         }
         if (Clock::now() >= limit) return std::nullopt;

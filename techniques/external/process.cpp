@@ -135,7 +135,8 @@ ProcessEnd runProcess(const ProcessStart& start) {
     const Descriptor process(static_cast<int>(::syscall(SYS_pidfd_open, pid, 0)));
     pollfd fds[] = {{process.get(), POLLIN, 0}, {output.get(), POLLIN, 0}};
     rusage usage{};
-    while (::wait4(pid, &end.waitStatus, WNOHANG, &usage) == 0) {
+    pid_t ended = 0;
+    while ((ended = ::wait4(pid, &end.waitStatus, WNOHANG, &usage)) == 0) {
         // Without a descriptor of the process, look now and then.
         ::poll(fds, 2, process.get() < 0 ? 1 : -1);
         if (!readAvailable(output.get(), end.output)) fds[1].fd = -1;
@@ -145,6 +146,7 @@ ProcessEnd runProcess(const ProcessStart& start) {
         endLeftBehind();
         throw Error(fmt::format("ended, as it prints more than {} MiB", kMostOutputBytes >> 20));
     }
+    if (ended < 0) fail("cannot wait for " + start.arguments.front());
     endLeftBehind();
     readAvailable(output.get(), end.output);
     end.processTimeMs = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);

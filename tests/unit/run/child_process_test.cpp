@@ -57,6 +57,15 @@ TEST(ChildProcess, AProgramIsNotWaitedForBeyondItsLimit) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);
 }
 
+TEST(ChildProcess, AnEndThatNobodyToldIsAnError) {
+    const auto before = ::signal(SIGCHLD, SIG_IGN);
+    EXPECT_EQ(test::errorText([] {
+                  runToEnd({"/bin/sh", "-c", "exit 3"}, 60s);
+              }),
+              "cannot wait for a worker: No child processes");
+    ::signal(SIGCHLD, before);
+}
+
 TEST(ChildProcess, AProgramThatPrintsWithoutEndIsEnded) {
     const auto begin = std::chrono::steady_clock::now();
     EXPECT_EQ(test::errorText([] {
