@@ -4,6 +4,7 @@
 //   worker → runner   {"ready": {device}}  or  {"unavailable": "reason"}, once, after its start
 //                     {"begin": "load"}, {"end": "load"}: load, setup, warm-up, render, record
 //                     {"done": {status, message, samples, images, scenes, programs, cost}}
+//                     or {"unwritable": "reason"}: a file of the run could not be written
 #pragma once
 
 #include <compare>
@@ -73,6 +74,8 @@ struct CaseResult {
     Cost cost;  // of a case that ended `ok`
     /// Someone outside killed the worker: nothing that the case did. Known to the runner only.
     bool isOutsideKill = false;
+    /// A file of the run could not be written, which is likewise nothing that the case did.
+    bool isUnwritable = false;
 };
 
 Json toJson(const gl::DeviceInfo& info);

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "engine/core/hash.h"
+#include "engine/core/output_files.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
 #include "runner/run/manifest.h"
@@ -138,7 +139,7 @@ void makeBelow(const fs::path& runDir, const fs::path& folder) {
     if (!fs::is_directory(runDir)) {
         throw Error(runDir.string() + ": was removed or moved while a case wrote to it");
     }
-    fs::create_directories(runDir / folder);
+    makeFolder(runDir / folder);
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ void describeImage(image::ExrImage& exr, const Case& item, int frame, const std:
 /// Metrics and images go into `result`; files are written atomically. Throws Error for a
 /// metric, unit or pass that `outputs` does not declare, for a second value of a metric, pass,
 /// frame and repeat, for values that are not finite (but +∞ dB, which two equal pictures have), for
-/// names that are no file names, and where the run directory is gone.
+/// names that are no file names, and where the run directory is gone; WriteError for files that
+/// cannot be written.
 class RunRecorder : public technique::Recorder {
   public:
     /// `command` is the one that measures, as typed.

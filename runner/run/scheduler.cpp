@@ -249,6 +249,7 @@ class Scheduler {
             std::optional<CaseResult> result = worker->receive();
             if (!result) result = worker->checkLimits(Clock::now());
             if (!result) continue;
+            if (result->isUnwritable) throw WriteError(result->message);
             const Unit unit = *worker->unit();
             if (isTriedAgain(unit, *result)) {
                 logCase("retry", unit, *result, worker->output());

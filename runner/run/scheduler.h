@@ -71,7 +71,8 @@ gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,
 /// Runs `units` and the further rounds that `rounds` asks for, appending records, images and
 /// journal lines as each ends. Of units that are twins the first is run and recorded for each. A
 /// failure is tried once more, in a fresh worker; what passes then is `flaky`, unless the first
-/// worker was killed from outside.
+/// worker was killed from outside. Throws Error where a file of the run cannot be written, be it a
+/// worker's: the unit has no rows then, and a run that goes on measures it as new.
 RunOutcome runUnits(const std::vector<Unit>& units, Rounds& rounds, const RunDirectory& directory,
                     const SchedulerOptions& options, PhaseClock& phases, Observer& observer);
 

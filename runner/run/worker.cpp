@@ -49,10 +49,12 @@ bool isSeededByProcess(const Case& item) {
     return !item.program.isNull() && config::readProgram(item.program).seedsByProcess;
 }
 
-/// The batch case loop's catch: whatever a case throws becomes its status.
+/// The batch case loop's catch: whatever a case throws becomes its status, but for WriteError.
 CaseResult measuredResult(const Case& item, MeasureContext& context) {
     try {
         return measureCase(item, context);
+    } catch (const WriteError&) {
+        throw;  // of the run's folder: nothing that the case did
     } catch (const UnsupportedError& error) {
         return failedWith(records::Status::Unsupported, error.what());
     } catch (const technique::CrashError& error) {
@@ -104,10 +106,15 @@ void serve(gl::Device& device, const WorkerOptions& options,
             item.seed += static_cast<std::uint64_t>(request.value("process", 0LL) *
                                                     config::kSeedsOfAProcess);
         }
-        const CaseResult result = measuredResult(item, context);
+        Json answer;
+        try {
+            answer = {{"done", toJson(measuredResult(item, context))}};
+        } catch (const WriteError& error) {
+            answer = {{"unwritable", error.what()}};
+        }
         std::cout.flush();
         std::cerr.flush();
-        send({{"done", toJson(result)}});
+        send(answer);
     }
 }
 

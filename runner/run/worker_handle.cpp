@@ -145,6 +145,10 @@ std::optional<CaseResult> WorkerHandle::handle(const Json& message) {
         if (unit_) sendUnit();
     } else if (const std::string reason = textOf("unavailable"); !reason.empty()) {
         unavailable_ = reason;
+    } else if (const std::string why = textOf("unwritable"); !why.empty()) {
+        CaseResult result = failure(records::Status::Error, why);
+        result.isUnwritable = true;
+        return result;
     } else if (message.contains("done")) {
         try {
             return caseResultFromJson(message["done"]);

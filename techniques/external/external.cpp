@@ -11,6 +11,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/core/output_files.h"
 #include "engine/core/text.h"
 #include "engine/metrics/mean_test.h"
 #include "engine/scene/load.h"
@@ -47,13 +48,18 @@ std::string lastLines(std::string_view output) {
     return joined(lines, " / ");
 }
 
+/// Throws WriteError.
+void makeEmpty(const fs::path& folder) {
+    std::error_code failure;
+    fs::remove_all(folder, failure);
+    if (failure) throw WriteError("cannot empty " + folder.string() + ": " + failure.message());
+    makeFolder(folder);
+}
+
 /// A folder that goes with the object.
 class Folder {
   public:
-    explicit Folder(fs::path path) : path_(std::move(path)) {
-        fs::remove_all(path_);
-        fs::create_directories(path_);
-    }
+    explicit Folder(fs::path path) : path_(std::move(path)) { makeEmpty(path_); }
     ~Folder() {
         std::error_code ignored;
         fs::remove_all(path_, ignored);
@@ -127,8 +133,7 @@ class External : public technique::Technique {
     /// CrashError where it dies of a signal.
     ProcessEnd run(config::Placeholders values, const std::string& folderName) const {
         const fs::path out = folder_->path() / folderName;
-        fs::remove_all(out);
-        fs::create_directories(out);
+        makeEmpty(out);
         values[placeholder::kOut] = out.string();
         ProcessStart start{{}, {}, out, metricsFile()};
         for (const std::string& argument : program_.command) {
@@ -142,6 +147,8 @@ class External : public technique::Technique {
         ProcessEnd end;
         try {
             end = runProcess(start);
+        } catch (const WriteError&) {
+            throw;
         } catch (const Error& error) {
             throw Error(fmt::format("program '{}': {}", name, error.what()));
         }
@@ -298,8 +305,13 @@ class External : public technique::Technique {
             readPicture(made, what, size);  // as a whole, or not at all
             // Another worker may make the same one meanwhile.
             const fs::path mine = folder_->path() / "truth.tmp";
-            fs::copy_file(made, mine, fs::copy_options::overwrite_existing);
-            fs::rename(mine, keptTruth(picture, values));
+            std::error_code failure;
+            fs::copy_file(made, mine, fs::copy_options::overwrite_existing, failure);
+            if (!failure) fs::rename(mine, keptTruth(picture, values), failure);
+            if (failure) {
+                throw WriteError("cannot write " + keptTruth(picture, values).string() + ": " +
+                                 failure.message());
+            }
         }
     }
 

@@ -118,7 +118,10 @@ ProcessEnd runProcess(const ProcessStart& start) {
     Descriptor programOutput(ends[1]);
     const Descriptor metrics(::open(start.metricsFile.c_str(),
                                     O_WRONLY | O_APPEND | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
-    if (metrics.get() < 0) fail("cannot write " + start.metricsFile.string());
+    if (metrics.get() < 0) {
+        throw WriteError("cannot write " + start.metricsFile.string() + ": " +
+                         std::strerror(errno));
+    }
     const std::string folder = start.folder.string();
     const pid_t parent = ::getpid();
     const pid_t pid = ::fork();
