@@ -107,7 +107,8 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     app->add_option("--max-failures", options.failuresAtMost, "stop after this many failed cases")
         ->check(CLI::Range(1, 1'000'000'000))
         ->option_text("N");
-    app->add_flag("--retry", options.triesAgain, "on resuming, retry crashes and timeouts, too");
+    app->add_flag("--retry", options.triesAgain,
+                  "on resuming, retry crashes, timeouts and flaky cases, too");
     app->add_flag("--quiet", options.isQuiet, "print failures only");
 }
 

@@ -52,7 +52,7 @@ struct RunOptions {
     std::vector<std::string> from;  // runs or a file to predict times from
     int jobs = 0;                   // 0: one a core on up to two cores, else half of them
     int failuresAtMost = 0;         // 0: any number
-    bool triesAgain = false;        // also what the runner did not survive
+    bool triesAgain = false;        // also the flaky, and what the runner did not survive
     bool isQuiet = false;
 };
 

@@ -374,7 +374,11 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     }
     // Before anything is written: a journal that cannot be read leaves the folder as it is.
     run.journal = run::readJournal(run.directory.path() / "journal.jsonl");
-    if (!options.triesAgain) run.scheduler.givenUp = run::casesNotSurvived(run.plan, run.journal);
+    if (options.triesAgain) {
+        run::forgetFlaky(run.directory);
+    } else {
+        run.scheduler.givenUp = run::casesNotSurvived(run.plan, run.journal);
+    }
     settleMachine(context.commandLine, device, run);
     return run;
 }

@@ -52,6 +52,13 @@ void keepUnits(const RunDirectory& directory, const std::vector<records::Record>
 
 }  // namespace
 
+void forgetFlaky(const RunDirectory& directory) {
+    if (!fs::exists(directory.recordsFile())) return;
+    const std::vector<records::Record> records = records::readRecords(directory.recordsFile());
+    keepUnits(directory, records, worstRows(records),
+              [](records::Status status) { return status != records::Status::Flaky; });
+}
+
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory) {
     if (!fs::exists(directory.recordsFile())) return unitsOf(plan);
     const std::vector<records::Record> records = records::readRecords(directory.recordsFile());

@@ -20,6 +20,9 @@ namespace gfxrepro::run {
 /// rows yet. Rows of failed units are taken out of records.csv: they are about to be made again.
 std::vector<Unit> remainingUnits(const Plan& plan, const RunDirectory& directory);
 
+/// Takes the rows of flaky units out of records.csv, so that they remain to be measured.
+void forgetFlaky(const RunDirectory& directory);
+
 /// What was decided so far of the rounds of a run's tables.
 Rounds roundsOf(const Plan& plan, const RunDirectory& directory, const std::vector<Json>& journal);
 
