@@ -224,10 +224,21 @@ class Scheduler {
         observer_.unitBegan(unit);
     }
 
-    /// Sleeps until a worker says something or a limit is due; true on Ctrl-C. Where it slept
-    /// longer (the run was suspended), limits move.
-    bool waitForEvents() {
+    /// Now. Limits move by the time since `due`, when it should have looked at its workers again,
+    /// where that is long: the runner was suspended, or waited for a disk.
+    Clock::time_point look(Clock::time_point due) {
         const Clock::time_point now = Clock::now();
+        if (now - due > kSuspended) {
+            for (const auto& worker : workers_) {
+                if (worker) worker->postpone(now - due);
+            }
+        }
+        return lastLook_ = now;
+    }
+
+    /// Sleeps until a worker says something or a limit is due; true on Ctrl-C.
+    bool waitForEvents() {
+        const Clock::time_point now = look(lastLook_);
         Clock::time_point until = now + kTickInterval;
         std::vector<pollfd> fds = {{signals_.fd(), POLLIN, 0}};
         for (const auto& worker : workers_) {
@@ -237,17 +248,14 @@ class Scheduler {
         }
         const auto timeoutMs = std::chrono::ceil<std::chrono::milliseconds>(until - now).count();
         ::poll(fds.data(), fds.size(), static_cast<int>(std::max<long long>(timeoutMs, 0)));
-        const Clock::duration late = Clock::now() - std::max(until, now);
-        if (late > kSuspended) {
-            for (const auto& worker : workers_) worker->postpone(late);
-        }
+        look(std::max(until, now));
         return (fds.front().revents & POLLIN) != 0;
     }
 
     void collect() {
         for (auto& worker : workers_) {
             std::optional<CaseResult> result = worker->receive();
-            if (!result) result = worker->checkLimits(Clock::now());
+            if (!result) result = worker->checkLimits(look(lastLook_));
             if (!result) continue;
             if (result->isUnwritable) throw WriteError(result->message);
             const Unit unit = *worker->unit();
@@ -360,6 +368,7 @@ class Scheduler {
     records::ImageWriter images_;
     records::RecordWriter records_;
     std::vector<std::unique_ptr<WorkerHandle>> workers_;
+    Clock::time_point lastLook_ = Clock::now();
     int lostInARow_ = 0;              // units that ended device-lost
     std::set<std::string> warnings_;  // of units, each once
     RunOutcome outcome_;

@@ -57,15 +57,24 @@ std::vector<std::string> statusLines(const std::filesystem::path& runDir) {
     return lines;
 }
 
+namespace {
+
+std::vector<pid_t> childrenOf(const std::string& task) {
+    std::ifstream file("/proc/" + task + "/children");
+    std::vector<pid_t> children;
+    for (pid_t pid; file >> pid;) children.push_back(pid);
+    return children;
+}
+
+}  // namespace
+
+std::vector<pid_t> ownChildren() {
+    return childrenOf("thread-self");
+}
+
 std::vector<pid_t> backgroundWorkers() {
-    const auto childrenOf = [](const std::string& task) {
-        std::ifstream file("/proc/" + task + "/children");
-        std::vector<pid_t> children;
-        for (pid_t pid; file >> pid;) children.push_back(pid);
-        return children;
-    };
     std::vector<pid_t> workers;
-    for (const pid_t runner : childrenOf("thread-self")) {
+    for (const pid_t runner : ownChildren()) {
         const std::string pid = std::to_string(runner);
         for (const pid_t worker : childrenOf(pid + "/task/" + pid)) workers.push_back(worker);
     }

@@ -31,6 +31,8 @@ std::map<std::string, nlohmann::json> paramsOf(const std::filesystem::path& runD
 /// "value=status message" of every case in order of the rows, by the parameter `behaviour`.
 std::vector<std::string> statusLines(const std::filesystem::path& runDir);
 
+/// The processes that this thread started.
+std::vector<pid_t> ownChildren();
 /// The workers of the program that this thread runs in the background.
 std::vector<pid_t> backgroundWorkers();
 
