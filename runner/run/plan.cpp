@@ -52,6 +52,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
         requireNoImport(experiment);
         experiment.paperCases = resolvePaperCases(experiment, catalog, techniques);
     }
+    std::size_t units = 0;
     std::set<std::string> experimentIds;
     std::set<std::string> caseIds;
     config::FileDigests digests;
@@ -68,6 +69,8 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
                                      config::programOf(experiment));
         }
         requireCaseCount(plan.cases.size() + cases.size(), experiment);
+        units += unitCount(cases);
+        requireUnitCount(units, {experiment.file.string(), 0, 0});
         for (Case& item : cases) {
             if (!item.scene.isNull()) {
                 std::string& known = plan.sceneKeys[item.scene.text()];

@@ -69,6 +69,12 @@ struct Plan {
 inline constexpr std::size_t kMostCases = 200'000;
 /// Throws Error, naming the config, for more.
 void requireCaseCount(std::size_t count, const config::Experiment& experiment);
+/// Likewise of its units: its cases, each in all its processes.
+inline constexpr std::size_t kMostUnits = 1'000'000;
+/// Those of these cases, with all rounds that may follow.
+std::size_t unitCount(std::span<const Case> cases);
+/// Throws Error(where, …) for more.
+void requireUnitCount(std::size_t count, const SourceLocation& where);
 
 /// The cases of one experiment with every parameter resolved; ids are still empty. A case is there
 /// once for each seed of its scene. Throws Error for unknown techniques, parameters and scenes.

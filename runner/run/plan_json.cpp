@@ -411,6 +411,11 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     for (const auto& [place, item] : json.at("cases").items()) {
         plan.cases.push_back(caseFromJson(item, where, "/cases/" + place));
     }
+    if (plan.cases.size() > kMostCases) {
+        throw Error(where,
+                    fmt::format("{} cases; at most {} are read", plan.cases.size(), kMostCases));
+    }
+    requireUnitCount(unitCount(plan.cases), where);
     requireCases(where, json, plan);
     requireFrozen(where, std::move(json), plan);
     return plan;

@@ -210,6 +210,25 @@ void requireCaseCount(std::size_t count, const config::Experiment& experiment) {
                             experiment.file.string(), count, kMostCases));
 }
 
+std::size_t unitCount(std::span<const Case> cases) {
+    std::size_t count = 0;
+    for (const Case& item : cases) {
+        const config::Measure& measure = item.measure;
+        const int processes = measure.mayContinue()
+                                  ? std::max(measure.processes, measure.processesAtMost)
+                                  : measure.processes;
+        count += static_cast<std::size_t>(std::max(processes, 0));
+    }
+    return count;
+}
+
+void requireUnitCount(std::size_t count, const SourceLocation& where) {
+    if (count <= kMostUnits) return;
+    throw Error(where, fmt::format("the plan has {} measurements (cases × processes); at most {} "
+                                   "are allowed",
+                                   count, kMostUnits));
+}
+
 namespace {
 
 /// Gives each case of the sweep to `take`, without what takes a scene's place: there may be
@@ -279,6 +298,8 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
         if (isNew || known->second != need) requireScene(item, need, experiment, catalog);
         std::ranges::move(withScenes(item, experiment, catalog), std::back_inserter(cases));
     });
+    requireCaseCount(cases.size(), experiment);
+    requireUnitCount(unitCount(cases), {experiment.file.string(), 0, 0});
     requireOutputs(experiment, techniques);
     requireTaken(experiment, cases);
     requireSceneNames(experiment, cases, catalog);

@@ -261,7 +261,8 @@ class Scheduler {
             const Unit unit = *worker->unit();
             if (isTriedAgain(unit, *result)) {
                 logCase("retry", unit, *result, worker->output());
-                waiting_.push_front({unit.item, unit.process, *result, unit.twins});
+                waiting_.push_front({unit.item, unit.process,
+                                     std::make_shared<const CaseResult>(*result), unit.twins});
             } else {
                 finish(unit, inViewOfFirstTry(unit, *result), worker->output());
             }

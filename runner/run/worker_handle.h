@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,8 +21,8 @@ using UnitKey = std::pair<std::string, int>;  // case id, process
 struct Unit {
     const Case* item = nullptr;
     int process = 0;
-    /// How the first try ended, when this is the second.
-    std::optional<CaseResult> firstTry;
+    /// How the first try ended, when this is the second. There may be a million units.
+    std::shared_ptr<const CaseResult> firstTry;
     /// Twins of the case (twins.h) for which its rows are recorded, too.
     std::vector<const Case*> twins = {};
     /// In the unit of a twin, which no worker gets: the case that was measured.

@@ -60,6 +60,71 @@ TEST(Faults, WhatPassesAtTheSecondTryIsFlaky) {
               "0 of 0 finished; records: " + dir + "/records.csv\n");
 }
 
+TEST(Faults, AFlakyCaseIsMeasuredAgainWhereThatIsAskedFor) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder, "params: {behaviour: flake, marker: " + (folder.path() / "marker").string() +
+                    "}\nsweep: {number: [1, 2]}\n");
+    const std::string dir = folder.path() / "run";
+    mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
+    ASSERT_EQ(statusLines(dir).size(), 2U);
+    const ProcessResult again = mockGfxrepro({"run", "--resume", dir, "--retry"});
+    EXPECT_EQ(again.exitCode, 0) << again.err;
+    EXPECT_EQ(again.out, "1 of 1 finished; records: " + dir + "/records.csv\n");
+    EXPECT_THAT(statusLines(dir), ElementsAre("flake: ok", "flake: ok"));
+}
+
+TEST(Faults, WhatALibraryThrowsNamesTheFile) {
+    const TemporaryFolder folder;
+    const std::string name = std::string(300, 'x') + ".obj";
+    const std::string config = writeMockConfig(folder, "scene: " + name + "\n");
+    const ProcessResult check = mockGfxrepro({"check", config});
+    EXPECT_EQ(check.exitCode, 2);
+    EXPECT_THAT(check.err, HasSubstr(name));
+    EXPECT_THAT(check.err, HasSubstr("File name too long"));
+    EXPECT_THAT(check.err, testing::Not(HasSubstr("filesystem error")));
+}
+
+TEST(Faults, MeasurementsAreCountedAsCasesAre) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder, "sweep: {number: [1, 2]}\nmeasure: {lane: quality, processes: 600000}\n");
+    const std::string why =
+        "the plan has 1200000 measurements (cases × processes); at most 1000000 are allowed\n";
+    EXPECT_EQ(mockGfxrepro({"check", config}).err, "gfxrepro: " + config + ": " + why);
+    EXPECT_THAT(mockGfxrepro({"run", config, "--device", "software"}).err, HasSubstr(why));
+    // In a plan of someone else it would be as much memory.
+    const std::string dir = folder.path() / "run";
+    writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    std::string plan = readFile(dir + "/plan.json");
+    const std::string one = "\"processes\":1,";
+    ASSERT_NE(plan.find(one), plan.npos);
+    writeFileAtomic(dir + "/plan.json",
+                    plan.replace(plan.find(one), one.size(), "\"processes\":2147483647,"));
+    for (const char* command : {"table", "report", "export"}) {
+        EXPECT_EQ(mockGfxrepro({command, dir}).err,
+                  "gfxrepro: " + dir +
+                      "/plan.json: the plan has 2147483648 measurements (cases × "
+                      "processes); at most 1000000 are allowed\n");
+    }
+}
+
+TEST(Faults, CheckTellsOfARunWithVeryManyRows) {
+    const TemporaryFolder folder;
+    const auto rows = [&](const std::string& lines) {
+        const std::string config = writeMockConfig(folder, lines);
+        return mockGfxrepro({"check", config}).out;
+    };
+    const std::string many = "measure: {lane: quality, frames: 500, processes: ";
+    EXPECT_EQ(rows(many + "10}\n").find("million"), std::string::npos);
+    EXPECT_THAT(rows(many + "1000}\n"),
+                HasSubstr("about 2.5 million rows of records, of at most 64 million in a run\n"));
+    EXPECT_THAT(rows(many + "100000}\n"),
+                HasSubstr("in a run: it will stop before its end; measure it in parts (--only, "
+                          "--shard)\n"));
+}
+
 TEST(Faults, AMetricIsGivenOnce) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "sweep: {behaviour: [twice]}\n");
