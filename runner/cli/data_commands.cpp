@@ -85,7 +85,8 @@ int exportRun(const Context& context, const ExportOptions& options) {
     const std::string target = options.out.empty()
                                    ? options.runDir + (options.isTidy ? "-tidy" : "-artifact")
                                    : options.out;
-    const run::StoredRun run = run::readRun(options.runDir);
+    run::StoredRun run = run::readRun(options.runDir);
+    run::noteChangedImages(run, options.runDir);
     if (options.isTidy) {
         conclusion::writeTidy(options.runDir, run, target);
     } else {

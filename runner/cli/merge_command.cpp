@@ -23,6 +23,12 @@ bool isSubmission(const fs::path& folder) {
     return fs::exists(folder / cluster::kSubmittedPlan);
 }
 
+cluster::ShardRun readShard(const fs::path& folder) {
+    cluster::ShardRun shard{folder, run::readOutlined(folder)};
+    run::noteChangedImages(shard.run, folder);
+    return shard;
+}
+
 /// Those of the folders that hold a run; the others are said. A submission stands for its shards,
 /// of which some may not be begun.
 std::vector<cluster::ShardRun> readShards(const std::vector<std::string>& folders) {
@@ -30,10 +36,10 @@ std::vector<cluster::ShardRun> readShards(const std::vector<std::string>& folder
     for (const fs::path folder : folders) {
         if (isSubmission(folder)) {
             for (const fs::path& shard : cluster::shardFolders(folder)) {
-                if (run::holdsRun(shard)) shards.push_back({shard, run::readOutlined(shard)});
+                if (run::holdsRun(shard)) shards.push_back(readShard(shard));
             }
         } else if (run::holdsRun(folder)) {
-            shards.push_back({folder, run::readOutlined(folder)});
+            shards.push_back(readShard(folder));
         } else {
             tell("{}: holds no run\n", folder.string());
         }

@@ -297,7 +297,8 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs,
 
 int report(const std::vector<std::string>& runDirs, const std::string& out, bool embeds) {
     if (runDirs.size() == 1 && out.empty()) {
-        const run::StoredRun run = run::readRun(runDirs.front());
+        run::StoredRun run = run::readRun(runDirs.front());
+        run::noteChangedImages(run, runDirs.front());
         conclusion::writeResults(
             runDirs.front(), run,
             {.tables = false, .claims = false, .embeds = embeds, .progress = sayPictures});
@@ -312,7 +313,8 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
             runs.push_back(conclusion::keptRun(dir));
             continue;
         }
-        const run::StoredRun run = run::readRun(dir);
+        run::StoredRun run = run::readRun(dir);
+        run::noteChangedImages(run, dir);
         runs.push_back(conclusion::reportRun(dir, run, conclusion::resultsOf(run)));
         if (completenessCode(run) != kExitOk) code = kExitIncomplete;
     }

@@ -34,7 +34,8 @@ constexpr JsonKind kSample[] = {JsonKind::Int,    JsonKind::Int,  JsonKind::Text
                                 JsonKind::Text,   JsonKind::Text, JsonKind::Infinite,
                                 JsonKind::Boolean};
 constexpr JsonKind kImage[] = {JsonKind::Text, JsonKind::Text, JsonKind::Int,  JsonKind::Text,
-                               JsonKind::Text, JsonKind::Text, JsonKind::Text, JsonKind::Text};
+                               JsonKind::Text, JsonKind::Text, JsonKind::Text, JsonKind::Text,
+                               JsonKind::Text, JsonKind::Text};
 constexpr JsonKind kScene[] = {JsonKind::Text, JsonKind::Text, JsonKind::Text, JsonKind::Text};
 constexpr JsonKind kProgram[] = {JsonKind::Text, JsonKind::Text, JsonKind::Text};
 
@@ -139,8 +140,8 @@ Json toJson(const CaseResult& result) {
             {s.frame, s.repeat, s.pass, s.metric, s.unit, numberJson(s.value), s.isVoid});
     }
     for (const records::ImageEntry& i : result.images) {
-        json["images"].push_back(
-            {i.caseId, i.table, i.frame, i.name, i.png, i.exr, i.title, i.truthOf});
+        json["images"].push_back({i.caseId, i.table, i.frame, i.name, i.png, i.exr, i.title,
+                                  i.truthOf, i.pngSha256, i.exrSha256});
     }
     for (const SceneUse& s : result.scenes) {
         json["scenes"].push_back({s.reference, s.kind, s.description, s.sha256});
@@ -167,8 +168,8 @@ CaseResult caseResultFromJson(const Json& json) {
             {s.at(0), s.at(1), s.at(2), s.at(3), s.at(4), numberFrom(s.at(5)), s.at(6)});
     }
     for (const Json& i : json.at("images")) {
-        result.images.push_back(
-            {i.at(0), i.at(1), i.at(2), i.at(3), i.at(4), i.at(5), i.at(6), i.at(7)});
+        result.images.push_back({i.at(0), i.at(1), i.at(2), i.at(3), i.at(4), i.at(5), i.at(6),
+                                 i.at(7), i.at(8), i.at(9)});
     }
     for (const Json& s : json.at("scenes")) {
         result.scenes.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});

@@ -197,7 +197,9 @@ void RunRecorder::image(std::string_view name, const image::ImageF& image,
     image::writeExr(runDir_ / (stem + ".exr"), exr);
     image::writePng(runDir_ / (stem + ".png"), image::toSrgb8(image));
     result_.images.push_back({item_.id, item_.experiment, frame_, std::string(name), stem + ".png",
-                              stem + ".exr", item_.title(), options.truthOf});
+                              stem + ".exr", item_.title(), options.truthOf,
+                              sha256OfFile(runDir_ / (stem + ".png")),
+                              sha256OfFile(runDir_ / (stem + ".exr"))});
 }
 
 void RunRecorder::checkTruths() const {

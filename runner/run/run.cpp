@@ -169,6 +169,17 @@ StoredRun readOutlined(const fs::path& runDir) {
     return readWith(Plan::outlineFromJsonFile, runDir);
 }
 
+void noteChangedImages(StoredRun& run, const fs::path& runDir) {
+    constexpr std::size_t kNamed = 3;
+    std::vector<std::string> changed = records::changedImages(runDir);
+    if (changed.empty()) return;
+    const std::size_t count = changed.size();
+    changed.resize(std::min(count, kNamed));
+    addNote(run.manifest,
+            fmt::format("pictures are not as they were recorded: {}{}", joined(changed, ", "),
+                        count > kNamed ? fmt::format(", and {} others", count - kNamed) : ""));
+}
+
 Completeness completeness(const StoredRun& run) {
     const WorstRows worst = worstRows(run.records);
     Completeness counts;

@@ -43,6 +43,9 @@ struct StoredRun {
 /// Throws Error when the folder is no run. The manifest notes what was changed since its end
 /// (noteChanges), and that several machines measured (noteMachines).
 StoredRun readRun(const std::filesystem::path& runDir);
+/// Adds to the manifest's notes which pictures are missing or are not as they were written: each is
+/// read, which takes time.
+void noteChangedImages(StoredRun& run, const std::filesystem::path& runDir);
 
 /// For a merge: a shard's plan is an outline (Plan::outlineFromJsonFile).
 StoredRun readOutlined(const std::filesystem::path& runDir);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.h"
+#include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -109,6 +110,26 @@ TEST_F(Seal, AMergeSaysWhichShardWasChanged) {
     EXPECT_EQ(manifest(merged)["sha256"].size(), 2U);
     const ProcessResult table = mockGfxrepro({"table", merged});
     EXPECT_THAT(table.out, HasSubstr("warning: " + dir + ": records.csv was changed"));
+}
+
+TEST_F(Seal, PicturesThatAreNotAsTheyWereRecordedAreNamed) {
+    const std::string file = config(6);
+    ASSERT_EQ(mockGfxrepro({"run", file, "--device", "software", "--shard", "1/1", "--out", dir})
+                  .exitCode,
+              0);
+    const records::ImageEntry image = records::readImages(dir).front();
+    EXPECT_THAT(mockGfxrepro({"report", dir}).out, Not(HasSubstr("warning")));
+    writeFileAtomic(dir + '/' + image.png, readFile(dir + '/' + image.png) + "x");
+    fs::remove(dir + '/' + image.exr);
+    const std::string said = "pictures are not as they were recorded: " + image.png +
+                             " was changed, " + image.exr + " is missing";
+    const std::string merged = folder.path() / "merged", artifact = folder.path() / "artifact";
+    EXPECT_THAT(mockGfxrepro({"report", dir}).out, HasSubstr("warning: " + said));
+    EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr(image.exr + " is missing"));
+    EXPECT_THAT(mockGfxrepro({"export", dir, "--out", artifact}).out, HasSubstr(said));
+    EXPECT_THAT(manifest(artifact)["notes"].dump(), HasSubstr(said));
+    EXPECT_EQ(mockGfxrepro({"merge", "--out", merged, dir}).exitCode, 0);
+    EXPECT_THAT(manifest(merged)["notes"].dump(), HasSubstr(dir + ": " + said));
 }
 
 TEST_F(Seal, AnotherConfigJudgesApartAndSaysSo) {
