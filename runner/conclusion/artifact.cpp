@@ -10,6 +10,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/core/output_files.h"
 #include "engine/core/text.h"
 #include "runner/cluster/predictions.h"
 #include "runner/conclusion/conclusion.h"
@@ -245,14 +246,8 @@ std::string checksums(const fs::path& target) {
     return text;
 }
 
-}  // namespace
-
-void writeArtifact(const fs::path& runDir, const run::StoredRun& run, const scene::Catalog& catalog,
-                   const fs::path& target) {
-    if (fs::exists(target))
-        throw Error(target.string() + ": is there already; give another folder");
-    requireNotImported(run.manifest, runDir.string(),
-                       "measure again; `export --tidy` gives its numbers");
+void fillArtifact(const fs::path& runDir, const run::StoredRun& run, const scene::Catalog& catalog,
+                  const fs::path& target) {
     takeFolder(target, runDir, run.manifest);
     writeFileAtomic(target / "environment.txt", environmentText(run.manifest));
     copyMeasured(runDir, target);
@@ -264,6 +259,15 @@ void writeArtifact(const fs::path& runDir, const run::StoredRun& run, const scen
                     assetsText(run.manifest, catalog) + programsText(run.manifest, places));
     writeFileAtomic(target / "README.md", readmeText(target, run));
     writeFileAtomic(target / "SHA256SUMS", checksums(target));
+}
+
+}  // namespace
+
+void writeArtifact(const fs::path& runDir, const run::StoredRun& run, const scene::Catalog& catalog,
+                   const fs::path& target) {
+    requireNotImported(run.manifest, runDir.string(),
+                       "measure again; `export --tidy` gives its numbers");
+    writeFolder(target, [&](const fs::path& part) { fillArtifact(runDir, run, catalog, part); });
 }
 
 }  // namespace gfxrepro::conclusion

@@ -146,14 +146,13 @@ void writeCases(const fs::path& file, std::span<const config::Case> cases) {
 }
 
 void writeTidy(const fs::path& runDir, const run::StoredRun& run, const fs::path& target) {
-    if (fs::exists(target)) {
-        throw Error(target.string() + ": is there already; give another folder");
-    }
-    takeFolder(target, runDir, run.manifest);
-    writeCases(target / "cases.csv", run.plan.cases);
-    writeRecords(target / "records.csv", run.records);
-    writeRun(target / kRunFile, run.manifest);
-    writePrograms(target / "programs.csv", run.manifest);
+    writeFolder(target, [&](const fs::path& part) {
+        takeFolder(part, runDir, run.manifest);
+        writeCases(part / "cases.csv", run.plan.cases);
+        writeNumbers(part / "records.csv", run.records);
+        writeRun(part / kRunFile, run.manifest);
+        writePrograms(part / "programs.csv", run.manifest);
+    });
 }
 
 std::map<std::string, std::string> exportedRun(const fs::path& folder) {

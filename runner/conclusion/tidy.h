@@ -21,10 +21,10 @@ inline constexpr std::string_view kParamPrefix = "params.";
 /// not got it. What has parts is a column a part: "output.width", "offset.0".
 void writeCases(const std::filesystem::path& file, std::span<const config::Case> cases);
 
-/// Writes the folder `target`, which must not exist: cases.csv, records.csv (a number a row; of
-/// what belongs to the whole case, frame and repeat are −1), run.csv (key, value: of the manifest)
-/// and programs.csv (file, sha256, version: of programs measured from outside; not written where
-/// there are none).
+/// Writes the folder `target`, which must not exist, as a whole or not at all: cases.csv,
+/// records.csv (a number a row; of what belongs to the whole case, frame and repeat are −1),
+/// run.csv (key, value: of the manifest) and programs.csv (file, sha256, version: of programs
+/// measured from outside; not written where there are none).
 void writeTidy(const std::filesystem::path& runDir, const run::StoredRun& run,
                const std::filesystem::path& target);
 

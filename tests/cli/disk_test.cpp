@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "engine/core/files.h"
+#include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -49,6 +50,48 @@ TEST(Disk, AFullDiskLosesNothingMeasured) {
     for (const char* file : {"csv", "md", "tex"}) {
         const std::string name = std::string("/tables/sweep-mock.") + file;
         EXPECT_EQ(readFile(full + name), readFile(whole + name));
+    }
+}
+
+/// A folder stands where the picture of the first case belongs: a write that fails once.
+TEST(Disk, AFailedWriteOfTheRunnerIsNoneOfTheCase) {
+    const TemporaryFolder folder;
+    const std::string config =
+        writeMockConfig(folder, "sweep: {number: [1, 2]}\nmeasure: {lane: quality}\n");
+    const std::string dir = folder.path() / "run";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    const fs::path picture = fs::path(dir) / records::readImages(dir).front().exr;
+    for (const fs::path& file : {picture, fs::path(dir) / "records.csv"}) fs::remove(file);
+    fs::create_directories(picture / "in-the-way");
+    for (int i = 0; i < 3; ++i) {  // nor is it taken for what the runner did not survive
+        const ProcessResult stopped = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
+        EXPECT_EQ(stopped.exitCode, 2) << stopped.out;
+        EXPECT_THAT(stopped.err, testing::EndsWith("gfxrepro: cannot rename to " +
+                                                   picture.string() + ": Is a directory\n"));
+        EXPECT_TRUE(rowsOf(dir, "number").empty());
+    }
+    fs::remove_all(picture);
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    EXPECT_EQ(resumed.out, "2 of 2 finished; records: " + dir + "/records.csv\n")
+        << "none is flaky";
+}
+
+TEST(Disk, AnExportIsThereAsAWholeOrNotAtAll) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "sweep: {number: {range: [1, 60]}}\n");
+    const std::string dir = folder.path() / "run";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    for (const std::string tidy : {"", " --tidy"}) {
+        const fs::path out = folder.path() / ("out" + tidy.substr(0, 1)) / "artifact";
+        const std::string command = "export " + dir + tidy + " --out '" + out.string() + "'";
+        const ProcessResult full = mockWithFullDisk(command, 8);
+        EXPECT_EQ(full.exitCode, 2) << full.out;
+        EXPECT_TRUE(!fs::exists(out.parent_path()) || fs::is_empty(out.parent_path())) << command;
+        const ProcessResult whole = mockWithFullDisk(command, 1 << 20);
+        EXPECT_EQ(whole.exitCode, 0) << whole.err;
+        EXPECT_TRUE(fs::exists(out / (tidy.empty() ? "SHA256SUMS" : "run.csv")));
+        EXPECT_EQ(std::distance(fs::directory_iterator(out.parent_path()), {}), 1);
     }
 }
 
