@@ -48,4 +48,14 @@ int usableProcessors(const fs::path& root) {
     return std::max(1, static_cast<int>(std::min(processors, std::ceil(quotaOf(groups)))));
 }
 
+long long systemOomKills(const std::filesystem::path& root) {
+    std::ifstream file(root / "proc/vmstat");
+    std::string name;
+    long long value = 0;
+    while (file >> name >> value) {
+        if (name == "oom_kill") return value;
+    }
+    return 0;
+}
+
 }  // namespace gfxrepro

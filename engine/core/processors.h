@@ -1,4 +1,4 @@
-// How many processors this process may use.
+// What the machine gives to processes: how many processors, and when memory was not enough.
 #pragma once
 
 #include <filesystem>
@@ -9,5 +9,9 @@ namespace gfxrepro {
 /// groups pay for (version 2: cpu.max of its own and of those above; 3.5 processors' time counts as
 /// 4). `root` stands for /, in tests another folder.
 int usableProcessors(const std::filesystem::path& root = "/");
+
+/// Processes that the kernel has killed for want of memory, of the machine's or of a control
+/// group's, since its start; 0 if it does not tell. `root` as above.
+long long systemOomKills(const std::filesystem::path& root = "/");
 
 }  // namespace gfxrepro

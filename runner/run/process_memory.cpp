@@ -52,14 +52,4 @@ void resetPeakResident() {
     std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): resets VmHWM
 }
 
-long long systemOomKills() {
-    std::ifstream file("/proc/vmstat");
-    std::string name;
-    long long value = 0;
-    while (file >> name >> value) {
-        if (name == "oom_kill") return value;
-    }
-    return 0;
-}
-
 }  // namespace gfxrepro::run

@@ -18,7 +18,4 @@ long long peakResidentBytes();
 /// Gives unused heap back and starts the peak at the present size.
 void resetPeakResident();
 
-/// Processes that the kernel has killed for want of memory since its start; 0 if it does not tell.
-long long systemOomKills();
-
 }  // namespace gfxrepro::run

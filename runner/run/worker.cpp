@@ -59,6 +59,8 @@ CaseResult measuredResult(const Case& item, MeasureContext& context) {
         return failedWith(records::Status::Unsupported, error.what());
     } catch (const technique::CrashError& error) {
         return failedWith(records::Status::Crash, error.what());
+    } catch (const technique::OutOfMemoryError& error) {
+        return failedWith(records::Status::Oom, error.what());
     } catch (const DeviceLostError& error) {
         return failedWith(records::Status::DeviceLost, error.what());
     } catch (const std::bad_alloc&) {

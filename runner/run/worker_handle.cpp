@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "engine/core/descriptor.h"
+#include "engine/core/processors.h"
 #include "engine/core/text.h"
 #include "runner/run/plan_json.h"
 #include "runner/run/process_memory.h"

@@ -96,6 +96,11 @@ class CrashError : public Error {
     using Error::Error;
 };
 
+/// … or was killed as the system ran out of memory (status `oom`).
+class OutOfMemoryError : public Error {
+    using Error::Error;
+};
+
 /// A model has triangles or points.
 enum class SceneNeed { Nothing, Model, HeightMap };
 

@@ -129,8 +129,8 @@ class External : public technique::Technique {
   private:
     fs::path metricsFile() const { return folder_->path() / "metrics.jsonl"; }
 
-    /// Runs the program in an empty folder of this name. Throws Error where it fails, and
-    /// CrashError where it dies of a signal.
+    /// Runs the program in an empty folder of this name. Throws Error where it fails, CrashError
+    /// where it dies of a signal, and OutOfMemoryError where that was for want of memory.
     ProcessEnd run(config::Placeholders values, const std::string& folderName) const {
         const fs::path out = folder_->path() / folderName;
         makeEmpty(out);
@@ -157,6 +157,9 @@ class External : public technique::Technique {
             const std::string lines = lastLines(end.output);
             const std::string message = fmt::format("program '{}' ended with {}{}{}", name, why,
                                                     lines.empty() ? "" : ": ", lines);
+            if (end.isOutOfMemory) {
+                throw technique::OutOfMemoryError(message + ": the system ran out of memory");
+            }
             if (WIFSIGNALED(end.waitStatus)) throw technique::CrashError(message);
             throw Error(message);
         }

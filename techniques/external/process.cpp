@@ -16,6 +16,7 @@
 
 #include "engine/core/descriptor.h"
 #include "engine/core/error.h"
+#include "engine/core/processors.h"
 
 namespace gfxrepro::external {
 
@@ -134,6 +135,7 @@ ProcessEnd runProcess(const ProcessStart& start) {
     ::fcntl(output.get(), F_SETFL, O_NONBLOCK);
 
     ProcessEnd end;
+    const long long oomKillsBefore = systemOomKills(start.machineRoot);
     // glibc 2.36 declares pidfd_open() for C alone.
     const Descriptor process(static_cast<int>(::syscall(SYS_pidfd_open, pid, 0)));
     pollfd fds[] = {{process.get(), POLLIN, 0}, {output.get(), POLLIN, 0}};
@@ -151,6 +153,8 @@ ProcessEnd runProcess(const ProcessStart& start) {
     }
     if (ended < 0) fail("cannot wait for " + start.arguments.front());
     endLeftBehind();
+    end.isOutOfMemory = WIFSIGNALED(end.waitStatus) && WTERMSIG(end.waitStatus) == SIGKILL &&
+                        systemOomKills(start.machineRoot) > oomKillsBefore;
     readAvailable(output.get(), end.output);
     end.processTimeMs = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
     end.peakBytes = static_cast<long long>(usage.ru_maxrss) * 1024;

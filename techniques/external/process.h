@@ -15,12 +15,14 @@ struct ProcessStart {
     /// Appended to through the descriptor that GFXREPRO_METRICS_FD names, and by the name in
     /// GFXREPRO_METRICS_FILE.
     std::filesystem::path metricsFile;
+    std::filesystem::path machineRoot = "/";  // in tests another folder
 };
 
 struct ProcessEnd {
     int waitStatus = 0;          // of waitpid
     std::string output;          // standard output and error
     double processTimeMs = 0.0;  // CPU time, user and system, of it and of all that it waited for
+    bool isOutOfMemory = false;  // killed, while the system killed for want of memory
     /// Resident at once, of the largest of these; no less than what this process had on its own
     /// when it started the program, a few MiB.
     long long peakBytes = 0;

@@ -31,6 +31,32 @@ TEST(Process, SaysHowItEnded) {
     EXPECT_EQ(whyEnded(runShell(folder, "kill -SEGV $$").waitStatus), "SIGSEGV");
 }
 
+TEST(Process, AnEndThatNobodyToldIsAnError) {
+    const TemporaryFolder folder;
+    const auto before = ::signal(SIGCHLD, SIG_IGN);
+    EXPECT_EQ(errorText([&] { runShell(folder, "exit 3"); }),
+              "cannot wait for /bin/sh: No child processes");
+    ::signal(SIGCHLD, before);
+}
+
+/// The kernel's count stands for the kernel.
+TEST(Process, KilledAsMemoryRanOutItSaysSo) {
+    const TemporaryFolder folder;
+    const auto end = [&](const std::string& script) {
+        folder.write("proc/vmstat", "nr_free_pages 1\noom_kill 4\n");
+        return runProcess({{"/bin/sh", "-c", script},
+                           {},
+                           folder.path(),
+                           folder.path() / "metrics.jsonl",
+                           folder.path()});
+    };
+    const std::string count = "echo oom_kill 5 >proc/vmstat; ";
+    EXPECT_TRUE(end(count + "kill -KILL $$").isOutOfMemory);
+    EXPECT_FALSE(end("kill -KILL $$").isOutOfMemory);
+    EXPECT_FALSE(end(count + "kill -SEGV $$").isOutOfMemory);
+    EXPECT_FALSE(end(count).isOutOfMemory);
+}
+
 TEST(Process, RunsInItsFolderAndPrints) {
     const TemporaryFolder folder;
     const ProcessEnd end = runShell(folder, "pwd; echo $WORD >&2; cat", {{"WORD", "of mine"}});
