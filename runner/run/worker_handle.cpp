@@ -141,6 +141,8 @@ std::optional<CaseResult> WorkerHandle::handle(const Json& message) {
         begin(phase);
     } else if (message.contains("end")) {
         endPhase();
+    } else if (message.contains("ready") && device_) {
+        return endAsBroken("the worker was ready already: descriptor 3 is not a technique's");
     } else if (message.contains("ready")) {
         device_ = deviceInfoFromJson(message["ready"]);
         if (unit_) sendUnit();
@@ -154,10 +156,18 @@ std::optional<CaseResult> WorkerHandle::handle(const Json& message) {
         try {
             return caseResultFromJson(message["done"]);
         } catch (const Error& error) {  // of this case, not of the run
-            return failure(records::Status::Error, error.what());
+            return endAsBroken(error.what());
         }
     }
     return std::nullopt;
+}
+
+/// Its next words could be of this unit still, and would be taken for another's.
+CaseResult WorkerHandle::endAsBroken(const std::string& why) {
+    isAlive_ = false;
+    isStuck_ = !process_.kill();
+    endPhase();
+    return failure(records::Status::Error, why + (isStuck_ ? kStuck : ""));
 }
 
 void WorkerHandle::begin(const std::string& phase) {

@@ -78,6 +78,7 @@ class WorkerHandle {
   private:
     std::optional<CaseResult> handleLines();
     std::optional<CaseResult> handle(const Json& message);
+    CaseResult endAsBroken(const std::string& why);
     void begin(const std::string& phase);
     void endPhase();
     void sendUnit();

@@ -72,6 +72,34 @@ TEST_F(Worker, SuspendedAloneItsLimitMovesBySixtySecondsAtMost) {
     EXPECT_TRUE(worker.isGone());
 }
 
+TEST_F(Worker, WhoSpeaksInItsPlaceEndsTheCaseAlone) {
+    for (const auto& [said, why] :
+         {std::pair{R"({"ready": {}})",
+                    "the worker was ready already: descriptor 3 is not a technique's"},
+          std::pair{R"({"done": {}})", "the worker's answer: '/status' is missing"}}) {
+        WorkerHandle worker(command(std::string("echo '") + said + "' >&3; sleep 1000"),
+                            config::Measure::Lane::Quality, false, phases);
+        waitUntilReady(worker);
+        worker.assign({&item, 0});
+        const auto result = receive(worker);
+        ASSERT_TRUE(result) << said;
+        EXPECT_EQ(result->status, records::Status::Error);
+        EXPECT_EQ(result->message, why);
+        EXPECT_FALSE(worker.release(*result)) << "its next words would be another case's";
+    }
+}
+
+TEST_F(Worker, AFileThatItCannotWriteIsNoneOfTheCase) {
+    WorkerHandle worker(command(R"(echo '{"unwritable": "cannot write x: full"}' >&3; sleep 1000)"),
+                        config::Measure::Lane::Quality, false, phases);
+    waitUntilReady(worker);
+    worker.assign({&item, 0});
+    const auto result = receive(worker);
+    ASSERT_TRUE(result);
+    EXPECT_TRUE(result->isUnwritable);
+    EXPECT_EQ(result->message, "cannot write x: full");
+}
+
 TEST_F(Worker, AfterASuspensionItHasItsOwnTime) {
     WorkerHandle worker(command("sleep 1000"), config::Measure::Lane::Quality, false, phases);
     waitUntilReady(worker);
