@@ -52,6 +52,29 @@ TEST(RunDirectory, TextsOfTheLogAreCut) {
     EXPECT_EQ(events[1]["output"], most);
 }
 
+TEST(RunDirectory, ATornLineOfTheLogSwallowsNoOther) {
+    const TemporaryFolder folder;
+    const fs::path log = folder.write("run/journal.jsonl", R"({"event": "case", "mess)");
+    folder.write("run/plan.json", "{}");
+    run::RunDirectory::open(folder.path() / "run").note({{"event", "begin"}});
+    const std::vector<run::Json> events = run::readJournal(log);
+    ASSERT_EQ(events.size(), 1U);
+    EXPECT_EQ(events[0]["event"], "begin");
+}
+
+TEST(RunDirectory, AFullLogTakesNoFurtherUnit) {
+    const TemporaryFolder folder;
+    const run::RunDirectory directory = run::RunDirectory::create(folder.path() / "run", 100);
+    directory.note({{"event", "begin"}});
+    directory.requireRoom();
+    directory.note({{"event", "case"}, {"message", "long enough"}});
+    EXPECT_EQ(errorText([&] { directory.requireRoom(); }, folder.path()),
+              "DIR/run/journal.jsonl: has 119 bytes; with 100 or more it takes no further case. "
+              "Measure the rest in a run of its own (--only, --shard)");
+    directory.note({{"event", "end"}});
+    EXPECT_EQ(run::readJournal(folder.path() / "run/journal.jsonl").size(), 3U);
+}
+
 TEST(RunDirectory, OutputsAreLeftOutOfALargeLog) {
     const TemporaryFolder folder;
     const run::RunDirectory directory = run::RunDirectory::create(folder.path() / "run");
