@@ -128,6 +128,15 @@ std::size_t utf8Length(std::string_view text) {
     return isOverlong || isSurrogate || isTooLarge ? 0 : length;
 }
 
+bool isUtf8(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t length = utf8Length(text);
+        if (length == 0) return false;
+        text.remove_prefix(length);
+    }
+    return true;
+}
+
 std::string shellQuoted(const std::string& argument) {
     const bool isSafe = !argument.empty() && std::ranges::all_of(argument, [](unsigned char c) {
         return std::isalnum(c) ||

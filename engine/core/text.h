@@ -34,6 +34,8 @@ std::optional<long long> parseInteger(std::string_view text);
 
 /// Bytes of the UTF-8 character that a text begins with; 0 where it is none.
 std::size_t utf8Length(std::string_view text);
+/// Whether all of it is UTF-8.
+bool isUtf8(std::string_view text);
 
 /// For /bin/sh: as it is where that is safe, else in single quotes.
 std::string shellQuoted(const std::string& argument);

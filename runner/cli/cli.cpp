@@ -7,7 +7,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <functional>
+#include <new>
+#include <nlohmann/json.hpp>
 
 #include "engine/core/files.h"
 #include "engine/core/text.h"
@@ -389,6 +392,19 @@ int run(int argc, const char* const* argv, std::span<const technique::TechniqueI
         const int code = runCommand(argc, argv, techniques, generators);
         if (std::fflush(stdout) == 0) return code;
         tell("gfxrepro: cannot write the standard output: {}\n", std::strerror(errno));
+        return kExitUsage;
+    } catch (const std::filesystem::filesystem_error& error) {
+        tell("gfxrepro: {}\n", textOf(error));
+        annotate(Error(textOf(error)));
+        return kExitUsage;
+    } catch (const nlohmann::json::exception& error) {
+        const std::string_view text = error.what();  // "[json.exception.NAME] TEXT"
+        tell("gfxrepro: cannot read or write JSON: {}\n", text.substr(text.find("] ") + 2));
+        annotate(error);
+        return kExitUsage;
+    } catch (const std::bad_alloc& error) {
+        tell("gfxrepro: out of memory\n");
+        annotate(error);
         return kExitUsage;
     } catch (const std::exception& error) {
         tell("gfxrepro: {}\n", error.what());

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "engine/core/text.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
@@ -126,6 +127,13 @@ int importRun(const Context& context, const ImportOptions& options) {
         const auto known = conclusion::exportedRun(fs::path(options.cases).parent_path());
         if (known.contains("machine")) request.machine = known.at("machine");
         request.isOfGpu |= known.contains("device_class") && known.at("device_class") == "gpu";
+    }
+    const bool isLine = std::ranges::none_of(request.machine,
+                                             [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+    if (!isLine || !isUtf8(request.machine)) {
+        throw Error(
+            "the machine's name (--machine, or run.csv beside the cases): allowed: text of "
+            "one line, in UTF-8");
     }
     request.commandLine = context.commandLine;
     if (!options.configs.empty()) {

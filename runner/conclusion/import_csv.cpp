@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 
@@ -24,7 +23,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;  // as of records.csv
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
 constexpr std::size_t kMostCellBytes = 1024;
 constexpr const char* kCaseId = "case_id";
 constexpr const char* kMessage = "message";
@@ -53,14 +52,6 @@ std::string textOf(const fs::path& file) {
     }
     if (!plain.empty() && plain.back() != '\n') plain += '\n';
     return plain;
-}
-
-bool isUtf8(const std::string& text) {
-    try {
-        return !nlohmann::json(text).dump().empty();
-    } catch (const nlohmann::json::type_error&) {
-        return false;
-    }
 }
 
 /// Rows by the names of their columns.

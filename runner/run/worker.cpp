@@ -65,6 +65,8 @@ CaseResult measuredResult(const Case& item, MeasureContext& context) {
         return failedWith(records::Status::DeviceLost, error.what());
     } catch (const std::bad_alloc&) {
         return failedWith(records::Status::Oom, "out of memory");
+    } catch (const std::filesystem::filesystem_error& error) {
+        return failedWith(records::Status::Error, textOf(error));
     } catch (const std::exception& error) {
         return failedWith(records::Status::Error, error.what());
     }

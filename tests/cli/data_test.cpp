@@ -129,6 +129,15 @@ TEST_F(Data, AnImportedRunSaysSoEverywhere) {
     const std::string csv = folder_.write("theirs.csv", "samples,mse\n4,0.5\n16,0.125\n64,0.03\n");
     const ProcessResult imported = mockGfxrepro(
         {"import", csv, "--metric", "mse=1", "--machine", "RTX 4090", "--out", dir("theirs")});
+    for (const std::string machine : {"RTX\n4090", "RTX\x1b", "RTX \xFF"}) {
+        const ProcessResult refused = mockGfxrepro(
+            {"import", csv, "--metric", "mse=1", "--machine", machine, "--out", dir("refused")});
+        EXPECT_EQ(refused.exitCode, 2);
+        EXPECT_EQ(refused.err,
+                  "gfxrepro: the machine's name (--machine, or run.csv beside the cases): allowed: "
+                  "text of one line, in UTF-8\n");
+        EXPECT_FALSE(fs::exists(dir("refused")));
+    }
     EXPECT_EQ(imported.exitCode, 0) << imported.err;
     EXPECT_THAT(imported.out,
                 HasSubstr("imported 3 numbers of 3 cases into " + dir("theirs") + "\n"));
