@@ -143,6 +143,24 @@ void checkNesting(std::string_view json, const std::string& name) {
     }
 }
 
+/// The parser passes over what is no whole number from 0, as if it was not there.
+void checkOffsets(std::string_view json, const std::string& name) {
+    constexpr std::string_view kBlank = " \t\r\n";
+    for (const std::string_view key : {"\"byteOffset\"", "\"byteStride\""}) {
+        for (std::size_t at = json.find(key); at != json.npos; at = json.find(key, at + 1)) {
+            const std::size_t colon = json.find_first_not_of(kBlank, at + key.size());
+            if (colon == json.npos || json[colon] != ':') continue;  // a text
+            const std::size_t begin =
+                std::min(json.find_first_not_of(kBlank, colon + 1), json.size());
+            const std::string_view value =
+                json.substr(begin, json.find_first_of(",}] \t\r\n", begin) - begin);
+            if (!value.empty() && value.find_first_not_of("0123456789") == value.npos) continue;
+            throw Error(fmt::format("{}: {} is {}; allowed: a whole number from 0", name, key,
+                                    value.substr(0, 40)));
+        }
+    }
+}
+
 void checkExtensions(const tinygltf::Model& model, const std::string& name) {
     std::vector<std::string> missing;
     for (const std::string& extension : model.extensionsRequired) {
@@ -202,6 +220,7 @@ File readFile(const std::filesystem::path& path) {
     }
     const std::string_view json = isBinary ? jsonOfGlb(content) : content;
     checkNesting(json, file.name);
+    checkOffsets(json, file.name);
     addUnknownKeys(json, file.leftOut);
 
     Folder folder(path.parent_path(), json);

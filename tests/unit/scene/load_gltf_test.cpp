@@ -127,6 +127,19 @@ TEST_F(LoadGltf, ReadsSparseAccessors) {
     EXPECT_EQ(mesh.positions[1], glm::vec3(1, 1, 0));
 }
 
+TEST_F(LoadGltf, RefusesOffsetsBelowZero) {
+    const auto accessors = [](const std::string& offset) {
+        return R"([{"bufferView":0,"byteOffset" : )" + offset +
+               R"(,"componentType":5126,"count":4,"type":"VEC3"},
+               {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
+    };
+    EXPECT_EQ(errorWith("accessors", accessors("0")), "no error");
+    for (const std::string offset : {"-4", "1.5", "\"0\""}) {
+        EXPECT_EQ(errorWith("accessors", accessors(offset)),
+                  "DIR/a.gltf: \"byteOffset\" is " + offset + "; allowed: a whole number from 0");
+    }
+}
+
 TEST_F(LoadGltf, ReadsInstancesOfNodes) {
     Document document = square();
     document["extensionsRequired"] = R"(["EXT_mesh_gpu_instancing"])";
