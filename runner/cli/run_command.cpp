@@ -126,8 +126,12 @@ void Progress::unitEnded(const run::Unit& unit, records::Status status,
     const bool isOk = status == records::Status::Ok;
     if (isOk && (isQuiet_ || isTerminal_)) return;
     clear();
-    tell("[{}/{}] {} {}{}\n", ended_, unitCount_, records::statusName(status), titleOf(unit),
-         message.empty() ? "" : ": " + message);
+    constexpr std::size_t kMostTold = 300;
+    const bool isLong = message.size() > kMostTold;
+    std::size_t told = isLong ? kMostTold : message.size();
+    while (isLong && told > 0 && (message[told] & 0xC0) == 0x80) --told;  // no half character
+    tell("[{}/{}] {} {}{}{}{}\n", ended_, unitCount_, records::statusName(status), titleOf(unit),
+         message.empty() ? "" : ": ", message.substr(0, told), isLong ? " … (journal.jsonl)" : "");
 }
 
 std::string Progress::etaText() const {

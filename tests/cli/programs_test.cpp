@@ -42,6 +42,7 @@ case $1 in
     no_json) echo "number: 1" >>"$GFXREPRO_METRICS_FILE" ;;
     twice) say number "$2" 1; say number "$2" 1 ;;
     early) say number "$2" 1; say own_ms -5 ms ;;
+    long) head -c 3000 /dev/zero | tr '\0' x; exit 3 ;;
     talks) echo "one\n\ntwo\nthree\nfour" >&2; exit 3 ;;
     flatters) say number "$2" 1; say peak_memory_bytes 1 byte ;;
     no_picture) say number "$2" 1; rm "$3/result.png" ;;
@@ -93,6 +94,27 @@ class ExternalProgram : public testing::Test {
 const std::string kPicture =
     "  images: {result: {file: result.png, truth: \"{here}/truth.png\"}}\n"
     "output: {width: 32, height: 16}\n";
+
+/// As init systems and wrappers of jobs leave it.
+TEST_F(ExternalProgram, FailuresAreSeenWhereTheEndsOfChildrenWereIgnored) {
+    const std::string config =
+        write("sweep: {behaviour: [ok, crash, fails]}\nmeasure: {lane: quality}\n");
+    const ProcessResult result =
+        runProgram({"/bin/sh", "-c", "trap '' CHLD; exec \"$0\" \"$@\"", GFXREPRO_PROGRAM, "run",
+                    config, "--jobs", "1", "--out", dir});
+    EXPECT_EQ(result.exitCode, 4) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("1 of 3 finished, 2 failed; "));
+    EXPECT_THAT(statusLines(dir), ElementsAre("ok: ok", HasSubstr("ended with SIGSEGV"),
+                                              HasSubstr("ended with exit code 3")));
+}
+
+TEST_F(ExternalProgram, ALongMessageIsShortOnTheConsole) {
+    const ProcessResult result =
+        run(write("params: {behaviour: long}\nmeasure: {lane: quality}\n"));
+    EXPECT_THAT(result.err, HasSubstr("xxx … (journal.jsonl)\n"));
+    EXPECT_LT(result.err.size(), 800U);
+    EXPECT_THAT(readFile(dir + "/journal.jsonl"), HasSubstr(std::string(2500, 'x')));
+}
 
 TEST_F(ExternalProgram, EveryFailureBecomesARow) {
     const std::string config =
