@@ -49,6 +49,18 @@ std::string evidenceLinks(const Difference& difference) {
     return fmt::format(" ({})", links);
 }
 
+/// Empty on a side that has no number: it was lost, is new, or is how a case ended.
+std::string valueText(const Difference& difference, bool isAfter) {
+    const bool isNew = difference.reason.starts_with("measured after only");
+    const bool isAbsent = difference.key.metric == "status" ||
+                          (difference.verdict == Verdict::Missing && !(isAfter && isNew)) ||
+                          (difference.verdict == Verdict::Lost && isAfter);
+    if (isAbsent) return "";
+    return isAfter ? fmt::format("{:.4g} {}", difference.after,
+                                 report::escapeMarkdown(difference.key.unit))
+                   : fmt::format("{:.4g}", difference.before);
+}
+
 std::string markdownRow(const Difference& difference, const std::string& name) {
     const std::string title = report::escapeMarkdown(name);
     const std::string verdict =
@@ -56,14 +68,9 @@ std::string markdownRow(const Difference& difference, const std::string& name) {
     if (difference.isPicture() || difference.isOfNone()) {
         return fmt::format("| {} | | | | | {} |\n", title, verdict);
     }
-    const bool isMissing = difference.verdict == Verdict::Missing;
-    const bool isLost = difference.verdict == Verdict::Lost;
-    const std::string before = isMissing ? "" : fmt::format(" {:.4g}", difference.before);
-    const std::string after = isLost ? ""
-                                     : fmt::format(" {:.4g} {}", difference.after,
-                                                   report::escapeMarkdown(difference.key.unit));
-    return fmt::format("| {} |{} |{} | {} | {:.2g} | {} |\n", title, before, after,
-                       ratioText(difference), difference.floor, verdict);
+    return fmt::format("| {} | {} | {} | {} | {:.2g} | {} |\n", title, valueText(difference, false),
+                       valueText(difference, true), ratioText(difference), difference.floor,
+                       verdict);
 }
 
 /// The names of tests: titles, and where several series have one, what else they differ in.

@@ -1,5 +1,6 @@
 #include "runner/regression/comparison.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -386,6 +387,17 @@ TEST(Comparison, AParameterThatOneBuildDoesNotKnowIsNoDifference) {
     ASSERT_EQ(varied.size(), 3U);
     EXPECT_EQ(std::ranges::count(varied, Verdict::Missing, &Difference::verdict), 2);
     EXPECT_EQ(std::ranges::count(varied, Verdict::Lost, &Difference::verdict), 1);
+}
+
+TEST(Comparison, WhatIsThereOnOneSideAloneHasNoNumberOnTheOther) {
+    const Series values = {10, 10, 10, 10, 10, 10};
+    Comparison comparison;
+    comparison.differences =
+        compare({{test::timeOf("a"), values}}, {{test::timeOf("b"), values}}, Pairing::ByTurns);
+    const std::string text = markdown(comparison);
+    EXPECT_THAT(text, testing::HasSubstr(" | 10 |  | ")) << "a";
+    EXPECT_THAT(text, testing::HasSubstr(" |  | 10 ms | ")) << "b";
+    EXPECT_THAT(text, testing::Not(testing::HasSubstr("| 0 ms |")));
 }
 
 TEST(Comparison, WhatFailsAfterwardsAloneIsAnAlarm) {
