@@ -94,6 +94,10 @@ TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
     EXPECT_EQ(first.exitCode, 2) << first.out << first.err;
     EXPECT_NE(first.err.find("/first has no record of some case\n"), std::string::npos)
         << first.err;
+    const ProcessResult blind =
+        nightOf("[ $1 != compare ] || exit 0\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n");
+    EXPECT_EQ(blind.exitCode, 2) << blind.out << blind.err;
+    EXPECT_NE(blind.err.find("with itself and says nothing\n"), std::string::npos) << blind.err;
     EXPECT_FALSE(fs::exists(state + "/landed"));
     ASSERT_EQ(night(0).exitCode, 0);
     EXPECT_EQ(nightOf("exit 0\n").exitCode, 2);
