@@ -111,7 +111,7 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
         ->check(CLI::Range(1, 1'000'000'000))
         ->option_text("N");
     app->add_flag("--retry", options.triesAgain,
-                  "on resuming, retry crashes, timeouts and flaky cases, too");
+                  "on resuming, retry crashes, timeouts, flaky cases");
     app->add_flag("--quiet", options.isQuiet, "print failures only");
 }
 
