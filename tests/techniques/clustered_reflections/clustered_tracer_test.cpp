@@ -517,7 +517,9 @@ TEST_F(ClusteredTracerTest, OneByOneClustersShareBarriersAndSetUp) {
     };
     EXPECT_EQ(count(many, reflections::GlCall::Barrier), count(few, reflections::GlCall::Barrier));
     EXPECT_GT(count(few, reflections::GlCall::SetView), 0);
-    EXPECT_EQ(count(many, reflections::GlCall::SetView), count(few, reflections::GlCall::SetView));
+    // What a frame shares is told once; an image is told its own camera, which is no other's.
+    EXPECT_LE(count(many, reflections::GlCall::SetView) - count(few, reflections::GlCall::SetView),
+              more);
 }
 
 TEST_F(ClusteredTracerTest, AFrameChangesNoTextureParameter) {
