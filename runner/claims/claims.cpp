@@ -375,12 +375,12 @@ std::string claimSummaryLine(const std::vector<ClaimResult>& results) {
 
 std::string originSummaryLine(const std::vector<ClaimResult>& results) {
     using Origin = ClaimSpec::Origin;
-    struct Group {
+    struct CountedGroup {
         Origin origin;
         bool isCounted;
         const char* name;
     };
-    static constexpr Group kGroups[] = {
+    static constexpr CountedGroup kGroups[] = {
         {Origin::Document, true, "of the documents' own claims"},
         {Origin::Document, false, "of these on part of their rows, or said twice"},
         {Origin::Existence, false, "that can hardly fail"},
@@ -389,7 +389,7 @@ std::string originSummaryLine(const std::vector<ClaimResult>& results) {
         {Origin::Definition, false, "definitions"},
         {Origin::Calibrated, false, "calibrated inputs"}};
     std::vector<std::string> parts;
-    for (const Group& group : kGroups) {
+    for (const CountedGroup& group : kGroups) {
         std::vector<ClaimResult> alike;
         std::ranges::copy_if(results, std::back_inserter(alike), [&](const ClaimResult& result) {
             return result.origin == group.origin && result.isCounted() == group.isCounted;

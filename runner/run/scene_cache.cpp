@@ -93,13 +93,14 @@ class SceneBytes {
         }
     }
     void take(scene::Scene& scene) {
-        auto& [name, origin, meshes, materials, textures, instances, points, heights, cameras,
-               paths, lights, motions, warnings] = scene;
+        auto& [name, origin, meshes, materials, textures, samplings, instances, points, heights,
+               cameras, paths, lights, motions, warnings, offset, filesBeside] = scene;
         GFXREPRO_ASSERT(!heights);  // they have files of their own
+        GFXREPRO_ASSERT(filesBeside.empty());
         auto& [kind, description, sha256] = origin;
         auto& [positions, normals, radii, colors] = points;
-        all(name, kind, description, sha256, meshes, materials, textures, instances, positions,
-            normals, radii, colors, cameras, paths, lights, motions, warnings);
+        all(name, kind, description, sha256, meshes, materials, textures, samplings, instances,
+            positions, normals, radii, colors, cameras, paths, lights, motions, warnings, offset);
     }
     void take(scene::Mesh& mesh) {
         auto& [name, positions, normals, texcoords, colors, triangles, material] = mesh;
