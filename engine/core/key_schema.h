@@ -44,7 +44,7 @@ struct SchemaSection {
 
 /// A kind of file and its sections, the top of the file first.
 struct SchemaFile {
-    std::string name;  // "experiment", "scene", "expectations", "documents"
+    std::string name;  // "experiment", "scene", "documents"
     std::string doc;
     std::vector<SchemaSection> sections;
 

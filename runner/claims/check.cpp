@@ -19,13 +19,15 @@ bool isReadable(const ClaimSpec& claim, const tables::Table& table) {
     try {
         const ClaimReader reader(claim, table);
         return true;
+    } catch (const ExpressionError&) {
+        throw;
     } catch (const Error&) {
         return false;
     }
 }
 
 /// Why no measurement could judge the claim; empty where one could, and where it does not fit the
-/// table, of which an override or a profile may have taken a part.
+/// table, of which an override or a profile may have taken a part. Throws ExpressionError.
 std::string whyNeverJudged(const ClaimSpec& claim, const tables::Table& table) {
     for (const auto& [axis, wanted] : claim.at) {
         if (wanted.empty()) return fmt::format("has an empty list of '{}' in 'at'", axis);
@@ -37,6 +39,8 @@ std::string whyNeverJudged(const ClaimSpec& claim, const tables::Table& table) {
             return fmt::format("needs numbers along '{}', which holds '{}'", *claim.over, *word);
         }
         return reader.isOverItself() ? fmt::format("holds '{}' against itself", *claim.over) : "";
+    } catch (const ExpressionError&) {
+        throw;
     } catch (const Error&) {
         return "";
     }

@@ -40,8 +40,15 @@ Operand::Operand(const std::string& text, const tables::Table& table, const Sour
         parser_.SetExpr(expression);
         parser_.Eval();
     } catch (const mu::Parser::exception_type& error) {
-        throw Error(where,
-                    fmt::format("{}: '{}' is no expression: {}", owner, whole, error.GetMsg()));
+        std::string message = error.GetMsg();
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            const std::string variable = fmt::format("\"v{}\"", i);
+            const std::size_t at = message.find(variable);
+            if (at == message.npos) continue;
+            message.replace(at, variable.size(), '"' + labels[columns_[i]] + '"');
+        }
+        throw ExpressionError(where,
+                              fmt::format("{}: '{}' is no expression: {}", owner, whole, message));
     }
 }
 
@@ -91,6 +98,12 @@ ClaimReader::ClaimReader(const ClaimSpec& claim, const tables::Table& table)
     const std::string owner = "claim '" + claim.id + "'";
     for (const std::string& operand : claim.operands) {
         operands_.emplace_back(operand, table, claim.location, owner);
+    }
+    if (std::ranges::all_of(operands_, [](const Operand& o) { return o.columns().empty(); })) {
+        throw ExpressionError(claim.location,
+                              fmt::format("{}: '{}' reads no column; axes are compared as "
+                                          "[axis=a, axis=b]",
+                                          owner, joined(claim.operands, "', '")));
     }
     for (const auto& [axis, values] : claim.at) rowAxis(axis, "at");
     if (!claim.over) return;

@@ -31,11 +31,17 @@ class AbsentColumnError : public Error {
     std::string text_;
 };
 
+/// What no table makes readable: bad syntax, or a claim that reads no column.
+class ExpressionError : public Error {
+  public:
+    using Error::Error;
+};
+
 /// The arithmetic of claims: an expression over the columns of a table ("rasterization_ms +
 /// draw_ms").
 class Operand {
   public:
-    /// Columns are written as operandPieces() reads them. Throws Error at `where`, its
+    /// Columns are written as operandPieces() reads them. Throws ExpressionError at `where`, its
     /// message begun with `owner`, for bad syntax, and AbsentColumnError for a name that is no
     /// column, or may be one.
     Operand(const std::string& text, const tables::Table& table, const SourceLocation& where,
@@ -71,7 +77,8 @@ bool isCalibrated(const tables::Cell& cell);
 class ClaimReader {
   public:
     /// `table` is that of tableFor(). Throws Error with the claim's place for operands and axes
-    /// that it does not have. The claim and the table must outlive the reader.
+    /// that it does not have, and ExpressionError for operands that are none, or read no column.
+    /// The claim and the table must outlive the reader.
     ClaimReader(const ClaimSpec& claim, const tables::Table& table);
 
     /// The rows that `at` leaves, parted into the groups that the claim is judged in.

@@ -11,6 +11,7 @@
 #include "runner/cli/help.h"
 #include "runner/config/external_program.h"
 #include "runner/config/schema.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::cli {
 
@@ -166,7 +167,14 @@ void describeExperiment(const Context& context, const config::Experiment& experi
     say("file       {}\n", experiment.file.string());
     const bool isPrinted = experiment.technique.empty();
     say("technique  {}\n", isPrinted ? "none, only printed" : experiment.technique);
-    say("cases      {}\n", config::expandCases(experiment).size());
+    const std::vector<config::Case> cases = config::expandCases(experiment);
+    say("cases      {}\n", cases.size());
+    // What claims and curves may name.
+    const tables::Table table = tables::buildTable(experiment, cases, {});
+    std::vector<std::string> columns;
+    for (const tables::TableColumn& column : table.columns) columns.push_back(column.label);
+    say("rows       {}\n", joined(table.rowAxes));
+    say("columns    {}\n", joined(columns));
     for (const auto& [scene, params] : experiment.paramsByScene.entries()) {
         say("of scene   {}: {}\n", scene, params.toFlowText());
     }

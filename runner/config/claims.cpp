@@ -234,8 +234,9 @@ SchemaSection common() {
         "claim",
         "claims.ID.",
         "Every claim has these, and exactly one of the keys in the tables below with what "
-        "belongs to it; a, b and c are expressions over columns. Where columns are numbers, a "
-        "number alone is a column, and within an expression '8' in quotes is.",
+        "belongs to it; a, b and c are expressions over columns ('gfxrepro describe TABLE' lists "
+        "them), with min, max, sum, avg, abs, sqrt, ln, log2 and such. Where columns are numbers, "
+        "a number alone is a column, and within an expression '8' in quotes is.",
         {{"says", "line", "required", "the claim in the paper's sense", text()},
          {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
          {"across", "row axis", "none",

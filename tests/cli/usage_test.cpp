@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "runner/config/documents.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -150,6 +151,10 @@ TEST(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
 /// Two files that it extends have profiles of their own.
 TEST(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
     const TemporaryFolder folder;
+    EXPECT_THAT(
+        gfxrepro({"describe", "xie2017/10"}).out,
+        HasSubstr("\ncolumns    intensity_mean_non_redundant, intensity_mean_conventional, "))
+        << "which claims may name";
     const ProcessResult merged = gfxrepro({"describe", "xie2017/10", "--merged"});
     ASSERT_EQ(merged.exitCode, 0) << merged.err;
     EXPECT_EQ(merged.out.find("extends:"), std::string::npos);
@@ -196,10 +201,10 @@ TEST(Usage, EveryTableOfThePapersNeedsNoRealModel) {
     for (const char* profile : {"quick", "paper"}) {
         std::vector<std::string> arguments = {"check", "--assets", folder.path(), "--profile",
                                               profile};
-        for (const char* paper : {"xie2017", "zju2005", "zhang2012"}) {
-            for (const auto& config : std::filesystem::directory_iterator(
-                     std::filesystem::path(GFXREPRO_CONFIGS) / paper)) {
-                if (config.path().extension() == ".yaml") arguments.push_back(config.path());
+        const std::filesystem::path configs = GFXREPRO_CONFIGS;
+        for (const config::Document& document : config::readDocuments(configs / "documents.yaml")) {
+            for (const auto& file : std::filesystem::directory_iterator(configs / document.id)) {
+                if (file.path().extension() == ".yaml") arguments.push_back(file.path());
             }
         }
         ASSERT_GT(arguments.size(), 80U);

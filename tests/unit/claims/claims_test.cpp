@@ -962,6 +962,27 @@ TEST(Claims, BadOperandsAreErrors) {
               "axes: n)");
 }
 
+TEST(Claims, WhatIsNoExpressionOrReadsNoColumnIsRefusedBeforeAnythingIsMeasured) {
+    config::Experiment experiment = tables::experimentFrom(powersBody("bound: a, at_most: 5"));
+    const tables::Table table = tables::buildTable(experiment, {});
+    experiment.claims[0].location = {"t.yaml", 4, 2};
+    const auto refused = [&](const std::string& operand) {
+        experiment.claims[0].operands[0] = operand;
+        return errorText([&] { requireJudgeable(experiment, table); });
+    };
+    for (const char* operand : {"a +", "(a", "a b", "foo(a)"}) {
+        EXPECT_THAT(refused(operand),
+                    testing::StartsWith(
+                        fmt::format("t.yaml:4:2: claim 'X': '{}' is no expression: ", operand)));
+    }
+    EXPECT_THAT(refused("a b"), testing::HasSubstr("\"b\"")) << "by its name, not the parser's";
+    EXPECT_EQ(refused("1 + 1"),
+              "t.yaml:4:2: claim 'X': '1 + 1' reads no column; axes are compared as [axis=a, "
+              "axis=b]");
+    EXPECT_EQ(refused("max(a, b)"), "no error");
+    EXPECT_EQ(refused("a + time"), "no error") << "a profile may have taken it away";
+}
+
 TEST(Claims, ANumberThatIsAColumnIsNoNumber) {
     const auto table = [](const char* sizes) {
         return std::string("sweep: {size: ") + sizes +
