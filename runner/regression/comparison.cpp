@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -61,8 +62,11 @@ Difference compareValues(const SeriesKey& key, const Series& before, const Serie
 Difference missing(const SeriesKey& key, const Series& values, bool isBefore) {
     const Series own = key.isTime() ? standing(values) : values;
     if (own.empty()) {
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
         return {
             .key = key,
+            .before = kNone,
+            .after = kNone,
             .verdict = Verdict::Missing,
             .reason = isBefore ? "void before, not there after" : "void after, not there before"};
     }

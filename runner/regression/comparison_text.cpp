@@ -1,6 +1,7 @@
 // A comparison for people and for other tools: Markdown, JUnit, JSON.
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -49,16 +50,13 @@ std::string evidenceLinks(const Difference& difference) {
     return fmt::format(" ({})", links);
 }
 
-/// Empty on a side that has no number: it was lost, is new, or is how a case ended.
+/// Empty on a side that has no number: it was lost, is new or void, or is how a case ended.
 std::string valueText(const Difference& difference, bool isAfter) {
-    const bool isNew = difference.reason.starts_with("measured after only");
-    const bool isAbsent = difference.key.metric == "status" ||
-                          (difference.verdict == Verdict::Missing && !(isAfter && isNew)) ||
-                          (difference.verdict == Verdict::Lost && isAfter);
-    if (isAbsent) return "";
-    return isAfter ? fmt::format("{:.4g} {}", difference.after,
-                                 report::escapeMarkdown(difference.key.unit))
-                   : fmt::format("{:.4g}", difference.before);
+    const double value = isAfter ? difference.after : difference.before;
+    const bool isAbsent = difference.verdict == (isAfter ? Verdict::Lost : Verdict::Missing);
+    if (isAbsent || difference.key.metric == "status" || std::isnan(value)) return "";
+    const std::string unit = isAfter ? ' ' + report::escapeMarkdown(difference.key.unit) : "";
+    return fmt::format("{:.4g}{}", value, unit);
 }
 
 std::string markdownRow(const Difference& difference, const std::string& name) {
@@ -162,7 +160,7 @@ std::string smallerIsBetterJson(const std::vector<Difference>& differences) {
                  {"value", difference.picture->flip},
                  {"range", fmt::format("largest difference {:.3g}", difference.picture->largest)}});
         }
-        if (!difference.key.isTime() || difference.after <= 0.0) continue;
+        if (!difference.key.isTime() || !(difference.after > 0.0)) continue;
         entries.push_back(
             {{"name", fmt::format("{} {}", difference.key.title(), difference.key.params)},
              {"unit", difference.key.unit},
