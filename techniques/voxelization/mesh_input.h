@@ -116,14 +116,12 @@ enum class Method {
 };
 
 enum class Split { Once, EveryFrame };
-enum class OpenMesh { Refuse, Report };
 
 struct MeshVoxelizerSettings {
     GridSettings grid;
     Method method = Method::Worksheet;
     Rule rule = Rule::Rasterized;
     Split split = Split::Once;
-    OpenMesh openMesh = OpenMesh::Report;
     Merging merging = Merging::Transposed;
     Addressing addressing = Addressing::Instructions;
     FillRule fillRule = FillRule::Crossings;

@@ -55,10 +55,6 @@ constexpr Choice<Split> kSplits[] = {
     {Split::Once, "once", "a static model: split at set-up"},
     {Split::EveryFrame, "every_frame", "a deforming model: split and uploaded every frame"},
 };
-constexpr Choice<OpenMesh> kOpenMeshes[] = {
-    {OpenMesh::Refuse, "refuse", "an error with the number of ambiguous scan lines"},
-    {OpenMesh::Report, "report", "filled by the majority of three axes, and counted"},
-};
 constexpr Choice<Merging> kMergings[] = {
     {Merging::PerVoxel, "per_voxel", "a fetch per voxel, as the thesis"},
     {Merging::Transposed, "transposed", "tiles of voxels, a fetch per texel"},
@@ -124,12 +120,6 @@ void checkSolid(const Params& params, const MeshVoxelizerSettings& settings) {
                         : "'fill_rule: surface_voxels' flips at rasterized voxels; leave "
                           "'rule' out or give 'rasterized'");
     }
-    if (!isByCrossings && settings.openMesh == OpenMesh::Refuse) {
-        throw Error(
-            params.locationOf("open_mesh"),
-            "'open_mesh: refuse' needs 'fill_rule: crossings'; flags that flip at voxels end "
-            "inside closed meshes, too");
-    }
     if (settings.method != Method::Worksheet) {
         throw Error(params.locationOf("method"), "'fill: solid' needs 'method: worksheet'");
     }
@@ -188,8 +178,6 @@ MeshVoxelizerSettings readVoxelizer(Params& params) {
                                    {"which voxels a triangle fills (surface)"});
     settings.split =
         params.getEnum("split", Split::Once, kSplits, {"when the index buffer is split by axis"});
-    settings.openMesh = params.getEnum("open_mesh", OpenMesh::Report, kOpenMeshes,
-                                       {"solids of meshes that are not closed"});
     if (settings.grid.value != VoxelValue::Occupancy && voxelBits == 1) {
         throw Error(params.locationOf("value"),
                     "a voxel of 1 bit says occupancy only; allowed with 'value: normal' and "
@@ -215,7 +203,6 @@ struct VoxelizationParams {
     bool readsBack = false;
     bool comparesWithReference = false;
     bool exportsBinvox = false;
-    bool showsSlices = false;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
     explicit VoxelizationParams(Params& params)
@@ -232,8 +219,7 @@ struct VoxelizationParams {
           comparesWithReference(params.getBool("compare", false,
                                                {"count what the rule misses, against the CPU "
                                                 "references of thin and conservative"})),
-          exportsBinvox(params.getBool("export_binvox", false, {"write grid.binvox"})),
-          showsSlices(params.getBool("show_slices", false, {"save the three middle slices"})) {
+          exportsBinvox(params.getBool("export_binvox", false, {"write grid.binvox"})) {
         checkInput(params);
     }
 
@@ -248,10 +234,9 @@ struct VoxelizationParams {
             }
             return;
         }
-        params.refuseGiven(
-            {"addressing", "collision", "compare", "csg", "fill_rule", "method", "offset_b",
-             "open_mesh", "padding", "rule", "scene_b", "split", "synthesis"},
-            "'input: mesh'");
+        params.refuseGiven({"addressing", "collision", "compare", "csg", "fill_rule", "method",
+                            "offset_b", "padding", "rule", "scene_b", "split", "synthesis"},
+                           "'input: mesh'");
         if (drawing.draw.mode == DrawMode::Mixed) {
             throw Error(params.locationOf("draw"), "'draw: mixed' needs 'input: mesh'");
         }
@@ -284,20 +269,6 @@ double digestOf(std::span<const std::uint32_t> words) {
     std::uint64_t hash = 0xCBF29CE484222325ULL;
     for (std::uint32_t word : words) hash = (hash ^ word) * 0x100000001B3ULL;
     return static_cast<double>((hash ^ (hash >> 48)) & 0xFFFFFFFFFFFFULL);
-}
-
-/// The middle slices across z, y and x side by side, voxels that are full white.
-image::ImageF middleSlices(const DenseGrid& grid) {
-    const int n = grid.resolution();
-    image::ImageF image(3 * n, n, 1);
-    for (int b = 0; b < n; ++b) {
-        for (int a = 0; a < n; ++a) {
-            image.at(a, n - 1 - b) = grid.isFull({a, b, n / 2}) ? 1.0F : 0.0F;
-            image.at(n + a, n - 1 - b) = grid.isFull({a, n / 2, b}) ? 1.0F : 0.0F;
-            image.at(2 * n + a, n - 1 - b) = grid.isFull({n / 2, b, a}) ? 1.0F : 0.0F;
-        }
-    }
-    return image;
 }
 
 class Voxelization final : public technique::Technique {
@@ -406,7 +377,6 @@ class Voxelization final : public technique::Technique {
         recorder.metric("digest", digestOf(grid.words()), "1");
         if (params_.comparesWithReference) recordMisses(recorder, grid);
         if (params_.exportsBinvox) writeBinvox(recorder.artifact("grid.binvox"), grid, box_);
-        if (params_.showsSlices) recorder.image("slices", middleSlices(grid));
     }
 
     /// `stray_voxels` (fill_rule: surface_voxels) neither lie inside nor touch the surface.

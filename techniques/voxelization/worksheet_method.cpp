@@ -329,7 +329,6 @@ class WorksheetMethod : public MeshMethod {
           texelization_(context.shaders, request, rasterization_.fragments()),
           synthesis_(context.shaders, request),
           sheets_(request),
-          openMesh_(request.settings.openMesh),
           takesMajority_(request.fillsByCrossings()) {
         if (request.settings.addressing == Addressing::Tables) tables_.emplace(request.layout());
         if (request.isSolid()) solidFill_.emplace(context.shaders, request);
@@ -361,13 +360,6 @@ class WorksheetMethod : public MeshMethod {
         recorder.metric("fragments", static_cast<double>(fragments), "fragment");
         if (!solidFill_) return;
         const SolidStatistics found = statistics_.read<SolidStatistics>(1).front();
-        if (openMesh_ == OpenMesh::Refuse && found.ambiguousScanLines > 0) {
-            const int n = sheets_.grid.layout.resolution();
-            throw Error(
-                fmt::format("the mesh is not closed: {} of {} scan lines end inside; "
-                            "'open_mesh: report' fills what two of three axes agree on",
-                            found.ambiguousScanLines, 3 * n * n));
-        }
         recorder.metric("ambiguous_scan_lines", found.ambiguousScanLines, "scan line");
         if (takesMajority_) {
             recorder.metric("disagreeing_voxels", found.disagreeingVoxels, "voxel");
@@ -388,7 +380,6 @@ class WorksheetMethod : public MeshMethod {
     Synthesis synthesis_;
     DirectionalSheets sheets_;
     gl::Buffer statistics_ = gl::Buffer(sizeof(SolidStatistics));
-    OpenMesh openMesh_;
     bool takesMajority_;
 };
 

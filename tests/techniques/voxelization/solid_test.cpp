@@ -183,16 +183,5 @@ TEST_F(SolidTest, ReportsOpenMeshes) {
     EXPECT_EQ(result.grid.countFull(), 27'000U);
 }
 
-TEST_F(SolidTest, RefusesOpenMeshes) {
-    auto s = solid(32);
-    s.openMesh = OpenMesh::Refuse;
-    EXPECT_EQ(test::errorText([&] { voxelize(openCube(), s); }),
-              "the mesh is not closed: 900 of 3072 scan lines end inside; 'open_mesh: report' "
-              "fills what two of three axes agree on");
-    EXPECT_EQ(voxelize(shapes::cube(glm::vec3(0.0F), glm::vec3(1.0F)), s)
-                  .metrics.at("ambiguous_scan_lines"),
-              0.0);
-}
-
 }  // namespace
 }  // namespace gfxrepro::voxelization

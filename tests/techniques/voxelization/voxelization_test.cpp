@@ -68,10 +68,6 @@ TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
         message("{fill: solid, fill_rule: surface_voxels, rule: thin}"),
         "case.yaml:1:48: 'fill_rule: surface_voxels' flips at rasterized voxels; leave 'rule' "
         "out or give 'rasterized'");
-    EXPECT_EQ(
-        message("{fill: solid, fill_rule: surface_voxels, open_mesh: refuse}"),
-        "case.yaml:1:53: 'open_mesh: refuse' needs 'fill_rule: crossings'; flags that flip at "
-        "voxels end inside closed meshes, too");
     EXPECT_EQ(message("{fill: solid, fill_rule: surface_voxels}"), "no error");
     EXPECT_EQ(message("{fill: solid, method: direct}"),
               "case.yaml:1:23: 'fill: solid' needs 'method: worksheet'");
