@@ -8,12 +8,12 @@
 namespace gfxrepro::shadow_mapping {
 namespace {
 
-bool looksUpInVertices(const std::vector<LightKind>& kinds, const Bias& bias) {
-    // A cube's face, and an offset along a triangle's normal, differ from fragment to fragment.
+bool looksUpInVertices(const std::vector<LightKind>& kinds) {
+    // A cube's face differs from fragment to fragment.
     for (const LightKind kind : kinds) {
         if (kind == LightKind::Point) return false;
     }
-    return !kinds.empty() && bias.normalOffsetTexels == 0.0F;
+    return !kinds.empty();
 }
 
 glm::vec4 placeOf(const Light& light) {
@@ -72,7 +72,7 @@ const gl::Pass& ShadedView::passFor(const Variant& variant) {
     defines["LIGHT_COUNT"] = static_cast<int>(variant.kinds.size());
     defines["VIEW_COUNT"] = viewCount;
     defines["POINT_LIGHTS"] = pointLights;
-    defines["LOOKUP_IN_VERTEX"] = looksUpInVertices(variant.kinds, settings_.bias) ? 1 : 0;
+    defines["LOOKUP_IN_VERTEX"] = looksUpInVertices(variant.kinds) ? 1 : 0;
     defines["COMPARES_IN_SHADER"] = step_.comparisons > 0 ? 1 : 0;
     defines["KERNEL"] = kernelSizeOf(settings_.filter);
     defines["FILTER"] = static_cast<int>(settings_.filter);
@@ -101,7 +101,6 @@ gl::Resources ShadedView::setUp(const gl::Pass& pass, const ShadowMapRenderer& m
     pass.setIfActive("specular", lighting_.specular);
     pass.setIfActive("shininess", lighting_.shininess);
     pass.setIfActive("epsilon", settings_.bias.constant);
-    pass.setIfActive("normalOffsetTexels", settings_.bias.normalOffsetTexels);
     gl::Resources lookups{};
     std::size_t firstView = 0;
     for (std::size_t i = 0; i < maps.maps().size(); ++i) {

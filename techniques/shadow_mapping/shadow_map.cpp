@@ -25,19 +25,15 @@ void check(const ShadowMapSettings& settings) {
         throw Error(fmt::format("a shadow map of {} pixels: 1 to {}", settings.sizePx, kLargestPx));
     }
     const Bias& bias = settings.bias;
-    for (const float value : {bias.constant, bias.slopeScale, bias.normalOffsetTexels}) {
+    for (const float value : {bias.constant, bias.slopeScale}) {
         if (!(value >= 0.0F && std::isfinite(value))) {
             throw Error(fmt::format("a shadow bias of {}: 0 or more, finite", value));
         }
     }
-    if (settings.filter != Filter::Variance) return;
-    if (settings.storage == Storage::Hardware) {
+    if (settings.filter == Filter::Variance && settings.storage == Storage::Hardware) {
         throw Error(
             "variance shadow maps hold moments, which a depth texture cannot: their storage "
             "is standard");
-    }
-    if (settings.blurTexels < 1 || settings.blurTexels % 2 == 0) {
-        throw Error(fmt::format("a blur over {} texels: an odd number", settings.blurTexels));
     }
 }
 
@@ -74,7 +70,7 @@ StepDeclaration shadingStep(const ShadowMapSettings& settings) {
 }  // namespace
 
 int kernelSizeOf(Filter filter) {
-    static constexpr int kSizes[] = {1, 2, 3, 5, 7, 7, 1};
+    static constexpr int kSizes[] = {1, 2, kFilterTexels, 7, 1};
     return kSizes[static_cast<std::size_t>(filter)];
 }
 
@@ -87,7 +83,7 @@ std::vector<StepDeclaration> declaredSteps(const ShadowMapSettings& settings) {
                              .target = "RG32F",
                              .colourWrites = true,
                              .fragmentWork = true,
-                             .fetches = settings.blurTexels});
+                             .fetches = kFilterTexels});
         }
     }
     steps.push_back(shadingStep(settings));
@@ -143,7 +139,7 @@ ShadowMapRenderer::ShadowMapRenderer(const gl::ShaderLibrary& shaders,
         blur_.emplace(shaders,
                       std::vector<std::string>{"kit/whole_image.vert.glsl",
                                                "shadow_mapping/blur_moments.frag.glsl"},
-                      gl::Defines{{"FETCHES", settings.blurTexels}});
+                      gl::Defines{{"FETCHES", kFilterTexels}});
     }
 }
 

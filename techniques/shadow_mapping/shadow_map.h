@@ -27,18 +27,18 @@ enum class DepthFormat { Unorm16, Unorm24, Float32 };
 enum class Filter {
     Nearest,
     Bilinear,  // Standard: four comparisons in the shader; Hardware: one filtered fetch
-    Pcf3,      // the mean of n × n comparisons of texels
-    Pcf5,
-    Pcf7,
+    Pcf,       // the mean of kFilterTexels² comparisons
     Pcss,      // [Fernando 2005], percentage-closer soft shadows
     Variance,  // [Donnelly and Lauritzen 2006]
 };
 
+/// Side of the square of texels that Pcf compares and Variance is blurred over: ours.
+constexpr int kFilterTexels = 5;
+
 /// What hides the difference between a surface and its own texels in the map.
 struct Bias {
-    float constant = 0.0F;            // ε of [zju2005] Sec. 4.3, in window z (0 … 1)
-    float slopeScale = 0.0F;          // times the caster's steepest change of window z a texel
-    float normalOffsetTexels = 0.0F;  // the receiver is moved along its normal
+    float constant = 0.0F;    // ε of [zju2005] Sec. 4.3, in window z (0 … 1)
+    float slopeScale = 0.0F;  // times the caster's steepest change of window z a texel
 };
 
 struct ShadowMapSettings {
@@ -47,7 +47,6 @@ struct ShadowMapSettings {
     int sizePx = 1024;                          // of a view; a point light's map is 3 × 2 of them
     DepthFormat format = DepthFormat::Unorm24;  // of the depth test; Hardware: of the map
     Bias bias = {};
-    int blurTexels = 5;  // Variance: odd
 };
 
 /// One step of a method. Fetches and comparisons are those of one light and fragment, in the
@@ -65,8 +64,8 @@ struct StepDeclaration {
 };
 
 /// The steps in order; the first draws the map, the last shades. Throws Error for settings that
-/// contradict each other: Variance in Hardware storage, an even blur, sizes below 1, bias values
-/// that are negative or not finite.
+/// contradict each other: Variance in Hardware storage, sizes below 1, bias values that are
+/// negative or not finite.
 std::vector<StepDeclaration> declaredSteps(const ShadowMapSettings& settings);
 
 /// Masks of colour and depth writes as declared; the depth test is on where depth is written.

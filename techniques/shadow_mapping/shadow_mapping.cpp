@@ -24,6 +24,9 @@ enum class LightPlace {
     Scene,  // the scene's own lights
 };
 
+/// An error so near a true edge, and half the filter, is the edge's: ours, in texels of the map.
+constexpr float kEdgeTexels = 1.5F;
+
 struct ShadowMappingParams {
     ShadowMapSettings maps;
     LightKind lightKind = LightKind::Spot;
@@ -35,7 +38,6 @@ struct ShadowMappingParams {
     float lightSize = 0.0F;  // diameter, in the box's diagonals
     bool isStatic = false;
     bool measuresErrors = false;
-    float edgeTexels = 1.5F;
     bool comparesMethods = false;
     bool drawsYardstick = false;
     bool showsPictures = false;
@@ -43,7 +45,7 @@ struct ShadowMappingParams {
     /// Declares the parameters. Throws Error for combinations that mean nothing.
     explicit ShadowMappingParams(Params& params);
 
-    /// How near a true edge an error counts as one of the edge: edgeTexels and half the filter.
+    /// How near a true edge an error counts as one of the edge: kEdgeTexels and half the filter.
     float edgeReachTexels() const;
 };
 
@@ -51,11 +53,10 @@ constexpr Choice<Storage> kMethods[] = {
     {Storage::Standard, "standard", "depths in a float colour texture, compared in the shader"},
     {Storage::Hardware, "hardware", "a depth texture, compared by the texture unit"},
 };
-/// Pcf5 stands for percentage-closer filtering of any size.
 constexpr Choice<Filter> kFilters[] = {
     {Filter::Nearest, "nearest", "one comparison"},
     {Filter::Bilinear, "bilinear", "four comparisons, weighted"},
-    {Filter::Pcf5, "pcf", "the mean of filter_size² comparisons"},
+    {Filter::Pcf, "pcf", "the mean of 5 × 5 comparisons"},
     {Filter::Pcss, "pcss", "percentage-closer soft shadows"},
     {Filter::Variance, "variance", "variance shadow maps, blurred"},
 };
@@ -94,11 +95,8 @@ void readLights(Params& params, ShadowMappingParams& p) {
                          {"diameter of the lights, for pcss", "diagonals", 0.0, 10.0});
 }
 
-void refuseUnread(const Params& params, Filter filter, const ShadowMappingParams& p) {
-    if (filter != Filter::Pcf5 && filter != Filter::Variance) {
-        params.refuseGiven({"filter_size"}, "'filter: pcf' or 'filter: variance'");
-    }
-    if (filter != Filter::Pcss) params.refuseGiven({"light_size"}, "'filter: pcss'");
+void refuseUnread(const Params& params, const ShadowMappingParams& p) {
+    if (p.maps.filter != Filter::Pcss) params.refuseGiven({"light_size"}, "'filter: pcss'");
     if (p.lightPlace == LightPlace::Scene) {
         params.refuseGiven({"light_distance", "light_azimuth_deg", "light_elevation_deg"},
                            "'light_place: orbit'");
@@ -107,8 +105,7 @@ void refuseUnread(const Params& params, Filter filter, const ShadowMappingParams
         params.refuseGiven({"light_distance"}, "'light_kind: spot' or 'light_kind: point'");
     }
     if (p.isStatic) params.refuseGiven({"yardstick"}, "'static: false'");
-    if (!p.measuresErrors) params.refuseGiven({"edge_texels"}, "'errors: true'");
-    if (filter == Filter::Variance) {
+    if (p.maps.filter == Filter::Variance) {
         if (p.maps.storage == Storage::Hardware) {
             throw Error(params.locationOf("filter"),
                         "'filter: variance' needs 'method: standard': moments are colours");
@@ -120,18 +117,8 @@ void refuseUnread(const Params& params, Filter filter, const ShadowMappingParams
 ShadowMappingParams::ShadowMappingParams(Params& params) {
     maps.storage =
         params.getEnum("method", Storage::Hardware, kMethods, {"how depths are compared"});
-    const Filter filter =
+    maps.filter =
         params.getEnum("filter", Filter::Nearest, kFilters, {"how comparisons are filtered"});
-    const int filterSize = params.getInt(
-        "filter_size", 5, {"side of the square of texels; 3, 5 or 7", "texels", 3, 7});
-    if (filterSize % 2 == 0) {
-        throw Error(params.locationOf("filter_size"),
-                    "filter_size: " + std::to_string(filterSize) + " is even; allowed: 3, 5 or 7");
-    }
-    maps.filter = filter;
-    if (filter == Filter::Pcf5 && filterSize == 3) maps.filter = Filter::Pcf3;
-    if (filter == Filter::Pcf5 && filterSize == 7) maps.filter = Filter::Pcf7;
-    maps.blurTexels = filterSize;
     maps.sizePx =
         params.getInt("shadow_map_size", 1024,
                       {"side of a shadow map; a point light has six of them", "pixels", 16, 16384});
@@ -144,15 +131,9 @@ ShadowMappingParams::ShadowMappingParams(Params& params) {
         params, "slope_bias", 1.0,
         {"how many times the caster's change of depth from texel to texel is added to the bias",
          "1", 0.0, 100.0});
-    maps.bias.normalOffsetTexels =
-        number(params, "normal_bias", 0.0,
-               {"how far the receiver is moved along its normal", "texels", 0.0, 100.0});
     readLights(params, *this);
     isStatic = params.getBool("static", false, {"the maps are drawn once and used again"});
     measuresErrors = params.getBool("errors", false, {"compares with shadow rays"});
-    edgeTexels = number(
-        params, "edge_texels", 1.5,
-        {"an error so near a true edge, and half the filter, is the edge's", "texels", 0.0, 100.0});
     comparesMethods =
         params.getBool("compare_methods", false, {"compares with the other method's shadows"});
     drawsYardstick =
@@ -160,12 +141,12 @@ ShadowMappingParams::ShadowMappingParams(Params& params) {
                        {"draws the maps again, depth alone and without a bias: yardstick_pass"});
     showsPictures = params.getBool("pictures", false, {"the image, the truth, classes of errors"});
     params.finish();
-    refuseUnread(params, filter, *this);
+    refuseUnread(params, *this);
 }
 
 float ShadowMappingParams::edgeReachTexels() const {
-    const int size = maps.filter == Filter::Variance ? maps.blurTexels : kernelSizeOf(maps.filter);
-    return edgeTexels + 0.5F * static_cast<float>(size - 1);
+    const int size = maps.filter == Filter::Variance ? kFilterTexels : kernelSizeOf(maps.filter);
+    return kEdgeTexels + 0.5F * static_cast<float>(size - 1);
 }
 
 /// Lights of several get their share of the brightness.
@@ -440,7 +421,7 @@ config::Outputs outputs() {
              "share of the compared points that are lit although a caster hides the light",
              Better::Lower},
             {"edge_pct", "%",
-             "share of the compared points that are wrong within edge_texels of the shadow's edge",
+             "share of the compared points that are wrong within 1.5 texels of the shadow's edge",
              Better::Lower},
             {"compared_points", "pixel", "points that were compared, of all lights"},
             {"methods_differ_pct", "%",

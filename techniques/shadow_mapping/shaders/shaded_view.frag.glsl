@@ -36,7 +36,6 @@ uniform float epsilon;
 in vec4 lookup[VIEW_COUNT];
 #else
 uniform mat4 lookupFromWorld[VIEW_COUNT];
-uniform float normalOffsetTexels;
 #endif
 #endif
 
@@ -48,7 +47,7 @@ layout(location = 3) out vec4 geometricNormal;
 #endif
 
 #if LIGHT_COUNT > 0
-float termOf(int light, vec3 geometric) {
+float termOf(int light) {
     int i = firstViews[light];
 #if !LOOKUP_IN_VERTEX
     if ((POINT_LIGHTS >> light & 1) != 0) i += cubeFace(positionWorld - lightPlaces[light].xyz);
@@ -59,12 +58,6 @@ float termOf(int light, vec3 geometric) {
     vec4 T = lookup[i];
 #else
     vec4 T = lookupFromWorld[i] * vec4(positionWorld, 1.0);
-    // The offset's side is the light's: a surface seen from behind is moved away from the eye.
-    vec4 place = lightPlaces[light];
-    vec3 toLight = place.xyz - place.w * positionWorld;
-    float offset = normalOffsetTexels * view.texelPerDistance * T.w;
-    vec3 n = dot(geometric, toLight) < 0.0 ? -geometric : geometric;
-    T = lookupFromWorld[i] * vec4(positionWorld + n * offset, 1.0);
 #endif
     return shadowTerm(shadowMaps[light], T, view, epsilon);
 }
@@ -97,7 +90,7 @@ void main() {
     for (int light = 0; light < LIGHT_COUNT; ++light) {
         vec4 place = lightPlaces[light];
         vec3 l = normalize(place.xyz - place.w * positionWorld);
-        float term = termOf(light, own);
+        float term = termOf(light);
         terms[light] = term;
         float facing = max(dot(n, l), 0.0);
         float highlight = facing > 0.0 ? pow(max(dot(n, normalize(l + v)), 0.0), shininess) : 0.0;
