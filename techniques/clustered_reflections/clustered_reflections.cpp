@@ -41,6 +41,9 @@ constexpr Choice<ImageDrawing> kDrawings[] = {
     {ImageDrawing::None, "none",
      "nothing is drawn, clusters and their occlusion errors are counted"},
 };
+/// Of what the eye sees, for the rays of screen space that pass behind it: ours, in diagonals of
+/// the scene's box.
+constexpr float kThickness = 0.02F;
 constexpr Choice<March> kMarches[] = {
     {March::Linear, "linear", "a texel per step (algorithm 7)"},
     {March::Hierarchical, "hierarchical", "over a pyramid of nearest depths"},
@@ -146,9 +149,6 @@ ReflectionParams::ReflectionParams(Params& params)
         "reflector_parts", true,
         {"smooth parts of an object are reflectors of their own: foot and shell, in- and outside"});
     readTextureFilter(params);
-    thickness =
-        number(params, "thickness", 0.02,
-               {"of what the eye sees, for rays that pass behind it", "diagonals", 0.0, 10.0});
     measuresErrors = params.getBool("errors", true, {"compares with ray tracing by Embree"});
     errorsOf = params.getText("errors_of", "",
                               {"a reflector, by its mesh's name: occlusion errors of it alone"});
@@ -181,9 +181,6 @@ ReflectionParams::ReflectionParams(Params& params)
     }
     if (clustered.drawing != ImageDrawing::Visible) {
         params.refuseGiven({"level_error_px"}, "'depth_images: visible'");
-    }
-    if (method != Method::ScreenSpace) {
-        params.refuseGiven({"thickness"}, "'method: screen_space'");
     }
 }
 
@@ -367,7 +364,7 @@ class ClusteredReflections final : public technique::Technique {
                                                                         diagonalM);
             case Method::ScreenSpace:
                 return std::make_unique<reflections::ScreenSpaceTracer>(
-                    shaders, frame_->map, lobe, diagonalM, params_.thickness * diagonalM);
+                    shaders, frame_->map, lobe, diagonalM, kThickness * diagonalM);
             case Method::RayTraced:
                 return std::make_unique<reflections::GpuRayTracer>(shaders, frame_->objects,
                                                                    frame_->map, lobe, diagonalM);

@@ -20,7 +20,6 @@ enum class Method {
 struct ReflectionParams : reflections::FrameSettings {
     Method method = Method::Clustered;
     ClusteredSettings clustered;  // camera.diagonalM and camera.lobe are set up with the scene
-    float thickness = 0.02F;      // screen space: of what the eye sees, in diagonals of the box
     std::string errorsOf;         // name of the mesh whose samples' occlusion counts; empty: all
     int convergedRays = 0;        // of a second truth of glossy samples; 0: there is none
 

@@ -44,7 +44,6 @@ struct DepthSamplingParams {
     Earlier earlier = Earlier::Views;  // by visibility
     int views = 3;
     Placement placement = Placement::Fixed;
-    int candidates = 16;
     PeeledFrom peeledFrom = PeeledFrom::Centre;
     ViewTriangleSettings triangle;  // all but the aspect
     kit::TriangleIds triangleIds = kit::TriangleIds::PrimitiveId;
@@ -125,10 +124,7 @@ ViewTriangleSettings readTriangle(Params& params) {
 }
 
 void checkPlacement(const Params& params, const DepthSamplingParams& read) {
-    if (read.placement == Placement::Fixed) {
-        params.refuseGiven({"candidates"}, "'placement: automatic'");
-        return;
-    }
+    if (read.placement == Placement::Fixed) return;
     if (read.redundancy != Redundancy::Pixel) {
         refuse(params, "placement", "'placement: automatic' needs 'redundancy: pixel'");
     }
@@ -138,10 +134,6 @@ void checkPlacement(const Params& params, const DepthSamplingParams& read) {
     }
     if (read.views < 2) {
         refuse(params, "views", "'placement: automatic' needs 2 views or more; found 1");
-    }
-    if (read.candidates < read.views) {
-        refuse(params, "candidates",
-               fmt::format("{} candidates are fewer than {} views", read.candidates, read.views));
     }
 }
 
@@ -176,8 +168,6 @@ DepthSamplingParams::DepthSamplingParams(Params& params)
                            kit::kMaxEarlierImages + 1})),
       placement(params.getEnum("placement", Placement::Fixed, kPlacements,
                                {"where reference images are taken"})),
-      candidates(params.getInt("candidates", 16,
-                               {"views to choose from (automatic)", "views", 2, kMaxCandidates})),
       peeledFrom(params.getEnum("peeled_from", PeeledFrom::Centre, kPeeledFrom,
                                 {"the one view of depth_peeling"})),
       triangle(readTriangle(params)),
@@ -376,6 +366,8 @@ class DepthSampling final : public technique::Technique {
         if (params_.placement == Placement::Fixed) return referenceCameras(triangle, params_.views);
         // Every candidate is tried against every frame: fewer and smaller ones than are measured.
         constexpr int kFrames = 24;
+        constexpr int kCandidates = 16;  // views to choose from
+        static_assert(kCandidates > kit::kMaxEarlierImages, "as many as there may be views");
         constexpr int kLongestSidePx = 256;
         const glm::ivec2 size = context.outputSizePx;
         const int longestPx = std::max(size.x, size.y);
@@ -385,7 +377,7 @@ class DepthSampling final : public technique::Technique {
         const kit::DrawableScene drawable(*context.scene);
         kit::DepthImageRenderer renderer(context.shaders, params_.triangleIds, params_.depthFormat);
         NextView nextView(context.shaders, renderer, drawable,
-                          candidateCameras(triangle, params_.views, params_.candidates),
+                          candidateCameras(triangle, params_.views, kCandidates),
                           outputCameras(triangle, params_.views, kFrames), trialSize);
         std::vector<scene::Camera> cameras;
         std::vector<kit::DepthImage> images;

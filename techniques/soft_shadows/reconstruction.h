@@ -98,7 +98,7 @@ class Reconstructor {
 /// a storage block.
 gl::Buffer triangleNormals(const scene::Mesh& flattened, const gl::DeviceLimits& limits);
 
-/// The mesh in world space, read back: for PLY files and for simplification.
+/// The mesh in world space, read back: for simplification.
 scene::Mesh toWorldMesh(const ReconstructedMesh& mesh);
 
 }  // namespace gfxrepro::soft_shadows

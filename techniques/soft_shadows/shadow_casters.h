@@ -28,7 +28,6 @@ class ReconstructedCaster final : public ShadowCaster {
     ReconstructedCaster(const gl::ShaderLibrary& shaders, std::vector<ReconstructedMesh> meshes);
     void draw(const kit::View& lightView) const override;
     std::uint64_t triangleCount() const override;
-    const std::vector<ReconstructedMesh>& meshes() const { return meshes_; }
 
   private:
     std::vector<ReconstructedMesh> meshes_;

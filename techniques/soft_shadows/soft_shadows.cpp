@@ -6,7 +6,6 @@
 #include <glm/trigonometric.hpp>
 
 #include "engine/core/error.h"
-#include "engine/scene/load.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
 #include "techniques/kit/picture.h"
@@ -112,8 +111,7 @@ SoftShadowsParams::SoftShadowsParams(Params& params)
           "light_views", false,
           {"compares the casters with the geometry as seen from the light and from beside it"})),
       showsPictures(
-          params.getBool("pictures", false, {"shadows, errors, and what light_views compares"})),
-      exportsMesh(params.getBool("export_mesh", false, {"writes the meshes as PLY files"})) {
+          params.getBool("pictures", false, {"shadows, errors, and what light_views compares"})) {
     shadowMap.sizePx =
         // As a depth image: the bias of one texel covers a quad that stands a pixel before its
         // surface.
@@ -123,11 +121,10 @@ SoftShadowsParams::SoftShadowsParams(Params& params)
                {"how far a receiver is moved before the test", "texels", 0.0, 1000.0});
     params.finish();
     if (!reconstructs()) {
-        params.refuseGiven(
-            {"reference_images", "reference_size", "reconstruction", "discontinuity",
-             "grazing_limit", "merge_rows", "simplify_to", "simplification_error", "export_mesh"},
-            "a method that takes depth images: non_redundant, conventional or "
-            "depth_peeling");
+        params.refuseGiven({"reference_images", "reference_size", "reconstruction", "discontinuity",
+                            "grazing_limit", "merge_rows", "simplify_to", "simplification_error"},
+                           "a method that takes depth images: non_redundant, conventional or "
+                           "depth_peeling");
     }
     if (method != Method::NonRedundant) {
         params.refuseGiven({"redundancy"}, "'method: non_redundant'");
@@ -472,13 +469,6 @@ void SoftShadows::recordMeshes(technique::Recorder& recorder) const {
                     "%");
     if (params_.simplifyTo < 1.0F) {
         recorder.metric("simplification_error", simplificationErrorM_, "m");
-    }
-    if (!params_.exportsMesh) return;
-    const auto* caster = dynamic_cast<const ReconstructedCaster*>(caster_.get());
-    if (!caster) return;
-    for (std::size_t i = 0; i < caster->meshes().size(); ++i) {
-        scene::savePly(recorder.artifact(fmt::format("mesh_{}.ply", i)),
-                       scene::sceneOf(toWorldMesh(caster->meshes()[i])));
     }
 }
 

@@ -51,7 +51,6 @@ struct SoftShadowsParams {
     bool tracesTruth = false;
     bool seesFromLight = false;
     bool showsPictures = false;
-    bool exportsMesh = false;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
     explicit SoftShadowsParams(Params& params);

@@ -115,9 +115,6 @@ TerrainTessellationParams::TerrainTessellationParams(Params& params)
     render.cullsPatches = culling == Culling::TileAndPatch;
     maxTileErrorPx = static_cast<float>(params.getDouble(
         "tau", 1.0, {"τ: a tile with a smaller ρ is not divided", "pixels", 0.0, 1e6}));
-    finestRangeM = static_cast<float>(params.getDouble(
-        "finest_range", 0.0,
-        {"to where cdlod draws every sample; 0: to where a cell is delta_s wide", "m", 0.0, 1e9}));
     heights.format = params.getEnum("height_format", HeightFormat::Float32, kHeightFormats,
                                     {"of the tiles' height textures"});
     heights.budgetBytes = static_cast<std::size_t>(
@@ -162,11 +159,7 @@ TerrainTessellationParams::TerrainTessellationParams(Params& params)
     }
     if (method == Method::UniformGrid) params.refuseGiven({"tau", "delta_s"}, "another method");
     if (method == Method::Patches) params.refuseGiven({"delta_s"}, "another method");
-    if (method == Method::Cdlod) {
-        params.refuseGiven({"tau"}, "another method");
-    } else {
-        params.refuseGiven({"finest_range"}, "'method: cdlod'");
-    }
+    if (method == Method::Cdlod) params.refuseGiven({"tau"}, "another method");
     if (!measuresErrors && !showsPictures) {
         params.refuseGiven({"supersampling"}, "'errors: true' or 'pictures: true'");
     }
@@ -386,9 +379,7 @@ MorphRanges TerrainTessellation::morphRanges() const {
         metadata_->spacingM() * static_cast<float>(params_.metadata.blockSegments *
                                                    params_.render.factors.tile.blocksPerTile());
     const float wantedM =
-        params_.finestRangeM > 0.0F
-            ? params_.finestRangeM
-            : metadata_->spacingM() * tileView_.pixelsPerTangent / params_.render.factors.segmentPx;
+        metadata_->spacingM() * tileView_.pixelsPerTangent / params_.render.factors.segmentPx;
     MorphRanges ranges;
     float rangeM = std::max(wantedM, 2.0F * std::sqrt(2.0F) * tileM);
     for (int level = 0; level < tree_->levelCount(); ++level, rangeM *= 2.0F) {

@@ -35,7 +35,6 @@ struct TerrainTessellationParams {
     RenderSettings render;
     MetadataSettings metadata;
     float maxTileErrorPx = 1.0F;  // τ
-    float finestRangeM = 0.0F;    // of CDLOD; 0: where a cell is ΔS pixels wide
     HeightPageSettings heights;
     std::string view = "valley";
     bool keepsMetadata = true;

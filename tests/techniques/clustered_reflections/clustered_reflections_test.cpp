@@ -111,9 +111,6 @@ TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:39: 'level_error_px' needs 'depth_images: visible'");
     EXPECT_EQ(message("{depth_images: none, pictures: true}"),
               "case.yaml:1:32: 'pictures' needs 'depth_images' other than none");
-    EXPECT_EQ(message("{method: clustered, thickness: 0.1}"),
-              "case.yaml:1:32: 'thickness' needs 'method: screen_space'");
-    EXPECT_EQ(message("{method: screen_space, thickness: 0.1}"), "no error");
     EXPECT_EQ(message("{method: embree, own_reflector: left_out}"),
               "case.yaml:1:33: 'own_reflector' needs 'method: clustered'");
     EXPECT_EQ(message("{errors: false, converged_rays: 256}"),

@@ -95,9 +95,7 @@ TEST(DepthSamplingParamsTest, RefusesWhatMeansNothing) {
         });
     };
     EXPECT_EQ(message("{}"), "no error");
-    EXPECT_EQ(message("{placement: automatic, views: 4, candidates: 4}"), "no error");
-    EXPECT_EQ(message("{candidates: 8}"),
-              "case.yaml:1:14: 'candidates' needs 'placement: automatic'");
+    EXPECT_EQ(message("{placement: automatic, views: 16}"), "no error");
     EXPECT_EQ(message("{placement: automatic, redundancy: visibility}"),
               "case.yaml:1:13: 'placement: automatic' needs 'redundancy: pixel'");
     EXPECT_EQ(message("{method: depth_peeling, placement: automatic}"),
@@ -105,8 +103,6 @@ TEST(DepthSamplingParamsTest, RefusesWhatMeansNothing) {
               "only one");
     EXPECT_EQ(message("{placement: automatic, views: 1}"),
               "case.yaml:1:31: 'placement: automatic' needs 2 views or more; found 1");
-    EXPECT_EQ(message("{placement: automatic, views: 5, candidates: 4}"),
-              "case.yaml:1:46: 4 candidates are fewer than 5 views");
     EXPECT_EQ(message("{redundancy: visibility, depth_format: unorm24}"),
               "case.yaml:1:40: 'depth_format' needs 'redundancy: pixel'");
     EXPECT_EQ(message("{redundancy: visibility, triangle_ids: primitive_id}"),
@@ -263,7 +259,7 @@ TEST_F(DepthSamplingTest, AutomaticPlacementFindsWhatTheEndsMiss) {
         "{method: conventional, views: 2, view_spread: 0.6, availability: true, output_frames: "
         "40, placement: ";
     const Metrics fixed = run(common + "fixed}", scene);
-    const Metrics automatic = run(common + "automatic, candidates: 8}", scene);
+    const Metrics automatic = run(common + "automatic}", scene);
     EXPECT_LT(automatic.at("unavailable_mean_pct"), 0.8 * fixed.at("unavailable_mean_pct"));
 }
 

@@ -58,8 +58,6 @@ TEST(TerrainTessellationParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:25: 'skirts' needs 'method: adaptive'");
     EXPECT_EQ(message("{method: cdlod, culling: tile_and_patch}"),
               "case.yaml:1:26: 'culling: tile_and_patch' needs 'method: adaptive'");
-    EXPECT_EQ(message("{finest_range: 100}"),
-              "case.yaml:1:16: 'finest_range' needs 'method: cdlod'");
     EXPECT_EQ(message("{method: cdlod, seams: true}"),
               "case.yaml:1:24: 'seams' needs 'method: adaptive'");
     EXPECT_EQ(message("{method: patches, yardstick: true}"),
