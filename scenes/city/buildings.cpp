@@ -344,11 +344,13 @@ void addHouse(Builders& builders, const Lot& lot, float detail, Random& random) 
                               chimney + glm::vec3(0.45F, rise + 1.0F, 0.45F)});
 }
 
-void addBlockBuilding(Builders& builders, const Lot& lot, const FacadeDetail& detail,
-                      Random& random) {
-    FacadeStyle style = styleOf(oneOf(kWallColors, random), detail.windows, random);
+/// Of the buildings of middle height: windows lie in the wall, with reveals, not flush.
+constexpr float kRecessedShare = 1.0F / 3.0F;
+
+void addBlockBuilding(Builders& builders, const Lot& lot, float detail, Random& random) {
+    FacadeStyle style = styleOf(oneOf(kWallColors, random), detail, random);
     style.hasLedges = random.index(6) == 0;
-    if (random.uniform() >= detail.recessedShare) style.recessM = 0.0F;
+    if (random.uniform() >= kRecessedShare) style.recessM = 0.0F;
     Solid body{{lot.min.x, 0.2F, lot.min.y}, {lot.max.x, lot.heightM, lot.max.y}};
     // The shop front: a darker storey, with a canopy around.
     const float shopM = 4.5F;
@@ -426,16 +428,15 @@ void addTower(Builders& builders, const Lot& lot, float detail, Random& random) 
 
 }  // namespace
 
-void addBuilding(Builders& builders, const Lot& lot, const FacadeDetail& detail,
-                 std::uint64_t seed) {
+void addBuilding(Builders& builders, const Lot& lot, float detail, std::uint64_t seed) {
     Random random(seed, 1);
     const glm::vec2 size = lot.max - lot.min;
     if (lot.heightM < 12.0F && std::min(size.x, size.y) < 18.0F) {
-        addHouse(builders, lot, detail.windows, random);
+        addHouse(builders, lot, detail, random);
     } else if (lot.heightM < 36.0F) {
         addBlockBuilding(builders, lot, detail, random);
     } else {
-        addTower(builders, lot, detail.windows, random);
+        addTower(builders, lot, detail, random);
     }
 }
 

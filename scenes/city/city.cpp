@@ -36,10 +36,11 @@ struct Slot {
 struct Settings {
     int blocks = 0;  // along each side
     float height = 1.0F;
-    float width = 1.0F;
-    float recessedShare = 1.0F / 3.0F;
-    float streetShare = 0.2F;
 };
+
+/// Of the places for trees, lamps and cars along the streets: what is taken before windows get the
+/// other triangles.
+constexpr float kStreetShare = 0.2F;
 
 /// Everything but the triangles: does not depend on the detail.
 struct Plan {
@@ -105,7 +106,7 @@ void planBlock(Plan& plan, int i, int j, const Settings& settings, Random& rando
         return;
     }
     std::vector<Lot> lots;
-    split(block, settings.width * (block.density < 0.28F ? 19.0F : 27.0F), random, lots);
+    split(block, block.density < 0.28F ? 19.0F : 27.0F, random, lots);
     for (Lot& lot : lots) {
         lot.density = densityAt(plan, 0.5F * (lot.min + lot.max));
         lot.heightM = heightAt(lot.density, random);
@@ -166,7 +167,7 @@ Plan planned(int blocks, const Settings& settings, std::uint64_t seed) {
         std::swap(plan.slots[i - 1], plan.slots[random.index(static_cast<std::uint32_t>(i))]);
     }
     plan.usualSlots =
-        static_cast<std::size_t>(settings.streetShare * static_cast<float>(plan.slots.size()));
+        static_cast<std::size_t>(kStreetShare * static_cast<float>(plan.slots.size()));
     return plan;
 }
 
@@ -227,11 +228,11 @@ void addStreets(Builders& builders, const Plan& plan) {
     }
 }
 
-Builders built(const Plan& plan, const FacadeDetail& detail, std::uint64_t seed) {
+Builders built(const Plan& plan, float windows, std::uint64_t seed) {
     Builders builders;
     addStreets(builders, plan);
     Random random(seed, 4);
-    for (const Lot& lot : plan.lots) addBuilding(builders, lot, detail, random.next());
+    for (const Lot& lot : plan.lots) addBuilding(builders, lot, windows, random.next());
     for (const Lot& lot : plan.parks) addPark(builders, lot, random.next());
     for (std::size_t i = 0; i < plan.usualSlots; ++i) addSlot(builders, plan.slots[i]);
     return builders;
@@ -244,8 +245,8 @@ Plan fittingPlan(std::size_t triangles, const Settings& settings, std::uint64_t 
     const float across = std::sqrt(static_cast<float>(triangles) / kTrianglesPerBlock);
     for (int blocks = 2 * static_cast<int>(0.5F * across) + 1;; blocks -= 2) {
         Plan plan = planned(blocks, settings, seed);
-        const FacadeDetail least{kLeastWindows, settings.recessedShare};
-        if (blocks == 1 || built(plan, least, seed).triangleCount() <= triangles) return plan;
+        if (blocks == 1 || built(plan, kLeastWindows, seed).triangleCount() <= triangles)
+            return plan;
     }
 }
 
@@ -255,14 +256,14 @@ constexpr float kMostWindows = 4.0F;
 
 /// As many windows as the count allows, then cars, trees and lamps for what is missing, and at last
 /// the ground's longest edges halved.
-Builders filled(const Plan& plan, std::size_t triangles, float recessedShare, std::uint64_t seed) {
+Builders filled(const Plan& plan, std::size_t triangles, std::uint64_t seed) {
     constexpr int kBisections = 12;
     float low = kFewestWindows;
     float high = kMostWindows;
-    Builders best = built(plan, {low, recessedShare}, seed);
+    Builders best = built(plan, low, seed);
     for (int i = 0; i < kBisections; ++i) {
         const float windows = 0.5F * (low + high);
-        Builders builders = built(plan, {windows, recessedShare}, seed);
+        Builders builders = built(plan, windows, seed);
         if (builders.triangleCount() <= triangles) {
             low = windows;
             best = std::move(builders);
@@ -313,18 +314,6 @@ Scene city(Params& params, std::uint64_t seed) {
          "", 0, 31});
     settings.height = static_cast<float>(params.getDouble(
         "building_height", 1.0, {"factor on the buildings' heights", "", 0.5, 3.0}));
-    settings.width = static_cast<float>(params.getDouble(
-        "building_width", 1.0,
-        {"factor on the largest size of a building's lot: wider ones are fewer", "", 0.6, 2.5}));
-    settings.recessedShare = static_cast<float>(params.getDouble(
-        "recessed_share", 1.0 / 3.0,
-        {"of the buildings of middle height: windows lie in the wall, with reveals, not flush", "",
-         0.0, 1.0}));
-    settings.streetShare = static_cast<float>(params.getDouble(
-        "street_share", 0.2,
-        {"of the places for trees, lamps and cars along the streets that are taken before windows "
-         "get the other triangles",
-         "", 0.0, 1.0}));
     params.finish();
     if (settings.blocks > 0 && settings.blocks % 2 == 0) {
         throw Error(params.locationOf("blocks"),
@@ -336,7 +325,7 @@ Scene city(Params& params, std::uint64_t seed) {
     const auto wanted = static_cast<std::size_t>(triangles);
     const Plan plan = settings.blocks > 0 ? planned(settings.blocks, settings, seed)
                                           : fittingPlan(wanted, settings, seed);
-    Builders builders = filled(plan, wanted, settings.recessedShare, seed);
+    Builders builders = filled(plan, wanted, seed);
     checkCount(params, plan, builders.triangleCount(), wanted);
     const std::size_t missing = wanted - builders.triangleCount();
     Scene scene;

@@ -35,15 +35,8 @@ struct Lot {
 /// A box whose faces are left out where they cannot be seen.
 void addSolid(MeshBuilder& builder, const Solid& solid, bool hasBottom = false);
 
-/// What facades share.
-struct FacadeDetail {
-    float windows = 1.0F;  // scales their number, 1 is the usual
-    float recessedShare =
-        1.0F / 3.0F;  // of the buildings of middle height whose windows lie in the wall
-};
-
-void addBuilding(Builders& builders, const Lot& lot, const FacadeDetail& detail,
-                 std::uint64_t seed);
+/// `detail` scales the number of windows, 1 is the usual.
+void addBuilding(Builders& builders, const Lot& lot, float detail, std::uint64_t seed);
 /// Lawn, paths and trees instead of houses.
 void addPark(Builders& builders, const Lot& lot, std::uint64_t seed);
 

@@ -46,24 +46,22 @@ void addPart(Scene& scene, Mesh mesh, const glm::vec4& baseColor, bool isDoubleS
 Scene objectOnPlane(Params& params, std::uint64_t seed) {
     const StandingShape shape =
         params.getEnum("shape", StandingShape::Hugo, kStandingShapes, {"what stands on the plane"});
-    const auto spacing = static_cast<float>(params.getDouble(
-        "spacing", 0.02, {"of the grid that the shape is sampled on", "m", 0.005, 0.1}));
-    const auto gap = static_cast<float>(
-        params.getDouble("gap", 0.01, {"of the lowest plate above the plane", "m", 0.0, 1.0}));
     params.finish();
 
-    constexpr float kExtent = 1.3F;  // holds every shape
+    constexpr float kExtent = 1.3F;     // holds every shape
+    constexpr float kSpacingM = 0.02F;  // of the grid that the shape is sampled on
     Scene scene;
     Mesh object =
-        sdf::polygonized(shapeOf(shape, static_cast<std::uint32_t>(seed)), kExtent, spacing);
+        sdf::polygonized(shapeOf(shape, static_cast<std::uint32_t>(seed)), kExtent, kSpacingM);
     object.normals = vertexNormals(object);
     object.name = "object";
     const float floor = object.bounds().min.y;
     addPart(scene, std::move(object), {0.72F, 0.45F, 0.30F, 1.0F});
 
+    constexpr float kGapM = 0.01F;  // of the lowest plate above the plane
     MeshBuilder plates;
     for (int i = 0; i < 3; ++i) {
-        const float height = gap * static_cast<float>(1 << (2 * i));  // 1, 4 and 16 gaps
+        const float height = kGapM * static_cast<float>(1 << (2 * i));  // 1, 4 and 16 gaps
         constexpr float kHalfThickness = 0.005F;
         plates.addBox({-1.1F + 1.1F * static_cast<float>(i), floor + height + kHalfThickness, 1.2F},
                       {0.3F, kHalfThickness, 0.2F});

@@ -45,7 +45,7 @@ void addPaving(MeshBuilder& ground) {
 }
 
 /// On three sides; the fourth is open to the camera.
-void addHouses(Square& square, float detail, Random& random) {
+void addHouses(Square& square, Random& random) {
     constexpr int kHouses = 3;
     constexpr float kWidthM = 2.0F * kHalfSquareM / static_cast<float>(kHouses);
     for (int side = 0; side < 3; ++side) {
@@ -62,7 +62,7 @@ void addHouses(Square& square, float detail, Random& random) {
                 lot.max = {side == 1 ? -near : far, from + kWidthM - 0.3F};
             }
             lot.heightM = random.uniform(8.0F, 14.0F);
-            addBuilding(square.city, lot, {.windows = detail}, random.next());
+            addBuilding(square.city, lot, 1.0F, random.next());
         }
     }
 }
@@ -104,7 +104,8 @@ void addWire(Square& square, const glm::vec3& a, const glm::vec3& b) {
 }
 
 /// A trunk with boughs, and single leaves within a ball.
-void addLeafyTree(Square& square, const glm::vec3& base, int leaves, Random& random) {
+void addLeafyTree(Square& square, const glm::vec3& base, Random& random) {
+    constexpr int kLeaves = 1500;
     constexpr float kCrownM = 1.6F;
     const glm::vec3 crown = base + 4.0F * kUp;
     square.city.plants.setColor({0.16F, 0.10F, 0.06F});
@@ -122,7 +123,7 @@ void addLeafyTree(Square& square, const glm::vec3& base, int leaves, Random& ran
         const glm::vec3 low = base + random.uniform(2.4F, 3.6F) * kUp;
         addRod(square.city.plants, low, crown + 0.8F * kCrownM * glm::normalize(inBall()), 0.03F);
     }
-    for (int i = 0; i < leaves; ++i) {
+    for (int i = 0; i < kLeaves; ++i) {
         square.leaves.setColor(random.uniform(0.7F, 1.3F) * glm::vec3(0.10F, 0.28F, 0.05F));
         const glm::vec3 at = crown + kCrownM * inBall();
         const glm::vec3 along = 0.09F * glm::normalize(inBall());
@@ -193,20 +194,17 @@ void addCameraAndLights(Scene& scene) {
 }  // namespace
 
 Scene townSquare(Params& params, std::uint64_t seed) {
-    const auto detail =
-        static_cast<float>(params.getDouble("detail", 1.0, {"of the houses", "1", 0.1, 4.0}));
-    const int leaves = params.getInt("leaves", 1500, {"of each tree", "", 0, 100'000});
     params.finish();
 
     Random random(seed);
     Square square;
     addPaving(square.city.ground);
-    addHouses(square, detail, random);
+    addHouses(square, random);
     constexpr float kFence = 13.0F;
     addRailing(square.city.metal, {-kFence, 0.0F, -kFence}, {kFence, 0.0F, -kFence});
     addRailing(square.city.metal, {-kFence, 0.0F, -kFence}, {-kFence, 0.0F, kFence});
     for (const glm::vec2 at : {glm::vec2(-7.0F, -7.0F), {6.5F, -7.0F}, {-8.0F, 4.0F}}) {
-        addLeafyTree(square, {at.x, 0.0F, at.y}, leaves, random);
+        addLeafyTree(square, {at.x, 0.0F, at.y}, random);
     }
     constexpr glm::vec3 kPoles[] = {{-11, 0, 9}, {11, 0, 9}, {11, 0, -11}, {-11, 0, -11}};
     for (int i = 0; i < 4; ++i) {

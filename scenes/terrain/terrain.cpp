@@ -17,10 +17,13 @@ namespace gfxrepro::scene {
 
 namespace {
 
+/// 0: rolling hills only, 1: ridges only.
+constexpr float kRidges = 0.7F;
+
 std::string keyOf(const FractalTerrain& shape, std::uint64_t seed) {
     return sha256(fmt::format("terrain of generator {}: {} {} {} {} {} {}, seed {}",
                               kGeneratorVersion, shape.sizeSamples, shape.spacingM, shape.reliefM,
-                              shape.featureM, shape.octaves, shape.ridges, seed));
+                              shape.featureM, shape.octaves, kRidges, seed));
 }
 
 /// One row of the terrain, before it is scaled to its relief. Ridges follow the folds of |noise|
@@ -49,7 +52,7 @@ void fractalRow(const FractalTerrain& terrain, std::uint64_t seed, int row, floa
         }
     }
     for (std::size_t i = 0; i < count; ++i) {
-        const float share = terrain.ridges * std::clamp(0.5F + 2.0F * mask[i], 0.0F, 1.0F);
+        const float share = kRidges * std::clamp(0.5F + 2.0F * mask[i], 0.0F, 1.0F);
         heights[i] = between(0.4F * hills[i], ridges[i], share);
     }
 }
@@ -129,9 +132,6 @@ Scene terrain(Params& params, std::uint64_t seed) {
         static_cast<float>(params.getDouble("feature_m", static_cast<double>(shape.featureM),
                                             {"the longest wave of the noise", "m", 1, 1e7}));
     shape.octaves = params.getInt("octaves", shape.octaves, {"octaves of the noise", "", 1, 20});
-    shape.ridges =
-        static_cast<float>(params.getDouble("ridges", static_cast<double>(shape.ridges),
-                                            {"0: rolling hills only, 1: ridges only", "", 0, 1}));
     params.finish();
     Scene scene;
     scene.heights =

@@ -18,7 +18,6 @@ struct FractalTerrain {
     float reliefM = 3000.0F;   // from the lowest to the highest, at most
     float featureM = 8000.0F;  // the longest wave of the noise
     int octaves = 11;
-    float ridges = 0.7F;  // 0: rolling hills only, 1: ridges only
 };
 HeightMap fractalTerrain(const FractalTerrain& terrain, std::uint64_t seed);
 /// The same in a file of `folder`, as resampledInFile() keeps its own.
