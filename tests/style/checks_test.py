@@ -1,5 +1,6 @@
 """check_layers and check_style find what they are there to find."""
 
+import json
 import pathlib
 import subprocess
 import sys
@@ -87,6 +88,25 @@ code, output = run("check_style", {**GOOD, "configs/README.md": "", "configs/x/R
     "printed:\n  values: |\n    " + "a," * 90 + "\n"})
 if code != 0:
     sys.exit(f"check_style found something in good words:\n{output}")
+MAY_STAY = ("env", "frames", "gpu", "here", "passes", "seeds")  # of `program`
+SCHEMA = {"configs/README.md": "", "configs/schema/README.md": "", "configs/x/README.md": "", "techniques/README.md": "",
+          "techniques/a/README.md": "", "configs/schema/experiment.json": json.dumps({"definitions": {
+              section: {"properties": {name: {} for name in names}} for section, names in
+              {"params_a": ["size", "tau"], "sweep_a": ["zip"], "program": ["command", *MAY_STAY], "output": ["width"]}.items()}})}
+BASE = "technique: a\nparams: {size: 1}\nsweep: {output.width: [1]}\nprogram:\n  command: b\n  images: {c: {frames: 2}}\n"
+WRITES = {"configs/x/base.yaml": BASE, TABLE: "extends: [base.yaml]\nsweep:\n  tau: [1, 2]\n"}
+WHY = "leave it out, or say in UNWRITTEN of scripts/check_style why it stays\n"
+code, output = run("check_style", {**SCHEMA, **WRITES})
+if code != 0:
+    sys.exit(f"check_style found something in keys that are written:\n{output}")
+for files, wanted in (({"configs/x/base.yaml": BASE}, "a: no shipped config writes 'tau': "),
+                      ({**WRITES, TABLE: "technique: b\nextends: x/base.yaml\n# tau: 1\nsays: tau\n"}, "a: no shipped config writes 'tau': "),
+                      ({TABLE: WRITES[TABLE]}, "program: no shipped config writes 'command': ")):
+    expect("check_style", {**SCHEMA, **files}, wanted + WHY)
+expect("check_style", {**SCHEMA, **WRITES, TABLE: WRITES[TABLE] + "program:\n  frames: all\n"},
+       "scripts/check_style: UNWRITTEN has program.frames, which a config writes, or nothing declares\n")
+expect("check_style", {**SCHEMA, **WRITES, "scenes/city/b.cpp": 'a = params.getInt(\n    "blocks", 1);\n'},
+       "b: no shipped config writes 'blocks': " + WHY)
 expect("check_style", {"engine/core/a.h": "int x;\n"}, "engine/core/a.h: no #pragma once")
 expect("check_style", {"engine/core/a.cpp": "\n" * 601}, "engine/core/a.cpp: 601 lines, at most 600")
 for includes in ('#include <map>\n#include "engine/core/a.h"\n',

@@ -63,7 +63,7 @@ def compiles(root, name, template):
 
 with tempfile.TemporaryDirectory() as folder:
     root = pathlib.Path(folder).resolve()
-    for part in ("scripts", "techniques", "tests/techniques", "configs/schema", "configs/smoke", "configs/nightly", "engine/gl"):
+    for part in ("scripts", "techniques", "tests/techniques", "configs", "engine/gl"):
         shutil.copytree(SOURCE / part, root / part)
     for part in (".clang-format", "techniques/README.md"):
         shutil.copy(SOURCE / part, root / part)
@@ -99,6 +99,12 @@ with tempfile.TemporaryDirectory() as folder:
     for check in ("check_layers", "check_style"):
         checked = run(root / "scripts" / check, root)
         expect(checked.returncode == 0, checked.stdout)
+    # Every parameter that it begins with is written by its configs.
+    schema = json.loads((root / "configs/schema/experiment.json").read_text())
+    schema["definitions"][f"params_{NAME}"] = schema["definitions"]["params_template"]
+    (root / "configs/schema/experiment.json").write_text(json.dumps(schema))
+    checked = run(root / "scripts/check_style", root)
+    expect(checked.returncode == 0, checked.stdout)
     compiles(root, f"techniques/{NAME}/{NAME}.cpp", "techniques/template/template.cpp")
     compiles(root, f"tests/techniques/{NAME}/{NAME}_test.cpp", "tests/techniques/template/template_test.cpp")
     undo(root, written.stdout)
