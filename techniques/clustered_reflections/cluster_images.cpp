@@ -79,6 +79,9 @@ void ClusterImages::endDrawing(glm::ivec2 sizePx) {
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     glDepthFunc(GL_LESS);
     glDisable(GL_DEPTH_TEST);
+    // A compute pass reads what was drawn while it is still attached: a driver may draw it as late
+    // as its framebuffer goes.
+    glTextureBarrier();
     if (!hasPyramid_) return;
     none_.bind();
     for (std::size_t level = 0; level < levels_.size(); ++level) {
