@@ -277,12 +277,6 @@ RunDirectory::RunDirectory(const fs::path& path, std::uintmax_t fullJournalBytes
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     journal_ = openFile(path_ / "journal.jsonl", O_RDWR | O_APPEND);
-    // What comes next is a line of its own, wherever the last one was torn.
-    const off_t end = sizeOf(journal_.get());
-    char last = '\n';
-    if (end > 0 && ::pread(journal_.get(), &last, 1, end - 1) == 1 && last != '\n') {
-        [[maybe_unused]] const ssize_t written = ::write(journal_.get(), "\n", 1);
-    }
 }
 
 RunDirectory RunDirectory::create(const fs::path& path, std::uintmax_t fullJournalBytes) {
@@ -336,13 +330,15 @@ void RunDirectory::requireRoom() const {
 
 void RunDirectory::note(const nlohmann::ordered_json& event) const {
     requireOurs();
+    const off_t end = sizeOf(journal_.get());
     nlohmann::ordered_json line = {{"time", utcTime()}};
-    line.update(shortened(event, sizeOf(journal_.get())));
-    const std::string text =
-        line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+    line.update(shortened(event, end));
+    char last = '\n';
+    const bool isTorn = end > 0 && ::pread(journal_.get(), &last, 1, end - 1) == 1 && last != '\n';
+    std::string text = isTorn ? "\n" : "";  // it is a line of its own, wherever the last was torn
+    text += line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
     // One write a line; a journal that cannot be written (disk full) does not stop the measurement.
     // Of a line that is cut nothing stays: the next one would be part of it.
-    const off_t end = sizeOf(journal_.get());
     const ssize_t written = ::write(journal_.get(), text.data(), text.size());
     if (written > 0 && static_cast<std::size_t>(written) < text.size()) {
         [[maybe_unused]] const int isCut = ::ftruncate(journal_.get(), end);
