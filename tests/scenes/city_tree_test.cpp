@@ -81,8 +81,9 @@ TEST(City, ABuildingStandsUnderItsCentre) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         SCOPED_TRACE(seed);
         EXPECT_GT(heightOverCentre(grown("city", 50'000, seed)), 20.0F);
+        // Where buildings stand the densest, the lowest have 13 m.
         EXPECT_GT(heightOverCentre(generated("city", "{triangles: 100000, blocks: 5}", seed)),
-                  20.0F);
+                  13.0F);
     }
 }
 
