@@ -99,7 +99,14 @@ ClaimReader::ClaimReader(const ClaimSpec& claim, const tables::Table& table)
     for (const std::string& operand : claim.operands) {
         operands_.emplace_back(operand, table, claim.location, owner);
     }
-    if (std::ranges::all_of(operands_, [](const Operand& o) { return o.columns().empty(); })) {
+    // Of numbers another profile's sweep may have columns, where some are numbers here.
+    const bool areColumnsWords =
+        !table.columns.empty() && std::ranges::none_of(table.columns, [](const auto& column) {
+            return parseDouble(column.label).has_value();
+        });
+    if (areColumnsWords && std::ranges::all_of(operands_, [](const Operand& operand) {
+            return operand.columns().empty();
+        })) {
         throw ExpressionError(claim.location,
                               fmt::format("{}: '{}' reads no column; axes are compared as "
                                           "[axis=a, axis=b]",

@@ -167,7 +167,8 @@ void describeExperiment(const Context& context, const config::Experiment& experi
     say("file       {}\n", experiment.file.string());
     const bool isPrinted = experiment.technique.empty();
     say("technique  {}\n", isPrinted ? "none, only printed" : experiment.technique);
-    const std::vector<config::Case> cases = config::expandCases(experiment);
+    const std::vector<config::Case> cases =
+        run::resolveCases(experiment, openCatalog(context, ""), context.techniques, 1);
     say("cases      {}\n", cases.size());
     // What claims and curves may name.
     const tables::Table table = tables::buildTable(experiment, cases, {});

@@ -124,6 +124,7 @@ ProcessEnd runProcess(const ProcessStart& start) {
                          std::strerror(errno));
     }
     const std::string folder = start.folder.string();
+    const long long oomKillsBefore = systemOomKills(start.machineRoot);
     const pid_t parent = ::getpid();
     const pid_t pid = ::fork();
     if (pid == 0) {
@@ -135,7 +136,6 @@ ProcessEnd runProcess(const ProcessStart& start) {
     ::fcntl(output.get(), F_SETFL, O_NONBLOCK);
 
     ProcessEnd end;
-    const long long oomKillsBefore = systemOomKills(start.machineRoot);
     // glibc 2.36 declares pidfd_open() for C alone.
     const Descriptor process(static_cast<int>(::syscall(SYS_pidfd_open, pid, 0)));
     pollfd fds[] = {{process.get(), POLLIN, 0}, {output.get(), POLLIN, 0}};

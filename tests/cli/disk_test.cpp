@@ -59,7 +59,9 @@ TEST(Disk, AFailedWriteOfTheRunnerIsNoneOfTheCase) {
     const std::string config =
         writeMockConfig(folder, "sweep: {number: [1, 2]}\nmeasure: {lane: quality}\n");
     const std::string dir = folder.path() / "run";
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    ASSERT_EQ(
+        mockGfxrepro({"run", config, "--device", "software", "--out", dir, "--jobs", "1"}).exitCode,
+        0);
     const fs::path picture = fs::path(dir) / records::readImages(dir).front().exr;
     for (const fs::path& file : {picture, fs::path(dir) / "records.csv"}) fs::remove(file);
     fs::create_directories(picture / "in-the-way");
