@@ -28,7 +28,7 @@ endif()
 set(CMAKE_CXX_EXTENSIONS OFF)
 
 # Tests take longer to compile than to run. As one unit, what is local to a source seems to be another one's.
-set(GFXREPRO_TEST_OPTIONS $<IF:$<CONFIG:Release>,-O1,-O0> -Wno-subobject-linkage)
+set(GFXREPRO_TEST_OPTIONS -O0 -Wno-subobject-linkage)
 
 # gfxrepro_precompiled(TARGET COLD): where sources compile one by one, what most of them include is compiled once, in the two
 # ways that modules are optimized. Preset `clang` compiles without, and so tells of a header that a source forgets.
@@ -139,6 +139,9 @@ function(gfxrepro_test name)
     add_executable(${name} ${arg_SOURCES})
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
     target_compile_options(${name} PRIVATE ${GFXREPRO_TEST_OPTIONS})
+    if(arg_LABEL STREQUAL "unit")  # computes and simulates by itself
+        target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    endif()
     target_link_libraries(${name} PRIVATE gfxrepro_test_support ${arg_LINK} GTest::gmock GTest::gtest_main)
     include(GoogleTest)
     # Under ThreadSanitizer simulations of a minute take ten.
