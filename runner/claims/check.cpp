@@ -210,9 +210,8 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
         ClaimReader reader(claim, read);
         if (!reader.readsAny()) continue;  // its rows are not of this profile
         const auto timeKind = reader.timeKind();
-        const bool isOfGpu = timeKind && *timeKind != ClaimSpec::TimeKind::Algorithmic;
         for (const ClaimSpec::Known& known : claim.because) {
-            if (isOfGpu && known.device == "software") {
+            if (isOfGpu(timeKind, table) && known.device == "software") {
                 complain("has a reason for software ('because'), and a GPU alone judges it");
             }
             if (claim.profile && known.profile && known.profile != claim.profile) {

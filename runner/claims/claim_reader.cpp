@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "engine/core/text.h"
 #include "runner/claims/kinds/operands.h"
@@ -311,30 +312,38 @@ std::optional<ClaimSpec::TimeKind> ClaimReader::timeKind() {
     return ClaimSpec::TimeKind::Absolute;
 }
 
-std::vector<const tables::Cell*> ClaimReader::timeCells() const {
-    std::vector<const tables::Cell*> cells;
+std::vector<ClaimReader::Place> ClaimReader::timePlaces() const {
+    std::vector<Place> places;
     for (const auto* operands : {&operands_, &overColumn_}) {
         for (const Operand& operand : *operands) {
             for (const std::size_t column : operand.columns()) {
                 for (const std::size_t row : rows()) {
                     const tables::Cell& cell = table_.rows[row].cells[column];
-                    if (cell.isOk() && cell.isTime) cells.push_back(&cell);
+                    if (cell.isOk() && cell.isTime) places.push_back({row, column, &cell});
                 }
             }
         }
     }
-    return cells;
+    return places;
+}
+
+std::vector<std::string> ClaimReader::timeColumns() const {
+    std::set<std::string> labels;
+    for (const Place& place : timePlaces()) {
+        labels.insert(claim_.across ? table_.rows[place.row].labels.back()
+                                    : table_.columns[place.column].label);
+    }
+    return {labels.begin(), labels.end()};
 }
 
 bool ClaimReader::isAtPrintedParameters() const {
     return std::ranges::all_of(
-        timeCells(), [](const tables::Cell* cell) { return cell->isAtPrintedParameters; });
+        timePlaces(), [](const Place& place) { return place.cell->isAtPrintedParameters; });
 }
 
 bool ClaimReader::readByProcess() {
-    const std::vector<const tables::Cell*> cells = timeCells();
-    if (std::ranges::any_of(cells,
-                            [](const tables::Cell* cell) { return cell->byProcess.empty(); })) {
+    if (std::ranges::any_of(timePlaces(),
+                            [](const Place& place) { return place.cell->byProcess.empty(); })) {
         return false;
     }
     clock_ = tables::Clock::Process;

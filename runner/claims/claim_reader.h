@@ -103,7 +103,9 @@ class ClaimReader {
     /// Whether the table has a row for it.
     bool readsAny() const { return !rows().empty(); }
     /// Whether it reads a time that was measured.
-    bool hasTimes() const { return !timeCells().empty(); }
+    bool hasTimes() const { return !timePlaces().empty(); }
+    /// The table's columns, before rows took their place, in which the times stand that it reads.
+    std::vector<std::string> timeColumns() const;
     /// Whether all times that it reads were measured at what the paper measured at.
     bool isAtPrintedParameters() const;
     /// Whether some cell that it may read is a time or a rate of time; of all rows, where `at`
@@ -146,8 +148,12 @@ class ClaimReader {
     /// Empty if the operand can be read; else why not.
     std::string problemOf(const Operand& operand, std::size_t row) const;
     bool isPlanned(const ClaimPart& part, std::size_t row) const;
+    struct Place {
+        std::size_t row, column;
+        const tables::Cell* cell;
+    };
     /// The cells of times that are read and ok.
-    std::vector<const tables::Cell*> timeCells() const;
+    std::vector<Place> timePlaces() const;
     Sampled abscissa(std::size_t row);
 
     const ClaimSpec& claim_;

@@ -99,9 +99,9 @@ Outcome judgePart(const ClaimPart& part, ClaimReader& reader, const std::vector<
 }
 
 /// Where the claim is not to be judged here, says so; true then.
-bool isNotApplicable(const ClaimSpec& claim, const ReportContext& context, ClaimResult& result) {
-    const bool isOfGpu = result.timeKind && *result.timeKind != ClaimSpec::TimeKind::Algorithmic;
-    if (isOfGpu && context.deviceClass != "gpu") {
+bool isNotApplicable(const ClaimSpec& claim, const tables::Table& table,
+                     const ReportContext& context, ClaimResult& result) {
+    if (isOfGpu(result.timeKind, table) && context.deviceClass != "gpu") {
         result.reason = "claims about a GPU are not judged on a " + context.deviceClass + " device";
     } else if (claim.profile && *claim.profile != context.profile) {
         result.reason = "judged in the profile '" + *claim.profile + "' only";
@@ -114,13 +114,15 @@ bool isNotApplicable(const ClaimSpec& claim, const ReportContext& context, Claim
 
 /// What counts of work decide is judged by the work of all cores where they are the device: the
 /// process's CPU time, which waits for no neighbour. Says which clock it is; empty for none.
-std::string chooseClock(const ClaimResult& claim, const ReportContext& context,
-                        ClaimReader& reader) {
+std::string chooseClock(const tables::Table& table, const ReportContext& context,
+                        ClaimReader& reader, ClaimResult& claim) {
     using Kind = ClaimSpec::TimeKind;
     const bool isAlgorithmic = claim.timeKind.value_or(Kind::Algorithmic) == Kind::Algorithmic;
-    if (!isAlgorithmic || context.deviceClass != "software" || !reader.hasTimes()) return "";
-    return reader.readByProcess() ? "by the CPU time of the process"
-                                  : "by the clock: no CPU time was recorded of these";
+    if (!isAlgorithmic || context.deviceClass != "software" || table.goesByClock) return "";
+    if (!reader.hasTimes()) return "";
+    if (!reader.readByProcess()) return "by the clock: no CPU time was recorded of these";
+    claim.columnsByProcess = reader.timeColumns();
+    return "by the CPU time of the process";
 }
 
 /// What the config knows of the claim on this device, in this profile and of such scenes.
@@ -154,7 +156,7 @@ ClaimResult unjudged(const ClaimSpec& claim, const tables::Table& table,
     std::vector<std::string> required;
     for (const ClaimPart& part : partsOf(claim)) required.push_back(part.requirement.text);
     result.required = joined(required, "; ");
-    isNotApplicable(claim, context, result);
+    isNotApplicable(claim, table, context, result);
     return result;
 }
 
@@ -219,7 +221,7 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
     if (result.verdict == Verdict::NotApplicable) return result;
     ClaimReader reader(claim, table);
     result.timeKind = reader.timeKind();
-    if (isNotApplicable(claim, context, result)) return result;
+    if (isNotApplicable(claim, table, context, result)) return result;
     const char* metric = claim.kind->metric;
     if (metric && !reader.readsOnly(metric)) {
         result.reason = fmt::format("reads another metric than {}", metric);
@@ -231,7 +233,7 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
         result.reason = "a time as such is judged at the printed parameters only";
         return result;
     }
-    const std::string clock = chooseClock(result, context, reader);
+    const std::string clock = chooseClock(table, context, reader, result);
     std::optional<TimeRule> times;
     if (reader.readsTime()) times = TimeRule{table.noise(reader.clock())};
     const std::vector<Rows> groups = reader.groups();
@@ -337,6 +339,11 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
         results.back().where = claim.location.file == file.file ? claim.location : file;
     }
     return results;
+}
+
+bool isOfGpu(const std::optional<ClaimSpec::TimeKind>& kind, const tables::Table& table) {
+    using Kind = ClaimSpec::TimeKind;
+    return kind == Kind::Architectural || (kind == Kind::Absolute && !table.goesByClock);
 }
 
 std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {

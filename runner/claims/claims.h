@@ -75,6 +75,9 @@ struct ClaimResult {
     std::string because;       // why, where it does not hold
     std::string shownBy = {};  // and the place in results/findings that proves it
 
+    /// Of the table's columns those that it was judged on by the CPU time of the process.
+    std::vector<std::string> columnsByProcess = {};
+
     /// Of which part of the rows of the profile `paper` it is: "1 of 4 values of scene"; empty of
     /// all of them, and where these are not known.
     std::string rows;
@@ -130,6 +133,9 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
 std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& experiments,
                                         const std::vector<tables::Table>& tables,
                                         const ReportContext& context);
+
+/// Whether a GPU alone judges times of that kind: those of a program's own, as such, any machine.
+bool isOfGpu(const std::optional<ClaimSpec::TimeKind>& kind, const tables::Table& table);
 
 /// Whether the claim reads a time of the table.
 bool isOfTime(const ClaimSpec& claim, const tables::Table& table);

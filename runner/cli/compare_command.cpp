@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "engine/core/files.h"
 #include "runner/cli/annotations.h"
@@ -40,7 +41,7 @@ struct Measured {
     std::size_t untimedCases = 0;
     std::string machine;
     std::string commit;
-    bool isSoftware = false;
+    regression::Tables byProcess;                // chooseTimes
     std::map<std::string, std::string> configs;  // absolute path by table
     std::vector<std::string> notes;
     regression::PictureMap pictures;
@@ -54,13 +55,22 @@ Measured readMeasured(const fs::path& runDir) {
     regression::CaseParams params;
     for (const config::Case& item : run.plan.cases)
         params[item.id] = item.recordedParams().toJson().dump();
-    Measured measured{regression::seriesOf(run.records, params),
+    regression::Tables byClock, byProcess;
+    const bool isSoftware = run.plan.deviceClass == "software";
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        if (config::goesByClock(experiment)) {
+            byClock.insert(experiment.id);
+        } else if (isSoftware) {
+            byProcess.insert(experiment.id);
+        }
+    }
+    Measured measured{regression::seriesOf(run.records, params, byClock),
                       regression::failuresOf(run.records, params),
                       regression::voidTimesOf(run.records, params),
                       regression::untimedCases(run.records),
                       run::machineName(run.manifest),
                       run.manifest.at("commit").get<std::string>(),
-                      run.plan.deviceClass == "software",
+                      std::move(byProcess),
                       {},
                       run::notesOf(run.manifest),
                       regression::picturesOf(runDir, run.records, params),
@@ -132,7 +142,7 @@ class Turns {
         requireSameMachine(measured[0], measured[1]);
         ++roundCount_;
         if (comparesPictures) sides.pictures = comparePictures(measured[0], measured[1], folder_);
-        sides.isSoftware = measured[1].isSoftware;
+        sides.byProcess = measured[1].byProcess;
         regression::append(sides.before, measured[0].series);
         regression::append(sides.after, measured[1].series);
         sides.failuresBefore.merge(measured[0].failures);
@@ -175,7 +185,7 @@ class Turns {
 /// Appends to the history, and gives the steps in the series of this machine.
 std::vector<regression::SeriesStep> keepHistory(const std::string& path, const Measured& measured) {
     regression::SeriesMap night = measured.series, same = measured.series;
-    regression::chooseTimes(night, same, measured.isSoftware);
+    regression::chooseTimes(night, same, measured.byProcess);
     regression::appendNight(path, {run::utcTime(), measured.commit, measured.machine, night});
     return regression::findSteps(regression::readHistory(path, measured.machine));
 }
@@ -186,7 +196,7 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
                                     const fs::path& folder, std::vector<std::string>& notes) {
     requireSameMachine(older, newer);
     std::vector<Difference> differences = regression::compare(
-        older.series, newer.series, Pairing::Apart, {.isSoftware = newer.isSoftware});
+        older.series, newer.series, Pairing::Apart, {.byProcess = newer.byProcess});
     regression::noteFailures(differences, older.failures, newer.failures);
     regression::noteVoidTimes(differences, older.voidTimes, newer.voidTimes);
     for (const auto& [file, now] : newer.programs) {

@@ -313,6 +313,15 @@ Results resultsOf(const run::StoredRun& run, const Experiments& experiments) {
     const tables::MovedClocks clocks = run::movedClocks(run.manifest);
     for (tables::Table& table : results.tables) tables::markMovedClocks(clocks, table);
     results.claims = claims::evaluateClaims(experiments, results.tables, results.context);
+    for (tables::Table& table : results.tables) {
+        std::vector<std::string> labels;
+        for (const claims::ClaimResult& claim : results.claims) {
+            if (claim.table != table.id) continue;
+            labels.insert(labels.end(), claim.columnsByProcess.begin(),
+                          claim.columnsByProcess.end());
+        }
+        tables::showProcessTimes(labels, table);
+    }
     results.printedCells = tables::countPrintedCells(experiments, results.tables);
     return results;
 }

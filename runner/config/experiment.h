@@ -190,6 +190,13 @@ inline bool isMeasuredHere(const Experiment& experiment) {
     return !experiment.technique.empty() && experiment.technique != kImported;
 }
 
+/// Whether a program of its own measures it, or it was measured elsewhere. Such times are those of
+/// the clock: CPU time tells nothing of what waits.
+inline bool goesByClock(const Experiment& experiment) {
+    if (experiment.technique == kImported) return true;
+    return experiment.document.isMap() && experiment.document.find("program");
+}
+
 /// `slope` of a plot: the exponent of x that its curves are expected to have, drawn as a dashed
 /// line; both axes of such a plot are logarithmic. `plot`: its place in experiment.plots. None
 /// where it says none.

@@ -241,7 +241,7 @@ std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
     for (std::size_t look = 0; look < rules.looks; ++look) {
         measure(sides, tables);
         Rules own = rules;
-        own.isSoftware = sides.isSoftware;
+        own.byProcess = sides.byProcess;
         differences = compare(sides.before, sides.after, Pairing::ByTurns, own);
         noteFailures(differences, sides.failuresBefore, sides.failuresAfter);
         noteVoidTimes(differences, sides.voidBefore, sides.voidAfter);
@@ -288,7 +288,7 @@ std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& all
                                 Pairing pairing, const Rules& rules) {
     SeriesMap before = allBefore, after = allAfter;
     matchParams(before, after);
-    chooseTimes(before, after, rules.isSoftware);
+    chooseTimes(before, after, rules.byProcess);
     std::vector<Difference> differences;
     std::vector<TestedTime> times;
     for (const auto& [key, values] : before) {

@@ -39,8 +39,8 @@ struct Rules {
     /// order in which parallel work draws instances at one depth and sums floats moves the errors
     /// of pictures by 1e-5, and no table prints a fifth digit.
     double valueTolerance = 1e-4;
-    bool isSoftware = false;  // the device: see chooseTimes
-    std::size_t looks = 5;    // at most, each after as many further rounds
+    Tables byProcess{};     // see chooseTimes
+    std::size_t looks = 5;  // at most, each after as many further rounds
 };
 
 /// How far two pictures are apart.
@@ -112,7 +112,7 @@ struct Sides {
     CaseTexts failuresBefore, failuresAfter;
     CaseTexts voidBefore, voidAfter;
     std::vector<Difference> pictures{};  // those of the first round held against each other
-    bool isSoftware = false;             // the device, as in Rules
+    Tables byProcess{};                  // as in Rules
 };
 /// Appends further alternate rounds; of `tables` alone where there are some.
 using MeasureRounds = std::function<void(Sides& sides, const std::set<std::string>& tables)>;

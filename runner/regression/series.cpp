@@ -54,6 +54,15 @@ bool isMadeOfTimes(const records::Record& record) {
            metric.find("time") != std::string::npos;
 }
 
+/// Of times: the frame's, and a program's own.
+bool isWatched(const records::Record& record, const Tables& byClock) {
+    if (record.lane != "timing") return false;
+    const std::string& metric = record.metric;
+    if (metric == "wall_time_ms" || metric == "process_time_ms") return record.pass.empty();
+    return byClock.contains(record.table) && record.frame != records::kSetup &&
+           metric.ends_with("_ms");
+}
+
 using Json = nlohmann::ordered_json;
 
 ParamNames paramNamesOf(const SeriesMap& series) {
@@ -132,7 +141,8 @@ Series standing(const Series& values) {
     return result;
 }
 
-SeriesMap seriesOf(const std::vector<records::Record>& records, const CaseParams& params) {
+SeriesMap seriesOf(const std::vector<records::Record>& records, const CaseParams& params,
+                   const Tables& byClock) {
     std::map<SeriesKey, std::map<int, Frames>> gathered;
     for (const records::Record& record : records) {
         const bool isVoid = record.status == records::Status::Ambiguous;
@@ -140,8 +150,7 @@ SeriesMap seriesOf(const std::vector<records::Record>& records, const CaseParams
         SeriesKey key = keyOf(record, params, record.metric);
         key.pass = record.pass;
         key.unit = record.unit;
-        const bool isOfFrame = key.isTime() && key.pass.empty() && record.lane == "timing";
-        if (isMadeOfTimes(record) && !isOfFrame) continue;
+        if (isMadeOfTimes(record) && !isWatched(record, byClock)) continue;
         if (isOfTheMachine(record.metric)) continue;
         gathered[key][record.process][record.frame][record.repeat] = isVoid ? kVoid : record.value;
     }
@@ -235,14 +244,14 @@ void matchParams(SeriesMap& before, SeriesMap& after) {
     after = *shortAfter;
 }
 
-void chooseTimes(SeriesMap& before, SeriesMap& after, bool isSoftware) {
+void chooseTimes(SeriesMap& before, SeriesMap& after, const Tables& byProcess) {
     const SeriesMap allBefore = before, allAfter = after;
     const auto isChosen = [&](const SeriesKey& key) {
+        if (!key.isTime() || !byProcess.contains(key.table)) return true;
         SeriesKey process = key;
         process.metric = "process_time_ms";
-        const bool isByProcess =
-            isSoftware && allBefore.contains(process) && allAfter.contains(process);
-        return !key.isTime() || key.isProcessTime() == isByProcess;
+        const bool haveBoth = allBefore.contains(process) && allAfter.contains(process);
+        return key.isProcessTime() == haveBoth;
     };
     for (SeriesMap* side : {&before, &after}) {
         std::erase_if(*side, [&](const auto& entry) { return !isChosen(entry.first); });

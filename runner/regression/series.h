@@ -30,8 +30,8 @@ struct SeriesKey {
 
     auto operator<=>(const SeriesKey&) const = default;
 
-    /// The time of a frame, by the clock or of all the process's threads.
-    bool isTime() const { return metric == "wall_time_ms" || isProcessTime(); }
+    /// Of a frame: by the clock, of all the process's threads, or a program's own.
+    bool isTime() const { return metric.ends_with("_ms"); }
     bool isProcessTime() const { return metric == "process_time_ms"; }
     /// "zju2005/2.1 TECHNIQUE worksheet models/duck"; parameters are left away.
     std::string caseTitle() const;
@@ -51,13 +51,18 @@ double medianOf(std::span<const double> values);
 /// The parameters of a run's cases as SeriesKey has them, by id.
 using CaseParams = std::map<std::string, std::string>;
 
+/// Names of tables.
+using Tables = std::set<std::string>;
+
 /// The series of `ok` rows, and of times that are void; of two rows of one place the last, as
 /// tables have it. Of times there is the frame's of each case in the timing lane, no more: every
 /// further series asks for more rounds of all, a pass that matters shows in its frame, a rate is a
-/// reciprocal, and loading and setting up depend on what the disk has in its cache. Left out, too,
-/// are numbers made from times (of a unit of time or a rate, or "time" in the name) and what is
+/// reciprocal, and loading and setting up depend on what the disk has in its cache. Of the tables
+/// that go by the clock (config::goesByClock) there are the program's own times (…_ms), too. Left
+/// out are numbers made from times (of a unit of time or a rate, or "time" in the name) and what is
 /// about the machine (memory of the process, counts that the order of parallel work changes).
-SeriesMap seriesOf(const std::vector<records::Record>& records, const CaseParams& params);
+SeriesMap seriesOf(const std::vector<records::Record>& records, const CaseParams& params,
+                   const Tables& byClock = {});
 
 /// Of a case: pass and unit are empty.
 SeriesKey keyOf(const records::Record& record, const CaseParams& params, std::string metric);
@@ -96,10 +101,10 @@ void append(SeriesMap& series, const SeriesMap& more);
 /// together: then the new parameter was varied.
 void matchParams(SeriesMap& before, SeriesMap& after);
 
-/// Leaves one time of each case, the same on both sides. On a software device that is the CPU time
-/// of the process where both have it, for the clock counts what else the machine did; else the
-/// clock's.
-void chooseTimes(SeriesMap& before, SeriesMap& after, bool isSoftware);
+/// Leaves one time of each case of the tables `byProcess`, which a built-in technique measured on a
+/// software device, the same on both sides: the CPU time of the process where both have it, for the
+/// clock counts what else the machine did; else the clock's. Of other tables all stay.
+void chooseTimes(SeriesMap& before, SeriesMap& after, const Tables& byProcess);
 
 /// A shift between two sides [Hodges and Lehmann 1963], its exact two-sided chance under no shift
 /// [Wilcoxon 1945], and where it lies at 95 %.

@@ -396,26 +396,31 @@ void boundShare(const CellQuery& query, const Gathered& gathered, Measured& meas
                  gathered.caseIds[0] + query.metric + query.pass);
 }
 
-void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
-    cell.values = measuredOf(query, gathered);
+/// The texts of these numbers, and of them together.
+void writeTexts(const CellFormat& format, std::vector<Measured>& numbers, std::string& whole,
+                std::string& low, std::string& high) {
     std::vector<double> values, lows, highs;
-    for (std::size_t i = 0; i < cell.values.size(); ++i) {
-        Measured& measured = cell.values[i];
-        boundShare(query, gathered, measured);
-        measured.text = query.format.formatOne(i, measured.value);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        Measured& measured = numbers[i];
+        measured.text = format.formatOne(i, measured.value);
         if (measured.bounds != Bounds::None) {
-            measured.low = query.format.formatOne(i, measured.interval.low);
-            measured.high = query.format.formatOne(i, measured.interval.high);
+            measured.low = format.formatOne(i, measured.interval.low);
+            measured.high = format.formatOne(i, measured.interval.high);
         }
         values.push_back(measured.value);
         lows.push_back(measured.interval.low);
         highs.push_back(measured.interval.high);
     }
-    cell.measured = query.format.format(values);
-    if (cell.bounds() != Bounds::None) {
-        cell.low = query.format.format(lows);
-        cell.high = query.format.format(highs);
-    }
+    whole = format.format(values);
+    if (numbers.front().bounds == Bounds::None) return;
+    low = format.format(lows);
+    high = format.format(highs);
+}
+
+void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
+    cell.values = measuredOf(query, gathered);
+    for (Measured& measured : cell.values) boundShare(query, gathered, measured);
+    writeTexts(query.format, cell.values, cell.measured, cell.low, cell.high);
 }
 
 /// Only where every measurement has its CPU time beside it.
@@ -430,6 +435,8 @@ void fillProcessTimes(const CellQuery& query, const LayoutCases& cases, const Sa
         if (own == gathered.samples.processes.end() || own->second.size() != units.size()) return;
     }
     cell.byProcess = measuredOf(*other, gathered);
+    writeTexts(query.format, cell.byProcess, cell.measuredByProcess, cell.lowByProcess,
+               cell.highByProcess);
 }
 
 }  // namespace
@@ -520,6 +527,23 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     if (cell.isPartial) cell.measured += " (partial: " + word + ")";
     if (!hasSamples) cell.measured = cell.isPlanned ? word : "";
     return cell;
+}
+
+Cell processCell(const Cell& cell) {
+    Cell own;
+    own.isPlanned = !cell.byProcess.empty();
+    if (!own.isPlanned) return own;
+    own.status = cell.status;
+    own.message = cell.message;
+    own.values = cell.byProcess;
+    own.measured = cell.measuredByProcess;
+    own.low = cell.lowByProcess;
+    own.high = cell.highByProcess;
+    own.caseIds = cell.caseIds;
+    own.isTime = true;
+    own.timePower = cell.timePower;
+    own.unit = cell.unit;
+    return own;
 }
 
 SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases) {

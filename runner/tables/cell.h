@@ -90,9 +90,11 @@ struct Cell {
     std::vector<Departure> departures;
     /// An input was fitted so that it comes out (config::isCalibrated).
     bool isCalibrated = false;
-    /// Of a frame's or a pass's time or rate: the same by the process's CPU time, not formatted.
-    /// Empty where it was not recorded: on a GPU, or of a time that a technique tells itself.
+    /// Of a frame's or a pass's time or rate: the same by the process's CPU time, and as
+    /// `measured`, `low` and `high` are. Empty where it was not recorded: on a GPU, or of a time
+    /// that a technique tells itself.
     std::vector<Measured> byProcess;
+    std::string measuredByProcess, lowByProcess, highByProcess;
     /// Of a time, where the GPU's clock moved while one of its cases was timed (markMovedClocks).
     std::optional<ClockRange> movedClock;
 
@@ -127,6 +129,10 @@ struct CellQuery {
 CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column);
 
 Cell buildCell(const CellQuery& query, const LayoutCases& cases);
+
+/// Of a time the same by the process's CPU time, formatted likewise; nothing is planned where it
+/// has none.
+Cell processCell(const Cell& cell);
 
 /// Where a row's scene comes from: metric `scene_source` of its cases (0 real, 1 stand-in, 2
 /// generated). Of several the last of these counts.

@@ -121,24 +121,21 @@ bool FrameTimes::hasRounds(const std::string& caseId, int rounds) const {
     return true;
 }
 
-std::vector<Clock> FrameTimes::judgedClocks() const {
+Clock FrameTimes::judgedClock() const {
     const bool hasAll = std::ranges::all_of(
         cases_, [](const CaseTimes& times) { return times.cpu.size() == times.wall.size(); });
-    if (!hasAll) return {Clock::Wall};
-    return isOfProgram_ ? std::vector{Clock::Wall, Clock::Process} : std::vector{Clock::Process};
+    return hasAll && !goesByClock_ ? Clock::Process : Clock::Wall;
 }
 
 std::optional<double> FrameTimes::relativeErrorOf(std::size_t rounds) const {
     std::optional<double> largest;
-    for (const Clock clock : judgedClocks()) {
-        for (const std::map<int, double>& processes : times(clock)) {
-            std::vector<double> values = roundValues(processes);
-            if (values.size() < rounds) continue;
-            values.resize(rounds);
-            const auto interval = metrics::medianInterval(values);
-            if (!interval) continue;
-            largest = std::max(largest.value_or(0.0), halfWidth(*interval) / medianOf(values));
-        }
+    for (const std::map<int, double>& processes : times(judgedClock())) {
+        std::vector<double> values = roundValues(processes);
+        if (values.size() < rounds) continue;
+        values.resize(rounds);
+        const auto interval = metrics::medianInterval(values);
+        if (!interval) continue;
+        largest = std::max(largest.value_or(0.0), halfWidth(*interval) / medianOf(values));
     }
     return largest;
 }
@@ -158,6 +155,7 @@ bool FrameTimes::isKnownTo(double relativeError, int asked) const {
 }
 
 std::optional<double> FrameTimes::noise(Clock clock) const {
+    if (clock == Clock::Process && goesByClock_) return std::nullopt;
     const std::vector<std::map<int, double>> cases = times(clock);
     std::vector<double> widths;
     for (std::size_t i = 1; i < cases.size(); ++i) {
@@ -213,11 +211,9 @@ std::vector<std::string> outlierTexts(const FrameTimes& times, const CaseNames& 
 
 namespace {
 
-/// "the CPU time of a frame", "the time of a frame, on the wall and of the CPU,".
 std::string_view judgedName(const FrameTimes& times) {
-    const std::vector<Clock> clocks = times.judgedClocks();
-    if (clocks.size() > 1) return "the time of a frame, on the wall and of the CPU,";
-    return clocks[0] == Clock::Process ? "the CPU time of a frame" : "the time of a frame";
+    return times.judgedClock() == Clock::Process ? "the CPU time of a frame"
+                                                 : "the time of a frame";
 }
 
 }  // namespace

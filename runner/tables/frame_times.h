@@ -25,10 +25,8 @@ struct Outlier {
 
 class FrameTimes {
   public:
-    /// `isOfProgram`: of a program that is measured from outside, which may wait: its tables show
-    /// the clock, which its CPU time does not tell.
-    explicit FrameTimes(bool isOfProgram) : isOfProgram_(isOfProgram) {}
-    FrameTimes() = default;
+    /// `goesByClock`: config::goesByClock.
+    explicit FrameTimes(bool goesByClock = false) : goesByClock_(goesByClock) {}
 
     /// Takes wall and process times of whole frames; other records, void times and the quality
     /// lane's are passed over.
@@ -42,9 +40,9 @@ class FrameTimes {
     /// Whether the case has a time in each of the first `rounds` processes.
     bool hasRounds(const std::string& caseId, int rounds) const;
 
-    /// The process's, where it was recorded of all cases; of a program the wall's, too.
-    std::vector<Clock> judgedClocks() const;
-    /// By the judged clocks, the largest of all cases: half the 95 % interval of the time of its
+    /// The process's, where it was recorded of all cases, unless they go by the clock.
+    Clock judgedClock() const;
+    /// By the judged clock, the largest of all cases: half the 95 % interval of the time of its
     /// frames (medianInterval) ÷ the time. Cases that miss a round are left out; none where there
     /// are too few rounds for an interval.
     std::optional<double> relativeError() const { return relativeErrorOf(roundCount()); }
@@ -60,7 +58,7 @@ class FrameTimes {
     /// By how much two equal cases of the table would differ, as a share: the half width of the
     /// 95 % interval (centreInterval) of the log ratio of two neighbouring cases, measured in pairs
     /// by turns, the median over all such neighbours. Of one case alone √2 of its own. None with
-    /// too few rounds.
+    /// too few rounds, nor by CPU time of what goes by the clock.
     std::optional<double> noise(Clock clock) const;
 
     /// Frames whose time on the wall is kOutlierFactor times the median of the same frame in other
@@ -84,7 +82,7 @@ class FrameTimes {
     std::optional<double> relativeErrorOf(std::size_t rounds) const;
     std::vector<CaseTimes> cases_;
     std::map<std::string, std::size_t> indices_;
-    bool isOfProgram_ = false;
+    bool goesByClock_ = false;
 };
 
 /// Which condition of `measure` ended the rounds: "processes" (as many as asked for, no more),

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "engine/core/text.h"
-#include "runner/config/external_program.h"
 #include "runner/records/csv.h"
 #include "runner/tables/calibration.h"
 #include "runner/tables/frame_times.h"
@@ -316,7 +315,7 @@ CaseNames namesOf(const LayoutCases& cases, const Words& words) {
 void addTimes(const config::Experiment& experiment, const std::vector<records::Record>& records,
               const LayoutCases& cases, Table& table) {
     if (experiment.measure.lane != config::Measure::Lane::Timing) return;
-    FrameTimes times(!config::programOf(experiment).isNull());
+    FrameTimes times(table.goesByClock);
     for (const records::Record& record : records) {
         if (record.table == table.id) times.add(record);
     }
@@ -445,6 +444,7 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     table.slug = experiment.slug();
     table.label = experiment.label();
     table.title = experiment.title;
+    table.goesByClock = config::goesByClock(experiment);
     table.words = experiment.labels;
     table.hardware = experiment.printed.hardware;
     table.remark = experiment.printed.remark;
@@ -480,6 +480,29 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
         table.notes.push_back(std::move(note));
     }
     return table;
+}
+
+void showProcessTimes(const std::vector<std::string>& labels, Table& table) {
+    for (const std::string& label : labels) {
+        const auto place = table.findColumn(label);
+        if (!place) continue;
+        const auto next = static_cast<std::ptrdiff_t>(*place) + 1;
+        TableColumn column = table.columns[*place];
+        const std::string own = column.parts.empty() ? label : column.parts.back();
+        const std::string name = "cpu_" + own;
+        column.label = label.substr(0, label.size() - own.size()) + name;
+        if (table.findColumn(column.label)) continue;
+        if (!column.parts.empty()) column.parts.back() = name;
+        column.doc = "CPU time of all threads of the process, by which claims are judged";
+        table.words[name] = quantityOf(own, table.words, column.unit).words + ", CPU";
+        table.columns.insert(table.columns.begin() + next, std::move(column));
+        for (auto* rows : {&table.rows, &table.printedRows}) {
+            for (TableRow& row : *rows) {
+                const Cell cell = processCell(row.cells[*place]);
+                row.cells.insert(row.cells.begin() + next, cell);
+            }
+        }
+    }
 }
 
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,

@@ -46,6 +46,7 @@ struct Table {
     bool isOnlyPrinted = false;  // nothing is measured for it
     bool isPublished = false;    // what is measured stands for something that a paper shows
     bool knowsPrintedParameters = false;  // not so in runs of before these were kept
+    bool goesByClock = false;             // config::goesByClock
     /// `labels:` of its config: what people read for the name of a parameter, axis, row or column.
     std::map<std::string, std::string> words;
     std::vector<std::string> rowAxes;
@@ -99,6 +100,10 @@ Table transposed(const Table& table, std::size_t rowAxis);
 /// Error with the layout's place for an unknown statistic or axis.
 Table buildTable(const config::Experiment& experiment, std::span<const config::Case> planned,
                  const std::vector<records::Record>& records);
+
+/// Puts the CPU times of these columns into columns of their own beside them: "cpu_draw_ms" behind
+/// "draw_ms".
+void showProcessTimes(const std::vector<std::string>& labels, Table& table);
 
 /// The plots of a table that nobody laid out: its times, and the first of its metrics that is
 /// better one way, over the axis of numbers that has most of them. None without such an axis.

@@ -858,6 +858,55 @@ TEST(Claims, AlgorithmicOnesAreJudgedByProcessTimeOnASoftwareDevice) {
     EXPECT_EQ(result.reason, "by the clock: no CPU time was recorded of these");
 }
 
+/// What waits takes no CPU time: a program, and what was measured elsewhere, go by the clock.
+TEST(Claims, TimesOfAProgramAreJudgedByTheClock) {
+    const Timed wall = [](double n, int round) { return drift(round) * 400.0 / n; };
+    const Timed work = [](double, int) { return 3.0; };
+    const auto records = timedRows(6, wall, work);
+    const auto judge = [&](const std::string& technique, const std::string& claim) {
+        config::Experiment experiment = tables::experimentFrom(timedBody(claim));
+        experiment.technique = technique;
+        tables::Table table = tables::buildTable(experiment, records);
+        table.isPublished = false;
+        EXPECT_EQ(table.noise(tables::Clock::Process).has_value(), technique != "imported");
+        return evaluateClaims(experiment, table, kSoftware).at(0);
+    };
+    const std::string slope = "trend: ms, over: n, at_least: -1.1, at_most: -0.8";
+    const ClaimResult result = judge("imported", slope);
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.measured, "exponent -1 [-1, -1]");
+    EXPECT_EQ(result.reason, "");
+    EXPECT_TRUE(result.columnsByProcess.empty());
+    EXPECT_EQ(judge("mock", slope).verdict, Verdict::Fails);
+    // A time as such is judged, too.
+    const std::string bound = "bound: ms, at_most: 1000, kind: absolute";
+    EXPECT_EQ(judge("imported", bound).verdict, Verdict::Holds);
+    EXPECT_EQ(judge("mock", bound).verdict, Verdict::NotApplicable);
+    EXPECT_EQ(judge("imported", "trend: ms, over: n, at_most: 0, kind: architectural").verdict,
+              Verdict::NotApplicable);
+}
+
+/// The numbers that a verdict rests on stand in the table.
+TEST(Claims, WhatWasJudgedByCpuTimeIsShown) {
+    const Timed time = [](double n, int) { return 20.0 * n; };
+    const auto columnsOf = [&](const std::string& claim) {
+        const config::Experiment experiment = tables::experimentFrom(timedBody(claim));
+        tables::Table table = tables::buildTable(experiment, timedRows(6, time, time));
+        const ClaimResult result = evaluateClaims(experiment, table, kSoftware).at(0);
+        tables::showProcessTimes(result.columnsByProcess, table);
+        std::vector<std::string> labels;
+        for (const tables::TableColumn& column : table.columns) labels.push_back(column.label);
+        if (labels[1] == "cpu_ms") EXPECT_EQ(table.rows[1].cells[1].measured, "40.0");
+        return labels;
+    };
+    EXPECT_THAT(columnsOf("trend: ms, over: n, at_most: 2"),
+                testing::ElementsAre("ms", "cpu_ms", "fps"));
+    EXPECT_THAT(columnsOf("order: [8, 1], across: n, at: {column: fps}, kind: algorithmic"),
+                testing::ElementsAre("ms", "fps", "cpu_fps"));
+    EXPECT_THAT(columnsOf("bound: ms, at_most: 9, kind: absolute"),
+                testing::ElementsAre("ms", "fps"));
+}
+
 TEST(Claims, ARoundThatIsNotANumberIsNotPassedOver) {
     const auto records = timedRows(6, [](double n, int round) { return round == 3 ? 0.0 : n; });
     const ClaimResult result =

@@ -99,13 +99,13 @@ class WatchedNights {
         double seconds = 0.0;
         std::vector<Difference> differences =
             compareByTurns([&](Sides& sides, const std::set<std::string>& tables) {
-                sides.isSoftware = true;
                 for (int round = 0; round < kRounds; ++round) {
                     for (std::size_t i = 0; i < test::kWatched.size(); ++i) {
                         const test::WatchedSeries& watched = test::kWatched[i];
                         SeriesKey key = test::timeOf(watched.method);
                         key.table = watched.table;
                         key.metric = "process_time_ms";
+                        sides.byProcess.insert(key.table);
                         if (!tables.empty() && !tables.contains(key.table)) continue;
                         sides.before[key].push_back(draw(watched));
                         sides.after[key].push_back(draw(watched) * (i == changed ? change : 1.0));
@@ -527,12 +527,12 @@ TEST(Comparison, CpuTimeStandsForTheClockOnASoftwareDevice) {
     const SeriesKey clock = test::timeOf("m");
     SeriesKey process = clock;
     process.metric = "process_time_ms";
-    const Series ten(8, 10.0), twenty(8, 20.0);
+    const Series ten(12, 10.0), twenty(12, 20.0);
     const SeriesMap before = {{clock, ten}, {process, ten}};
     const SeriesMap after = {{clock, twenty}, {process, ten}};
-    const auto keys = [&](const SeriesMap& newer, bool isSoftware) {
+    const auto keys = [&](const SeriesMap& newer, bool isByProcess) {
         Rules rules;
-        rules.isSoftware = isSoftware;
+        if (isByProcess) rules.byProcess = {clock.table};
         std::vector<std::string> metrics;
         for (const Difference& difference : compare(before, newer, Pairing::ByTurns, rules)) {
             metrics.push_back(difference.key.metric + ": " +
@@ -542,7 +542,8 @@ TEST(Comparison, CpuTimeStandsForTheClockOnASoftwareDevice) {
     };
     using Metrics = std::vector<std::string>;
     EXPECT_EQ(keys(after, true), Metrics{"process_time_ms: same"});
-    EXPECT_EQ(keys(after, false), Metrics{"wall_time_ms: slower"});
+    // A program may wait: all of its times are watched.
+    EXPECT_EQ(keys(after, false), (Metrics{"process_time_ms: same", "wall_time_ms: slower"}));
     // A build that does not record it yet.
     EXPECT_EQ(keys({{clock, twenty}}, true), Metrics{"wall_time_ms: slower"});
 }
@@ -614,6 +615,26 @@ TEST(SeriesOf, TakesNothingElseThatIsMadeOfTimes) {
     const SeriesMap series = seriesOf(records, {});
     ASSERT_EQ(series.size(), 1U);
     EXPECT_EQ(series.begin()->first.metric, "voxels");
+}
+
+TEST(SeriesOf, OfAProgramTakesItsOwnTimesToo) {
+    std::vector<records::Record> records = {
+        recordOf("wall_time_ms", "ms", 1), recordOf("render_ms", "ms", 2),
+        recordOf("rays_per_second", "ray/s", 3), recordOf("setup_time_ms", "ms", 4)};
+    records[3].frame = records[3].repeat = records::kSetup;
+    const auto titles = [&](const Tables& byClock) {
+        std::vector<std::string> all;
+        for (const auto& [key, values] : seriesOf(records, {}, byClock)) {
+            EXPECT_TRUE(key.isTime());
+            all.push_back(key.metric);
+        }
+        return all;
+    };
+    using Titles = std::vector<std::string>;
+    EXPECT_EQ(titles({"p/1"}), (Titles{"render_ms", "wall_time_ms"}));
+    EXPECT_EQ(titles({"p/2"}), Titles{"wall_time_ms"});
+    records[1].lane = "quality";
+    EXPECT_EQ(titles({"p/1"}), Titles{"wall_time_ms"});
 }
 
 TEST(SeriesOf, TheLastOfTwoValuesOfOnePlaceCounts) {
