@@ -139,28 +139,12 @@ std::pair<int, int> readOutput(Params& params) {
     return {width, height};
 }
 
-Measure readMeasure(Params& params, bool isOwn) {
+Measure readMeasure(Params& params, Measure measure) {
     constexpr Choice<Measure::Lane> kLanes[] = {
         {Measure::Lane::Quality, "quality", "may run beside others"},
         {Measure::Lane::Timing, "timing", "runs alone"}};
     constexpr double kMax = 1'000'000;
-    // Who says nothing of how to measure, or what to show, wants times, in about a minute.
-    const bool isTimed = isOwn && !params.isGiven("lane") && !params.isGiven("scene_seeds");
-    Measure measure;
-    if (isTimed) {
-        measure.lane = Measure::Lane::Timing;
-        measure.warmup = 1;
-        measure.processes = kFewestRounds;
-        measure.isWithinBudget = true;
-    }
     measure.lane = params.getEnum("lane", measure.lane, kLanes, {"how cases run"});
-    measure.warmup = params.getInt("warmup", measure.warmup,
-                                   {"iterations before the first measured one", "", 0, kMax});
-    measure.repeats = params.getInt("repeats", measure.repeats,
-                                    {"measured iterations in one process", "", 1, kMax});
-    measure.processes =
-        params.getInt("processes", measure.processes,
-                      {"rounds: in each every case is run, in a process of its own", "", 1, kMax});
     measure.relativeError = params.getDouble(
         "relative_error", measure.relativeError,
         {"rounds go on until half of each 95 % interval ÷ time is no more, and then "
@@ -170,11 +154,28 @@ Measure readMeasure(Params& params, bool isOwn) {
     if (measure.relativeError > 0.0 && !params.isGiven("lane")) {
         measure.lane = Measure::Lane::Timing;
     }
+    // Times are wanted with an interval, in about a minute.
+    if (measure.lane == Measure::Lane::Timing) {
+        measure.warmup = 1;
+        measure.processes = kFewestRounds;
+        measure.isWithinBudget = !params.isGiven("processes");
+    }
+    measure.warmup = params.getInt("warmup", measure.warmup,
+                                   {"iterations before the first measured one", "", 0, kMax});
+    measure.repeats = params.getInt("repeats", measure.repeats,
+                                    {"measured iterations in one process", "", 1, kMax});
+    measure.processes = params.getInt(
+        "processes", measure.processes,
+        {"rounds: in each every case is run, in a process of its own; of times six, or "
+         "as many as fit into the budget, where it is not given",
+         "", 1, kMax});
     measure.processesAtMost = params.getInt("processes_at_most", measure.processesAtMost,
                                             {"rounds, where they go on", "", 1, kMax});
     measure.timeBudgetS = params.getDouble(
         "time_budget_s", measure.timeBudgetS,
-        {"of all rounds of the file: none is begun to end later", "seconds", 0, 1e9});
+        {"of all rounds of the file but those that 'processes' asks for: none is begun to end "
+         "later",
+         "seconds", 0, 1e9});
     measure.frames = params.getInt("frames", measure.frames,
                                    {"frames of a path; each is repeated", "", 1, kMax});
     measure.sceneSeeds = params.getInt(
@@ -188,9 +189,6 @@ Measure readMeasure(Params& params, bool isOwn) {
         params.getDouble("time_limit_s", measure.timeLimitS,
                          {"of the whole case, scene loading included", "seconds", 1e-3, 1e9});
     params.finish();
-    // Rounds go on from those that an interval takes.
-    const bool isOneRound = measure.relativeError > 0.0 && !params.isGiven("processes");
-    if (isOneRound && measure.lane == Measure::Lane::Timing) measure.processes = kFewestRounds;
     return measure;
 }
 
@@ -217,7 +215,7 @@ SchemaSection outputKeys() {
 
 SchemaSection measureKeys() {
     Params params(Node(), "measure");
-    readMeasure(params, false);
+    readMeasure(params);
     return declared("measure", params);
 }
 

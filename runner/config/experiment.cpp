@@ -229,16 +229,40 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     experiment.sweep = section("sweep");
     Params output(section("output"), "output");
     std::tie(experiment.outputWidthPx, experiment.outputHeightPx) = readOutput(output);
-    Params measure(section("measure"), "measure");
-    experiment.measure =
-        readMeasure(measure, experiment.kind == Kind::Sweep && !document.find("layout"));
-    requireTold(document, experiment);
     if (const Node* shows = document.find("shows")) {
         if (!shows->isSequence()) throwNotAllowed(*shows, "shows", "a list of names of pictures");
         for (const Node& name : shows->items()) {
             experiment.shows.push_back(lineOf(name, "shows"));
         }
     }
+}
+
+bool showsTimes(const Layout& layout) {
+    const auto isOfTime = [](const Selection& selection) {
+        return (selection.metric && isTimeMetric(*selection.metric)) ||
+               (selection.against && isTimeMetric(selection.against->metric));
+    };
+    const auto hasTime = [&](const LayoutAxis& axis) {
+        return std::ranges::any_of(axis.labels,
+                                   [&](const auto& label) { return isOfTime(label.second); });
+    };
+    return isOfTime(layout.cell) || std::ranges::any_of(layout.rows, hasTime) ||
+           std::ranges::any_of(layout.columns, hasTime);
+}
+
+/// How it is measured, which depends on what is shown: who shows times, or anything that there is,
+/// of one scene, wants times.
+void readLane(const Node& document, Experiment& experiment) {
+    const Node* node = document.find("measure");
+    const Node* seeds = node && node->isMap() ? node->find("scene_seeds") : nullptr;
+    const bool hasSeveral = seeds && seeds->tryInteger().value_or(1) > 1;
+    const bool isTimed =
+        experiment.hasDefaultLayout() ? !hasSeveral : showsTimes(experiment.layout);
+    Measure defaults;
+    if (isTimed) defaults.lane = Measure::Lane::Timing;
+    Params params(node ? *node : Node(), "measure");
+    experiment.measure = readMeasure(params, defaults);
+    requireTold(document, experiment);
 }
 
 /// `printed.at` is of all cases alike.
@@ -347,6 +371,7 @@ Experiment readExperiment(const Node& document, const std::filesystem::path& fil
         requireOnlyPrinted(document);
     }
     readTable(document, isComplete, experiment);
+    if (document.find("technique")) readLane(document, experiment);
     if (const Node* node = document.find("assumptions")) {
         experiment.assumptions = readAssumptions(*node);
     }
@@ -441,7 +466,7 @@ SchemaSection content() {
          {"output", "map", "512 × 512", "size of the image", refTo("output")},
          {"sweep", "{axis: values}", "{}", "axes multiply: each point is a case", refTo("sweep")},
          {"measure", "map",
-          "once; of sweep_of without layout and lane: timed, six rounds or a minute",
+          "once; where times are shown, and of sweep_of without layout: six rounds, or a minute",
           "lane, warm-up, repeats and processes", refTo("measure")},
          {"shows", "[name]", "those with a truth",
           "pictures that the document shows, by the names that the technique gives them (`classes` "

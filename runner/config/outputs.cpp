@@ -67,6 +67,17 @@ std::string_view betterText(Better better) {
     return "";
 }
 
+int timePower(std::string_view metric) {
+    if (metric.ends_with("frame_rate") || metric.ends_with("_per_second")) return -1;
+    const bool isTime =
+        metric.ends_with("_ms") || metric.find("_us_per_") != std::string_view::npos;
+    return isTime ? 1 : 0;
+}
+
+bool isTimeMetric(std::string_view metric) {
+    return timePower(metric) != 0;
+}
+
 std::string whyNoTimeName(std::string_view name, std::string_view unit) {
     static constexpr std::string_view kUnits[] = {
         "ns",      "nanosecond", "nanoseconds", "us",           "µs", "microsecond", "microseconds",

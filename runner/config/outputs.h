@@ -50,7 +50,12 @@ inline constexpr std::string_view kShareOf = "_of";
 /// "lower is better", "higher is better", "".
 std::string_view betterText(Better better);
 
-/// Claims know times and rates by their names (tables::timePower) and judge everything else from
+/// What a metric does as all times double: 1 doubles, -1 halves (a rate), 0 stays.
+int timePower(std::string_view metric);
+/// Whether a metric is a time or a number per time: what claims of a `kind` are about.
+bool isTimeMetric(std::string_view metric);
+
+/// Claims know times and rates by their names (timePower) and judge everything else from
 /// one sample. Why a metric of that name and unit would be taken for what it is not, as a sentence;
 /// empty where it is not. A time is `…_ms` in ms, or `…_us_per_…` in us; what is per second is
 /// `…frame_rate` or `…_per_second`.

@@ -107,9 +107,9 @@ SchemaFile documentsSchema();
 /// The JSON schema of a declared parameter's values.
 Json jsonTypeOf(const ParamInfo& info);
 
-/// The `measure` and `output` sections; their declarations are part of the schema. `isOwn`: an
-/// experiment of one's own without a layout, which is timed unless it names a lane or seeds.
-Measure readMeasure(Params& params, bool isOwn);
+/// The `measure` and `output` sections; their declarations are part of the schema. Of `measure`
+/// the lane may be another one where the section does not name it.
+Measure readMeasure(Params& params, Measure measure = {});
 std::pair<int, int> readOutput(Params& params);
 
 }  // namespace gfxrepro::config

@@ -274,7 +274,7 @@ struct Gathered {  // what the records of a cell came to
 
 void takeRow(const records::Record& record, const CellQuery& query, int unit,
              std::map<int, std::vector<double>>& process, Gathered& gathered) {
-    if (isTimeMetric(query.metric) && record.lane == "quality") {
+    if (config::isTimeMetric(query.metric) && record.lane == "quality") {
         if (gathered.worst < records::Status::Ambiguous) gathered.isUntimed = true;
         gathered.note(records::Status::Ambiguous,
                       "measured in the quality lane, where cases run side "
@@ -453,17 +453,6 @@ std::string_view sceneSourceName(SceneSource source) {
     return kNames[static_cast<std::size_t>(source)];
 }
 
-int timePower(std::string_view metric) {
-    if (metric.ends_with("frame_rate") || metric.ends_with("_per_second")) return -1;
-    const bool isTime =
-        metric.ends_with("_ms") || metric.find("_us_per_") != std::string_view::npos;
-    return isTime ? 1 : 0;
-}
-
-bool isTimeMetric(std::string_view metric) {
-    return timePower(metric) != 0;
-}
-
 Where whereOf(const config::Layout& layout, const Key& row, const Key& column) {
     return partsOver(layout, row, column).where;
 }
@@ -487,10 +476,10 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
 
 Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     Cell cell;
-    cell.isTime =
-        isTimeMetric(query.metric) || (query.against && isTimeMetric(query.against->metric));
-    cell.timePower =
-        timePower(query.metric) - (isShare(query) ? timePower(query.against->metric) : 0);
+    cell.isTime = config::isTimeMetric(query.metric) ||
+                  (query.against && config::isTimeMetric(query.against->metric));
+    cell.timePower = config::timePower(query.metric) -
+                     (isShare(query) ? config::timePower(query.against->metric) : 0);
     Gathered gathered = gather(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
     const std::size_t notRun = gathered.notRun, planned = gathered.caseIds.size() + notRun;

@@ -143,11 +143,6 @@ std::string_view sceneSourceName(SceneSource source);
 /// Where the scenes come from of the cases that a row takes.
 SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases);
 
-/// What a metric does as all times double: 1 doubles, -1 halves (a rate), 0 stays.
-int timePower(std::string_view metric);
-/// Whether a metric is a time or a number per time: what claims of a `kind` are about.
-bool isTimeMetric(std::string_view metric);
-
 /// The measurements of one cell: of each process (by its number), of each unit (a frame of a case),
 /// its repeats. A process need not have every unit.
 struct Samples {

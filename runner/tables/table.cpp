@@ -182,7 +182,7 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
     std::set<std::string> labels;
     for (const Series& series : declared(all, experiment.outputs)) {
         if (axes.contains(series.metric)) continue;  // its axis says it
-        const bool isTime = isTimeMetric(series.metric);
+        const bool isTime = config::isTimeMetric(series.metric);
         const bool isConstant = series.least == series.most && !isTime && measured.size() > 1 &&
                                 series.cases.size() == measured.size();
         if (isConstant) {

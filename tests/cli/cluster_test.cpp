@@ -202,7 +202,7 @@ TEST(Shards, MergeRefusesOtherPlansAndNoRuns) {
 
 TEST(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
     const TemporaryFolder folder;
-    const std::string config = writeNumbers(folder, 3, "measure: {lane: timing}\n");
+    const std::string config = writeNumbers(folder, 3, "measure: {lane: timing, processes: 1}\n");
     const std::string dir = folder.path() / "run";
     ASSERT_EQ(measure(config, dir).exitCode, 0);
     // As if the run had begun elsewhere and had lost its last case.
@@ -559,7 +559,7 @@ TEST(Submit, WithoutACopyOfTheProgramNothingIsSubmitted) {
 
 TEST(Submit, DryRunWritesNothing) {
     const TemporaryFolder folder;
-    const std::string config = writeNumbers(folder, 6, "measure: {lane: timing}\n");
+    const std::string config = writeNumbers(folder, 6, "measure: {lane: timing, processes: 1}\n");
     const std::string out = folder.path() / "out";
     const ProcessResult result = mockGfxrepro(
         {"submit", config, "--device", "software", "--out", out, "--shards", "3", "--dry-run",

@@ -26,9 +26,10 @@ class Compare : public ::testing::Test {
         return path;
     }
     ProcessResult byTurns(int extraMs) const {
-        const fs::path config = writeMockConfig(folder,
-                                                "params: {busy_ms: 20}\n"
-                                                "measure: {lane: timing, warmup: 0, repeats: 2}\n");
+        const fs::path config =
+            writeMockConfig(folder,
+                            "params: {busy_ms: 20}\n"
+                            "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2}\n");
         return mockGfxrepro({"compare", "--binaries", "--rounds", "8", "--profile", "full",
                              "--device", "software", "--history", history, "--out", out,
                              program("old", 0), program("new", extraMs), config});
@@ -57,7 +58,8 @@ TEST_F(Compare, TheSameBuildRaisesNoAlarm) {
 }
 
 TEST_F(Compare, RunsOfOneProcessCannotTellTimes) {
-    const fs::path config = writeMockConfig(folder, "measure: {lane: timing, repeats: 2}\n");
+    const fs::path config =
+        writeMockConfig(folder, "measure: {lane: timing, processes: 1, repeats: 2}\n");
     const std::string a = folder.path() / "a", b = folder.path() / "b";
     for (const std::string& dir : {a, b}) {
         ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
@@ -109,7 +111,7 @@ TEST_F(Compare, ACaseThatNeitherSideMeasuredWeighsMoreThanAnAlarm) {
 
 TEST_F(Compare, TimesThatAreVoidOnBothSidesAreNamed) {
     const fs::path config = writeMockConfig(
-        folder, "params: {behaviour: blank}\nmeasure: {lane: timing, repeats: 2}\n");
+        folder, "params: {behaviour: blank}\nmeasure: {lane: timing, processes: 1, repeats: 2}\n");
     const std::string a = folder.path() / "a", b = folder.path() / "b";
     for (const std::string& dir : {a, b}) {
         ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);

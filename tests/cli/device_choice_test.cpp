@@ -118,9 +118,10 @@ TEST_F(DeviceChoice, AWordThatIsNoDeviceIsAMistakeOfTheCommandLine) {
 
 TEST_F(DeviceChoice, OnAGpuAFrameIsRepeatedByTime) {
     if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: which the pretended one would stand behind";
-    config = writeMockConfig(folder,
-                             "params: {pause_ms: 20}\n"
-                             "measure: {lane: timing, warmup: 0, repeats: 2, frames: 1}\n");
+    config = writeMockConfig(
+        folder,
+        "params: {pause_ms: 20}\n"
+        "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2, frames: 1}\n");
     const ProcessResult run = onPretended("gpu");
     ASSERT_EQ(run.exitCode, 0) << run.err;
     const auto rows = [&](const char* metric) {
@@ -161,9 +162,10 @@ TEST_F(DeviceChoice, OfSeveralGpusThatOfTheClusterIsTaken) {
 
 TEST_F(DeviceChoice, WhatTheGpuDidIsKeptWithItsTimes) {
     if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: which the pretended one would stand behind";
-    config = writeMockConfig(folder,
-                             "params: {pause_ms: 20}\n"
-                             "measure: {lane: timing, warmup: 0, repeats: 2, frames: 1}\n");
+    config = writeMockConfig(
+        folder,
+        "params: {pause_ms: 20}\n"
+        "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2, frames: 1}\n");
     ASSERT_EQ(onPretended("gpu", "serves", {kNvml}).exitCode, 0);
     const auto gpuOf = [&] { return lastManifest()["machine_states"].begin()->at("gpu"); };
     EXPECT_EQ(gpuOf()["lowest_clock_hz"], 1.98e9);

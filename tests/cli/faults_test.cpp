@@ -160,7 +160,7 @@ TEST(Faults, APerfectPictureIsInfinitelyGood) {
 TEST(Faults, WhatSetUpMeasuredIsNoFrame) {
     const TemporaryFolder folder;
     const std::string config =
-        writeMockConfig(folder, "measure: {lane: timing, frames: 2, repeats: 2}\n");
+        writeMockConfig(folder, "measure: {lane: timing, processes: 1, frames: 2, repeats: 2}\n");
     const std::string dir = folder.path() / "run";
     EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
     ASSERT_EQ(rowsOf(dir, "setup_time_ms").size(), 1U);
@@ -174,8 +174,8 @@ TEST(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
     const std::string zone = "machine/sys/class/thermal/thermal_zone0/";
     folder.write(zone + "temp", "97000\n");
     const std::string machine = folder.path() / "machine";
-    const std::string config =
-        writeMockConfig(folder, "measure: {lane: timing, repeats: 2}\nsweep: {number: [1, 2]}\n");
+    const std::string config = writeMockConfig(
+        folder, "measure: {lane: timing, processes: 1, repeats: 2}\nsweep: {number: [1, 2]}\n");
     const std::string dir = folder.path() / "run";
     const auto run = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments = {GFXREPRO_MOCK_PROGRAM, "reproduce"};
@@ -223,7 +223,7 @@ TEST(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
     const std::string config =
         writeMockConfig(folder,
                         "sweep: {behaviour: [ok, blank, unequal]}\n"
-                        "measure: {lane: timing, repeats: 3}\n"
+                        "measure: {lane: timing, processes: 1, repeats: 3}\n"
                         "layout:\n  rows: behaviour\n  columns:\n    fps: {metric: frame_rate}\n"
                         "    n: {metric: number, format: \"{median:.0f}\"}\n");
     const std::string dir = folder.path() / "run";
@@ -264,7 +264,7 @@ TEST(Faults, TimesAreMeasuredInRounds) {
         const std::string config = writeMockConfig(
             folder,
             "sweep: {number: [1, 2]}\nparams: {pause_ms: 5}\n"
-            "measure: {lane: timing, " +
+            "measure: {lane: timing, processes: 1, " +
                 keys +
                 "}\n"
                 "layout:\n  rows: number\n  columns:\n    ms: {metric: wall_time_ms}\n");

@@ -34,9 +34,10 @@ class Nightly : public ::testing::Test {
                                               GFXREPRO_SOURCE "/scripts/nightly"};
         if (isFix) arguments.emplace_back("--fix");
         if (!reason.empty()) arguments.insert(arguments.end(), {"--accept", reason});
-        const fs::path config = writeMockConfig(folder,
-                                                "params: {busy_ms: 80}\n"
-                                                "measure: {lane: timing, warmup: 0, repeats: 2}\n");
+        const fs::path config =
+            writeMockConfig(folder,
+                            "params: {busy_ms: 80}\n"
+                            "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2}\n");
         arguments.insert(arguments.end(), {"--rounds", "8", "--program", bundle(extraMs), config});
         return runProgram(arguments);
     }
@@ -44,9 +45,10 @@ class Nightly : public ::testing::Test {
     ProcessResult nightOf(const std::string& script) const {
         const fs::path program = folder.write("broken/gfxrepro", "#!/bin/sh\n" + script);
         fs::permissions(program, fs::perms::owner_all);
-        const fs::path config = writeMockConfig(folder,
-                                                "params: {busy_ms: 80}\n"
-                                                "measure: {lane: timing, repeats: 2}\n");
+        const fs::path config =
+            writeMockConfig(folder,
+                            "params: {busy_ms: 80}\n"
+                            "measure: {lane: timing, processes: 1, repeats: 2}\n");
         return runProgram({"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
                            GFXREPRO_SOURCE "/scripts/nightly", "--rounds", "8", "--program",
                            program.parent_path(), config});

@@ -109,7 +109,8 @@ TEST(Twins, AreMeasuredOnceAndFillBothTables) {
 TEST(Twins, NeverAmongTimes) {
     const TemporaryFolder folder;
     const std::string dir = folder.path() / "run";
-    const ProcessResult run = measureTwins(writeTables(folder, "measure: {lane: timing}\n"), dir);
+    const ProcessResult run =
+        measureTwins(writeTables(folder, "measure: {lane: timing, processes: 1}\n"), dir);
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(measuredCount(dir), 6);
     EXPECT_NE(timesOf(dir, "demo2026/1").at(2), timesOf(dir, "demo2026/2").at(2));

@@ -465,7 +465,8 @@ TEST(Claims, OnlyWhatHasAnIntervalIsKnownAsAmbiguous) {
             claim + "}\n");
         return refusalOf(experiment);
     };
-    const std::string count = "measure: {scene_seeds: 1}\n", five = "measure: {scene_seeds: 5}\n";
+    const std::string count = "measure: {lane: quality}\n";
+    const std::string five = "measure: {lane: quality, scene_seeds: 5}\n";
     const std::string times = "measure: {lane: timing, processes: 6}\n";
     const std::string known = ", because: {verdict: ambiguous, reason: r}";
     const std::string refused =

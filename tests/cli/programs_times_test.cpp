@@ -1,0 +1,126 @@
+// By which clock programs are judged, when they are timed, what is made of them once, and the seeds
+// of their random numbers.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "engine/core/files.h"
+#include "engine/image/png_io.h"
+#include "runner/records/images.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// `renderer.sh NUMBER OUT`: sleeps 0.24 s ÷ NUMBER, and says what stands in the file `own_ms`.
+constexpr const char* kSleeper = R"(#!/bin/sh
+here=$(dirname "$0")
+case $1 in 1) sleep 0.24 ;; 2) sleep 0.12 ;; 4) sleep 0.06 ;; esac
+echo "$1" >>"$here/runs"
+cp "$here/picture.png" "$2/result.png"
+echo "{\"metric\": \"own_ms\", \"value\": $(cat "$here/own_ms"), \"unit\": \"ms\"}" >&3
+)";
+
+constexpr const char* kSleeps =
+    "sweep_of: mine\ntitle: Mine\ntechnique: external\n"
+    "program:\n"
+    "  command: \"{here}/renderer.sh {number} {out}\"\n"
+    "  params: {number: {default: 8, min: 0, max: 99}}\n"
+    "  metrics: {own_ms: ms}\n";
+constexpr const char* kImages = "  images: {result: {file: result.png, truth: {number: 99}}}\n";
+
+class Timed : public testing::Test {
+  protected:
+    Timed() {
+        fs::permissions(folder.write("renderer.sh", kSleeper), fs::perms::owner_all);
+        folder.write("own_ms", "50");
+        draw(100);
+    }
+    void draw(std::uint8_t grey) const {
+        image::Image8 picture(16, 16, 3, grey);
+        picture.values()[0] = 7;
+        image::writePng(folder.path() / "picture.png", picture);
+    }
+    ProcessResult reproduce(const std::string& config, const std::string& name = "run") const {
+        return gfxrepro({"reproduce", folder.write("mine.yaml", config), "--out", runDir(name)});
+    }
+    std::string runDir(const std::string& name = "run") const { return folder.path() / name; }
+    std::vector<double> valuesOf(const std::string& metric) const {
+        std::vector<double> values;
+        for (const records::Record& row : rowsOf(runDir(), metric)) values.push_back(row.value);
+        return values;
+    }
+
+    TemporaryFolder folder;
+};
+
+TEST_F(Timed, AProgramThatWaitsIsJudgedByTheClock) {
+    const ProcessResult result = reproduce(
+        std::string(kSleeps) +
+        "sweep: {number: [1, 2, 4]}\n"
+        "layout: {rows: number, columns: {ms: {metric: wall_time_ms}, own: {metric: own_ms}}}\n"
+        "claims:\n"
+        "  slope: {says: it falls with the number, kind: algorithmic, trend: ms, over: number, "
+        "at_least: -1.2, at_most: -0.6}\n"
+        "  slower: {says: two take longer than four, kind: algorithmic, across: number, "
+        "ratio: \"'2' / '4'\", at_least: 1.3, at: {column: ms}}\n"
+        "  absolute: {says: it takes a tenth of a second, kind: absolute, bound: ms, at_least: "
+        "100, at: {number: 1}}\n");
+    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+    const std::string claims = readFile(runDir() + "/claims.csv");
+    EXPECT_THAT(claims, Not(HasSubstr("CPU time")));
+    EXPECT_THAT(claims, Not(HasSubstr("not-applicable")));
+    EXPECT_EQ(std::ranges::count(claims, '\n'), 4);
+    EXPECT_THAT(readFile(runDir() + "/tables/sweep-mine.csv"), Not(HasSubstr("cpu_ms")));
+}
+
+TEST_F(Timed, ItsOwnTimesAreComparedToo) {
+    const std::string config = kSleeps + std::string("measure: {processes: 6}\n");
+    ASSERT_EQ(reproduce(config, "before").exitCode, 0);
+    folder.write("own_ms", "100");
+    ASSERT_EQ(reproduce(config, "after").exitCode, 0);
+    const std::string history = folder.path() / "history.csv";
+    const ProcessResult result = gfxrepro({"compare", runDir("before"), runDir("after"), "--out",
+                                           folder.path() / "compared", "--history", history});
+    EXPECT_EQ(result.exitCode, 1) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("sweep/mine external own_ms: slower × 2.000"));
+    for (const char* metric : {"own_ms", "wall_time_ms"}) {
+        EXPECT_THAT(readFile(folder.path() / "compared" / "junit.xml"), HasSubstr(metric));
+        EXPECT_THAT(readFile(history), HasSubstr(metric));
+    }
+}
+
+/// Keys that are not given are what they would be without the others.
+TEST_F(Timed, AKeyOfMeasureChangesThatKeyAlone) {
+    const std::string shown =
+        "params: {number: 8}\n"
+        "layout: {rows: number, columns: {ms: {metric: wall_time_ms}, own: {metric: own_ms}}}\n";
+    for (const std::string& config : {shown, shown + "measure: {time_budget_s: 50}\n",
+                                      std::string("measure: {lane: timing, time_budget_s: 50}\n"),
+                                      std::string("measure: {repeats: 1}\n")}) {
+        fs::remove_all(runDir());
+        ASSERT_EQ(reproduce(kSleeps + config).exitCode, 0) << config;
+        EXPECT_EQ(rowsOf(runDir(), "wall_time_ms").size(), 6U) << config;
+        EXPECT_THAT(readFile(runDir() + "/tables/sweep-mine.csv"), Not(HasSubstr("not timed")));
+    }
+    // What shows no time is not timed, and what says how often is measured as often.
+    for (const auto& [config, count] :
+         {std::pair{std::string("layout: {columns: {n: {metric: peak_memory_bytes}}}\n"), 1U},
+          std::pair{shown + "measure: {processes: 2, time_budget_s: 0}\n", 2U},
+          std::pair{shown + "measure: {time_budget_s: 0}\n", 1U}}) {
+        fs::remove_all(runDir());
+        ASSERT_EQ(reproduce(kSleeps + config).exitCode, 0) << config;
+        EXPECT_EQ(rowsOf(runDir(), "wall_time_ms").size(), count) << config;
+    }
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
