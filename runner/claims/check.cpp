@@ -235,6 +235,7 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
         for (const ClaimSpec::Known& known : claim.because) {
             if (known.verdict != verdictName(Verdict::Ambiguous) || reader.readsTime()) continue;
             if (reader.readsSome(isShare) || seedsAtMost(experiment, known.profile) > 1) continue;
+            if (experiment.measure.seeds == config::Measure::Seeds::Process) continue;
             complain(
                 "is known as ambiguous, and reads neither a time nor a share, of one scene: a "
                 "number without an interval holds or fails");

@@ -68,7 +68,7 @@ Sampled Operand::evaluate(const tables::TableRow& row, tables::Clock clock) {
         // A single round tells no more than the value.
         const bool hasRounds = measured.rounds.size() > 1;
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
-                         measured.areDraws});
+                         measured.areDraws, cell.seedCount > 0});
         values.push_back(measured.value);
     }
     std::vector<Sampled*> all;
@@ -76,6 +76,7 @@ Sampled Operand::evaluate(const tables::TableRow& row, tables::Clock clock) {
     Sampled result;
     result.point = evaluate(values);
     result.areDraws = keepRoundsOrDraws(all);
+    result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
     for (const int round : commonRounds(cells)) {
         for (std::size_t i = 0; i < cells.size(); ++i) values[i] = cells[i].at(round);
         result.rounds[round] = evaluate(values);

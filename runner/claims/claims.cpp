@@ -51,8 +51,12 @@ Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
         outcome.reason = reading.problem;
         return outcome;
     }
-    outcome.judgement = times ? judgeTimes(reading.group, part.onTimes, times->noise)
-                              : judge(reading.group, part.quantity, part.requirement);
+    // A count is what it is, and a p-value is of several pictures.
+    const bool isSampled = !part.requirement.isOfCounts && !part.isOfSeeds;
+    const bool varies = times || (isSampled && isRandom(reading.group));
+    outcome.judgement =
+        varies ? judgeVarying(reading.group, part.onTimes, times ? times->noise : std::nullopt)
+               : judge(reading.group, part.quantity, part.requirement);
     std::vector<std::string> reasons;
     if (outcome.judgement.isAbsent) reasons.emplace_back("there is no crossing within the rows");
     if (isNamed) reasons.push_back("worst at " + groupName);
@@ -73,7 +77,7 @@ Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
     }
     if (outcome.judgement.isSingleSample) reasons.emplace_back("one sample");
     outcome.reason = joined(reasons, "; ");
-    if (!times && !part.measuredName.empty() && !outcome.judgement.measured.empty()) {
+    if (!varies && !part.measuredName.empty() && !outcome.judgement.measured.empty()) {
         outcome.judgement.measured = part.measuredName + " " + outcome.judgement.measured;
     }
     return outcome;

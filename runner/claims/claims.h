@@ -119,9 +119,10 @@ std::string whyText(const ClaimResult& claim);
 
 /// Judges every claim of the experiment on its table. Each type is one quantity with a required
 /// range. Of values that are no times it is computed and judged as it is (judge(),
-/// judge.h); of times in each round, and a 95 % interval over rounds wholly inside of the
-/// range holds, wholly outside fails, else it is ambiguous (judgeTimes(), judge.h). On a
-/// software device the times of an algorithmic claim are the CPU times of the process. Groups of
+/// judge.h); of times, and of random numbers, in each round, and a 95 % interval over rounds wholly
+/// inside of the range holds, wholly outside fails, else it is ambiguous (judgeVarying(), judge.h).
+/// On a software device the times of an algorithmic claim are the CPU times of the process, but for
+/// what goes by the clock (config::goesByClock). Groups of
 /// rows are judged apart; the worst verdict counts. What reads a column that
 /// the table does not have is unmeasured. Throws Error with the claim's place for an operand that
 /// is no expression, or an axis that the table has not.

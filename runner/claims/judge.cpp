@@ -91,7 +91,8 @@ void decide(const Contrast& contrast, const Told& told, double distance, double 
         fmt::format("nearer to the bound than the noise of this table, {:.3g} %", 100.0 * noise);
 }
 
-std::string whyTooFew(std::size_t rounds) {
+std::string whyTooFew(std::size_t rounds, const Group& group) {
+    if (const std::string why = whyTooFewSeeds(group); !why.empty()) return why;
     if (rounds < 2) return "one sample of a time decides nothing";
     return fmt::format("a range of {} processes; an interval needs {}", rounds,
                        metrics::kFewestForInterval);
@@ -110,9 +111,9 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
         return judgement;
     }
     const Requirement& requirement = contrast.requirement;
-    if (values.size() < metrics::kFewestForInterval) {
+    if (values.size() < metrics::kFewestForInterval || !whyTooFewSeeds(group).empty()) {
         judgement.verdict = Verdict::Ambiguous;
-        judgement.why = whyTooFew(values.size());
+        judgement.why = whyTooFew(values.size(), group);
         metrics::Interval range{middle, middle};
         if (values.size() > 1) range = {std::ranges::min(values), std::ranges::max(values)};
         judgement.measured =
@@ -232,7 +233,34 @@ Judgement judge(Group group, const Quantity& quantity, const Requirement& requir
     return judgement;
 }
 
-Judgement judgeTimes(const Group& group, const Contrasts& contrasts, std::optional<double> noise) {
+bool isRandom(const Group& group) {
+    const auto isSuch = [](const std::vector<Sampled>& values) {
+        return std::ranges::any_of(values, &Sampled::isRandom);
+    };
+    return isSuch(group.x) || std::ranges::any_of(group.operands, isSuch);
+}
+
+std::string whyTooFewSeeds(const Group& group) {
+    std::optional<std::size_t> fewest;
+    const auto count = [&](const std::vector<Sampled>& values) {
+        for (const Sampled& value : values) {
+            if (!value.isRandom) continue;
+            const std::size_t seeds = std::max<std::size_t>(value.rounds.size(), 1);
+            fewest = std::min(fewest.value_or(seeds), seeds);
+        }
+    };
+    std::ranges::for_each(group.operands, count);
+    count(group.x);
+    if (!fewest || *fewest >= metrics::kFewestForInterval) return "";
+    return fmt::format(
+        "{} of random numbers; an interval needs {}: `measure: {{seeds: process, "
+        "processes: {}}}`",
+        *fewest == 1 ? "one sample" : fmt::format("{} seeds", *fewest), metrics::kFewestForInterval,
+        metrics::kFewestForInterval);
+}
+
+Judgement judgeVarying(const Group& group, const Contrasts& contrasts,
+                       std::optional<double> noise) {
     const std::vector<int> rounds = roundsOf(group);
     std::optional<Judgement> worst;
     for (const Contrast& contrast : contrasts(pointOf(group))) {

@@ -13,6 +13,9 @@
 // hypothesis testing and acceptance sampling", Technometrics 24). That one fails is the union of
 // theirs: among k comparisons on their bounds, up to k times the 2.5 % of one end.
 //
+// Random numbers whose seed is another in each round are judged likewise, and nothing is decided of
+// those of one seed: however many processes drew them, they are one sample.
+//
 // Rounds that end by a relative error are no fixed number; FrameTimes::isKnownTo says by which rule
 // their intervals hold the truth as often, too.
 #pragma once
@@ -34,6 +37,7 @@ struct Sampled {
     double point = 0.0;
     std::map<int, double> rounds;
     bool areDraws = false;  // they are of shares that were counted once (share_draws.h)
+    bool isRandom = false;  // another seed would give another value: it has no rounds of one seed
 
     double at(int round) const { return rounds.empty() ? point : rounds.at(round); }
 };
@@ -71,9 +75,15 @@ Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirem
 /// Shares that were counted once are judged by the interval of the quantity over their draws.
 Judgement judge(Group group, const Quantity& quantity, const Requirement& requirement);
 
-/// The worst of the contrasts. With fewer than metrics::kFewestForInterval rounds nothing is
-/// decided; nor where times would have to differ by less than `noise`, the table's, for another
-/// verdict.
-Judgement judgeTimes(const Group& group, const Contrasts& contrasts, std::optional<double> noise);
+/// Whether another seed would give the group other values.
+bool isRandom(const Group& group);
+
+/// What a group of random numbers lacks for judgeVarying(): more seeds; empty where it lacks none.
+std::string whyTooFewSeeds(const Group& group);
+
+/// Of times, and of random numbers: the worst of the contrasts. With fewer than
+/// metrics::kFewestForInterval rounds nothing is decided; nor where times would have to differ by
+/// less than `noise`, the table's, for another verdict.
+Judgement judgeVarying(const Group& group, const Contrasts& contrasts, std::optional<double> noise);
 
 }  // namespace gfxrepro::claims

@@ -87,6 +87,10 @@ void printMetrics(std::span<const config::MetricInfo> metrics) {
 void printOutputs(const config::Outputs& outputs) {
     fmt::print("\nmetrics\n");
     printMetrics(outputs.metrics);
+    if (outputs.areRandom) {
+        fmt::print(
+            "  of random numbers: `measure: {{seeds: process}}` draws others in each process\n");
+    }
     fmt::print("\npasses: what times are of, and what tells values of a metric apart\n");
     for (const config::PassInfo& info : outputs.passes) {
         fmt::print("{}", entryLines("  " + info.name, info.doc, kColumn));

@@ -144,6 +144,9 @@ Measure readMeasure(Params& params, Measure measure) {
         {Measure::Lane::Quality, "quality", "may run beside others"},
         {Measure::Lane::Timing, "timing", "runs alone"}};
     constexpr double kMax = 1'000'000;
+    constexpr Choice<Measure::Seeds> kSeeds[] = {
+        {Measure::Seeds::Case, "case", "the same in all processes of a case"},
+        {Measure::Seeds::Process, "process", "others in each, so that errors have an interval"}};
     measure.lane = params.getEnum("lane", measure.lane, kLanes, {"how cases run"});
     measure.relativeError = params.getDouble(
         "relative_error", measure.relativeError,
@@ -178,6 +181,13 @@ Measure readMeasure(Params& params, Measure measure) {
          "seconds", 0, 1e9});
     measure.frames = params.getInt("frames", measure.frames,
                                    {"frames of a path; each is repeated", "", 1, kMax});
+    const bool isByProcess = measure.seeds == Measure::Seeds::Process;
+    const Measure::Seeds seeds = params.getEnum(
+        "seeds", isByProcess ? Measure::Seeds::Process : Measure::Seeds::Case, kSeeds,
+        {"random numbers of a technique that draws some, or of a program with {seed}; of the "
+         "latter "
+         "with truths of other seeds: process"});
+    if (measure.seeds != Measure::Seeds::None || params.isGiven("seeds")) measure.seeds = seeds;
     measure.sceneSeeds = params.getInt(
         "scene_seeds", measure.sceneSeeds,
         {"seeds of a generated scene, from the catalogue's on: a case each", "", 1, 1000});

@@ -33,12 +33,19 @@ struct Measure {
     /// begun only where they end within `timeBudgetS`.
     bool isWithinBudget = false;
     double timeLimitS = 120.0;  // of the whole case, scene loading included
+    /// The random numbers of a case: there are none; the same in all of its processes; or others in
+    /// each. Of a case that is not in a plan yet Case may mean None.
+    enum class Seeds { None, Case, Process };
+    Seeds seeds = Seeds::None;
 
     /// Whether rounds may follow the first `processes`.
     bool mayContinue() const;
     /// Rounds that are measured whatever they take.
     int certainRounds() const;
 };
+
+/// What the seed grows by from one process of a case to the next, with Seeds::Process.
+inline constexpr int kSeedsOfAProcess = 1000;
 
 /// Begins the name of an axis that is a parameter of the generated scene: "scene.blades".
 inline constexpr std::string_view kSceneAxisPrefix = "scene.";

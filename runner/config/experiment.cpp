@@ -209,6 +209,26 @@ void requireTold(const Node& document, const Experiment& experiment) {
     const char* told = program.givesAllFrames ? placeholder::kFrames : placeholder::kFrame;
     require("measure", experiment.measure.frames > 1,
             fmt::format("{{{}}}, of which there are several", told), program.uses(told));
+    require("measure", experiment.measure.seeds != Measure::Seeds::None,
+            "{seed}, of which 'seeds' tells", program.uses(placeholder::kSeed));
+    for (const ProgramPicture& picture : program.pictures) {
+        const bool isOfItsOwn =
+            picture.truthParams.isNull() || picture.truthParams.find(placeholder::kSeed);
+        if (isOfItsOwn || experiment.measure.seeds != Measure::Seeds::Process) continue;
+        throw Error(picture.truthParams.location(),
+                    fmt::format("program: image '{}': truth needs 'seed', as that of the cases is "
+                                "another in each process",
+                                picture.name));
+    }
+}
+
+/// Of a built-in technique, what it would be if that draws random numbers.
+Measure::Seeds defaultSeeds(const Experiment& experiment) {
+    if (experiment.technique == kImported) return Measure::Seeds::None;
+    if (programOf(experiment).isNull()) return Measure::Seeds::Case;
+    const ExternalProgram program = readProgram(programOf(experiment));
+    if (!program.uses(placeholder::kSeed)) return Measure::Seeds::None;
+    return program.seedsByProcess ? Measure::Seeds::Process : Measure::Seeds::Case;
 }
 
 void readMeasurement(const Node& document, Experiment& experiment) {
@@ -260,6 +280,7 @@ void readLane(const Node& document, Experiment& experiment) {
         experiment.hasDefaultLayout() ? !hasSeveral : showsTimes(experiment.layout);
     Measure defaults;
     if (isTimed) defaults.lane = Measure::Lane::Timing;
+    defaults.seeds = defaultSeeds(experiment);
     Params params(node ? *node : Node(), "measure");
     experiment.measure = readMeasure(params, defaults);
     requireTold(document, experiment);

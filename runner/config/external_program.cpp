@@ -301,11 +301,6 @@ void readTruth(const Node& truth, const std::string& what, const Names& known,
     if (program.uses(placeholder::kSeed)) allowed.emplace_back(placeholder::kSeed);
     for (const ProgramParam& param : program.params) allowed.push_back(param.name);
     requireKeys(truth, what, allowed);
-    if (program.seedsByProcess && !truth.find(placeholder::kSeed)) {
-        throw Error(truth.location(), what +
-                                          " needs 'seed', as that of the cases is another in "
-                                          "each process");
-    }
     Node given = truth;  // read as a case's
     for (const char* name : {placeholder::kFrame, placeholder::kFrames}) given.erase(name);
     Params values(given, what);
@@ -374,6 +369,20 @@ const Node& programOf(const Experiment& experiment) {
     return program ? *program : kNone;
 }
 
+namespace {
+
+/// Whether it draws random numbers, and pictures are held against a truth that draws others.
+bool hasRandomErrors(const ExternalProgram& program) {
+    const auto hasOwnTruth = [](const ProgramPicture& picture) {
+        return picture.truthParams.isNull() || picture.truthParams.find(placeholder::kSeed);
+    };
+    return program.uses(placeholder::kSeed) &&
+           std::ranges::any_of(program.pictures, &ProgramPicture::hasTruth) &&
+           std::ranges::all_of(program.pictures, hasOwnTruth);
+}
+
+}  // namespace
+
 ExternalProgram readProgram(const Node& node) {
     requireKeys(node, "program", keysOf("program"));
     ExternalProgram program;
@@ -383,7 +392,6 @@ ExternalProgram readProgram(const Node& node) {
     section("here", [&](const Node& here) { program.here = lineOf(here, "program: here"); });
     section("gpu", [&](const Node& gpu) { program.usesGpu = gpu.asBool(); });
     program.givesAllFrames = isSecond(node, "frames", "one", "all");
-    program.seedsByProcess = isSecond(node, "seeds", "case", "process");
     Names known = reservedNames();
     section("params", [&](const Node& params) {
         if (!params.isMap()) throwNotAllowed(params, "program: params", "a map {name: parameter}");
@@ -413,7 +421,7 @@ ExternalProgram readProgram(const Node& node) {
                     "program: {frame}, and one run gives all frames; allowed: "
                     "{frames}, their number");
     }
-    if (program.seedsByProcess && !program.uses(placeholder::kSeed)) {
+    if (node.find("seeds") && !program.uses(placeholder::kSeed)) {
         throw Error(node.keyLocation("seeds"), "program: seeds: the command has no {seed}");
     }
     section("version", [&](const Node& version) {
@@ -431,6 +439,8 @@ ExternalProgram readProgram(const Node& node) {
     section("metrics", [&](const Node& metrics) { readMetrics(metrics, program); });
     section("passes", [&](const Node& passes) { readPasses(passes, program); });
     section("images", [&](const Node& images) { readPictures(images, known, program); });
+    program.seedsByProcess =
+        node.find("seeds") ? isSecond(node, "seeds", "case", "process") : hasRandomErrors(program);
     for (const ProgramParam& param : program.params) {
         if (program.uses(param.name)) continue;
         throw Error(
@@ -472,10 +482,8 @@ std::vector<SchemaSection> programKeys() {
            "what a run of it gives: one frame, {frame}; or all {frames} of the case, each line and "
            "picture with its own; the run's time is then shared out among them",
            choice({"one", "all"})},
-          {"seeds", "case | process", "case",
-           "of which {seed} is: the same in all processes of a case; or another in each, greater "
-           "by 1000, for rounds of independent random numbers",
-           choice({"case", "process"})},
+          {"seeds", "case | process", "process of one with {seed} and truths of other seeds",
+           "what `measure.seeds` is where it is not given", choice({"case", "process"})},
           {"gpu", "boolean", "false", "whether it works on the GPU: then a run asks which that is",
            boolean()},
           {"here", "folder", "that of this file", "what {here} is", text()}}},

@@ -46,9 +46,6 @@ struct ProgramParam {
     std::vector<std::string> choices;  // of a choice alone
 };
 
-/// What {seed} grows by from one process of a case to the next, with `seeds: process`.
-inline constexpr int kSeedsOfAProcess = 1000;
-
 /// A picture that the program leaves, .exr or .png.
 struct ProgramPicture {
     std::string name;
@@ -80,7 +77,7 @@ struct ExternalProgram {
     std::string here;                  // absolute folder
     bool usesGpu = false;
     bool givesAllFrames = false;  // one run all frames of a case; else each frame has its own run
-    bool seedsByProcess = false;  // {seed} is another in each process of a case
+    bool seedsByProcess = false;  // unless `measure.seeds` says otherwise
     std::vector<ProgramParam> params;
     Outputs outputs;                           // what it says; pictures with a truth are passes
     std::vector<std::string> optionalMetrics;  // that it may leave out

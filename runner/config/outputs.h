@@ -33,6 +33,9 @@ struct PassInfo {
 struct Outputs {
     std::vector<MetricInfo> metrics = {};
     std::vector<PassInfo> passes = {};
+    /// They depend on the seed of SetupContext: Monte Carlo, jitter, a random order. Not where it
+    /// only makes an input that all methods share.
+    bool areRandom = false;
 
     /// Of the share `m`, `m`_of is a metric, too. Null where there is none.
     const MetricInfo* find(std::string_view metric) const;

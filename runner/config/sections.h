@@ -108,7 +108,7 @@ SchemaFile documentsSchema();
 Json jsonTypeOf(const ParamInfo& info);
 
 /// The `measure` and `output` sections; their declarations are part of the schema. Of `measure`
-/// the lane may be another one where the section does not name it.
+/// lane and seeds may be other ones where the section does not name them.
 Measure readMeasure(Params& params, Measure measure = {});
 std::pair<int, int> readOutput(Params& params);
 

@@ -95,7 +95,7 @@ std::string tableCsv(const tables::Table& table) {
                 if (measured) {
                     line.number(measured->value);
                     line.number(measured->interval.low).number(measured->interval.high);
-                    line.text(tables::boundsName(measured->bounds));
+                    line.text(cell.boundsWord(*measured));
                 } else {
                     line.text("").text("").text("").text("");
                 }
@@ -341,6 +341,9 @@ class LatexWriter {
             addNote(
                 fmt::format("{} {}.", kClockMark, escapeLatex(tables::movedClockLegend(*clock))));
         }
+        if (const std::string note = tables::seedNote(table_); !note.empty()) {
+            addNote(escapeLatex(note));
+        }
         for (const std::string& note : runNotes_) {
             addNote(fmt::format("Note: {}.", escapeLatex(note)));
         }
@@ -370,7 +373,7 @@ class LatexWriter {
                 "%   {}  as measured\n"
                 "%   likewise {}/low and /high, the ends of its bounds,\n"
                 "%   and /bounds, what they are: 95 % interval (of times that of this "
-                "sitting), or the range of too few processes;\n"
+                "sitting), the range of too few processes, or one seed, which has none;\n"
                 "%   and, of several statistics in a cell, each below the cell's key\n",
                 cite(example), example);
         }
@@ -395,6 +398,8 @@ class LatexWriter {
             set(key + "/low", cell.low);
             set(key + "/high", cell.high);
             set(key + "/bounds", std::string(tables::boundsName(cell.bounds())));
+        } else if (cell.isOfOneSeed()) {
+            set(key + "/bounds", "one seed");
         }
         if (cell.values.size() < 2) return;
         for (const tables::Measured& measured : cell.values) {

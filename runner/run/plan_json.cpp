@@ -72,7 +72,8 @@ constexpr JsonMember kMeasure[] = {{"/lane", JsonKind::Text},
                                    {"/time_budget_s", JsonKind::Number},
                                    {"/frames", JsonKind::Int},
                                    {"/time_limit_s", JsonKind::Number},
-                                   {"/within_budget", JsonKind::Boolean, false}};
+                                   {"/within_budget", JsonKind::Boolean, false},
+                                   {"/seeds", JsonKind::Text, false}};
 
 Json measureJson(const config::Measure& measure) {
     Json json = {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"},
@@ -85,6 +86,10 @@ Json measureJson(const config::Measure& measure) {
                  {"frames", measure.frames},
                  {"time_limit_s", measure.timeLimitS}};
     if (measure.isWithinBudget) json["within_budget"] = true;
+    using Seeds = config::Measure::Seeds;
+    if (measure.seeds != Seeds::None) {
+        json["seeds"] = measure.seeds == Seeds::Process ? "process" : "case";
+    }
     return json;
 }
 
@@ -101,6 +106,11 @@ config::Measure measureFrom(const Json& json) {
     json.at("frames").get_to(measure.frames);
     json.at("time_limit_s").get_to(measure.timeLimitS);
     measure.isWithinBudget = json.value("within_budget", false);
+    const std::string seeds = json.value("seeds", "");
+    if (!seeds.empty()) {
+        measure.seeds =
+            seeds == "process" ? config::Measure::Seeds::Process : config::Measure::Seeds::Case;
+    }
     return measure;
 }
 

@@ -188,6 +188,19 @@ void requireFrames(const technique::Technique& technique, const config::Experime
     }
 }
 
+/// The seeds of its cases. Throws Error where the config speaks of them, and there are none.
+config::Measure::Seeds seedsOf(const config::Experiment& experiment,
+                               const technique::TechniqueInfo& info) {
+    if (info.createFrom || info.outputs().areRandom) return experiment.measure.seeds;
+    const Node* measure = experiment.document.find("measure");
+    if (measure && measure->find("seeds")) {
+        throw Error(measure->keyLocation("seeds"),
+                    fmt::format("measure: seeds: technique '{}' draws no random numbers",
+                                experiment.technique));
+    }
+    return config::Measure::Seeds::None;
+}
+
 /// What a technique needs beside a swept parameter, with how a sweep says so.
 [[noreturn]] void throwWithWhen(const Error& error, const Case& item) {
     const std::string text = error.what();
@@ -244,8 +257,10 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         technique::findTechnique(techniques, experiment.technique, where);
     std::vector<Case> cases = config::expandCases(experiment);
     requireCaseCount(cases.size(), experiment);
+    const config::Measure::Seeds seeds = seedsOf(experiment, info);
     for (Case& given : cases) {
         Case item = std::move(given);
+        item.measure.seeds = seeds;
         takeInstead(experiment.paramsInstead, item);
         item.program = config::programOf(experiment);
         Params params(item.given, "technique '" + std::string(info.name) + "'");

@@ -64,6 +64,7 @@ std::string workKey(const Case& item) {
     }
     content["params"].erase("pictures");
     spellNumbersAlike(content);
+    if (measure.seeds == config::Measure::Seeds::Process) content["seeds"] = "process";
     content["seed"] = std::to_string(item.seed);
     return sha256(content.dump());
 }

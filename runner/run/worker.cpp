@@ -45,10 +45,6 @@ CaseResult failedWith(records::Status status, const std::string& message) {
     return result;
 }
 
-bool isSeededByProcess(const Case& item) {
-    return !item.program.isNull() && config::readProgram(item.program).seedsByProcess;
-}
-
 /// The batch case loop's catch: whatever a case throws becomes its status, but for WriteError.
 CaseResult measuredResult(const Case& item, MeasureContext& context) {
     try {
@@ -106,9 +102,9 @@ void serve(gl::Device& device, const WorkerOptions& options,
                                            {"/process", JsonKind::Int, false}};
         requireMembers(request, kRequest, where);
         Case item = caseFromJson(request.at("case"), where, "/case");
-        if (isSeededByProcess(item)) {
-            item.seed += static_cast<std::uint64_t>(request.value("process", 0LL) *
-                                                    config::kSeedsOfAProcess);
+        const int process = request.value("process", 0);
+        if (item.measure.seeds == config::Measure::Seeds::Process) {
+            item.seed += static_cast<std::uint64_t>(process) * config::kSeedsOfAProcess;
         }
         Json answer;
         try {

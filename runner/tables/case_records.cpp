@@ -137,7 +137,9 @@ std::vector<CaseRecords> groupByCase(std::span<const config::Case> planned,
                              std::move(values),
                              {},
                              std::move(recorded.scene),
-                             std::move(recorded.params)});
+                             std::move(recorded.params),
+                             item.measure.seeds,
+                             item.seed});
             isSeeded.push_back(sample.has_value());
         }
         places[item.id] = {index, sample.value_or(0)};

@@ -2,6 +2,7 @@
 // the cases: which combinations of axis values there are, in which order.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -50,6 +51,14 @@ struct CaseRecords {
     std::map<int, Attempt> processes;
     std::string scene;  // Case::recordedScene()
     Node params;        // Case::recordedParams()
+    config::Measure::Seeds seeds = config::Measure::Seeds::None;
+    std::uint64_t seed = 0;  // of its first process
+
+    std::uint64_t seedOf(int process) const {
+        const bool isOther = seeds == config::Measure::Seeds::Process;
+        return seed +
+               (isOther ? static_cast<std::uint64_t>(process) * config::kSeedsOfAProcess : 0);
+    }
 };
 
 /// The cases of `table` in the order of the plan, with their records, which must outlive the

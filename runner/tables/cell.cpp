@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <set>
 
@@ -261,6 +262,7 @@ struct Gathered {  // what the records of a cell came to
     bool isUntimed = false;  // ambiguous for being a time of the quality lane
     std::set<std::string> units;
     std::vector<std::string> caseIds;
+    std::set<std::uint64_t> seeds;    // of random numbers that the values hang on
     std::size_t notRun = 0;           // further cases
     std::vector<double> shareCounts;  // of shares that say so: how many samples each is a share of
 
@@ -292,6 +294,11 @@ void takeRow(const records::Record& record, const CellQuery& query, int unit,
     process[unit].push_back(value * query.scale);
 }
 
+/// Neither a time nor what the device counted.
+bool isOfTechnique(const std::string& metric) {
+    return !config::isTimeMetric(metric) && !metric.starts_with("work_");
+}
+
 void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>& unitOfFrame,
               int& unitCount, Gathered& gathered) {
     for (const auto& [number, attempt] : run.processes) {
@@ -300,17 +307,20 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             continue;
         }
         std::map<int, std::vector<double>> process;
+        bool isRandom = run.seeds != config::Measure::Seeds::None && isOfTechnique(query.metric);
         for (const records::Record* record : attempt.values(query.metric, query.pass)) {
             if (!matchesFrame(query.where, record->frame)) continue;
             const auto [unit, isNew] = unitOfFrame.try_emplace(record->frame, unitCount);
             if (isNew) ++unitCount;
             takeRow(*record, query, unit->second, process, gathered);
+            isRandom &= record->frame != records::kSetup;
         }
         for (const records::Record* count :
              attempt.values(query.metric + std::string(config::kShareOf), query.pass)) {
             if (matchesFrame(query.where, count->frame))
                 gathered.shareCounts.push_back(count->value);
         }
+        if (isRandom && !process.empty()) gathered.seeds.insert(run.seedOf(number));
         // Process k of all cases is one round: what a cell of several cases shows is of rounds.
         if (!process.empty()) gathered.samples.processes[number].merge(process);
     }
@@ -366,6 +376,7 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
         }
         if (!doesFit) gathered.samples = {};
         gathered.other = std::move(beside.samples);
+        gathered.seeds.merge(beside.seeds);
     }
     return gathered;
 }
@@ -417,9 +428,30 @@ void writeTexts(const CellFormat& format, std::vector<Measured>& numbers, std::s
     high = format.format(highs);
 }
 
+/// Equal values of several processes of one seed are one sample. A share that was counted once has
+/// the bounds of its count.
+void countSeeds(const Gathered& gathered, Cell& cell) {
+    const auto isEven = [](const Measured& measured) {
+        return std::ranges::all_of(measured.rounds, [&](const auto& round) {
+            return round.second == measured.rounds.begin()->second;
+        });
+    };
+    const bool isOne = gathered.seeds.size() == 1;
+    if (std::ranges::any_of(cell.values, &Measured::areDraws)) return;
+    if (isOne && !std::ranges::all_of(cell.values, isEven)) return;
+    cell.seedCount = gathered.seeds.size();
+    if (!isOne) return;
+    for (Measured& measured : cell.values) {
+        measured.rounds.clear();
+        measured.bounds = Bounds::None;
+        measured.interval = {measured.value, measured.value};
+    }
+}
+
 void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
     cell.values = measuredOf(query, gathered);
     for (Measured& measured : cell.values) boundShare(query, gathered, measured);
+    countSeeds(gathered, cell);
     writeTexts(query.format, cell.values, cell.measured, cell.low, cell.high);
 }
 

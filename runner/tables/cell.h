@@ -88,6 +88,9 @@ struct Cell {
     std::vector<std::string> openParameters;
     /// Why it was not; empty also for a cell that has no counterpart in the profile `paper`.
     std::vector<Departure> departures;
+    /// Of random numbers, other ones of which would give another value: how many different seeds it
+    /// is of. 0 of what has none, and of what differs between processes of one seed.
+    std::size_t seedCount = 0;
     /// An input was fitted so that it comes out (config::isCalibrated).
     bool isCalibrated = false;
     /// Of a frame's or a pass's time or rate: the same by the process's CPU time, and as
@@ -98,6 +101,12 @@ struct Cell {
     /// Of a time, where the GPU's clock moved while one of its cases was timed (markMovedClocks).
     std::optional<ClockRange> movedClock;
 
+    /// Several processes of it are one sample.
+    bool isOfOneSeed() const { return seedCount == 1; }
+    /// What stands beside a number of it: "95 % interval", "range", "one seed"; or nothing.
+    std::string_view boundsWord(const Measured& measured) const {
+        return isOfOneSeed() ? "one seed" : boundsName(measured.bounds);
+    }
     bool isOk() const { return status == records::Status::Ok && !values.empty(); }
     /// What the bounds beside the cell's numbers are.
     Bounds bounds() const { return values.empty() ? Bounds::None : values[0].bounds; }

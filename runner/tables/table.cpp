@@ -324,6 +324,24 @@ void addTimes(const config::Experiment& experiment, const std::vector<records::R
     table.notes = timeNotes(times, experiment.measure, namesOf(cases, table.words));
 }
 
+}  // namespace
+
+std::string seedNote(const Table& table) {
+    std::vector<std::string> columns;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const bool isOfOne = std::ranges::any_of(
+            table.rows, [&](const TableRow& row) { return row.cells[i].isOfOneSeed(); });
+        if (isOfOne) columns.push_back(quantityOf(table.columns[i], table.words).words);
+    }
+    if (columns.empty()) return "";
+    return fmt::format(
+        "One seed, and another would give other numbers: {}. How far apart they are `measure: "
+        "{{seeds: process, processes: 6}}` tells.",
+        joined(columns));
+}
+
+namespace {
+
 /// With a value, or with a time that was taken beside other cases and is no result.
 bool isRecorded(const Cell& cell) {
     return !cell.values.empty() || cell.status == records::Status::Ambiguous;
@@ -474,6 +492,7 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     if (given.hasDefaultLayout()) describeColumns(given, layout, table);
     addTimes(experiment, records, cases, table);
     table.notes.insert(table.notes.end(), notes.begin(), notes.end());
+    if (std::string note = seedNote(table); !note.empty()) table.notes.push_back(std::move(note));
     layPrintedBeside(experiment, table);
     blankWhatOthersHave(table);
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {

@@ -55,7 +55,7 @@ std::span<const config::MetricInfo> commonMetrics() {
 config::Outputs outputsOf(const TechniqueInfo& technique, const Node& program) {
     const config::Outputs own = technique.outputs();
     const std::span<const config::MetricInfo> common = commonMetrics();
-    config::Outputs all{{common.begin(), common.end()}, own.passes};
+    config::Outputs all{{common.begin(), common.end()}, own.passes, own.areRandom};
     if (program.isNull()) {
         all.metrics.insert(all.metrics.end(), own.metrics.begin(), own.metrics.end());
         return all;

@@ -72,7 +72,9 @@ struct ClaimPart {
     bool needsX = false;            // numeric abscissa
     bool needsExpected = false;     // a further operand: what was printed, or is given
     std::size_t minRows = 1;
-    Contrasts onTimes = {};  // judged instead where the operands are times; absent: the quantity
+    /// Judged instead where the operands vary, times or random numbers; absent: the quantity.
+    Contrasts onTimes = {};
+    bool isOfSeeds = false;  // what it reads is a test of several seeds itself
 };
 
 /// The keys of a claim, as its kind reads them. What is wrong is an Error at its place.

@@ -29,6 +29,7 @@ double familyWiseP(const GroupPoint& group) {
 
 std::vector<ClaimPart> sameMeanParts(const ClaimSpec& claim) {
     ClaimPart part{{0}, familyWiseP, {}, "p of all rows"};
+    part.isOfSeeds = true;
     part.requirement.low = *claim.falseAlarms;
     part.requirement.text = fmt::format("the same expectation ({}: p of all rows ≥ {:.4g})",
                                         claim.operands[0], *claim.falseAlarms);

@@ -932,6 +932,68 @@ TEST(Claims, OtherValuesAreJudgedByTheirRounds) {
     EXPECT_EQ(judge({5, 7, 6, 6, 6, 6}, "bound: a, at_most: 6").measured, "6 [5, 7]");
 }
 
+/// Errors of two samplers that draw alike, a value a seed; `seeds` as a case has them.
+tables::Recorded twoSamplers(config::Measure::Seeds seeds, int processes, std::uint64_t seed,
+                             double ratio = 1.0) {
+    Random random(seed);
+    const auto draw = [&] { return 0.5 + 0.1 * double{random.uniform()}; };
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})").seeds(seeds);
+    const double a = draw(), b = draw() * ratio;
+    const bool isOne = seeds == config::Measure::Seeds::Case;
+    for (int process = 0; process < processes; ++process) {
+        maker.process(process).add("a", {isOne ? a : draw()}, "", "1");
+        maker.add("b", {isOne ? b : draw() * ratio}, "", "1");
+    }
+    return maker.records();
+}
+
+TEST(Claims, RandomNumbersOfOneSeedDecideNothing) {
+    using Seeds = config::Measure::Seeds;
+    const std::string more = "; an interval needs 6: `measure: {seeds: process, processes: 6}`";
+    for (const char* claim :
+         {"order: a < b", "order: b < a", "ratio: a / b, at_least: 0.5", "bound: a, at_most: 9"}) {
+        const auto judge = [&](const tables::Recorded& records) {
+            return judgePowers(claim + std::string(", at: {n: 1}"), records);
+        };
+        ClaimResult result = judge(twoSamplers(Seeds::Case, 6, 1, 1.3));
+        EXPECT_EQ(result.verdict, Verdict::Ambiguous) << claim;
+        EXPECT_EQ(result.reason, "one sample of random numbers" + more);
+        EXPECT_EQ(result.measured.find('['), std::string::npos) << result.measured;
+        result = judge(twoSamplers(Seeds::Process, 5, 1, 1.3));
+        EXPECT_EQ(result.verdict, Verdict::Ambiguous) << claim;
+        EXPECT_EQ(result.reason, "5 seeds of random numbers" + more);
+        // What draws none is as it is.
+        EXPECT_NE(judge(twoSamplers(Seeds::None, 1, 1, 1.3)).verdict, Verdict::Ambiguous) << claim;
+    }
+    const ClaimResult result =
+        judgePowers("order: a < b, at: {n: 1}", twoSamplers(Seeds::Process, 6, 1, 1.3));
+    EXPECT_EQ(result.verdict, Verdict::Holds);
+    EXPECT_EQ(result.reason, "");
+    EXPECT_THAT(result.measured, testing::HasSubstr("["));
+    // A count is what it is.
+    EXPECT_EQ(
+        judgePowers("exact: a, equals: 9, at: {n: 1}", twoSamplers(Seeds::Case, 6, 1)).verdict,
+        Verdict::Fails);
+}
+
+/// Of two samplers that are alike six seeds say in one case of twenty that one is better; a
+/// difference of three standard deviations they find.
+TEST(Claims, OfRandomNumbersSixSeedsRarelyTellWhatIsNotThere) {
+    using Seeds = config::Measure::Seeds;
+    std::map<Verdict, int> alike, apart;
+    constexpr int kTrials = test::kIsSanitized ? 100 : 1000;
+    for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
+        ++alike[judgePowers("order: a < b, at: {n: 1}", twoSamplers(Seeds::Process, 6, seed))
+                    .verdict];
+        ++apart[judgePowers("order: a < b, at: {n: 1}", twoSamplers(Seeds::Process, 6, seed, 1.2))
+                    .verdict];
+    }
+    EXPECT_LE(alike[Verdict::Holds] + alike[Verdict::Fails], 0.07 * kTrials);
+    EXPECT_GE(apart[Verdict::Holds], 0.9 * kTrials);
+    EXPECT_EQ(apart[Verdict::Fails], 0);
+}
+
 /// Shown with one digit, a and b are the same number, and a is 2 as asked; as measured they are
 /// not.
 TEST(Claims, AreJudgedOnWhatWasMeasuredNotOnWhatIsShown) {

@@ -85,7 +85,7 @@ ClaimSpec claimOf(const char* kind) {
 
 Verdict verdictOn(const Group& group, const ClaimSpec& claim,
                   const std::optional<double>& noise = {}) {
-    return judgeTimes(group, partsOf(claim)[0].onTimes, noise).verdict;
+    return judgeVarying(group, partsOf(claim)[0].onTimes, noise).verdict;
 }
 
 /// Whether the verdict of a kind with bounds is right or open where the truth lies just inside of

@@ -98,11 +98,13 @@ TEST(ExternalProgram, ThatTakesASeedHasItAsAParameter) {
               "c.yaml:2:1: program: seeds: the command has no {seed}");
     EXPECT_EQ(errorOf("command: t {seed}\nseeds: repeat"),
               "c.yaml:2:8: program: seeds is repeat; allowed: case, process");
-    EXPECT_EQ(
-        errorOf("command: t {seed} {n}\nseeds: process\nparams: {n: 1}\n"
-                "images: {r: {file: r.png, truth: {n: 2}}}"),
-        "c.yaml:4:34: program: image 'r': truth needs 'seed', as that of the cases is another "
-        "in each process");
+    // Errors against a truth of another seed are random; those against one of its own are not.
+    const std::string image = "command: t {seed} {n}\nparams: {n: 1}\nimages: {r: {file: r.png";
+    EXPECT_FALSE(programOf(image + "}}").seedsByProcess);
+    EXPECT_TRUE(programOf(image + ", truth: {n: 2, seed: 9}}}").seedsByProcess);
+    EXPECT_TRUE(programOf(image + ", truth: \"{here}/t.png\"}}").seedsByProcess);
+    EXPECT_FALSE(programOf(image + ", truth: {n: 2}}}").seedsByProcess);
+    EXPECT_FALSE(programOf(image + ", truth: {n: 2, seed: 9}}}\nseeds: case").seedsByProcess);
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: 1}\nimages: {r: {file: r.png, truth: {n: 2, "
                       "seed: 3}}}"),
               "c.yaml:3:41: program: image 'r': truth: unknown key 'seed'; allowed: frames, frame, "

@@ -114,6 +114,11 @@ RecordMaker& RecordMaker::beginCase(const std::string& scene, const std::string&
     return *this;
 }
 
+RecordMaker& RecordMaker::seeds(config::Measure::Seeds seeds) {
+    records_.cases.back().measure.seeds = seeds;
+    return *this;
+}
+
 RecordMaker& RecordMaker::process(int process) {
     current_.process = process;
     return *this;

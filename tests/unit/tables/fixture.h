@@ -43,6 +43,8 @@ class RecordMaker {
     RecordMaker& process(int process);
     RecordMaker& frame(int frame);
     RecordMaker& lane(const std::string& lane);
+    /// The case draws random numbers.
+    RecordMaker& seeds(config::Measure::Seeds seeds);
     /// One value a repeat.
     RecordMaker& add(const std::string& metric, std::initializer_list<double> repeats,
                      const std::string& pass = "", const std::string& unit = "ms");
