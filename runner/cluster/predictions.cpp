@@ -58,8 +58,12 @@ run::Cost medianOf(const std::vector<run::Cost>& costs) {
         for (const run::Cost& cost : costs) values.push_back(static_cast<double>(cost.*member));
         return medianOf(std::move(values));
     };
-    return {of(&run::Cost::loadS), of(&run::Cost::setupS), of(&run::Cost::renderS),
-            of(&run::Cost::recordS), static_cast<long long>(of(&run::Cost::peakBytes))};
+    return {of(&run::Cost::loadS),
+            of(&run::Cost::setupS),
+            of(&run::Cost::renderS),
+            of(&run::Cost::recordS),
+            static_cast<long long>(of(&run::Cost::peakBytes)),
+            of(&run::Cost::onceS)};
 }
 
 /// The costs in a run's log, by case. Lines that are torn or without a cost are passed over.

@@ -8,7 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/core/output_files.h"
 #include "engine/gl/objects.h"
 #include "engine/gl/profiler.h"
 #include "runner/run/process_memory.h"
@@ -255,9 +257,11 @@ int framesAtOnce(const Case& item) {
 /// The frames of one case, drawn and timed.
 class FrameLoop {
   public:
-    FrameLoop(const Case& item, bool drawsOnDevice, technique::Technique& technique,
+    FrameLoop(const Case& item, int process, bool drawsOnDevice, technique::Technique& technique,
               gl::Profiler& profiler, const MeasureContext& context)
-        : measure_(item.measure),
+        : item_(item),
+          process_(process),
+          measure_(item.measure),
           atOnce_(framesAtOnce(item)),
           technique_(technique),
           profiler_(profiler),
@@ -268,14 +272,21 @@ class FrameLoop {
 
     /// Warm-ups, then every frame with its repeats; what the last repeat of a frame left is
     /// recorded. Of frames that are drawn at once one record() follows another, in their order.
-    void run(RunRecorder& recorder, CaseResult& result) {
+    /// Whether recordOnce() was among it.
+    bool run(RunRecorder& recorder, CaseResult& result) {
+        bool isWhole = false;
         for (int frame = 0; frame < measure_.frames; frame += atOnce_) {
             technique::FrameContext frameContext{frame, measure_.frames, profiler_};
             const std::size_t firstSample = result.samples.size();
             guard_.beginFrame();
-            if (frame == 0) {
-                const PhaseScope phase(context_, "warm-up", result.cost.renderS);
-                warmUp(frameContext);
+            if (frame == 0 && !isWarm()) {
+                double spentS = 0.0;
+                {
+                    const PhaseScope phase(context_, "warm-up", spentS);
+                    warmUp(frameContext);
+                }
+                result.cost.renderS += spentS;
+                if (isOfProgram()) result.cost.onceS += spentS;
             }
             {
                 const PhaseScope phase(context_, "render", result.cost.renderS);
@@ -283,17 +294,53 @@ class FrameLoop {
             }
             guard_.endFrame(frame, firstSample, result);
             const PhaseScope phase(context_, "record", result.cost.recordS);
+            const std::string image = digestOfImage();
             for (int drawn = frame; drawn < frame + atOnce_; ++drawn) {
                 recorder.setIteration(drawn, 0);
                 technique_.record(recorder);
+                if (!isRecorded(drawn, image)) {
+                    recordOnce(recorder, result);
+                    isWhole = true;
+                }
                 recorder.checkTruths();
             }
             context_.device.finish("recording");
             profiler_.collect();
         }
+        return isWhole;
     }
 
   private:
+    bool isOfProgram() const { return !item_.program.isNull(); }
+    /// A program starts anew for every frame.
+    bool isWarm() const { return isOfProgram() && process_ > 0; }
+    bool isOfOneSeed() const { return measure_.seeds != config::Measure::Seeds::Process; }
+    /// Whether what is recorded once is of one process of several.
+    bool isOfOneProcess() const { return isOfOneSeed() && measure_.processes > 1; }
+    /// Before record(), which may draw again; empty where nobody asks, or there is none.
+    std::string digestOfImage() const {
+        const gl::Texture* image = isOfOneProcess() ? technique_.frameImage() : nullptr;
+        return image ? std::to_string(ImageDigest::of(image->readImage(4)).hash) : "";
+    }
+    /// Whether the case's first process recorded the same once. It leaves its digest to the others,
+    /// which may not find it: the run was interrupted between them.
+    bool isRecorded(int frame, const std::string& image) const {
+        if (!isOfOneProcess()) return false;
+        std::string digest = technique_.pictureDigest();
+        if (digest.empty()) digest = image;
+        const std::filesystem::path file =
+            context_.runDir / kScratchFolder / fmt::format("picture-{}-{}", item_.id, frame);
+        if (process_ > 0) {
+            return digest.empty() || (std::filesystem::exists(file) && readFile(file) == digest);
+        }
+        if (!digest.empty()) writeFileAtomic(file, digest);
+        return false;
+    }
+    void recordOnce(RunRecorder& recorder, CaseResult& result) {
+        const Clock::time_point begin = Clock::now();
+        technique_.recordOnce(recorder);
+        if (isOfOneSeed()) result.cost.onceS += 1e-3 * millisecondsSince(begin);
+    }
     void render(technique::FrameContext& frame) {
         const gl::DebugGroup group(context_.device, "frame");
         technique_.render(frame);
@@ -372,6 +419,8 @@ class FrameLoop {
         return timeMs;
     }
 
+    const Case& item_;
+    int process_;
     const config::Measure& measure_;
     int atOnce_;
     technique::Technique& technique_;
@@ -385,7 +434,7 @@ class FrameLoop {
 
 }  // namespace
 
-CaseResult measureCase(const Case& item, MeasureContext& context) {
+CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
     CaseResult result;
     const SourceLocation nowhere;
     const technique::TechniqueInfo& info =
@@ -430,14 +479,17 @@ CaseResult measureCase(const Case& item, MeasureContext& context) {
         recorder.metric("setup_time_ms", millisecondsSince(begin), "ms", "");
         recordPasses(profiler, context.device.info().isSoftware, recorder);
     }
-    FrameLoop(item, technique::needsDevice(info, item.program), *technique, profiler, context)
-        .run(recorder, result);
+    const bool isWhole = FrameLoop(item, process, technique::needsDevice(info, item.program),
+                                   *technique, profiler, context)
+                             .run(recorder, result);
     recorder.setIteration(records::kSetup, records::kSetup);
     result.cost.peakBytes = std::max(peakResidentBytes(), scene ? scene->peakResidentBytes : 0);
     if (const auto elsewhere = technique->usageElsewhere()) {
         result.cost.peakBytes += elsewhere->peakBytes;
+        const bool isOfOneSeed = item.measure.seeds != config::Measure::Seeds::Process;
+        if (!isOfOneSeed) result.cost.onceS += elsewhere->onceS;
         recorder.metric("peak_memory_bytes", static_cast<double>(elsewhere->peakBytes), "byte", "");
-    } else if (scene) {
+    } else if (scene && isWhole) {
         recordMemory(context, *scene, recorder);
     }
     result.scenes = scenesOfCase(context.scenes);

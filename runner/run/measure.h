@@ -81,16 +81,19 @@ struct MeasureContext {
     std::function<void(std::string_view phase, bool isBegin)> onPhase;
 };
 
-/// Constructor → load → set-up → warm-ups → frames × repeats → record. Beside the technique's own
-/// metrics it gives, for each repeat of a frame, wall_time_ms, frame_rate, gpu_time_ms and
-/// cpu_time_ms a pass, on a software device with the CPU time of all threads of the process beside
-/// them (process_time_ms, of the whole frame and a pass); in the timing lane work_primitives,
-/// work_fragments, work_compute_invocations and work_image_digest, and the times of repeats that
-/// did not do the same are void (whyUnequal). Under frame and repeat records::kSetup:
-/// setup_time_ms and the times of set-up's passes; for a case with a scene load_time_ms,
-/// scene_triangles, scene_vertices, scene_source, peak_memory_bytes (highest resident size from
-/// loading to recording, less what other cached scenes hold) and baseline_memory_bytes. Throws what
-/// the technique throws, and Error for a metric that is given twice.
-CaseResult measureCase(const Case& item, MeasureContext& context);
+/// Process `process` of the case: constructor → load → set-up → warm-ups → frames × repeats →
+/// record. A program, which starts anew for each frame, is warmed up in the first process alone.
+/// Technique::recordOnce follows there, and where the picture is another than the first process's
+/// or the seed is (`seeds: process`). Beside the technique's own metrics it gives, for each repeat
+/// of a frame, wall_time_ms, frame_rate, gpu_time_ms and cpu_time_ms a pass, on a software device
+/// with the CPU time of all threads of the process beside them (process_time_ms, of the whole frame
+/// and a pass); in the timing lane work_primitives, work_fragments, work_compute_invocations and
+/// work_image_digest, and the times of repeats that did not do the same are void (whyUnequal).
+/// Under frame and repeat records::kSetup: setup_time_ms and the times of set-up's passes; for a
+/// case with a scene load_time_ms, scene_triangles, scene_vertices, scene_source, and where all was
+/// recorded peak_memory_bytes (highest resident size from loading to recording, less what other
+/// cached scenes hold) and baseline_memory_bytes. Throws what the technique throws, and Error for a
+/// metric that is given twice.
+CaseResult measureCase(const Case& item, int process, MeasureContext& context);
 
 }  // namespace gfxrepro::run

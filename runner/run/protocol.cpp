@@ -109,11 +109,8 @@ gl::DeviceInfo deviceInfoFromJson(const Json& json) {
 }
 
 Json toJson(const Cost& cost) {
-    return {{"load_s", cost.loadS},
-            {"setup_s", cost.setupS},
-            {"render_s", cost.renderS},
-            {"record_s", cost.recordS},
-            {"peak_bytes", cost.peakBytes}};
+    return {{"load_s", cost.loadS},     {"setup_s", cost.setupS}, {"render_s", cost.renderS},
+            {"record_s", cost.recordS}, {"once_s", cost.onceS},   {"peak_bytes", cost.peakBytes}};
 }
 
 Cost costFromJson(const Json& json) {
@@ -122,6 +119,7 @@ Cost costFromJson(const Json& json) {
     json.at("setup_s").get_to(cost.setupS);
     json.at("render_s").get_to(cost.renderS);
     json.at("record_s").get_to(cost.recordS);
+    cost.onceS = json.value("once_s", 0.0);
     json.at("peak_bytes").get_to(cost.peakBytes);
     return cost;
 }

@@ -58,6 +58,7 @@ struct Cost {
     double renderS = 0.0;  // warm-ups and all repeats of all frames
     double recordS = 0.0;  // of all frames
     long long peakBytes = 0;
+    double onceS = 0.0;  // of all this, for what no further process makes again
 
     double totalS() const { return loadS + setupS + renderS + recordS; }
 };

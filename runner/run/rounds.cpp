@@ -147,10 +147,10 @@ void Rounds::begin(const std::string& experiment, TimePoint now) {
     if (table != tables_.end()) table->second.runsSince = now;
 }
 
-void Rounds::end(const std::string& experiment, TimePoint now) {
+void Rounds::end(const std::string& experiment, TimePoint now, double onceS) {
     const auto table = tables_.find(experiment);
     if (table == tables_.end() || !table->second.runsSince) return;
-    table->second.spent += now - *table->second.runsSince;
+    table->second.spent += now - *table->second.runsSince - std::chrono::duration<double>(onceS);
     table->second.runsSince.reset();
 }
 

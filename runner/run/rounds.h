@@ -39,9 +39,10 @@ class Rounds {
            const std::vector<Json>& journal);
 
     /// A unit of an experiment runs, until end() or the begin() of its second try. Budgets count
-    /// this alone, and of this start of the program.
+    /// this alone, of this start of the program, and without what was made once (Cost::onceS): no
+    /// round makes it again.
     void begin(const std::string& experiment, TimePoint now);
-    void end(const std::string& experiment, TimePoint now);
+    void end(const std::string& experiment, TimePoint now, double onceS = 0.0);
     void add(const std::vector<records::Record>& rows);
     /// The units of the next round of an experiment whose rounds so far are complete; empty when
     /// there is none, which is then decided and said by ending().

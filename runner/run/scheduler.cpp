@@ -304,7 +304,7 @@ class Scheduler {
 
     void finish(const Unit& unit, const CaseResult& result, const std::string& output,
                 const char* event = "case") {
-        rounds_.end(unit.item->experiment, Clock::now());
+        rounds_.end(unit.item->experiment, Clock::now(), result.cost.onceS);
         noteWarnings(output);
         record(unit, result, output, event);
         for (const Case* twin : unit.twins) {

@@ -46,9 +46,9 @@ CaseResult failedWith(records::Status status, const std::string& message) {
 }
 
 /// The batch case loop's catch: whatever a case throws becomes its status, but for WriteError.
-CaseResult measuredResult(const Case& item, MeasureContext& context) {
+CaseResult measuredResult(const Case& item, int process, MeasureContext& context) {
     try {
-        return measureCase(item, context);
+        return measureCase(item, process, context);
     } catch (const WriteError&) {
         throw;  // of the run's folder: nothing that the case did
     } catch (const UnsupportedError& error) {
@@ -108,7 +108,7 @@ void serve(gl::Device& device, const WorkerOptions& options,
         }
         Json answer;
         try {
-            answer = {{"done", toJson(measuredResult(item, context))}};
+            answer = {{"done", toJson(measuredResult(item, process, context))}};
         } catch (const WriteError& error) {
             answer = {{"unwritable", error.what()}};
         }

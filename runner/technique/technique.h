@@ -108,18 +108,26 @@ enum class SceneNeed { Nothing, Model, HeightMap };
 struct ProcessUsage {
     double processTimeMs = 0.0;  // CPU time, user and system, in the last render()
     long long peakBytes = 0;     // most that one of them held at once, in all render() so far
+    double onceS = 0.0;          // of its time, for what is made once in a run: truths
 };
 
 /// A method under measurement with its competitors. Life: constructor (parameters only, no GL) →
-/// requireScene → setup → render, repeatedly → record, after the last repeat of a frame. Errors are
-/// thrown.
+/// requireScene → setup → render, repeatedly → record and recordOnce, after the last repeat of a
+/// frame. Errors are thrown.
 class Technique {
   public:
     virtual ~Technique() = default;
     virtual void setup(SetupContext& context) = 0;
     /// The passes in the paper's order, each in a GpuScope or CpuScope with the paper's step name.
     virtual void render(FrameContext& context) = 0;
+    /// What is had at once, and times: of every process of a case.
     virtual void record(Recorder& recorder) = 0;
+    /// Pictures, their errors and whatever else takes long and is the same in each process: of the
+    /// first of them alone, and of one that drew another picture or has another seed.
+    virtual void recordOnce(Recorder& /*recorder*/) {}
+    /// What tells whether another process would record the same once; empty where frameImage()
+    /// does, or nothing.
+    virtual std::string pictureDigest() const { return ""; }
     /// The 2D colour texture (floating point or normalized) that render() left, if there is one: a
     /// blank picture, or one that changes between repeats of a frame, voids their times.
     virtual const gl::Texture* frameImage() const { return nullptr; }

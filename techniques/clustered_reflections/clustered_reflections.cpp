@@ -322,6 +322,9 @@ class ClusteredReflections final : public technique::Technique {
         recordShares(recorder, surfaces);
         recordMemory(recorder);
         if (clusteredTracer_ && hasReflections_) recordClusters(recorder);
+    }
+
+    void recordOnce(technique::Recorder& recorder) override {
         const bool hasErrors = params_.measuresErrors && hasReflections_;
         if (!hasErrors && !params_.showsPictures) return;
 

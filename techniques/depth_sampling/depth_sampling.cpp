@@ -345,6 +345,9 @@ class DepthSampling final : public technique::Technique {
                                static_cast<double>(counts.samples), "sample", "output_frame");
             }
         }
+    }
+
+    void recordOnce(technique::Recorder& recorder) override {
         // The reference images are the same in each frame.
         if (!measures_) {
             measures_ = experiment_->measure(params_.measures);

@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
@@ -109,7 +111,7 @@ class External : public technique::Technique {
     }
 
     std::optional<technique::ProcessUsage> usageElsewhere() const override {
-        return technique::ProcessUsage{end_.processTimeMs, peakBytes_};
+        return technique::ProcessUsage{end_.processTimeMs, peakBytes_, truthsS_};
     }
 
     void record(technique::Recorder& recorder) override {
@@ -121,9 +123,21 @@ class External : public technique::Technique {
             isRecorded_ = true;
         }
         recordMetrics(recorder);
+    }
+
+    void recordOnce(technique::Recorder& recorder) override {
         for (const config::ProgramPicture& picture : program_.pictures) {
             recordPicture(picture, recorder);
         }
+    }
+
+    std::string pictureDigest() const override {
+        std::string digests;
+        for (const config::ProgramPicture& picture : program_.pictures) {
+            const Picture own = ownPicture(picture);
+            digests += sha256(std::as_bytes(own.linear.values()));
+        }
+        return digests;
     }
 
   private:
@@ -229,15 +243,27 @@ class External : public technique::Technique {
         }
     }
 
-    void recordPicture(const config::ProgramPicture& picture, technique::Recorder& recorder) {
-        const std::string what = fmt::format("image '{}'", picture.name);
+    static std::string nameOf(const config::ProgramPicture& picture) {
+        return fmt::format("image '{}'", picture.name);
+    }
+
+    /// The size that pictures must have; 0 × 0 for any.
+    glm::ivec2 askedSize() const {
         const bool isAsked =
             program_.uses(placeholder::kWidth) && program_.uses(placeholder::kHeight);
-        const glm::ivec2 size = isAsked ? size_ : glm::ivec2(0);
-        const Picture own = readPicture(placeOf(picture.file, values_, "out"), what, size);
+        return isAsked ? size_ : glm::ivec2(0);
+    }
+
+    Picture ownPicture(const config::ProgramPicture& picture) const {
+        return readPicture(placeOf(picture.file, values_, "out"), nameOf(picture), askedSize());
+    }
+
+    void recordPicture(const config::ProgramPicture& picture, technique::Recorder& recorder) {
+        const std::string what = nameOf(picture);
+        const Picture own = ownPicture(picture);
         recorder.image(picture.name, own.linear);
         if (!picture.hasTruth()) return;
-        const Picture truth = truthOf(picture, what + ": truth", size);
+        const Picture truth = truthOf(picture, what + ": truth", askedSize());
         technique::ImageOptions options;
         options.truthOf = picture.name;
         recorder.image(picture.name + "_truth", truth.linear, options);
@@ -269,7 +295,7 @@ class External : public technique::Technique {
 
     /// `offset`: of its frames.
     Picture truthOf(const config::ProgramPicture& picture, const std::string& what, glm::ivec2 size,
-                    int offset = 0) const {
+                    int offset = 0) {
         if (picture.truthParams.isNull()) {
             return readPicture(placeOf(picture.truthFile, values_, "out"), what, size);
         }
@@ -299,7 +325,8 @@ class External : public technique::Technique {
 
     /// The picture, and of a run that gives all frames those of the others, too.
     void makeTruth(const config::ProgramPicture& picture, config::Placeholders values,
-                   const std::string& what, glm::ivec2 size) const {
+                   const std::string& what, glm::ivec2 size) {
+        const auto begin = std::chrono::steady_clock::now();
         run(values, "truth");
         const int count = program_.givesAllFrames ? std::stoi(values.at(placeholder::kFrames)) : 1;
         for (int frame = 0; frame < count; ++frame) {
@@ -316,6 +343,7 @@ class External : public technique::Technique {
                                  failure.message());
             }
         }
+        truthsS_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
 
     /// Of all that the picture depends on but for the program itself, which is the same in a run.
@@ -346,6 +374,7 @@ class External : public technique::Technique {
     std::map<std::string, Samples> samples_;  // by picture, a frame each
     ProcessEnd end_;
     long long peakBytes_ = 0;
+    double truthsS_ = 0.0;  // it took to make those that were not there
 };
 
 std::unique_ptr<technique::Technique> createFrom(const Node& program, Params& params) {

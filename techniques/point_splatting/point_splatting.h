@@ -81,6 +81,7 @@ class PointSplatting final : public technique::Technique {
     void requireScene(const scene::Scene& scene) const override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
+    void recordOnce(technique::Recorder& recorder) override;
     const gl::Texture* frameImage() const override { return &renderer_->output(); }
 
   private:

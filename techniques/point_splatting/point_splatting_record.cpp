@@ -193,8 +193,11 @@ CompressionErrors compressionErrors(const ModelFile& model) {
 void PointSplatting::record(technique::Recorder& recorder) {
     recordModel(recorder);
     recordDrawn(recorder);
-    if (params_.measuresCompression) recordCompression(recorder);
     if (params_.measuresSpeed) recordSpeed(recorder);
+}
+
+void PointSplatting::recordOnce(technique::Recorder& recorder) {
+    if (params_.measuresCompression) recordCompression(recorder);
     if (!params_.showsPictures && !params_.measuresErrors) return;
     const ModelPicture picture(renderer_->output().readImage(4));
     std::optional<image::ImageF> samples;

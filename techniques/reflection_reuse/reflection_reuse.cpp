@@ -376,9 +376,14 @@ class ReflectionReuse final : public technique::Technique {
             "byte");
         const ReuseCounts counts = renderer_ ? renderer_->counts() : ReuseCounts{};
         if (renderer_) recordReuse(recorder, counts);
+        hasReflections_ = reflective > 0;
+    }
+
+    void recordOnce(technique::Recorder& recorder) override {
+        const ReuseCounts counts = renderer_ ? renderer_->counts() : ReuseCounts{};
         // A key frame is traced, and has nothing to be judged by; the next frame shows it
         // (`key_frame`).
-        const bool isJudged = params_.measuresErrors && !counts.isKeyFrame && reflective > 0;
+        const bool isJudged = params_.measuresErrors && !counts.isKeyFrame && hasReflections_;
         const bool isShown =
             params_.showsPictures && !(counts.isKeyFrame && frameIndex_ + 1 < frameCount_);
         if (!isJudged && !isShown) return;
@@ -567,8 +572,9 @@ class ReflectionReuse final : public technique::Technique {
     std::optional<ReuseRenderer> renderer_;   // of `reuse` and `direct`
     std::optional<FullTracing> fullTracing_;  // of `ray_traced`
     kit::View view_;
-    int frameIndex_ = -1;    // last rendered
-    int lastKeyFrame_ = -1;  // last recorded key frame
+    int frameIndex_ = -1;          // last rendered
+    int lastKeyFrame_ = -1;        // last recorded key frame
+    bool hasReflections_ = false;  // in the frame that record() is at
     int frameCount_ = 0;
 
     std::optional<gl::Profiler> recomputeTimes_;  // of `recompute_fit`

@@ -300,6 +300,9 @@ class ShadowMapping final : public technique::Technique {
         recordSteps(recorder);
         recorder.metric("lights_without_caster", lightsWithoutCaster_, "light");
         recorder.metric("memory_bytes", static_cast<double>(maps_->sizeBytes()), "byte");
+    }
+
+    void recordOnce(technique::Recorder& recorder) override {
         if (params_.showsPictures) recordPicture(recorder);
         if (!params_.measuresErrors && !params_.comparesMethods) return;
         // Once more with the terms that the measured frame does not write.

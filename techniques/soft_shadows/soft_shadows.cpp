@@ -397,13 +397,14 @@ const HostVisibilityMask& SoftShadows::tracedTruth() {
 void SoftShadows::record(technique::Recorder& recorder) {
     recorder.metric("coverage_pct",
                     kit::percent(hostReceivers_.covered(), hostReceivers_.positions.size()), "%");
+    if (params_.method == Method::RayTraced) return;
+    const ShadowCaster& caster = caster_ ? *caster_ : *geometry_;
+    recorder.metric("caster_triangles", static_cast<double>(caster.triangleCount()), "triangle");
+}
+
+void SoftShadows::recordOnce(technique::Recorder& recorder) {
     if (params_.measuresErrors) recordErrors(recorder, "geometry", geometryTruth());
     if (params_.tracesTruth) recordErrors(recorder, "ray_traced", tracedTruth());
-    if (params_.method != Method::RayTraced) {
-        const ShadowCaster& caster = caster_ ? *caster_ : *geometry_;
-        recorder.metric("caster_triangles", static_cast<double>(caster.triangleCount()),
-                        "triangle");
-    }
     if (params_.reconstructs()) recordMeshes(recorder);
     if (params_.showsPictures) recordPicture(recorder);
     if (!params_.seesFromLight) return;

@@ -70,6 +70,7 @@ class SoftShadows final : public technique::Technique {
     void requireScene(const scene::Scene& scene) const override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;
+    void recordOnce(technique::Recorder& recorder) override;
 
   private:
     /// Points that the reference images are taken from: the light's corners, then points inside;

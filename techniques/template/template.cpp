@@ -92,13 +92,19 @@ class TemplateTechnique : public technique::Technique {
         }
     }
 
-    // Read back and report: metrics with their units, and images.
+    // Read back and report what is had at once, in every process: metrics with their units.
     void record(technique::Recorder& recorder) override {
         const image::ImageF image = colour_.readImage(1);
         const auto values = image.values();
         const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+        recorder.metric("mean_brightness", sum / static_cast<double>(values.size()), "1");
+    }
+
+    // Where the picture is the same it has the same errors: images, and what is made of them.
+    void recordOnce(technique::Recorder& recorder) override {
+        const image::ImageF image = colour_.readImage(1);
+        const auto values = image.values();
         const auto pixels = static_cast<double>(values.size());
-        recorder.metric("mean_brightness", sum / pixels, "1");
         const bool hasView = method_ == Method::Silhouette;
         recorder.image("result", image, hasView ? kit::seenFrom(view_) : technique::ImageOptions{});
         if (!hasErrors_) return;

@@ -86,6 +86,10 @@ DepthMap readDepths(const gl::Texture& depth, const kit::View& view) {
 
 void TerrainTessellation::record(technique::Recorder& recorder) {
     recordDrawn(recorder);
+}
+
+void TerrainTessellation::recordOnce(technique::Recorder& recorder) {
+    if (params_.method == Method::Adaptive) recordFactors(recorder);
     if (!params_.measuresErrors && !params_.showsPictures) return;
     const Drawn drawn = drawnAgain(params_.method, selection_, params_.measuresErrors);
     std::optional<Drawn> truth;
@@ -135,7 +139,6 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
             ? static_cast<double>(renderer_->countSkirtTriangles(selection_.tiles, view_))
             : 0.0;
     count("surface_triangles", triangles - skirts, "triangle");
-    recordFactors(recorder);
     if (params_.drawsYardstick) recordNetRate(recorder, counts, drawS);
 }
 

@@ -326,6 +326,18 @@ class Voxelization final : public technique::Technique {
         combination_.record(recorder);
         if (!grid()) return;
         recordGrid(recorder, grid()->read());
+    }
+
+    std::string pictureDigest() const override {
+        return grid() ? std::to_string(digestOf(grid()->read().words())) : "";
+    }
+
+    void recordOnce(technique::Recorder& recorder) override {
+        if (!grid()) return;
+        if (params_.comparesWithReference) recordMisses(recorder, grid()->read());
+        if (params_.exportsBinvox) {
+            writeBinvox(recorder.artifact("grid.binvox"), grid()->read(), box_);
+        }
         if (!params_.drawing.isOn()) return;
         if (params_.drawing.isBeside) {
             gl::Profiler unread(false);
@@ -369,14 +381,12 @@ class Voxelization final : public technique::Technique {
         drawing_.render(profiler, *grid(), showsBoth ? &combination_.second() : nullptr);
     }
 
-    void recordGrid(technique::Recorder& recorder, const DenseGrid& grid) const {
+    static void recordGrid(technique::Recorder& recorder, const DenseGrid& grid) {
         const WorksheetLayout& layout = grid.layout();
         recorder.metric("voxels", static_cast<double>(grid.countFull()), "voxel");
         recorder.metric("voxel_bits", layout.voxelBits(), "bit");
         recorder.metric("worksheet_bytes", static_cast<double>(layout.sizeBytes()), "byte");
         recorder.metric("digest", digestOf(grid.words()), "1");
-        if (params_.comparesWithReference) recordMisses(recorder, grid);
-        if (params_.exportsBinvox) writeBinvox(recorder.artifact("grid.binvox"), grid, box_);
     }
 
     /// `stray_voxels` (fill_rule: surface_voxels) neither lie inside nor touch the surface.

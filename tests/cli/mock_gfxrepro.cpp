@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -16,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/core/random.h"
 #include "runner/cli/cli.h"
 #include "runner/technique/technique.h"
 #include "scenes/registry.h"
@@ -180,6 +182,44 @@ config::Outputs outputs() {
     return {{{"number", "1", "as asked for"}, {"psnr_db", "dB", "of a perfect picture"}}, {}};
 }
 
+/// Draws random numbers, and a picture that is another in each process where it `wobbles`.
+class Dice : public technique::Technique {
+  public:
+    explicit Dice(Params& params)
+        : wobbles_(params.getBool("wobbles", false, {"draws another picture in each process"})) {
+        params.finish();
+    }
+    void setup(technique::SetupContext& context) override {
+        seed_ = context.seed;
+        image_ = gl::Texture::make2D(GL_R32F, {8, 8});
+    }
+    void render(technique::FrameContext&) override {
+        std::vector<float> pixels(64, 0.0F);
+        pixels[0] = wobbles_ ? static_cast<float>(::getpid()) : 1.0F;
+        image_.upload(GL_RED, GL_FLOAT, pixels.data());
+    }
+    void record(technique::Recorder& recorder) override {
+        recorder.metric("face", double{Random(seed_).uniform()}, "1");
+    }
+    void recordOnce(technique::Recorder& recorder) override {
+        recorder.metric("worth", 1.0 + double{Random(seed_).uniform()}, "1");
+    }
+    const gl::Texture* frameImage() const override { return &image_; }
+
+  private:
+    bool wobbles_;
+    std::uint64_t seed_ = 0;
+    gl::Texture image_;
+};
+
+std::unique_ptr<technique::Technique> createDice(Params& params) {
+    return std::make_unique<Dice>(params);
+}
+
+config::Outputs diceOutputs() {
+    return {{{"face", "1", "what was thrown"}, {"worth", "1", "what it is worth"}}, {}, true};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -189,6 +229,7 @@ int main(int argc, char** argv) {
         ::pause();
     }
     const technique::TechniqueInfo techniques[] = {{"mock", "fails on demand", create, outputs},
+                                                   {"dice", "throws", createDice, diceOutputs},
                                                    external::kExternal};
     return cli::run(argc, argv, techniques, scene::registeredGenerators());
 }

@@ -122,6 +122,34 @@ TEST_F(Timed, AKeyOfMeasureChangesThatKeyAlone) {
     }
 }
 
+TEST_F(Timed, WarmUpTruthAndErrorsAreOfTheFirstProcessAlone) {
+    ASSERT_EQ(reproduce(std::string(kSleeps) + kImages).exitCode, 0);
+    // A warm-up, the case, its truth; then the case alone.
+    EXPECT_EQ(readFile(folder.path() / "runs"), "8\n8\n99\n8\n8\n8\n8\n8\n");
+    EXPECT_EQ(valuesOf("wall_time_ms").size(), 6U);
+    EXPECT_EQ(valuesOf("own_ms").size(), 6U) << "its own times are of every process";
+    EXPECT_THAT(valuesOf("mse"), ElementsAre(0.0));
+    EXPECT_EQ(records::readImages(runDir()).size(), 2U);
+}
+
+TEST_F(Timed, APictureThatIsAnotherInEachProcessIsRecordedInEach) {
+    fs::permissions(folder.write("renderer.sh",
+                                 "#!/bin/sh\nhere=$(dirname \"$0\")\n"
+                                 "[ $1 = 99 ] || echo x >>\"$here/runs\"\n"
+                                 "cp \"$here/grey$(wc -l <\"$here/runs\").png\" \"$2/result.png\"\n"
+                                 "echo '{\"metric\": \"own_ms\", \"value\": 1, \"unit\": \"ms\"}' "
+                                 ">&3\n"),
+                    fs::perms::owner_all);
+    for (int i = 1; i <= 7; ++i) {
+        image::Image8 picture(16, 16, 3, static_cast<std::uint8_t>(20 * i));
+        picture.values()[0] = 7;
+        image::writePng(folder.path() / ("grey" + std::to_string(i) + ".png"), picture);
+    }
+    ASSERT_EQ(reproduce(std::string(kSleeps) + kImages).exitCode, 0);
+    const std::vector<double> errors = valuesOf("mse");
+    EXPECT_EQ(std::set<double>(errors.begin(), errors.end()).size(), 6U);
+}
+
 TEST_F(Timed, WhereItDrawsRandomNumbersEachProcessHasASeedOfItsOwn) {
     fs::permissions(folder.write("renderer.sh",
                                  "#!/bin/sh\ncp \"$(dirname \"$0\")/picture.png\" "
@@ -165,6 +193,34 @@ TEST_F(Timed, WhereItDrawsRandomNumbersEachProcessHasASeedOfItsOwn) {
         HasSubstr("image 'result': truth needs 'seed', as that of the cases is another in "
                   "each process\n"));
     EXPECT_EQ(gfxrepro({"check", folder.write("mine.yaml", other)}).exitCode, 0);
+}
+
+/// A built-in technique that declares that it draws them.
+TEST_F(Timed, RandomNumbersOfATechniqueHaveAnIntervalOverSeeds) {
+    const std::string head =
+        "sweep_of: mine\ntitle: Mine\ntechnique: dice\n"
+        "layout:\n  columns: {face: {metric: face}, worth: {metric: worth}}\n"
+        "claims: {more: {says: a face is worth more, order: face < worth}}\n";
+    const auto facesOf = [&](const std::string& more) {
+        fs::remove_all(runDir());
+        EXPECT_EQ(reproduce(head + more).exitCode, 0) << more;
+        const std::vector<double> faces = valuesOf("face");
+        return std::set<double>(faces.begin(), faces.end()).size();
+    };
+    EXPECT_EQ(facesOf("measure: {seeds: process, processes: 6}\n"), 6U);
+    EXPECT_EQ(valuesOf("worth").size(), 6U);
+    EXPECT_THAT(readFile(runDir() + "/claims.csv"), HasSubstr(",holds,"));
+    EXPECT_EQ(facesOf("measure: {lane: timing, processes: 6}\n"), 1U);
+    EXPECT_EQ(valuesOf("face").size(), 6U);
+    EXPECT_EQ(valuesOf("worth").size(), 1U) << "made once";
+    EXPECT_THAT(readFile(runDir() + "/claims.csv"), HasSubstr(",ambiguous,holds,"));
+    EXPECT_THAT(readFile(runDir() + "/tables/sweep-mine.csv"), HasSubstr(",one seed,"));
+    facesOf("params: {wobbles: true}\nmeasure: {lane: timing, processes: 3}\n");
+    EXPECT_EQ(valuesOf("worth").size(), 3U) << "another picture, other errors";
+    const std::string config = writeMockConfig(folder, "measure: {seeds: process}\n");
+    EXPECT_THAT(gfxrepro({"check", config}).err,
+                HasSubstr("mock.yaml:5:11: measure: seeds: technique 'mock' draws no random "
+                          "numbers\n"));
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ class TechniqueTest : public GlTest {
         for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
         MetricRecorder recorder;
         technique->record(recorder);
+        technique->recordOnce(recorder);
         const config::Outputs outputs = technique::outputsOf(technique_);
         recorder.expectDeclared(outputs);
         for (const std::string& pass : passes_) EXPECT_TRUE(outputs.hasPass(pass)) << pass;

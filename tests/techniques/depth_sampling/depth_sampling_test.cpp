@@ -37,6 +37,7 @@ class DepthSamplingTest : public test::GlTest {
         passes_ = profiler_.collect();
         test::MetricRecorder recorder;
         technique->record(recorder);
+        technique->recordOnce(recorder);
         const config::Outputs outputs = technique::outputsOf(kDepthSampling);
         recorder.expectDeclared(outputs);
         for (const gl::PassTime& time : passes_) EXPECT_TRUE(outputs.hasPass(time.pass));

@@ -79,6 +79,7 @@ class ReflectionReuseTest : public test::GlTest {
                 for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
             }
             technique->record(frames[static_cast<std::size_t>(frame)]);
+            technique->recordOnce(frames[static_cast<std::size_t>(frame)]);
             frames[static_cast<std::size_t>(frame)].expectDeclared(outputs);
             for (const std::string& pass : passes_) EXPECT_TRUE(outputs.hasPass(pass)) << pass;
             EXPECT_TRUE(profiler_.collect().empty()) << "recording is not timed by pass";

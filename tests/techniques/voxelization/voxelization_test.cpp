@@ -29,6 +29,7 @@ class VoxelizationTest : public VoxelizerTest {
         test::MetricRecorder recorder;
         recorder.folder = folder;
         technique->record(recorder);
+        technique->recordOnce(recorder);
         return recorder.metrics;
     }
     bool hasPass(const std::string& name, gl::PassTime::Clock clock) const {

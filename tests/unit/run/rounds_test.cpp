@@ -166,6 +166,17 @@ TEST(Rounds, EndBeforeTheBudgetIsOverdrawn) {
     EXPECT_EQ(rounds.ending("t/1")["ended_by"], "time_budget_s");
 }
 
+/// A truth, a first start and pictures took most of it; no further round makes them.
+TEST(Rounds, WhatIsMadeOnceIsNoPartOfTheNext) {
+    const run::Plan plan = timedPlan();
+    run::Rounds rounds(plan, {}, {});
+    rounds.add(rows(plan, 6, 0.5));
+    rounds.begin("t/1", after(0));
+    rounds.end("t/1", after(90), 60.0);
+    EXPECT_FALSE(rounds.next("t/1").empty());
+    EXPECT_TRUE(rounds.isUndecided("t/1"));
+}
+
 TEST(Rounds, ACaseThatFailedTakesNoPartInFurtherOnes) {
     const run::Plan plan = timedPlan();
     std::vector<records::Record> records = rows(plan, 6, 0.5);
