@@ -56,15 +56,24 @@ class Progress : public run::Observer {
 
   private:
     using Clock = std::chrono::steady_clock;
+    /// How many units are known of a round, or of all that is in none, and how many have ended.
+    struct Count {
+        int ended = 0, known = 0;
+        std::string text() const { return fmt::format("{}/{}", ended, known); }
+    };
+    Count& countOf(const run::Unit& unit);
+    void add(const std::vector<run::Unit>& units);
     double timeS(const run::Unit& unit) const;
     std::string etaText() const;
 
-    int unitCount_;
+    std::map<std::pair<std::string, int>, Count> counts_;
+    Count all_, shown_;               // of everything known; of what runs now
+    std::string etaOf_;               // what the time left is of, where not of all
+    std::set<std::string> toldOnce_;  // of what is not on this machine
     std::map<const config::Case*, double> unitTimesS_;
     int jobs_;
     double totalS_ = 0.0;  // predicted; units where there are no predictions
     double doneS_ = 0.0;
-    int ended_ = 0;
     bool isQuiet_;
     bool isTerminal_;
     Clock::time_point start_ = Clock::now();
@@ -75,13 +84,23 @@ class Progress : public run::Observer {
 constexpr int kBarWidth = 24;
 constexpr std::chrono::milliseconds kDrawInterval{100};
 
+/// At most.
+int roundsOf(const run::Unit& unit) {
+    const config::Measure& measure = unit.item->measure;
+    return measure.mayContinue() ? std::max(measure.processes, measure.processesAtMost)
+                                 : measure.processes;
+}
+
+/// Whether further rounds may or may not follow.
+bool hasOpenRounds(const run::Unit& unit) {
+    return unit.item->measure.certainRounds() < roundsOf(unit);
+}
+
 std::string titleOf(const run::Unit& unit) {
     std::string title = unit.item->title();
-    const int processes = unit.item->measure.processes;
-    if (unit.process >= processes) {
-        title += fmt::format(" process {}", unit.process + 1);
-    } else if (processes > 1) {
-        title += fmt::format(" process {}/{}", unit.process + 1, processes);
+    if (roundsOf(unit) > 1) {
+        title += fmt::format(", round {} of {}{}", unit.process + 1,
+                             hasOpenRounds(unit) ? "at most " : "", roundsOf(unit));
     }
     if (unit.measuredAs) title += " (as " + unit.measuredAs->title() + ")";
     return title;
@@ -95,12 +114,24 @@ std::size_t terminalWidth() {
 
 Progress::Progress(const std::vector<run::Unit>& units,
                    const std::map<const config::Case*, double>& unitTimesS, int jobs, bool isQuiet)
-    : unitCount_(static_cast<int>(units.size())),
-      unitTimesS_(unitTimesS),
+    : unitTimesS_(unitTimesS),
       jobs_(jobs),
       isQuiet_(isQuiet),
       isTerminal_(::isatty(STDERR_FILENO) == 1) {
-    for (const run::Unit& unit : units) totalS_ += timeS(unit);
+    add(units);
+}
+
+Progress::Count& Progress::countOf(const run::Unit& unit) {
+    const bool isInRound = roundsOf(unit) > 1;
+    return counts_[{isInRound ? unit.item->experiment : "", isInRound ? unit.process : 0}];
+}
+
+void Progress::add(const std::vector<run::Unit>& units) {
+    for (const run::Unit& unit : units) {
+        ++countOf(unit).known;
+        ++all_.known;
+        totalS_ += timeS(unit);
+    }
 }
 
 double Progress::timeS(const run::Unit& unit) const {
@@ -109,33 +140,39 @@ double Progress::timeS(const run::Unit& unit) const {
 }
 
 void Progress::unitsAdded(const std::vector<run::Unit>& units) {
-    unitCount_ += static_cast<int>(units.size());
-    for (const run::Unit& unit : units) totalS_ += timeS(unit);
+    add(units);
 }
 
 void Progress::unitBegan(const run::Unit& unit) {
     title_ = titleOf(unit);
+    shown_ = countOf(unit);
+    etaOf_ = hasOpenRounds(unit) ? " of this round" : "";
     lastDraw_ = {};
     tick({});
 }
 
 void Progress::unitEnded(const run::Unit& unit, records::Status status,
                          const std::string& message) {
-    ++ended_;
+    Count& count = countOf(unit);
+    ++count.ended;
+    ++all_.ended;
+    shown_ = count;
     doneS_ += timeS(unit);
     const bool isOk = status == records::Status::Ok;
     if (isOk && (isQuiet_ || isTerminal_)) return;
+    const bool isAbsent = status == records::Status::Unsupported;
+    if (isQuiet_ && isAbsent && !toldOnce_.insert(message).second) return;
     clear();
     constexpr std::size_t kMostTold = 300;
     const bool isLong = message.size() > kMostTold;
     std::size_t told = isLong ? kMostTold : message.size();
     while (isLong && told > 0 && (message[told] & 0xC0) == 0x80) --told;  // no half character
-    tell("[{}/{}] {} {}{}{}{}\n", ended_, unitCount_, records::statusName(status), titleOf(unit),
+    tell("[{}] {} {}{}{}{}\n", count.text(), records::statusName(status), titleOf(unit),
          message.empty() ? "" : ": ", message.substr(0, told), isLong ? " … (journal.jsonl)" : "");
 }
 
 std::string Progress::etaText() const {
-    if (ended_ == 0) return "--:--";
+    if (all_.ended == 0) return "--:--";
     const double elapsedS = std::chrono::duration<double>(Clock::now() - start_).count();
     const auto leftS =
         static_cast<long long>(cluster::remainingS(totalS_, doneS_, elapsedS, jobs_) + 0.5);
@@ -145,10 +182,11 @@ std::string Progress::etaText() const {
 void Progress::tick(std::string_view) {
     if (isQuiet_ || !isTerminal_ || Clock::now() - lastDraw_ < kDrawInterval) return;
     lastDraw_ = Clock::now();
-    const int filled = unitCount_ == 0 ? kBarWidth : kBarWidth * ended_ / unitCount_;
+    const int filled =
+        shown_.known == 0 ? kBarWidth : kBarWidth * shown_.ended / std::max(shown_.known, 1);
     std::string line =
-        fmt::format("[{}{}] {}/{}  ETA {}  {}", std::string(filled, '#'),
-                    std::string(kBarWidth - filled, '.'), ended_, unitCount_, etaText(), title_);
+        fmt::format("[{}{}] {}  ETA{} {}  {}", std::string(filled, '#'),
+                    std::string(kBarWidth - filled, '.'), shown_.text(), etaOf_, etaText(), title_);
     line.resize(std::min(line.size(), terminalWidth() - 1));
     tell("\r\033[K{}", line);
     std::fflush(stderr);

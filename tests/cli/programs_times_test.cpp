@@ -122,6 +122,29 @@ TEST_F(Timed, AKeyOfMeasureChangesThatKeyAlone) {
     }
 }
 
+/// A round that ends is not the end.
+TEST_F(Timed, ProgressIsThatOfARound) {
+    const ProcessResult open = reproduce(kSleeps + std::string("sweep: {number: [8, 9]}\n"));
+    EXPECT_THAT(open.err, HasSubstr("[2/2] ok sweep/mine number=9, round 1 of at most 6\n"));
+    EXPECT_THAT(open.err, HasSubstr("[1/2] ok sweep/mine number=9, round 2 of at most 6\n"));
+    fs::remove_all(runDir());
+    const ProcessResult asked = reproduce(kSleeps + std::string("measure: {processes: 2}\n"));
+    EXPECT_THAT(asked.err, HasSubstr("[1/1] ok sweep/mine, round 2 of 2\n"));
+}
+
+TEST_F(Timed, AProgramThatIsNotHereIsToldOnceWhereItIsQuiet) {
+    const std::string config =
+        folder.write("none.yaml",
+                     "sweep_of: none\ntitle: T\ntechnique: external\n"
+                     "program: {command: \"no-such-program {n}\", params: {n: 1}}\n"
+                     "sweep: {n: [1, 2, 3]}\nmeasure: {lane: quality}\n");
+    const std::string err = gfxrepro({"run", config, "--quiet", "--out", runDir()}).err;
+    const std::string said = "the program 'no-such-program' is not on this machine";
+    const std::size_t first = err.find(said);
+    EXPECT_NE(first, err.npos);
+    EXPECT_EQ(err.find(said, first + 1), err.npos) << err;
+}
+
 TEST_F(Timed, WarmUpTruthAndErrorsAreOfTheFirstProcessAlone) {
     ASSERT_EQ(reproduce(std::string(kSleeps) + kImages).exitCode, 0);
     // A warm-up, the case, its truth; then the case alone.

@@ -122,7 +122,7 @@ TEST(Twins, ProcessesAreSharedOneByOne) {
     const ProcessResult run = measureTwins(writeTables(folder, "measure: {processes: 2}\n"), dir);
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_THAT(run.out, HasSubstr("12 of 12 finished, 4 as a twin;"));
-    EXPECT_THAT(run.err, HasSubstr("demo2026/2 number=3 process 2/2 (as demo2026/1 number=3)\n"));
+    EXPECT_THAT(run.err, HasSubstr("demo2026/2 number=3, round 2 of 2 (as demo2026/1 number=3)\n"));
     EXPECT_EQ(measuredCount(dir), 8);
 }
 
