@@ -1,26 +1,16 @@
 #include "engine/metrics/statistics.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
-#include <string>
-#include <utility>
 
 #include "engine/core/error.h"
 
 namespace gfxrepro::metrics {
 namespace {
-
-constexpr std::array<std::pair<std::string_view, Statistic>, 7> kStatistics = {{
-    {"median", Statistic::Median},
-    {"mean", Statistic::Mean},
-    {"min", Statistic::Min},
-    {"max", Statistic::Max},
-    {"sum", Statistic::Sum},
-    {"count", Statistic::Count},
-    {"rate", Statistic::Rate},
-}};
 
 double median(std::span<const double> values) {
     std::vector<double> sorted(values.begin(), values.end());
@@ -28,6 +18,23 @@ double median(std::span<const double> values) {
     std::nth_element(sorted.begin(), middle, sorted.end());
     if (sorted.size() % 2 == 1) return *middle;
     return std::midpoint(*std::max_element(sorted.begin(), middle), *middle);
+}
+
+double percentile(std::span<const double> values, double share) {
+    std::vector<double> sorted(values.begin(), values.end());
+    std::ranges::sort(sorted);
+    const double place = share * static_cast<double>(sorted.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const double next = sorted[std::min(below + 1, sorted.size() - 1)];
+    return std::lerp(sorted[below], next, place - static_cast<double>(below));
+}
+
+double sampleDeviation(std::span<const double> values) {
+    const auto count = static_cast<double>(values.size());
+    const double mean = std::reduce(values.begin(), values.end()) / count;
+    double squares = 0.0;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return std::sqrt(squares / (count - 1.0));
 }
 
 double harmonicMean(std::span<const double> values) {
@@ -60,11 +67,10 @@ std::size_t leftOut(const std::vector<double>& chances) {
 }  // namespace
 
 Statistic statisticFromName(std::string_view name) {
-    for (const auto& [known, statistic] : kStatistics) {
-        if (known == name) return statistic;
-    }
-    throw Error("unknown statistic '" + std::string(name) +
-                "'; allowed: median, mean, min, max, sum, count, rate");
+    const auto found = std::ranges::find(kStatistics, name);
+    if (found != kStatistics.end()) return static_cast<Statistic>(found - kStatistics.begin());
+    throw Error(
+        fmt::format("unknown statistic '{}'; allowed: {}", name, fmt::join(kStatistics, ", ")));
 }
 
 double summarize(std::span<const double> values, Statistic statistic) {
@@ -84,6 +90,12 @@ double summarize(std::span<const double> values, Statistic statistic) {
             return sum;
         case Statistic::Rate:
             return harmonicMean(values);
+        case Statistic::StdDev:
+            return sampleDeviation(values);
+        case Statistic::P95:
+            return percentile(values, 0.95);
+        case Statistic::P99:
+            return percentile(values, 0.99);
         case Statistic::Count:
             break;
     }

@@ -1,6 +1,7 @@
 // Summaries of repeated measurements.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,14 +17,18 @@ struct Interval {
     double high = 0.0;
 };
 
-/// median | mean | min | max | sum | count | rate. The rate is the harmonic mean: of frame rates,
-/// the frames divided by their total time.
-enum class Statistic { Median, Mean, Min, Max, Sum, Count, Rate };
+/// median | mean | min | max | sum | count | rate | stddev | p95 | p99. The rate is the harmonic
+/// mean: of frame rates, the frames divided by their total time. The standard deviation is that of
+/// a sample (n − 1). Percentiles are interpolated between the two nearest values (Hyndman and Fan
+/// 1996, type 7).
+enum class Statistic { Median, Mean, Min, Max, Sum, Count, Rate, StdDev, P95, P99 };
+inline constexpr std::array<std::string_view, 10> kStatistics = {
+    "median", "mean", "min", "max", "sum", "count", "rate", "stddev", "p95", "p99"};
 /// Throws Error for other names, listing these.
 Statistic statisticFromName(std::string_view name);
 
 /// Of at least one value; Count of none is 0. Median of an even count is the mean of the middle
-/// two. The rate of values of which one is zero is 0.
+/// two. The rate of values of which one is zero is 0; the standard deviation of one value is NaN.
 double summarize(std::span<const double> values, Statistic statistic);
 
 /// The fewest independent values of which a 95 % interval can be made by ranks: the range of five

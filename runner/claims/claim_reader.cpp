@@ -15,84 +15,46 @@
 
 namespace gfxrepro::claims {
 
-Operand::Operand(const std::string& text, const tables::Table& table, const SourceLocation& where,
-                 const std::string& owner) {
-    const std::string whole(trimmed(text));
-    std::vector<std::string> labels;
-    for (const tables::TableColumn& column : table.columns) labels.push_back(column.label);
-    const std::vector<OperandPiece> pieces = operandPieces(whole, labels);
-    isColumn_ = pieces.size() == 1 && pieces[0].column.has_value();
-    std::string expression;  // with a variable for each column
-    for (const OperandPiece& piece : pieces) {
-        if (!piece.problem.empty()) throw AbsentColumnError(where, owner, piece.problem);
-        if (!piece.column) {
-            expression += piece.text;
-            continue;
+namespace {
+
+/// The table with a column of each row axis of numbers: for what a trend is over.
+tables::Table withAxesAsColumns(tables::Table table) {
+    for (std::size_t axis = 0; axis < table.rowAxes.size(); ++axis) {
+        const bool isOfNumbers = std::ranges::all_of(table.rows, [&](const tables::TableRow& row) {
+            return parseDouble(row.labels[axis]).has_value();
+        });
+        if (!isOfNumbers || table.findColumn(table.rowAxes[axis])) continue;
+        table.columns.push_back({table.rowAxes[axis], ""});
+        for (tables::TableRow& row : table.rows) {
+            tables::Cell& cell = row.cells.emplace_back();
+            cell.status = records::Status::Ok;
+            cell.measured = row.labels[axis];
+            cell.isAtPrintedParameters = true;
+            static_cast<tables::Summary&>(cell.values.emplace_back()) =
+                tables::summaryOf(*parseDouble(row.labels[axis]), {}, false);
         }
-        const auto found = std::ranges::find(columns_, *piece.column);
-        expression += fmt::format("v{}", found - columns_.begin());
-        if (found == columns_.end()) columns_.push_back(*piece.column);
     }
-    slots_.resize(columns_.size());
-    try {
-        for (std::size_t i = 0; i < columns_.size(); ++i) {
-            parser_.DefineVar(fmt::format("v{}", i), &slots_[i]);
-        }
-        parser_.SetExpr(expression);
-        parser_.Eval();
-    } catch (const mu::Parser::exception_type& error) {
-        std::string message = error.GetMsg();
-        for (std::size_t i = 0; i < columns_.size(); ++i) {
-            const std::string variable = fmt::format("\"v{}\"", i);
-            const std::size_t at = message.find(variable);
-            if (at == message.npos) continue;
-            message.replace(at, variable.size(), '"' + labels[columns_[i]] + '"');
-        }
-        throw ExpressionError(where,
-                              fmt::format("{}: '{}' is no expression: {}", owner, whole, message));
-    }
+    return table;
 }
 
-double Operand::evaluate(std::span<const double> values) {
-    std::copy(values.begin(), values.end(), slots_.begin());
-    return parser_.Eval();
-}
-
-Sampled Operand::evaluate(const tables::TableRow& row, tables::Clock clock) {
-    std::vector<Sampled> cells;
-    std::vector<double> values;
-    for (const std::size_t column : columns_) {
-        const tables::Cell& cell = row.cells[column];
-        const tables::Measured& measured =
-            *cell.find("", cell.isTime ? clock : tables::Clock::Wall);
-        // A single round tells no more than the value.
-        const bool hasRounds = measured.rounds.size() > 1;
-        cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
-                         measured.areDraws, cell.seedCount > 0});
-        values.push_back(measured.value);
-    }
-    std::vector<Sampled*> all;
-    for (Sampled& cell : cells) all.push_back(&cell);
-    Sampled result;
-    result.point = evaluate(values);
-    result.areDraws = keepRoundsOrDraws(all);
-    result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
-    for (const int round : commonRounds(cells)) {
-        for (std::size_t i = 0; i < cells.size(); ++i) values[i] = cells[i].at(round);
-        result.rounds[round] = evaluate(values);
-    }
-    return result;
-}
+}  // namespace
 
 tables::Table tableFor(const ClaimSpec& claim, const tables::Table& table) {
-    if (!claim.across) return table;
+    const bool isOverExpression =
+        claim.over && !table.findColumn(*claim.over) &&
+        std::ranges::find(table.rowAxes, *claim.over) == table.rowAxes.end();
+    if (!claim.across) return isOverExpression ? withAxesAsColumns(table) : table;
     const auto found = std::find(table.rowAxes.begin(), table.rowAxes.end(), *claim.across);
     if (found == table.rowAxes.end()) {
         throw Error(claim.location, "claim '" + claim.id + "': across: '" + *claim.across +
                                         "' is no row axis (row axes: " + joined(table.rowAxes) +
                                         ")");
     }
-    return tables::transposed(table, static_cast<std::size_t>(found - table.rowAxes.begin()));
+    tables::Table turned =
+        tables::transposed(table, static_cast<std::size_t>(found - table.rowAxes.begin()));
+    const bool isOverOther = isOverExpression && !turned.findColumn(*claim.over) &&
+                             std::ranges::find(turned.rowAxes, *claim.over) == turned.rowAxes.end();
+    return isOverOther ? withAxesAsColumns(std::move(turned)) : turned;
 }
 
 ClaimReader::ClaimReader(const ClaimSpec& claim, const tables::Table& table)

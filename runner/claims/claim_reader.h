@@ -1,71 +1,22 @@
 // Reads the values that a claim is about off a table.
 #pragma once
 
-#include <muParser.h>
-
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "engine/core/error.h"
 #include "runner/claims/judge.h"
+#include "runner/tables/expression.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::claims {
 
 using Rows = std::vector<std::size_t>;
 
-/// A name that is no column of the table, or may be one: a profile or an override may have taken it
-/// away, or brought a column that looks like a number.
-class AbsentColumnError : public Error {
-  public:
-    AbsentColumnError(const SourceLocation& where, const std::string& owner,
-                      const std::string& text)
-        : Error(where, owner + ": " + text), text_(text) {}
-    /// Without the place and the owner.
-    const std::string& text() const { return text_; }
-
-  private:
-    std::string text_;
-};
-
-/// What no table makes readable: bad syntax, or a claim that reads no column.
-class ExpressionError : public Error {
-  public:
-    using Error::Error;
-};
-
-/// The arithmetic of claims: an expression over the columns of a table ("rasterization_ms +
-/// draw_ms").
-class Operand {
-  public:
-    /// Columns are written as operandPieces() reads them. Throws ExpressionError at `where`, its
-    /// message begun with `owner`, for bad syntax, and AbsentColumnError for a name that is no
-    /// column, or may be one.
-    Operand(const std::string& text, const tables::Table& table, const SourceLocation& where,
-            const std::string& owner);
-    Operand(Operand&&) = default;
-    Operand& operator=(Operand&&) = delete;
-
-    /// Whether it is a column as it stands, without arithmetic.
-    bool isColumn() const { return isColumn_; }
-    /// The table's columns that are read.
-    const std::vector<std::size_t>& columns() const { return columns_; }
-    /// `values` lies beside columns().
-    double evaluate(std::span<const double> values);
-    /// On the cells of a row, all of which must be measured by that clock; those that have
-    /// none by the process's are no times. The rounds are those that all cells have; draws count
-    /// only where no cell has rounds of its own.
-    Sampled evaluate(const tables::TableRow& row, tables::Clock clock);
-
-  private:
-    bool isColumn_ = false;
-    std::vector<std::size_t> columns_;
-    std::vector<double> slots_;  // the parser points at them
-    mu::Parser parser_;
-};
+using tables::AbsentColumnError;
+using tables::ExpressionError;
+using tables::Operand;
 
 /// The table as the claim reads it: with `across`, rows for columns. Throws Error at the claim's
 /// place for an axis that it does not have.

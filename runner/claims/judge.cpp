@@ -137,30 +137,6 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
 
 }  // namespace
 
-bool keepRoundsOrDraws(std::span<Sampled* const> values) {
-    const bool hasRounds = std::ranges::any_of(
-        values, [](const Sampled* value) { return !value->rounds.empty() && !value->areDraws; });
-    if (!hasRounds) return std::ranges::any_of(values, &Sampled::areDraws);
-    for (Sampled* value : values) {
-        if (value->areDraws) *value = {value->point, {}, false};
-    }
-    return false;
-}
-
-std::vector<int> commonRounds(std::span<const Sampled> values) {
-    std::map<int, std::size_t> counts;
-    std::size_t sampledCount = 0;
-    for (const Sampled& sampled : values) {
-        sampledCount += sampled.rounds.empty() ? 0 : 1;
-        for (const auto& [round, value] : sampled.rounds) ++counts[round];
-    }
-    std::vector<int> rounds;
-    for (const auto& [round, count] : counts) {
-        if (count == sampledCount) rounds.push_back(round);
-    }
-    return rounds;
-}
-
 GroupPoint pointOf(const Group& group, int round) {
     return pointOf(group, [round](const Sampled& sampled) { return sampled.at(round); });
 }
@@ -173,7 +149,7 @@ std::vector<int> roundsOf(const Group& group) {
     std::vector<Sampled> all = group.x;
     for (const auto& operand : group.operands)
         all.insert(all.end(), operand.begin(), operand.end());
-    return commonRounds(all);
+    return tables::commonRounds(all);
 }
 
 Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirement) {
@@ -199,7 +175,7 @@ Judgement judge(Group group, const Quantity& quantity, const Requirement& requir
     std::vector<Sampled*> all;
     for (auto& operand : group.operands)
         for (Sampled& sampled : operand) all.push_back(&sampled);
-    const bool areDraws = keepRoundsOrDraws(all) && !requirement.isOfCounts;
+    const bool areDraws = tables::keepRoundsOrDraws(all) && !requirement.isOfCounts;
     for (Sampled* sampled : all) {
         if (sampled->areDraws && !areDraws) *sampled = {sampled->point, {}, false};
     }

@@ -20,34 +20,18 @@
 // their intervals hold the truth as often, too.
 #pragma once
 
-#include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/metrics/statistics.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kinds/kind.h"
+#include "runner/tables/expression.h"
 
 namespace gfxrepro::claims {
 
-/// A value, and what it was in each round (none: it is taken as certain).
-struct Sampled {
-    double point = 0.0;
-    std::map<int, double> rounds;
-    bool areDraws = false;  // they are of shares that were counted once (share_draws.h)
-    bool isRandom = false;  // another seed would give another value: it has no rounds of one seed
-
-    double at(int round) const { return rounds.empty() ? point : rounds.at(round); }
-};
-
-/// Where a value has rounds of its own, drops the draws of others: the two have nothing to do with
-/// each other, and rounds tell more. Whether draws are left.
-bool keepRoundsOrDraws(std::span<Sampled* const> values);
-
-/// The rounds that all of them have but those that are certain.
-std::vector<int> commonRounds(std::span<const Sampled> values);
+using tables::Sampled;
 
 using Group = GroupOf<Sampled>;
 /// The group in one round; and by its values alone.

@@ -260,7 +260,7 @@ void readMeasurement(const Node& document, Experiment& experiment) {
 bool showsTimes(const Layout& layout) {
     const auto isOfTime = [](const Selection& selection) {
         return (selection.metric && isTimeMetric(*selection.metric)) ||
-               (selection.against && isTimeMetric(selection.against->metric));
+               (selection.equal && isTimeMetric(selection.equal->metric));
     };
     const auto hasTime = [&](const LayoutAxis& axis) {
         return std::ranges::any_of(axis.labels,

@@ -41,13 +41,11 @@ std::vector<AxisPoint> expandSweep(const Node& sweep);
 /// Leaves out the axes whose condition in `when` is false. That may make further conditions false.
 void applyWhen(const Node& when, AxisPoint& point);
 
-/// Another metric, or another pass, of the same cases: what a cell is a share of, or what is taken
-/// away from it.
-struct Against {
-    enum class As { Whole, Part };  // share_of, minus
-    As as = As::Whole;
+/// Where another metric, a time or an error, has this value between the cases that a cell takes.
+struct Equal {
     std::string metric;
     std::string pass;  // empty: the whole case
+    double is = 0.0;
 };
 
 /// What a cell shows: chosen records and their summary. Row axes, column axes and `cell` each give
@@ -56,10 +54,11 @@ struct Selection {
     std::optional<std::string> metric;
     std::optional<std::string> pass;
     std::optional<std::string>
-        format;                      // "{median:.2f}", "{mean:.2f}/{max:.0f}": statistics in braces
-    std::optional<double> scale;     // multiplies every value
-    std::optional<Against> against;  // shows the statistic ÷ the same of that, in %, or less it
-    Node::Map where;                 // axis = value
+        format;                     // "{median:.2f}", "{mean:.2f}/{max:.0f}": statistics in braces
+    std::optional<double> scale;    // multiplies every value
+    std::optional<std::string> of;  // of a column: an expression over the columns before it
+    std::optional<Equal> equal;
+    Node::Map where;  // axis = value
     SourceLocation location;
 };
 
@@ -77,6 +76,9 @@ struct Layout {
     std::vector<LayoutAxis> columns;
     Selection cell;
     bool isGiven = false;
+
+    /// The selection of a column that is computed of others; null of one that is measured.
+    const Selection* computed(std::string_view column) const;
 };
 
 /// `printed:` — what the paper printed. Never reaches a worker.

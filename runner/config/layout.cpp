@@ -4,6 +4,8 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
+#include "engine/metrics/statistics.h"
+#include "runner/claims/kinds/operands.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 
@@ -16,28 +18,6 @@ Names referableAxes(const Vocabulary& vocabulary) {
     Names names = vocabulary.axisNames();
     names.emplace_back("frame");
     return names;
-}
-
-Against readAgainst(Against::As as, const Node& node, const std::string& key) {
-    if (node.isScalar()) return {as, lineOf(node, key), ""};
-    requireKeys(node, key, keysOf("against"));
-    const Node* metric = node.find("metric");
-    if (!metric) throwNotAllowed(node, key, "a metric, or {metric: …, pass: …}");
-    const Node* pass = node.find("pass");
-    return {as, lineOf(*metric, "metric"), pass ? lineOf(*pass, "pass") : ""};
-}
-
-/// `share_of` or `minus`.
-std::optional<Against> againstOf(const Node& selection) {
-    const Node* whole = selection.find("share_of");
-    const Node* part = selection.find("minus");
-    if (whole && part) {
-        throw Error(selection.keyLocation("minus"),
-                    "a cell's selection: share_of and minus exclude each other");
-    }
-    if (whole) return readAgainst(Against::As::Whole, *whole, "share_of");
-    if (part) return readAgainst(Against::As::Part, *part, "minus");
-    return std::nullopt;
 }
 
 Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
@@ -55,7 +35,17 @@ Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
         selection.format = format->text();
     }
     if (const Node* scale = node.find("scale")) selection.scale = scale->asDouble();
-    selection.against = againstOf(node);
+    if (const Node* equal = node.find("equal")) {
+        requireKeys(*equal, "equal", keysOf("equal"));
+        const std::string what = "equal";
+        selection.equal =
+            Equal{lineOf(requiredAt(*equal, "metric", what), "metric"),
+                  optionalLine(*equal, "pass", what), requiredAt(*equal, "is", what).asDouble()};
+    }
+    if (const Node* of = node.find("of")) {
+        selection.of = lineOf(*of, "of");
+        requireKeys(node, "a computed column", Names{"of", "format"});
+    }
     if (const Node* where = node.find("where")) {
         requireKeys(*where, "where", referableAxes(vocabulary));
         selection.where.assign(where->entries().begin(), where->entries().end());
@@ -148,8 +138,9 @@ bool hasMetricEverywhere(const Layout& layout) {
         for (const LayoutAxis& axis : *axes) {
             const bool isComplete =
                 !axis.isSweepAxis() &&
-                std::all_of(axis.labels.begin(), axis.labels.end(),
-                            [](const auto& label) { return label.second.metric.has_value(); });
+                std::all_of(axis.labels.begin(), axis.labels.end(), [](const auto& label) {
+                    return label.second.metric || label.second.of;
+                });
             if (isComplete) return true;
         }
     }
@@ -167,7 +158,66 @@ Names combine(const Names& heads, const Names& tails) {
     return names;
 }
 
+/// Expressions stand in the columns, and read columns before them, in rows that there are.
+void requireComputed(const Layout& layout, const Vocabulary& vocabulary) {
+    const auto refuse = [](const Selection& selection, const std::string& text) {
+        throw Error(selection.location, "layout: of: " + text);
+    };
+    const auto refuseAny = [&](const LayoutAxis& axis, const std::string& text) {
+        for (const auto& [label, selection] : axis.labels) {
+            if (selection.of) refuse(selection, text);
+        }
+    };
+    if (layout.cell.of) refuse(layout.cell, "it stands in a column");
+    for (const LayoutAxis& axis : layout.rows) refuseAny(axis, "it stands in a column, not a row");
+    if (layout.columns.size() > 1) {
+        for (const LayoutAxis& axis : layout.columns) {
+            refuseAny(axis, "columns have one axis where one of them is computed");
+        }
+    }
+    if (layout.columns.size() != 1) return;
+    const TableNames names = tableNames(layout, vocabulary);
+    Names before;
+    for (const auto& [label, selection] : layout.columns[0].labels) {
+        Names known = before;
+        before.push_back(label);
+        if (!selection.of) continue;
+        for (const claims::RowReference& reference : claims::rowReferences(*selection.of, known)) {
+            const std::string text(reference.text);
+            if (reference.at.empty()) refuse(selection, text + "; allowed: column[axis=value, …]");
+            for (const auto& [axis, value] : reference.at) {
+                if (!contains(names.rowAxes, axis)) {
+                    refuse(selection, fmt::format("{}: '{}' is no row axis{}", text, axis,
+                                                  suggestionOrAll(axis, names.rowAxes)));
+                }
+                const auto values = names.rowValues.find(axis);
+                const Node wanted = Node::scalar(value, selection.location, false);
+                if (values == names.rowValues.end() ||
+                    matchesAny(wanted, Node::sequence(values->second))) {
+                    continue;
+                }
+                Names texts;
+                for (const Node& one : values->second) texts.push_back(one.toFlowText());
+                refuse(selection, fmt::format("{}: {} is {}; allowed: {}", text, axis, value,
+                                              joined(texts, " | ")));
+            }
+            known.push_back(text);
+        }
+        for (const claims::OperandPiece& piece : claims::operandPieces(*selection.of, known)) {
+            if (!piece.problem.empty()) refuse(selection, piece.problem);
+        }
+    }
+}
+
 }  // namespace
+
+const Selection* Layout::computed(std::string_view column) const {
+    if (columns.size() != 1) return nullptr;
+    for (const auto& [label, selection] : columns[0].labels) {
+        if (label == column && selection.of) return &selection;
+    }
+    return nullptr;
+}
 
 Names Vocabulary::axisNames() const {
     Names names;
@@ -194,6 +244,7 @@ Layout readLayout(const Node& node, const Vocabulary& vocabulary) {
                     "layout: some cell has no metric; allowed: a metric in `cell`, or in every "
                     "label of one axis");
     }
+    requireComputed(layout, vocabulary);
     return layout;
 }
 
@@ -245,10 +296,11 @@ RowFilter readRowFilter(const Node& at, const std::string& what, const TableName
 
 namespace {
 
-/// Throws Error unless it is one of median, mean, min, max, sum, count, rate.
+/// Throws Error unless it is one of metrics::kStatistics.
 void requireStatistic(const Node& name) {
-    if (!contains(kStatistics, lineOf(name, "statistic"))) {
-        throwNotAllowed(name, "statistic", fmt::format("{}", fmt::join(kStatistics, ", ")));
+    if (!contains(metrics::kStatistics, lineOf(name, "statistic"))) {
+        throwNotAllowed(name, "statistic",
+                        fmt::format("{}", fmt::join(metrics::kStatistics, ", ")));
     }
 }
 
@@ -321,21 +373,22 @@ std::vector<SchemaSection> layoutKeys() {
          "row's over the cell's.",
          {{"metric", "name", "none", "of the technique's metrics", text()},
           {"pass", "name", "whole case", "step of the algorithm", text()},
-          {"format", "text", "none", "median mean min max sum count rate in braces: {mean:.2f}",
-           text()},
+          {"format", "text", "none",
+           fmt::format("{} in braces: {{mean:.2f}}", fmt::join(metrics::kStatistics, " ")), text()},
           {"scale", "number", "1", "multiplies every value", number()},
-          {"share_of", "metric | against", "none",
-           "shows the statistic ÷ the same statistic of that metric in the same cases, in %",
-           anyOf({text(), refTo("against")})},
-          {"minus", "metric | against", "none",
-           "shows the statistic less the same statistic of that metric in the same cases",
-           anyOf({text(), refTo("against")})},
+          {"of", "expression", "none",
+           "of a column: computed, in each process, of columns before it; time[threads=1] / time "
+           "reads the first of the row with that value",
+           text()},
+          {"equal", "equal", "none", "at equal time, or at equal error", refTo("equal")},
           {"where", "{axis: value}", "{}", "only these cases", pairs()}}},
-        {"against",
-         "share_of., minus.",
-         "Per process, as its interval; frames without a part count in the whole alone.",
-         {{"metric", "name", "required", "what is the whole, or taken away", text()},
-          {"pass", "name", "whole case", "step of the algorithm", text()}},
+        {"equal",
+         "equal.",
+         "The cell takes the cases of a swept axis, and shows its metric where another one has a "
+         "value: interpolated between the two nearest cases, on logarithmic scales.",
+         {{"metric", "name", "required", "the other metric", text()},
+          {"pass", "name", "whole case", "step of the algorithm", text()},
+          {"is", "number", "required", "its value", number()}},
          false}};
 }
 

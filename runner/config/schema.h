@@ -13,10 +13,6 @@
 
 namespace gfxrepro::config {
 
-/// What summarizes the records of a cell.
-inline constexpr std::array<std::string_view, 7> kStatistics = {"median", "mean",  "min", "max",
-                                                                "sum",    "count", "rate"};
-
 /// The words of a claim, in the order of the enums of ClaimSpec.
 inline constexpr std::array<std::string_view, 6> kOrigins = {
     "document", "derived", "ours", "definition", "calibrated", "existence"};

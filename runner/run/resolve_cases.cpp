@@ -85,20 +85,15 @@ void requireOutputs(const config::Experiment& experiment,
     const auto require = [&](const config::Selection& selection) {
         const SourceLocation& where = selection.location;
         if (selection.metric) outputs.requireMetric(*selection.metric, owner, where);
+        if (selection.equal) {
+            outputs.requireMetric(selection.equal->metric, owner, where);
+            if (!selection.equal->pass.empty()) {
+                outputs.requirePass(selection.equal->pass, owner, where);
+            }
+        }
         if (selection.pass && !selection.pass->empty()) {
             outputs.requirePass(*selection.pass, owner, where);
             if (selection.metric) requireOfPasses(*selection.metric, where);
-        }
-        if (!selection.against) return;
-        outputs.requireMetric(selection.against->metric, owner, where);
-        if (!selection.against->pass.empty()) {
-            outputs.requirePass(selection.against->pass, owner, where);
-        }
-        if (selection.metric && selection.against->as == config::Against::As::Part &&
-            outputs.find(*selection.metric)->unit !=
-                outputs.find(selection.against->metric)->unit) {
-            throw Error(where, fmt::format("minus: '{}' is of another unit than '{}'",
-                                           selection.against->metric, *selection.metric));
         }
     };
     require(experiment.layout.cell);

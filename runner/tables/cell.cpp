@@ -1,165 +1,70 @@
 #include "runner/tables/cell.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <climits>
 #include <cmath>
 #include <cstdint>
-#include <random>
+#include <limits>
 #include <set>
+#include <span>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "runner/tables/expression.h"
 
 namespace gfxrepro::tables {
 
-// From repeated measurements to one value with its bounds.
-
 namespace {
 
-using Units = std::map<int, std::vector<double>>;
-using metrics::Statistic;
-
-double summarizeUnits(const Units& units, Statistic statistic) {
-    if (units.size() == 1) return metrics::summarize(units.begin()->second, statistic);
-    std::vector<double> values;
-    for (const auto& [unit, repeats] : units) {
-        values.push_back(metrics::summarize(repeats, Statistic::Median));
-    }
-    return metrics::summarize(values, statistic);
-}
-
-Units pooled(const Samples& samples) {
-    Units units;
-    for (const auto& [process, own] : samples.processes) {
-        for (const auto& [unit, repeats] : own) {
-            std::vector<double>& all = units[unit];
-            all.insert(all.end(), repeats.begin(), repeats.end());
+/// The texts of these numbers, and of them together.
+void writeTexts(const CellFormat& format, std::vector<Measured>& numbers, std::string& whole,
+                std::string& low, std::string& high) {
+    if (numbers.empty()) return;
+    std::vector<double> values, lows, highs;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        Measured& measured = numbers[i];
+        measured.text = format.formatOne(i, measured.value);
+        if (measured.bounds != Bounds::None) {
+            measured.low = format.formatOne(i, measured.interval.low);
+            measured.high = format.formatOne(i, measured.interval.high);
         }
+        values.push_back(measured.value);
+        lows.push_back(measured.interval.low);
+        highs.push_back(measured.interval.high);
     }
-    return units;
-}
-
-/// What the first repeat of every unit alone would give, then the second, …
-std::vector<double> byRepeat(const Units& units, Statistic statistic) {
-    std::size_t count = units.begin()->second.size();
-    for (const auto& [unit, repeats] : units) count = std::min(count, repeats.size());
-    std::vector<double> values;
-    for (std::size_t i = 0; i < count; ++i) {
-        Units alone;
-        for (const auto& [unit, repeats] : units) alone[unit] = {repeats[i]};
-        values.push_back(summarizeUnits(alone, statistic));
-    }
-    return values;
-}
-
-metrics::Interval rangeOf(const std::vector<double>& values) {
-    const auto [low, high] = std::ranges::minmax(values);
-    return {low, high};
-}
-
-/// Value and bounds of what each process came to, at least one.
-void fillFromRounds(const std::vector<double>& values, Summary& summary) {
-    summary.value = metrics::summarize(values, Statistic::Median);
-    summary.interval = rangeOf(values);
-    if (values.size() > 1) summary.bounds = Bounds::Range;
-    if (const auto interval = metrics::medianInterval(values)) {
-        summary.bounds = Bounds::Interval;
-        summary.interval = *interval;
-    }
+    whole = format.format(values);
+    if (numbers.front().bounds == Bounds::None) return;
+    low = format.format(lows);
+    high = format.format(highs);
 }
 
 }  // namespace
 
-std::string_view boundsName(Bounds bounds) {
-    constexpr std::string_view kNames[] = {"", "range", "95 % interval"};
-    return kNames[static_cast<std::size_t>(bounds)];
+void writeValues(const CellFormat& format, Cell& cell) {
+    writeTexts(format, cell.values, cell.measured, cell.low, cell.high);
+    writeTexts(format, cell.byProcess, cell.measuredByProcess, cell.lowByProcess,
+               cell.highByProcess);
 }
 
-Summary summarize(const Samples& samples, Statistic statistic) {
-    const Units all = pooled(samples);
-    GFXREPRO_ASSERT(!all.empty());
-    Summary summary;
-    std::vector<double> values;
-    for (const auto& [process, units] : samples.processes) {
-        if (units.size() < all.size()) continue;
-        values.push_back(summarizeUnits(units, statistic));
-        summary.rounds[process] = values.back();
+void writeStatus(std::string_view word, Cell& cell) {
+    if (cell.values.empty()) {
+        cell.measured = cell.isPlanned ? word : "";
+    } else if (cell.status == records::Status::Flaky) {
+        cell.measured += " (flaky)";
+    } else if (cell.status != records::Status::Ok) {
+        cell.isPartial = true;
+        cell.measured += fmt::format(" (partial: {})", word);
     }
-    summary.value = summarizeUnits(all, statistic);
-    summary.interval = {summary.value, summary.value};
-    if (!values.empty()) fillFromRounds(values, summary);
-    // A sum or a count of repeats is not what one of them gives.
-    const bool isOfRepeats =
-        all.size() == 1 && (statistic == Statistic::Sum || statistic == Statistic::Count);
-    if (values.size() != 1 || isOfRepeats) return summary;
-    const std::vector<double> repeats = byRepeat(all, statistic);
-    if (repeats.size() < 2) return summary;
-    summary.bounds = Bounds::Range;
-    summary.interval = rangeOf(repeats);
-    return summary;
-}
-
-Summary together(const Summary& a, const Summary& b, double (*of)(double, double)) {
-    Summary both;
-    std::vector<double> values;
-    for (const auto& [process, value] : a.rounds) {
-        const auto other = b.rounds.find(process);
-        if (other == b.rounds.end()) continue;
-        values.push_back(of(value, other->second));
-        both.rounds[process] = values.back();
-    }
-    both.value = of(a.value, b.value);
-    both.interval = {both.value, both.value};
-    if (!values.empty()) fillFromRounds(values, both);
-    return both;
-}
-
-// What a share that was counted once could be in truth.
-
-namespace {
-
-/// The ends of an interval lie within 0.05 standard deviations of where ever more would put them.
-constexpr int kDraws = 4000;
-
-/// FNV-1a: the same on every machine.
-std::uint64_t seedOf(std::string_view name) {
-    std::uint64_t hash = 14695981039346656037ULL;
-    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-    return hash;
-}
-
-}  // namespace
-
-std::map<int, double> shareDraws(double percent, double count, std::string_view name) {
-    const double successes = std::round(percent / 100.0 * count);
-    std::mt19937_64 random(seedOf(name));
-    std::gamma_distribution<double> in(successes + 0.5), out(count - successes + 0.5);
-    std::map<int, double> draws;
-    for (int i = 0; i < kDraws; ++i) {
-        const double a = in(random), b = out(random);
-        draws[i] = 100.0 * a / (a + b);
-    }
-    return draws;
-}
-
-void boundByDraws(Summary& share, double scale, double count, std::string_view name) {
-    share.rounds = shareDraws(share.value / scale, count, name);
-    std::vector<double> draws;
-    for (auto& [number, value] : share.rounds) draws.push_back(value *= scale);
-    share.areDraws = true;
-    share.bounds = Bounds::Interval;
-    share.interval = drawsInterval(std::move(draws));
-}
-
-metrics::Interval drawsInterval(std::vector<double> draws) {
-    std::ranges::sort(draws);
-    const auto tail = static_cast<std::size_t>(0.025 * static_cast<double>(draws.size()));
-    return {draws[tail], draws[draws.size() - 1 - tail]};
 }
 
 // Which records a cell takes, and what they come to.
 
 namespace {
+
+using metrics::Statistic;
 
 constexpr std::string_view kDefaultFormat = "{median:.4g}";
 
@@ -168,7 +73,8 @@ void layOver(const config::Selection& part, config::Selection& selection, Where&
     if (part.pass) selection.pass = part.pass;
     if (part.format) selection.format = part.format;
     if (part.scale) selection.scale = part.scale;
-    if (part.against) selection.against = part.against;
+    if (part.of) selection.of = part.of;
+    if (part.equal) selection.equal = part.equal;
     if (part.location.line > 0) selection.location = part.location;
     for (const auto& [axis, value] : part.where) {
         std::vector<std::string> allowed = {canonicalText(value)};
@@ -221,42 +127,17 @@ bool isFrameTime(const std::string& metric) {
 /// The same place by the CPU time of the process, where such is recorded.
 std::optional<CellQuery> byProcessTime(const CellQuery& query) {
     const bool isRate = query.metric == "frame_rate";
-    if (!isRate && !isFrameTime(query.metric)) return std::nullopt;
+    const bool isTime = isRate || isFrameTime(query.metric);
+    if (!isTime && !(query.equal && isFrameTime(query.equal->metric))) return std::nullopt;
     CellQuery other = query;
-    other.metric = "process_time_ms";
-    if (other.against) {
-        if (isRate || !isFrameTime(other.against->metric)) return std::nullopt;
-        other.against->metric = "process_time_ms";
-    }
+    if (isTime) other.metric = "process_time_ms";
     other.isRateOfTime = isRate;
+    if (other.equal && isFrameTime(other.equal->metric)) other.equal->metric = "process_time_ms";
     return other;
-}
-
-/// What a share is of, or what is taken away.
-std::optional<CellQuery> otherOf(const CellQuery& query) {
-    if (!query.against) return std::nullopt;
-    CellQuery other = query;
-    other.metric = query.against->metric;
-    other.pass = query.against->pass;
-    other.against.reset();
-    return other;
-}
-
-bool isShare(const CellQuery& query) {
-    return query.against && query.against->as == config::Against::As::Whole;
-}
-
-double sharePct(double part, double whole) {
-    return 100.0 * part / whole;
-}
-
-double difference(double whole, double part) {
-    return whole - part;
 }
 
 struct Gathered {  // what the records of a cell came to
     Samples samples;
-    std::optional<Samples> other;  // of `against`
     records::Status worst = records::Status::Ok;
     std::string message;
     bool isUntimed = false;  // ambiguous for being a time of the quality lane
@@ -362,35 +243,14 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
         std::map<int, int> unitOfFrame;
         takeCase(*run, query, unitOfFrame, unitCount, gathered);
     }
-    if (const std::optional<CellQuery> other = otherOf(query)) {
-        Gathered beside = gather(*other, cases);
-        if (gathered.worst < beside.worst) gathered.isUntimed = beside.isUntimed;
-        gathered.note(beside.worst, beside.message);
-        const bool isThere = !beside.samples.processes.empty();
-        const bool doesFit = isThere && (isShare(query) || gathered.units == beside.units);
-        if (!gathered.samples.processes.empty() && !doesFit) {
-            gathered.note(isThere ? records::Status::Error : records::Status::Missing,
-                          isThere ? "'" + other->metric + "' is of another unit than '" +
-                                        query.metric + "' and cannot be taken away from it"
-                                  : whyNothing(*other, cases));
-        }
-        if (!doesFit) gathered.samples = {};
-        gathered.other = std::move(beside.samples);
-        gathered.seeds.merge(beside.seeds);
-    }
     return gathered;
 }
 
 std::vector<Measured> measuredOf(const CellQuery& query, const Gathered& gathered) {
     std::vector<Measured> values;
     for (const auto& placeholder : query.format.placeholders()) {
-        Summary summary = summarize(gathered.samples, placeholder.statistic);
-        if (gathered.other) {
-            summary = together(summary, summarize(*gathered.other, placeholder.statistic),
-                               isShare(query) ? sharePct : difference);
-        }
         Measured& measured = values.emplace_back();
-        static_cast<Summary&>(measured) = std::move(summary);
+        static_cast<Summary&>(measured) = summarize(gathered.samples, placeholder.statistic);
         measured.statistic = placeholder.name;
     }
     return values;
@@ -402,30 +262,9 @@ void boundShare(const CellQuery& query, const Gathered& gathered, Measured& meas
     const bool isCountedOnce = gathered.shareCounts.size() == 1 && processes.size() == 1 &&
                                processes.begin()->second.size() == 1 &&
                                processes.begin()->second.begin()->second.size() == 1;
-    if (!isCountedOnce || query.against) return;
+    if (!isCountedOnce) return;
     boundByDraws(measured, query.scale, gathered.shareCounts[0],
                  gathered.caseIds[0] + query.metric + query.pass);
-}
-
-/// The texts of these numbers, and of them together.
-void writeTexts(const CellFormat& format, std::vector<Measured>& numbers, std::string& whole,
-                std::string& low, std::string& high) {
-    std::vector<double> values, lows, highs;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        Measured& measured = numbers[i];
-        measured.text = format.formatOne(i, measured.value);
-        if (measured.bounds != Bounds::None) {
-            measured.low = format.formatOne(i, measured.interval.low);
-            measured.high = format.formatOne(i, measured.interval.high);
-        }
-        values.push_back(measured.value);
-        lows.push_back(measured.interval.low);
-        highs.push_back(measured.interval.high);
-    }
-    whole = format.format(values);
-    if (numbers.front().bounds == Bounds::None) return;
-    low = format.format(lows);
-    high = format.format(highs);
 }
 
 /// Equal values of several processes of one seed are one sample. A share that was counted once has
@@ -450,9 +289,16 @@ void countSeeds(const Gathered& gathered, Cell& cell) {
 
 void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
     cell.values = measuredOf(query, gathered);
+    const auto unknown = std::ranges::find_if(
+        cell.values, [](const Measured& measured) { return std::isnan(measured.value); });
+    if (unknown != cell.values.end()) {
+        cell.status = records::Status::Missing;
+        cell.message = fmt::format("'{}' needs two values or more", unknown->statistic);
+        cell.values.clear();
+        return;
+    }
     for (Measured& measured : cell.values) boundShare(query, gathered, measured);
     countSeeds(gathered, cell);
-    writeTexts(query.format, cell.values, cell.measured, cell.low, cell.high);
 }
 
 /// Only where every measurement has its CPU time beside it.
@@ -467,8 +313,132 @@ void fillProcessTimes(const CellQuery& query, const LayoutCases& cases, const Sa
         if (own == gathered.samples.processes.end() || own->second.size() != units.size()) return;
     }
     cell.byProcess = measuredOf(*other, gathered);
-    writeTexts(query.format, cell.byProcess, cell.measuredByProcess, cell.lowByProcess,
-               cell.highByProcess);
+}
+
+// Equal time, equal error.
+
+/// A case on the curve: the other metric, and the cell's own.
+struct CurvePoint {
+    Sampled x, y;
+};
+
+/// Whether one of the values is no logarithm's.
+bool isLinear(std::span<const std::pair<double, double>> points, double at) {
+    return at <= 0.0 || std::ranges::any_of(points, [](const auto& point) {
+               return point.first <= 0.0 || point.second <= 0.0;
+           });
+}
+
+/// Not-a-number outside of the points.
+double readAt(std::vector<std::pair<double, double>> points, double at) {
+    std::ranges::sort(points);
+    const bool isPlain = isLinear(points, at);
+    const auto scaled = [&](double value) { return isPlain ? value : std::log(value); };
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        const auto [x0, y0] = points[i - 1];
+        const auto [x1, y1] = points[i];
+        if (at < x0 || at > x1) continue;
+        const double share = x1 > x0 ? (scaled(at) - scaled(x0)) / (scaled(x1) - scaled(x0)) : 0.5;
+        const double value = std::lerp(scaled(y0), scaled(y1), share);
+        return isPlain ? value : std::exp(value);
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+Sampled sampledOf(const Samples& samples, Statistic statistic) {
+    Summary summary = summarize(samples, statistic);
+    if (summary.rounds.size() < 2) summary.rounds.clear();  // no more than the value
+    return {summary.value, std::move(summary.rounds), false};
+}
+
+Summary readCurve(std::span<const CurvePoint> curve, double at) {
+    std::vector<Sampled> all;
+    std::vector<std::pair<double, double>> points;
+    for (const CurvePoint& point : curve) {
+        all.insert(all.end(), {point.x, point.y});
+        points.emplace_back(point.x.point, point.y.point);
+    }
+    const double value = readAt(points, at);
+    std::map<int, double> rounds;
+    for (const int round : commonRounds(all)) {
+        points.clear();
+        for (const CurvePoint& point : curve) {
+            points.emplace_back(point.x.at(round), point.y.at(round));
+        }
+        const double own = readAt(points, at);
+        if (std::isfinite(own)) rounds[round] = own;
+    }
+    return summaryOf(value, std::isfinite(value) ? std::move(rounds) : std::map<int, double>(),
+                     false);
+}
+
+/// The curve of each statistic of the format; empty, with the reason noted, where there is none.
+std::vector<CurvePoint> curveOf(const CellQuery& query, Statistic statistic,
+                                const LayoutCases& cases, Gathered& gathered) {
+    std::vector<CurvePoint> curve;
+    for (const CaseRecords* run : casesAt(query.where, cases)) {
+        CellQuery other = query;
+        other.metric = query.equal->metric;
+        other.pass = query.equal->pass;
+        other.scale = 1.0;
+        Gathered x, y;
+        std::map<int, int> unitsOfX, unitsOfY;
+        int xCount = 0, yCount = 0;
+        takeCase(*run, other, unitsOfX, xCount, x);
+        takeCase(*run, query, unitsOfY, yCount, y);
+        gathered.note(x.worst, x.message);
+        gathered.note(y.worst, y.message);
+        gathered.units.merge(y.units);
+        if (x.samples.processes.empty() || y.samples.processes.empty()) continue;
+        curve.push_back({sampledOf(x.samples, statistic), sampledOf(y.samples, statistic)});
+    }
+    return curve;
+}
+
+std::vector<Measured> equalValues(const CellQuery& query, const LayoutCases& cases,
+                                  Gathered& gathered) {
+    std::vector<Measured> values;
+    for (const auto& placeholder : query.format.placeholders()) {
+        const std::vector<CurvePoint> curve =
+            curveOf(query, placeholder.statistic, cases, gathered);
+        const auto& [metric, pass, at] = *query.equal;
+        if (curve.size() < 2) {
+            gathered.note(
+                records::Status::Missing,
+                fmt::format("equal needs two cases with '{}' and '{}'", metric, query.metric));
+            return {};
+        }
+        Measured& measured = values.emplace_back();
+        static_cast<Summary&>(measured) = readCurve(curve, at);
+        measured.statistic = placeholder.name;
+        if (std::isfinite(measured.value)) continue;
+        const auto [low, high] =
+            std::ranges::minmax(curve, {}, [](const CurvePoint& point) { return point.x.point; });
+        gathered.note(records::Status::Missing,
+                      fmt::format("'{}' is from {:.4g} to {:.4g} there, and never {:.4g}", metric,
+                                  low.x.point, high.x.point, at));
+        return {};
+    }
+    return values;
+}
+
+void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
+    Gathered gathered;
+    cell.values = equalValues(query, cases, gathered);
+    for (const CaseRecords* run : casesAt(query.where, cases)) cell.caseIds.push_back(run->id);
+    cell.isTime |= config::isTimeMetric(query.equal->metric);
+    cell.isPlanned = !cell.caseIds.empty();
+    cell.status = gathered.worst;
+    cell.message = gathered.message;
+    if (!query.isScaled && gathered.units.size() == 1) cell.unit = *gathered.units.begin();
+    if (!cell.values.empty()) {
+        if (const auto other = byProcessTime(query)) {
+            Gathered beside;
+            cell.byProcess = equalValues(*other, cases, beside);
+        }
+        writeValues(query.format, cell);
+    }
+    writeStatus(records::statusName(cell.status), cell);
 }
 
 }  // namespace
@@ -491,27 +461,29 @@ Where whereOf(const config::Layout& layout, const Key& row, const Key& column) {
 
 CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column) {
     auto [selection, where] = partsOver(layout, row, column);
-    if (!selection.metric) {
+    if (!selection.metric && !selection.of) {
         throw Error(selection.location, "no metric is given for the cell of row '" +
                                             joined(row, "_") + "', column '" + joined(column, "_") +
                                             "'; add `metric:` to its column, its row or `cell`");
     }
-    return {*selection.metric,
+    return {selection.metric.value_or(""),
             selection.pass.value_or(""),
             CellFormat(selection.format.value_or(std::string(kDefaultFormat)), selection.location),
             selection.scale.value_or(1.0),
             selection.scale.has_value(),
-            selection.against,
+            selection.equal,
             false,
             std::move(where)};
 }
 
 Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     Cell cell;
-    cell.isTime = config::isTimeMetric(query.metric) ||
-                  (query.against && config::isTimeMetric(query.against->metric));
-    cell.timePower = config::timePower(query.metric) -
-                     (isShare(query) ? config::timePower(query.against->metric) : 0);
+    cell.isTime = config::isTimeMetric(query.metric);
+    cell.timePower = config::timePower(query.metric);
+    if (query.equal) {
+        fillEqual(query, cases, cell);
+        return cell;
+    }
     Gathered gathered = gather(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
     const std::size_t notRun = gathered.notRun, planned = gathered.caseIds.size() + notRun;
@@ -530,23 +502,17 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     cell.status = gathered.worst;
     cell.message = gathered.message;
     cell.caseIds = gathered.caseIds;
-    if (isShare(query)) {
-        cell.unit = "%";
-    } else if (!query.isScaled) {
+    if (!query.isScaled) {
         cell.metric = query.metric;
         if (gathered.units.size() == 1) cell.unit = *gathered.units.begin();
     }
     if (hasSamples) {
         fillValues(query, gathered, cell);
         fillProcessTimes(query, cases, gathered.samples, cell);
+        writeValues(query.format, cell);
     }
     const bool isTimed = !gathered.isUntimed || cell.status != records::Status::Ambiguous;
-    const std::string word(isTimed ? records::statusName(cell.status) : "not timed");
-    const bool isFlaky = hasSamples && cell.status == records::Status::Flaky;
-    cell.isPartial = hasSamples && cell.status != records::Status::Ok && !isFlaky;
-    if (isFlaky) cell.measured += " (flaky)";
-    if (cell.isPartial) cell.measured += " (partial: " + word + ")";
-    if (!hasSamples) cell.measured = cell.isPlanned ? word : "";
+    writeStatus(isTimed ? records::statusName(cell.status) : "not timed", cell);
     return cell;
 }
 

@@ -1,5 +1,4 @@
-// One cell of a table: which records it takes, and the value and the bounds that they give. The
-// median over processes and its interval are made here, and nowhere else.
+// One cell of a table: which records it takes, and what is written of the values that they give.
 #pragma once
 
 #include <map>
@@ -8,29 +7,13 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/metrics/statistics.h"
 #include "runner/config/experiment.h"
 #include "runner/records/records.h"
 #include "runner/tables/case_records.h"
 #include "runner/tables/cell_format.h"
+#include "runner/tables/summary.h"
 
 namespace gfxrepro::tables {
-
-/// What the bounds beside a value are. An interval holds, with 95 %, the value that ever more
-/// processes would come to. A range is what the few measurements happened to be, min … max, and
-/// promises nothing.
-enum class Bounds { None, Range, Interval };
-/// "", "range", "95 % interval".
-std::string_view boundsName(Bounds bounds);
-
-/// One statistic of a cell.
-struct Summary {
-    double value = 0.0;
-    Bounds bounds = Bounds::None;
-    metrics::Interval interval;    // by `bounds`; of none the value itself
-    std::map<int, double> rounds;  // the statistic in each process that has all units
-    bool areDraws = false;         // instead, what a share could be in truth (shareDraws)
-};
 
 /// One statistic of a cell, in the unit that is shown (scaled).
 struct Measured : Summary {
@@ -77,7 +60,7 @@ struct Cell {
     std::vector<std::string> caseIds;                  // whose records it takes
     std::string metric;   // what it shows; empty of a share, and, as its unit, where it is scaled
     bool isTime = false;  // a time, a rate of time, or a share of one
-    int timePower = 0;    // of its metric; a share of times stays as they double
+    int timePower = 0;    // as timePower() of its metric; a share of times stays as they double
     std::string unit;     // of the records, if they agree; "%" of a share
     /// It was measured at what the paper measured at (printed.h). Never without a measurement, nor
     /// in a run whose plan does not know the printed parameters.
@@ -104,8 +87,8 @@ struct Cell {
     /// Several processes of it are one sample.
     bool isOfOneSeed() const { return seedCount == 1; }
     /// What stands beside a number of it: "95 % interval", "range", "one seed"; or nothing.
-    std::string_view boundsWord(const Measured& measured) const {
-        return isOfOneSeed() ? "one seed" : boundsName(measured.bounds);
+    std::string_view boundsWord(const Measured& number) const {
+        return isOfOneSeed() ? "one seed" : boundsName(number.bounds);
     }
     bool isOk() const { return status == records::Status::Ok && !values.empty(); }
     /// What the bounds beside the cell's numbers are.
@@ -129,7 +112,7 @@ struct CellQuery {
     CellFormat format;
     double scale = 1.0;
     bool isScaled = false;
-    std::optional<config::Against> against;
+    std::optional<config::Equal> equal;
     bool isRateOfTime = false;  // the records are ms, the cell shows how many a second
     Where where;
 };
@@ -137,6 +120,9 @@ struct CellQuery {
 /// Throws Error at the selection's place when no part gives a metric, or for a bad format.
 CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column);
 
+/// With `equal`: in each process a curve through the cell's cases, of its metric over the other
+/// one, read at the value. On logarithmic scales where both are positive, so that what falls as a
+/// power is a line; between the two nearest cases, and missing beyond them all.
 Cell buildCell(const CellQuery& query, const LayoutCases& cases);
 
 /// Of a time the same by the process's CPU time, formatted likewise; nothing is planned where it
@@ -152,38 +138,9 @@ std::string_view sceneSourceName(SceneSource source);
 /// Where the scenes come from of the cases that a row takes.
 SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases);
 
-/// The measurements of one cell: of each process (by its number), of each unit (a frame of a case),
-/// its repeats. A process need not have every unit.
-struct Samples {
-    std::map<int, std::map<int, std::vector<double>>> processes;
-};
-
-/// In each process the statistic over units, each reduced to the median of its repeats; with a
-/// single unit, over the repeats themselves. Of several processes their median.
-///
-/// The unit of uncertainty is the process: repeats within one share its memory layout, its hour
-/// and its neighbours, and tell nothing of those (Kalibera and Jones 2013, "Rigorous benchmarking
-/// in reasonable time"). With metrics::kFewestForInterval processes or more the bounds are
-/// metrics::medianInterval() of them; with fewer their range; with one process the range of what
-/// each repeat alone would give. Frames are given, not drawn: a camera path is what it is.
-Summary summarize(const Samples& samples, metrics::Statistic statistic);
-
-/// `of(a, b)`: in each process that has both, with bounds of what these come to. Without such a
-/// process, or with one alone, no bounds: repeats of the two do not go together.
-Summary together(const Summary& a, const Summary& b, double (*of)(double, double));
-
-/// What else a share that was counted once could be in truth: as many draws as metrics' quantiles
-/// need from its posterior under Jeffreys' prior, Beta(k + ½, n − k + ½), which has an interval for
-/// shares of 0 and 100 % too (Brown, Cai and DasGupta 2001, "Interval estimation for a binomial
-/// proportion"). `count` is n, `name` says whose share it is: another name, independent draws; the
-/// same name, the same ones. The samples of an image are taken as independent; where neighbours are
-/// alike, they tell less than their number.
-std::map<int, double> shareDraws(double percent, double count, std::string_view name);
-
-/// Gives a percentage times `scale`, counted once, its draws and their interval.
-void boundByDraws(Summary& share, double scale, double count, std::string_view name);
-
-/// From the 2.5th to the 97.5th percentile.
-metrics::Interval drawsInterval(std::vector<double> draws);
+/// Writes the texts of a cell's values and of their bounds, by both clocks.
+void writeValues(const CellFormat& format, Cell& cell);
+/// Writes what is to be said of its status, by this word, when its values are there.
+void writeStatus(std::string_view word, Cell& cell);
 
 }  // namespace gfxrepro::tables

@@ -97,8 +97,18 @@ void ClaimKeys::readOver(std::string_view key, ClaimSpec& claim) const {
     Texts known = rowAxes;
     known.insert(known.end(), columns.begin(), columns.end());
     if (hasAllColumns && std::ranges::find(known, name) == known.end()) {
-        fail(over, fmt::format("'{}' is neither a row axis nor a column{}", name,
-                               suggestion(name, known)));
+        const std::vector<OperandPiece> pieces = operandPieces(name, known);
+        const bool isExpression =
+            pieces.size() > 1 && std::ranges::any_of(pieces, [](const OperandPiece& piece) {
+                return piece.column.has_value();
+            });
+        if (!isExpression) {
+            fail(over, fmt::format("'{}' is neither a row axis nor a column{}", name,
+                                   suggestion(name, known)));
+        }
+        for (const OperandPiece& piece : pieces) {
+            if (!piece.problem.empty()) fail(over, piece.problem);
+        }
     }
     claim.over = name;
 }
@@ -150,7 +160,7 @@ SchemaSection sectionOf(SchemaKey first, std::vector<SchemaKey> further, Json co
 }
 
 SchemaKey overKey(const char* key, const char* doc) {
-    return {key, "row axis | column", "required", doc, text()};
+    return {key, "row axis | column | expression", "required", doc, text()};
 }
 
 /// "25%", or 0.25.

@@ -100,7 +100,7 @@ struct ClaimKeys {
     void readOne(ClaimSpec& claim) const;
     void readList(ClaimSpec& claim) const;
     void readSides(std::string_view separator, ClaimSpec& claim) const;
-    /// The row axis or column under `key`.
+    /// The row axis, column or expression over both under `key`.
     void readOver(std::string_view key, ClaimSpec& claim) const;
     /// at_least or more_than, at_most or less_than: one of them, unless the `other` key is there.
     void readBounds(ClaimSpec& claim, const char* other = nullptr) const;

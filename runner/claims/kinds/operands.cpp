@@ -81,15 +81,58 @@ std::vector<OperandPiece> operandPieces(std::string_view expression, Labels labe
     std::vector<OperandPiece> pieces;
     for (std::string_view rest = expression; !rest.empty();
          rest.remove_prefix(pieces.back().text.size())) {
-        if (rest[0] == '\'' || rest[0] == '"') {
-            pieces.push_back(quoted(rest, labels));
-        } else if (const auto column = columnAt(rest, labels)) {
+        if (const auto column = columnAt(rest, labels)) {
             pieces.push_back({rest.substr(0, labels[*column].size()), column});
+        } else if (rest[0] == '\'' || rest[0] == '"') {
+            pieces.push_back(quoted(rest, labels));
         } else {
             pieces.push_back(wordAt(rest, expression, labels));
         }
     }
     return pieces;
+}
+
+namespace {
+
+std::vector<std::pair<std::string, std::string>> pairsIn(std::string_view text) {
+    std::vector<std::pair<std::string, std::string>> pairs;
+    for (const std::string& pair : split(text, ',')) {
+        const std::size_t equals = pair.find('=');
+        if (equals == pair.npos) return {};
+        const std::string_view all = pair;
+        pairs.emplace_back(trimmed(all.substr(0, equals)), trimmed(all.substr(equals + 1)));
+        if (pairs.back().first.empty() || pairs.back().second.empty()) return {};
+    }
+    return pairs;
+}
+
+}  // namespace
+
+std::vector<RowReference> rowReferences(std::string_view expression, Labels labels) {
+    std::vector<RowReference> references;
+    std::size_t begin = 0;  // of what is still to be read
+    const auto next = [&] {
+        std::size_t at = begin;
+        for (const OperandPiece& piece : operandPieces(expression.substr(begin), labels)) {
+            const std::size_t end = at + piece.text.size();
+            if (piece.column && end < expression.size() && expression[end] == '[') {
+                const std::size_t close = expression.find(']', end);
+                begin = close == expression.npos ? expression.size() : close + 1;
+                RowReference& one = references.emplace_back();
+                one.text = expression.substr(at, begin - at);
+                one.column = *piece.column;
+                if (close != expression.npos) {
+                    one.at = pairsIn(expression.substr(end + 1, close - end - 1));
+                }
+                return true;
+            }
+            at = end;
+        }
+        return false;
+    };
+    while (begin < expression.size() && next()) {
+    }
+    return references;
 }
 
 std::vector<std::string> sidesOf(std::string_view text, std::string_view separator, Labels labels) {

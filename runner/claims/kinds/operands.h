@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace gfxrepro::claims {
@@ -24,6 +25,17 @@ struct OperandPiece {
 /// within an expression that is a label, too, could mean either, a problem: the column is written
 /// '8', the number 8.0. The pieces point into `expression`.
 std::vector<OperandPiece> operandPieces(std::string_view expression,
+                                        std::span<const std::string> labels);
+
+/// A column's cell in another row: "time[method=slices, size=64]".
+struct RowReference {
+    std::string_view text;  // of the expression, to the bracket that closes, or to its end
+    std::size_t column;     // among the labels
+    /// Row axes with values; none where it cannot be read.
+    std::vector<std::pair<std::string, std::string>> at;
+};
+/// Those of an expression, in its order. They point into it.
+std::vector<RowReference> rowReferences(std::string_view expression,
                                         std::span<const std::string> labels);
 
 /// The parts of the text between the separators that are outside of parentheses and of columns,

@@ -129,6 +129,11 @@ TEST(Claims, TrendExponentOverAxisAndColumn) {
     EXPECT_EQ(result.measured, "exponent 0.75");
     EXPECT_EQ(judgePowers("trend: a, over: n, at_least: 1.6, at_most: 2", records).verdict,
               Verdict::Fails);
+    result = judgePowers("trend: a, over: n * b, at_least: 0.4, at_most: 0.6", records);
+    EXPECT_EQ(result.measured, "exponent 0.5");
+    const auto exponential = powers([](double n) { return std::exp2(-n); });
+    EXPECT_EQ(judgePowers("trend: a, over: 2^n, at_least: -1, at_most: -1", exponential).measured,
+              "exponent -1");
 }
 
 TEST(Claims, TrendDirection) {

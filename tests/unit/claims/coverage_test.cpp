@@ -1,5 +1,6 @@
 // Whether intervals of times hold the truth as often as they say, by the program's own rules: times
 // that scatter by 10 % between processes and by 5 % within, both log-normal.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -199,6 +200,96 @@ TEST_P(Coverage, OfADirection) {
 /// Every number of processes of which the program says that it is an interval, up to the most that
 /// tables take.
 INSTANTIATE_TEST_SUITE_P(Processes, Coverage, ::testing::Range(6, 21));
+
+/// How the processes of a case scatter: by this share; one in twenty twice as slow; all cases of a
+/// round slower and slower, by a tenth either way.
+struct Scatter {
+    double share;
+    bool hasOutliers, drifts;
+};
+
+/// Two cases whose truths are `ratio` apart, in alternating rounds.
+Group pairOf(const Scatter& scatter, double ratio, int processes, Random& random) {
+    Group group;
+    group.operands.assign(2, {Sampled{}});
+    for (int round = 0; round < processes; ++round) {
+        const double place = 2.0 * round / (processes - 1) - 1.0;
+        const double common = scatter.drifts ? 1.0 + 0.1 * place : 1.0;
+        for (const std::size_t item : {0U, 1U}) {
+            const double truth = item == 0 ? 10.0 : 10.0 * ratio;
+            const bool isOut = scatter.hasOutliers && double{random.uniform()} < 0.05;
+            const double own = std::exp(scatter.share * normalDraw(random)) * (isOut ? 2.0 : 1.0);
+            group.operands[item][0].rounds[round] = truth * common * own;
+        }
+    }
+    for (auto& operand : group.operands) operand[0].point = operand[0].rounds.begin()->second;
+    return group;
+}
+
+class ScatterCoverage : public ::testing::TestWithParam<Scatter> {};
+
+TEST_P(ScatterCoverage, OfCellsColumnsAndClaims) {
+    for (const int processes : {6, 10, 20}) {
+        const auto rounds = [&](Random& random) {
+            return pairOf(GetParam(), 1.5, processes, random);
+        };
+        EXPECT_GE(shareOf("cell", processes,
+                          [&](Random& random) {
+                              const Sampled own = rounds(random).operands[0][0];
+                              return holds(tables::summaryOf(0.0, own.rounds, false).interval,
+                                           10.0);
+                          }),
+                  kRequired);
+        EXPECT_GE(shareOf("computed column", processes,
+                          [&](Random& random) {
+                              const Group pair = rounds(random);
+                              std::map<int, double> ratios;
+                              for (const int round : roundsOf(pair)) {
+                                  ratios[round] =
+                                      pair.operands[1][0].at(round) / pair.operands[0][0].at(round);
+                              }
+                              return holds(tables::summaryOf(0.0, ratios, false).interval, 1.5);
+                          }),
+                  kRequired);
+        EXPECT_GE(
+            shareOf("ratio", processes,
+                    [&](Random& random) { return isHeld(rounds(random), "ratio", 1.0 / 1.5); }),
+            kRequired);
+        EXPECT_GE(shareOf("equal times, no order", processes,
+                          [&](Random& random) {
+                              const Group pair = pairOf(GetParam(), 1.0, processes, random);
+                              return verdictOn(pair, claimOf("order")) == Verdict::Ambiguous;
+                          }),
+                  atLeast(0.94));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scatters, ScatterCoverage,
+                         ::testing::Values(Scatter{0.02, false, false}, Scatter{0.05, false, false},
+                                           Scatter{0.10, false, false}, Scatter{0.05, true, false},
+                                           Scatter{0.10, true, false}, Scatter{0.05, false, true}));
+
+/// How many rounds decide what difference: the table of runner/claims/README.md.
+TEST(Power, OfRounds) {
+    struct Row {
+        double scatter;
+        int rounds;
+        double difference, atLeastShare;
+    };
+    for (const Row& row :
+         {Row{0.02, 6, 0.05, 0.75}, Row{0.02, 6, 0.1, 0.99}, Row{0.05, 6, 0.2, 0.9},
+          Row{0.05, 10, 0.1, 0.8}, Row{0.05, 20, 0.1, 0.97}, Row{0.1, 6, 0.2, 0.3},
+          Row{0.1, 10, 0.2, 0.85}, Row{0.1, 20, 0.2, 0.97}}) {
+        const std::string name =
+            fmt::format("{} % apart at {} %", 100.0 * row.difference, 100.0 * row.scatter);
+        const double share = shareOf(name.c_str(), row.rounds, [&](Random& random) {
+            const Group pair =
+                pairOf({row.scatter, false, false}, 1.0 + row.difference, row.rounds, random);
+            return verdictOn(pair, claimOf("order")) == Verdict::Holds;
+        });
+        EXPECT_GE(share, atLeast(row.atLeastShare)) << name;
+    }
+}
 
 /// A table of one case, or several, whose rounds go on by the program's own rule.
 struct Ended {

@@ -63,16 +63,21 @@ TEST_F(ExperimentTest, BadLayouts) {
               head + "37: a cell's selection: unknown key 'metrics'; did you mean 'metric'?");
     EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, where: {metod: x}}}}"),
               head + "56: where: unknown key 'metod'; did you mean 'method'?");
-    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, share_of: {metrics: x}}}}"),
-              head + "59: share_of: unknown key 'metrics'; did you mean 'metric'?");
-    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, share_of: {pass: x}}}}"),
-              head + "58: share_of is {pass: x}; allowed: a metric, or {metric: …, pass: …}");
-    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, share_of: [x]}}}"),
-              head + "58: share_of is [x]; allowed: a map of metric, pass");
-    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, minus: {pass: x}}}}"),
-              head + "55: minus is {pass: x}; allowed: a metric, or {metric: …, pass: …}");
-    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, minus: x, share_of: y}}}"),
-              head + "48: a cell's selection: share_of and minus exclude each other");
+    const auto computed = [&](const std::string& of) {
+        return layoutError("{rows: scene, columns: {a: {metric: m}, b: {of: \"" + of + "\"}}}");
+    };
+    const std::string place = head + "52: layout: of: ";
+    EXPECT_EQ(computed("a / c"), place + "'c' is no column; did you mean 'a'? (columns: a)");
+    EXPECT_EQ(computed("b / a"), place + "'b' is no column; did you mean 'a'? (columns: a)")
+        << "itself";
+    EXPECT_EQ(computed("a[methd=x] / a"),
+              place + "a[methd=x]: 'methd' is no row axis; allowed: scene");
+    EXPECT_EQ(computed("a[scene] / a"), place + "a[scene]; allowed: column[axis=value, …]");
+    EXPECT_EQ(computed("a / a[scene=t]"), place + "a[scene=t]: scene is t; allowed: s");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m}, b: {of: a, metric: m}}}"),
+              head + "60: a computed column: unknown key 'metric'; allowed: of, format");
+    EXPECT_EQ(layoutError("{rows: {a: {of: a}}, columns: scene, cell: {metric: m}}"),
+              head + "20: layout: of: it stands in a column, not a row");
     EXPECT_EQ(layoutError("{rows: scene, columns: {}}"),
               head + "32: labels is {}; allowed: a map {label: selection}");
     EXPECT_EQ(layoutError("{row: scene}"),
@@ -89,8 +94,9 @@ TEST_F(ExperimentTest, CellFormats) {
         EXPECT_EQ(formatError(format), "no error") << format;
     }
     const std::string head = "DIR/zju/a.yaml:5:46: ";
-    EXPECT_EQ(formatError("{avg:.2f}"),
-              head + "statistic is avg; allowed: median, mean, min, max, sum, count, rate");
+    EXPECT_EQ(formatError("{avg:.2f}"), head +
+                                            "statistic is avg; allowed: median, mean, min, max, "
+                                            "sum, count, rate, stddev, p95, p99");
     // The words in brackets are those of fmt 9, or of 10.
     const std::string ofNumbers =
         head + "format is \"{mean:.2d}\"; allowed: number formats such as {mean:.2f} ";

@@ -31,7 +31,18 @@ TEST(Statistics, Names) {
     EXPECT_EQ(statisticFromName("max"), Statistic::Max);
     EXPECT_EQ(statisticFromName("rate"), Statistic::Rate);
     EXPECT_EQ(test::errorText([] { statisticFromName("avg"); }),
-              "unknown statistic 'avg'; allowed: median, mean, min, max, sum, count, rate");
+              "unknown statistic 'avg'; allowed: median, mean, min, max, sum, count, rate, stddev, "
+              "p95, p99");
+}
+
+TEST(Statistics, Spread) {
+    const std::vector<double> values = {2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0};
+    EXPECT_DOUBLE_EQ(summarize(values, Statistic::StdDev), std::sqrt(32.0 / 7.0));
+    EXPECT_TRUE(std::isnan(summarize(std::vector<double>{3.0}, Statistic::StdDev)));
+    // As numpy.percentile has it by default.
+    EXPECT_DOUBLE_EQ(summarize(values, Statistic::P95), 8.3);
+    EXPECT_DOUBLE_EQ(summarize(values, Statistic::P99), 8.86);
+    EXPECT_EQ(summarize(std::vector<double>{3.0}, Statistic::P95), 3.0);
 }
 
 std::vector<double> upTo(int n) {

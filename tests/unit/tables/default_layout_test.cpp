@@ -114,6 +114,36 @@ TEST(DefaultLayout, SaysWhatOneFrameAloneCannotHave) {
     EXPECT_THAT(notes(), testing::Not(saysSo));
 }
 
+/// Frames of three methods over six processes: 10, 9 and 10 ms, of which the first wavers.
+Recorded ofMethods() {
+    RecordMaker maker;
+    for (const auto& [method, ms] :
+         {std::pair("plain", 10.0), std::pair("fast", 9.0), std::pair("alike", 10.0)}) {
+        maker.beginCase("", std::string(R"({"method": ")") + method + "\"}").lane("timing");
+        for (int process = 0; process < 6; ++process) {
+            const double wavering = method[0] == 'p' ? 0.01 * (process - 2.5) : 0.0;
+            maker.process(process).add("wall_time_ms", {ms + wavering});
+        }
+    }
+    Recorded records = maker.records();
+    for (records::Record& record : records) record.table = "sweep/s";
+    for (config::Case& item : records.cases) item.experiment = "sweep/s";
+    return records;
+}
+
+TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
+    const Table table = buildTable(sweepOf("{method: [plain, fast, alike]}"), ofMethods());
+    EXPECT_THAT(labelsOf(table), ElementsAre("frame_ms", "frame ÷ plain"));
+    EXPECT_EQ(table.rows[0].cells[1].measured, "1");
+    EXPECT_EQ(table.rows[1].cells[1].measured, "0.9");
+    EXPECT_THAT(table.notes,
+                Contains("frame, fast against plain: less time in 1 row (0.9 times)."));
+    EXPECT_THAT(table.notes, Contains("frame, alike against plain: not to be told apart in 1."));
+    // Numbers and scenes are no rivals.
+    EXPECT_THAT(labelsOf(buildTable(sweepOf("{resolution: [32, 64]}"), recordedAt({32, 64}))),
+                testing::Not(Contains(testing::HasSubstr("÷"))));
+}
+
 TEST(DefaultLayout, OfOneCaseNothingIsFolded) {
     const Table table = buildTable(sweepOf("{resolution: [32]}"), recordedAt({32}));
     EXPECT_THAT(table.constants, IsEmpty());

@@ -113,11 +113,11 @@ TEST(ShareDraws, WhereThereAreRoundsTheDrawsOfOthersAreDropped) {
     claims::Sampled share{5.0, {{0, 4.0}, {1, 6.0}}, true};
     claims::Sampled time{2.0, {{3, 1.0}, {4, 3.0}}, false};
     claims::Sampled* both[] = {&share, &time};
-    EXPECT_FALSE(claims::keepRoundsOrDraws(both));
+    EXPECT_FALSE(keepRoundsOrDraws(both));
     EXPECT_TRUE(share.rounds.empty());
     claims::Sampled other{5.0, {{0, 4.0}, {1, 6.0}}, true};
     claims::Sampled* alone[] = {&other};
-    EXPECT_TRUE(claims::keepRoundsOrDraws(alone));
+    EXPECT_TRUE(keepRoundsOrDraws(alone));
     EXPECT_EQ(other.rounds.size(), 2U);
 }
 

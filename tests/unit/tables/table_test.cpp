@@ -1,7 +1,11 @@
 #include "runner/tables/table.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
 
 #include "runner/tables/cell.h"
 #include "tests/support/support.h"
@@ -394,13 +398,14 @@ layout:
 constexpr const char* kShares = R"(
 scene: models/duck
 layout:
-  rows: {draw: {metric: gpu_time_ms, pass: draw}, all: {metric: wall_time_ms}}
+  axes: {step: {draw: {metric: gpu_time_ms, pass: draw}, all: {metric: wall_time_ms}}}
+  rows: step
   columns:
-    ms: {}
-    pct: {share_of: wall_time_ms, format: "{mean:.1f}"}
-    of_draw_pct: {share_of: {metric: gpu_time_ms, pass: draw}, format: "{median:.0f}/{max:.0f}"}
-    without_draw_ms: {minus: {metric: gpu_time_ms, pass: draw}}
-    without_voxels_ms: {minus: voxels}
+    ms: {format: "{mean:.1f}/{max:.0f}"}
+    pct: {of: "100 * ms / ms[step=all]", format: "{mean:.1f}"}
+    of_draw_pct: {of: "100 * ms / ms[step=draw]", format: "{median:.0f}/{max:.0f}"}
+    without_draw_ms: {of: "ms - ms[step=draw]"}
+    twice_pct: {of: pct * 2}
   cell: {format: "{mean:.1f}"}
 )";
 
@@ -418,7 +423,7 @@ Table sharesOf(int processes) {
     return buildTable(experimentFrom(kShares), maker.records());
 }
 
-TEST(Table, SharesAndRestsAreOfTheSameStatisticInEachProcess) {
+TEST(Table, ColumnsOfColumnsAreComputedInEachProcess) {
     const Table six = sharesOf(6);
     const Cell& draw = six.rows[0].cells[1];
     // 2 ms of 10, 12, … 20 ms.
@@ -428,12 +433,12 @@ TEST(Table, SharesAndRestsAreOfTheSameStatisticInEachProcess) {
     EXPECT_EQ(draw.bounds(), Bounds::Interval);
     EXPECT_EQ(draw.low, "10.0");
     EXPECT_EQ(draw.high, "20.0");
-    EXPECT_EQ(draw.unit, "%");
+    EXPECT_EQ(draw.unit, "") << "a ratio has none";
     EXPECT_TRUE(draw.isTime);
-    EXPECT_EQ(six.columns[1].unit, "%");
+    EXPECT_EQ(draw.timePower, 0);
     EXPECT_EQ(six.rows[1].cells[1].measured, "100.0");
-    EXPECT_EQ(six.rows[0].cells[0].unit, "ms") << "other columns are no shares";
-    EXPECT_EQ(six.rows[0].cells[2].measured, "100/100");
+    EXPECT_EQ(six.rows[0].cells[4].measured, fmt::format("{:.1f}", 2.0 * draw.values[0].value));
+    EXPECT_EQ(six.rows[0].cells[2].measured, "100/100") << "each statistic of the same of others";
 
     const Cell& rest = six.rows[1].cells[3];
     EXPECT_DOUBLE_EQ(rest.values[0].rounds.at(0), 8.0);
@@ -443,17 +448,14 @@ TEST(Table, SharesAndRestsAreOfTheSameStatisticInEachProcess) {
     EXPECT_EQ(rest.high, "18.0");
     EXPECT_EQ(rest.unit, "ms");
     EXPECT_EQ(rest.timePower, 1);
-    EXPECT_EQ(six.rows[1].cells[4].status, records::Status::Error);
-    EXPECT_EQ(six.rows[1].cells[4].message,
-              "'voxels' is of another unit than 'wall_time_ms' and cannot be taken away from it");
-    EXPECT_TRUE(six.rows[1].cells[4].values.empty());
+    EXPECT_EQ(six.columns[3].unit, "ms");
 
     EXPECT_EQ(sharesOf(5).rows[0].cells[1].bounds(), Bounds::Range);
     EXPECT_EQ(sharesOf(1).rows[0].cells[1].measured, "20.0");
     EXPECT_EQ(sharesOf(1).rows[0].cells[1].bounds(), Bounds::None);
 }
 
-TEST(Table, ShareOfNothingIsMissing) {
+TEST(Table, AColumnOfWhatIsMissingIsMissing) {
     RecordMaker maker;
     maker.beginCase("models/duck").add("gpu_time_ms", {1.0}, "draw");
     const Cell cell = buildTable(experimentFrom(kShares), maker.records()).rows[0].cells[1];
@@ -471,6 +473,66 @@ TEST(Table, SharesOfTimesAreAlsoByProcessTime) {
     EXPECT_EQ(cell.measured, "25.0");
     ASSERT_EQ(cell.byProcess.size(), 1U);
     EXPECT_DOUBLE_EQ(cell.byProcess[0].value, 75.0);
+}
+
+constexpr const char* kEqual = R"(
+scene: models/duck
+sweep: {method: [a, b], samples: [1, 4, 16]}
+layout:
+  rows: method
+  columns:
+    error_at_2_ms: {metric: rmse, equal: {metric: wall_time_ms, is: 2}, format: "{median:.3f}"}
+    ms_at_quarter: {metric: wall_time_ms, equal: {metric: rmse, is: 0.25}, format: "{median:.2f}"}
+    ms_at_tenth: {metric: wall_time_ms, equal: {metric: rmse, is: 0.1}, format: "{median:.2f}"}
+)";
+
+/// A millisecond a sample, a little more in each process; an error of 1 / sqrt(samples), of b half.
+Table equalOf(int processes) {
+    RecordMaker maker;
+    for (const auto& [method, factor] : {std::pair("a", 1.0), std::pair("b", 0.5)}) {
+        for (const int samples : {1, 4, 16}) {
+            maker.beginCase("models/duck",
+                            fmt::format(R"({{"method": "{}", "samples": {}}})", method, samples));
+            maker.lane("timing");
+            for (int process = 0; process < processes; ++process) {
+                maker.process(process).add("wall_time_ms", {samples * (1.0 + 0.01 * process)});
+                if (process == 0) maker.add("rmse", {factor / std::sqrt(samples)}, "", "1");
+            }
+        }
+    }
+    return buildTable(experimentFrom(kEqual), maker.records());
+}
+
+TEST(Table, AtEqualTimeAndAtEqualError) {
+    const Table table = equalOf(6);
+    // Powers are lines on logarithmic scales: 1 / sqrt(2) at 2 ms, 16 ms at a quarter.
+    EXPECT_DOUBLE_EQ(table.rows[0].cells[0].values[0].rounds.at(0), std::sqrt(0.5));
+    EXPECT_EQ(table.rows[0].cells[1].measured, "16.40");
+    EXPECT_EQ(table.rows[1].cells[1].measured, "4.10") << "half the error, a quarter of the time";
+    EXPECT_EQ(table.rows[0].cells[1].low, "16.00");
+    EXPECT_EQ(table.rows[0].cells[1].high, "16.80");
+    EXPECT_EQ(table.rows[0].cells[1].bounds(), Bounds::Interval);
+    EXPECT_EQ(table.rows[0].cells[1].unit, "ms");
+    EXPECT_TRUE(table.rows[0].cells[0].isTime) << "its clock decides";
+    const Cell& beyond = table.rows[0].cells[2];
+    EXPECT_EQ(beyond.status, records::Status::Missing);
+    EXPECT_EQ(beyond.message, "'rmse' is from 0.25 to 1 there, and never 0.1");
+    EXPECT_EQ(equalOf(1).rows[0].cells[1].bounds(), Bounds::None);
+}
+
+TEST(Table, ASpreadOfOneValueIsMissing) {
+    const char* body = R"(
+scene: models/duck
+layout: {rows: scene, columns: {ms: {metric: wall_time_ms, format: "{mean:.1f} ± {stddev:.2f}"}}}
+)";
+    RecordMaker maker;
+    maker.beginCase("models/duck").lane("timing").process(0).add("wall_time_ms", {4.0});
+    const Cell one = buildTable(experimentFrom(body), maker.records()).rows[0].cells[0];
+    EXPECT_EQ(one.measured, "missing");
+    EXPECT_EQ(one.message, "'stddev' needs two values or more");
+    maker.process(1).add("wall_time_ms", {6.0});
+    const Cell two = buildTable(experimentFrom(body), maker.records()).rows[0].cells[0];
+    EXPECT_EQ(two.measured, "5.0 ± 1.41") << "over processes of one value each";
 }
 
 TEST(Sampling, AnIntervalIsOverProcesses) {

@@ -1,0 +1,34 @@
+// Of a table that nobody laid out: what compares the values of an axis of words, "÷ A" beside the
+// time and the error of A and B, and a sentence on which is less.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runner/config/experiment.h"
+#include "runner/tables/table.h"
+
+namespace gfxrepro::tables {
+
+/// An axis whose values are methods, patterns, variants: words, of which there are two or more. The
+/// first is what the others are held against. Scenes and truth values are none.
+struct Rivals {
+    std::string axis;
+    std::vector<std::string> values;
+    bool isThere() const { return !axis.empty(); }
+};
+/// The first such axis of the cases.
+Rivals rivalsOf(const std::vector<const config::Case*>& cases);
+
+/// Of that column the one that divides it by its value for the first rival.
+std::pair<std::string, config::Selection> columnAgainst(const Rivals& rivals,
+                                                        const std::string& column,
+                                                        const config::Experiment& experiment);
+
+/// Which rivals are faster or slower, lower or higher than the first, in how many rows and by how
+/// much, by the intervals of those columns; a time only beyond the noise of the table. None where a
+/// column has no intervals.
+std::vector<std::string> rivalNotes(const Rivals& rivals, const std::vector<std::string>& columns,
+                                    const Table& table);
+
+}  // namespace gfxrepro::tables

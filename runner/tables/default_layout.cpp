@@ -1,0 +1,277 @@
+#include "runner/tables/default_layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "engine/core/text.h"
+#include "runner/records/csv.h"
+#include "runner/tables/labels.h"
+
+namespace gfxrepro::tables {
+
+namespace {
+
+constexpr double kMebibyte = 1 << 20;
+
+/// What was recorded of a metric and pass.
+struct Series {
+    std::string metric, pass, unit;
+    std::size_t order = 0;  // in which it was recorded
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    bool isWhole = true;
+    std::set<std::string> cases = {};
+
+    bool isOfMebibytes() const { return unit == "byte" && most >= kMebibyte; }
+    std::string label() const {
+        if (metric == "wall_time_ms") return "frame_ms";
+        if (metric == "gpu_time_ms" || metric == "cpu_time_ms") return pass + "_ms";
+        std::string name = metric;
+        if (isOfMebibytes() && name.ends_with("_bytes")) name.replace(name.size() - 5, 5, "mib");
+        return pass.empty() ? name : name + '_' + pass;
+    }
+    std::string shown(double value) const {
+        return isOfMebibytes() ? fmt::format("{:.4g}", value / kMebibyte)
+                               : records::shortestText(
+                                     isWhole ? value : std::stod(fmt::format("{:.4g}", value)));
+    }
+};
+
+std::vector<Series> seriesOf(const std::string& table,
+                             const std::vector<records::Record>& records) {
+    std::map<std::pair<std::string, std::string>, std::size_t> places;
+    std::vector<Series> all;
+    for (const records::Record& record : records) {
+        const bool isOfTable = record.table == table && record.process >= 0;
+        if (!isOfTable || record.metric.empty() || std::isnan(record.value)) continue;
+        const auto [place, isNew] = places.try_emplace({record.metric, record.pass}, places.size());
+        if (isNew) all.push_back({record.metric, record.pass, record.unit, all.size()});
+        Series& series = all[place->second];
+        series.least = std::min(series.least, record.value);
+        series.most = std::max(series.most, record.value);
+        series.isWhole &= record.value == std::round(record.value);
+        series.cases.insert(record.caseId);
+    }
+    return all;
+}
+
+/// In the order of declaration, without details.
+std::vector<Series> declared(std::vector<Series> all, const config::Outputs& outputs) {
+    std::erase_if(all, [&](const Series& series) {
+        if (series.metric == "scene_source") return true;  // a row's mark
+        if (outputs.metrics.empty()) return false;
+        const config::MetricInfo* info = outputs.find(series.metric);
+        return !info || info->isDetail || info->name != series.metric;
+    });
+    const auto rank = [&](const Series& series) {
+        const auto at =
+            std::ranges::find(outputs.metrics, series.metric, &config::MetricInfo::name);
+        const bool isPass = series.metric == "gpu_time_ms" || series.metric == "cpu_time_ms";
+        const int group = series.metric == "wall_time_ms" ? 0 : isPass ? 1 : 2;
+        return std::tuple(group, group < 2 ? outputs.metrics.begin() : at, series.order);
+    };
+    std::ranges::stable_sort(all, {}, rank);
+    return all;
+}
+
+/// Counts as they are, other numbers as far as they are worth reading.
+std::string formatOf(const Series& series) {
+    constexpr double kManyDigits = 1e4;
+    if (series.isOfMebibytes()) return "{median:.4g}";
+    return series.isWhole || series.most >= kManyDigits ? "{median:.0f}" : "{median:.4g}";
+}
+
+struct Axis {
+    std::size_t index;
+    std::vector<double> numbers;  // those of its labels; empty where one is none
+    std::size_t count = 0;        // of its labels
+};
+
+Axis axisOf(const Table& table, std::size_t index) {
+    std::set<std::string> labels;
+    std::set<double> numbers;
+    for (const TableRow& row : table.rows) {
+        labels.insert(row.labels[index]);
+        if (const auto number = parseDouble(row.labels[index])) numbers.insert(*number);
+    }
+    const bool isOfNumbers = numbers.size() == labels.size();
+    return {
+        index,
+        isOfNumbers ? std::vector<double>(numbers.begin(), numbers.end()) : std::vector<double>(),
+        labels.size()};
+}
+
+/// Values over several powers of two are told apart on a logarithmic axis alone.
+bool isWide(double least, double most, double factor) {
+    return least > 0.0 && most / least >= factor;
+}
+
+bool isWide(const Table& table, const std::vector<std::string>& columns) {
+    double least = std::numeric_limits<double>::infinity(), most = 0.0;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        if (std::ranges::find(columns, table.columns[i].label) == columns.end()) continue;
+        for (const TableRow& row : table.rows) {
+            if (row.cells[i].values.empty()) continue;
+            least = std::min(least, row.cells[i].values[0].value);
+            most = std::max(most, row.cells[i].values[0].value);
+        }
+    }
+    return isWide(least, most, 20.0);
+}
+
+std::size_t measuredCount(const Table& table, std::size_t column) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        table.rows, [&](const TableRow& row) { return row.cells[column].isOk(); }));
+}
+
+/// What is counted in frames, and one frame does not have.
+std::vector<std::string> frameNotes(const config::Experiment& experiment,
+                                    const std::vector<Series>& recorded) {
+    std::vector<std::string> notes;
+    if (experiment.measure.frames > 1 || recorded.empty()) return notes;
+    for (const config::MetricInfo& info : experiment.outputs.metrics) {
+        const bool isRecorded =
+            std::ranges::find(recorded, info.name, &Series::metric) != recorded.end();
+        if (info.unit != "frame" || isRecorded) continue;
+        notes.push_back(fmt::format(
+            "One frame of each case is measured: the {}, and whatever follows from frames before, "
+            "needs several (`measure: {{frames: 20}}`).",
+            quantityOf(info.name, experiment.labels).words));
+    }
+    return notes;
+}
+
+}  // namespace
+
+DefaultLayout defaultLayout(const config::Experiment& experiment,
+                            std::span<const config::Case> planned,
+                            const std::vector<records::Record>& records) {
+    DefaultLayout result;
+    std::set<std::string> axes;
+    std::vector<const config::Case*> own;
+    for (const config::Case& item : planned) {
+        if (item.experiment != experiment.id) continue;
+        own.push_back(&item);
+        for (const auto& [axis, value] : item.axes.entries()) {
+            if (axes.insert(axis).second) result.layout.rows.push_back({axis, {}});
+        }
+    }
+    result.rivals = rivalsOf(own);
+    const std::vector<Series> all = seriesOf(experiment.id, records);
+    result.notes = frameNotes(experiment, all);
+    std::set<std::string> measured;
+    for (const Series& series : all) measured.insert(series.cases.begin(), series.cases.end());
+    config::LayoutAxis columns{"measured", {}};
+    std::set<std::string> labels;
+    bool hasError = false;
+    // The time that leads, and the first error.
+    const auto isRivals = [&](const Series& series, bool isFirst) {
+        if (!result.rivals.isThere()) return false;
+        if (isFirst && config::isTimeMetric(series.metric)) return true;
+        const config::MetricInfo* info = experiment.outputs.find(series.metric);
+        const bool isError = info && info->better == config::Better::Lower && !hasError &&
+                             !config::isTimeMetric(series.metric) && series.unit != "byte";
+        hasError |= isError;
+        return isError;
+    };
+    for (const Series& series : declared(all, experiment.outputs)) {
+        if (axes.contains(series.metric)) continue;  // its axis says it
+        const bool isTime = config::isTimeMetric(series.metric);
+        const bool isConstant = series.least == series.most && !isTime && measured.size() > 1 &&
+                                series.cases.size() == measured.size();
+        if (isConstant) {
+            result.constants.push_back(quantityOf(series.label(), experiment.labels, series.unit)
+                                           .with(series.shown(series.most)));
+            continue;
+        }
+        config::Selection selection;
+        selection.metric = series.metric;
+        selection.pass = series.pass;
+        selection.format = formatOf(series);
+        if (series.isOfMebibytes()) selection.scale = 1.0 / kMebibyte;
+        std::string label = series.label();
+        if (!labels.insert(label).second) {  // a pass on both clocks
+            label = series.metric + '_' + series.pass;
+            labels.insert(label);
+        }
+        columns.labels.emplace_back(label, std::move(selection));
+        if (isRivals(series, columns.labels.size() == 1)) {
+            columns.labels.push_back(columnAgainst(result.rivals, label, experiment));
+            result.against.push_back(columns.labels.back().first);
+        }
+    }
+    result.layout.isGiven = !columns.labels.empty();
+    result.layout.columns.push_back(std::move(columns));
+    return result;
+}
+
+void describeColumns(const config::Experiment& experiment, const config::Layout& layout,
+                     Table& table) {
+    for (TableColumn& column : table.columns) {
+        for (const auto& [label, selection] : layout.columns.front().labels) {
+            const config::MetricInfo* info = label == column.label && selection.metric
+                                                 ? experiment.outputs.find(*selection.metric)
+                                                 : nullptr;
+            if (!info) continue;
+            column.doc = info->doc;
+            column.better = info->better;
+        }
+    }
+}
+
+std::vector<config::PlotSpec> defaultPlots(const Table& table) {
+    std::vector<Axis> axes;
+    for (std::size_t i = 0; i < table.rowAxes.size(); ++i) axes.push_back(axisOf(table, i));
+    const auto x =
+        std::ranges::max_element(axes, {}, [](const Axis& axis) { return axis.numbers.size(); });
+    if (x == axes.end() || x->numbers.size() < 2) return {};
+    config::PlotSpec plot;
+    plot.x = table.rowAxes[x->index];
+    plot.isLogX = isWide(x->numbers.front(), x->numbers.back(), 4.0);
+    for (const Axis& axis : axes) {
+        if (axis.index == x->index) continue;
+        if (!plot.by && axis.count > 1) {
+            plot.by = table.rowAxes[axis.index];
+        } else {
+            plot.panels.push_back(table.rowAxes[axis.index]);
+        }
+    }
+    constexpr std::size_t kMostCurves = 6;
+    std::vector<std::string> times, others;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const TableColumn& column = table.columns[i];
+        if (measuredCount(table, i) < 2) continue;
+        const bool isTime = table.rows.front().cells[i].isTime && column.label.ends_with("_ms");
+        const std::size_t most = plot.by ? 1 : kMostCurves;
+        if (isTime && times.size() < most) times.push_back(column.label);
+        if (!table.rows.front().cells[i].isTime && column.better != config::Better::Neither &&
+            others.empty()) {
+            others.push_back(column.label);
+        }
+    }
+    std::vector<config::PlotSpec> plots;
+    for (const std::vector<std::string>& columns : {times, others}) {
+        if (columns.empty()) continue;
+        const auto first = std::ranges::find(table.columns, columns[0], &TableColumn::label);
+        plot.y = columns;
+        plot.isLogY = isWide(table, columns);
+        plot.title = fmt::format(
+            "{} over {}",
+            columns.size() > 1 ? "Times" : quantityOf(columns[0], table.words, first->unit).text(),
+            quantityOf(plot.x, table.words).words);
+        if (const auto better = config::betterText(first->better); !better.empty()) {
+            plot.title += fmt::format(" ({})", better);
+        }
+        plots.push_back(plot);
+    }
+    return plots;
+}
+
+}  // namespace gfxrepro::tables

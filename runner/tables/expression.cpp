@@ -1,0 +1,267 @@
+#include "runner/tables/expression.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "engine/core/text.h"
+#include "runner/claims/kinds/operands.h"
+#include "runner/tables/cell_format.h"
+#include "runner/tables/labels.h"
+
+namespace gfxrepro::tables {
+
+using claims::OperandPiece;
+using claims::operandPieces;
+
+bool keepRoundsOrDraws(std::span<Sampled* const> values) {
+    const bool hasRounds = std::ranges::any_of(
+        values, [](const Sampled* value) { return !value->rounds.empty() && !value->areDraws; });
+    if (!hasRounds) return std::ranges::any_of(values, &Sampled::areDraws);
+    for (Sampled* value : values) {
+        if (value->areDraws) *value = {value->point, {}, false, value->isRandom};
+    }
+    return false;
+}
+
+std::vector<int> commonRounds(std::span<const Sampled> values) {
+    std::map<int, std::size_t> counts;
+    std::size_t sampledCount = 0;
+    for (const Sampled& sampled : values) {
+        sampledCount += sampled.rounds.empty() ? 0 : 1;
+        for (const auto& [round, value] : sampled.rounds) ++counts[round];
+    }
+    std::vector<int> rounds;
+    for (const auto& [round, count] : counts) {
+        if (count == sampledCount) rounds.push_back(round);
+    }
+    return rounds;
+}
+
+Operand::Operand(const std::string& text, const Table& table, const SourceLocation& where,
+                 const std::string& owner) {
+    const std::string whole(trimmed(text));
+    std::vector<std::string> labels;
+    for (const TableColumn& column : table.columns) labels.push_back(column.label);
+    const std::vector<OperandPiece> pieces = operandPieces(whole, labels);
+    isColumn_ = pieces.size() == 1 && pieces[0].column.has_value();
+    std::string expression;  // with a variable for each column
+    for (const OperandPiece& piece : pieces) {
+        if (!piece.problem.empty()) throw AbsentColumnError(where, owner, piece.problem);
+        if (!piece.column) {
+            expression += piece.text;
+            continue;
+        }
+        const auto found = std::ranges::find(columns_, *piece.column);
+        expression += fmt::format("v{}", found - columns_.begin());
+        if (found == columns_.end()) columns_.push_back(*piece.column);
+    }
+    slots_.resize(columns_.size());
+    try {
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            parser_.DefineVar(fmt::format("v{}", i), &slots_[i]);
+        }
+        parser_.SetExpr(expression);
+        parser_.Eval();
+    } catch (const mu::Parser::exception_type& error) {
+        std::string message = error.GetMsg();
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            const std::string variable = fmt::format("\"v{}\"", i);
+            const std::size_t at = message.find(variable);
+            if (at == message.npos) continue;
+            message.replace(at, variable.size(), '"' + labels[columns_[i]] + '"');
+        }
+        throw ExpressionError(where,
+                              fmt::format("{}: '{}' is no expression: {}", owner, whole, message));
+    }
+}
+
+double Operand::evaluate(std::span<const double> values) {
+    std::copy(values.begin(), values.end(), slots_.begin());
+    return parser_.Eval();
+}
+
+Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& statistic) {
+    std::vector<Sampled> cells;
+    std::vector<double> values;
+    for (const std::size_t column : columns_) {
+        const Cell& cell = row.cells[column];
+        const Clock own = cell.isTime ? clock : Clock::Wall;
+        const Measured* named = cell.find(statistic, own);
+        const Measured& measured = named ? *named : *cell.find("", own);
+        // A single round tells no more than the value.
+        const bool hasRounds = measured.rounds.size() > 1;
+        cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
+                         measured.areDraws, cell.seedCount > 0});
+        values.push_back(measured.value);
+    }
+    std::vector<Sampled*> all;
+    for (Sampled& cell : cells) all.push_back(&cell);
+    Sampled result;
+    result.point = evaluate(values);
+    result.areDraws = keepRoundsOrDraws(all);
+    result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
+    for (const int round : commonRounds(cells)) {
+        for (std::size_t i = 0; i < cells.size(); ++i) values[i] = cells[i].at(round);
+        result.rounds[round] = evaluate(values);
+    }
+    return result;
+}
+
+// Columns of other columns.
+
+namespace {
+
+/// A cell of another row: "time[method=slices]".
+struct Elsewhere {
+    std::size_t column;
+    std::vector<std::pair<std::size_t, std::string>> at;  // row axis, label
+    std::string name;                                     // "method=slices"
+};
+
+std::vector<Elsewhere> elsewhereIn(const std::string& expression, const Table& table,
+                                   std::vector<std::string>& labels) {
+    std::vector<Elsewhere> all;
+    for (const claims::RowReference& reference : claims::rowReferences(expression, labels)) {
+        Elsewhere& one = all.emplace_back();
+        one.column = reference.column;
+        for (const auto& [axis, value] : reference.at) {
+            const auto found = std::ranges::find(table.rowAxes, axis);
+            GFXREPRO_ASSERT(found != table.rowAxes.end());  // the layout's reader has looked
+            one.at.emplace_back(found - table.rowAxes.begin(), canonicalCell(value));
+            one.name += (one.name.empty() ? "" : ", ") + axis + "=" + one.at.back().second;
+        }
+        labels.emplace_back(reference.text);
+    }
+    return all;
+}
+
+/// What stands there for the row: the cell of the row that has these labels and is alike otherwise.
+Cell cellElsewhere(const Elsewhere& place, const TableRow& row, const Table& table) {
+    std::vector<std::string> labels = row.labels;
+    for (const auto& [axis, label] : place.at) labels[axis] = label;
+    const auto found = std::ranges::find(table.rows, labels, &TableRow::labels);
+    if (found != table.rows.end()) return found->cells[place.column];
+    Cell missing;
+    missing.message = "this run has no row " + place.name;
+    return missing;
+}
+
+/// What the expression does, as a power of two, where each cell becomes two to its `power` as
+/// large.
+int powerOf(Operand& operand, const TableRow& row, const std::function<int(const Cell&)>& power) {
+    std::vector<double> before, after;
+    double base = 1.0;
+    for (const std::size_t column : operand.columns()) {
+        base *= 1.7;  // no two alike: their difference is no 0
+        before.push_back(base);
+        after.push_back(std::ldexp(base, power(row.cells[column])));
+    }
+    const double exponent = std::log2(operand.evaluate(after) / operand.evaluate(before));
+    return std::isfinite(exponent) ? static_cast<int>(std::lround(exponent)) : 0;
+}
+
+std::vector<Measured> computedValues(Operand& operand, const TableRow& row,
+                                     const CellFormat& format, Clock clock) {
+    std::vector<Measured> values;
+    for (const CellFormat::Placeholder& placeholder : format.placeholders()) {
+        const Sampled sampled = operand.evaluate(row, clock, placeholder.name);
+        Measured& measured = values.emplace_back();
+        static_cast<Summary&>(measured) =
+            summaryOf(sampled.point, sampled.rounds, sampled.areDraws);
+        measured.statistic = placeholder.name;
+    }
+    return values;
+}
+
+/// What a cell has of the cells that it reads, but for its values.
+void gatherFrom(const Cell& from, Cell& cell) {
+    if (from.status > cell.status) {
+        cell.status = from.status;
+        cell.message = from.message;
+    }
+    cell.isCalibrated |= from.isCalibrated;
+    cell.isTime |= from.isTime;
+    // One seed of a part is one of the whole.
+    const bool isFirst = cell.seedCount == 0 || from.seedCount == 0;
+    cell.seedCount = isFirst ? std::max(cell.seedCount, from.seedCount)
+                             : std::min(cell.seedCount, from.seedCount);
+    cell.isAtPrintedParameters &= from.isAtPrintedParameters;
+    const auto add = [](const auto& items, auto& all) {
+        for (const auto& item : items) {
+            if (std::ranges::find(all, item) == all.end()) all.push_back(item);
+        }
+    };
+    add(from.caseIds, cell.caseIds);
+    add(from.openParameters, cell.openParameters);
+    add(from.departures, cell.departures);
+}
+
+/// `row` has the cells that the operand reads.
+void fillComputedCell(Operand& operand, const TableRow& row, const CellFormat& format, Cell& cell) {
+    std::vector<const Cell*> read;
+    for (const std::size_t column : operand.columns()) read.push_back(&row.cells[column]);
+    cell.isPlanned = std::ranges::all_of(read, &Cell::isPlanned);
+    if (!cell.isPlanned) return;
+    cell.status = records::Status::Ok;
+    cell.isAtPrintedParameters = true;
+    for (const Cell* one : read) gatherFrom(*one, cell);
+    const bool isMeasured =
+        std::ranges::none_of(read, [](const Cell* one) { return one->values.empty(); });
+    if (!isMeasured) {
+        cell.isAtPrintedParameters = false;
+        writeStatus(records::statusName(cell.status), cell);
+        return;
+    }
+    cell.values = computedValues(operand, row, format, Clock::Wall);
+    const bool hasProcessTimes = std::ranges::all_of(
+        read, [](const Cell* one) { return !one->isTime || !one->byProcess.empty(); });
+    if (cell.isTime && hasProcessTimes) {
+        cell.byProcess = computedValues(operand, row, format, Clock::Process);
+    }
+    cell.timePower = powerOf(operand, row, [](const Cell& one) { return one.timePower; });
+    std::set<std::string> units;
+    for (const Cell* one : read) units.insert(one->unit);
+    const bool isOfTheirUnit =
+        units.size() == 1 && powerOf(operand, row, [](const Cell&) { return 1; }) == 1;
+    if (isOfTheirUnit) cell.unit = *units.begin();
+    writeValues(format, cell);
+    writeStatus(records::statusName(cell.status), cell);
+}
+
+}  // namespace
+
+void fillComputed(const config::Layout& layout, Table& table) {
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const config::Selection* selection = layout.computed(table.columns[i].label);
+        if (!selection) continue;
+        const CellFormat format(selection->format.value_or(*layout.cell.format),
+                                selection->location);
+        Table reading;  // the columns before it, and what it reads of other rows
+        reading.columns.assign(table.columns.begin(),
+                               table.columns.begin() + static_cast<std::ptrdiff_t>(i));
+        std::vector<std::string> labels;
+        for (const TableColumn& column : reading.columns) labels.push_back(column.label);
+        const std::vector<Elsewhere> elsewhere = elsewhereIn(*selection->of, table, labels);
+        for (std::size_t k = i; k < labels.size(); ++k) reading.columns.push_back({labels[k], ""});
+        Operand operand(*selection->of, reading, selection->location,
+                        "column '" + table.columns[i].label + "'");
+        std::set<std::string> units;
+        for (TableRow& row : table.rows) {
+            TableRow cells{row.labels,
+                           row.source,
+                           {row.cells.begin(), row.cells.begin() + static_cast<std::ptrdiff_t>(i)}};
+            for (const Elsewhere& place : elsewhere) {
+                cells.cells.push_back(cellElsewhere(place, row, table));
+            }
+            fillComputedCell(operand, cells, format, row.cells[i]);
+            if (!row.cells[i].values.empty()) units.insert(row.cells[i].unit);
+        }
+        if (units.size() == 1) table.columns[i].unit = *units.begin();
+    }
+}
+
+}  // namespace gfxrepro::tables

@@ -1,0 +1,172 @@
+#include "runner/tables/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "engine/core/error.h"
+
+namespace gfxrepro::tables {
+
+namespace {
+
+using Units = std::map<int, std::vector<double>>;
+using metrics::Statistic;
+
+double summarizeUnits(const Units& units, Statistic statistic) {
+    if (units.size() == 1) return metrics::summarize(units.begin()->second, statistic);
+    std::vector<double> values;
+    for (const auto& [unit, repeats] : units) {
+        values.push_back(metrics::summarize(repeats, Statistic::Median));
+    }
+    return metrics::summarize(values, statistic);
+}
+
+Units pooled(const Samples& samples) {
+    Units units;
+    for (const auto& [process, own] : samples.processes) {
+        for (const auto& [unit, repeats] : own) {
+            std::vector<double>& all = units[unit];
+            all.insert(all.end(), repeats.begin(), repeats.end());
+        }
+    }
+    return units;
+}
+
+/// What the first repeat of every unit alone would give, then the second, …
+std::vector<double> byRepeat(const Units& units, Statistic statistic) {
+    std::size_t count = units.begin()->second.size();
+    for (const auto& [unit, repeats] : units) count = std::min(count, repeats.size());
+    std::vector<double> values;
+    for (std::size_t i = 0; i < count; ++i) {
+        Units alone;
+        for (const auto& [unit, repeats] : units) alone[unit] = {repeats[i]};
+        values.push_back(summarizeUnits(alone, statistic));
+    }
+    return values;
+}
+
+/// What one value does not have.
+bool isSpread(Statistic statistic) {
+    return statistic == Statistic::StdDev || statistic == Statistic::P95 ||
+           statistic == Statistic::P99;
+}
+
+/// One repeat of one unit in each process.
+bool hasOneValueEach(const Samples& samples) {
+    return std::ranges::all_of(samples.processes, [](const auto& process) {
+        return process.second.size() == 1 && process.second.begin()->second.size() == 1;
+    });
+}
+
+metrics::Interval rangeOf(const std::vector<double>& values) {
+    const auto [low, high] = std::ranges::minmax(values);
+    return {low, high};
+}
+
+/// Value and bounds of what each process came to, at least one.
+void fillFromRounds(const std::vector<double>& values, Summary& summary) {
+    summary.value = metrics::summarize(values, Statistic::Median);
+    summary.interval = rangeOf(values);
+    if (values.size() > 1) summary.bounds = Bounds::Range;
+    if (const auto interval = metrics::medianInterval(values)) {
+        summary.bounds = Bounds::Interval;
+        summary.interval = *interval;
+    }
+}
+
+}  // namespace
+
+std::string_view boundsName(Bounds bounds) {
+    constexpr std::string_view kNames[] = {"", "range", "95 % interval"};
+    return kNames[static_cast<std::size_t>(bounds)];
+}
+
+Summary summarize(const Samples& samples, Statistic statistic) {
+    const Units all = pooled(samples);
+    GFXREPRO_ASSERT(!all.empty());
+    if (isSpread(statistic) && hasOneValueEach(samples)) {
+        const double spread = metrics::summarize(all.begin()->second, statistic);
+        return summaryOf(spread, {}, false);
+    }
+    Summary summary;
+    std::vector<double> values;
+    for (const auto& [process, units] : samples.processes) {
+        if (units.size() < all.size()) continue;
+        values.push_back(summarizeUnits(units, statistic));
+        summary.rounds[process] = values.back();
+    }
+    summary.value = summarizeUnits(all, statistic);
+    summary.interval = {summary.value, summary.value};
+    if (!values.empty()) fillFromRounds(values, summary);
+    // A sum or a count of repeats is not what one of them gives.
+    const bool isOfRepeats =
+        all.size() == 1 && (statistic == Statistic::Sum || statistic == Statistic::Count);
+    if (values.size() != 1 || isOfRepeats) return summary;
+    const std::vector<double> repeats = byRepeat(all, statistic);
+    if (repeats.size() < 2) return summary;
+    summary.bounds = Bounds::Range;
+    summary.interval = rangeOf(repeats);
+    return summary;
+}
+
+Summary summaryOf(double value, std::map<int, double> rounds, bool areDraws) {
+    Summary summary{value, Bounds::None, {value, value}, std::move(rounds), areDraws};
+    std::vector<double> values;
+    for (const auto& [round, one] : summary.rounds) values.push_back(one);
+    if (areDraws) {
+        summary.bounds = Bounds::Interval;
+        summary.interval = drawsInterval(std::move(values));
+    } else if (!values.empty()) {
+        fillFromRounds(values, summary);
+    }
+    return summary;
+}
+
+// What a share that was counted once could be in truth.
+
+namespace {
+
+/// The ends of an interval lie within 0.05 standard deviations of where ever more would put them.
+constexpr int kDraws = 4000;
+
+/// FNV-1a: the same on every machine.
+std::uint64_t seedOf(std::string_view name) {
+    std::uint64_t hash = 14695981039346656037ULL;
+    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+    return hash;
+}
+
+}  // namespace
+
+std::map<int, double> shareDraws(double percent, double count, std::string_view name) {
+    const double successes = std::round(percent / 100.0 * count);
+    std::mt19937_64 random(seedOf(name));
+    std::gamma_distribution<double> in(successes + 0.5), out(count - successes + 0.5);
+    std::map<int, double> draws;
+    for (int i = 0; i < kDraws; ++i) {
+        const double a = in(random), b = out(random);
+        draws[i] = 100.0 * a / (a + b);
+    }
+    return draws;
+}
+
+void boundByDraws(Summary& share, double scale, double count, std::string_view name) {
+    share.rounds = shareDraws(share.value / scale, count, name);
+    std::vector<double> draws;
+    for (auto& [number, value] : share.rounds) draws.push_back(value *= scale);
+    share.areDraws = true;
+    share.bounds = Bounds::Interval;
+    share.interval = drawsInterval(std::move(draws));
+}
+
+metrics::Interval drawsInterval(std::vector<double> draws) {
+    std::ranges::sort(draws);
+    const auto tail = static_cast<std::size_t>(0.025 * static_cast<double>(draws.size()));
+    return {draws[tail], draws[draws.size() - 1 - tail]};
+}
+
+}  // namespace gfxrepro::tables
