@@ -328,6 +328,37 @@ float redistributed(float difference, float largest) {
                              : kPt + (difference - knee) / (largest - knee) * (1.0F - kPt);
 }
 
+void requireFlip(const ImageF& reference, double pixelsPerDegree) {
+    if (reference.channels() != 3) {
+        throw Error(
+            fmt::format("FLIP compares images of 3 channels, found {}", reference.channels()));
+    }
+    // Below, the feature detectors' weights underflow; above, the filters outgrow any image.
+    if (!(pixelsPerDegree >= 1.0 && pixelsPerDegree <= 1000.0)) {
+        throw Error(
+            fmt::format("FLIP allows 1 to 1000 pixels a degree, found {}", pixelsPerDegree));
+    }
+}
+
+ImageF differenceOf(const Perceived& a, const Perceived& b) {
+    const float largest = largestColourDifference();
+    ImageF map(a.y.width, a.y.height, 1);
+    forEachRow(map.height(), [&](int y) {
+        for (int x = 0; x < map.width(); ++x) {
+            const float edge = std::abs(a.edge(x, y) - b.edge(x, y));
+            const float point = std::abs(a.point(x, y) - b.point(x, y));
+            // 0 to a power above 0, which is most of what is alike.
+            if (a.hasColourOf(b, x, y) && std::max(edge, point) < 1.0F) continue;
+            const float difference = std::pow(hyAb(a.lab(x, y), b.lab(x, y)), kQc);
+            const float colour = redistributed(difference, largest);
+            const float feature =
+                std::pow(std::max(edge, point) / std::numbers::sqrt2_v<float>, kQf);
+            map.at(x, y) = std::pow(colour, 1.0F - feature);
+        }
+    });
+    return map;
+}
+
 }  // namespace
 
 void requireFlipSize(const ImageF& image) {
@@ -345,35 +376,27 @@ void forEachPicture(std::size_t count, const std::function<std::int64_t(std::siz
     for (const std::size_t i : large) body(i);
 }
 
+struct FlipReference::Seen {
+    Perceived perceived;
+};
+
+FlipReference::FlipReference(ImageF reference, double pixelsPerDegree)
+    : reference_(std::move(reference)), pixelsPerDegree_(pixelsPerDegree) {
+    requireFlip(reference_, pixelsPerDegree);
+    seen_ = std::make_unique<const Seen>(perceived(reference_, pixelsPerDegree));
+}
+
+FlipReference::~FlipReference() = default;
+
+ImageF FlipReference::mapOf(const ImageF& test) const {
+    requireComparable(reference_, test);
+    return differenceOf(seen_->perceived, perceived(test, pixelsPerDegree_));
+}
+
 ImageF flipMap(const ImageF& reference, const ImageF& test, double pixelsPerDegree) {
     requireComparable(reference, test);
-    if (reference.channels() != 3) {
-        throw Error(
-            fmt::format("FLIP compares images of 3 channels, found {}", reference.channels()));
-    }
-    // Below, the feature detectors' weights underflow; above, the filters outgrow any image.
-    if (!(pixelsPerDegree >= 1.0 && pixelsPerDegree <= 1000.0)) {
-        throw Error(
-            fmt::format("FLIP allows 1 to 1000 pixels a degree, found {}", pixelsPerDegree));
-    }
-    const Perceived a = perceived(reference, pixelsPerDegree);
-    const Perceived b = perceived(test, pixelsPerDegree);
-    const float largest = largestColourDifference();
-    ImageF map(reference.width(), reference.height(), 1);
-    forEachRow(map.height(), [&](int y) {
-        for (int x = 0; x < map.width(); ++x) {
-            const float edge = std::abs(a.edge(x, y) - b.edge(x, y));
-            const float point = std::abs(a.point(x, y) - b.point(x, y));
-            // 0 to a power above 0, which is most of what is alike.
-            if (a.hasColourOf(b, x, y) && std::max(edge, point) < 1.0F) continue;
-            const float difference = std::pow(hyAb(a.lab(x, y), b.lab(x, y)), kQc);
-            const float colour = redistributed(difference, largest);
-            const float feature =
-                std::pow(std::max(edge, point) / std::numbers::sqrt2_v<float>, kQf);
-            map.at(x, y) = std::pow(colour, 1.0F - feature);
-        }
-    });
-    return map;
+    requireFlip(reference, pixelsPerDegree);
+    return differenceOf(perceived(reference, pixelsPerDegree), perceived(test, pixelsPerDegree));
 }
 
 double meanOfFlip(const ImageF& map) {

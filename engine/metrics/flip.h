@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 
 #include "engine/image/image.h"
 
@@ -29,6 +30,25 @@ void forEachPicture(std::size_t count, const std::function<std::int64_t(std::siz
 /// are not 3, a value is not finite, or pixelsPerDegree is outside of [1, 1000].
 image::ImageF flipMap(const image::ImageF& reference, const image::ImageF& test,
                       double pixelsPerDegree = kFlipPixelsPerDegree);
+/// A reference as the eye sees it, made once for all pictures that are compared with it.
+class FlipReference {
+  public:
+    /// Throws Error as flipMap().
+    explicit FlipReference(image::ImageF reference, double pixelsPerDegree = kFlipPixelsPerDegree);
+    ~FlipReference();
+    FlipReference(const FlipReference&) = delete;
+    FlipReference& operator=(const FlipReference&) = delete;
+
+    /// flipMap() of the two.
+    image::ImageF mapOf(const image::ImageF& test) const;
+
+  private:
+    struct Seen;
+    image::ImageF reference_;
+    double pixelsPerDegree_;
+    std::unique_ptr<const Seen> seen_;
+};
+
 /// The mean of such a map: what is printed.
 double meanOfFlip(const image::ImageF& map);
 /// Of the map of two images.

@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -126,20 +127,39 @@ class Gallery {
         return std::int64_t{width} * height;
     }
 
-    Shot shotOf(const records::ImageEntry& entry) const {
-        const fs::path file = runDir_ / entry.png;
-        Shot shot;
+    /// To be decoded for a thumbnail, and compared.
+    bool isTooLarge(const records::ImageEntry& entry) const {
+        return pixelsOf(entry) > metrics::kMaxFlipPixels;
+    }
+
+    const records::ImageEntry* truthOf(const records::ImageEntry& entry) const {
+        const auto truth = truths_.find({entry.caseId, entry.frame, entry.name});
+        return truth == truths_.end() ? nullptr : &truth->second;
+    }
+
+    /// What it is, not yet how it is shown. `content` is the digest of its file.
+    void describe(const records::ImageEntry& entry, const std::string& content, Shot& shot) const {
         shot.table = entry.table;
         shot.caseId = entry.caseId;
         shot.caseTitle = entry.title;
         shot.name = nameOf(entry);
         shot.baseName = entry.name;
         shot.png = entry.png;
+        shot.content = entry.truthOf.empty() ? "" : content;
+        const records::ImageEntry* truth = isTooLarge(entry) ? nullptr : truthOf(entry);
+        shot.truth = truth ? nameOf(*truth) : "";
+    }
+
+    /// `known` is the truth of the picture before, if it is of one content with this one's.
+    Shot shotOf(const records::ImageEntry& entry, const std::string& content,
+                std::optional<metrics::FlipReference>& known) const {
+        const fs::path file = runDir_ / entry.png;
+        Shot shot;
+        describe(entry, content, shot);
         shot.bytes = fs::file_size(file);
         std::tie(shot.width, shot.height) = sizeOf(entry);
-        if (!entry.truthOf.empty()) shot.content = sha256OfFile(file);
-        if (pixelsOf(entry) > metrics::kMaxFlipPixels) {
-            shot.thumbnail = addressOf(file, place_);  // too large to be decoded for a thumbnail
+        if (isTooLarge(entry)) {
+            shot.thumbnail = addressOf(file, place_);
             return shot;
         }
         const image::Image8 picture = image::readPng8(file);
@@ -151,8 +171,7 @@ class Gallery {
             const image::PngRows rows(thumbnail, image::kMaxSidePx, image::ImageUse::Picture);
             std::tie(shot.width, shot.height) = std::pair{rows.width(), rows.height()};
         }
-        const auto truth = truths_.find({entry.caseId, entry.frame, entry.name});
-        if (truth != truths_.end()) compare(entry, picture, truth->second, shot);
+        if (const auto* truth = truthOf(entry)) compare(entry, picture, *truth, known, shot);
         return shot;
     }
 
@@ -174,11 +193,11 @@ class Gallery {
     }
 
     void compare(const records::ImageEntry& entry, const image::Image8& picture,
-                 const records::ImageEntry& truth, Shot& shot) const {
-        shot.truth = nameOf(truth);
+                 const records::ImageEntry& truth, std::optional<metrics::FlipReference>& known,
+                 Shot& shot) const {
         if (sizeOf(truth) != sizeOf(entry)) return;
-        const image::Image8 reference = image::readPng8(runDir_ / truth.png);
-        const image::ImageF map = metrics::flipMap(displayed(reference), displayed(picture));
+        if (!known) known.emplace(displayed(image::readPng8(runDir_ / truth.png)));
+        const image::ImageF map = known->mapOf(displayed(picture));
         const auto values = map.values();
         shot.flipMean =
             std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -233,19 +252,69 @@ int reducedPxOf(std::span<const fs::path> runDirs, std::uintmax_t mostBytes) {
     return kReducedPx.back();
 }
 
+namespace {
+
+/// The digest of each picture's file.
+std::vector<std::string> contentsOf(const fs::path& runDir,
+                                    const std::vector<records::ImageEntry>& entries) {
+    std::vector<std::string> contents(entries.size());
+    metrics::forEachPicture(
+        entries.size(), [](std::size_t) { return std::int64_t{0}; },
+        [&](std::size_t i) { contents[i] = sha256OfFile(runDir / entries[i].png); });
+    return contents;
+}
+
+/// Pictures that are shown alike: of one content, as their truths are. Those of one truth are in
+/// one group.
+std::vector<std::vector<std::vector<std::size_t>>> groupsOf(
+    const Gallery& gallery, const std::vector<std::string>& contents) {
+    std::map<std::string, std::string> contentOf;  // of a file
+    for (std::size_t i = 0; i < contents.size(); ++i) {
+        contentOf[gallery.entries()[i].png] = contents[i];
+    }
+    std::map<std::string, std::map<std::string, std::vector<std::size_t>>> alike;  // by truth
+    for (std::size_t i = 0; i < contents.size(); ++i) {
+        const records::ImageEntry* truth = gallery.truthOf(gallery.entries()[i]);
+        // Without a truth each content is a group of its own.
+        alike[truth ? contentOf.at(truth->png) : contents[i] + " alone"][contents[i]].push_back(i);
+    }
+    std::vector<std::vector<std::vector<std::size_t>>> groups;
+    for (auto& [truth, pictures] : alike) {
+        groups.emplace_back();
+        for (auto& [content, places] : pictures) groups.back().push_back(std::move(places));
+    }
+    return groups;
+}
+
+}  // namespace
+
 std::vector<Shot> gatherShots(const GalleryPlace& place, const PicturesDone& progress) {
     const Gallery gallery(place);
     const std::vector<records::ImageEntry>& entries = gallery.entries();
+    const std::vector<std::string> contents = contentsOf(place.runDir, entries);
+    const std::vector<std::vector<std::vector<std::size_t>>> groups = groupsOf(gallery, contents);
     std::vector<Shot> shots(entries.size());
     std::mutex mutex;
     std::size_t done = 0;
+    const auto take = [&](const std::vector<std::size_t>& alike,
+                          std::optional<metrics::FlipReference>& known) {
+        const std::size_t first = alike.front();
+        shots[first] = gallery.shotOf(entries[first], contents[first], known);
+        for (const std::size_t i : alike) {
+            if (i == first) continue;
+            shots[i] = shots[first];
+            gallery.describe(entries[i], contents[i], shots[i]);
+        }
+        if (!progress) return;
+        const std::scoped_lock lock(mutex);
+        for (std::size_t i = 0; i < alike.size(); ++i) progress(++done, shots.size());
+    };
     metrics::forEachPicture(
-        shots.size(), [&](std::size_t i) { return gallery.pixelsOf(entries[i]); },
-        [&](std::size_t i) {
-            shots[i] = gallery.shotOf(entries[i]);
-            if (!progress) return;
-            const std::scoped_lock lock(mutex);
-            progress(++done, shots.size());
+        groups.size(),
+        [&](std::size_t g) { return gallery.pixelsOf(entries[groups[g].front().front()]); },
+        [&](std::size_t g) {
+            std::optional<metrics::FlipReference> known;
+            for (const std::vector<std::size_t>& alike : groups[g]) take(alike, known);
         });
     return shots;
 }

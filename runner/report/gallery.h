@@ -64,8 +64,8 @@ int reducedPxOf(std::span<const std::filesystem::path> runDirs, std::uintmax_t m
 using PicturesDone = std::function<void(std::size_t done, std::size_t all)>;
 
 /// The images of a run. Makes below `madeDir` what is not there yet: FLIP maps of those that have a
-/// truth of their size (thumbnails/…-flip.png, judged as displayed), and thumbnails. Throws Error
-/// for an image that is no PNG.
+/// truth of their size (thumbnails/…-flip.png, judged as displayed), and thumbnails; of pictures
+/// that are alike, as their truths are, one for all. Throws Error for an image that is no PNG.
 std::vector<Shot> gatherShots(const GalleryPlace& place, const PicturesDone& progress = {});
 
 /// A shot's picture for the overview, as `thumbnail`; made if it is not there.

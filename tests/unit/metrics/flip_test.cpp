@@ -260,6 +260,19 @@ TEST(Flip, FollowsTheDefinition) {
     }
 }
 
+TEST(Flip, OfAReferenceThatIsSeenOnceIsTheSame) {
+    const ImageF reference = drawing(26, 19, 0);
+    const FlipReference seen(reference, 40.0);
+    for (const int shift : {0, 1, 3}) {
+        const ImageF test = drawing(26, 19, shift);
+        EXPECT_EQ(seen.mapOf(test), flipMap(reference, test, 40.0)) << shift;
+    }
+    EXPECT_EQ(errorText([&] { seen.mapOf(ImageF(3, 3, 3)); }),
+              "the images differ in shape: 26x19 with 3 channels and 3x3 with 3 channels");
+    EXPECT_EQ(errorText([] { FlipReference(ImageF(2, 3, 1)); }),
+              "FLIP compares images of 3 channels, found 1");
+}
+
 /// Neither direction of the features is preferred, nor one image.
 TEST(Flip, IsSymmetric) {
     const int width = 26, height = 19;

@@ -12,8 +12,8 @@ namespace gfxrepro::report {
 namespace {
 
 /// A picture that compresses to nearly what it has of bytes: three a pixel.
-void writeNoise(const std::filesystem::path& file, int sizePx) {
-    std::mt19937 random(1);
+void writeNoise(const std::filesystem::path& file, int sizePx, unsigned seed = 1) {
+    std::mt19937 random(seed);
     image::Image8 picture(sizePx, sizePx, 3);
     for (int y = 0; y < sizePx; ++y) {
         for (int x = 0; x < sizePx; ++x) {
@@ -44,6 +44,36 @@ TEST(Gallery, PicturesInsideAFileAreReducedUntilItCanBeSent) {
     };
     EXPECT_EQ(widthBy(512), 512);
     EXPECT_EQ(widthBy(192), 192);
+}
+
+TEST(Gallery, PicturesThatAreAlikeAreShownByOnesFiles) {
+    const test::TemporaryFolder run;
+    records::ImageWriter writer(run.path());
+    // Of three cases the pictures are the same, and the truths of two.
+    for (const std::string id : {"a", "b", "c"}) {
+        const std::string picture = "images/" + id + "-result.png",
+                          truth = "images/" + id + "-t.png";
+        writeNoise(run.path() / picture, 600);
+        writeNoise(run.path() / truth, 600, id == "c" ? 3 : 2);
+        writer.append({{id, "t/" + id, 0, "result", picture, "", "case " + id},
+                       {id, "t/" + id, 0, "t", truth, "", "case " + id, "result"}});
+    }
+    const std::vector<Shot> shots =
+        gatherShots({run.path(), run.path(), run.path() / "report.html"});
+    ASSERT_EQ(shots.size(), 6U);
+    const Shot &a = shots[0], &b = shots[2], &c = shots[4];
+    EXPECT_EQ(a.thumbnail, b.thumbnail);
+    EXPECT_EQ(a.flip, b.flip);
+    EXPECT_EQ(a.flipMean, b.flipMean);
+    EXPECT_NE(a.flip, c.flip);
+    EXPECT_NE(a.flipMean, c.flipMean);
+    EXPECT_FALSE(std::filesystem::exists(run.path() / "thumbnails/b-result-flip.png"));
+    // Each is still its own case's.
+    EXPECT_EQ(b.caseId + b.table + b.caseTitle + b.name + b.png + b.truth,
+              "bt/bcase bresultimages/b-result.pngt");
+    EXPECT_TRUE(shots[1].isTruth() && shots[3].isTruth());
+    EXPECT_EQ(shots[1].content, shots[3].content);
+    EXPECT_FALSE(a.isTruth() || b.isTruth());
 }
 
 TEST(Gallery, SaysHowFarItIs) {
