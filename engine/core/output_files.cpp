@@ -4,8 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -66,6 +69,23 @@ void writeFolder(const fs::path& target, const std::function<void(const fs::path
     if (failure) throw WriteError("cannot write " + target.string() + ": " + failure.message());
 }
 
+void removeOldest(const fs::path& folder, std::string_view extension, const fs::path& kept,
+                  std::uintmax_t mostBytes) {
+    std::vector<std::pair<fs::file_time_type, fs::path>> files;
+    std::uintmax_t bytes = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        if (entry.path().extension() != extension && !isTemporary(entry.path())) continue;
+        bytes += entry.file_size();
+        if (entry.path() != kept) files.emplace_back(entry.last_write_time(), entry.path());
+    }
+    std::ranges::sort(files);
+    for (const auto& [time, path] : files) {
+        if (bytes <= mostBytes) return;
+        bytes -= fs::file_size(path);
+        fs::remove(path);  // whoever has mapped it keeps it
+    }
+}
+
 AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
     if (path_.has_parent_path()) makeFolder(path_.parent_path());
     requireReplaceable(path_);
@@ -102,6 +122,12 @@ void AtomicFile::commit() {
     put(unwritten_);
     unwritten_.clear();
     if (::fsync(file_.get()) != 0) failToWrite("flush", temporary_);
+    commitUnflushed();
+}
+
+void AtomicFile::commitUnflushed() {
+    put(unwritten_);
+    unwritten_.clear();
     if (::rename(temporary_.c_str(), path_.c_str()) != 0) failToWrite("rename to", path_);
     temporary_.clear();
 }

@@ -29,6 +29,8 @@ class AtomicFile {
     void write(std::string_view text);
     /// Flushes it to the disk and renames it. Throws WriteError. Once.
     void commit();
+    /// Without flushing it, which may take seconds: after a power cut the file may be any bytes.
+    void commitUnflushed();
 
   private:
     void put(std::string_view text);
@@ -54,6 +56,12 @@ inline bool isTemporary(const std::filesystem::path& file) {
     const std::size_t at = name.rfind(".tmp");
     return at != name.npos && name.find_first_not_of("0123456789", at + 4) == name.npos;
 }
+
+/// Removes files of a folder that end in `extension`, or are temporary, until all of them together
+/// take at most `mostBytes`: those written longest ago first, but never `kept`. Throws
+/// std::filesystem::filesystem_error, also where another process removes one meanwhile.
+void removeOldest(const std::filesystem::path& folder, std::string_view extension,
+                  const std::filesystem::path& kept, std::uintmax_t mostBytes);
 
 /// A file that nobody else may touch meanwhile.
 class AppendedFile {

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "engine/core/descriptor.h"
+#include "engine/core/output_files.h"
 
 namespace gfxrepro::scene {
 
@@ -192,22 +193,10 @@ bool isThere(const fs::path& path, glm::ivec2 sizeSamples) {
            header.sizeSamples == sizeSamples;
 }
 
-/// Removes what processes that were killed left behind, and files of heights but `kept`, the ones
-/// opened longest ago first, until there is room.
-void makeRoom(const fs::path& folder, const fs::path& kept, std::uintmax_t mostBytes) {
-    std::vector<std::pair<fs::file_time_type, fs::path>> files;
-    std::uintmax_t bytes = fs::file_size(kept);
+/// What processes that were killed left behind, in a folder that nobody else writes to.
+void removeTemporaries(const fs::path& folder) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-        if (entry.path().extension().string().starts_with(".tmp")) fs::remove(entry.path());
-        if (entry.path().extension() != ".heights" || entry.path() == kept) continue;
-        files.emplace_back(entry.last_write_time(), entry.path());
-        bytes += entry.file_size();
-    }
-    std::sort(files.begin(), files.end());
-    for (const auto& [time, path] : files) {
-        if (bytes <= mostBytes) return;
-        bytes -= fs::file_size(path);
-        fs::remove(path);  // whoever has mapped it keeps it
+        if (isTemporary(entry.path())) fs::remove(entry.path());
     }
 }
 
@@ -253,9 +242,10 @@ std::shared_ptr<const HeightFile> HeightFile::openOrBuild(
     if (!isThere(path, sizeSamples)) {
         const std::size_t filledCount = prepare();
         build(path, sizeSamples, makeRows, filledCount);
-        makeRoom(folder, path, mostBytes);
+        removeTemporaries(folder);
+        removeOldest(folder, ".heights", path, mostBytes);
     }
-    // Which file was in use last, for makeRoom().
+    // Which file was in use last, for removeOldest().
     fs::last_write_time(path, fs::file_time_type::clock::now(), failure);
     return std::shared_ptr<const HeightFile>(new HeightFile(path, key, sizeSamples));
 }

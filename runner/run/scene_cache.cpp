@@ -1,7 +1,12 @@
 #include "runner/run/scene_cache.h"
 
+#include <elf.h>
+#include <link.h>
+
 #include <algorithm>
+#include <bit>
 #include <chrono>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -137,29 +142,73 @@ class SceneBytes {
 /// Smaller scenes are made as fast as they are read.
 constexpr std::size_t kLeastKeptBytes = std::size_t{1} << 20;
 
+/// What the linker made of all that this program is (its build id); the file's digest where the
+/// linker made none.
+std::string programDigest() {
+    std::string id;
+    const auto takeNotes = [](dl_phdr_info* program, std::size_t, void* to) {
+        for (int i = 0; i < program->dlpi_phnum; ++i) {
+            const ElfW(Phdr)& part = program->dlpi_phdr[i];
+            if (part.p_type != PT_NOTE) continue;
+            std::string_view rest(reinterpret_cast<const char*>(program->dlpi_addr + part.p_vaddr),
+                                  part.p_memsz);
+            const auto aligned = [&](std::size_t size) {
+                return (size + part.p_align - 1) / part.p_align * part.p_align;
+            };
+            for (ElfW(Nhdr) note; rest.size() >= sizeof note;) {
+                std::memcpy(&note, rest.data(), sizeof note);
+                const std::size_t begin = sizeof note + aligned(note.n_namesz);
+                const std::size_t end = begin + aligned(note.n_descsz);
+                if (end > rest.size()) break;
+                if (note.n_type == NT_GNU_BUILD_ID) {
+                    *static_cast<std::string*>(to) = rest.substr(begin, note.n_descsz);
+                }
+                rest.remove_prefix(end);
+            }
+        }
+        return 1;  // the first is the program itself, the others are libraries
+    };
+    ::dl_iterate_phdr(takeNotes, &id);
+    return id.empty() ? sha256OfFile("/proc/self/exe") : id;
+}
+
 /// Where a generated scene is kept, by all that it is made of; empty for one of a file.
 fs::path keptPath(const scene::Catalog& catalog, const std::string& reference) {
     const Node node = Node::scalar(reference);
     if (catalog.resolve(node).generator == nullptr) return {};
-    static const std::string program = sha256OfFile("/proc/self/exe");
+    static const std::string program = programDigest();
     const std::string key = program + ' ' + catalog.contentKey(node) + ' ' + reference;
     return cacheFolder() / "scenes" / (sha256(key) + ".scene");
 }
 
-/// A kept file is the digest of what follows, and that.
-constexpr std::size_t kDigestSize = 64;
+/// Differs where a bit of the bytes does, or their number: what a disk lost is told, in a tenth of
+/// SHA-256's time.
+std::uint64_t checksumOf(std::string_view bytes) {
+    std::uint64_t sum = bytes.size();
+    const auto add = [&](const char* from, std::size_t size) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, from, size);
+        sum = std::rotl((sum ^ word) * 0x9E3779B97F4A7C15U, 29);
+    };
+    const std::size_t whole = bytes.size() / sizeof sum * sizeof sum;
+    for (std::size_t i = 0; i < whole; i += sizeof sum) add(bytes.data() + i, sizeof sum);
+    add(bytes.data() + whole, bytes.size() - whole);
+    return sum;
+}
 
-/// Nothing where none is kept, or not whole.
+/// Nothing where none is kept, or not whole. A kept file is the checksum of what follows, and that.
 std::optional<scene::Scene> keptScene(const fs::path& path) {
     std::error_code failure;
     if (path.empty() || !fs::is_regular_file(path, failure)) return std::nullopt;
     try {
         const MappedFile file(path);
         const std::string_view text = file.text();
-        if (text.size() < kDigestSize) return std::nullopt;
-        const std::string_view bytes = text.substr(kDigestSize);
-        if (sha256(bytes) != text.substr(0, kDigestSize)) return std::nullopt;
-        // Which was in use last, for makeRoom().
+        std::uint64_t sum = 0;
+        if (text.size() < sizeof sum) return std::nullopt;
+        std::memcpy(&sum, text.data(), sizeof sum);
+        const std::string_view bytes = text.substr(sizeof sum);
+        if (checksumOf(bytes) != sum) return std::nullopt;
+        // Which was in use last, for removeOldest().
         fs::last_write_time(path, fs::file_time_type::clock::now(), failure);
         return SceneBytes::read(bytes);
     } catch (const Error&) {
@@ -167,31 +216,16 @@ std::optional<scene::Scene> keptScene(const fs::path& path) {
     }
 }
 
-/// Removes the files that were used longest ago until the rest take no more than that.
-void makeRoom(const fs::path& folder, std::uintmax_t mostBytes) {
-    std::vector<std::pair<fs::file_time_type, fs::path>> files;
-    std::uintmax_t bytes = 0;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-        files.emplace_back(entry.last_write_time(), entry.path());
-        bytes += entry.file_size();
-    }
-    std::sort(files.begin(), files.end());
-    for (const auto& [time, path] : files) {
-        if (bytes <= mostBytes) return;
-        bytes -= fs::file_size(path);
-        fs::remove(path);
-    }
-}
-
 /// Where it cannot be kept, that costs the next process its time, no more.
 void keepScene(const fs::path& path, scene::Scene& scene, std::uintmax_t mostBytes) {
     try {
         const std::string bytes = SceneBytes::of(scene);
+        const std::uint64_t sum = checksumOf(bytes);
         AtomicFile file(path);
-        file.write(sha256(bytes));
+        file.write({reinterpret_cast<const char*>(&sum), sizeof sum});
         file.write(bytes);
-        file.commit();
-        makeRoom(path.parent_path(), mostBytes);
+        file.commitUnflushed();
+        removeOldest(path.parent_path(), ".scene", path, mostBytes);
     } catch (const Error&) {
     } catch (const fs::filesystem_error&) {  // another process made room, too
     }

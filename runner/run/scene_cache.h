@@ -19,8 +19,8 @@ namespace gfxrepro::run {
 /// stay whatever their size.
 ///
 /// Generated scenes of a megabyte or more are kept as files in cacheFolder()/scenes, for the next
-/// process: by generator, parameters, seed and the program's hash. What cannot be written, or is
-/// torn, is made anew.
+/// process: by generator, parameters, seed and the program's build id. What cannot be written, or
+/// is torn, is made anew.
 class SceneCache : public technique::SceneProvider {
   public:
     struct Entry {
