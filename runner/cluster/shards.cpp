@@ -38,11 +38,15 @@ run::Shard parseShard(std::string_view text) {
 }
 
 std::vector<std::vector<std::size_t>> indivisibleGroups(std::span<const config::Case> cases) {
+    const std::map<std::string, std::string> lenders = run::lendersOfTimes(run::pointersTo(cases));
     std::vector<std::vector<std::size_t>> groups;
     std::map<std::string, std::size_t> groupOf;  // of an experiment, or of work
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const bool isTiming = cases[i].measure.lane == config::Measure::Lane::Timing;
-        const std::string key = isTiming ? cases[i].experiment : run::workKey(cases[i]);
+        const auto lender = lenders.find(cases[i].experiment);
+        const std::string key = lender != lenders.end() ? lender->second
+                                : isTiming              ? cases[i].experiment
+                                                        : run::workKey(cases[i]);
         const auto [group, isNew] = groupOf.try_emplace(key, groups.size());
         if (isNew) groups.emplace_back();
         groups[group->second].push_back(i);

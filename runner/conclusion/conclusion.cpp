@@ -20,6 +20,7 @@
 #include "runner/run/machine_state.h"
 #include "runner/run/manifest.h"
 #include "runner/run/plan.h"
+#include "runner/run/rounds.h"
 #include "runner/run/run_directory.h"
 #include "runner/studies/sensitivity.h"
 #include "runner/tables/calibration.h"
@@ -311,7 +312,10 @@ Results resultsOf(const run::StoredRun& run, const Experiments& experiments) {
     results.tables = tables::buildTables(experiments, run.plan.cases, run.records);
     tables::addNotes(results.context.tableNotes, results.tables);
     const tables::MovedClocks clocks = run::movedClocks(run.manifest);
-    for (tables::Table& table : results.tables) tables::markMovedClocks(clocks, table);
+    for (tables::Table& table : results.tables) {
+        tables::markMovedClocks(clocks, table);
+        table.timesOf = run::takenTimesNote(run.manifest, table.id);
+    }
     results.claims = claims::evaluateClaims(experiments, results.tables, results.context);
     for (tables::Table& table : results.tables) {
         std::vector<std::string> labels;

@@ -347,20 +347,24 @@ void MachineWatch::readGpu(bool isTimed) {
 }
 
 void MachineWatch::unitEnded(const Unit& unit, records::Status status, const std::string& message) {
-    // Timing units run alone: the one that ends is the one that began.
-    if (before_ && unit.item->measure.lane == config::Measure::Lane::Timing) {
-        if (wasTimed_) readGpu(false);
-        MachineState state;
-        state.add(*before_, readMachine(root_));
-        state.add(gpuState_);
-        before_.reset();
-        if (state.isKnown()) {
-            tables_[unit.item->experiment].add(unit.item->id, state);
+    // Timing units run alone: the one that ends is the one that began, and a twin follows it.
+    if (unit.item->measure.lane == config::Measure::Lane::Timing) {
+        if (before_) {
+            if (wasTimed_) readGpu(false);
+            state_ = {};
+            state_.add(*before_, readMachine(root_));
+            state_.add(gpuState_);
+            before_.reset();
+        } else if (!unit.measuredAs) {
+            state_ = {};
+        }
+        if (state_.isKnown()) {
+            tables_[unit.item->experiment].add(unit.item->id, state_);
             Json event = {{"event", "machine_state"},
                           {"table", unit.item->experiment},
                           {"unit", unit.item->id},
                           {"process", unit.process}};
-            event.update(state.json());
+            event.update(state_.json());
             directory_.note(event);
         }
     }

@@ -127,6 +127,7 @@ class MachineWatch : public Observer {
     std::optional<MachineReading> before_;
     GpuState gpuState_;      // of the unit that runs
     bool wasTimed_ = false;  // what ran when the GPU was read last
+    MachineState state_;     // of the unit that ended last
     std::map<std::string, MachineState> tables_;
 };
 

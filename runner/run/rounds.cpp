@@ -1,5 +1,6 @@
 #include "runner/run/rounds.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -128,11 +129,20 @@ Rounds::Rounds(const Plan& plan, const std::vector<records::Record>& records,
         table->second.cases.push_back(&item);
     }
     add(records);
+    std::map<std::string_view, const Case*> cases;
+    for (const Case& item : plan.cases) cases[item.id] = &item;
     for (const Json& event : journal) {
+        const std::string name = event.value("event", "");
+        const auto item = cases.find(event.value("case", ""));
+        if (name == "case" && item != cases.end()) {
+            takenFrom(*item->second, event.value("times_of", ""));
+        }
         const auto table = tables_.find(event.value("table", ""));
         if (table == tables_.end()) continue;
-        const std::string name = event.value("event", "");
-        if (name == "machine") table->second.ending = nullptr;  // measured again from there
+        if (name == "machine") {  // measured again from there
+            table->second.ending = nullptr;
+            table->second.takenFrom.clear();
+        }
         if (name == "rounds") table->second.ending = event;
     }
     for (auto& [name, table] : tables_) {
@@ -159,6 +169,13 @@ void Rounds::add(const std::vector<records::Record>& rows) {
         const auto table = tables_.find(row.table);
         if (table != tables_.end()) table->second.times.add(row);
     }
+}
+
+void Rounds::takenFrom(const Case& item, const std::string& table) {
+    const auto own = tables_.find(item.experiment);
+    if (own == tables_.end()) return;
+    own->second.takenFrom.erase(item.id);
+    if (!table.empty()) own->second.takenFrom[item.id] = table;
 }
 
 std::vector<Unit> Rounds::next(const std::string& experiment) {
@@ -214,9 +231,15 @@ std::vector<std::string> Rounds::undecided() const {
 Json Rounds::endings() const {
     Json all = Json::object();
     for (const std::string& name : order_) {
-        Json ending = tables_.at(name).ending;
+        const Table& table = tables_.at(name);
+        Json ending = table.ending;
         if (ending.is_null()) continue;
         ending.erase("table");
+        if (!table.takenFrom.empty()) {
+            ending["times_of"] = table.takenFrom.begin()->second;
+            ending["taken"] = table.takenFrom.size();
+            ending["cases"] = table.cases.size();
+        }
         all[name] = ending;
     }
     return all;
@@ -241,6 +264,20 @@ std::vector<std::string> Rounds::warnings() const {
 Json Rounds::ending(const std::string& experiment) const {
     const auto table = tables_.find(experiment);
     return table == tables_.end() ? Json(nullptr) : table->second.ending;
+}
+
+std::string takenTimesNote(const Json& manifest, const std::string& table) {
+    const auto rounds = manifest.find("rounds");
+    if (rounds == manifest.end() || !rounds->contains(table)) return "";
+    const Json& ending = rounds->at(table);
+    const std::string other = ending.value("times_of", "");
+    const int taken = ending.value("taken", 0), all = ending.value("cases", 0);
+    if (other.empty()) return "";
+    if (taken == all) return "Times are those of " + other + ", which has these cases, too";
+    return fmt::format(
+        "Times of {} of {} cases are those of {}, which has these cases, too; the others' were "
+        "measured at another moment",
+        taken, all, other);
 }
 
 }  // namespace gfxrepro::run

@@ -44,6 +44,8 @@ class Rounds {
     void begin(const std::string& experiment, TimePoint now);
     void end(const std::string& experiment, TimePoint now, double onceS = 0.0);
     void add(const std::vector<records::Record>& rows);
+    /// The times of the case were measured as another table's; as its own where that is empty.
+    void takenFrom(const Case& item, const std::string& table);
     /// The units of the next round of an experiment whose rounds so far are complete; empty when
     /// there is none, which is then decided and said by ending().
     std::vector<Unit> next(const std::string& experiment);
@@ -56,7 +58,8 @@ class Rounds {
     /// {"table", "rounds", "ended_by", "relative_error", "seconds"}; null while it is undecided.
     /// "ended_by" is a key of `measure` (tables::endOfRounds).
     Json ending(const std::string& experiment) const;
-    /// The endings of all experiments that have one, by name: for the manifest.
+    /// The endings of all experiments that have one, by name: for the manifest. Of a table with
+    /// times of another "times_of" is that table, and "taken" of how many of its "cases".
     Json endings() const;
     /// Frames that took far longer than their fellows: "zju2005/4.1: Outlier: …".
     std::vector<std::string> warnings() const;
@@ -69,10 +72,15 @@ class Rounds {
         std::chrono::duration<double> spent{0.0};
         int roundsBegun = 0;
         Json ending;
+        std::map<std::string, std::string> takenFrom = {};  // of cases with times of another table
     };
 
     std::map<std::string, Table> tables_;
     std::vector<std::string> order_;
 };
+
+/// With which table the times of a table were measured, where it was another, by the manifest's
+/// endings(): a sentence without its end; empty for its own.
+std::string takenTimesNote(const Json& manifest, const std::string& table);
 
 }  // namespace gfxrepro::run

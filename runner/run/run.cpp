@@ -93,6 +93,10 @@ std::vector<std::string> replaceForeignTimes(const Plan& plan, const RunDirector
     for (const std::string& experiment : rounds.undecided()) {
         if (rounds.mayFollow(experiment)) unfinished.insert(experiment);
     }
+    // What a table takes from another goes with it.
+    for (const auto& [table, lender] : lendersOfTimes(pointersTo(plan.cases))) {
+        if (unfinished.contains(lender)) unfinished.insert(table);
+    }
     std::erase_if(unfinished, [&](const std::string& experiment) {
         return timingMachine(manifest, experiment) == machine;
     });
@@ -300,10 +304,7 @@ Lost lostUnits(const std::vector<Json>& journal, const Works& works) {
 
 Works worksOf(const Plan& plan) {
     Works works;
-    for (const Case& item : plan.cases) {
-        const std::string key = workKey(item);
-        if (!key.empty()) works[item.id] = key;
-    }
+    for (const auto& [item, key] : keysOfTwins(pointersTo(plan.cases))) works[item->id] = key;
     return works;
 }
 

@@ -62,6 +62,9 @@ constexpr JsonMember kManifest[] = {{"/commit", JsonKind::Line},
                                     {"/merged", JsonKind::Objects, false}};
 constexpr JsonMember kUnits[] = {
     {"/planned", JsonKind::Int}, {"/missing", JsonKind::Int}, {"/failed", JsonKind::Int}};
+constexpr JsonMember kRounds[] = {{"/times_of", JsonKind::Line, false},
+                                  {"/taken", JsonKind::Int, false},
+                                  {"/cases", JsonKind::Int, false}};
 constexpr JsonMember kInvocation[] = {{"/command", JsonKind::Text},
                                       {"/started", JsonKind::Line, false},
                                       {"/machine", JsonKind::Line, false}};
@@ -73,12 +76,12 @@ constexpr JsonMember kMerged[] = {{"/machine", JsonKind::Line},
                                   {"/invocations", JsonKind::List},
                                   {"/invocations", JsonKind::Objects}};
 constexpr JsonMember kEvent[] = {
-    {"/time", JsonKind::Text, false},    {"/event", JsonKind::Text, false},
-    {"/unit", JsonKind::Text, false},    {"/case", JsonKind::Text, false},
-    {"/table", JsonKind::Text, false},   {"/process", JsonKind::Int, false},
-    {"/status", JsonKind::Text, false},  {"/as", JsonKind::Text, false},
-    {"/message", JsonKind::Text, false}, {"/output", JsonKind::Text, false},
-    {"/cost", JsonKind::Object, false}};
+    {"/time", JsonKind::Text, false},     {"/event", JsonKind::Text, false},
+    {"/unit", JsonKind::Text, false},     {"/case", JsonKind::Text, false},
+    {"/table", JsonKind::Text, false},    {"/process", JsonKind::Int, false},
+    {"/status", JsonKind::Text, false},   {"/as", JsonKind::Text, false},
+    {"/times_of", JsonKind::Text, false}, {"/message", JsonKind::Text, false},
+    {"/output", JsonKind::Text, false},   {"/cost", JsonKind::Object, false}};
 constexpr JsonMember kCost[] = {{"/load_s", JsonKind::Number},
                                 {"/setup_s", JsonKind::Number},
                                 {"/render_s", JsonKind::Number},
@@ -114,6 +117,7 @@ Json readManifest(const fs::path& file) {
     }
     if (manifest.contains("units")) requireMembers(manifest["units"], kUnits, where, "/units");
     requireEach(manifest, "/invocations", kInvocation, where);
+    requireEach(manifest, "/rounds", kRounds, where);
     requireEach(manifest, "/scenes", kSceneMembers, where);
     requireEach(manifest, "/programs", kProgramMembers, where);
     requireEach(manifest, "/merged", kMerged, where);

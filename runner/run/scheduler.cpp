@@ -88,9 +88,13 @@ class Scheduler {
           observer_(observer),
           images_(directory.path()),
           records_(directory.recordsFile(), options.mostRecords) {
-        std::set<const Case*> cases;
+        Cases cases;
         for (const Unit& unit : units) cases.insert(unit.item);
         workKeys_ = keysOfTwins(cases);
+        // A table that takes another's times waits for them.
+        const std::map<std::string, std::string> lenders = lendersOfTimes(cases);
+        std::ranges::stable_partition(
+            waiting_, [&](const Unit& unit) { return !lenders.contains(unit.item->experiment); });
     }
 
     RunOutcome run() {
@@ -294,6 +298,9 @@ class Scheduler {
                       {"process", unit.process},
                       {"status", records::statusName(result.status)}};
         if (unit.measuredAs) event["as"] = unit.measuredAs->title();
+        if (unit.measuredAs && unit.item->measure.lane == Lane::Timing) {
+            event["times_of"] = unit.measuredAs->experiment;
+        }
         if (result.status == records::Status::Ok || result.status == records::Status::Flaky) {
             event["cost"] = toJson(result.cost);
         }
@@ -342,6 +349,7 @@ class Scheduler {
         images_.append(images);
         records_.append(rows);
         rounds_.add(rows);
+        rounds_.takenFrom(*unit.item, unit.measuredAs ? unit.measuredAs->experiment : "");
         logCase(event, unit, result, output);
         count(unit, result.status);
         observer_.unitEnded(unit, result.status, result.message);
@@ -360,7 +368,7 @@ class Scheduler {
 
     SignalWatch signals_;
     std::deque<Unit> waiting_;
-    std::map<const Case*, std::string> workKeys_;  // of cases in the quality lane that have twins
+    std::map<const Case*, std::string> workKeys_;  // of cases that have twins
     Rounds& rounds_;
     const RunDirectory& directory_;
     const SchedulerOptions& options_;

@@ -1,5 +1,6 @@
 // Twins: cases that would be measured in the same way and give the same, in one table or in
-// several. A run measures the first of them and records what it gave for each.
+// several. A run measures the first of them and records what it gave for each. Times are shared by
+// whole tables alone, whose cases are measured in one process each.
 #pragma once
 
 #include <filesystem>
@@ -19,18 +20,27 @@ namespace gfxrepro::run {
 /// the output, seed, frames, and how often and within which limits it is measured. Cases with one
 /// key are twins. What names a case only is left out: its table, its axes, which scene of the
 /// config it stands for, which values were given and which are defaults; numbers are equal however
-/// they are spelt. So is the parameter `pictures`, which changes no number. Empty in the timing
-/// lane: there the rounds of a table belong together, and its times to the machine as it was then,
-/// so nothing is shared.
+/// they are spelt. So is, but for times, the parameter `pictures`, which changes no number.
 std::string workKey(const Case& item);
 
-/// Of those of the cases that have a twin among them, the workKey().
-std::map<const Case*, std::string> keysOfTwins(const std::set<const Case*>& cases);
+/// Cases of one plan.
+using Cases = std::set<const Case*>;
+Cases pointersTo(std::span<const Case> cases);
+
+/// Tables of times of one process a case, all of whose cases another such table has, too: to each
+/// that other, from which it takes its times. It takes all or none, so that what a table compares
+/// was measured with one table. Several rounds are of their table, and to the machine as it was
+/// then: they are not shared.
+std::map<std::string, std::string> lendersOfTimes(const Cases& cases);
+
+/// Of those of the cases that have a twin among them a text that only twins have in common.
+std::map<const Case*, std::string> keysOfTwins(const Cases& cases);
 
 /// Whether the case's parameter `pictures` asks for them. Of twins one that has it so is measured.
 bool savesPictures(const Case& item);
 
-/// For each of `cases` the place of its first twin: its own where it is the first, or has none.
+/// For each of `cases` the place of the twin that is measured: the first, of times the one of the
+/// table that lends them; its own where it is that, or has none.
 std::vector<std::size_t> firstTwins(std::span<const Case> cases);
 
 /// Times of the cases when twins are measured once: 0 for all but the first.

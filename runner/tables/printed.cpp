@@ -557,14 +557,23 @@ std::string printedCellsLine(const PrintedCells& count) {
                        count.measured < 2 ? "was" : "were", how);
 }
 
+namespace {
+
+std::string withTimes(const std::string& line, const Table& table) {
+    return line.empty() || table.timesOf.empty() ? line + table.timesOf
+                                                 : line + ". " + table.timesOf;
+}
+
+}  // namespace
+
 std::string parametersLine(const Table& table) {
     if (table.isPublished && tallyOf(table.rows).count() == 0) return "Nothing of it is measured.";
-    const std::string text = line(table, table.rows);
+    const std::string text = withTimes(line(table, table.rows), table);
     return text.empty() ? "" : text + '.';
 }
 
 std::string parametersLine(const Table& table, const TableRow& row) {
-    return line(table, {&row, 1});
+    return withTimes(line(table, {&row, 1}), table);
 }
 
 }  // namespace gfxrepro::tables

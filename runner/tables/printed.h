@@ -83,7 +83,8 @@ std::string openText(const std::vector<std::string>& parameters, const Words& wo
 
 /// At which parameters the table was measured, and which of them differ from the printed ones:
 /// "Measured at output 128×128 (printed 512×512), light grid 4 (16)." Of the cells beside a printed
-/// value or, where there are none, of all that were measured. Empty for what is not published.
+/// value or, where there are none, of all that were measured. Then with which table its times were
+/// measured, where it was another. Empty for what is not published and has its own times.
 std::string parametersLine(const Table& table);
 /// The same of one row, without the full stop; empty where nothing of it is measured.
 std::string parametersLine(const Table& table, const TableRow& row);

@@ -56,6 +56,7 @@ struct Table {
     /// "triangles 69,451": what a table that nobody laid out has in all rows alike.
     std::vector<std::string> constants;
     std::vector<std::string> notes;  // printed rows that found no place, and the like
+    std::string timesOf;  // where its times are another table's: a sentence without its end
     /// By how much two equal cases of this table would differ (frame_times.h), as a share; none
     /// with too few rounds.
     std::optional<double> wallNoise, processNoise;

@@ -1,4 +1,5 @@
 // Equal cases of two tables are measured once and recorded for both.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// table-<index>.yaml of the mock with these lines.
 std::string writeTable(const TemporaryFolder& folder, const std::string& index,
@@ -106,7 +108,7 @@ TEST(Twins, AreMeasuredOnceAndFillBothTables) {
     EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr("measured as demo2026/1 number=3"));
 }
 
-TEST(Twins, NeverAmongTimes) {
+TEST(Twins, NeverAmongTimesOfTablesThatHaveAPartInCommon) {
     const TemporaryFolder folder;
     const std::string dir = folder.path() / "run";
     const ProcessResult run =
@@ -114,6 +116,73 @@ TEST(Twins, NeverAmongTimes) {
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(measuredCount(dir), 6);
     EXPECT_NE(timesOf(dir, "demo2026/1").at(2), timesOf(dir, "demo2026/2").at(2));
+}
+
+/// Numbers 2 and 3 of `processes` processes; and these and 1 in another table behind it.
+std::vector<std::string> writeTimes(const TemporaryFolder& folder, int processes) {
+    const std::string lines = fmt::format(
+        "measure: {{lane: timing, processes: {}}}\n"
+        "layout:\n  rows: number\n  columns: {{ms: {{metric: wall_time_ms}}}}\n",
+        processes);
+    return {writeTable(folder, "1", lines + "sweep: {number: [2, 3]}\n"),
+            writeTable(folder, "2", lines + "sweep: {number: [1, 2, 3]}\n")};
+}
+
+TEST(Twins, ATableOfTimesWithinAnotherTakesThemAndSaysSo) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> configs = writeTimes(folder, 1);
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = measureTwins(configs, dir);
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("5 of 5 finished, 2 as a twin;"));
+    EXPECT_THAT(run.err, HasSubstr("ok demo2026/1 number=2 (as demo2026/2 number=2)\n"));
+    EXPECT_EQ(measuredCount(dir), 3);
+    for (const int number : {2, 3}) {
+        EXPECT_EQ(timesOf(dir, "demo2026/1").at(number), timesOf(dir, "demo2026/2").at(number));
+    }
+    ASSERT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"report", dir}).exitCode, 0);
+    const std::string note = "Times are those of demo2026/2, which has these cases, too";
+    const auto shown = [&](const std::string& file) { return readFile(dir + file); };
+    for (const char* form : {".md", ".tex", ".csv"}) {
+        EXPECT_THAT(shown(std::string("/tables/demo2026-1") + form), HasSubstr(note)) << form;
+        EXPECT_THAT(shown(std::string("/tables/demo2026-2") + form), Not(HasSubstr(note))) << form;
+    }
+    EXPECT_THAT(shown("/report.html"), HasSubstr(note));
+    const ProcessResult plan =
+        mockGfxrepro({"plan", configs[0], configs[1], "--device", "software", "--from", dir});
+    EXPECT_THAT(plan.out, HasSubstr("5 cases (2 measured as another's twin), 3 iterations,"));
+}
+
+TEST(Twins, TimesOfSeveralProcessesAreOfTheirTable) {
+    const TemporaryFolder folder;
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = measureTwins(writeTimes(folder, 2), dir);
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("10 of 10 finished; "));
+    EXPECT_EQ(measuredCount(dir), 10);
+    ASSERT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+    EXPECT_THAT(readFile(dir + "/tables/demo2026-1.md"), Not(HasSubstr("Times are those of")));
+}
+
+TEST(Twins, ARunThatEndedBetweenTwoTablesOfTimesSaysWhoseEachIs) {
+    const TemporaryFolder folder;
+    const std::string dir = folder.path() / "run";
+    ASSERT_EQ(measureTwins(writeTimes(folder, 1), dir).exitCode, 0);
+    // As if the rows of number=3 had been written for the second table alone.
+    const auto params = paramsOf(dir);
+    std::vector<records::Record> rows = records::readRecords(dir + "/records.csv");
+    std::erase_if(rows, [&](const records::Record& row) {
+        return row.table == "demo2026/1" && params.at(row.caseId).at("number") == 3;
+    });
+    fs::remove(dir + "/records.csv");
+    records::RecordWriter(dir + "/records.csv").append(rows);
+    const ProcessResult rest = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
+    EXPECT_THAT(rest.out, HasSubstr("1 of 1 finished; ")) << rest.err;
+    ASSERT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+    EXPECT_THAT(readFile(dir + "/tables/demo2026-1.md"),
+                HasSubstr("Times of 1 of 2 cases are those of demo2026/2, which has these cases, "
+                          "too; the others' were measured at another moment."));
 }
 
 TEST(Twins, ProcessesAreSharedOneByOne) {

@@ -299,6 +299,27 @@ TEST(MachineWatch, TellsWhichCasesAreNotOfOneClock) {
     EXPECT_TRUE(run::movedClocks(Json::object()).empty());
 }
 
+/// A twin's times were taken on the machine as it was then.
+TEST(MachineWatch, ATableThatTakesTimesTakesTheirState) {
+    const TemporaryFolder runs;
+    const auto directory = run::RunDirectory::create(runs.path() / "run");
+    const Machine machine;
+    Told told;
+    gl::GpuReading gpu;
+    gpu.clockHz = 1.98e9;
+    run::MachineWatch watch(told, directory, {}, machine.root(), [&] { return gpu; });
+    const config::Case item = makeCase("t/1", "a", 1, config::Measure::Lane::Timing);
+    const config::Case twin = makeCase("t/2", "a", 1, config::Measure::Lane::Timing);
+    const run::Unit unit{&item, 0, {}};
+    watch.unitBegan(unit);
+    watch.tick("render");
+    gpu.clockHz = 1.41e9;
+    watch.unitEnded(unit, records::Status::Ok, "");
+    watch.unitEnded({&twin, 0, {}, {}, &item}, records::Status::Ok, "");
+    const tables::MovedClocks expected = {{item.id, {1.41e9, 1.98e9}}, {twin.id, {1.41e9, 1.98e9}}};
+    EXPECT_EQ(run::movedClocks({{"machine_states", watch.states()}}), expected);
+}
+
 /// A frame that is drawn between two ticks: the clock behind it is its own.
 TEST(MachineWatch, SeesTheClockOfShortFrames) {
     const TemporaryFolder runs;

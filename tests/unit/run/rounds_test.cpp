@@ -212,6 +212,37 @@ TEST(Rounds, WhatWasDecidedStays) {
     EXPECT_THAT(run::Rounds(plan, {}, {ended, moved}).undecided(), ElementsAre("t/1"));
 }
 
+TEST(Rounds, SayWhoseTimesATableHas) {
+    run::Plan plan = timedPlan();
+    for (config::Case& item : plan.cases) item.measure.processes = 1;
+    const auto noteOf = [](const run::Rounds& rounds) {
+        return run::takenTimesNote({{"rounds", rounds.endings()}}, "t/1");
+    };
+    const auto event = [&](std::size_t item, const char* from) {
+        run::Json json = {{"event", "case"}, {"case", plan.cases[item].id}, {"process", 0}};
+        if (from) json["times_of"] = from;
+        return json;
+    };
+    run::Rounds rounds(plan, rows(plan, 1, 0.0), {event(2, "t/9"), event(3, "t/9")});
+    rounds.takenFrom(plan.cases[4], "t/9");
+    EXPECT_EQ(noteOf(rounds), "") << "undecided";
+    EXPECT_THAT(rounds.next("t/1"), IsEmpty());
+    EXPECT_EQ(noteOf(rounds), "Times are those of t/9, which has these cases, too");
+    // One of the three was measured by itself, after all.
+    run::Rounds mixed(plan, rows(plan, 1, 0.0),
+                      {event(2, "t/9"), event(3, "t/9"), event(4, "t/9"), event(4, nullptr)});
+    EXPECT_THAT(mixed.next("t/1"), IsEmpty());
+    EXPECT_EQ(noteOf(mixed),
+              "Times of 2 of 3 cases are those of t/9, which has these cases, too; the others' "
+              "were measured at another moment");
+    // All were measured again on another machine.
+    run::Rounds own(plan, rows(plan, 1, 0.0),
+                    {event(2, "t/9"), {{"event", "machine"}, {"table", "t/1"}}});
+    EXPECT_THAT(own.next("t/1"), IsEmpty());
+    EXPECT_EQ(noteOf(own), "");
+    EXPECT_EQ(run::takenTimesNote(run::Json::object(), "t/1"), "");
+}
+
 TEST(Rounds, WarnOfOutliers) {
     const run::Plan plan = timedPlan();
     const run::Rounds rounds(plan, rows(plan, 6, 9.0), {});

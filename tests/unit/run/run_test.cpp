@@ -82,8 +82,11 @@ TEST_F(NotSurvived, TwinsAreGivenUpTogetherWhicheverBegan) {
     EXPECT_THAT(lost(), ElementsAre(Pair(kA, twice), Pair(kTwin, twice)));
 }
 
-TEST_F(NotSurvived, TimesHaveNoTwins) {
-    for (config::Case& item : plan.cases) item.measure.lane = config::Measure::Lane::Timing;
+TEST_F(NotSurvived, TimesOfSeveralProcessesHaveNoTwins) {
+    for (config::Case& item : plan.cases) {
+        item.measure.lane = config::Measure::Lane::Timing;
+        item.measure.processes = 2;
+    }
     die(kA);
     die(kA);
     EXPECT_THAT(lost(), ElementsAre(Pair(kA, twice)));

@@ -20,6 +20,8 @@ namespace fs = std::filesystem;
 using config::Case;
 using Lane = config::Measure::Lane;
 using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Pair;
 
 TEST(Twins, AreOfOneWorkWhateverTheyAreCalled) {
     const Case item = makeCase("t/1", "a", 64);
@@ -86,19 +88,61 @@ TEST(Twins, DifferByAnythingThatIsMeasured) {
     }
 }
 
-TEST(Twins, NoneInTheTimingLane) {
-    const std::vector<Case> cases = {
+TEST(Twins, AreOfTheQualityLaneOrOfWholeTablesOfTimes) {
+    std::vector<Case> cases = {
         makeCase("t/1", "a", 1, Lane::Timing),
         makeCase("t/2", "a", 1, Lane::Timing),
+        makeCase("t/1", "b", 1, Lane::Timing),
+        makeCase("t/2", "c", 1, Lane::Timing),
         makeCase("q/1", "a", 1),
         makeCase("q/1", "b", 1),
         makeCase("q/2", "b", 1),
         makeCase("q/2", "a", 1),
         makeCase("q/3", "b", 1),
     };
-    EXPECT_EQ(run::workKey(cases[0]), "");
-    EXPECT_THAT(run::firstTwins(cases), ElementsAre(0, 1, 2, 3, 3, 2, 3));
-    EXPECT_THAT(run::withoutTwins(cases, {1, 2, 3, 4, 5, 6, 7}), ElementsAre(1, 2, 3, 4, 0, 0, 0));
+    // Each of the two has a case that the other has not.
+    EXPECT_THAT(run::firstTwins(cases), ElementsAre(0, 1, 2, 3, 4, 5, 5, 4, 5));
+    EXPECT_THAT(run::withoutTwins(cases, {1, 2, 3, 4, 5, 6, 7, 8, 9}),
+                ElementsAre(1, 2, 3, 4, 5, 6, 0, 0, 0));
+    // All of the first are in the second, which stands behind it.
+    cases[3] = makeCase("t/2", "b", 1, Lane::Timing);
+    cases.push_back(makeCase("t/2", "c", 1, Lane::Timing));
+    EXPECT_THAT(run::firstTwins(cases), ElementsAre(1, 1, 3, 3, 4, 5, 5, 4, 5, 9));
+    EXPECT_THAT(run::lendersOfTimes(run::pointersTo(cases)), ElementsAre(Pair("t/1", "t/2")));
+    EXPECT_THAT(cluster::indivisibleGroups(cases),
+                ElementsAre(ElementsAre(0, 1, 2, 3, 9), ElementsAre(4, 7), ElementsAre(5, 6, 8)));
+}
+
+TEST(Twins, ATableOfTimesTakesThemFromOneThatIsMeasured) {
+    const auto lenders = [](const std::vector<Case>& cases) {
+        return run::lendersOfTimes(run::pointersTo(cases));
+    };
+    const auto timed = [](const char* table, const char* method) {
+        return makeCase(table, method, 1, Lane::Timing);
+    };
+    // One within another within a third; two alike; one that has a case twice.
+    EXPECT_THAT(lenders({timed("t/1", "a"), timed("t/2", "a"), timed("t/2", "b"), timed("t/3", "a"),
+                         timed("t/3", "b"), timed("t/3", "c")}),
+                ElementsAre(Pair("t/1", "t/3"), Pair("t/2", "t/3")));
+    EXPECT_THAT(lenders({timed("t/2", "a"), timed("t/1", "a"), timed("t/3", "a")}),
+                ElementsAre(Pair("t/2", "t/1"), Pair("t/3", "t/1")));
+    EXPECT_THAT(lenders({timed("t/1", "a"), timed("t/2", "a"), timed("t/2", "a")}), IsEmpty());
+    // Of a table, never of pictures without times.
+    EXPECT_THAT(lenders({timed("t/1", "a"), makeCase("q/1", "a", 1)}), IsEmpty());
+    // Rounds are of their table.
+    for (const bool mayContinue : {false, true}) {
+        std::vector<Case> cases = {timed("t/1", "a"), timed("t/2", "a")};
+        for (Case& item : cases) {
+            item.measure.processes = mayContinue ? 6 : 2;
+            item.measure.relativeError = mayContinue ? 0.05 : 0.0;
+        }
+        EXPECT_THAT(lenders(cases), IsEmpty());
+        EXPECT_THAT(run::firstTwins(cases), ElementsAre(0, 1));
+    }
+    // A time is of a case with its pictures, or of one without.
+    std::vector<Case> cases = {timed("t/1", "a"), timed("t/2", "a")};
+    cases[1].params.set("pictures", Node::scalar("true"));
+    EXPECT_THAT(lenders(cases), IsEmpty());
 }
 
 TEST(Twins, GoToOneShardAndStayUnitsOfTheirTables) {
@@ -155,7 +199,7 @@ TEST(Twins, FilesAreSharedUnderTheTwinsNames) {
     EXPECT_EQ(readFile(run / "artifacts/t-2/222222222222-mesh.ply"), "ply");
 
     measured.params.set("pictures", Node::scalar("true"));
-    EXPECT_THAT(run::shareFiles(run, measured, twin, {image}), testing::IsEmpty());
+    EXPECT_THAT(run::shareFiles(run, measured, twin, {image}), IsEmpty());
     twin.params.set("pictures", Node::scalar("true"));
 
     fs::remove(run / image.png);
