@@ -481,6 +481,10 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
     Prepared run = isNew ? prepareNew(context, options, request, phases)
                          : prepareResumed(context, options, request, phases);
     run.scheduler.failuresAtMost = options.failuresAtMost;
+    // A device of its own is one, and has one memory.
+    if (run.plan.deviceClass == "software") {
+        run.scheduler.preparedInPairs = run::preparedInPairs(run.plan, context.techniques);
+    }
     std::vector<run::Unit> units = run::remainingUnits(run.plan, run.directory);
     if (options.failuresAtMost > 0) putFailedLast(run.journal, units);
     run::Rounds rounds = run::roundsOf(run.plan, run.directory, run.journal);

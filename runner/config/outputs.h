@@ -20,6 +20,8 @@ struct MetricInfo {
     Better better = Better::Neither;
     /// Explains or checks others: a table without a layout leaves it to records.csv.
     bool isDetail = false;
+    /// Of what is done before the first frame, at least in part.
+    bool isOfSetup = false;
 };
 
 /// What a time is of, or a metric is told apart by. A name that ends in '*' stands for all that
@@ -27,6 +29,7 @@ struct MetricInfo {
 struct PassInfo {
     std::string name;
     std::string doc;
+    bool isOfSetup = false;  // setup() scopes it
 };
 
 /// In the order in which they are shown.

@@ -156,9 +156,9 @@ class PhaseScope {
 
 /// Where cores are the device their time is recorded, too: of scopes of one name on both clocks
 /// together.
-void recordPasses(gl::Profiler& profiler, bool isSoftware, RunRecorder& recorder) {
+void recordPasses(const std::vector<gl::PassTime>& times, bool isSoftware, RunRecorder& recorder) {
     std::map<std::string, double> processTimesMs;
-    for (const gl::PassTime& time : profiler.collect()) {
+    for (const gl::PassTime& time : times) {
         const bool isGpu = time.clock == gl::PassTime::Clock::Gpu;
         recorder.metric(isGpu ? "gpu_time_ms" : "cpu_time_ms", time.timeMs, "ms", time.pass);
         processTimesMs[time.pass] += time.processTimeMs;
@@ -167,6 +167,15 @@ void recordPasses(gl::Profiler& profiler, bool isSoftware, RunRecorder& recorder
     for (const auto& [pass, timeMs] : processTimesMs) {
         recorder.metric("process_time_ms", timeMs, "ms", pass);
     }
+}
+
+/// The scheduler has to know which tables show times of set-up.
+void requireOfSetup(const std::string& pass, const config::Outputs& outputs) {
+    const auto isOfSetup = [&](const config::PassInfo& info) {
+        return info.isOfSetup && info.name == pass;
+    };
+    if (std::ranges::any_of(outputs.passes, isOfSetup)) return;
+    throw Error("setup() scopes the pass '" + pass + "', which is not declared as one of set-up");
 }
 
 void recordScene(const SceneCache::Entry& entry, RunRecorder& recorder) {
@@ -399,7 +408,7 @@ class FrameLoop {
             recordOfEach("process_time_ms", processTimeMs / atOnce_, "ms");
         }
         recorder.setIteration(frame.frame, repeat);
-        recordPasses(profiler_, isSoftware_, recorder);
+        recordPasses(profiler_.collect(), isSoftware_, recorder);
         guard_.endRepeat(technique_, recorder);
         recordOfEach("frame_rate", 1000.0 / timeInFlightMs(frame, wallTimeMs), "1/s");
         return wallTimeMs;
@@ -439,8 +448,8 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
     const SourceLocation nowhere;
     const technique::TechniqueInfo& info =
         technique::findTechnique(context.techniques, item.technique, nowhere);
-    RunRecorder recorder(context.runDir, context.command, item,
-                         technique::outputsOf(info, item.program), result);
+    const config::Outputs outputs = technique::outputsOf(info, item.program);
+    RunRecorder recorder(context.runDir, context.command, item, outputs, result);
     Params params(item.given, "technique '" + item.technique + "'");
     if (!item.offered.isNull()) params.offer(item.offered);
 
@@ -477,8 +486,11 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
         technique::setUp(*technique, setup);
         context.device.finish("setting up");
         recorder.metric("setup_time_ms", millisecondsSince(begin), "ms", "");
-        recordPasses(profiler, context.device.info().isSoftware, recorder);
+        const std::vector<gl::PassTime> times = profiler.collect();
+        for (const gl::PassTime& time : times) requireOfSetup(time.pass, outputs);
+        recordPasses(times, context.device.info().isSoftware, recorder);
     }
+    context.awaitTurn();
     const bool isWhole = FrameLoop(item, process, technique::needsDevice(info, item.program),
                                    *technique, profiler, context)
                              .run(recorder, result);

@@ -79,6 +79,8 @@ struct MeasureContext {
     long long baselineMemoryBytes;  // resident before the first scene was loaded
     /// Told at the begin (true) and end (false) of load, setup, warm-up, render and record.
     std::function<void(std::string_view phase, bool isBegin)> onPhase;
+    /// Returns when frames may be drawn: no other worker prepares a case, or draws.
+    std::function<void()> awaitTurn = [] {};
 };
 
 /// Process `process` of the case: constructor → load → set-up → warm-ups → frames × repeats →

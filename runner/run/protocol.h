@@ -1,8 +1,10 @@
 // What a worker and the runner say to each other: one JSON object a line.
 //
-//   runner → worker   {"case": {…}, "process": 0}
+//   runner → worker   {"case": {…}, "process": 0, "waits": true}
+//                     {"render": true}, once it is prepared, to one that waits for its turn
 //   worker → runner   {"ready": {device}}  or  {"unavailable": "reason"}, once, after its start
 //                     {"begin": "load"}, {"end": "load"}: load, setup, warm-up, render, record
+//                     {"prepared": true}: it waits for its turn
 //                     {"done": {status, message, samples, images, scenes, programs, cost}}
 //                     or {"unwritable": "reason"}: a file of the run could not be written
 #pragma once

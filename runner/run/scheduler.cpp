@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -119,13 +120,16 @@ class Scheduler {
     void runAll() {
         while (true) {
             dispatch();
+            giveTurn();
             if (waiting_.empty() && busyCount() == 0) break;
             if (waitForEvents()) {
                 outcome_.isInterrupted = true;
                 break;
             }
             collect();
-            observer_.tick(workers_.empty() ? "" : workers_.front()->phase());
+            const auto active = std::ranges::find_if(
+                workers_, [](auto& w) { return w->isBusy() && !w->isPrepared(); });
+            observer_.tick(active == workers_.end() ? "" : (*active)->phase());
             if (!outcome_.stopReason.empty()) break;
         }
     }
@@ -168,24 +172,56 @@ class Scheduler {
     /// Gives out units in order, as far as the lanes allow.
     void dispatch() {
         while (hasNext()) {
-            const auto givenUp = options_.givenUp.find(waiting_.front().item->id);
+            const auto next = waiting_.begin();
+            const auto givenUp = options_.givenUp.find(next->item->id);
             if (givenUp != options_.givenUp.end()) {
-                finish(waiting_.front(), notTried(givenUp->second), "", "given_up");
-                waiting_.pop_front();
+                finish(*next, notTried(givenUp->second), "", "given_up");
+                waiting_.erase(next);
                 continue;
             }
-            const Lane lane = waiting_.front().item->measure.lane;
-            const bool timingRuns = std::any_of(workers_.begin(), workers_.end(), [](auto& w) {
-                return w->isBusy() && w->lane() == Lane::Timing;
-            });
-            const int allowed = lane == Lane::Timing || timingRuns ? 1 : options_.jobs;
-            if (busyCount() >= allowed) return;
+            if (!mayStart(*next)) return;
             directory_.requireRoom();
-            Unit unit = std::move(waiting_.front());
-            waiting_.pop_front();
+            Unit unit = std::move(*next);
+            waiting_.erase(next);
             takeTwins(unit);
             start(unit);
         }
+    }
+
+    static bool needsOwn(const Unit& unit) {
+        return unit.item->measure.processes > 1 || unit.firstTry;
+    }
+
+    bool mayStart(const Unit& unit) const {
+        const int busy = busyCount();
+        const auto isBusyTiming = [](auto& w) { return w->isBusy() && w->lane() == Lane::Timing; };
+        const auto timing = std::ranges::find_if(workers_, isBusyTiming);
+        if (unit.item->measure.lane == Lane::Quality) {
+            return timing == workers_.end() && busy < options_.jobs;
+        }
+        const bool hasPartner = busy == 1 && timing != workers_.end() && (*timing)->isPreparing();
+        return busy == 0 || (hasPartner && isPaired(unit));
+    }
+
+    /// A second try is alone: a first may have failed for the memory of two.
+    bool isPaired(const Unit& unit) const {
+        return unit.item->measure.lane == Lane::Timing && !unit.firstTry &&
+               options_.preparedInPairs.contains(unit.item->experiment);
+    }
+
+    /// Of timing units that are prepared the first one draws its frames, when nothing else runs.
+    void giveTurn() {
+        const auto isRunning = [](auto& w) { return w->isBusy() && !w->isPrepared(); };
+        if (std::ranges::any_of(workers_, isRunning)) return;
+        const auto next = std::ranges::find_if(workers_, [](auto& w) { return w->isPrepared(); });
+        if (next == workers_.end()) return;
+        begin(*(*next)->unit());
+        (*next)->mayRender();
+    }
+
+    void begin(const Unit& unit) {
+        rounds_.begin(unit.item->experiment, Clock::now());
+        observer_.unitBegan(unit);
     }
 
     /// Moves the waiting twins of the unit into it.
@@ -208,24 +244,24 @@ class Scheduler {
 
     void start(const Unit& unit) {
         const Lane lane = unit.item->measure.lane;
-        const bool needsOwn = unit.item->measure.processes > 1 || unit.firstTry;
-        rounds_.begin(unit.item->experiment, Clock::now());
+        const bool isOwn = needsOwn(unit);
+        if (busyCount() == 0) rounds_.begin(unit.item->experiment, Clock::now());
         // Nothing beside a timing unit, and no memory held by the other lane.
         std::erase_if(workers_, [&](auto& w) {
-            return !w->isBusy() && (w->lane() != lane || (lane == Lane::Timing && needsOwn));
+            return !w->isBusy() && (w->lane() != lane || (lane == Lane::Timing && isOwn));
         });
         auto worker = std::find_if(workers_.begin(), workers_.end(),
-                                   [&](auto& w) { return !needsOwn && !w->isBusy(); });
+                                   [&](auto& w) { return !isOwn && !w->isBusy(); });
         if (worker == workers_.end()) {
             workers_.push_back(std::make_unique<WorkerHandle>(
-                workerCommand(options_, lane, directory_.path()), lane, needsOwn, phases_));
+                workerCommand(options_, lane, directory_.path()), lane, isOwn, phases_));
             worker = std::prev(workers_.end());
         }
         // On the disk before it runs: what takes the machine with it is known afterwards.
         directory_.noteFlushed(
             {{"event", "start"}, {"case", unit.item->id}, {"process", unit.process}});
-        (*worker)->assign(unit);
-        observer_.unitBegan(unit);
+        (*worker)->assign(unit, isPaired(unit));
+        if (!isPaired(unit)) begin(unit);
     }
 
     /// Now. Limits move by the time since `due`, when it should have looked at its workers again,
@@ -394,6 +430,54 @@ std::vector<std::string> workerCommand(const SchedulerOptions& options, Lane lan
             "--run",         runDir.string(),
             "--command",     options.command,
             "--jobs",        std::to_string(options.jobs)};
+}
+
+namespace {
+
+/// Whether a cell of the table may show a time of set-up.
+bool showsSetup(const config::Layout& layout, const config::Outputs& outputs) {
+    const auto isOfSetup = [](const auto& infos, const std::string& name) {
+        return std::ranges::any_of(
+            infos, [&](const auto& info) { return info.isOfSetup && info.name == name; });
+    };
+    const auto shows = [&](const config::Selection& selection) {
+        std::vector<std::string> metrics = {selection.metric.value_or("")};
+        std::vector<std::string> passes = {selection.pass.value_or("")};
+        if (selection.against) {
+            metrics.push_back(selection.against->metric);
+            passes.push_back(selection.against->pass);
+        }
+        return std::ranges::any_of(metrics, std::bind_front(isOfSetup, outputs.metrics)) ||
+               std::ranges::any_of(passes, std::bind_front(isOfSetup, outputs.passes));
+    };
+    if (shows(layout.cell)) return true;
+    for (const auto* axes : {&layout.rows, &layout.columns}) {
+        for (const config::LayoutAxis& axis : *axes) {
+            for (const auto& [label, selection] : axis.labels) {
+                if (shows(selection)) return true;
+            }
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+std::set<std::string> preparedInPairs(const Plan& plan,
+                                      std::span<const technique::TechniqueInfo> techniques) {
+    std::set<std::string> programs, pairs;
+    for (const Case& item : plan.cases) {
+        if (!item.program.isNull()) programs.insert(item.experiment);
+    }
+    for (const config::Experiment& experiment : plan.experiments) {
+        if (!experiment.layout.isGiven || programs.contains(experiment.id)) continue;
+        if (!config::isMeasuredHere(experiment)) continue;
+        const technique::TechniqueInfo& info =
+            technique::findTechnique(techniques, experiment.technique, {});
+        const bool isShown = showsSetup(experiment.layout, technique::outputsOf(info));
+        if (!isShown) pairs.insert(experiment.id);
+    }
+    return pairs;
 }
 
 gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,

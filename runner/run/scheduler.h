@@ -1,9 +1,12 @@
-// Runs the units of a plan in worker processes: timing units alone, quality units side by side.
+// Runs the units of a plan in worker processes: timing units alone, quality units side by side. Two
+// timing units may be loaded and set up side by side; then one draws its frames, and then the
+// other.
 #pragma once
 
 #include <cstddef>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +16,7 @@
 #include "runner/run/rounds.h"
 #include "runner/run/run_directory.h"
 #include "runner/run/worker_handle.h"
+#include "runner/technique/technique.h"
 
 namespace gfxrepro::run {
 
@@ -41,7 +45,15 @@ struct SchedulerOptions {
     int failuresAtMost = 0;                  // with as many failed units the run stops; 0: never
     std::string program = "/proc/self/exe";  // of the workers
     std::size_t mostRecords = records::kMostRecords;
+    /// Experiments whose timing units may be loaded and set up two at once: their times of frames
+    /// are all that their tables show.
+    std::set<std::string> preparedInPairs = {};
 };
+
+/// Those of the plan: each shows by a layout what it measures, and no time of set-up. None of a
+/// program, whose run is its frame.
+std::set<std::string> preparedInPairs(const Plan& plan,
+                                      std::span<const technique::TechniqueInfo> techniques);
 
 struct RunOutcome {
     int begun = 0;     // units, those of further rounds too

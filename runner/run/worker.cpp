@@ -99,13 +99,20 @@ void serve(gl::Device& device, const WorkerOptions& options,
         const SourceLocation where{"what the runner sent", 0, 0};
         const Json request = parseJsonObject(line, where);
         constexpr JsonMember kRequest[] = {{"/case", JsonKind::Object},
-                                           {"/process", JsonKind::Int, false}};
+                                           {"/process", JsonKind::Int, false},
+                                           {"/waits", JsonKind::Boolean, false}};
         requireMembers(request, kRequest, where);
         Case item = caseFromJson(request.at("case"), where, "/case");
         const int process = request.value("process", 0);
         if (item.measure.seeds == config::Measure::Seeds::Process) {
             item.seed += static_cast<std::uint64_t>(process) * config::kSeedsOfAProcess;
         }
+        context.awaitTurn = [waits = request.value("waits", false)] {
+            std::string turn;
+            if (!waits) return;
+            send({{"prepared", true}});
+            if (!std::getline(std::cin, turn)) throw Error("the runner is gone");
+        };
         Json answer;
         try {
             answer = {{"done", toJson(measuredResult(item, process, context))}};

@@ -78,8 +78,10 @@ WorkerHandle::~WorkerHandle() {
     endPhase();
 }
 
-void WorkerHandle::assign(const Unit& unit) {
+void WorkerHandle::assign(const Unit& unit, bool waits) {
     unit_ = unit;
+    waits_ = waits;
+    preparedSince_.reset();
     output_.clear();
     if (device_) sendUnit();
 }
@@ -90,7 +92,19 @@ void WorkerHandle::sendUnit() {
     suspended_ = {};
     limit_ = lastLook_ + nanoseconds(unit_->item->measure.timeLimitS);
     // A worker that is gone is noticed by receive().
-    process_.sendLine(Json{{"case", toJson(*unit_->item)}, {"process", unit_->process}}.dump());
+    Json request = {{"case", toJson(*unit_->item)}, {"process", unit_->process}};
+    if (waits_) request["waits"] = true;
+    process_.sendLine(request.dump());
+    isSent_ = process_.sendRest();
+}
+
+void WorkerHandle::mayRender() {
+    const Clock::time_point now = Clock::now();
+    limit_ += now - *preparedSince_;
+    lastLook_ = now;
+    waits_ = false;
+    preparedSince_.reset();
+    process_.sendLine(Json{{"render", true}}.dump());
     isSent_ = process_.sendRest();
 }
 
@@ -141,6 +155,8 @@ std::optional<CaseResult> WorkerHandle::handle(const Json& message) {
         begin(phase);
     } else if (message.contains("end")) {
         endPhase();
+    } else if (message.contains("prepared") && isPreparing()) {
+        preparedSince_ = Clock::now();
     } else if (message.contains("ready") && device_) {
         return endAsBroken("the worker was ready already: descriptor 3 is not a technique's");
     } else if (message.contains("ready")) {
@@ -229,7 +245,7 @@ void WorkerHandle::allowForSuspension(Clock::time_point now) {
 }
 
 std::optional<CaseResult> WorkerHandle::checkLimits(Clock::time_point now) {
-    if (!unit_ || !isAlive_) return std::nullopt;
+    if (!unit_ || !isAlive_ || isPrepared()) return std::nullopt;
     allowForSuspension(now);
     const config::Measure& measure = unit_->item->measure;
     std::optional<CaseResult> result;
@@ -256,16 +272,18 @@ std::optional<CaseResult> WorkerHandle::checkLimits(Clock::time_point now) {
 void WorkerHandle::postpone(Clock::duration gap) {
     limit_ += gap;
     lastLook_ += gap;
+    if (preparedSince_) *preparedSince_ += gap;
 }
 
 WorkerHandle::Clock::time_point WorkerHandle::nextCheck(Clock::time_point now) const {
-    if (!unit_) return Clock::time_point::max();
+    if (!unit_ || isPrepared()) return Clock::time_point::max();
     if (!isSent_) return std::min(limit_, now + kSendInterval);
     return limit_;
 }
 
 bool WorkerHandle::release(const CaseResult& result) {
     unit_.reset();
+    preparedSince_.reset();
     const bool isDamaged =
         result.status == records::Status::DeviceLost || result.status == records::Status::Oom;
     return isAlive_ && !isSingleUse_ && !isDamaged;

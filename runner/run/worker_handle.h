@@ -59,8 +59,14 @@ class WorkerHandle {
     /// What the present case wrote to standard output and error (the last 64 KiB).
     const std::string& output() const { return output_; }
 
-    /// The unit is sent as soon as the worker is ready; its time limit runs from there.
-    void assign(const Unit& unit);
+    /// The unit is sent as soon as the worker is ready; its time limit runs from there. One that
+    /// waits draws no frame before mayRender(), and the limit does not run while it waits.
+    void assign(const Unit& unit, bool waits = false);
+    /// Whether its case is loaded and set up, and waits for mayRender().
+    bool isPrepared() const { return preparedSince_.has_value(); }
+    /// Whether it is on a unit that has not come to its frames yet, as it has to wait for them.
+    bool isPreparing() const { return isBusy() && waits_ && !isPrepared(); }
+    void mayRender();
 
     /// Reads what has arrived. A result when the unit is over — done, or failed because the worker
     /// is gone.
@@ -94,7 +100,9 @@ class WorkerHandle {
     std::optional<gl::DeviceInfo> device_;
     std::string unavailable_;  // why there is no device
     bool isAlive_ = true;
-    bool isSent_ = true;        // to the end of the unit
+    bool isSent_ = true;  // to the end of the unit
+    bool waits_ = false;  // until mayRender()
+    std::optional<Clock::time_point> preparedSince_ = {};
     long long oomKillsBefore_;  // of the system, when the process began
     int waitStatus_ = 0;        // once it is not alive
     bool isStuck_ = false;      // likewise: it could not be killed

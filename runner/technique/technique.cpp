@@ -15,7 +15,7 @@ void Recorder::share(std::string_view name, double part, double whole, std::stri
 
 std::span<const config::MetricInfo> commonMetrics() {
     using config::Better;
-    constexpr bool kIsDetail = true;
+    constexpr bool kIsDetail = true, kIsOfSetup = true;
     static const std::vector<config::MetricInfo> metrics = {
         {"wall_time_ms", "ms", "time of a frame, from the first call until the device is done",
          Better::Lower},
@@ -26,9 +26,9 @@ std::span<const config::MetricInfo> commonMetrics() {
          "CPU time of all threads in a frame or a pass; on a software device alone", Better::Lower,
          kIsDetail},
         {"setup_time_ms", "ms", "time to make buffers, textures and shaders, once in each process",
-         Better::Lower, kIsDetail},
+         Better::Lower, kIsDetail, kIsOfSetup},
         {"load_time_ms", "ms", "time to read or generate the scene, once in each worker",
-         Better::Lower, kIsDetail},
+         Better::Lower, kIsDetail, kIsOfSetup},
         {"scene_triangles", "triangle", "triangles of the scene as it is loaded", Better::Neither,
          kIsDetail},
         {"scene_vertices", "vertex", "vertices of the scene as it is loaded", Better::Neither,
@@ -36,10 +36,10 @@ std::span<const config::MetricInfo> commonMetrics() {
         {"scene_source", "enum", "0 for a real model, 1 for a stand-in, 2 for a generated scene",
          Better::Neither, kIsDetail},
         {"peak_memory_bytes", "byte",
-         "most memory that the process held, without other cases' scenes", Better::Lower,
-         kIsDetail},
+         "most memory that the process held, without other cases' scenes", Better::Lower, kIsDetail,
+         kIsOfSetup},
         {"baseline_memory_bytes", "byte", "memory that the process held before its first case",
-         Better::Neither, kIsDetail},
+         Better::Neither, kIsDetail, kIsOfSetup},
         {"work_primitives", "primitive", "primitives that a repeat drew, as the device counts them",
          Better::Neither, kIsDetail},
         {"work_fragments", "fragment", "fragments that a repeat drew, as the device counts them",

@@ -147,7 +147,8 @@ struct TechniqueInfo {
     std::string_view summary;
     /// Null where `createFrom` is not.
     std::unique_ptr<Technique> (*create)(Params& params);
-    /// All that record() may give and render() may scope: nothing else can be recorded.
+    /// All that record() may give and render() may scope, and setup() where it is said so: nothing
+    /// else can be recorded.
     config::Outputs (*outputs)();
     /// Of a technique that is made of a program, as `program` of its config says
     /// (config/external_program.h): what that declares comes to parameters and outputs.

@@ -474,7 +474,7 @@ config::Outputs outputs() {
             detail("collision_max_z", "scene unit", "greatest z of the box around the collision"),
         },
         {
-            {"preprocess", "sorting triangles by their main axis"},
+            {"preprocess", "sorting triangles by their main axis", true},
             {"voxelization", "the whole method, without drawing"},
             {"rasterization", "turning triangles into fragments"},
             {"texelization", "writing fragments into the worksheets of the three axes"},

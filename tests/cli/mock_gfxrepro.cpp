@@ -61,6 +61,25 @@ constexpr Choice<Behaviour> kBehaviours[] = {
     {Behaviour::Unequal, "unequal", "shows something else in every repeat"},
 };
 
+/// Tells in a file when something begins and ends, for tests of what runs at once.
+class Logged {
+  public:
+    Logged(const char* what, int number) : line_(std::to_string(number) + ' ' + what) {
+        say("begins");
+    }
+    ~Logged() { say("ends"); }
+    Logged(const Logged&) = delete;
+    Logged& operator=(const Logged&) = delete;
+
+  private:
+    void say(const char* what) const {
+        const char* file = std::getenv("GFXREPRO_MOCK_LOG");
+        if (file) std::ofstream(file, std::ios::app) << line_ + ' ' + what + '\n';
+    }
+
+    std::string line_;
+};
+
 class Mock : public technique::Technique {
   public:
     explicit Mock(Params& params)
@@ -77,6 +96,10 @@ class Mock : public technique::Technique {
     }
 
     void setup(technique::SetupContext&) override {
+        const Logged logged("setup", number_);
+        if (const char* pause = std::getenv("GFXREPRO_MOCK_SETUP_MS")) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(std::atoi(pause)));
+        }
         image_ = gl::Texture::make2D(GL_R32F, {8, 8});
         if (const char* warning = std::getenv("GFXREPRO_MOCK_WARNING")) {
             std::fprintf(stderr, "warning: %s\n", warning);
@@ -84,6 +107,7 @@ class Mock : public technique::Technique {
     }
 
     void render(technique::FrameContext&) override {
+        const Logged logged("frame", number_);
         std::this_thread::sleep_for(std::chrono::milliseconds(pauseMs_));
         // A slower build, for tests that compare two.
         const char* slower = std::getenv("GFXREPRO_MOCK_EXTRA_MS");
@@ -102,6 +126,7 @@ class Mock : public technique::Technique {
                 show(++shown_);
                 return;
             case Behaviour::Flake:
+                show(1);
                 if (std::filesystem::exists(marker_)) return;
                 std::ofstream(marker_) << "seen";
                 std::fputs("flaking\n", stderr);

@@ -8,13 +8,20 @@
 #include <functional>
 #include <thread>
 
+#include "engine/core/files.h"
+#include "engine/core/text.h"
+#include "runner/config/experiment.h"
 #include "runner/run/scheduler.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
 namespace {
 
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
+using testing::UnorderedElementsAre;
 
 /// Does something as soon as a unit has begun.
 class AtBegin : public run::Observer {
@@ -33,14 +40,18 @@ class SchedulerTest : public ::testing::Test {
     /// Measures what a run of the config has planned into another folder.
     run::RunOutcome measure(const std::string& config, const std::function<void()>& atBegin,
                             std::size_t mostRecords = records::kMostRecords) {
+        unsetenv("GFXREPRO_MOCK_LOG");
         const std::string planned = folder.path() / "planned";
         EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", planned}).exitCode,
                   0);
+        fs::remove(folder.path() / "marker");
         const run::Plan plan = run::Plan::fromJsonFile(planned + "/plan.json");
         const run::RunDirectory directory = run::RunDirectory::create(dir);
+        if (arePaired) setenv("GFXREPRO_MOCK_LOG", (folder.path() / "log").c_str(), 1);
         run::SchedulerOptions options{.device = "software", .assetsFolder = folder.path()};
         options.program = GFXREPRO_MOCK_PROGRAM;
         options.mostRecords = mostRecords;
+        if (arePaired) options.preparedInPairs = {"sweep/mock"};
         run::PhaseClock phases;
         run::Rounds rounds(plan, {}, {});
         AtBegin observer(atBegin);
@@ -49,6 +60,30 @@ class SchedulerTest : public ::testing::Test {
 
     TemporaryFolder folder;
     std::string dir = folder.path() / "run";
+    bool arePaired = false;
+};
+
+/// The mock writes down what it does, and sets up for a while.
+class PairedUnits : public SchedulerTest {
+  protected:
+    PairedUnits() {
+        arePaired = true;
+        setenv("GFXREPRO_MOCK_SETUP_MS", "300", 1);
+    }
+    ~PairedUnits() override {
+        unsetenv("GFXREPRO_MOCK_SETUP_MS");
+        unsetenv("GFXREPRO_MOCK_LOG");
+    }
+
+    run::RunOutcome measureLogged(const std::string& lines) {
+        const std::string config = writeMockConfig(folder, lines);
+        return measure(config, [this] { turns.push_back(ownChildren().size()); });
+    }
+    std::vector<std::string> logLines() const {
+        return split(std::string(trimmed(readFile(folder.path() / "log"))), '\n');
+    }
+
+    std::vector<std::size_t> turns;  // workers when a unit came to its frames
 };
 
 TEST_F(SchedulerTest, StopsBeforeItsRecordsAreMoreThanAreRead) {
@@ -76,6 +111,83 @@ TEST_F(SchedulerTest, TimeInWhichItLooksAtNothingCountsAgainstNoCase) {
     });
     EXPECT_EQ(outcome.finished, 1);
     EXPECT_EQ(outcome.flaky, 0);
+}
+
+TEST_F(PairedUnits, SetUpSideBySideAndDrawOneAfterTheOther) {
+    for (const char* processes : {"1", "2"}) {  // workers that go on, and one for each unit
+        fs::remove(folder.path() / "log");
+        turns.clear();
+        const run::RunOutcome outcome = measureLogged(
+            std::string("sweep: {number: [1, 2]}\nparams: {pause_ms: 100}\n") +
+            "measure: {lane: timing, warmup: 0, repeats: 1, processes: " + processes + "}\n");
+        const int units = 2 * std::stoi(processes);
+        EXPECT_EQ(outcome.finished, units);
+        const std::vector<std::string> lines = logLines();
+        ASSERT_EQ(lines.size(), 4U * static_cast<std::size_t>(units));
+        for (std::size_t pair = 0; pair < lines.size(); pair += 8) {
+            // The second round goes backwards.
+            const std::string first = pair == 0 ? "1 " : "2 ", second = pair == 0 ? "2 " : "1 ";
+            const auto at = lines.begin() + static_cast<std::ptrdiff_t>(pair);
+            EXPECT_THAT(std::vector(at, at + 4),
+                        UnorderedElementsAre("1 setup begins", "2 setup begins", "1 setup ends",
+                                             "2 setup ends"));
+            EXPECT_THAT(at[1], EndsWith("begins"));
+            EXPECT_THAT(std::vector(at + 4, at + 8),
+                        ElementsAre(first + "frame begins", first + "frame ends",
+                                    second + "frame begins", second + "frame ends"));
+        }
+        fs::remove_all(folder.path() / "planned");
+        fs::remove_all(dir);
+    }
+}
+
+TEST_F(PairedUnits, AWaitIsNoPartOfALimit) {
+    const run::RunOutcome outcome = measureLogged(
+        "sweep: {number: [1, 2]}\nparams: {pause_ms: 2000}\n"
+        "measure: {lane: timing, warmup: 0, repeats: 1, processes: 1, time_limit_s: 3.5}\n");
+    EXPECT_EQ(outcome.finished, 2);
+    EXPECT_EQ(outcome.flaky, 0);
+}
+
+TEST_F(PairedUnits, WhenOneCrashesTheOtherGoesOnAndThenItIsTriedAlone) {
+    const run::RunOutcome outcome = measureLogged(
+        "sweep: {list: [[{behaviour: flake, number: 1}, {behaviour: ok, number: 2}]]}\n"
+        "params: {marker: " +
+        (folder.path() / "marker").string() +
+        "}\nmeasure: {lane: timing, warmup: 0, repeats: 1, processes: 1}\n");
+    EXPECT_EQ(outcome.finished, 2);
+    EXPECT_EQ(outcome.flaky, 1);
+    EXPECT_THAT(turns, ElementsAre(2, 1, 1));
+    const std::vector<std::string> lines = logLines();
+    EXPECT_THAT(std::vector(lines.end() - 4, lines.end()),
+                ElementsAre("1 setup begins", "1 setup ends", "1 frame begins", "1 frame ends"));
+}
+
+TEST_F(SchedulerTest, TablesThatShowSetUpAreNotPreparedInPairs) {
+    const technique::TechniqueInfo techniques[] = {
+        {"t", "", nullptr, [] {
+             return config::Outputs{{{"build_ms", "ms", "", config::Better::Lower, true, true}},
+                                    {{"draw", ""}, {"preprocess", "", true}}};
+         }}};
+    run::Plan plan;
+    const auto add = [&](const std::string& id, const std::string& column) {
+        const fs::path file = folder.write(
+            id + ".yaml", "sweep_of: " + id + "\ntitle: T\ntechnique: t\nsweep: {n: [1, 2]}\n" +
+                              (column.empty() ? ""
+                                              : "layout:\n  rows: n\n  columns: {a: {metric: "
+                                                "wall_time_ms}, b: " +
+                                                    column + "}\n"));
+        plan.experiments.push_back(config::loadExperiment(file, {}, folder.path()));
+    };
+    add("frames", "{metric: gpu_time_ms, pass: draw}");
+    add("own-metric", "{metric: build_ms}");
+    add("load", "{metric: load_time_ms}");
+    add("memory", "{metric: peak_memory_bytes}");
+    add("pass", "{metric: cpu_time_ms, pass: preprocess}");
+    add("share", "{metric: wall_time_ms, share_of: {metric: setup_time_ms}}");
+    add("less", "{metric: wall_time_ms, minus: {metric: cpu_time_ms, pass: preprocess}}");
+    add("all", "");
+    EXPECT_THAT(run::preparedInPairs(plan, techniques), ElementsAre("sweep/frames"));
 }
 
 }  // namespace

@@ -72,6 +72,33 @@ TEST_F(Worker, SuspendedAloneItsLimitMovesBySixtySecondsAtMost) {
     EXPECT_TRUE(worker.isGone());
 }
 
+TEST_F(Worker, WhileItWaitsForItsTurnItsLimitDoesNotRun) {
+    WorkerHandle worker(
+        command("echo '{\"prepared\": true}' >&3; read -r line; echo \"$line\"; sleep 60"),
+        config::Measure::Lane::Timing, true, phases);
+    worker.assign({&item, 0, {}}, true);
+    EXPECT_TRUE(worker.isPreparing());
+    for (int i = 0; i < 1000 && !worker.isPrepared(); ++i, std::this_thread::sleep_for(10ms)) {
+        worker.receive();
+    }
+    ASSERT_TRUE(worker.isPrepared());
+    EXPECT_FALSE(worker.isPreparing());
+    EXPECT_EQ(worker.nextCheck(Clock::now()), Clock::time_point::max());
+    EXPECT_FALSE(worker.checkLimits(Clock::now() + 1h));
+    worker.postpone(1h);
+    worker.postpone(-1h);
+    worker.mayRender();
+    EXPECT_FALSE(worker.isPrepared() || worker.isPreparing());
+    for (int i = 0; i < 1000 && worker.output().empty(); ++i, std::this_thread::sleep_for(10ms)) {
+        worker.receive();
+    }
+    EXPECT_EQ(worker.output(), "{\"render\":true}\n");
+    EXPECT_FALSE(worker.checkLimits(Clock::now() + 3s));
+    const auto result = worker.checkLimits(Clock::now() + 6s);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->status, records::Status::Timeout);
+}
+
 TEST_F(Worker, WhoSpeaksInItsPlaceEndsTheCaseAlone) {
     for (const auto& [said, why] :
          {std::pair{R"({"ready": {}})",
