@@ -190,7 +190,8 @@ void recordScene(const SceneCache::Entry& entry, RunRecorder& recorder) {
 void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
                   RunRecorder& recorder) {
     const long long peakBytes = std::max(peakResidentBytes(), entry.peakResidentBytes);
-    const auto otherBytes = static_cast<long long>(context.scenes.otherBytes());
+    const auto otherBytes =
+        static_cast<long long>(context.scenes.otherBytes() + context.shared.otherBytes());
     recorder.metric("peak_memory_bytes", static_cast<double>(peakBytes - otherBytes), "byte", "");
     recorder.metric("baseline_memory_bytes", static_cast<double>(context.baselineMemoryBytes),
                     "byte", "");
@@ -441,6 +442,12 @@ class FrameLoop {
     double lastMs_ = 0.0;  // wall time of the last measured frame
 };
 
+/// What a case is beside its parameters.
+std::string workOf(const Case& item, const std::string& scene) {
+    return fmt::format("{} {} {} {} {} {}", item.technique, scene, item.outputWidthPx,
+                       item.outputHeightPx, item.seed, item.measure.frames);
+}
+
 }  // namespace
 
 CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
@@ -455,6 +462,8 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
 
     const std::string sceneName = item.scene.isNull() ? "" : item.scene.text();
     context.scenes.beginCase(sceneName);
+    const bool isTiming = item.measure.lane == config::Measure::Lane::Timing;
+    context.shared.beginCase(workOf(item, sceneName), item.params);
     resetPeakResident();
     const std::unique_ptr<technique::Technique> technique =
         technique::makeTechnique(info, item.program, params);
@@ -479,7 +488,8 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
                                   {item.outputWidthPx, item.outputHeightPx},
                                   item.seed,
                                   profiler,
-                                  context.runDir / kScratchFolder};
+                                  context.runDir / kScratchFolder,
+                                  isTiming ? nullptr : &context.shared};
     {
         const PhaseScope phase(context, "setup", result.cost.setupS);
         const Clock::time_point begin = Clock::now();

@@ -81,6 +81,7 @@ struct MeasureContext {
     std::function<void(std::string_view phase, bool isBegin)> onPhase;
     /// Returns when frames may be drawn: no other worker prepares a case, or draws.
     std::function<void()> awaitTurn = [] {};
+    technique::SharedResults shared = technique::SharedResults();
 };
 
 /// Process `process` of the case: constructor → load → set-up → warm-ups → frames × repeats →
@@ -94,8 +95,8 @@ struct MeasureContext {
 /// Under frame and repeat records::kSetup: setup_time_ms and the times of set-up's passes; for a
 /// case with a scene load_time_ms, scene_triangles, scene_vertices, scene_source, and where all was
 /// recorded peak_memory_bytes (highest resident size from loading to recording, less what other
-/// cached scenes hold) and baseline_memory_bytes. Throws what the technique throws, and Error for a
-/// metric that is given twice.
+/// cases' scenes and shared results hold) and baseline_memory_bytes. Throws what the technique
+/// throws, and Error for a metric that is given twice.
 CaseResult measureCase(const Case& item, int process, MeasureContext& context);
 
 }  // namespace gfxrepro::run

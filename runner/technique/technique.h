@@ -19,6 +19,7 @@
 #include "engine/image/exr_io.h"
 #include "engine/scene/scene.h"
 #include "runner/config/outputs.h"
+#include "runner/technique/shared_results.h"
 
 namespace gfxrepro::technique {
 
@@ -42,6 +43,8 @@ struct SetupContext {
     /// For files that go when the run ends; it need not exist. What one case leaves there others of
     /// the run find.
     std::filesystem::path scratchFolder = {};
+    /// Null where each case makes its own: in the timing lane.
+    SharedResults* shared = nullptr;
 };
 
 /// One measured iteration: frame `frame` of `frameCount`, repeated.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/trigonometric.hpp>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -285,6 +286,7 @@ class ClusteredReflections final : public technique::Technique {
 
     void setup(technique::SetupContext& context) override {
         const gl::ShaderLibrary& shaders = context.shaders;
+        shared_ = context.shared;
         frame_.emplace(context, params_);
         gbufferRenderer_.emplace(shaders, frame_->scene);
         gbuffer_.emplace(frame_->viewAt(kit::frameTime(0, 1)));
@@ -298,6 +300,7 @@ class ClusteredReflections final : public technique::Technique {
     void render(technique::FrameContext& context) override {
         gl::Profiler& profiler = context.profiler;
         const double time = kit::frameTime(context.frame, context.frameCount);
+        frameIndex_ = context.frame;
         gbuffer_->view = frame_->viewAt(time);
         frame_->poseAt(time);
         {  // step 1
@@ -356,6 +359,11 @@ class ClusteredReflections final : public technique::Technique {
         std::vector<reflections::TracedSample> samples;
         image::ImageF picture;
         image::ImageF converged;  // of ReflectionParams::convergedRays, if there are any
+
+        std::size_t sizeBytes() const {
+            return samples.size() * sizeof(reflections::TracedSample) +
+                   sizeof(float) * (picture.values().size() + converged.values().size());
+        }
     };
 
     std::unique_ptr<reflections::ReflectionTracer> makeTracer(const gl::ShaderLibrary& shaders) {
@@ -386,24 +394,33 @@ class ClusteredReflections final : public technique::Technique {
         return tracer;
     }
 
-    /// Traced once for frames that are the same.
-    const Truth& truthOf(const HostGBuffer& gbuffer) {
-        const bool hasMoved = frame_->updateTruth();
-        if (truth_ && !hasMoved && isSameView(truth_->view, gbuffer.view)) return *truth_;
-        truth_.emplace();
-        truth_->view = gbuffer.view;
+    Truth tracedTruth(const HostGBuffer& gbuffer) {
+        Truth truth;
+        truth.view = gbuffer.view;
         const reflections::EmbreeTracer& tracer = *frame_->truth;
         if (!params_.drawsReflections()) {
-            truth_->samples = tracer.traceMirrorRays(gbuffer);
-            return *truth_;
+            truth.samples = tracer.traceMirrorRays(gbuffer);
+            return truth;
         }
-        truth_->samples = tracer.trace(gbuffer);
-        truth_->picture = frame_->pictureOf(*gbuffer_, truth_->samples);
+        truth.samples = tracer.trace(gbuffer);
+        truth.picture = frame_->pictureOf(*gbuffer_, truth.samples);
         if (params_.convergedRays > 0) {
             reflections::LobeSettings lobe = params_.lobe;
             lobe.rays = params_.convergedRays;
-            truth_->converged = frame_->pictureOf(*gbuffer_, tracer.trace(gbuffer, lobe));
+            truth.converged = frame_->pictureOf(*gbuffer_, tracer.trace(gbuffer, lobe));
         }
+        return truth;
+    }
+
+    /// Traced once for frames that are the same, however their reflections are made.
+    const Truth& truthOf(const HostGBuffer& gbuffer) {
+        const bool hasMoved = frame_->updateTruth();
+        if (truth_ && !hasMoved && isSameView(truth_->view, gbuffer.view)) return *truth_;
+        const char* what = params_.drawsReflections() ? "reflections" : "mirror rays";
+        truth_ = technique::sharedResult<Truth>(
+            shared_, fmt::format("{}, frame {}", what, frameIndex_),
+            {"method", "clustering", "bin_gain", "own_reflector", "own_back"},
+            [&] { return tracedTruth(gbuffer); });
         return *truth_;
     }
 
@@ -559,7 +576,9 @@ class ClusteredReflections final : public technique::Technique {
     std::unique_ptr<reflections::ReflectionTracer> tracer_;
     ClusteredTracer* clusteredTracer_ = nullptr;  // the same, of `method: clustered`
 
-    std::optional<Truth> truth_;
+    technique::SharedResults* shared_ = nullptr;
+    int frameIndex_ = 0;  // last rendered
+    std::shared_ptr<const Truth> truth_;
     bool hasReflections_ = false;  // in the view that record() is at
 };
 

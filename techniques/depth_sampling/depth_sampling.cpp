@@ -309,9 +309,9 @@ class DepthSampling final : public technique::Technique {
                 scene, std::move(tracer), params_.method, views, params_.earlier);
             return;
         }
-        auto experiment =
-            std::make_unique<PixelExperiment>(context.shaders, scene, params_.method,
-                                              params_.triangleIds, params_.depthFormat, views);
+        auto experiment = std::make_unique<PixelExperiment>(
+            context.shaders, scene, params_.method, params_.triangleIds, params_.depthFormat, views,
+            context.shared);
         pixelExperiment_ = experiment.get();
         experiment_ = std::move(experiment);
         if (params_.measured == Measured::OutputFrame) {

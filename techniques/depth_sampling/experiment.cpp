@@ -14,9 +14,10 @@ using kit::View;
 
 PixelExperiment::PixelExperiment(const gl::ShaderLibrary& shaders, const scene::Scene& scene,
                                  Method method, kit::TriangleIds ids, kit::DepthFormat format,
-                                 Views views)
+                                 Views views, technique::SharedResults* shared)
     : method_(method),
       views_(std::move(views)),
+      shared_(shared),
       scene_(scene),
       renderer_(shaders, ids, format),
       measures_(shaders) {
@@ -79,6 +80,39 @@ void PixelExperiment::markImage(std::size_t index) {
                    kOccludedLiterally);
 }
 
+namespace {
+
+std::size_t bytesOfSamples(glm::ivec2 sizePx) {
+    return (sizeof(float) + sizeof(std::uint32_t)) * static_cast<std::size_t>(sizePx.x) *
+           static_cast<std::size_t>(sizePx.y);
+}
+
+}  // namespace
+
+std::size_t PixelExperiment::OutputFrames::sizeBytes() const {
+    std::size_t bytes = 0;
+    for (const DepthImage& image : images) bytes += bytesOfSamples(image.view.sizePx);
+    return bytes;
+}
+
+std::shared_ptr<const PixelExperiment::OutputFrames> PixelExperiment::sharedFrames() {
+    const std::size_t bytes = views_.frames.size() * bytesOfSamples(views_.frames.front().sizePx);
+    if (!shared_ || bytes > shared_->mostBytes()) return nullptr;
+    return technique::sharedResult<OutputFrames>(
+        shared_, "output frames", {"method", "peeled_from", "usefulness", "availability"}, [&] {
+            OutputFrames frames;
+            for (const View& view : views_.frames) {
+                DepthImage& image = frames.images.emplace_back(renderer_.makeImage(view));
+                renderer_.render(scene_, image, {}, kit::Redundancy::Pixel,
+                                 kit::DepthImageRenderer::Content::Samples);
+                image.framebuffer = {};
+                image.shading = {};
+                image.depthBuffer = {};
+            }
+            return frames;
+        });
+}
+
 Measures PixelExperiment::measure(const MeasureSettings& settings) {
     drawConventionalImages();
     marks_.clear();
@@ -95,23 +129,30 @@ Measures PixelExperiment::measure(const MeasureSettings& settings) {
     const std::vector<const DepthImage*> images = first(images_, images_.size());
     const bool needsFrames = settings.availability || !open.empty();
     const std::size_t frameCount = needsFrames ? views_.frames.size() : 0;
-    std::vector<DepthImage> frames;  // samples are tested with as many at once as a test takes
+    const std::shared_ptr<const OutputFrames> shared = frameCount > 0 ? sharedFrames() : nullptr;
+    std::vector<DepthImage> own;  // samples are tested with as many at once as a test takes
+    if (!shared) own.reserve(PixelMeasures::kMaxImages);
+    std::vector<const DepthImage*> together;
     for (std::size_t f = 0; f < frameCount; ++f) {
         const View& view = views_.frames[f];
         const std::size_t slot = f % PixelMeasures::kMaxImages;
-        if (slot == frames.size()) frames.push_back(renderer_.makeImage(view));
-        frames[slot].view = view;  // all frames are of one size
-        renderer_.render(scene_, frames[slot], {}, kit::Redundancy::Pixel,
-                         kit::DepthImageRenderer::Content::Samples);
+        if (!shared) {
+            if (slot == own.size()) own.push_back(renderer_.makeImage(view));
+            own[slot].view = view;  // all frames are of one size
+            renderer_.render(scene_, own[slot], {}, kit::Redundancy::Pixel,
+                             kit::DepthImageRenderer::Content::Samples);
+        }
+        const DepthImage& frame = shared ? shared->images[f] : own[slot];
         if (settings.availability) {
-            measures_.beginAvailability(frames[slot], images);
+            measures_.beginAvailability(frame, images);
             result.frames.push_back(measures_.finishAvailability());
         }
+        together.push_back(&frame);
         if (slot + 1 < PixelMeasures::kMaxImages && f + 1 < frameCount) continue;
         for (const std::size_t i : open) {
-            measures_.mark(images_[i], marks_[i], first(frames, slot + 1), true, kOccluded,
-                           kUseful);
+            measures_.mark(images_[i], marks_[i], together, true, kOccluded, kUseful);
         }
+        together.clear();
     }
     for (const gl::Texture& marks : marks_) {
         result.images.push_back({.samples = measures_.count(marks, kSample),

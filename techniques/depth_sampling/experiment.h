@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 #include "engine/gl/profiler.h"
 #include "engine/image/image.h"
 #include "engine/raycast/ray_tracer.h"
+#include "runner/technique/shared_results.h"
 #include "techniques/depth_sampling/pixel_measures.h"
 #include "techniques/depth_sampling/visibility.h"
 #include "techniques/kit/depth_image.h"
@@ -68,9 +70,10 @@ inline std::string imageName(std::size_t index) {
 
 class PixelExperiment final : public Experiment {
   public:
-    /// `shaders` must outlive this.
+    /// `shaders` and `shared`, which may be null, must outlive this.
     PixelExperiment(const gl::ShaderLibrary& shaders, const scene::Scene& scene, Method method,
-                    kit::TriangleIds ids, kit::DepthFormat format, Views views);
+                    kit::TriangleIds ids, kit::DepthFormat format, Views views,
+                    technique::SharedResults* shared);
 
     void makeReferenceImages(gl::Profiler& profiler) override;
     Measures measure(const MeasureSettings& settings) override;
@@ -85,6 +88,14 @@ class PixelExperiment final : public Experiment {
     FrameCounts outputFrameCounts() { return measures_.finishAvailability(); }
 
   private:
+    /// Depths and ids of all output frames, which the methods have in common.
+    struct OutputFrames {
+        std::vector<kit::DepthImage> images;
+
+        std::size_t sizeBytes() const;
+    };
+    /// Null where they would be too large to be kept.
+    std::shared_ptr<const OutputFrames> sharedFrames();
     void drawConventionalImages();
     void drawFrame(std::size_t index);
     std::vector<const kit::DepthImage*> first(const std::vector<kit::DepthImage>& images,
@@ -96,6 +107,7 @@ class PixelExperiment final : public Experiment {
 
     Method method_;
     Views views_;
+    technique::SharedResults* shared_;
     kit::DrawableScene scene_;
     kit::DepthImageRenderer renderer_;
     PixelMeasures measures_;

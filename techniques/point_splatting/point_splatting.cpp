@@ -244,6 +244,7 @@ scene::PointCloud PointSplatting::takePoints(const scene::Scene& scene) {
 
 void PointSplatting::setup(technique::SetupContext& context) {
     shaders_ = &context.shaders;
+    shared_ = context.shared;
     sizePx_ = context.outputSizePx;
     const scene::PointCloud points = takePoints(*context.scene);
     const auto begin = std::chrono::steady_clock::now();
@@ -276,6 +277,7 @@ scene::Camera PointSplatting::cameraAt(int frame, int frameCount) const {
 }
 
 void PointSplatting::render(technique::FrameContext& context) {
+    frame_ = context.frame;
     camera_ = cameraAt(context.frame, context.frameCount);
     view_ = patchViewOf(camera_, sizePx_);
     draw(context.profiler);

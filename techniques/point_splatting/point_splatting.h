@@ -99,16 +99,24 @@ class PointSplatting final : public technique::Technique {
     /// The selection alone, without what follows from it: the median of many.
     double selectionMs() const;
     void recordSpeed(technique::Recorder& recorder);
-    /// All points, uncompressed, by full EWA at many samples a pixel: RGBA.
-    image::ImageF supersampled() const;
+    /// All points, uncompressed, by full EWA at many samples a pixel, averaged to pixels.
+    struct Truth {
+        ModelPicture boxed;
+        ModelPicture filtered;  // as the filter of Eq. (1) has it
+
+        std::size_t sizeBytes() const;
+    };
+    std::shared_ptr<const Truth> truthOfFrame() const;
     void recordModes(technique::Recorder& recorder) const;
     void recordErrors(technique::Recorder& recorder, const ModelPicture& picture,
-                      const image::ImageF& samples) const;
+                      const Truth& truth) const;
     double facingPct() const;
 
     PointSplattingParams params_;
     std::optional<SourceLocation> pointsAt_;  // of the parameter `points` where given
     const gl::ShaderLibrary* shaders_ = nullptr;
+    technique::SharedResults* shared_ = nullptr;
+    int frame_ = 0;
     glm::ivec2 sizePx_{0};
     scene::PointRepairs repairs_;
     std::optional<ModelFile> model_;

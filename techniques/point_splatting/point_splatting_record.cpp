@@ -200,21 +200,18 @@ void PointSplatting::recordOnce(technique::Recorder& recorder) {
     if (params_.measuresCompression) recordCompression(recorder);
     if (!params_.showsPictures && !params_.measuresErrors) return;
     const ModelPicture picture(renderer_->output().readImage(4));
-    std::optional<image::ImageF> samples;
-    if (params_.measuresErrors) samples = supersampled();
+    std::shared_ptr<const Truth> truth;
+    if (params_.measuresErrors) truth = truthOfFrame();
     if (params_.showsPictures) {
         kit::ImageLayers layers(view_);
         const bool hasNormals = splats_ && params_.method != Method::Sprites;
         if (hasNormals) layers.normals(blendedNormals(splats_->accumulated(), view_));
-        if (samples) {
-            const ModelPicture truth(image::averaged(*samples, kSupersampling));
-            layers.errors(picture.color, truth.color, "supersampled");
-        }
+        if (truth) layers.errors(picture.color, truth->boxed.color, "supersampled");
         recorder.image("image", picture.color, layers.options());
         recordEnlarged(recorder, "image", picture);
         if (params_.method == Method::Adaptive) recordModes(recorder);
     }
-    if (samples) recordErrors(recorder, picture, *samples);
+    if (truth) recordErrors(recorder, picture, *truth);
 }
 
 void PointSplatting::recordModes(technique::Recorder& recorder) const {
@@ -370,35 +367,47 @@ void PointSplatting::recordSpeed(technique::Recorder& recorder) {
                     static_cast<double>(model_->positions().size()) / median, "point/s");
 }
 
-image::ImageF PointSplatting::supersampled() const {
-    SplatSettings splats = params_.splats;
-    splats.storage = PointStorage::Uncompressed;
-    SelectionSettings all = params_.selection;
-    all.mode = SplatMode::FullEwa;
-    all.choosesLevels = false;
-    all.prefixShare = 1.0F;
-    return drawnWith(splats, all, kSupersampling);
+std::size_t PointSplatting::Truth::sizeBytes() const {
+    std::size_t values = 0;
+    for (const ModelPicture* picture : {&boxed, &filtered}) {
+        values += picture->color.values().size() + picture->coverage.values().size();
+    }
+    return sizeof(float) * values;
+}
+
+std::shared_ptr<const PointSplatting::Truth> PointSplatting::truthOfFrame() const {
+    return technique::sharedResult<Truth>(
+        shared_, fmt::format("frame {}", frame_), {"method", "target_radius_px"}, [&] {
+            SplatSettings splats = params_.splats;
+            splats.storage = PointStorage::Uncompressed;
+            SelectionSettings all = params_.selection;
+            all.mode = SplatMode::FullEwa;
+            all.choosesLevels = false;
+            all.prefixShare = 1.0F;
+            const image::ImageF samples = drawnWith(splats, all, kSupersampling);
+            // The filter of Eq. (1): V^h, less what a sample's own has of it.
+            const double lowPass =
+                kSupersampling * static_cast<double>(params_.splats.lowPassRadiusPx);
+            const double sigma = lowPass * std::sqrt(1.0 - 1.0 / (kSupersampling * kSupersampling));
+            return Truth{ModelPicture(image::averaged(samples, kSupersampling)),
+                         ModelPicture(image::gaussianAveraged(samples, kSupersampling, sigma))};
+        });
 }
 
 void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPicture& picture,
-                                  const image::ImageF& samples) const {
-    const auto compare = [&](const ModelPicture& truth, const ModelPixels& model,
+                                  const Truth& truth) const {
+    const auto compare = [&](const ModelPicture& known, const ModelPixels& model,
                              const char* name) {
         const image::ImageF flip =
-            recordDifference(recorder, truth.color, picture.color, model, name);
+            recordDifference(recorder, known.color, picture.color, model, name);
         if (!params_.showsPictures) return;
-        recorder.image(name, truth.color, kit::seenFrom(view_, "image"));
+        recorder.image(name, known.color, kit::seenFrom(view_, "image"));
         recorder.image(fmt::format("flip_{}", name), flip, kit::seenFrom(view_));
     };
-    const ModelPicture boxed(image::averaged(samples, kSupersampling));
-    const ModelPixels model(boxed, picture);
-    compare(boxed, model, "supersampled");
-    // The filter of Eq. (1): V^h, less what a sample's own has of it.
-    const double lowPass = kSupersampling * static_cast<double>(params_.splats.lowPassRadiusPx);
-    const double sigma = lowPass * std::sqrt(1.0 - 1.0 / (kSupersampling * kSupersampling));
-    const ModelPicture filtered(image::gaussianAveraged(samples, kSupersampling, sigma));
-    compare(filtered, model, "filtered");
-    if (params_.showsPictures) recordEnlarged(recorder, "filtered", filtered);
+    const ModelPixels model(truth.boxed, picture);
+    compare(truth.boxed, model, "supersampled");
+    compare(truth.filtered, model, "filtered");
+    if (params_.showsPictures) recordEnlarged(recorder, "filtered", truth.filtered);
 
     const auto compareDrawn = [&](const SplatSettings& splats, const SelectionSettings& selection,
                                   const char* name) {

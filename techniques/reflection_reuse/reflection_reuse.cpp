@@ -316,6 +316,7 @@ class ReflectionReuse final : public technique::Technique {
 
     void setup(technique::SetupContext& context) override {
         const gl::ShaderLibrary& shaders = context.shaders;
+        shared_ = context.shared;
         frame_.emplace(context, params_);
         tracer_ = std::make_unique<RestingTracer>(makeTracer(shaders));
         place({0, 1, context.profiler});
@@ -389,11 +390,8 @@ class ReflectionReuse final : public technique::Technique {
         if (!isJudged && !isShown) return;
         const HostGBuffer host = reflections::readGBuffer(gbuffer());
         const image::ImageF picture = frame_->composite.read();
-        image::ImageF truth;
-        if (params_.measuresErrors) {
-            frame_->updateTruth();
-            truth = frame_->pictureOf(gbuffer(), frame_->truth->trace(host));
-        }
+        const image::ImageF truth =
+            params_.measuresErrors ? truthOf(host)->picture : image::ImageF();
         if (isJudged) frame_->recordErrors(recorder, host, picture, truth);
         if (isJudged && renderer_) recordUndetected(recorder, host, picture, truth);
         if (isShown) recordPictures(recorder, host, picture, truth);
@@ -404,6 +402,13 @@ class ReflectionReuse final : public technique::Technique {
     }
 
   private:
+    /// Of the last frame, however its reflections are made.
+    std::shared_ptr<const reflections::TracedPicture> truthOf(const HostGBuffer& host) {
+        return technique::sharedResult<reflections::TracedPicture>(
+            shared_, fmt::format("frame {}", frameIndex_),
+            {"method", "matching", "resampling", "forward"},
+            [&] { return frame_->traced(gbuffer(), host); });
+    }
     /// Frames of `method: ray_traced`.
     struct FullTracing {
         reflections::GBufferRenderer renderer;
@@ -571,6 +576,7 @@ class ReflectionReuse final : public technique::Technique {
     std::unique_ptr<reflections::ReflectionTracer> tracer_;
     std::optional<ReuseRenderer> renderer_;   // of `reuse` and `direct`
     std::optional<FullTracing> fullTracing_;  // of `ray_traced`
+    technique::SharedResults* shared_ = nullptr;
     kit::View view_;
     int frameIndex_ = -1;          // last rendered
     int lastKeyFrame_ = -1;        // last recorded key frame

@@ -123,6 +123,11 @@ image::ImageF Frame::pictureOf(const GBuffer& gbuffer, std::span<const TracedSam
     return composite.read();
 }
 
+TracedPicture Frame::traced(const GBuffer& gbuffer, const HostGBuffer& host) {
+    updateTruth();
+    return {pictureOf(gbuffer, truth->trace(host))};
+}
+
 glm::dvec3 Frame::recordErrors(technique::Recorder& recorder, const HostGBuffer& gbuffer,
                                const image::ImageF& picture, const image::ImageF& known) const {
     const std::vector<std::uint8_t> reflective = reflectivePixels(gbuffer, settings.supersampling);

@@ -94,6 +94,13 @@ struct FrameSettings {
 /// What a technique of these declares, and beside it what all of them record and time.
 config::Outputs withFrameOutputs(config::Outputs own);
 
+/// What the truth's rays make of a frame.
+struct TracedPicture {
+    image::ImageF picture;
+
+    std::size_t sizeBytes() const { return sizeof(float) * picture.values().size(); }
+};
+
 /// Made in setup(), with the environment map drawn; all members live as long as it.
 struct Frame {
     Frame(technique::SetupContext& context, const FrameSettings& settings);
@@ -109,6 +116,8 @@ struct Frame {
     /// The same composite makes a picture of traced rays, so that nothing but the reflections
     /// differs.
     image::ImageF pictureOf(const GBuffer& gbuffer, std::span<const TracedSample> samples);
+    /// Of the frame at hand; `host` is what `gbuffer` holds.
+    TracedPicture traced(const GBuffer& gbuffer, const HostGBuffer& host);
     /// Records channel_error, channel_error_image, flip_mean and psnr_db. Gives the errors of the
     /// channels over reflective pixels.
     glm::dvec3 recordErrors(technique::Recorder& recorder, const HostGBuffer& gbuffer,

@@ -28,6 +28,7 @@ struct HostVisibilityMask {
     std::size_t pixelCount() const {
         return static_cast<std::size_t>(sizePx.x) * static_cast<std::size_t>(sizePx.y);
     }
+    std::size_t sizeBytes() const { return bits.size() * sizeof(std::uint32_t); }
     /// Light samples that a pixel sees.
     int litSamples(std::size_t pixel) const;
 };

@@ -214,6 +214,7 @@ void SoftShadows::requireScene(const scene::Scene& scene) const {
 
 void SoftShadows::setup(technique::SetupContext& context) {
     shaders_ = &context.shaders;
+    shared_ = context.shared;
     scene_ = *context.scene;
     light_ = makeAreaLight(scene_.bounds(), params_.light);
     for (int corner = 0; corner < 4; ++corner) lightView(light_, light_.corner(corner), 64);
@@ -377,19 +378,33 @@ HostVisibilityMask SoftShadows::measuredMask() const {
     return params_.method == Method::RayTraced ? *tracedMask_ : readMask(mask_);
 }
 
+std::shared_ptr<const HostVisibilityMask> SoftShadows::sharedTruth(
+    const char* name, const std::function<HostVisibilityMask()>& make) const {
+    return technique::sharedResult<HostVisibilityMask>(
+        shared_, name,
+        {"method", "redundancy", "reference_images", "reference_size", "reconstruction",
+         "discontinuity", "grazing_limit", "merge_rows", "simplify_to", "simplification_error"},
+        make);
+}
+
 const HostVisibilityMask& SoftShadows::geometryTruth() {
     if (!geometryTruth_) {
-        VisibilityMask mask = LightVisibility::makeMask(receivers_.view.sizePx, params_.lightGrid);
-        const ShadowCaster* casters[] = {&*geometry_};
-        visibility_->accumulate(mask, receivers_, light_, params_.lightGrid, casters);
-        geometryTruth_ = readMask(mask);
+        geometryTruth_ = sharedTruth("geometry", [&] {
+            const glm::ivec2 sizePx = receivers_.view.sizePx;
+            VisibilityMask mask = LightVisibility::makeMask(sizePx, params_.lightGrid);
+            const ShadowCaster* casters[] = {&*geometry_};
+            visibility_->accumulate(mask, receivers_, light_, params_.lightGrid, casters);
+            return readMask(mask);
+        });
     }
     return *geometryTruth_;
 }
 
 const HostVisibilityMask& SoftShadows::tracedTruth() {
     if (!tracedTruth_) {
-        tracedTruth_ = traceVisibility(*tracer_, hostReceivers_, light_, params_.lightGrid);
+        tracedTruth_ = sharedTruth("ray_traced", [&] {
+            return traceVisibility(*tracer_, hostReceivers_, light_, params_.lightGrid);
+        });
     }
     return *tracedTruth_;
 }

@@ -1,6 +1,7 @@
 // The technique `soft_shadows`: chapter 3 of xie2017. See README.md.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -86,6 +87,9 @@ class SoftShadows final : public technique::Technique {
                                              gl::Profiler& profiler);
 
     HostVisibilityMask measuredMask() const;
+    /// Of the light, whatever casts.
+    std::shared_ptr<const HostVisibilityMask> sharedTruth(
+        const char* name, const std::function<HostVisibilityMask()>& make) const;
     const HostVisibilityMask& geometryTruth();
     const HostVisibilityMask& tracedTruth();
     void recordPicture(technique::Recorder& recorder);
@@ -97,6 +101,7 @@ class SoftShadows final : public technique::Technique {
 
     SoftShadowsParams params_;
     const gl::ShaderLibrary* shaders_ = nullptr;
+    technique::SharedResults* shared_ = nullptr;
     scene::Scene scene_;  // with its ground
     AreaLight light_;
     std::optional<kit::DrawableScene> drawable_;
@@ -108,7 +113,8 @@ class SoftShadows final : public technique::Technique {
     std::optional<FilteredShadows> filtered_;
     VisibilityMask mask_;
     gl::Texture litShares_;  // of filtered shadows
-    std::optional<HostVisibilityMask> tracedMask_, geometryTruth_, tracedTruth_;
+    std::optional<HostVisibilityMask> tracedMask_;
+    std::shared_ptr<const HostVisibilityMask> geometryTruth_, tracedTruth_;
 
     gl::Buffer triangleNormals_;
     std::optional<kit::DepthImageRenderer> renderer_;

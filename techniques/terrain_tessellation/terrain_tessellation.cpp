@@ -328,6 +328,7 @@ void TerrainTessellation::requireScene(const scene::Scene& scene) const {
 void TerrainTessellation::setup(technique::SetupContext& context) {
     scene_ = context.scene;
     shaders_ = &context.shaders;
+    shared_ = context.shared;
     isSoftware_ = context.device.info().isSoftware;
     sizePx_ = context.outputSizePx;
     const scene::HeightMap& map = *scene_->heights;
@@ -409,6 +410,7 @@ void TerrainTessellation::draw(Method method, const TileSelection& selection, co
 
 void TerrainTessellation::render(technique::FrameContext& context) {
     const glm::vec2 size(sizePx_);
+    frameCount_ = context.frameCount;
     view_ =
         kit::viewOf(camera_->camera(context.frame, context.frameCount, size.x / size.y), sizePx_);
     tileView_ = tileViewOf(view_);

@@ -76,6 +76,13 @@ class TerrainTessellation final : public technique::Technique {
         DepthMap upperDepths;  // the underside as if it were background
         std::size_t undersidePixels = 0;
     };
+    /// The frame in full resolution.
+    struct Truth {
+        Drawn drawn;
+        image::ImageF picture;  // averaged to output pixels
+
+        std::size_t sizeBytes() const;
+    };
 
     /// The tiles of the last view.
     TileSelection selectTiles() const;
@@ -88,18 +95,21 @@ class TerrainTessellation final : public technique::Technique {
     /// it was drawn with; with the underside of terrain, which frames cull, or without.
     Drawn drawnAgain(Method method, const TileSelection& selection, bool showsUnderside);
 
+    std::shared_ptr<const Truth> truthOfFrame();
+
     void recordDrawn(technique::Recorder& recorder);
     void recordFactors(technique::Recorder& recorder);
     void recordNetRate(technique::Recorder& recorder, const DrawCounts& counts, double drawS);
     void recordSeams(technique::Recorder& recorder, std::span<const PatchFactors> drawn);
     void recordCulling(technique::Recorder& recorder);
-    void recordErrors(technique::Recorder& recorder, const Drawn& drawn, const Drawn& truth);
+    void recordErrors(technique::Recorder& recorder, const Drawn& drawn, const Truth& truth);
 
     TerrainTessellationParams params_;
     const scene::Scene* scene_ = nullptr;
     glm::ivec2 sizePx_{0};
     double preprocessMs_ = 0.0;
     const gl::ShaderLibrary* shaders_ = nullptr;
+    technique::SharedResults* shared_ = nullptr;
     bool isSoftware_ = false;
     std::optional<TerrainMetadata> metadata_;
     std::optional<TileTree> tree_;
@@ -110,6 +120,7 @@ class TerrainTessellation final : public technique::Technique {
     std::optional<TerrainRenderer> yardstick_;  // patches as they come
     std::optional<Target> target_;
 
+    int frameCount_ = 0;
     kit::View view_;  // of the last frame
     TileView tileView_;
     TileSelection selection_;

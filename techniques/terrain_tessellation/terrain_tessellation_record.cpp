@@ -92,19 +92,34 @@ void TerrainTessellation::recordOnce(technique::Recorder& recorder) {
     if (params_.method == Method::Adaptive) recordFactors(recorder);
     if (!params_.measuresErrors && !params_.showsPictures) return;
     const Drawn drawn = drawnAgain(params_.method, selection_, params_.measuresErrors);
-    std::optional<Drawn> truth;
-    if (params_.measuresErrors) truth = drawnAgain(Method::UniformGrid, selectAll(), true);
+    std::shared_ptr<const Truth> truth;
+    if (params_.measuresErrors) truth = truthOfFrame();
     if (params_.showsPictures) {
         const image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
         kit::ImageLayers layers(drawn.depths.view, params_.supersampling);
         layers.depths(drawn.depths.depthM);
-        if (truth) {
-            layers.errors(picture, image::averaged(truth->picture, params_.supersampling));
-        }
+        if (truth) layers.errors(picture, truth->picture);
         recorder.image("image", picture, layers.options());
         if (params_.method == Method::Adaptive) recordCulling(recorder);
     }
     if (truth) recordErrors(recorder, drawn, *truth);
+}
+
+std::size_t TerrainTessellation::Truth::sizeBytes() const {
+    return sizeof(float) * (drawn.picture.values().size() + drawn.depths.depthM.size() +
+                            drawn.upperDepths.depthM.size() + picture.values().size());
+}
+
+/// Every sample of the map, however it is tessellated otherwise. Of several frames the tiles that a
+/// truth loads are there for the next one: each has its own.
+std::shared_ptr<const TerrainTessellation::Truth> TerrainTessellation::truthOfFrame() {
+    return technique::sharedResult<Truth>(
+        frameCount_ == 1 ? shared_ : nullptr, "truth",
+        {"delta_s", "tau", "edges", "inner", "partitioning", "skirts"}, [&] {
+            Drawn drawn = drawnAgain(Method::UniformGrid, selectAll(), true);
+            image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
+            return Truth{std::move(drawn), std::move(picture)};
+        });
 }
 
 void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
@@ -243,7 +258,8 @@ TerrainTessellation::Drawn TerrainTessellation::drawnAgain(Method method,
 }
 
 void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Drawn& drawn,
-                                       const Drawn& truth) {
+                                       const Truth& known) {
+    const Drawn& truth = known.drawn;
     const scene::HeightMap& map = *scene_->heights;
     // As frames are drawn: what shows the underside above may show the background here.
     const Drawn framed = drawnAgain(params_.method, selection_, false);
@@ -262,7 +278,7 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
     recorder.metric("truth_underside_pixels", static_cast<double>(truth.undersidePixels), "pixel");
 
     const image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
-    const image::ImageF truthPicture = image::averaged(truth.picture, params_.supersampling);
+    const image::ImageF& truthPicture = known.picture;
     const glm::dvec3 channels = kit::channelErrors(picture, truthPicture, nullptr);
     recorder.metric("channel_error", (channels.x + channels.y + channels.z) / 3.0, "level");
     recorder.metric("psnr_db", kit::shownPsnrDb(picture, truthPicture), "dB");

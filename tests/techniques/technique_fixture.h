@@ -32,6 +32,8 @@ class TechniqueTest : public GlTest {
         NoScenes scenes;
         technique::SetupContext context{device,        shaders_, scenes,   scene,
                                         outputSizePx_, 1,        profiler_};
+        context.shared = shared_;
+        if (shared_) shared_->beginCase("", params.resolved());
         technique::setUp(*technique, context);
         EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
         technique::FrameContext frameContext{frame, frameCount, profiler_};
@@ -50,7 +52,31 @@ class TechniqueTest : public GlTest {
         return recorder;
     }
 
+    /// Cases that follow one another in a worker record what each does alone, but for times.
+    void expectSharedAsAlone(const std::vector<std::string>& yamls, const scene::Scene& scene) {
+        technique::SharedResults shared;
+        for (const std::string& yaml : yamls) {
+            SCOPED_TRACE(yaml);
+            const MetricRecorder alone = recorded(yaml, &scene);
+            shared_ = &shared;
+            const MetricRecorder shares = recorded(yaml, &scene);
+            shared_ = nullptr;
+            ASSERT_EQ(shares.given.size(), alone.given.size());
+            for (std::size_t i = 0; i < alone.given.size(); ++i) {
+                const auto& [metric, unit, pass] = alone.given[i];
+                if (unit.ends_with("ms") || unit.ends_with("/s")) continue;
+                const std::string key = metric + (pass.empty() ? "" : "/") + pass;
+                EXPECT_EQ(shares.metrics.at(key), alone.metrics.at(key)) << key;
+            }
+            EXPECT_EQ(shares.images, alone.images);
+        }
+        shared.beginCase("", {});
+        sharedBytes_ = shared.otherBytes();
+    }
+
     const technique::TechniqueInfo& technique_;
+    technique::SharedResults* shared_ = nullptr;
+    std::size_t sharedBytes_ = 0;  // that these cases have left
     glm::ivec2 outputSizePx_;
     gl::ShaderLibrary shaders_{dataFolder("shaders")};
     gl::Profiler profiler_{true};

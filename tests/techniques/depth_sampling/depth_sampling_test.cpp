@@ -7,8 +7,7 @@
 #include "engine/core/files.h"
 #include "engine/core/random.h"
 #include "scenes/shared/mesh_builder.h"
-#include "tests/gl/gl_fixture.h"
-#include "tests/techniques/technique_recorder.h"
+#include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {
@@ -86,6 +85,39 @@ scene::Scene clutter() {
     scene::Scene scene = scene::sceneOf(builder.take("clutter", -1));
     scene.cameras = {lookingAt({1, 2, 5}, {0, 0, 0})};
     return scene;
+}
+
+class SharedFramesTest : public test::TechniqueTest {
+  protected:
+    SharedFramesTest() : TechniqueTest(kDepthSampling, {96, 96}) {}
+};
+
+TEST_F(SharedFramesTest, TheMethodsHaveTheirOutputFramesInCommon) {
+    const scene::Scene scene = clutter();
+    const auto cases = [](const std::vector<std::string>& given) {
+        std::vector<std::string> yamls;
+        for (const std::string& one : given) {
+            yamls.push_back("{usefulness: true, availability: true, output_frames: 20, " + one +
+                            "}");
+        }
+        return yamls;
+    };
+    expectSharedAsAlone(cases({"method: conventional"}), scene);
+    const std::size_t bytesOfOne = sharedBytes_;
+    EXPECT_EQ(bytesOfOne, 20U * 96 * 96 * 8);
+    // Each of what they are drawn regardless of.
+    std::vector<std::string> regardless =
+        cases({"method: conventional", "method: non_redundant", "method: depth_peeling",
+               "method: depth_peeling, peeled_from: first_view"});
+    regardless.emplace_back("{method: non_redundant, usefulness: true, output_frames: 20}");
+    regardless.emplace_back("{method: non_redundant, availability: true, output_frames: 20}");
+    expectSharedAsAlone(regardless, scene);
+    EXPECT_EQ(sharedBytes_, bytesOfOne);
+    // What decides them.
+    expectSharedAsAlone(cases({"method: conventional", "views: 4", "view_distance: 0.5",
+                               "view_spread: 0.3", "depth_format: unorm24", "frame_size: 80"}),
+                        scene);
+    EXPECT_GT(sharedBytes_, 5 * bytesOfOne);
 }
 
 TEST(DepthSamplingParamsTest, RefusesWhatMeansNothing) {

@@ -88,6 +88,32 @@ TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
               "mean 'storage'?");
 }
 
+TEST_F(PointSplattingTest, TheTruthOfAViewIsMadeOnce) {
+    const scene::Scene scene = bumpySphere(20000);
+    const auto cases = [](const std::vector<std::string>& given) {
+        std::vector<std::string> yamls;
+        for (const std::string& one : given) {
+            yamls.push_back("{cache: false, errors: true, pictures: true, " + one + "}");
+        }
+        return yamls;
+    };
+    expectSharedAsAlone(cases({"method: adaptive"}), scene);
+    const std::size_t bytesOfOne = sharedBytes_;
+    EXPECT_GT(bytesOfOne, 0U);
+    // Each of what it is made regardless of.
+    expectSharedAsAlone(
+        cases({"method: adaptive", "method: full_ewa", "method: low_pass", "method: sprites",
+               "method: compute", "method: adaptive, target_radius_px: 0.5"}),
+        scene);
+    EXPECT_EQ(sharedBytes_, bytesOfOne);
+    // What decides it.
+    expectSharedAsAlone(cases({"method: adaptive", "distance: 2", "rotation_deg: 40",
+                               "low_pass_radius_px: 2", "cutoff: 2", "visibility_offset: 2",
+                               "cull_cones: false", "patch_points_max: 500", "look_at: [0, 0, 0]"}),
+                        scene);
+    EXPECT_GT(sharedBytes_, 8 * bytesOfOne);
+}
+
 TEST_F(PointSplattingTest, EveryMethodRunsAndRecords) {
     const scene::Scene scene = bumpySphere(20000);
     for (const char* method :

@@ -67,6 +67,8 @@ class ReflectionReuseTest : public test::GlTest {
         const auto technique = info.create(params);
         test::NoScenes scenes;
         technique::SetupContext context{device, shaders_, scenes, scene, {64, 48}, 1, profiler_};
+        context.shared = shared_;
+        if (shared_) shared_->beginCase(std::to_string(frameCount), params.resolved());
         technique::setUp(*technique, context);
         EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
         std::vector<test::MetricRecorder> frames(static_cast<std::size_t>(frameCount));
@@ -106,11 +108,49 @@ class ReflectionReuseTest : public test::GlTest {
         return kinds;
     }
 
+    technique::SharedResults* shared_ = nullptr;
     gl::ShaderLibrary shaders_{dataFolder("shaders")};
     gl::Profiler profiler_{true};
     std::vector<std::string> passes_;  // of the last frame
     scene::Scene room_ = roomWithPaths();
 };
+
+TEST_F(ReflectionReuseTest, TheTruthsOfAPathAreTracedOnce) {
+    technique::SharedResults shared;
+    const auto expectAsAlone = [&](const std::string& yaml) {
+        SCOPED_TRACE(yaml);
+        const auto alone = recorded(yaml, &room_, 3);
+        shared_ = &shared;
+        const auto shares = recorded(yaml, &room_, 3);
+        shared_ = nullptr;
+        for (std::size_t frame = 0; frame < alone.size(); ++frame) {
+            EXPECT_EQ(shares[frame].metrics, alone[frame].metrics) << frame;
+            EXPECT_EQ(shares[frame].images, alone[frame].images) << frame;
+        }
+    };
+    const auto bytes = [&] {
+        shared.beginCase("", {});
+        return shared.otherBytes();
+    };
+    constexpr std::size_t kFrame = 64 * 48 * 3 * sizeof(float);
+    const std::string common = "{pictures: true, view: walk, ";
+    expectAsAlone(common + "path_frames: 6, method: ray_traced}");
+    EXPECT_EQ(bytes(), 3 * kFrame);
+    // Each of what they are traced regardless of.
+    for (const char* regardless : {"method: reuse", "method: direct", "matching: first_order",
+                                   "resampling: twice", "forward: splats"}) {
+        expectAsAlone(common + "path_frames: 6, " + regardless + "}");
+    }
+    EXPECT_EQ(bytes(), 3 * kFrame);
+    // What decides them. The first frame is a key frame, which is not judged.
+    for (const char* other :
+         {"path_frames: 6, first_frame: 1", "path_frames: 6, blend: reflectivity",
+          "path_frames: 6, glossiness: 0.2", "path_frames: 6, supersampling: 2",
+          "path_frames: 9"}) {
+        expectAsAlone(common + other + "}");
+    }
+    EXPECT_EQ(bytes(), (3 + 5 * 2) * kFrame);
+}
 
 TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
     const auto message = [](const std::string& yaml) {

@@ -96,6 +96,41 @@ TEST(SoftShadowsParamsTest, RefusesWhatMeansNothing) {
               "case.yaml:1:15: technique 'soft_shadows': light_ratio is -1; allowed: 0 … 16");
 }
 
+TEST_F(SoftShadowsTest, TheTruthsOfALightAreMadeOnce) {
+    const scene::Scene scene = clutter();
+    const auto cases = [](const std::vector<std::string>& given) {
+        std::vector<std::string> yamls;
+        for (const std::string& one : given) {
+            yamls.push_back(
+                "{traced_truth: true, pictures: true, light_grid: 4, "
+                "shadow_map_size: 96, " +
+                one + "}");
+        }
+        return yamls;
+    };
+    expectSharedAsAlone(cases({"method: geometry"}), scene);
+    const std::size_t bytesOfOne = sharedBytes_;
+    EXPECT_GT(bytesOfOne, 0U);
+    // Each of what they are made regardless of.
+    const std::string images = "reference_size: 96";
+    expectSharedAsAlone(
+        cases({images, images + ", method: conventional", images + ", method: depth_peeling",
+               "method: ray_traced", "method: pcss", images + ", redundancy: visibility",
+               images + ", reference_images: 2", "reference_size: 64",
+               images + ", reconstruction: classic", images + ", discontinuity: 9",
+               images + ", grazing_limit: 1", images + ", merge_rows: true",
+               images + ", simplify_to: 0.5, simplification_error: 0.01"}),
+        scene);
+    EXPECT_EQ(sharedBytes_, bytesOfOne);
+    // What decides them.
+    expectSharedAsAlone(
+        cases({"method: geometry", "method: geometry, light_ratio: 0.3",
+               "method: geometry, light_height: 2", "method: geometry, ground: false",
+               "method: geometry, ground_size: 3", "method: geometry, shadow_bias: 3"}),
+        scene);
+    EXPECT_EQ(sharedBytes_, 6 * bytesOfOne);
+}
+
 TEST_F(SoftShadowsTest, RefusesScenesThatCastNothingAndLightsInside) {
     const auto message = [&](const std::string& yaml, const scene::Scene* scene) {
         return errorText([&] { recorded(yaml, scene); });

@@ -83,6 +83,33 @@ TEST_F(TerrainTessellationTest, TheUniformGridHasNoErrorsButThoseOfDepths) {
     EXPECT_EQ(passes_, (std::vector<std::string>{"tile_walk", "load_tiles", "draw"}));
 }
 
+TEST_F(TerrainTessellationTest, TheTruthOfAViewIsMadeOnce) {
+    const scene::Scene scene = terrain({257, 257});
+    const auto cases = [](const std::vector<std::string>& given) {
+        std::vector<std::string> yamls;
+        for (const std::string& one : given) {
+            yamls.push_back("{cache: false, errors: true, pictures: true, tile_patches: 2, " + one +
+                            "}");
+        }
+        return yamls;
+    };
+    expectSharedAsAlone(cases({"delta_s: 4"}), scene);
+    const std::size_t bytesOfOne = sharedBytes_;
+    EXPECT_GT(bytesOfOne, 0U);
+    // Each of what it is made regardless of.
+    expectSharedAsAlone(cases({"delta_s: 4", "delta_s: 12", "delta_s: 4, tau: 9",
+                               "delta_s: 4, edges: own_patch", "delta_s: 4, inner: maximum",
+                               "delta_s: 4, partitioning: integer", "delta_s: 4, skirts: false"}),
+                        scene);
+    EXPECT_EQ(sharedBytes_, bytesOfOne);
+    // What decides it.
+    expectSharedAsAlone(cases({"delta_s: 4", "supersampling: 2", "wireframe: true", "culling: none",
+                               "view: overview", "height_format: unorm16", "shading: generated_map",
+                               "block: 16", "patch_blocks: 1", "method: cdlod"}),
+                        scene);
+    EXPECT_GT(sharedBytes_, 9 * bytesOfOne);
+}
+
 TEST_F(TerrainTessellationTest, AColourMapLiesOverTheMapNorthOnTop) {
     scene::Scene scene = terrain({129, 129}, 0.0F);  // flat: one light for all
     EXPECT_EQ(
