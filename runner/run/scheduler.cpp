@@ -172,7 +172,7 @@ class Scheduler {
     /// Gives out units in order, as far as the lanes allow.
     void dispatch() {
         while (hasNext()) {
-            const auto next = waiting_.begin();
+            const auto next = nextUnit();
             const auto givenUp = options_.givenUp.find(next->item->id);
             if (givenUp != options_.givenUp.end()) {
                 finish(*next, notTried(givenUp->second), "", "given_up");
@@ -190,6 +190,35 @@ class Scheduler {
 
     static bool needsOwn(const Unit& unit) {
         return unit.item->measure.processes > 1 || unit.firstTry;
+    }
+
+    /// The first that waits. Of those side by side that are of its table, rather one of the scene
+    /// that the free worker had last, or of one that no other worker is on: cases of a scene share
+    /// results.
+    std::deque<Unit>::iterator nextUnit() {
+        constexpr std::ptrdiff_t kMostLookedAt = 64;
+        const auto front = waiting_.begin();
+        const bool isAlone = options_.jobs == 1 || options_.failuresAtMost > 0;
+        if (isAlone || front->item->measure.lane == Lane::Timing || needsOwn(*front)) return front;
+        const auto end = std::find_if(
+            front, front + std::min(std::ssize(waiting_), kMostLookedAt), [&](const Unit& unit) {
+                return unit.item->experiment != front->item->experiment || needsOwn(unit);
+            });
+        std::set<std::string> others;
+        const WorkerHandle* resting = nullptr;
+        for (const auto& worker : workers_) {
+            if (worker->isBusy()) others.insert(worker->scene());
+            if (!worker->isBusy() && !resting) resting = worker.get();
+        }
+        const auto first = [&](const auto& suits) { return std::find_if(front, end, suits); };
+        auto next = first([&](const Unit& unit) {
+            return resting && unit.item->recordedScene() == resting->scene();
+        });
+        if (next == end) {
+            next = first(
+                [&](const Unit& unit) { return !others.contains(unit.item->recordedScene()); });
+        }
+        return next == end ? front : next;
     }
 
     bool mayStart(const Unit& unit) const {

@@ -80,6 +80,7 @@ WorkerHandle::~WorkerHandle() {
 
 void WorkerHandle::assign(const Unit& unit, bool waits) {
     unit_ = unit;
+    scene_ = unit.item->recordedScene();
     waits_ = waits;
     preparedSince_.reset();
     output_.clear();

@@ -53,6 +53,8 @@ class WorkerHandle {
     std::string startProblem() const;
     bool isBusy() const { return unit_.has_value(); }
     const std::optional<Unit>& unit() const { return unit_; }
+    /// Of the unit that it is on, or had last; empty for none.
+    const std::string& scene() const { return scene_; }
     /// What it does of it: "load", "render"; empty between two.
     const std::string& phase() const { return phase_; }
     const std::optional<gl::DeviceInfo>& device() const { return device_; }
@@ -97,6 +99,7 @@ class WorkerHandle {
     config::Measure::Lane lane_;
     bool isSingleUse_;
     std::optional<Unit> unit_;
+    std::string scene_;
     std::optional<gl::DeviceInfo> device_;
     std::string unavailable_;  // why there is no device
     bool isAlive_ = true;

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
+#include <span>
 #include <thread>
 
 #include "engine/core/files.h"
@@ -52,6 +54,7 @@ class SchedulerTest : public ::testing::Test {
         options.program = GFXREPRO_MOCK_PROGRAM;
         options.mostRecords = mostRecords;
         if (arePaired) options.preparedInPairs = {"sweep/mock"};
+        options.jobs = jobs;
         run::PhaseClock phases;
         run::Rounds rounds(plan, {}, {});
         AtBegin observer(atBegin);
@@ -61,7 +64,31 @@ class SchedulerTest : public ::testing::Test {
     TemporaryFolder folder;
     std::string dir = folder.path() / "run";
     bool arePaired = false;
+    int jobs = 1;
 };
+
+/// Two workers, each at a scene of its own.
+TEST_F(SchedulerTest, ASceneOfATableGoesToOneWorker) {
+    jobs = 2;
+    const run::RunOutcome outcome =
+        measure(writeMockConfig(folder,
+                                "sweep: {scene: [shadows/object_on_plane, shadows/town_square], "
+                                "number: [1, 2, 3]}\nparams: {pause_ms: 100}\n"),
+                [] {});
+    EXPECT_EQ(outcome.finished, 6);
+    const run::Plan plan = run::Plan::fromJsonFile((folder.path() / "planned/plan.json").string());
+    std::vector<std::string> scenes;
+    run::forEachEvent(fs::path(dir) / "journal.jsonl", [&](run::Json&& event) {
+        if (event.value("event", "") != "start") return;
+        for (const config::Case& item : plan.cases) {
+            if (item.id == event.value("case", "")) scenes.push_back(item.recordedScene());
+        }
+    });
+    ASSERT_EQ(scenes.size(), 6U);
+    EXPECT_NE(scenes[0], scenes[1]) << "the second worker begins with another scene";
+    // Of each two that follow one is of each scene, whichever worker was first.
+    EXPECT_EQ(std::ranges::count(std::span(scenes).first(4), scenes[0]), 2);
+}
 
 /// The mock writes down what it does, and sets up for a while.
 class PairedUnits : public SchedulerTest {
