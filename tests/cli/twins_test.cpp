@@ -151,7 +151,7 @@ TEST(Twins, ATableOfTimesWithinAnotherTakesThemAndSaysSo) {
     EXPECT_THAT(shown("/report.html"), HasSubstr(note));
     const ProcessResult plan =
         mockGfxrepro({"plan", configs[0], configs[1], "--device", "software", "--from", dir});
-    EXPECT_THAT(plan.out, HasSubstr("5 cases (2 measured as another's twin), 3 iterations,"));
+    EXPECT_THAT(plan.out, HasSubstr("5 cases (2 measured as another's twin), 6 iterations,"));
 }
 
 TEST(Twins, TimesOfSeveralProcessesAreOfTheirTable) {
