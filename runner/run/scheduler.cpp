@@ -472,9 +472,9 @@ bool showsSetup(const config::Layout& layout, const config::Outputs& outputs) {
     const auto shows = [&](const config::Selection& selection) {
         std::vector<std::string> metrics = {selection.metric.value_or("")};
         std::vector<std::string> passes = {selection.pass.value_or("")};
-        if (selection.against) {
-            metrics.push_back(selection.against->metric);
-            passes.push_back(selection.against->pass);
+        if (selection.equal) {
+            metrics.push_back(selection.equal->metric);
+            passes.push_back(selection.equal->pass);
         }
         return std::ranges::any_of(metrics, std::bind_front(isOfSetup, outputs.metrics)) ||
                std::ranges::any_of(passes, std::bind_front(isOfSetup, outputs.passes));
