@@ -264,7 +264,7 @@ TEST(Faults, TimesAreMeasuredInRounds) {
         const std::string config = writeMockConfig(
             folder,
             "sweep: {number: [1, 2]}\nparams: {pause_ms: 5}\n"
-            "measure: {lane: timing, processes: 1, " +
+            "measure: {lane: timing, " +
                 keys +
                 "}\n"
                 "layout:\n  rows: number\n  columns:\n    ms: {metric: wall_time_ms}\n");
