@@ -14,7 +14,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/conclusion/conclusion.h"
+#include "runner/outcome/results.h"
 #include "runner/regression/comparison.h"
 #include "runner/regression/nightly_history.h"
 #include "runner/regression/picture_comparison.h"
@@ -75,7 +75,7 @@ Measured readMeasured(const fs::path& runDir) {
                       run::notesOf(run.manifest),
                       regression::picturesOf(runDir, run.records, params),
                       run.plan.buildId,
-                      conclusion::madeFromLine(runDir, run.manifest)};
+                      outcome::madeFromLine(runDir, run.manifest)};
     for (const run::ProgramUse& use : run::programsOf(run.manifest)) {
         measured.programs[use.file] =
             use.sha256.substr(0, 12) + (use.version.empty() ? "" : " (" + use.version + ")");
@@ -289,8 +289,8 @@ int compare(const CompareOptions& options) {
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
-        conclusion::requireMadeFrom(folder, older.madeFrom + newer.madeFrom);
-        conclusion::noteMadeFrom(folder, older.madeFrom + newer.madeFrom);
+        outcome::requireMadeFrom(folder, older.madeFrom + newer.madeFrom);
+        outcome::noteMadeFrom(folder, older.madeFrom + newer.madeFrom);
         comparison.differences = compareRuns(older, newer, folder, comparison.notes);
         for (std::size_t i = 0; i < 2; ++i) {
             for (const std::string& note : (i == 0 ? older : newer).notes) {

@@ -9,9 +9,9 @@
 #include "runner/cli/experiments.h"
 #include "runner/cli/parse.h"
 #include "runner/cli/reading_commands.h"
-#include "runner/conclusion/artifact.h"
-#include "runner/conclusion/import_run.h"
-#include "runner/conclusion/tidy.h"
+#include "runner/outcome/artifact.h"
+#include "runner/outcome/import_run.h"
+#include "runner/outcome/tidy.h"
 #include "runner/regression/nightly_history.h"
 
 namespace gfxrepro::cli {
@@ -89,10 +89,9 @@ int exportRun(const Context& context, const ExportOptions& options) {
     run::StoredRun run = run::readRun(options.runDir);
     run::noteChangedImages(run, options.runDir);
     if (options.isTidy) {
-        conclusion::writeTidy(options.runDir, run, target);
+        outcome::writeTidy(options.runDir, run, target);
     } else {
-        conclusion::writeArtifact(options.runDir, run, openCatalog(context, options.assets),
-                                  target);
+        outcome::writeArtifact(options.runDir, run, openCatalog(context, options.assets), target);
     }
     sayNotes(run.manifest);
     say("{}\n", target);
@@ -114,7 +113,7 @@ std::pair<std::string, std::string> metricFrom(const std::string& text) {
 }  // namespace
 
 int importRun(const Context& context, const ImportOptions& options) {
-    conclusion::ImportRequest request;
+    outcome::ImportRequest request;
     request.files = {options.file, options.cases, {}};
     for (const std::string& metric : options.metrics) {
         request.files.metrics.push_back(metricFrom(metric));
@@ -124,7 +123,7 @@ int importRun(const Context& context, const ImportOptions& options) {
     if (!options.machine.empty()) {
         request.machine = options.machine;
     } else if (!options.cases.empty()) {  // perhaps exported: then it is known what measured it
-        const auto known = conclusion::exportedRun(fs::path(options.cases).parent_path());
+        const auto known = outcome::exportedRun(fs::path(options.cases).parent_path());
         if (known.contains("machine")) request.machine = known.at("machine");
         request.isOfGpu |= known.contains("device_class") && known.at("device_class") == "gpu";
     }
@@ -142,12 +141,12 @@ int importRun(const Context& context, const ImportOptions& options) {
             requestOf(selection, findPaperConfigs(options.configs)), options.profile);
     }
     const run::StoredRun run =
-        conclusion::importRun(request, openCatalog(context, options.assets), context.techniques);
+        outcome::importRun(request, openCatalog(context, options.assets), context.techniques);
     const fs::path dir =
         options.out.empty() ? run::defaultRunPath(runSlug(run.plan)) : fs::path(options.out);
     {
         const run::RunDirectory directory = run::RunDirectory::create(dir);
-        conclusion::writeImported(directory, run);
+        outcome::writeImported(directory, run);
     }
     say("imported {} numbers of {} case{} into {}\n", run.records.size(), run.plan.cases.size(),
         run.plan.cases.size() == 1 ? "" : "s", dir.string());

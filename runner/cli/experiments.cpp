@@ -10,8 +10,8 @@
 #include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/cli/console.h"
-#include "runner/conclusion/conclusion.h"
 #include "runner/config/experiment.h"
+#include "runner/outcome/results.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/scheduler.h"
 
@@ -86,7 +86,7 @@ bool isYamlFile(const fs::path& name) {
 std::vector<fs::path> paperConfigs() {
     std::vector<fs::path> files;
     for (const fs::directory_entry& folder : fs::directory_iterator(dataFolder("configs"))) {
-        if (!conclusion::isPaperFolder(folder.path())) continue;
+        if (!outcome::isPaperFolder(folder.path())) continue;
         for (const fs::directory_entry& file : fs::directory_iterator(folder.path())) {
             if (isConfig(file.path())) files.push_back(fs::absolute(file.path()));
         }

@@ -15,7 +15,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/conclusion/conclusion.h"
+#include "runner/outcome/results.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
 #include "runner/run/run.h"
@@ -155,7 +155,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
         throw Error(fmt::format("{}: {} is not among what {} measured", experiment.file.string(),
                                 experiment.id, runDir.string()));
     }
-    conclusion::Results judged = conclusion::resultsOf(run, experiments);
+    outcome::Results judged = outcome::resultsOf(run, experiments);
     const std::string mark = "judged after the run, by a config that it did not know";
     std::vector<std::string> notes = run::notesOf(run.manifest);
     notes.insert(notes.begin(), mark);
@@ -165,7 +165,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     for (claims::ClaimResult& claim : judged.claims) {
         claim.reason = mark + (claim.reason.empty() ? "" : "; " + claim.reason);
     }
-    conclusion::takeFolder(out, runDir, run.manifest);
+    outcome::takeFolder(out, runDir, run.manifest);
     const fs::path folder = out / "judged-afterwards";
     fs::remove_all(folder);
     report::writeTables(folder, judged.tables, notes);
@@ -250,7 +250,7 @@ void sayNotes(const run::Json& manifest) {
 
 int conclude(const fs::path& runDir) {
     const run::StoredRun run = run::readRun(runDir);
-    const conclusion::Results results = conclusion::writeResults(runDir, run, {});
+    const outcome::Results results = outcome::writeResults(runDir, run, {});
     sayNotes(run.manifest);
     const std::size_t failing = sayFailing(results.claims);
     sayVerdicts(results.claims);
@@ -266,7 +266,7 @@ int conclude(const fs::path& runDir) {
 
 int table(const std::string& runDir, const std::string& out) {
     const run::StoredRun run = run::readRun(runDir);
-    const conclusion::Results results = conclusion::writeResults(
+    const outcome::Results results = outcome::writeResults(
         runDir, run, {.tables = true, .claims = false, .report = false, .out = out});
     const std::string folder = (fs::path(out) / "tables").string();
     for (std::size_t i = 0; i < results.tables.size(); ++i) {
@@ -286,7 +286,7 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs,
            const std::string& out) {
     if (!configs.empty()) return judgeAfterwards(runDir, configs, out.empty() ? runDir : out);
     const run::StoredRun run = run::readRun(runDir);
-    const conclusion::Results results = conclusion::writeResults(
+    const outcome::Results results = outcome::writeResults(
         runDir, run, {.tables = false, .claims = true, .report = false, .out = out});
     const int verdict = sayClaims(results.claims);
     sayPrintedCells(results.printedCells);
@@ -299,7 +299,7 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
     if (runDirs.size() == 1 && out.empty()) {
         run::StoredRun run = run::readRun(runDirs.front());
         run::noteChangedImages(run, runDirs.front());
-        conclusion::writeResults(
+        outcome::writeResults(
             runDirs.front(), run,
             {.tables = false, .claims = false, .embeds = embeds, .progress = sayPictures});
         sayNotes(run.manifest);
@@ -310,12 +310,12 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
     int code = kExitOk;
     for (const std::string& dir : runDirs) {
         if (!fs::exists(fs::path(dir) / "plan.json")) {  // kept results
-            runs.push_back(conclusion::keptRun(dir));
+            runs.push_back(outcome::keptRun(dir));
             continue;
         }
         run::StoredRun run = run::readRun(dir);
         run::noteChangedImages(run, dir);
-        runs.push_back(conclusion::reportRun(dir, run, conclusion::resultsOf(run)));
+        runs.push_back(outcome::reportRun(dir, run, outcome::resultsOf(run)));
         if (completenessCode(run) != kExitOk) code = kExitIncomplete;
     }
     noteOtherMachines(runs);
@@ -325,19 +325,19 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
     const fs::path made = file.parent_path() / (file.stem().string() + "-files");
     std::set<std::string> lines;
     for (const report::ReportRun& run : runs) {
-        lines.insert(conclusion::madeFromLine(run.folder, run.manifest));
+        lines.insert(outcome::madeFromLine(run.folder, run.manifest));
     }
     const std::string from = joined(std::vector<std::string>(lines.begin(), lines.end()), "");
     if (!out.empty()) {
-        if (!embeds) conclusion::requireMadeFrom(made, from);
+        if (!embeds) outcome::requireMadeFrom(made, from);
         requireReport(file);
     }
     for (std::size_t i = 0; i < runs.size(); ++i) {
         const fs::path drawn = embeds ? fs::path() : report::madeFolder(runs[i].folder, i, file);
         runs[i].curves = report::drawCurves(drawn, runs[i].tables, runs[i].experiments);
     }
-    report::writeReport(file, runs, conclusion::reportOptions(embeds, sayPictures));
-    if (!embeds && fs::exists(made)) conclusion::noteMadeFrom(made, from);
+    report::writeReport(file, runs, outcome::reportOptions(embeds, sayPictures));
+    if (!embeds && fs::exists(made)) outcome::noteMadeFrom(made, from);
     (embeds ? saySentReport : sayReport)(file);
     return code;
 }

@@ -24,7 +24,7 @@
 #include "runner/cli/reading_commands.h"
 #include "runner/cluster/predictions.h"
 #include "runner/cluster/shards.h"
-#include "runner/conclusion/import_run.h"
+#include "runner/outcome/import_run.h"
 #include "runner/run/machine_state.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run.h"
@@ -393,7 +393,7 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     if (isBegun) {
         stored = run::readRun(options.resume);
         stored.records = {};  // millions, and each step reads them for itself
-        conclusion::requireNotImported(stored.manifest, options.resume, "go on with");
+        outcome::requireNotImported(stored.manifest, options.resume, "go on with");
     } else {
         stored.plan = run::Plan::fromJsonFile(directory.planFile());
     }

@@ -15,7 +15,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
-#include "runner/conclusion/conclusion.h"
+#include "runner/outcome/results.h"
 #include "runner/run/child_process.h"
 #include "runner/run/run.h"
 #include "runner/studies/budget.h"
@@ -100,9 +100,9 @@ studies::Outcome measureNext(Study& study, const Selection& selection) {
         return {variation, {}, fmt::format("exit code {}: {}", end.exitCode, said)};
     }
     const run::StoredRun run = run::readRun(dir);
-    return {variation,
-            conclusion::writeResults(dir, run, {.tables = true, .claims = true, .report = false})
-                .claims};
+    return {
+        variation,
+        outcome::writeResults(dir, run, {.tables = true, .claims = true, .report = false}).claims};
 }
 
 void writeStudy(const Study& study, const std::string& keep) {
@@ -157,7 +157,7 @@ void takeBase(const run::StoredRun& run, Study& study) {
             studies::basisOf(run.plan, experiment) != study.basis) {
             continue;
         }
-        study.outcomes.push_back({study.next(), conclusion::resultsOf(run, {experiment}).claims});
+        study.outcomes.push_back({study.next(), outcome::resultsOf(run, {experiment}).claims});
         writeStudy(study, "");
     }
 }

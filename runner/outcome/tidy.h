@@ -9,7 +9,7 @@
 
 #include "runner/run/run.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 
 /// The columns of cases.csv before the parameters. None is a word of SQL.
 inline constexpr std::string_view kCaseColumns[] = {"case_id", "experiment", "technique",
@@ -31,4 +31,4 @@ void writeTidy(const std::filesystem::path& runDir, const run::StoredRun& run,
 /// The entries of run.csv in such a folder, by key; none where there is no such file.
 std::map<std::string, std::string> exportedRun(const std::filesystem::path& folder);
 
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome

@@ -10,7 +10,7 @@
 #include "engine/core/error.h"
 #include "runner/records/records.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 
 /// What is imported. The file has a number a row: columns `metric` and `value`, perhaps `unit`,
 /// `pass`, `frame`, `repeat`, `process`, `lane`, `status`, `message`; every other column is a
@@ -50,4 +50,4 @@ struct ImportedNumbers {
 /// changes, a value that is there twice, a case that is not known, and text that is not UTF-8.
 ImportedNumbers readImport(const ImportFiles& files);
 
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome

@@ -1,4 +1,4 @@
-#include "runner/conclusion/conclusion.h"
+#include "runner/outcome/results.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
-#include "runner/conclusion/tidy.h"
+#include "runner/outcome/tidy.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
 #include "runner/run/case_filter.h"
@@ -26,7 +26,7 @@
 #include "runner/tables/calibration.h"
 #include "runner/tables/table.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 
 namespace fs = std::filesystem;
 
@@ -357,4 +357,4 @@ Results writeResults(const fs::path& runDir, const run::StoredRun& run, const Re
     return results;
 }
 
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome

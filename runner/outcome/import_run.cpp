@@ -1,4 +1,4 @@
-#include "runner/conclusion/import_run.h"
+#include "runner/outcome/import_run.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,13 +12,13 @@
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
-#include "runner/conclusion/tidy.h"
 #include "runner/config/experiment.h"
+#include "runner/outcome/tidy.h"
 #include "runner/run/ledger.h"
 #include "runner/run/manifest.h"
 #include "runner/run/plan_json.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 
 namespace fs = std::filesystem;
 using config::Experiment;
@@ -358,4 +358,4 @@ void requireNotImported(const run::Json& manifest, const std::string& runDir,
     throw Error(fmt::format("{}: was imported; there is nothing to {}", runDir, purpose));
 }
 
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome

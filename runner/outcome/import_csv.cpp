@@ -1,4 +1,4 @@
-#include "runner/conclusion/import_csv.h"
+#include "runner/outcome/import_csv.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "engine/core/text.h"
 #include "runner/records/csv.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 
 namespace fs = std::filesystem;
 using records::Record;
@@ -376,4 +376,4 @@ ImportedNumbers readImport(const ImportFiles& files) {
     return numbers;
 }
 
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome

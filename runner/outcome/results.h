@@ -13,7 +13,7 @@
 #include "runner/tables/printed.h"
 #include "runner/tables/table.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 
 /// What claims and the report ask of a run.
 claims::ReportContext reportContext(const run::Json& manifest);
@@ -70,4 +70,4 @@ report::ReportRun reportRun(const std::filesystem::path& runDir, const run::Stor
 /// them: its verdicts stand beside those of whole runs. Throws Error when these are not there.
 report::ReportRun keptRun(const std::filesystem::path& folder);
 
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "runner/conclusion/import_csv.h"
+#include "runner/outcome/import_csv.h"
 #include "runner/run/run.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 
 struct ImportRequest {
     ImportFiles files;
@@ -35,4 +35,4 @@ void writeImported(const run::RunDirectory& directory, const run::StoredRun& run
 void requireNotImported(const run::Json& manifest, const std::string& runDir,
                         const std::string& purpose);
 
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome

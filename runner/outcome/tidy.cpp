@@ -1,4 +1,4 @@
-#include "runner/conclusion/tidy.h"
+#include "runner/outcome/tidy.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -8,11 +8,11 @@
 
 #include "engine/core/files.h"
 #include "engine/core/output_files.h"
-#include "runner/conclusion/conclusion.h"
+#include "runner/outcome/results.h"
 #include "runner/records/csv.h"
 #include "runner/run/manifest.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 
 namespace fs = std::filesystem;
 
@@ -168,4 +168,4 @@ std::map<std::string, std::string> exportedRun(const fs::path& folder) {
     return entries;
 }
 
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome

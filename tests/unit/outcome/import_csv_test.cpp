@@ -1,4 +1,4 @@
-#include "runner/conclusion/import_csv.h"
+#include "runner/outcome/import_csv.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "tests/support/support.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 namespace {
 
 using gfxrepro::test::errorText;
@@ -175,4 +175,4 @@ TEST_F(ImportCsv, TakesWhatAnExportMayHaveInItsTexts) {
 }
 
 }  // namespace
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome

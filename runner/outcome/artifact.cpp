@@ -1,4 +1,4 @@
-#include "runner/conclusion/artifact.h"
+#include "runner/outcome/artifact.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,14 +13,14 @@
 #include "engine/core/output_files.h"
 #include "engine/core/text.h"
 #include "runner/cluster/predictions.h"
-#include "runner/conclusion/conclusion.h"
-#include "runner/conclusion/import_run.h"
 #include "runner/config/external_program.h"
+#include "runner/outcome/import_run.h"
+#include "runner/outcome/results.h"
 #include "runner/report/markup.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run_directory.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 
 namespace fs = std::filesystem;
 
@@ -270,4 +270,4 @@ void writeArtifact(const fs::path& runDir, const run::StoredRun& run, const scen
     writeFolder(target, [&](const fs::path& part) { fillArtifact(runDir, run, catalog, part); });
 }
 
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome

@@ -5,7 +5,7 @@
 
 #include "runner/run/run.h"
 
-namespace gfxrepro::conclusion {
+namespace gfxrepro::outcome {
 
 /// Writes the folder `target`, which must not exist, as a whole or not at all: plan, manifest,
 /// records, tables, claims, report (made again there: the run's folder is left as it is) and log,
@@ -16,4 +16,4 @@ namespace gfxrepro::conclusion {
 void writeArtifact(const std::filesystem::path& runDir, const run::StoredRun& run,
                    const scene::Catalog& catalog, const std::filesystem::path& target);
 
-}  // namespace gfxrepro::conclusion
+}  // namespace gfxrepro::outcome
