@@ -1,6 +1,7 @@
 #include "engine/core/checks.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -36,6 +37,38 @@ const std::string& lineOf(const Node& node, std::string_view what) {
         throwNotAllowed(node, what, "one line of text");
     }
     return node.text();
+}
+
+std::string NumberRange::text() const {
+    const auto shown = [](double value) { return Node::number(value).text(); };
+    const std::string low = (isLeastExcluded ? "above " : "at least ") + shown(least);
+    const std::string high = (isMostExcluded ? "below " : "at most ") + shown(most);
+    if (std::isinf(most)) return std::isinf(least) ? "" : low;
+    if (std::isinf(least)) return high;
+    const bool isClosed = !isLeastExcluded && !isMostExcluded;
+    return isClosed ? shown(least) + " … " + shown(most) : low + ", " + high;
+}
+
+double numberIn(const Node& node, const NumberRange& range, std::string_view what) {
+    const std::optional<double> value = node.tryDouble();
+    if (value && range.has(*value) && (!range.isWhole || node.tryInteger())) return *value;
+    const std::string allowed = range.text();
+    throwNotAllowed(
+        node, what,
+        (range.isWhole ? "a whole number" : "a number") + (allowed.empty() ? "" : ", " + allowed));
+}
+
+bool flagOf(const Node& node, std::string_view what) {
+    if (const std::optional<bool> flag = node.tryBool()) return *flag;
+    throwNotAllowed(node, what, "true | false");
+}
+
+std::size_t choiceOf(const Node& node, std::span<const std::string_view> names,
+                     std::string_view what) {
+    const auto found = std::ranges::find(names, node.isScalar() ? node.text() : "");
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    throwNotAllowed(node, what,
+                    joined(std::vector<std::string>(names.begin(), names.end()), " | "));
 }
 
 std::optional<double> fractionOf(const Node& node) {

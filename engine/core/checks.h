@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/key_schema.h"
 #include "engine/core/node.h"
 
 namespace gfxrepro {
@@ -24,6 +25,15 @@ void requireKeys(const Node& map, std::string_view what, std::span<const std::st
 const Node& requiredEntry(const Node& map, std::string_view key, std::string_view what = "");
 /// `text` of one line that is not empty. Throws Error for another.
 const std::string& lineOf(const Node& node, std::string_view what);
+
+/// The number that `node` is. Throws Error "WHAT is VALUE; allowed: a number, RANGE" for another.
+double numberIn(const Node& node, const NumberRange& range, std::string_view what);
+/// Throws Error "WHAT is VALUE; allowed: true | false" for another.
+bool flagOf(const Node& node, std::string_view what);
+/// The place of the name that `node` is among `names`. Throws Error "WHAT is VALUE; allowed: a | b"
+/// for another.
+std::size_t choiceOf(const Node& node, std::span<const std::string_view> names,
+                     std::string_view what);
 
 /// A share, as a percentage ("25%", "25 %") or a fraction; none for another text, and for a
 /// fraction beyond 1, where the sign is likely forgotten.

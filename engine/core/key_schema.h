@@ -4,7 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +15,23 @@
 #include "engine/core/json_shape.h"
 
 namespace gfxrepro {
+
+/// The numbers that a key may have, declared once: the reader takes these (numberIn, checks.h), its
+/// message names them, and so does the schema for editors.
+struct NumberRange {
+    double least = -std::numeric_limits<double>::infinity();
+    double most = std::numeric_limits<double>::infinity();
+    bool isLeastExcluded = false;
+    bool isMostExcluded = false;
+    bool isWhole = false;
+
+    bool has(double value) const {
+        return (isLeastExcluded ? value > least : value >= least) &&
+               (isMostExcluded ? value < most : value <= most);
+    }
+    /// "1 … 1000", "above 0, at most 1000000", "at least 0", "".
+    std::string text() const;
+};
 
 /// A key of a map.
 struct SchemaKey {
@@ -67,8 +86,18 @@ inline Json text() {
 inline Json number() {
     return {{"type", "number"}};
 }
-inline Json count() {
-    return {{"type", "integer"}, {"minimum", 1}};
+inline Json number(const NumberRange& range) {
+    Json type = {{"type", range.isWhole ? "integer" : "number"}};
+    const auto bound = [&](const char* including, const char* excluding, bool isExcluded,
+                           double value) {
+        const bool isWhole = value == std::floor(value) && std::abs(value) < 1e15;
+        if (std::isinf(value)) return;
+        type[isExcluded ? excluding : including] =
+            isWhole ? Json(std::llround(value)) : Json(value);
+    };
+    bound("minimum", "exclusiveMinimum", range.isLeastExcluded, range.least);
+    bound("maximum", "exclusiveMaximum", range.isMostExcluded, range.most);
+    return type;
 }
 inline Json boolean() {
     return {{"type", "boolean"}};
@@ -85,10 +114,29 @@ Json choice(const Names& names) {
 inline Json choice(std::initializer_list<std::string_view> names) {
     return choice<std::initializer_list<std::string_view>>(names);
 }
+inline SchemaKey numberKey(std::string key, const NumberRange& range, std::string absent,
+                           std::string doc) {
+    std::string type = range.isWhole ? "integer" : "number";
+    if (const std::string text = range.text(); !text.empty()) type += ", " + text;
+    return {std::move(key), std::move(type), std::move(absent), std::move(doc), number(range)};
+}
+/// A key whose value is one of `names`, which stand once.
+template <class Names>
+SchemaKey choiceKey(std::string key, const Names& names, std::string absent, std::string doc) {
+    std::string type;
+    for (const auto& name : names) type += (type.empty() ? "" : " | ") + std::string(name);
+    return {std::move(key), std::move(type), std::move(absent), std::move(doc), choice(names)};
+}
 inline Json listOf(Json item, int atLeast = 0) {
     Json list = {{"type", "array"}, {"items", std::move(item)}};
     if (atLeast > 0) list["minItems"] = atLeast;
     return list;
+}
+/// None twice.
+inline Json setOf(Json item) {
+    Json set = listOf(std::move(item));
+    set["uniqueItems"] = true;
+    return set;
 }
 /// Exactly `size` items.
 inline Json tupleOf(Json item, int size) {

@@ -37,16 +37,12 @@ void requireKeys(const Node& map, const std::string& what, std::string_view sect
     }
 }
 
-std::optional<long long> readCount(const Node& source, const std::string& key,
-                                   const std::string& of) {
+std::optional<long long> readWhole(const Node& source, const std::string& key,
+                                   const NumberRange& range) {
     const Node* node = source.find(key);
     if (!node) return std::nullopt;
-    const long long count = node->asInteger();
-    if (count < 1) {
-        throw Error(node->location(),
-                    key + " is " + node->text() + "; allowed: a number of " + of + ", at least 1");
-    }
-    return count;
+    (void)numberIn(*node, range, key);
+    return node->asInteger();
 }
 
 std::string assetPathOf(const Node& node, const char* key) {
@@ -66,23 +62,15 @@ SceneSource readFileSource(const Node& node) {
     } catch (const Error& error) {
         throw Error(file.location(), std::string("file ") + error.what());
     }
-    source.refineTo = readCount(node, "refine_to", "triangles");
-    source.points = readCount(node, "points", "points");
-    if (const Node* up = node.find("up")) {
-        if (up->text() != "y" && up->text() != "z") {
-            throw Error(up->location(), "up is '" + up->text() + "'; allowed: y | z");
-        }
-        source.isZUp = up->text() == "z";
-    }
+    source.refineTo = readWhole(node, "refine_to", kCounts);
+    source.points = readWhole(node, "points", kCounts);
+    if (const Node* up = node.find("up")) source.isZUp = kUps[choiceOf(*up, kUps, "up")] == "z";
     if (source.refineTo || source.points) source.kind = Origin::Kind::StandIn;
     return source;
 }
 
-float readPositive(const Node& node, const std::string& key) {
-    const auto value = static_cast<float>(node.asDouble());
-    if (value > 0.0F && value <= 1e6F) return value;
-    throw Error(node.location(),
-                fmt::format("{} is {}; allowed: above 0, at most 1e6", key, node.text()));
+float readMetres(const Node& node, const std::string& key) {
+    return static_cast<float>(numberIn(node, kMetres, key));
 }
 
 SceneSource readHeightMapSource(const Node& node) {
@@ -90,19 +78,14 @@ SceneSource readHeightMapSource(const Node& node) {
     SceneSource source;
     source.file = assetPathOf(requiredEntry(node, "height_map", "source"), "height_map");
     HeightMapSource map;
-    map.units.spacingM = readPositive(requiredEntry(node, "spacing_m", "source"), "spacing_m");
+    map.units.spacingM = readMetres(requiredEntry(node, "spacing_m", "source"), "spacing_m");
     if (const Node* scale = node.find("height_scale_m")) {
-        map.units.heightScaleM = readPositive(*scale, "height_scale_m");
+        map.units.heightScaleM = readMetres(*scale, "height_scale_m");
     }
     if (const Node* noData = node.find("no_data")) {
-        map.units.noData = static_cast<float>(noData->asDouble());
+        map.units.noData = static_cast<float>(numberIn(*noData, {}, "no_data"));
     }
-    if (const auto samples = readCount(node, "resample_to", "samples")) {
-        if (*samples > kMaxHeightFileSide) {
-            throw Error(
-                node.find("resample_to")->location(),
-                fmt::format("resample_to is {}; allowed: 1 to {}", *samples, kMaxHeightFileSide));
-        }
+    if (const auto samples = readWhole(node, "resample_to", kSamplesPerSide)) {
         map.resampleTo = static_cast<int>(*samples);
         source.kind = Origin::Kind::StandIn;
     }
@@ -110,10 +93,10 @@ SceneSource readHeightMapSource(const Node& node) {
         if (!map.resampleTo) {
             throw Error(detail->location(), "detail_m needs resample_to, whose gaps it fills");
         }
-        map.detailM = readPositive(*detail, "detail_m");
+        map.detailM = readMetres(*detail, "detail_m");
     }
-    if (const Node* seed = node.find("seed")) {
-        source.seed = static_cast<std::uint64_t>(seed->asInteger());
+    if (const auto seed = readWhole(node, "seed", kSeeds)) {
+        source.seed = static_cast<std::uint64_t>(*seed);
     }
     if (const Node* colours = node.find("colour_map")) {
         map.colourMap = assetPathOf(*colours, "colour_map");
@@ -129,14 +112,10 @@ SceneSource readGeneratorSource(const Node& node, bool isGenerated,
     const Node& generator = requiredEntry(node, "generator", "source");
     source.generator = &findGenerator(generators, generator.text(), generator.location());
     if (const Node* params = node.find("params")) source.params = *params;
-    if (const Node* seed = node.find("seed")) {
-        const long long value = seed->asInteger();
-        if (value < 0) {
-            throw Error(seed->location(), "seed is " + seed->text() + "; allowed: at least 0");
-        }
-        source.seed = static_cast<std::uint64_t>(value);
+    if (const auto seed = readWhole(node, "seed", kSeeds)) {
+        source.seed = static_cast<std::uint64_t>(*seed);
     }
-    source.points = readCount(node, "points", "points");
+    source.points = readWhole(node, "points", kCounts);
     source.kind = isGenerated ? Origin::Kind::Generated : Origin::Kind::StandIn;
     return source;
 }
@@ -179,7 +158,7 @@ SceneEntry readEntry(const fs::path& path, const std::string& expectedName,
     if (const Node* canonical = root.find("canonical")) entry.canonical = canonical->text();
     if (const Node* licence = root.find("licence")) entry.licence = licence->text();
     const Node* generated = root.find("generated");
-    const bool isGenerated = generated && generated->asBool();
+    const bool isGenerated = generated && flagOf(*generated, "generated");
     const Node& sources = requiredEntry(root, "sources", "scene entry");
     for (const Node& source : sources.items()) {
         entry.sources.push_back(readSource(source, isGenerated, generators));
@@ -396,9 +375,9 @@ void takeUnits(const std::string& name, const Node& params, SceneSource& source)
                         fmt::format("height map '{}' has no parameter '{}'{}; allowed: {}", name,
                                     key, suggestion(key, kNames), joined(kNames)));
         }
-        if (key == "spacing_m") units.spacingM = readPositive(value, key);
-        if (key == "height_scale_m") units.heightScaleM = readPositive(value, key);
-        if (key == "no_data") units.noData = static_cast<float>(value.asDouble());
+        if (key == "spacing_m") units.spacingM = readMetres(value, key);
+        if (key == "height_scale_m") units.heightScaleM = readMetres(value, key);
+        if (key == "no_data") units.noData = static_cast<float>(numberIn(value, {}, key));
     }
 }
 

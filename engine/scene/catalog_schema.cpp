@@ -1,21 +1,20 @@
 #include "engine/scene/catalog_schema.h"
 
+#include "engine/core/node.h"
+#include "engine/scene/catalog.h"
+
 namespace gfxrepro::scene {
 namespace {
 
 using namespace types;
 
 SchemaKey points() {
-    return {"points", "count", "none", "points of the surface, or of the cloud, instead of it",
-            count()};
+    return numberKey("points", kCounts, "none",
+                     "points of the surface, or of the cloud, instead of it");
 }
 
 Json assetPath() {
     return {{"type", "string"}, {"minLength", 1}, {"pattern", "^[^/]"}};
-}
-
-Json positive() {
-    return {{"type", "number"}, {"exclusiveMinimum", 0}, {"maximum", 1e6}};
 }
 
 SchemaSection fileSource() {
@@ -25,8 +24,8 @@ SchemaSection fileSource() {
         "A file is the real model, unless it is refined or sampled.",
         {{"file", "path", "required", "below the assets folder", assetPath()},
          points(),
-         {"refine_to", "count", "none", "longest edges halved up to this many triangles", count()},
-         {"up", "y | z", "y", "the file's own up", choice({"y", "z"})}},
+         numberKey("refine_to", kCounts, "none", "longest edges halved up to this many triangles"),
+         choiceKey("up", kUps, "y", "the file's own up")},
         false};
 }
 
@@ -36,14 +35,14 @@ SchemaSection heightMapSource() {
         "sources[].",
         "A terrain.",
         {{"height_map", "path", "required", "below the assets folder", assetPath()},
-         {"spacing_m", "number, at most 1e6", "required", "distance of samples", positive()},
-         {"height_scale_m", "number, at most 1e6", "1", "a step of the file's values", positive()},
-         {"no_data", "number", "none", "the value of samples that are missing", number()},
-         {"resample_to", "count", "none", "samples per side: a stand-in for a finer survey",
-          count()},
-         {"detail_m", "number, at most 1e6", "none", "noise in the gaps of resample_to",
-          positive()},
-         {"seed", "integer", "0", "of the noise", {{"type", "integer"}}},
+         numberKey("spacing_m", kMetres, "required", "distance of samples"),
+         numberKey("height_scale_m", kMetres, Node::number(HeightMapUnits().heightScaleM).text(),
+                   "a step of the file's values"),
+         numberKey("no_data", {}, "none", "the value of samples that are missing"),
+         numberKey("resample_to", kSamplesPerSide, "none",
+                   "samples per side: a stand-in for a finer survey"),
+         numberKey("detail_m", kMetres, "none", "noise in the gaps of resample_to"),
+         numberKey("seed", kSeeds, std::to_string(SceneSource().seed), "of the noise"),
          {"colour_map", "path", "none", "PNG of the ground, north on top", assetPath()}},
         false,
         nullptr,
@@ -56,11 +55,7 @@ SchemaSection generatorSource() {
             "A generated scene or, where a real one exists, its stand-in.",
             {{"generator", "name", "required", "`gfxrepro list generators`", text()},
              {"params", "{name: value}", "{}", "`gfxrepro describe GENERATOR`", mapOf(anything())},
-             {"seed",
-              "integer, at least 0",
-              "0",
-              "of its random numbers",
-              {{"type", "integer"}, {"minimum", 0}}},
+             numberKey("seed", kSeeds, std::to_string(SceneSource().seed), "of its random numbers"),
              points()},
             false};
 }

@@ -72,8 +72,8 @@ ClaimReader::ClaimReader(const ClaimSpec& claim, const tables::Table& table)
             return operand.columns().empty();
         })) {
         throw ExpressionError(claim.location,
-                              fmt::format("{}: '{}' reads no column; axes are compared as "
-                                          "[axis=a, axis=b]",
+                              fmt::format("{}: '{}' reads no column; the rows of an axis are "
+                                          "compared with 'across: AXIS'",
                                           owner, joined(claim.operands, "', '")));
     }
     for (const auto& [axis, values] : claim.at) rowAxis(axis, "at");

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "engine/core/files.h"
 #include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/claims/claims.h"
+#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
@@ -185,7 +189,7 @@ scene::Scene loadScene(const Node& reference, const scene::Catalog& catalog) {
 /// Reads the user's own files, and the scenes of an experiment that nobody has laid out, each once:
 /// what is wrong in one, or what the technique cannot take, the first case would find.
 void requireScenes(const Context& context, const config::Experiment& experiment,
-                   const std::vector<config::Case>& cases, const scene::Catalog& catalog) {
+                   std::span<const config::Case> cases, const scene::Catalog& catalog) {
     struct Use {
         const Node* reference;
         const config::Case* item;
@@ -254,46 +258,119 @@ void sayRows(const Context& context, const std::string& file, const config::Expe
         rows > most ? ": it will stop before its end; measure it in parts (--only, --shard)" : "");
 }
 
+/// A record, another number each, of all that the cases may give: what a table shows that nobody
+/// laid out. None where passes are not known by name.
+std::vector<records::Record> foreseen(std::span<config::Case> cases,
+                                      const config::Outputs& outputs) {
+    using Of = config::MetricInfo::Of;
+    const auto isOpen = [](const config::PassInfo& pass) { return pass.name.ends_with('*'); };
+    if (std::ranges::any_of(outputs.passes, isOpen)) return {};
+    std::vector<records::Record> all;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        cases[i].id = std::to_string(i);
+        records::Record record;
+        record.caseId = cases[i].id;
+        record.table = cases[i].experiment;
+        record.lane = "timing";
+        const auto add = [&](const config::MetricInfo& metric, const std::string& pass) {
+            record.metric = metric.name;
+            record.unit = metric.unit;
+            record.pass = pass;
+            record.value = 1.0 + static_cast<double>(all.size());
+            all.push_back(record);
+        };
+        for (const config::MetricInfo& metric : outputs.metrics) {
+            if (metric.of != Of::Pass) add(metric, "");
+            if (metric.of == Of::Whole) continue;
+            for (const config::PassInfo& pass : outputs.passes) add(metric, pass.name);
+        }
+    }
+    return all;
+}
+
+/// The table before anything is recorded. Throws Error for a column that a claim reads and that the
+/// cases will not give.
+tables::Table tableBefore(const Context& context, const config::Experiment& experiment,
+                          std::span<const config::Case> cases) {
+    if (!experiment.hasDefaultLayout() || experiment.claims.empty()) {
+        return tables::buildTable(experiment, cases, {});
+    }
+    config::Experiment known = experiment;
+    known.outputs =
+        technique::outputsOf(technique::findTechnique(context.techniques, experiment.technique, {}),
+                             config::programOf(experiment));
+    std::vector<config::Case> own(cases.begin(), cases.end());
+    const std::vector<records::Record> records = foreseen(own, known.outputs);
+    tables::Table table = tables::buildTable(known, own, records);
+    for (const config::ClaimSpec& claim : experiment.claims) {
+        const std::string absent = records.empty() ? "" : claims::whatIsAbsent(claim, table);
+        if (absent.empty()) continue;
+        throw Error(claim.location, fmt::format("claim '{}': {}", claim.id, absent));
+    }
+    return table;
+}
+
+/// Says what a file comes to, and gives its cases.
+std::vector<config::Case> checkFile(const Context& context, const Selection& selection,
+                                    const scene::Catalog& catalog, const std::string& file) {
+    const run::Request request{{file}, selection.sets, selection.sweeps, {}, selection.device};
+    config::Experiment experiment = loadExperiments(request, selection.profile).front();
+    std::vector<config::Case> cases = run::resolveCases(experiment, catalog, context.techniques, 1);
+    run::bindAssumptions(experiment, cases, catalog, context.techniques);
+    requireSound(context, catalog, experiment, cases);
+    sayAbsent(file, cases);
+    say("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, cases.size(),
+        cases.size() == 1 ? "" : "s", experiment.claims.size(),
+        experiment.claims.size() == 1 ? "" : "s");
+    sayRows(context, file, experiment, cases);
+    const bool isReduced =
+        !selection.sets.empty() || !selection.sweeps.empty() || selection.profile != "full";
+    if (isReduced) {
+        sayUnread(context, catalog, file, experiment, tables::buildTable(experiment, cases, {}));
+    }
+    return cases;
+}
+
 }  // namespace
+
+void requireSound(const Context& context, const scene::Catalog& catalog,
+                  const config::Experiment& experiment, std::span<const config::Case> cases) {
+    run::requireRanges(experiment, {cases.begin(), cases.end()}, catalog, context.techniques);
+    requireScenes(context, experiment, cases, catalog);
+    requireProfiles(context, catalog, experiment.file);
+    for (const char* section : {"claims", "assumptions", "printed"}) {
+        const Node* node = experiment.document.find(section);
+        if (node) requireNamedSweeps(*node);
+    }
+    if (const Node* given = experiment.document.find("claims")) requireFindings(*given);
+    const tables::Table table = tableBefore(context, experiment, cases);
+    tables::requireToldApart(experiment, table);
+    claims::requireProvenance(experiment, table);
+    run::resolvePaperCases(experiment, catalog, context.techniques);
+}
 
 int check(const Context& context, const Selection& selection) {
     const scene::Catalog catalog = openCatalog(context, selection.assets);
-    run::Request request{{}, selection.sets, selection.sweeps, {}, selection.device};
     run::Plan all;
+    int code = kExitOk;
     for (const std::string& file : selection.names) {
-        request.configs = {file};
-        config::Experiment experiment = loadExperiments(request, selection.profile).front();
-        const std::vector<config::Case> cases =
-            run::resolveCases(experiment, catalog, context.techniques, 1);
-        run::bindAssumptions(experiment, cases, catalog, context.techniques);
-        run::requireRanges(experiment, cases, catalog, context.techniques);
-        requireScenes(context, experiment, cases, catalog);
-        requireProfiles(context, catalog, file);
-        for (const char* section : {"claims", "assumptions", "printed"}) {
-            const Node* node = experiment.document.find(section);
-            if (node) requireNamedSweeps(*node);
+        try {
+            std::vector<config::Case> cases = checkFile(context, selection, catalog, file);
+            if (!selection.only.empty()) std::ranges::move(cases, std::back_inserter(all.cases));
+        } catch (const Error& error) {
+            // What is wrong in one file says nothing of the next.
+            std::fflush(stdout);
+            tell("gfxrepro: {}\n", error.what());
+            annotate(error);
+            code = kExitUsage;
         }
-        if (const Node* given = experiment.document.find("claims")) requireFindings(*given);
-        sayAbsent(file, cases);
-        const std::size_t caseCount = cases.size();
-        const tables::Table table = tables::buildTable(experiment, cases, {});
-        claims::requireProvenance(experiment, table);
-        run::resolvePaperCases(experiment, catalog, context.techniques);
-        say("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, caseCount,
-            caseCount == 1 ? "" : "s", experiment.claims.size(),
-            experiment.claims.size() == 1 ? "" : "s");
-        sayRows(context, file, experiment, cases);
-        const bool isReduced =
-            !selection.sets.empty() || !selection.sweeps.empty() || selection.profile != "full";
-        if (isReduced) sayUnread(context, catalog, file, experiment, table);
-        if (!selection.only.empty()) all.cases.insert(all.cases.end(), cases.begin(), cases.end());
     }
-    if (!selection.only.empty()) {
+    if (!selection.only.empty() && code == kExitOk) {
         const std::size_t caseCount = all.cases.size();
         run::keepOnly(all, selection.only);
         say("--only leaves {} of {} cases\n", all.cases.size(), caseCount);
     }
-    return kExitOk;
+    return code;
 }
 
 }  // namespace gfxrepro::cli

@@ -59,14 +59,6 @@ bool isConfig(const fs::path& file) {
     return file.extension() == ".yaml";
 }
 
-/// Before anything is measured, for which it would be too late.
-void requireJudgeable(const run::Plan& plan) {
-    for (const config::Experiment& experiment : plan.experiments) {
-        if (experiment.claims.empty()) continue;
-        claims::requireJudgeable(experiment, tables::buildTable(experiment, plan.cases, {}));
-    }
-}
-
 }  // namespace
 
 std::vector<fs::path> runFolders() {
@@ -215,11 +207,19 @@ run::Plan planFor(const Context& context, const run::Request& request, const std
                   const std::string& assets, const std::string& deviceClass) {
     const std::vector<config::Experiment> experiments = loadExperiments(request, profile);
     const bool needsNone = deviceFor(context, request.device, experiments) == "none";
-    run::Plan plan = run::makePlan(experiments, openCatalog(context, assets), context.techniques,
-                                   profile, needsNone ? "software" : deviceClass, kSeed);
+    const scene::Catalog catalog = openCatalog(context, assets);
+    run::Plan plan = run::makePlan(experiments, catalog, context.techniques, profile,
+                                   needsNone ? "software" : deviceClass, kSeed);
     plan.request = request;
+    for (const config::Experiment& experiment : plan.experiments) {
+        const auto isOwn = [&](const config::Case& item) {
+            return item.experiment == experiment.id;
+        };
+        const auto first = std::ranges::find_if(plan.cases, isOwn);
+        const auto end = std::find_if_not(first, plan.cases.end(), isOwn);
+        requireSound(context, catalog, experiment, std::span(first, end));
+    }
     run::keepOnly(plan, request.only);
-    requireJudgeable(plan);
     return plan;
 }
 

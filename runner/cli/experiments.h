@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,12 @@ std::string deviceClassFor(const Selection& selection);
 std::string deviceFor(const Context& context, const std::string& asked,
                       const std::vector<config::Experiment>& experiments);
 
+/// Throws Error for what is wrong in an experiment of these cases, all that it has, so that nothing
+/// is measured in vain.
+void requireSound(const Context& context, const scene::Catalog& catalog,
+                  const config::Experiment& experiment, std::span<const config::Case> cases);
+
+/// Of sound experiments.
 run::Plan planFor(const Context& context, const run::Request& request, const std::string& profile,
                   const std::string& assets, const std::string& deviceClass);
 

@@ -32,11 +32,7 @@ Node paramsOf(const Node& scene, const Experiment& experiment) {
 }  // namespace
 
 int outputSize(const Node& value, std::string_view axis) {
-    const auto size = value.tryInteger();
-    if (!size || *size < 1 || *size > kMaxOutputPx) {
-        throwNotAllowed(value, axis, "a whole number, 1 … 16384 pixels");
-    }
-    return static_cast<int>(*size);
+    return static_cast<int>(numberIn(value, kOutputSizesPx, axis));
 }
 
 std::vector<Case> expandCases(const Experiment& experiment) {
@@ -131,10 +127,12 @@ int Measure::certainRounds() const {
 }
 
 std::pair<int, int> readOutput(Params& params) {
-    const int width =
-        params.getInt("width", 512, {"width of the image", "pixels", 1, kMaxOutputPx});
-    const int height =
-        params.getInt("height", 512, {"height of the image", "pixels", 1, kMaxOutputPx});
+    const auto side = [&](const char* name, const char* doc) {
+        return params.getInt(name, kDefaultOutputPx,
+                             {doc, "pixels", kOutputSizesPx.least, kOutputSizesPx.most});
+    };
+    const int width = side("width", "width of the image");
+    const int height = side("height", "height of the image");
     params.finish();
     return {width, height};
 }
@@ -179,8 +177,9 @@ Measure readMeasure(Params& params, Measure measure) {
         {"of all rounds of the file but those that 'processes' asks for: none is begun to end "
          "later",
          "seconds", 0, 1e9});
-    measure.frames = params.getInt("frames", measure.frames,
-                                   {"frames of a path; each is repeated", "", 1, kMax});
+    measure.frames = params.getInt(
+        "frames", measure.frames,
+        {"frames of a path; each is repeated", "", kFrameCounts.least, kFrameCounts.most});
     const bool isByProcess = measure.seeds == Measure::Seeds::Process;
     const Measure::Seeds seeds = params.getEnum(
         "seeds", isByProcess ? Measure::Seeds::Process : Measure::Seeds::Case, kSeeds,
@@ -188,9 +187,10 @@ Measure readMeasure(Params& params, Measure measure) {
          "latter "
          "with truths of other seeds: process"});
     if (measure.seeds != Measure::Seeds::None || params.isGiven("seeds")) measure.seeds = seeds;
-    measure.sceneSeeds = params.getInt(
-        "scene_seeds", measure.sceneSeeds,
-        {"seeds of a generated scene, from the catalogue's on: a case each", "", 1, 1000});
+    measure.sceneSeeds =
+        params.getInt("scene_seeds", measure.sceneSeeds,
+                      {"seeds of a generated scene, from the catalogue's on: a case each", "", 1,
+                       kMostSceneSample + 1});
     if (measure.sceneSeeds > 1 && measure.lane == Measure::Lane::Timing) {
         throw Error(params.locationOf("scene_seeds"),
                     "'scene_seeds' needs the quality lane: a time varies by the process");

@@ -7,12 +7,18 @@
 #include <string>
 #include <string_view>
 
+#include "engine/core/key_schema.h"
 #include "engine/core/node.h"
 
 namespace gfxrepro::config {
 
 /// Processes that a 95 % interval of a time takes (metrics::kFewestForInterval).
 inline constexpr int kFewestRounds = 6;
+
+// What a case may have, in its config, swept, printed or varied by an assumption.
+inline constexpr NumberRange kOutputSizesPx{.least = 1, .most = 16384, .isWhole = true};
+inline constexpr NumberRange kFrameCounts{.least = 1, .most = 1'000'000, .isWhole = true};
+inline constexpr int kDefaultOutputPx = 512;
 
 /// How often and how a case is measured.
 struct Measure {

@@ -1,12 +1,14 @@
 // `claims:` — what all of them have. What each kind has is in runner/claims/kinds.
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include <fmt/format.h>
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
 #include "runner/claims/kinds/kind.h"
+#include "runner/claims/kinds/operands.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 
@@ -21,19 +23,15 @@ using BoundSource = ClaimSpec::BoundSource;
 using TimeKind = ClaimSpec::TimeKind;
 
 /// Which of `names` the key has; none without it.
-template <std::size_t kCount>
 std::optional<std::size_t> choiceIn(const Node& map, const char* key, const std::string& what,
-                                    const std::array<std::string_view, kCount>& names) {
+                                    std::span<const std::string_view> names) {
     const Node* node = map.find(key);
     if (!node) return std::nullopt;
-    const auto found = std::ranges::find(names, node->isScalar() ? node->text() : "");
-    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-    throwNotAllowed(*node, what + ": " + key, joined(Names(names.begin(), names.end()), " | "));
+    return choiceOf(*node, names, what + ": " + key);
 }
 
-template <std::size_t kCount>
 std::optional<std::string> nameIn(const Node& map, const char* key, const std::string& what,
-                                  const std::array<std::string_view, kCount>& names) {
+                                  std::span<const std::string_view> names) {
     const auto choice = choiceIn(map, key, what, names);
     return choice ? std::optional<std::string>(names[*choice]) : std::nullopt;
 }
@@ -104,13 +102,12 @@ class ClaimParser {
         for (std::string& key : claim_.kind->section.keyNames()) allowed.push_back(std::move(key));
         requireKeys(node_, what_, allowed);
         readCommon();
-        const Node operands = withoutAxis(*node_.find(name));
-        if (const Node* at = node_.find("at")) {
-            claim_.at = readRowFilter(*at, what_ + ": at", names_);
-        }
-        claim_.kind->read({node_, operands, names_.rowAxes, names_.columns, names_.hasAllColumns,
-                           hasPrinted_, what_, claim_.location},
-                          claim_);
+        if (const Node* at = node_.find("at")) readAt(*at);
+        claim_.keys = node_;
+        claim_.kind->read(
+            {node_, *node_.find(name), names_.rowAxes, names_.rowValues, names_.columns,
+             names_.hasAllColumns, hasPrinted_, what_, claim_.location},
+            claim_);
         readProvenance(isOfDocument);
         return std::move(claim_);
     }
@@ -147,13 +144,23 @@ class ClaimParser {
                 throwNotAllowed(*same, what_ + ": same_as", "TABLE CLAIM");
             }
         }
-        if (const Node* across = node_.find("across")) {
-            readAcross(*across, lineOf(*across, what_ + ": across"));
+        if (const Node* across = node_.find("across")) readAcross(*across);
+    }
+
+    void readAt(const Node& at) {
+        const bool isOfColumns = at.isMap() && at.find(kColumnAxis);
+        if (isOfColumns && std::ranges::count(names_.rowAxes, kColumnAxis) == 0) {
+            throw Error(at.keyLocation(kColumnAxis),
+                        fmt::format("{0}: at: '{1}' is of a claim across a row axis: add "
+                                    "'across: AXIS' ({2})",
+                                    what_, kColumnAxis, joined(names_.rowAxes, " | ")));
         }
+        claim_.at = readRowFilter(at, what_ + ": at", names_);
     }
 
     /// From here on the axis and the columns have changed places.
-    void readAcross(const Node& node, const std::string& axis) {
+    void readAcross(const Node& node) {
+        const std::string axis = lineOf(node, what_ + ": across");
         const auto found = std::ranges::find(names_.rowAxes, axis);
         if (found == names_.rowAxes.end()) {
             throwNotAllowed(node, what_ + ": across", joined(names_.rowAxes, " | "));
@@ -171,28 +178,6 @@ class ClaimParser {
         names_.columns.clear();
         if (!names_.hasAllColumns) return;
         for (const Node& value : known->second) names_.columns.push_back(value.text());
-    }
-
-    /// The labels of a list whose items name their row axis, [axis=a, axis=b], which is `across`
-    /// then; other operands as they are.
-    Node withoutAxis(const Node& operands) {
-        if (!operands.isSequence() || operands.items().empty() || claim_.across) return operands;
-        const auto axisOf = [&](const Node& item) {
-            const std::string& text = lineOf(item, what_);
-            return text.substr(0, std::min(text.find('='), text.size()));
-        };
-        const std::string axis = axisOf(operands.items()[0]);
-        if (std::ranges::find(names_.rowAxes, axis) == names_.rowAxes.end()) return operands;
-        Node::Sequence labels;
-        for (const Node& item : operands.items()) {
-            if (axisOf(item) != axis || item.text() == axis) {
-                throwNotAllowed(item, what_, axis + "=LABEL, as the others");
-            }
-            labels.push_back(Node::scalar(std::string(trimmed(item.text().substr(axis.size() + 1))),
-                                          item.location(), true));
-        }
-        readAcross(operands, axis);
-        return Node::sequence(std::move(labels), operands.location());
     }
 
     void readProvenance(bool isOfDocument) {
@@ -233,38 +218,38 @@ SchemaSection common() {
     return {
         "claim",
         "claims.ID.",
-        "Every claim has these, and exactly one of the keys in the tables below with what "
-        "belongs to it; a, b and c are expressions over columns ('gfxrepro describe TABLE' lists "
-        "them), with min, max, sum, avg, abs, sqrt, ln, log2 and such. Where columns are numbers, "
-        "a number alone is a column, and within an expression '8' in quotes is.",
+        fmt::format(
+            "Every claim has these, and exactly one of the keys in the tables below with what "
+            "belongs to it; a, b and c are expressions over columns ('gfxrepro describe TABLE' "
+            "lists them), with + - * / ^, comparisons, which are 1 or 0, and the functions {}. "
+            "Where columns are numbers, a number alone is a column, and within an expression '8' "
+            "in quotes is.",
+            fmt::join(claims::kFunctions, ", ")),
         {{"says", "line", "required", "the claim in the paper's sense", text()},
          {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
          {"across", "row axis", "none",
-          "a, b are its labels instead of columns; those become the row axis `column`. In a list "
-          "they may name it themselves: [axis=a, axis=b]",
+          "a, b are its values instead of columns: so rows are compared, column by column; `at` "
+          "may name the columns as `column`",
           text()},
-         {"profile", "quick | full | paper", "all", "the only profile it is judged in",
-          choice(kProfiles)},
-         {"origin", "document | derived | ours | definition | calibrated | existence",
-          "document, in a sweep ours",
-          "a statement of the document; read off its numbers; our aim; true by construction; "
-          "of an input fitted to it; or a statement that there is such a thing at all, which can "
-          "hardly fail. Only the first is counted",
-          choice(kOrigins)},
+         choiceKey("profile", kProfiles, "all", "the only profile it is judged in"),
+         choiceKey(
+             "origin", kOrigins, "document, in a sweep ours",
+             "a statement of the document; read off its numbers; our aim; true by construction; "
+             "of an input fitted to it; or a statement that there is such a thing at all, which "
+             "can hardly fail. Only the first is counted"),
          {"same_as", "TABLE CLAIM", "none",
           "another claim, of this table or another, that says the same truth: where both have one "
           "verdict, one is counted",
           text()},
-         {"bound_from", "print | text | ours", "ours, in a sweep none",
-          "where the number that it requires comes from; print: it is a printed value, or two "
-          "numbers about one, at most its half and its double, and met by all, unless it is an "
-          "aim of ours",
-          choice(kBoundSources)},
-         {"kind", "algorithmic | architectural | absolute", "absolute, or required",
-          "of a claim about time: counts of work decide; a GPU's units do; or times as such, "
-          "at the printed parameters, as where one is held against a number, which need not "
-          "say so. The last two are judged on a GPU only",
-          choice(kTimeKinds)},
+         choiceKey(
+             "bound_from", kBoundSources, "ours, in a sweep none",
+             "where the number that it requires comes from; print: it is a printed value, or two "
+             "numbers about one, at most its half and its double, and met by all, unless it is an "
+             "aim of ours"),
+         choiceKey("kind", kTimeKinds, "absolute, or required",
+                   "of a claim about time: counts of work decide; a GPU's units do; or times as "
+                   "such, at the printed parameters, as where one is held against a number, which "
+                   "need not say so. The last two are judged on a GPU only"),
          {"because", "known | [known]", "none",
           "where it is known not to hold, and why, one for each device, profile and kind of "
           "scenes, what is of more behind what is of less; another verdict than the known is "
@@ -278,17 +263,16 @@ SchemaSection because() {
         "because",
         "claims.ID.because.",
         "",
-        {{"verdict", "fails | ambiguous | unmeasured", "required", "what it comes to",
-          choice(kKnownVerdicts)},
+        {choiceKey("verdict", kKnownVerdicts, "required", "what it comes to"),
          {"reason", "line", "required",
           "the cause, in a sentence or two that a reader of the document understands", text()},
          {"shown_by", "PAGE.md#ANCHOR", "none",
           "the place in results/findings that has the numbers which prove it", text()},
-         {"device", "software | gpu", "any", "on this class of devices", choice(kDeviceClasses)},
-         {"profile", "quick | full | paper", "any", "in this profile", choice(kProfiles)},
-         {"scenes", "files | generated", "any",
-          "where all scenes were made of files, or none, as where a real model is not at hand",
-          choice(kSceneClasses)}},
+         choiceKey("device", kDeviceClasses, "any", "on this class of devices"),
+         choiceKey("profile", kProfiles, "any", "in this profile"),
+         choiceKey(
+             "scenes", kSceneClasses, "any",
+             "where all scenes were made of files, or none, as where a real model is not at hand")},
         false};
 }
 

@@ -231,6 +231,18 @@ Measure::Seeds defaultSeeds(const Experiment& experiment) {
     return program.seedsByProcess ? Measure::Seeds::Process : Measure::Seeds::Case;
 }
 
+/// Of a program it is known which pictures there are.
+void requirePicture(const Node& name, const Experiment& experiment) {
+    if (programOf(experiment).isNull()) return;
+    Names known;
+    for (const ProgramPicture& picture : readProgram(programOf(experiment)).pictures) {
+        known.push_back(picture.name);
+    }
+    if (contains(known, name.text())) return;
+    throwNotAllowed(name, "shows",
+                    known.empty() ? "none, as the program leaves no images" : joined(known, " | "));
+}
+
 void readMeasurement(const Node& document, Experiment& experiment) {
     const auto section = [&](const char* key) {
         const Node* node = document.find(key);
@@ -253,6 +265,7 @@ void readMeasurement(const Node& document, Experiment& experiment) {
         if (!shows->isSequence()) throwNotAllowed(*shows, "shows", "a list of names of pictures");
         for (const Node& name : shows->items()) {
             experiment.shows.push_back(lineOf(name, "shows"));
+            requirePicture(name, experiment);
         }
     }
 }
@@ -320,6 +333,20 @@ std::map<std::string, std::string> labelsOf(const Node& document) {
     return labels;
 }
 
+/// Of a table that nobody laid out: a row a point of the sweep; columns are what is recorded.
+TableNames sweptNames(const std::vector<AxisPoint>& points, const Vocabulary& vocabulary) {
+    TableNames names;
+    names.hasAllColumns = false;
+    for (const AxisPoint& point : points) {
+        for (const auto& [axis, value] : point) {
+            if (contains(names.rowAxes, axis)) continue;
+            names.rowAxes.push_back(axis);
+            if (vocabulary.isComplete) names.rowValues[axis] = vocabulary.axes.at(axis);
+        }
+    }
+    return names;
+}
+
 /// Layout, and what is checked against it: printed values, claims, plots.
 void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     const Node* printed = document.find("printed");
@@ -332,12 +359,17 @@ void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     }
     const std::vector<AxisPoint> points = expandSweep(experiment.sweep);
     requireAxisNames(experiment.sweep, points);
+    const bool isOwn = experiment.kind == Experiment::Kind::Sweep;
     for (const char* key : {"fit", "claims", "plots"}) {
-        if (document.find(key) && !layout) {
-            throw Error(document.keyLocation(key), std::string("'") + key + "' without 'layout'");
-        }
+        if (!document.find(key) || layout || (isOwn && key == std::string_view("claims"))) continue;
+        throw Error(document.keyLocation(key), std::string("'") + key + "' without 'layout'");
     }
     if (!layout) {
+        if (claims) {
+            const TableNames names =
+                sweptNames(points, vocabularyOf(experiment, points, isComplete));
+            experiment.claims = readClaims(*claims, names, false, false);
+        }
         if (!printed) return;
         if (printed->find("values")) {
             throw Error(printed->keyLocation("values"), "printed: 'values' without 'layout'");
@@ -462,7 +494,7 @@ SchemaSection content() {
         "",
         "What is measured and shown.",
         {{"title", "line", "required", "what is shown, in the paper's words", text()},
-         {"technique", "name", "none",
+         {"technique", "name", fmt::format("none, with program {}", kProgramTechnique),
           "what measures; `imported`: numbers that `gfxrepro import` takes; without it the file is "
           "only `printed`",
           text()},
@@ -484,7 +516,8 @@ SchemaSection content() {
          {"params_instead", "{name: value}", "{}",
           "takes the place of a parameter's value or default in the cases that take it",
           mapOf(anything())},
-         {"output", "map", "512 × 512", "size of the image", refTo("output")},
+         {"output", "map", fmt::format("{0} × {0}", kDefaultOutputPx), "size of the image",
+          refTo("output")},
          {"sweep", "{axis: values}", "{}", "axes multiply: each point is a case", refTo("sweep")},
          {"measure", "map",
           "once; where times are shown, and of sweep_of without layout: six rounds, or a minute",
@@ -500,7 +533,9 @@ SchemaSection content() {
          {"layout", "map", "none", "what the table looks like", refTo("layout")},
          {"printed", "map", "none", "what the paper printed; never reaches a worker",
           refTo("printed")},
-         {"claims", "{ID: claim}", "{}", "what must follow from the numbers",
+         {"claims", "{ID: claim}", "{}",
+          "what must follow from the numbers; of sweep_of without layout, too, whose table has the "
+          "columns that it shows",
           mapOf(refTo("claim_part"))},
          {"plots", "[plot]", "[]", "curves of the table's numbers, with their intervals",
           listOf(refTo("plot"))},
@@ -532,8 +567,10 @@ SchemaSection assumption() {
             "",
             {{"value", "value", "the cases'",
               "what is taken: of free text alone, a parameter's is filled in", anything()},
-             {"range", "[values] | [first, last] | {scene: [scenes]}", "none",
-              "what `gfxrepro sensitivity` tries instead; a parameter's as it allows", anything()},
+             {"range", "[values] | [first, last] | {NAME: [names]}", "none",
+              "what `gfxrepro sensitivity` tries instead: of a parameter as it allows; of scenes, "
+              "for each NAME what takes its place",
+              anything()},
              {"unit", "line", "the parameter's", "of value and range: of free text alone", text()},
              {"why", "line", "required", "why this value", text()}},
             false};

@@ -48,6 +48,9 @@ struct Equal {
     double is = 0.0;
 };
 
+/// How a cell is written where no part of its layout says.
+inline constexpr const char* kDefaultCellFormat = "{median:.4g}";
+
 /// What a cell shows: chosen records and their summary. Row axes, column axes and `cell` each give
 /// a part; the column's part wins over the row's, the row's over `cell`.
 struct Selection {
@@ -98,10 +101,8 @@ struct Printed {
 /// Of row axes, these values: which rows are read.
 using RowFilter = std::vector<std::pair<std::string, std::vector<Node>>>;
 
-/// What a claim calls the axis of the columns when it compares rows (`across`).
-inline constexpr const char* kColumnAxis = "column";
-
 using claims::ClaimSpec;
+using claims::kColumnAxis;
 /// "document", "derived", …: the names in configs.
 std::string_view originName(ClaimSpec::Origin origin);
 std::string_view boundSourceName(ClaimSpec::BoundSource source);
@@ -154,8 +155,8 @@ struct Experiment {
     Node scene;         // null, or a reference
     Node sceneParams = Node::map({});   // a map: of the generated scenes, laid over the catalogue's
     Node sceneInstead = Node::map({});  // a map: catalogued scene → the one that takes its place
-    int outputWidthPx = 512;
-    int outputHeightPx = 512;
+    int outputWidthPx = kDefaultOutputPx;
+    int outputHeightPx = kDefaultOutputPx;
     Node sweep;
     Measure measure;
     std::map<std::string, std::string> labels;  // what people read for a name
@@ -203,6 +204,9 @@ inline bool goesByClock(const Experiment& experiment) {
 /// line; both axes of such a plot are logarithmic. `plot`: its place in experiment.plots. None
 /// where it says none.
 std::optional<double> referenceSlope(const Experiment& experiment, std::size_t plot);
+
+/// Begins the place of what was given there.
+inline constexpr const char* kCommandLine = "command line, ";
 
 /// `key=value` from the command line; the value is YAML. Keys without a section (`resolution=64`)
 /// mean params.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <limits>
 #include <regex>
@@ -28,9 +29,9 @@ bool isSnakeCase(std::string_view name) {
            });
 }
 
-double optionalNumber(const Node& map, const char* key, double fallback) {
+double optionalNumber(const Node& map, const char* key, const std::string& what, double fallback) {
     const Node* node = map.find(key);
-    return node ? node->asDouble() : fallback;
+    return node ? numberIn(*node, {}, what + ": " + key) : fallback;
 }
 
 /// As the default looks.
@@ -84,8 +85,8 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
     param.doc = optionalLine(map, "doc", what);
     param.unit = optionalLine(map, "unit", what);
     param.type = typeOf(map, *fallback);
-    param.min = optionalNumber(map, "min", -kNoLimit);
-    param.max = optionalNumber(map, "max", kNoLimit);
+    param.min = optionalNumber(map, "min", what, -kNoLimit);
+    param.max = optionalNumber(map, "max", what, kNoLimit);
     const bool isNumber = param.type == ParamType::Integer || param.type == ParamType::Number;
     for (const char* key : {"min", "max"}) {
         if (map.find(key) && !isNumber) {
@@ -192,21 +193,20 @@ Names argumentsOf(const Node& node, std::string_view what, const Names& known) {
     return arguments;
 }
 
+using Two = std::array<std::string_view, 2>;
+constexpr Two kFramesOfARun = {"one", "all"}, kSeedsOf = {"case", "process"};
+constexpr Two kBetter = {"lower", "higher"};
+
 /// Whether the text at `key` is the second of the two; where it is not there the first counts.
-bool isSecond(const Node& map, const char* key, const char* first, const char* second) {
+bool isSecond(const Node& map, const char* key, const Two& names) {
     const Node* node = map.find(key);
-    if (!node || (node->isScalar() && node->text() == first)) return false;
-    if (node->isScalar() && node->text() == second) return true;
-    throwNotAllowed(*node, std::string("program: ") + key, std::string(first) + ", " + second);
+    return node && choiceOf(*node, names, std::string("program: ") + key) == 1;
 }
 
 Better betterOf(const Node& metric, const std::string& what) {
     const Node* better = metric.find("better");
     if (!better) return Better::Neither;
-    const std::string text = better->isScalar() ? better->text() : "";
-    if (text == "lower") return Better::Lower;
-    if (text == "higher") return Better::Higher;
-    throwNotAllowed(*better, what + ": better", "lower, higher");
+    return choiceOf(*better, kBetter, what + ": better") == 0 ? Better::Lower : Better::Higher;
 }
 
 void readMetrics(const Node& metrics, ExternalProgram& program) {
@@ -227,7 +227,8 @@ void readMetrics(const Node& metrics, ExternalProgram& program) {
         program.outputs.metrics.push_back({name, lineOf(*unit, what + ": unit"),
                                            optionalLine(map, "doc", what), betterOf(map, what)});
         const Node* optional = map.find("optional");
-        if (optional && optional->asBool()) program.optionalMetrics.push_back(name);
+        if (optional && flagOf(*optional, what + ": optional"))
+            program.optionalMetrics.push_back(name);
         const Node* pattern = map.find("pattern");
         if (!pattern) continue;
         if (program.givesAllFrames) {
@@ -390,8 +391,8 @@ ExternalProgram readProgram(const Node& node) {
         if (const Node* found = node.find(key)) read(*found);
     };
     section("here", [&](const Node& here) { program.here = lineOf(here, "program: here"); });
-    section("gpu", [&](const Node& gpu) { program.usesGpu = gpu.asBool(); });
-    program.givesAllFrames = isSecond(node, "frames", "one", "all");
+    section("gpu", [&](const Node& gpu) { program.usesGpu = flagOf(gpu, "program: gpu"); });
+    program.givesAllFrames = isSecond(node, "frames", kFramesOfARun);
     Names known = reservedNames();
     section("params", [&](const Node& params) {
         if (!params.isMap()) throwNotAllowed(params, "program: params", "a map {name: parameter}");
@@ -432,7 +433,9 @@ ExternalProgram readProgram(const Node& node) {
         if (!list) return;
         const std::string what = std::string("program: ") + key;
         if (!list->isSequence()) throwNotAllowed(*list, what, "a list of names");
-        for (const Node& name : list->items()) names.push_back(lineOf(name, what));
+        for (const Node& name : list->items()) {
+            names.push_back(templateOf(name, what, {placeholder::kHere}));
+        }
     };
     listOf("starts", program.starts);
     listOf("files", program.files);
@@ -440,7 +443,7 @@ ExternalProgram readProgram(const Node& node) {
     section("passes", [&](const Node& passes) { readPasses(passes, program); });
     section("images", [&](const Node& images) { readPictures(images, known, program); });
     program.seedsByProcess =
-        node.find("seeds") ? isSecond(node, "seeds", "case", "process") : hasRandomErrors(program);
+        node.find("seeds") ? isSecond(node, "seeds", kSeedsOf) : hasRandomErrors(program);
     for (const ProgramParam& param : program.params) {
         if (program.uses(param.name)) continue;
         throw Error(
@@ -478,12 +481,11 @@ std::vector<SchemaSection> programKeys() {
           {"files", "[file]", "[]",
            "what else its outcome depends on, beside what arguments name from {here} on",
            listOf(text())},
-          {"frames", "one | all", "one",
-           "what a run of it gives: one frame, {frame}; or all {frames} of the case, each line and "
-           "picture with its own; the run's time is then shared out among them",
-           choice({"one", "all"})},
-          {"seeds", "case | process", "process of one with {seed} and truths of other seeds",
-           "what `measure.seeds` is where it is not given", choice({"case", "process"})},
+          choiceKey("frames", kFramesOfARun, "one",
+                    "what a run of it gives: one frame, {frame}; or all {frames} of the case, each "
+                    "line and picture with its own; the run's time is then shared out among them"),
+          choiceKey("seeds", kSeedsOf, "process of one with {seed} and truths of other seeds",
+                    "what `measure.seeds` is where it is not given"),
           {"gpu", "boolean", "false", "whether it works on the GPU: then a run asks which that is",
            boolean()},
           {"here", "folder", "that of this file", "what {here} is", text()}}},
@@ -493,15 +495,15 @@ std::vector<SchemaSection> programKeys() {
          {{"default", "value", "required",
            "in cases that do not say: 4 is a whole number, 4.0 any number, \"4\" text", text()},
           {"unit", "text", "\"\"", "spelt out", text()},
-          {"min", "number", "none", "the least that is allowed", number()},
-          {"max", "number", "none", "the most that is allowed", number()},
+          numberKey("min", {}, "none", "the least that is allowed"),
+          numberKey("max", {}, "none", "the most that is allowed"),
           {"choices", "[values]", "none", "all that is allowed", listOf(text(), 1)},
           {"doc", "line", "\"\"", "what it means", text()}}},
         {"program_metric",
          "program.metrics.NAME.",
          "A text alone is the unit. A value is given once a pass in each run of the program.",
          {{"unit", "text", "required", "spelt out: byte, ms, triangle; 1 for none", text()},
-          {"better", "lower | higher", "none", "which way is better", choice({"lower", "higher"})},
+          choiceKey("better", kBetter, "none", "which way is better"),
           {"pattern", "regular expression", "none",
            "reads it off what the program prints: the number is its first group, the last match "
            "counts",

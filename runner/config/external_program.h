@@ -17,6 +17,9 @@
 
 namespace gfxrepro::config {
 
+/// The technique of a config that has a program and names none.
+inline constexpr const char* kProgramTechnique = "external";
+
 /// What placeholders stand for, by their names.
 using Placeholders = std::map<std::string, std::string>;
 

@@ -106,7 +106,8 @@ std::vector<ProgramFile> filesOf(const ExternalProgram& program, const Placehold
     const fs::path here = program.here;
     std::vector<ProgramFile> files = {{name, findExecutable(name, here)}};
     for (const std::string& other : program.starts) {
-        files.push_back({other, findExecutable(other, here)});
+        const std::string started = filled(other, values);
+        files.push_back({started, findExecutable(started, here)});
     }
     const auto add = [&](const fs::path& path) {
         const bool isKnown = std::ranges::any_of(
@@ -125,7 +126,7 @@ std::vector<ProgramFile> filesOf(const ExternalProgram& program, const Placehold
     for (const auto& [variable, text] : program.environment) addNamed(text);
     for (const ProgramPicture& picture : program.pictures) addNamed(picture.truthFile);
     for (const std::string& file : program.files) {
-        const fs::path path = (here / file).lexically_normal();
+        const fs::path path = (here / filled(file, values)).lexically_normal();
         if (!fs::is_regular_file(path)) {
             throw Error("program: files: there is no file " + path.string());
         }
@@ -143,7 +144,7 @@ void requireFiles(const Node& node, const ExternalProgram& program, const Placeh
     if (const Node* files = node.find("files")) {
         for (const Node& file : files->items()) {
             require(file, "program: files",
-                    (fs::path(program.here) / file.text()).lexically_normal());
+                    (fs::path(program.here) / filled(file.text(), values)).lexically_normal());
         }
     }
     for (const ProgramPicture& picture : program.pictures) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "engine/core/node.h"
 #include "runner/config/schema.h"
@@ -222,7 +221,8 @@ Json experimentOrPreset(bool isPreset, const SchemaNames& names) {
             identities.push_back({{"required", Json::array({key})}});
         }
         root["oneOf"] = std::move(identities);
-        root.update(needsOneOf({{"title", "technique"}, {"title", "printed"}, {"extends"}}));
+        root.update(needsOneOf(
+            {{"title", "technique"}, {"title", "program"}, {"title", "printed"}, {"extends"}}));
     }
     root["definitions"] = definitionsOf(file);
     root["allOf"] = Json::array();
@@ -257,17 +257,6 @@ Json spellingsOf(const std::vector<std::string>& names) {
     return {{"enum", std::move(values)}};
 }
 
-Json numberType(const char* type, const ParamInfo& info) {
-    Json number = {{"type", type}};
-    const auto bound = [](double value) {
-        const bool isWhole = value == std::floor(value) && std::abs(value) < 1e15;
-        return isWhole ? Json(std::llround(value)) : Json(value);
-    };
-    if (std::isfinite(info.min)) number["minimum"] = bound(info.min);
-    if (std::isfinite(info.max)) number["maximum"] = bound(info.max);
-    return number;
-}
-
 /// On one line what fits there: people read it, and the differences between two versions.
 std::string dumped(const Json& json, std::size_t indent) {
     constexpr std::size_t kMaxColumns = 200;
@@ -285,12 +274,11 @@ std::string dumped(const Json& json, std::size_t indent) {
 }  // namespace
 
 Json jsonTypeOf(const ParamInfo& info) {
-    if (info.count > 0) {
-        return tupleOf(numberType("number", info), static_cast<int>(info.count));
-    }
+    const NumberRange range{info.min, info.max, false, false, info.type == "integer"};
+    if (info.count > 0) return tupleOf(number(range), static_cast<int>(info.count));
     if (!info.choices.empty()) return spellingsOf(info.choices);
     if (info.type == "boolean") return boolean();
-    if (info.type == "integer" || info.type == "number") return numberType(info.type.c_str(), info);
+    if (info.type == "integer" || info.type == "number") return number(range);
     return text();
 }
 

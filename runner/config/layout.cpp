@@ -13,6 +13,8 @@ namespace gfxrepro::config {
 
 namespace {
 
+constexpr NumberRange kScales{.least = 0, .isLeastExcluded = true};
+
 /// Case axes, and `frame`: the frames of a path.
 Names referableAxes(const Vocabulary& vocabulary) {
     Names names = vocabulary.axisNames();
@@ -34,7 +36,9 @@ Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
         requireCellFormat(*format);
         selection.format = format->text();
     }
-    if (const Node* scale = node.find("scale")) selection.scale = scale->asDouble();
+    if (const Node* scale = node.find("scale")) {
+        selection.scale = numberIn(*scale, kScales, "scale");
+    }
     if (const Node* equal = node.find("equal")) {
         requireKeys(*equal, "equal", keysOf("equal"));
         const std::string what = "equal";
@@ -238,7 +242,7 @@ Layout readLayout(const Node& node, const Vocabulary& vocabulary) {
         throw Error(node.location(), "layout has neither rows nor columns");
     }
     if (const Node* cell = node.find("cell")) layout.cell = readCell(*cell, vocabulary);
-    if (!layout.cell.format) layout.cell.format = "{median:.4g}";
+    if (!layout.cell.format) layout.cell.format = kDefaultCellFormat;
     if (!hasMetricEverywhere(layout)) {
         throw Error(layout.cell.location,
                     "layout: some cell has no metric; allowed: a metric in `cell`, or in every "
@@ -366,7 +370,8 @@ std::vector<SchemaSection> layoutKeys() {
            axesType},
           {"columns", "axis | [axes] | {label: selection}", "one column",
            "axes: declared above, or swept, a parameter, scene, frame", axesType},
-          {"cell", "format | selection", "{median:.4g}", "what every cell shows", selectionType}}},
+          {"cell", "format | selection", kDefaultCellFormat, "what every cell shows",
+           selectionType}}},
         {"selection",
          "selection.",
          "A selection is a metric, or a map of these; the column's part wins over the row's, the "
@@ -375,7 +380,7 @@ std::vector<SchemaSection> layoutKeys() {
           {"pass", "name", "whole case", "step of the algorithm", text()},
           {"format", "text", "none",
            fmt::format("{} in braces: {{mean:.2f}}", fmt::join(metrics::kStatistics, " ")), text()},
-          {"scale", "number", "1", "multiplies every value", number()},
+          numberKey("scale", kScales, "1", "multiplies every value"),
           {"of", "expression", "none",
            "of a column: computed, in each process, of columns before it; time[threads=1] / time "
            "reads the first of the row with that value",

@@ -314,6 +314,14 @@ fs::path configNamed(const Node& name, const fs::path& file, const fs::path& con
                 what + ": no file '" + name.text() + "' in " + configsFolder.string());
 }
 
+/// Who gives a program need not say what measures it.
+void addTechnique(Node& document) {
+    const Node* program = document.find("program");
+    if (!program || program->isNull() || document.find("technique")) return;
+    document.set("technique", Node::scalar(kProgramTechnique, program->location()),
+                 document.keyLocation("program"));
+}
+
 /// The experiment, with the printed cells that its fit names.
 Experiment readWhole(const Node& document, const fs::path& file, bool isComplete,
                      const fs::path& configsFolder) {
@@ -385,6 +393,7 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
         if (isDeclared) declared.push_back(Node::scalar(name));
     }
     document.set("profiles", Node::sequence(std::move(declared)));
+    addTechnique(document);
 
     // The file as it stands must be right whatever is chosen: only there are all names known.
     Node asItStands = document;

@@ -14,12 +14,15 @@ namespace gfxrepro::config {
 enum class Better { Neither, Lower, Higher };
 
 struct MetricInfo {
+    /// What a value is of: the whole frame or case, a pass, or either, as the technique gives it.
+    enum class Of { Whole, Pass, Either };
     std::string name;  // snake_case with its unit where it has one: "memory_bytes"
     std::string unit;  // spelt out: "voxel", "byte", "ms", "1"; of all its passes
     std::string doc;
     Better better = Better::Neither;
     /// Explains or checks others: a table without a layout leaves it to records.csv.
     bool isDetail = false;
+    Of of = Of::Either;
     /// Of what is done before the first frame, at least in part.
     bool isOfSetup = false;
 };

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
@@ -10,6 +10,8 @@
 namespace gfxrepro::config {
 
 namespace {
+
+constexpr std::array<std::string_view, 2> kPlotAxes = {"x", "y"};
 
 /// The first value of an axis that is no number, if its values are known.
 const Node* firstText(const std::string& axis, const TableNames& names) {
@@ -120,17 +122,16 @@ class PlotReader {
 
     void readLog(const Node& node) {
         for (const Node& item : listed(node)) {
-            const std::string name = item.isScalar() ? item.text() : "";
-            if (name != "x" && name != "y") throwNotAllowed(item, what_ + ": log", "x, y");
-            (name == "x" ? plot_.isLogX : plot_.isLogY) = true;
+            const std::string what = what_ + ": log";
+            const bool isX = choiceOf(item, kPlotAxes, what) == 0;
+            bool& isLog = isX ? plot_.isLogX : plot_.isLogY;
+            if (isLog) throw Error(item.location(), what + ": '" + item.text() + "' stands twice");
+            isLog = true;
         }
     }
 
     void requireSlope(const Node& node) const {
-        const std::optional<double> slope = node.tryDouble();
-        if (!slope || !std::isfinite(*slope)) {
-            throwNotAllowed(node, what_ + ": slope", "a number, the exponent of x");
-        }
+        (void)numberIn(node, {}, what_ + ": slope");
         if (plot_.isLogX && plot_.isLogY) return;
         throw Error(node.location(),
                     what_ +
@@ -194,7 +195,7 @@ SchemaSection plotKeys() {
               oneOrMore(text())},
              {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
              {"log", "x | y | [x, y]", "[]", "axes that are logarithmic",
-              oneOrMore(choice({"x", "y"}))},
+              anyOf({choice(kPlotAxes), setOf(choice(kPlotAxes))})},
              {"slope", "number", "none",
               "exponent of x that is expected: a dashed line through the mean of each curve's "
               "points, on two logarithmic axes",

@@ -68,8 +68,6 @@ void requireLabels(const Names& row, const Names& header, const Layout& layout,
     }
 }
 
-constexpr int kMostFrames = 1'000'000;  // as of measure.frames
-
 /// Parameters of the technique are known to the plan alone, which checks their names and values.
 Node::Map readAt(const Node& at) {
     if (!at.isMap()) throwNotAllowed(at, "printed.at", "a map {parameter: printed value}");
@@ -82,12 +80,8 @@ Node::Map readAt(const Node& at) {
                                                   "'; allowed: a parameter, scene, output.width, "
                                                   "output.height, measure.frames");
         }
-        const int most = name == "measure.frames" ? kMostFrames : kMaxOutputPx;
-        const long long size = value.tryInteger().value_or(0);
-        if (isSize && (size < 1 || size > most)) {
-            throwNotAllowed(value, "printed.at: " + name,
-                            fmt::format("a whole number, 1 … {}", most));
-        }
+        const NumberRange& range = name == "measure.frames" ? kFrameCounts : kOutputSizesPx;
+        if (isSize) (void)numberIn(value, range, "printed.at: " + name);
         values.emplace_back(name, value);
     }
     return values;

@@ -83,11 +83,6 @@ void requireNotFixed(const Experiment& experiment);
 /// `isComplete` as in Vocabulary.
 Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);
 
-/// Begins the place of what was given there.
-inline constexpr const char* kCommandLine = "command line, ";
-
-/// Most pixels along a side of the image.
-inline constexpr int kMaxOutputPx = 16384;
 /// Throws Error unless `value` is a side of the image; `axis` begins the message.
 int outputSize(const Node& value, std::string_view axis);
 

@@ -31,7 +31,8 @@ double countOfRange(const Node& range, double first, double last, double step) {
 
 void requireCount(double count, const SourceLocation& where, const std::string& what) {
     if (count > kMaxPoints) {
-        throw Error(where, fmt::format("{} has {:.0f} points; at most 1000000", what, count));
+        throw Error(where,
+                    fmt::format("{} has {:.0f} points; at most {}", what, count, kMaxPoints));
     }
 }
 
@@ -40,9 +41,9 @@ Node::Sequence valuesOfRange(const Node& range, const std::string& axis) {
     if (!range.isSequence() || range.items().size() < 2 || range.items().size() > 3) {
         throwNotAllowed(range, "range", "[first, last] or [first, last, step]");
     }
-    const double first = range.items()[0].asDouble();
-    const double last = range.items()[1].asDouble();
-    const double step = range.items().size() == 3 ? range.items()[2].asDouble() : 1.0;
+    const double first = numberIn(range.items()[0], {}, "range");
+    const double last = numberIn(range.items()[1], {}, "range");
+    const double step = range.items().size() == 3 ? numberIn(range.items()[2], {}, "range") : 1.0;
     const double count = countOfRange(range, first, last, step);
     requireCount(count, range.location(), "axis '" + axis + "'");
     Node::Sequence values;
@@ -58,8 +59,8 @@ Node::Sequence valuesOfRange(const Node& range, const std::string& axis) {
 Node::Sequence valuesOfLog2(const Node& ends) {
     constexpr std::string_view kAllowed = "[first, last], powers of two, the smaller first";
     if (!ends.isSequence() || ends.items().size() != 2) throwNotAllowed(ends, "log2", kAllowed);
-    const double first = ends.items()[0].asDouble();
-    const double last = ends.items()[1].asDouble();
+    const double first = numberIn(ends.items()[0], {}, "log2");
+    const double last = numberIn(ends.items()[1], {}, "log2");
     for (const double end : {first, last}) {
         int exponent = 0;
         if (std::frexp(end, &exponent) != 0.5) throwNotAllowed(ends, "log2", kAllowed);

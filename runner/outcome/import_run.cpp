@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "engine/core/checks.h"
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
@@ -27,7 +28,6 @@ namespace {
 
 constexpr const char* kOutputWidth = "output.width";
 constexpr const char* kOutputHeight = "output.height";
-constexpr int kMostOutputPx = 16384;
 
 /// "time ms (2).csv" → "time-ms--2-": a name that a config may have.
 std::string nameFrom(const fs::path& file) {
@@ -72,10 +72,8 @@ Node withLists(const Node& node) {
 int outputSize(const ImportedCase& given, const std::string& column, int absent) {
     const std::string text = given.cell(column);
     if (text.empty()) return absent;
-    const auto size = parseInteger(text);
-    if (size && *size >= 1 && *size <= kMostOutputPx) return static_cast<int>(*size);
-    throw Error(given.where, fmt::format("column '{}': '{}'; allowed: a whole number from 1 to {}",
-                                         column, text, kMostOutputPx));
+    return static_cast<int>(numberIn(Node::scalar(text, given.where), config::kOutputSizesPx,
+                                     fmt::format("column '{}'", column)));
 }
 
 std::optional<int> sampleOf(const ImportedCase& given) {

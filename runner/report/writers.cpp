@@ -41,6 +41,7 @@ std::vector<std::string> statisticsOf(const tables::Table& table, std::size_t co
 std::string_view atPrintedWord(const tables::Table& table, const tables::Cell& cell) {
     if (cell.values.empty() || !table.knowsPrintedParameters) return "";
     if (!cell.isAtPrintedParameters) return "no";
+    if (table.isPrintUnsaid) return "not known";
     return cell.openParameters.empty() ? "yes" : "as far as given";
 }
 
@@ -60,7 +61,7 @@ std::string tableCsv(const tables::Table& table) {
     std::string text;
     std::vector<std::vector<std::string>> statistics;
     // Asked once a column: all look at every row.
-    std::vector<bool> isPrinted, isCalibrated, hasMovedClock;
+    std::vector<bool> isPrinted, isCalibrated, hasMovedClock, isPooled;
     records::CsvRow header(text);
     for (const std::string& axis : table.rowAxes) header.text(axis);
     if (table.hasSources()) header.text("source");
@@ -80,6 +81,9 @@ std::string tableCsv(const tables::Table& table) {
         if (isCalibrated[i]) header.text(label + "_calibrated");
         hasMovedClock.push_back(tables::movedClock(table, i).has_value());
         if (hasMovedClock[i]) header.text(label + "_clock_low_ghz").text(label + "_clock_high_ghz");
+        isPooled.push_back(std::ranges::any_of(
+            table.rows, [&](const tables::TableRow& row) { return !row.cells[i].pooled.empty(); }));
+        if (isPooled[i]) header.text(label + "_taken_over");
     }
     if (table.isPublished) header.text("parameters");
     header.end();
@@ -108,6 +112,7 @@ std::string tableCsv(const tables::Table& table) {
             } else if (hasMovedClock[i]) {
                 line.text("").text("");
             }
+            if (isPooled[i]) line.text(tables::pooledText(cell));
         }
         if (table.isPublished) line.text(tables::parametersLine(table, row));
         line.end();
@@ -344,6 +349,7 @@ class LatexWriter {
         if (const std::string note = tables::seedNote(table_); !note.empty()) {
             addNote(escapeLatex(note));
         }
+        for (const std::string& note : tables::pooledNotes(table_)) addNote(escapeLatex(note));
         for (const std::string& note : runNotes_) {
             addNote(fmt::format("Note: {}.", escapeLatex(note)));
         }

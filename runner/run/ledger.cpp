@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "engine/core/checks.h"
 #include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/tables/case_records.h"
@@ -191,7 +192,7 @@ const Node::Sequence& listOf(const Assumption& assumption) {
     return assumption.range.items();
 }
 
-void requireWhole(const Assumption& assumption, long long low, long long high) {
+void requireWhole(const Assumption& assumption, const NumberRange& range) {
     const Node::Sequence& values = listOf(assumption);
     if (values.size() > 1 && std::ranges::all_of(values, [&](const Node& value) {
             return value.toFlowText() == values[0].toFlowText();
@@ -199,9 +200,7 @@ void requireWhole(const Assumption& assumption, long long low, long long high) {
         refuseRange(assumption, assumption.range, "one of more than one value");
     }
     for (const Node& value : values) {
-        const auto number = value.tryInteger();
-        if (number && *number >= low && *number <= high) continue;
-        refuseRange(assumption, value, fmt::format("whole numbers, {} … {}", low, high));
+        (void)numberIn(value, range, fmt::format("assumption '{}': range", assumption.name));
     }
 }
 
@@ -274,14 +273,15 @@ void requireScenes(const config::Experiment& experiment, const Assumption& assum
         const std::vector<std::string> measured = scenesOf(experiment);
         for (const auto& [scene, others] : range.entries()) {
             const Node name = Node::scalar(scene, range.keyLocation(scene));
-            requireCatalogued(assumption, name, catalog);
-            requireAlternatives(assumption, others, scene, catalog);
             // A preset names those of all files that extend it.
             const bool isOfFile = name.location().file.text() == experiment.file.string();
             if (isOfFile && std::ranges::find(measured, scene) == measured.end()) {
-                refuseRange(assumption, name,
-                            "scenes of " + experiment.id + ", " + joined(measured, " | "));
+                throw Error(name.location(),
+                            fmt::format("assumption '{}': range: '{}' is no scene of {}; it has {}",
+                                        assumption.name, scene, experiment.id, joined(measured)));
             }
+            requireCatalogued(assumption, name, catalog);
+            requireAlternatives(assumption, others, scene, catalog);
         }
         return;
     }
@@ -292,9 +292,9 @@ void requireScenes(const config::Experiment& experiment, const Assumption& assum
     }
     for (const Node& other : listOf(assumption)) requireCatalogued(assumption, other, catalog);
     if (names.size() > 1) {
-        refuseRange(
-            assumption, range,
-            fmt::format("{{scene: [scenes]}}, as {} has {} scenes", experiment.id, names.size()));
+        refuseRange(assumption, range,
+                    fmt::format("{{NAME: [names]}}, as {} has {} scenes: {}", experiment.id,
+                                names.size(), joined(names)));
     }
     requireAlternatives(assumption, range, names.empty() ? "" : names.front(), catalog);
 }
@@ -390,17 +390,17 @@ void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& ca
 void requireRanges(const config::Experiment& experiment, const std::vector<Case>& cases,
                    const scene::Catalog& catalog,
                    std::span<const technique::TechniqueInfo> techniques) {
-    constexpr long long kMaxOutputPx = 16384, kMaxSeed = 1'000'000'000, kMaxFrames = 1'000'000;
+    constexpr NumberRange kSeeds{.least = 0, .most = 1'000'000'000, .isWhole = true};
     if (!config::isMeasuredHere(experiment)) return;
     const std::vector<ParamInfo> declared = declaredBy(experiment, techniques);
     for (const Assumption& assumption : experiment.assumptions) {
         if (!assumption.isBound || assumption.range.isNull()) continue;
         if (assumption.name == config::kOutputAssumption) {
-            requireWhole(assumption, 1, kMaxOutputPx);
+            requireWhole(assumption, config::kOutputSizesPx);
         } else if (assumption.name == config::kSceneSeedAssumption) {
-            requireWhole(assumption, 0, kMaxSeed);
+            requireWhole(assumption, kSeeds);
         } else if (assumption.name == config::kFramesAssumption) {
-            requireWhole(assumption, 1, kMaxFrames);
+            requireWhole(assumption, config::kFrameCounts);
             requireMeasuredWithin(assumption, cases);
         } else if (assumption.name == config::kSceneAssumption) {
             requireScenes(experiment, assumption, catalog);

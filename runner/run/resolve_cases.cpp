@@ -14,6 +14,7 @@
 #include "engine/scene/scene_reference.h"
 #include "runner/run/ledger.h"
 #include "runner/run/plan.h"
+#include "runner/tables/cell.h"
 
 namespace gfxrepro::run {
 
@@ -61,17 +62,61 @@ void requireKnownAt(const config::Printed& printed, const Case& item,
     }
 }
 
+using Of = config::MetricInfo::Of;
+
 /// What the runner takes of a whole frame or process has no pass.
-void requireOfPasses(const std::string& metric, const SourceLocation& where) {
-    static constexpr std::string_view kOfPasses[] = {"gpu_time_ms", "cpu_time_ms",
-                                                     "process_time_ms"};
-    const bool isCommon =
-        std::ranges::find(technique::commonMetrics(), metric, &config::MetricInfo::name) !=
-        technique::commonMetrics().end();
-    if (!isCommon || std::ranges::find(kOfPasses, metric) != std::end(kOfPasses)) return;
+void requireOfPasses(const config::MetricInfo& metric, const SourceLocation& where) {
+    if (metric.of != Of::Whole) return;
+    std::vector<std::string> ofPasses;
+    for (const config::MetricInfo& info : technique::commonMetrics()) {
+        if (info.of != Of::Whole) ofPasses.push_back(info.name);
+    }
     throw Error(where, fmt::format("metric '{}' is not taken of a pass; those that are: {}, and "
                                    "metrics of the technique",
-                                   metric, fmt::join(kOfPasses, ", ")));
+                                   metric.name, joined(ofPasses)));
+}
+
+/// What there is of passes alone has one.
+void requireNoWhole(const std::string& metric, const std::string& pass,
+                    const config::Outputs& outputs, const SourceLocation& where) {
+    const config::MetricInfo* info = outputs.find(metric);
+    if (!info || info->of != Of::Pass || !pass.empty()) return;
+    std::vector<std::string> passes;
+    for (const config::PassInfo& known : outputs.passes) passes.push_back(known.name);
+    throw Error(where, fmt::format("metric '{}' is of a pass, and the cell names none; allowed: "
+                                   "with pass: {}",
+                                   metric, joined(passes, " | ")));
+}
+
+/// The keys of rows or columns, a swept axis without a value.
+std::vector<tables::Key> labelKeys(const std::vector<config::LayoutAxis>& axes) {
+    std::vector<tables::Key> keys = {{}};
+    for (const config::LayoutAxis& axis : axes) {
+        std::vector<tables::Key> longer;
+        for (const tables::Key& key : keys) {
+            std::vector<std::string> labels;
+            for (const auto& [label, selection] : axis.labels) labels.push_back(label);
+            if (axis.isSweepAxis()) labels.emplace_back();
+            for (const std::string& label : labels) {
+                longer.push_back(key);
+                longer.back().push_back(label);
+            }
+        }
+        keys = std::move(longer);
+    }
+    return keys;
+}
+
+void requireCells(const config::Layout& layout, const config::Outputs& outputs) {
+    if (!layout.isGiven) return;
+    for (const tables::Key& row : labelKeys(layout.rows)) {
+        for (const tables::Key& column : labelKeys(layout.columns)) {
+            const tables::CellQuery cell = tables::makeQuery(layout, row, column);
+            requireNoWhole(cell.metric, cell.pass, outputs, cell.location);
+            if (!cell.equal) continue;
+            requireNoWhole(cell.equal->metric, cell.equal->pass, outputs, cell.location);
+        }
+    }
 }
 
 /// What is laid out is recorded: metrics and passes of the technique.
@@ -93,7 +138,7 @@ void requireOutputs(const config::Experiment& experiment,
         }
         if (selection.pass && !selection.pass->empty()) {
             outputs.requirePass(*selection.pass, owner, where);
-            if (selection.metric) requireOfPasses(*selection.metric, where);
+            if (selection.metric) requireOfPasses(*outputs.find(*selection.metric), where);
         }
     };
     require(experiment.layout.cell);
@@ -102,6 +147,47 @@ void requireOutputs(const config::Experiment& experiment,
             for (const auto& [label, selection] : axis.labels) require(selection);
         }
     }
+    requireCells(experiment.layout, outputs);
+}
+
+/// The value of `key` in a section of the config; its file where there is none.
+SourceLocation placeOf(const config::Experiment& experiment, const char* section, const char* key) {
+    const Node* map = experiment.document.find(section);
+    const Node* value = map && map->isMap() ? map->find(key) : nullptr;
+    return value ? value->location() : SourceLocation{experiment.file.string(), 0, 0};
+}
+
+/// Whether some source of the case's scene, at hand or not, has seeds.
+bool mayHaveSeeds(const Case& item, const scene::Catalog& catalog) {
+    if (item.scene.isNull()) return false;
+    const auto entry = catalog.entries().find(scene::sceneName(item.scene.text()));
+    return entry != catalog.entries().end() &&
+           std::ranges::any_of(entry->second.sources, &scene::SceneSource::isSeeded);
+}
+
+/// No key is ignored: a scene is read by some case, seeds are of one that has any. A file that is
+/// extended may give what this one lacks.
+void requireRead(const config::Experiment& experiment, const std::vector<Case>& cases,
+                 bool needsScene, const scene::Catalog& catalog) {
+    if (cases.empty()) return;
+    const auto isOwn = [&](const SourceLocation& where) {
+        const std::string& file = where.file.text();
+        return file == experiment.file.string() || file.starts_with(config::kCommandLine);
+    };
+    const auto unread = std::ranges::find_if(cases, [&](const Case& item) {
+        return !item.scene.isNull() && item.program.isNull() && isOwn(item.scene.location());
+    });
+    if (!needsScene && unread != cases.end()) {
+        throw Error(unread->scene.location(),
+                    fmt::format("scene '{}': technique '{}' reads none as it is set here",
+                                unread->scene.text(), unread->technique));
+    }
+    const bool hasSeeds =
+        std::ranges::any_of(cases, [&](const Case& item) { return mayHaveSeeds(item, catalog); });
+    const SourceLocation seeds = placeOf(experiment, "measure", "scene_seeds");
+    if (experiment.measure.sceneSeeds < 2 || hasSeeds || !isOwn(seeds)) return;
+    throw Error(seeds, fmt::format("'scene_seeds' is {}, and no case has a generated scene",
+                                   experiment.measure.sceneSeeds));
 }
 
 /// A scene where the technique needs one, and of the kind that it takes. What a generator makes is
@@ -176,10 +262,7 @@ void requireFrames(const technique::Technique& technique, const config::Experime
     try {
         technique.requireFrames(experiment.measure.frames);
     } catch (const Error& error) {
-        const Node* measure = experiment.document.find("measure");
-        const Node* frames = measure ? measure->find("frames") : nullptr;
-        const SourceLocation file{experiment.file.string(), 0, 0};
-        throw Error(frames ? frames->location() : file, error.what());
+        throw Error(placeOf(experiment, "measure", "frames"), error.what());
     }
 }
 
@@ -302,8 +385,10 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
                                std::uint64_t seed) {
     std::vector<Case> cases;
     std::map<std::string, technique::SceneNeed> asked;
+    bool needsScene = false;
     forEachCase(experiment, catalog, techniques, seed, [&](const Case& item, const auto need) {
         const std::string scene = item.scene.isNull() ? "" : item.scene.text();
+        needsScene |= need != technique::SceneNeed::Nothing;
         const auto [known, isNew] = asked.try_emplace(scene, need);
         if (isNew || known->second != need) requireScene(item, need, experiment, catalog);
         std::ranges::move(withScenes(item, experiment, catalog), std::back_inserter(cases));
@@ -311,6 +396,7 @@ std::vector<Case> resolveCases(const config::Experiment& experiment, const scene
     requireCaseCount(cases.size(), experiment);
     requireUnitCount(unitCount(cases), {experiment.file.string(), 0, 0});
     requireOutputs(experiment, techniques);
+    requireRead(experiment, cases, needsScene, catalog);
     requireTaken(experiment, cases);
     requireSceneNames(experiment, cases, catalog);
     requireDistinct(experiment, cases);

@@ -324,6 +324,11 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
         }
     }
     addAxesOf(layout.cell, cases.axes);
+    cases.namedAxes = cases.axes.size();
+    for (const config::Case& item : planned) {
+        if (item.experiment != experiment.id || !item.axes.isMap()) continue;
+        for (const auto& [axis, value] : item.axes.entries()) addAxis(cases.axes, axis);
+    }
     const Node& sweep = experiment.sweep;
     cases.cases = groupByCase(planned, records, experiment.id, cases.axes,
                               sweep.isMap() ? sweep.find("when") : nullptr);

@@ -93,9 +93,11 @@ class CaseIndex {
 };
 
 /// The cases of a layout. `axes` names the sweep axes of its rows and columns and of all `where`
-/// selections; cases carry their values beside it.
+/// selections, which are `namedAxes`, and behind them those that are swept beside; cases carry
+/// their values beside it.
 struct LayoutCases {
     std::vector<std::string> axes;
+    std::size_t namedAxes = 0;
     std::vector<CaseRecords> cases;
     int frameCount = 1;
     CaseIndex index;

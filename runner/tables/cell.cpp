@@ -66,8 +66,6 @@ namespace {
 
 using metrics::Statistic;
 
-constexpr std::string_view kDefaultFormat = "{median:.4g}";
-
 void layOver(const config::Selection& part, config::Selection& selection, Where& where) {
     if (part.metric) selection.metric = part.metric;
     if (part.pass) selection.pass = part.pass;
@@ -221,6 +219,22 @@ std::string passesWith(const CellQuery& query, const LayoutCases& cases) {
         }
     }
     return joined(std::vector<std::string>(passes.begin(), passes.end()));
+}
+
+/// The axes along which the cases that lie there differ.
+std::vector<Pooled> pooledAt(const Where& where, const LayoutCases& cases) {
+    const std::vector<const CaseRecords*> found = casesAt(where, cases);
+    std::vector<Pooled> all;
+    for (std::size_t axis = 0; axis < cases.axes.size() && found.size() > 1; ++axis) {
+        Pooled pooled{cases.axes[axis], {}, axis < cases.namedAxes};
+        std::set<std::string> seen;
+        for (const CaseRecords* item : found) {
+            const std::string value = item->axes[axis].value_or(std::string(kLeftOut));
+            if (seen.insert(value).second) pooled.values.push_back(value);
+        }
+        if (pooled.values.size() > 1) all.push_back(std::move(pooled));
+    }
+    return all;
 }
 
 std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
@@ -468,12 +482,13 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
     }
     return {selection.metric.value_or(""),
             selection.pass.value_or(""),
-            CellFormat(selection.format.value_or(std::string(kDefaultFormat)), selection.location),
+            CellFormat(selection.format.value_or(config::kDefaultCellFormat), selection.location),
             selection.scale.value_or(1.0),
             selection.scale.has_value(),
             selection.equal,
             false,
-            std::move(where)};
+            std::move(where),
+            selection.location};
 }
 
 Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
@@ -484,6 +499,7 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
         fillEqual(query, cases, cell);
         return cell;
     }
+    cell.pooled = pooledAt(query.where, cases);
     Gathered gathered = gather(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
     const std::size_t notRun = gathered.notRun, planned = gathered.caseIds.size() + notRun;

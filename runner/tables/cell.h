@@ -22,17 +22,24 @@ struct Measured : Summary {
     std::string low, high;  // and the ends of its bounds; empty without any
 };
 
-/// A parameter at which a cell was measured otherwise than printed, with its values in the cases
-/// behind it. `cases`, with their numbers, where each parameter has its printed values but not all
-/// go together as printed.
+/// A parameter at which a cell was measured otherwise than printed, or than its config says, with
+/// its values in the cases behind it. `cases`, with their numbers, where each parameter has its
+/// printed values but not all go together as printed.
 struct Departure {
     std::string parameter;
     std::vector<std::string> measured;
     std::vector<std::string> printed;
-    /// The document leaves the parameter open: `printed` is what the profile `paper` takes for it.
-    bool isOpen = false;
+    /// No `printed.at` has it: `printed` is what its config takes for it in the profile `paper`.
+    bool isOfConfig = false;
 
     bool operator==(const Departure&) const = default;
+};
+
+/// A swept axis of which a cell takes several values together.
+struct Pooled {
+    std::string axis;
+    std::vector<std::string> values;
+    bool isAsked = false;  // the layout names the axis
 };
 
 /// By which clock a time is told: the one on the wall, or what all threads of the process spent.
@@ -58,6 +65,7 @@ struct Cell {
     std::optional<std::string> printed;
     std::vector<std::optional<double>> printedValues;  // beside the format's statistics
     std::vector<std::string> caseIds;                  // whose records it takes
+    std::vector<Pooled> pooled;                        // of several cases: along which axes
     std::string metric;   // what it shows; empty of a share, and, as its unit, where it is scaled
     bool isTime = false;  // a time, a rate of time, or a share of one
     int timePower = 0;    // as timePower() of its metric; a share of times stays as they double
@@ -115,6 +123,7 @@ struct CellQuery {
     std::optional<config::Equal> equal;
     bool isRateOfTime = false;  // the records are ms, the cell shows how many a second
     Where where;
+    SourceLocation location;  // of the last selection that is laid over the others
 };
 
 /// Throws Error at the selection's place when no part gives a metric, or for a bad format.

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/core/checks.h"
 #include "engine/core/text.h"
 #include "runner/records/csv.h"
 #include "runner/tables/labels.h"
@@ -148,6 +149,19 @@ std::vector<std::string> frameNotes(const config::Experiment& experiment,
     return notes;
 }
 
+/// Whether a claim names the column.
+bool isClaimed(const std::string& label, const config::Experiment& experiment) {
+    const auto isIn = [&](const auto& text) { return text.find(label) != text.npos; };
+    return std::ranges::any_of(experiment.claims, [&](const config::ClaimSpec& claim) {
+        const auto isOfColumns = [&](const auto& chosen) {
+            return chosen.first == config::kColumnAxis &&
+                   matchesAny(Node::scalar(label, {}, true), Node::sequence(chosen.second));
+        };
+        return claim.over == label || std::ranges::any_of(claim.operands, isIn) ||
+               std::ranges::any_of(claim.at, isOfColumns);
+    });
+}
+
 }  // namespace
 
 DefaultLayout defaultLayout(const config::Experiment& experiment,
@@ -185,7 +199,8 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
         if (axes.contains(series.metric)) continue;  // its axis says it
         const bool isTime = config::isTimeMetric(series.metric);
         const bool isConstant = series.least == series.most && !isTime && measured.size() > 1 &&
-                                series.cases.size() == measured.size();
+                                series.cases.size() == measured.size() &&
+                                !isClaimed(series.label(), experiment);
         if (isConstant) {
             result.constants.push_back(quantityOf(series.label(), experiment.labels, series.unit)
                                            .with(series.shown(series.most)));

@@ -50,6 +50,7 @@ Operand::Operand(const std::string& text, const Table& table, const SourceLocati
     isColumn_ = pieces.size() == 1 && pieces[0].column.has_value();
     std::string expression;  // with a variable for each column
     for (const OperandPiece& piece : pieces) {
+        if (piece.isFunction) throw ExpressionError(where, owner + ": " + piece.problem);
         if (!piece.problem.empty()) throw AbsentColumnError(where, owner, piece.problem);
         if (!piece.column) {
             expression += piece.text;

@@ -289,10 +289,10 @@ bool areSameCases(std::vector<Settings> a, std::vector<Settings> b) {
     return isSameSet(std::move(a), std::move(b));
 }
 
-/// `isOpen` tells of a parameter whether the document leaves it open.
+/// `isOfConfig` tells of a parameter whether no print has it.
 std::vector<Departure> departuresOf(const std::vector<Settings>& measured,
                                     const std::vector<Settings>& printed,
-                                    const std::function<bool(const std::string&)>& isOpen) {
+                                    const std::function<bool(const std::string&)>& isOfConfig) {
     std::vector<std::string> names;
     for (const auto* cases : {&printed, &measured}) {
         for (const Settings& settings : *cases) {
@@ -301,7 +301,8 @@ std::vector<Departure> departuresOf(const std::vector<Settings>& measured,
     }
     std::vector<Departure> departures;
     for (const std::string& name : names) {
-        Departure departure{name, valuesOf(name, measured), valuesOf(name, printed), isOpen(name)};
+        Departure departure{name, valuesOf(name, measured), valuesOf(name, printed),
+                            isOfConfig(name)};
         if (!isSameSet(departure.measured, departure.printed)) {
             departures.push_back(std::move(departure));
         }
@@ -310,7 +311,7 @@ std::vector<Departure> departuresOf(const std::vector<Settings>& measured,
         departures.push_back({"cases",
                               {std::to_string(measured.size())},
                               {std::to_string(printed.size())},
-                              std::ranges::any_of(names, isOpen)});
+                              std::ranges::any_of(names, isOfConfig)});
     }
     return departures;
 }
@@ -351,13 +352,6 @@ PrintedParameters::PrintedParameters(const config::Experiment& experiment) {
         open_.erase(settingNameOf(name));
         given_.insert(settingNameOf(name));
     }
-    if (printed_.rows.empty()) return;
-    for (const char* name : {"scene", "output", "measure.frames"})
-        given_.insert(settingNameOf(name));
-    for (const config::Case& item : config::expandCases(paper)) {
-        for (const auto& [name, value] : item.given.entries()) given_.insert(settingNameOf(name));
-        for (const auto& [name, value] : item.params.entries()) given_.insert(name);
-    }
 }
 
 void PrintedParameters::compare(const config::Layout& layout, const Key& row, const Key& column,
@@ -373,9 +367,8 @@ void PrintedParameters::compare(const config::Layout& layout, const Key& row, co
     if (printed.empty()) return;
     cell.isAtPrintedParameters = areSameCases(measured, printed);
     if (!cell.isAtPrintedParameters) {
-        cell.departures = departuresOf(measured, printed, [&](const std::string& name) {
-            return open_.contains(name) || !given_.contains(name);
-        });
+        cell.departures = departuresOf(
+            measured, printed, [&](const std::string& name) { return !given_.contains(name); });
     }
     for (const Settings& settings : printed) {
         for (const auto& [name, value] : settings) {
@@ -418,7 +411,7 @@ struct Tally {
                 std::ranges::find(departures, departure.parameter, &Departure::parameter);
             Departure& all = known == departures.end()
                                  ? departures.emplace_back(
-                                       Departure{departure.parameter, {}, {}, departure.isOpen})
+                                       Departure{departure.parameter, {}, {}, departure.isOfConfig})
                                  : *known;
             for (const std::string& value : departure.measured) addOnce(value, all.measured);
             for (const std::string& value : departure.printed) addOnce(value, all.printed);
@@ -484,10 +477,11 @@ std::string line(const Table& table, std::span<const TableRow> rows) {
         return "Whether it was measured at the printed parameters is not known: the run's plan "
                "does not have them";
     }
-    return sentence(
-        tally,
-        table.hasPrinted() ? "the printed parameters" : "the parameters of the profile paper",
-        table.words);
+    return sentence(tally,
+                    table.hasPrinted() && !table.isPrintUnsaid
+                        ? "the printed parameters"
+                        : "the parameters of the profile paper",
+                    table.words);
 }
 
 }  // namespace
@@ -502,7 +496,7 @@ std::string departuresText(const std::vector<Departure>& departures, const Words
     std::vector<std::string> parts;
     std::string_view said;  // holds for what follows
     for (const Departure& departure : departures) {
-        const std::string_view whose = departure.isOpen ? "paper profile " : "printed ";
+        const std::string_view whose = departure.isOfConfig ? "the config's " : "printed ";
         Quantity quantity = quantityOf(departure.parameter, words);
         if (departure.measured.empty()) quantity.unit.clear();
         parts.push_back(
@@ -522,8 +516,10 @@ void PrintedCells::add(const config::Experiment& experiment, const Table& table)
                 ++printed;
                 if (cell.values.empty()) continue;
                 ++measured;
-                if (!table.knowsPrintedParameters) ++unknown;
-                if (cell.isAtPrintedParameters) {
+                const bool isAtConfigs = cell.isAtPrintedParameters && table.isPrintUnsaid;
+                if (!table.knowsPrintedParameters || isAtConfigs) {
+                    ++unknown;
+                } else if (cell.isAtPrintedParameters) {
                     ++(cell.openParameters.empty() ? atPrinted : asGiven);
                 }
             }

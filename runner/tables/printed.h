@@ -31,9 +31,9 @@ void requirePrintedValues(const config::Experiment& experiment, std::span<const 
 /// of the technique (defaults resolved), size of the output, frames and scene. Not compared: how
 /// often and where a case runs, and the parameter `pictures`, by which techniques save pictures
 /// beside their numbers. What an assumption names and `printed.at` does not say is open in the
-/// document: a departure from the profile's value is said to be just that, and a cell without one
-/// is at the printed parameters as far as they are given. So is a departure from a default, and any
-/// of a table without printed numbers but of what `printed.at` says. A stand-in in place of a real
+/// document: a cell without a departure is at the printed parameters as far as they are given. A
+/// departure is said to be from a printed value where `printed.at` has it, else from the config's:
+/// what a config takes need not be printed. A stand-in in place of a real
 /// model is no other scene: it goes by its name, and Table marks its source, as that of a generated
 /// one.
 class PrintedParameters {
@@ -42,6 +42,8 @@ class PrintedParameters {
     explicit PrintedParameters(const config::Experiment& experiment);
 
     bool isKnown() const { return !cases_.cases.empty(); }
+    /// Nobody says of a parameter that it is printed, or left open.
+    bool isUnsaid() const { return isKnown() && open_.empty() && given_.empty(); }
     /// Sets what the cell says of its parameters. `layout` and `cases` are this run's. Does nothing
     /// for a cell without a measurement, or where nothing is known.
     void compare(const config::Layout& layout, const Key& row, const Key& column,
@@ -52,8 +54,7 @@ class PrintedParameters {
     config::Layout layout_;
     config::Printed printed_;
     std::set<std::string> open_;
-    /// In its config, not left to a default; where nothing is printed, in `printed.at`.
-    std::set<std::string> given_;
+    std::set<std::string> given_;  // in `printed.at`
     LayoutCases cases_;
 };
 

@@ -238,6 +238,7 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     const PrintedParameters printed(experiment);
     table.isPublished = experiment.isPublished();
     table.knowsPrintedParameters = printed.isKnown();
+    table.isPrintUnsaid = printed.isUnsaid();
     buildCells(layout, cases, printed, columns, table);
     for (TableRow& row : table.rows) {
         for (std::size_t i = 0; i < row.cells.size(); ++i) {
@@ -254,6 +255,7 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     fillComputed(layout, table);
     const std::vector<std::string> told = rivalNotes(rivals, against, table);
     table.notes.insert(table.notes.begin(), told.begin(), told.end());
+    for (std::string& note : pooledNotes(table)) table.notes.push_back(std::move(note));
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {
         table.notes.push_back(std::move(note));
     }

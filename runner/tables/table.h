@@ -47,6 +47,9 @@ struct Table {
     bool isPublished = false;    // what is measured stands for something that a paper shows
     bool knowsPrintedParameters = false;  // not so in runs of before these were kept
     bool goesByClock = false;             // config::goesByClock
+    /// Its config says of no parameter that it is printed (`printed.at`) or left open
+    /// (`assumptions`): then nobody said that all are the document's.
+    bool isPrintUnsaid = false;
     /// `labels:` of its config: what people read for the name of a parameter, axis, row or column.
     std::map<std::string, std::string> words;
     std::vector<std::string> rowAxes;
@@ -121,6 +124,18 @@ using TableNotes = std::map<std::string, std::vector<std::string>>;
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
                                std::span<const config::Case> planned,
                                const std::vector<records::Record>& records);
+
+// Cells that take several cases together.
+
+/// Sentences that say so: "Each number of row average is taken over scene (a, b)."
+std::vector<std::string> pooledNotes(const Table& table);
+
+/// "scene=a|b; light=1|2" of a cell; empty where it is of one case.
+std::string pooledText(const Cell& cell);
+
+/// Throws Error, at the layout, where a cell would take cases together that differ along an axis
+/// which the layout does not name. `table` may have been built from no records.
+void requireToldApart(const config::Experiment& experiment, const Table& table);
 
 // Times that are not of one clock: a GPU whose clock moved while a case was timed.
 

@@ -1,5 +1,7 @@
 #include "runner/technique/technique.h"
 
+#include <fmt/format.h>
+
 #include "engine/core/error.h"
 #include "engine/core/text.h"
 #include "runner/config/external_program.h"
@@ -15,39 +17,43 @@ void Recorder::share(std::string_view name, double part, double whole, std::stri
 
 std::span<const config::MetricInfo> commonMetrics() {
     using config::Better;
+    using Of = config::MetricInfo::Of;
     constexpr bool kIsDetail = true, kIsOfSetup = true;
     static const std::vector<config::MetricInfo> metrics = {
         {"wall_time_ms", "ms", "time of a frame, from the first call until the device is done",
-         Better::Lower},
-        {"gpu_time_ms", "ms", "time of a pass, by the device's clock", Better::Lower},
-        {"cpu_time_ms", "ms", "time of a pass on the processor", Better::Lower},
-        {"frame_rate", "1/s", "frames per second: 1000 ÷ wall_time_ms", Better::Higher, kIsDetail},
+         Better::Lower, false, Of::Whole},
+        {"gpu_time_ms", "ms", "time of a pass, by the device's clock", Better::Lower, false,
+         Of::Pass},
+        {"cpu_time_ms", "ms", "time of a pass on the processor", Better::Lower, false, Of::Pass},
+        {"frame_rate", "1/s", "frames per second: 1000 ÷ wall_time_ms", Better::Higher, kIsDetail,
+         Of::Whole},
         {"process_time_ms", "ms",
          "CPU time of all threads in a frame or a pass; on a software device alone", Better::Lower,
-         kIsDetail},
+         kIsDetail, Of::Either},
         {"setup_time_ms", "ms", "time to make buffers, textures and shaders, once in each process",
-         Better::Lower, kIsDetail, kIsOfSetup},
+         Better::Lower, kIsDetail, Of::Whole, kIsOfSetup},
         {"load_time_ms", "ms", "time to read or generate the scene, once in each worker",
-         Better::Lower, kIsDetail, kIsOfSetup},
+         Better::Lower, kIsDetail, Of::Whole, kIsOfSetup},
         {"scene_triangles", "triangle", "triangles of the scene as it is loaded", Better::Neither,
-         kIsDetail},
+         kIsDetail, Of::Whole},
         {"scene_vertices", "vertex", "vertices of the scene as it is loaded", Better::Neither,
-         kIsDetail},
+         kIsDetail, Of::Whole},
         {"scene_source", "enum", "0 for a real model, 1 for a stand-in, 2 for a generated scene",
-         Better::Neither, kIsDetail},
+         Better::Neither, kIsDetail, Of::Whole},
         {"peak_memory_bytes", "byte",
          "most memory that the process held, without other cases' scenes", Better::Lower, kIsDetail,
-         kIsOfSetup},
+         Of::Whole, kIsOfSetup},
         {"baseline_memory_bytes", "byte", "memory that the process held before its first case",
-         Better::Neither, kIsDetail, kIsOfSetup},
+         Better::Neither, kIsDetail, Of::Whole, kIsOfSetup},
         {"work_primitives", "primitive", "primitives that a repeat drew, as the device counts them",
-         Better::Neither, kIsDetail},
+         Better::Neither, kIsDetail, Of::Whole},
         {"work_fragments", "fragment", "fragments that a repeat drew, as the device counts them",
-         Better::Neither, kIsDetail},
+         Better::Neither, kIsDetail, Of::Whole},
         {"work_compute_invocations", "1",
-         "compute invocations of a repeat, as the device counts them", Better::Neither, kIsDetail},
+         "compute invocations of a repeat, as the device counts them", Better::Neither, kIsDetail,
+         Of::Whole},
         {"work_image_digest", "1", "hash of the picture: equal where repeats drew the same",
-         Better::Neither, kIsDetail},
+         Better::Neither, kIsDetail, Of::Whole},
     };
     return metrics;
 }
@@ -88,6 +94,12 @@ std::unique_ptr<Technique> makeTechnique(const TechniqueInfo& info, const Node& 
                     "'program': technique '" + std::string(info.name) + "' takes none");
     }
     return info.create(params);
+}
+
+void Technique::requireFrames(int frameCount) const {
+    if (frameCount == 1) return;
+    throw Error(
+        fmt::format("{} frames: the technique draws the same in each; allowed: 1", frameCount));
 }
 
 void setUp(Technique& technique, SetupContext& context) {

@@ -139,8 +139,9 @@ class Technique {
     /// Throws Error for a scene that it cannot take: the case's, or one that a parameter names
     /// (isSceneKey). Known without a device.
     virtual void requireScene(const scene::Scene& /*scene*/) const {}
-    /// Throws Error for more frames than it has. Known without a device.
-    virtual void requireFrames(int /*frameCount*/) const {}
+    /// Throws Error for more frames than it has: one, unless it says otherwise. Known without a
+    /// device.
+    virtual void requireFrames(int frameCount) const;
     /// Of one that does not work in this process: recorded instead of what this one took.
     virtual std::optional<ProcessUsage> usageElsewhere() const { return std::nullopt; }
 };

@@ -295,6 +295,7 @@ class ClusteredReflections final : public technique::Technique {
     }
 
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
+    void requireFrames(int /*frameCount*/) const override {}  // along a path
     void requireScene(const scene::Scene& scene) const override { params_.requireScene(scene); }
     // [xie2017] Algorithm 6
     void render(technique::FrameContext& context) override {

@@ -321,6 +321,7 @@ class DepthSampling final : public technique::Technique {
     }
 
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
+    void requireFrames(int /*frameCount*/) const override {}  // along a path
 
     void requireScene(const scene::Scene& scene) const override {
         kit::requireTriangles(scene, "depth_sampling");

@@ -82,6 +82,7 @@ class External : public technique::Technique {
         values_ = program_.valuesOf(params.resolved());
     }
 
+    void requireFrames(int /*frameCount*/) const override {}  // config::requireTold() says more
     technique::SceneNeed sceneNeed() const override {
         return program_.uses(placeholder::kScene) ? technique::SceneNeed::Model
                                                   : technique::SceneNeed::Nothing;

@@ -78,6 +78,7 @@ class PointSplatting final : public technique::Technique {
 
     void setup(technique::SetupContext& context) override;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
+    void requireFrames(int /*frameCount*/) const override {}  // along a path
     void requireScene(const scene::Scene& scene) const override;
     void render(technique::FrameContext& context) override;
     void record(technique::Recorder& recorder) override;

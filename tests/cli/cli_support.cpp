@@ -19,10 +19,13 @@ ProcessResult mockGfxrepro(std::vector<std::string> arguments) {
 }
 
 std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines) {
+    const bool hasScene = lines.starts_with("scene: ");
     return folder.write(
         "mock.yaml",
-        "sweep_of: mock\ntitle: A mock\ntechnique: mock\n"
-        "output: {width: 8, height: 8}\n" +
+        "sweep_of: mock\ntitle: A mock\ntechnique: mock" +
+            std::string(hasScene ? "_of_scenes" : "") +
+            "\n"
+            "output: {width: 8, height: 8}\n" +
             lines +
             // Without a layout it would be timed, which tests of other things need not.
             (lines.find("measure:") == std::string::npos ? "measure: {lane: quality}\n" : ""));

@@ -500,7 +500,7 @@ TEST(Faults, WhatAConfigMayNameARunMayReadAgain) {
     writeFileAtomic(deep / "a.ply", ply);
     const std::string config =
         folder.write("mock.yaml",
-                     "sweep_of: mock\ntitle: \"A \\x7f mock\"\ntechnique: mock\n"
+                     "sweep_of: mock\ntitle: \"A \\x7f mock\"\ntechnique: mock_of_scenes\n"
                      "output: {width: 8, height: 8}\nparams: {marker: \"/a\\x7fb\"}\n"
                      "scene: " +
                          (deep / "a.ply").string() + "\n");

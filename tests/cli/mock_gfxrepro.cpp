@@ -199,8 +199,15 @@ class Mock : public technique::Technique {
     std::size_t shown_ = 0;
 };
 
+class MockOfScenes : public Mock {
+  public:
+    using Mock::Mock;
+    technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
+};
+
+template <class Technique>
 std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<Mock>(params);
+    return std::make_unique<Technique>(params);
 }
 
 config::Outputs outputs() {
@@ -253,8 +260,10 @@ int main(int argc, char** argv) {
         std::getenv("GFXREPRO_MOCK_DRIVER_HANGS")) {
         ::pause();
     }
-    const technique::TechniqueInfo techniques[] = {{"mock", "fails on demand", create, outputs},
-                                                   {"dice", "throws", createDice, diceOutputs},
-                                                   external::kExternal};
+    const technique::TechniqueInfo techniques[] = {
+        {"mock", "fails on demand", create<Mock>, outputs},
+        {"mock_of_scenes", "likewise, with a scene", create<MockOfScenes>, outputs},
+        {"dice", "throws", createDice, diceOutputs},
+        external::kExternal};
     return cli::run(argc, argv, techniques, scene::registeredGenerators());
 }

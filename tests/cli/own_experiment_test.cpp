@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "engine/core/files.h"
@@ -409,6 +410,9 @@ TEST(OwnExperiment, CheckKnowsMetricsAndPasses) {
         "gfxrepro: DIR/mine.yaml:5:36: metric 'wall_time_ms' is not taken of a pass; those "
         "that are: gpu_time_ms, cpu_time_ms, process_time_ms, and metrics of the technique\n");
     EXPECT_THAT(laidOut("{metric: voxels}, b: {of: a /}"), HasSubstr("'a /' is no expression"));
+    EXPECT_THAT(laidOut("{metric: gpu_time_ms}"),
+                HasSubstr("DIR/mine.yaml:5:33: metric 'gpu_time_ms' is of a pass, and the cell "
+                          "names none; allowed: with pass: synthesis | "));
 }
 
 TEST(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {
@@ -425,6 +429,79 @@ TEST(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {
                     HasSubstr("mine.yaml:8:3: claim 'C' needs numbers along 'fill', which holds "
                               "'surface'"));
     }
+}
+
+TEST(OwnExperiment, WhatCheckRefusesIsNotMeasured) {
+    const TemporaryFolder folder;
+    const std::string head =
+        "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: shapes/torus\n"
+        "sweep: {fill: [surface, solid], resolution: [16, 32]}\n";
+    const std::map<std::string, std::string> wrong = {
+        {"layout: {rows: resolution, columns: {a: voxels}}\n",
+         ":6:1: layout: each number would be taken over fill (surface, solid), which is swept; "
+         "allowed: as an axis of rows or columns, or in a 'where': {fill: [surface, solid]} takes "
+         "its values together\n"},
+        {"layout: {rows: [fill, resolution], columns: {a: voxels}}\n"
+         "printed: {values: \"fill,resolution,a\\nsurface,64,7\"}\n",
+         ":7:11: printed: no profile measures the row 'surface,64,7'; allowed: fill surface | "
+         "solid; resolution 16 | 32\n"},
+        {"layout: {rows: [fill, resolution], columns: {a: {metric: voxels, format: '{max:.0f}'}}}\n"
+         "printed: {values: \"fill,resolution,a\\nsurface,16,many\"}\n",
+         ":7:11: printed: a is 'many'; allowed: as the cell's format writes numbers, or empty "
+         "where "
+         "it is lost\n"},
+        {"layout: {rows: [fill, resolution], columns: {a: {metric: gpu_time_ms, pass: "
+         "synthesis}}}\n"
+         "claims: {C: {says: so, across: fill, order: surface < solid}}\n",
+         ":7:10: claim 'C' reads a time and needs 'kind': algorithmic | architectural\n"}};
+    for (const auto& [lines, error] : wrong) {
+        const std::string file = folder.write("mine.yaml", head + lines);
+        for (const char* command : {"check", "reproduce"}) {
+            const ProcessResult result = gfxrepro({command, file});
+            EXPECT_EQ(result.exitCode, 2) << command << lines;
+            EXPECT_THAT(result.err, testing::EndsWith(error)) << command;
+            EXPECT_THAT(result.out, testing::IsEmpty()) << command;
+        }
+    }
+}
+
+TEST(OwnExperiment, ClaimsReadTheColumnsOfATableThatNobodyLaidOut) {
+    const TemporaryFolder folder;
+    const auto configOf = [&](const std::string& operand) {
+        return folder.write("mine.yaml",
+                            "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\n"
+                            "scene: shapes/torus\nmeasure: {lane: quality}\n"
+                            "sweep: {resolution: [16, 32], fill: [surface, solid]}\n"
+                            "claims:\n  grows: {says: there are more voxels, trend: " +
+                                operand +
+                                ", over: resolution, direction: increasing}\n"
+                                "  solid: {says: a solid has more, across: fill, order: surface < "
+                                "solid, at: {column: voxels}}\n");
+    };
+    const ProcessResult bad = gfxrepro({"check", configOf("voxel")});
+    EXPECT_EQ(bad.exitCode, 2);
+    EXPECT_THAT(bad.err, HasSubstr(":8:3: claim 'grows': 'voxel' is no column; did you mean "
+                                   "'voxels'? (columns: frame_ms, "));
+    const std::string dir = folder.path() / "run";
+    const ProcessResult good = gfxrepro({"reproduce", configOf("voxels"), "--out", dir});
+    EXPECT_EQ(good.exitCode, 0) << good.out << good.err;
+    const std::string claims = readFile(dir + "/claims.csv");
+    EXPECT_THAT(claims, HasSubstr("\ngrows,there are more voxels,sweep/mine,"));
+    EXPECT_THAT(claims, HasSubstr("\nsolid,a solid has more,sweep/mine,"));
+    EXPECT_THAT(claims, Not(HasSubstr(",unmeasured,")));
+}
+
+TEST(OwnExperiment, CheckGoesOnBehindABadFile) {
+    const TemporaryFolder folder;
+    const std::string rest = "title: t\ntechnique: voxelization\nscene: shapes/torus\n";
+    const std::string bad = folder.write("bad.yaml", "sweep_of: bad\nsweeep: {}\n" + rest);
+    const std::string good = folder.write("good.yaml", "sweep_of: good\n" + rest);
+    const ProcessResult result = gfxrepro({"check", bad, good, bad});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_EQ(result.out, good + ": ok, sweep/good, 1 case, 0 claims\n");
+    const std::string line =
+        "gfxrepro: " + bad + ":2:1: config: unknown key 'sweeep'; did you mean 'sweep'?\n";
+    EXPECT_EQ(result.err, line + line);
 }
 
 }  // namespace

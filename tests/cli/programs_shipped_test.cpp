@@ -55,6 +55,7 @@ TEST(ShippedPrograms, TheReadmesExampleWorksAsTyped) {
         EXPECT_FALSE(rowsOf(dir, metric).empty()) << metric;
     }
     EXPECT_THAT(readFile(dir + "/tables/sweep-mine.csv"), HasSubstr("rmse"));
+    EXPECT_THAT(readFile(dir + "/claims.csv"), HasSubstr("exponent ≤ -0.4"));
 }
 
 TEST(ShippedPrograms, VolumeOfABallOfOpenScad) {

@@ -122,19 +122,20 @@ TEST(Run, TablesSayAtWhichParametersTheyWereMeasured) {
     const TemporaryFolder folder;
     const std::string config = printedConfig(folder);
     const std::string whole = folder.path() / "whole";
-    EXPECT_EQ(parametersOf(config, whole, {}), "Measured at the printed parameters.");
+    EXPECT_EQ(parametersOf(config, whole, {}), "Measured at the parameters of the profile paper.");
     EXPECT_EQ(gfxrepro({"table", whole}).out,
               "demo2026/2: tables/demo2026-2.csv .md .tex\n"
-              "Of 2 printed cells of tables 2 were measured again: 2 at the printed parameters.\n");
+              "Of 2 printed cells of tables 2 were measured again: 2 at parameters of which it is "
+              "not known.\n");
     EXPECT_EQ(parametersOf(config, folder.path() / "quick", {"--profile", "quick"}),
-              "Measured at output 4×8 (printed 8×8), pause 1 ms (2).");
+              "Measured at output 4×8 (the config's 8×8), pause 1 ms (2).");
     EXPECT_EQ(parametersOf(config, folder.path() / "set", {"--set", "pause_ms=3"}),
-              "Measured at pause 3 ms (printed 2).");
+              "Measured at pause 3 ms (the config's 2).");
     EXPECT_EQ(parametersOf(config, folder.path() / "swept", {"--sweep", "number=2,3"}),
-              "Measured at the printed parameters.")
+              "Measured at the parameters of the profile paper.")
         << "the printed cell; 3 is not printed";
     EXPECT_EQ(parametersOf(config, folder.path() / "only", {"--only", "number=1"}),
-              "Measured at the printed parameters.");
+              "Measured at the parameters of the profile paper.");
     const std::string at = printedConfig(folder,
                                          "  paper: {printed: {at: {measure.frames: 500}}, "
                                          "measure: {frames: 3}}\n");

@@ -276,7 +276,7 @@ TEST(Modeline, ChangesNoPlan) {
     const std::string without = planOf("");
     EXPECT_NE(without.find("\"hash\""), std::string::npos);
     EXPECT_EQ(planOf("# yaml-language-server: $schema=../schema/experiment.json\n"), without);
-    EXPECT_NE(planOf("scene: shapes/torus\n"), without);
+    EXPECT_NE(planOf("params: {brightness: 0.5}\n"), without);
 }
 
 TEST(WayIn, ASceneSaysWhatItsModelLacks) {

@@ -13,6 +13,9 @@ namespace gfxrepro::claims {
 
 struct Kind;
 
+/// What a claim calls the axis of the columns when it compares rows (`across`).
+inline constexpr const char* kColumnAxis = "column";
+
 /// An entry of `claims:` — typed, not code. Operands are arithmetic expressions over column names
 /// ("a + b").
 struct ClaimSpec {
@@ -42,11 +45,9 @@ struct ClaimSpec {
     std::optional<std::string> over;  // a row axis or a column: along which, or of which
     /// What is required of the ratio, the exponent, the spread (as a fraction), …
     std::optional<double> low, high;
-    bool isLowExcluded = false;         // more_than
-    bool isHighExcluded = false;        // less_than
-    int direction = 0;                  // trend: −1 decreasing, +1 increasing, 0 by exponent
-    bool isStrict = false;              // trend: strictly monotonic
-    std::optional<double> falseAlarms;  // same_mean: their rate
+    bool isLowExcluded = false;   // more_than
+    bool isHighExcluded = false;  // less_than
+    Node keys = Node::map({});    // as they are written, for what its kind alone has
     /// Rows that are read: axis = one of these values. A claim must hold in every group of rows
     /// that agree on all row axes but `over`.
     std::vector<std::pair<std::string, std::vector<Node>>> at;

@@ -11,10 +11,12 @@ namespace {
 
 using namespace types;
 
+constexpr NumberRange kSpreads{.least = 0};
+
 void readIndependence(const ClaimKeys& keys, ClaimSpec& claim) {
     keys.readList(claim);
     keys.readOver("of", claim);
-    keys.readShare(claim);
+    claim.high = keys.readShare("at_most", kSpreads);
 }
 
 /// (max − min) / |median| over the rows.
@@ -62,11 +64,11 @@ std::vector<ClaimPart> independentParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind independent() {
-    return {sectionOf({"independent", "a | [a, b]", "", "does not depend on something",
-                       oneOrMore(text())},
-                      {overKey("of", "on which"),
-                       shareKey("at_most", "25% | fraction", "how far it may vary")}),
-            readIndependence, independentParts, Kind::Compares::Rows};
+    return {
+        sectionOf(
+            {"independent", "a | [a, b]", "", "does not depend on something", oneOrMore(text())},
+            {overKey("of", "on which"), shareKey("at_most", kSpreads, "how far it may vary")}),
+        readIndependence, independentParts, Kind::Compares::Rows};
 }
 
 }  // namespace gfxrepro::claims

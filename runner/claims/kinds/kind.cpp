@@ -42,6 +42,16 @@ std::vector<ClaimPart> partsOf(const ClaimSpec& claim) {
 
 // Keys
 
+namespace {
+
+/// The fractions of a share: beyond 1 the sign of a percentage is likely forgotten (fractionOf).
+NumberRange asFraction(NumberRange range) {
+    range.most = std::min(range.most, 1.0);
+    return range;
+}
+
+}  // namespace
+
 const Node& ClaimKeys::require(std::string_view key) const {
     const Node* value = node.find(key);
     if (!value) throw Error(where, fmt::format("{} needs '{}'", what, key));
@@ -77,18 +87,51 @@ void ClaimKeys::readSides(std::string_view separator, ClaimSpec& claim) const {
     addOperands(operands, sidesOf(text, separator, columns), claim);
 }
 
+/// What to write where one of the texts is the value of a row axis; else empty.
+std::string ClaimKeys::acrossHint(const Texts& texts) const {
+    for (const auto& [axis, values] : rowValues) {
+        if (std::ranges::find(rowAxes, axis) == rowAxes.end() || axis == kColumnAxis) continue;
+        for (const Node& value : values) {
+            if (!value.isScalar() || std::ranges::find(texts, value.text()) == texts.end())
+                continue;
+            return fmt::format("; '{}' is a value of row axis '{}': add 'across: {}'", value.text(),
+                               axis, axis);
+        }
+    }
+    return "";
+}
+
 /// The columns that an operand names must be there, as far as they are known.
 void ClaimKeys::addOperands(const Node& at, const Texts& texts, ClaimSpec& claim) const {
     for (const std::string& operand : texts) {
         if (operand.empty()) refuse(at, "", "an expression over columns");
         for (const OperandPiece& piece : operandPieces(operand, columns)) {
-            if (hasAllColumns && !piece.problem.empty()) fail(at, piece.problem);
+            if (piece.problem.empty() || (!hasAllColumns && !piece.isFunction)) continue;
+            fail(at, piece.problem + acrossHint({operand, std::string(piece.text)}));
         }
         if (std::ranges::find(claim.operands, operand) != claim.operands.end()) {
             throw Error(at.location(), fmt::format("{} compares '{}' with itself", what, operand));
         }
         claim.operands.push_back(operand);
     }
+}
+
+/// How many rows there are along a row axis, or in all where it is a column; at least, where the
+/// values of an axis are not known.
+std::size_t ClaimKeys::rowsAlong(const std::string& over, const ClaimSpec& claim) const {
+    const bool isAxis = std::ranges::find(rowAxes, over) != rowAxes.end();
+    std::size_t rows = 1;
+    for (const std::string& axis : rowAxes) {
+        if (isAxis && axis != over) continue;
+        const auto known = rowValues.find(axis);
+        if (known == rowValues.end()) return 2;
+        const auto at = std::ranges::find(claim.at, axis, &decltype(claim.at)::value_type::first);
+        rows *=
+            static_cast<std::size_t>(std::ranges::count_if(known->second, [&](const Node& value) {
+                return at == claim.at.end() || matchesAny(value, Node::sequence(at->second));
+            }));
+    }
+    return rows;
 }
 
 void ClaimKeys::readOver(std::string_view key, ClaimSpec& claim) const {
@@ -110,6 +153,9 @@ void ClaimKeys::readOver(std::string_view key, ClaimSpec& claim) const {
             if (!piece.problem.empty()) fail(over, piece.problem);
         }
     }
+    if (rowsAlong(name, claim) < 2) {
+        fail(over, fmt::format("there is one row along '{}'; allowed: two or more", name));
+    }
     claim.over = name;
 }
 
@@ -121,7 +167,10 @@ void ClaimKeys::readBounds(ClaimSpec& claim, const char* other) const {
             fail(*excluded, fmt::format("'{}' and '{}'; one is allowed", including, excluding));
         }
         const Node* value = included ? included : excluded;
-        if (value) bound = value->asDouble();
+        if (value) {
+            bound =
+                numberIn(*value, {}, fmt::format("{}: {}", what, included ? including : excluding));
+        }
         if (claim.low && claim.high && *claim.low > *claim.high) {
             fail(*value, "the lower bound exceeds the upper");
         }
@@ -141,12 +190,11 @@ void ClaimKeys::readBounds(ClaimSpec& claim, const char* other) const {
     refuse(*node.find(key), key, "bounds with a number between them");
 }
 
-void ClaimKeys::readShare(ClaimSpec& claim) const {
-    const Node& share = require("at_most");
-    claim.high = fractionOf(share);
-    if (!claim.high || *claim.high < 0.0) {
-        refuse(share, "at_most", "a percentage as 25%, or a fraction 0 … 1");
-    }
+double ClaimKeys::readShare(std::string_view key, const NumberRange& range) const {
+    const Node& share = require(key);
+    const std::optional<double> fraction = fractionOf(share);
+    if (fraction && range.has(*fraction)) return *fraction;
+    refuse(share, key, "a percentage as 25%, or a fraction, " + asFraction(range).text());
 }
 
 // Their schema
@@ -163,18 +211,18 @@ SchemaKey overKey(const char* key, const char* doc) {
     return {key, "row axis | column | expression", "required", doc, text()};
 }
 
-/// "25%", or 0.25.
-SchemaKey shareKey(const char* key, const char* type, const char* doc) {
-    return {key, type, "required", doc,
-            anyOf({{{"type", "string"}, {"pattern", R"(^\s*[0-9.eE+-]+\s*%$)"}},
-                   {{"type", "number"}, {"minimum", 0}, {"maximum", 1}}})};
+SchemaKey shareKey(const char* key, const NumberRange& range, const char* doc) {
+    const NumberRange fraction = asFraction(range);
+    return {
+        key, "25% | fraction, " + fraction.text(), "required", doc,
+        anyOf({{{"type", "string"}, {"pattern", R"(^\s*[0-9.eE+-]+\s*%$)"}}, number(fraction)})};
 }
 
 SchemaSection boundedSection(SchemaKey first, std::vector<SchemaKey> further, const char* other) {
-    further.push_back({"at_least", "number", "none", "lower bound", number()});
-    further.push_back({"more_than", "number", "none", "lower bound, itself excluded", number()});
-    further.push_back({"at_most", "number", "none", "upper bound", number()});
-    further.push_back({"less_than", "number", "none", "upper bound, itself excluded", number()});
+    further.push_back(numberKey("at_least", {}, "none", "lower bound"));
+    further.push_back(numberKey("more_than", {}, "none", "lower bound, itself excluded"));
+    further.push_back(numberKey("at_most", {}, "none", "upper bound"));
+    further.push_back(numberKey("less_than", {}, "none", "upper bound, itself excluded"));
     Json conditions = needsOneOf({{"at_least"}, {"more_than"}, {"at_most"}, {"less_than"}});
     if (other) conditions["anyOf"].push_back({{"required", Json::array({other})}});
     return sectionOf(std::move(first), std::move(further), std::move(conditions));

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -82,6 +83,7 @@ struct ClaimKeys {
     const Node& node;
     const Node& operands;  // the value of the key that names the kind
     const std::vector<std::string>& rowAxes;
+    const std::map<std::string, std::vector<Node>>& rowValues;  // of those that are known
     const std::vector<std::string>& columns;
     bool hasAllColumns;  // false: further columns may exist
     bool hasPrinted;
@@ -104,8 +106,10 @@ struct ClaimKeys {
     void readOver(std::string_view key, ClaimSpec& claim) const;
     /// at_least or more_than, at_most or less_than: one of them, unless the `other` key is there.
     void readBounds(ClaimSpec& claim, const char* other = nullptr) const;
-    /// at_most, of a share.
-    void readShare(ClaimSpec& claim) const;
+    /// The share under `key`.
+    double readShare(std::string_view key, const NumberRange& range) const;
+    std::size_t rowsAlong(const std::string& over, const ClaimSpec& claim) const;
+    std::string acrossHint(const std::vector<std::string>& texts) const;
     void addOperands(const Node& at, const std::vector<std::string>& texts, ClaimSpec& claim) const;
 };
 
@@ -152,7 +156,8 @@ SchemaSection sectionOf(SchemaKey first, std::vector<SchemaKey> further, Json co
 SchemaSection boundedSection(SchemaKey first, std::vector<SchemaKey> further = {},
                              const char* other = nullptr);
 SchemaKey overKey(const char* key, const char* doc);
-SchemaKey shareKey(const char* key, const char* type, const char* doc);
+/// "25%", or 0.25. A percentage may be beyond 100 where the range has no end.
+SchemaKey shareKey(const char* key, const NumberRange& range, const char* doc);
 
 /// The bounds of the claim, as "NAME in [0.3, 1.2]".
 Requirement rangeOf(const ClaimSpec& claim, const std::string& name, bool isPercent = false);

@@ -68,6 +68,11 @@ OperandPiece wordAt(std::string_view rest, std::string_view expression, Labels l
     const bool meansColumn = isNumber(word) ? isWhole && std::ranges::any_of(labels, isNumber)
                                             : isNameStart(word[0]) && !isCalled;
     if (meansColumn) piece.problem = noColumn(word, labels);
+    if (isCalled && isNameStart(word[0]) && std::ranges::count(kFunctions, word) == 0) {
+        const std::vector<std::string> known(kFunctions.begin(), kFunctions.end());
+        piece.problem = fmt::format("'{}' is no function{}", word, suggestionOrAll(word, known));
+        piece.isFunction = true;
+    }
     return piece;
 }
 

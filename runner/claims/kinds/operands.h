@@ -2,6 +2,7 @@
 // table.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,16 +12,22 @@
 
 namespace gfxrepro::claims {
 
+/// What an expression may call, beside + - * / ^ and comparisons, which are 1 or 0.
+inline constexpr std::array<std::string_view, 12> kFunctions = {
+    "abs", "avg", "exp", "ln", "log10", "log2", "max", "min", "rint", "sign", "sqrt", "sum"};
+
 /// A column, or what stands between columns: a number, the name of a function, or one character.
 struct OperandPiece {
     std::string_view text;  // of the expression, quotes included; the pieces are all of it
     std::optional<std::size_t> column = std::nullopt;  // among the labels
     /// Why it cannot be read: "'y' is no column (columns: a, b)"; or empty.
     std::string problem = {};
+    bool isFunction = false;  // the problem is of one, which no table makes right
 };
 
 /// A column is written by its label, whatever characters this has, also in quotes; of several that
-/// begin at a place the longest is meant. Every other name is called, as `max(a, b)`, or a problem.
+/// begin at a place the longest is meant. Every other name is one of kFunctions, called as
+/// `max(a, b)`, or a problem.
 /// Where labels are numbers ("8"), a number that is the whole expression means a column, and one
 /// within an expression that is a label, too, could mean either, a problem: the column is written
 /// '8', the number 8.0. The pieces point into `expression`.

@@ -6,16 +6,8 @@ namespace gfxrepro::claims {
 
 namespace {
 
-using namespace types;
-
 void readOrder(const ClaimKeys& keys, ClaimSpec& claim) {
-    if (!keys.operands.isSequence()) {
-        keys.readSides("<", claim);
-    } else if (claim.across) {
-        keys.readList(claim);
-    } else {
-        keys.refuse(keys.operands, "order", "a < b < …, or [axis=a, axis=b] of a row axis");
-    }
+    keys.readSides("<", claim);
     if (claim.operands.size() < 2) keys.refuse(keys.operands, "order", "a < b < …");
 }
 
@@ -59,11 +51,8 @@ std::vector<ClaimPart> orderParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind order() {
-    return {sectionOf({"order", "a < b < c | [axis=a, axis=b]", "",
-                       "in this order; a list is of rows, which the labels of an axis name",
-                       anyOf({text(), listOf(text(), 2)})},
-                      {}),
-            readOrder, orderParts};
+    return {sectionOf({"order", "a < b < c", "", "in this order", types::text()}, {}), readOrder,
+            orderParts};
 }
 
 }  // namespace gfxrepro::claims

@@ -11,14 +11,13 @@ namespace gfxrepro::claims {
 
 namespace {
 
+/// More would call a coin a test.
+constexpr NumberRange kRates{.least = 0, .most = 0.1, .isLeastExcluded = true};
+
+/// The rate of false alarms is the least p that holds.
 void readSameMean(const ClaimKeys& keys, ClaimSpec& claim) {
-    constexpr double kMost = 0.1;  // more would call a coin a test
     keys.readOne(claim);
-    const Node& rate = keys.require("false_alarms");
-    claim.falseAlarms = fractionOf(rate);
-    if (!claim.falseAlarms || *claim.falseAlarms <= 0.0 || *claim.falseAlarms > kMost) {
-        keys.refuse(rate, "false_alarms", "a percentage as 1%, or a fraction, above 0 and to 10%");
-    }
+    claim.low = keys.readShare("false_alarms", kRates);
 }
 
 /// The smallest p of the rows × their number (Bonferroni), 1 at most.
@@ -30,9 +29,9 @@ double familyWiseP(const GroupPoint& group) {
 std::vector<ClaimPart> sameMeanParts(const ClaimSpec& claim) {
     ClaimPart part{{0}, familyWiseP, {}, "p of all rows"};
     part.isOfSeeds = true;
-    part.requirement.low = *claim.falseAlarms;
+    part.requirement.low = *claim.low;
     part.requirement.text = fmt::format("the same expectation ({}: p of all rows ≥ {:.4g})",
-                                        claim.operands[0], *claim.falseAlarms);
+                                        claim.operands[0], *claim.low);
     return {part};
 }
 
@@ -48,11 +47,11 @@ std::string refusedSameMean(const ClaimSpec& claim, const Sampling& sampling) {
     const auto rows = static_cast<double>(sampling.rows);
     const double least =
         rows * metrics::leastP(static_cast<std::size_t>(frames), static_cast<std::size_t>(truths));
-    if (least <= *claim.falseAlarms) return "";
+    if (least <= *claim.low) return "";
     return fmt::format(
         "asks for {:.3g} % of false alarms over {} row{}, and could not fail: {} frames and {} of "
         "the truth come to no p below {:.2g} %; take more ('measure.frames', 'truth: {{frames}}')",
-        100.0 * *claim.falseAlarms, rows, rows == 1.0 ? "" : "s", frames, truths, 100.0 * least);
+        100.0 * *claim.low, rows, rows == 1.0 ? "" : "s", frames, truths, 100.0 * least);
 }
 
 }  // namespace
@@ -62,8 +61,8 @@ Kind sameMean() {
         {"same_mean", "a", "",
          "noisy pictures have the expectation of their truth; a column of the metric same_mean_p",
          types::text()},
-        {shareKey("false_alarms", "1% | fraction",
-                  "how often it may fail where it holds, over all rows together; to 10%")});
+        {shareKey("false_alarms", kRates,
+                  "how often it may fail where it holds, over all rows together")});
     Kind kind{std::move(section), readSameMean, sameMeanParts};
     kind.isOfAllRows = true;
     kind.metric = "same_mean_p";  // the p of metrics::testMeans, as techniques record it

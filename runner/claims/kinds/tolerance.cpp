@@ -7,10 +7,13 @@ namespace gfxrepro::claims {
 
 namespace {
 
+/// At 100 % of the printed value nothing would be too little.
+constexpr NumberRange kDeviations{.least = 0, .most = 1, .isMostExcluded = true};
+
 void readTolerance(const ClaimKeys& keys, ClaimSpec& claim) {
     keys.readOne(claim);
     keys.requirePrinted();
-    keys.readShare(claim);
+    claim.high = keys.readShare("at_most", kDeviations);
 }
 
 /// The largest |measured − expected| / |expected|; operands are these two.
@@ -33,19 +36,16 @@ std::vector<ClaimPart> toleranceParts(const ClaimSpec& claim) {
 }
 
 std::string refusedTolerance(const ClaimSpec& claim, const Sampling&) {
-    if (*claim.high >= 1.0) {
-        return "is within 100 % of what is printed or more, so that nothing is too little";
-    }
     const bool isFromPrint = claim.boundFrom == ClaimSpec::BoundSource::Print;
     if (!isFromPrint || claim.origin == ClaimSpec::Origin::Ours) return "";
-    return "has its bound from print, and how far from it a tolerance may be is not";
+    return "is 'tolerance', whose width is never printed; write 'bound_from: ours', or 'text'";
 }
 
 }  // namespace
 
 Kind tolerance() {
     Kind kind{sectionOf({"tolerance", "a", "", "is the printed value", types::text()},
-                        {shareKey("at_most", "25% | fraction", "how far from the printed value")}),
+                        {shareKey("at_most", kDeviations, "how far from the printed value")}),
               readTolerance, toleranceParts, Kind::Compares::Values};
     kind.refused = refusedTolerance;
     return kind;

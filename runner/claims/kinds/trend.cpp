@@ -1,7 +1,9 @@
 // trend: grows or falls along x, or as a power of x.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "engine/core/checks.h"
 #include "engine/metrics/statistics.h"
 #include "runner/claims/kinds/kind.h"
 
@@ -11,19 +13,30 @@ namespace {
 
 using namespace types;
 
+constexpr std::array<std::string_view, 2> kDirections = {"increasing", "decreasing"};
+
+/// 1 increasing, −1 decreasing, 0 by its exponent alone.
+int directionOf(const ClaimSpec& claim) {
+    const Node* direction = claim.keys.find("direction");
+    if (!direction) return 0;
+    const std::string what = "claim '" + claim.id + "': direction";
+    return choiceOf(*direction, kDirections, what) == 0 ? 1 : -1;
+}
+
+bool isStrict(const ClaimSpec& claim) {
+    const Node* strictly = claim.keys.find("strictly");
+    return strictly && strictly->asBool();
+}
+
 void readTrend(const ClaimKeys& keys, ClaimSpec& claim) {
     keys.readOne(claim);
     keys.readOver("over", claim);
     keys.readBounds(claim, "direction");
-    if (const Node* direction = keys.node.find("direction")) {
-        const std::string name = direction->isScalar() ? direction->text() : "";
-        claim.direction = name == "increasing" ? 1 : name == "decreasing" ? -1 : 0;
-        if (claim.direction == 0) keys.refuse(*direction, "direction", "increasing | decreasing");
-    }
-    if (const Node* strictly = keys.node.find("strictly")) {
-        claim.isStrict = strictly->asBool();
-        if (claim.direction == 0) keys.fail(*strictly, "strictly needs 'direction'");
-    }
+    (void)directionOf(claim);
+    const Node* strictly = keys.node.find("strictly");
+    if (!strictly) return;
+    (void)flagOf(*strictly, keys.what + ": strictly");
+    if (directionOf(claim) == 0) keys.fail(*strictly, "strictly needs 'direction'");
 }
 
 /// The least-squares slope of log(operand) over log(x). Not-a-number unless all are positive.
@@ -111,16 +124,15 @@ Contrasts rising(int direction) {
 
 std::vector<ClaimPart> trendParts(const ClaimSpec& claim) {
     std::vector<ClaimPart> parts;
-    if (claim.direction != 0) {
-        const int direction = claim.direction;
+    if (const int direction = directionOf(claim); direction != 0) {
         const auto step = [direction](const GroupPoint& group) {
             return smallestStep(group, direction);
         };
         ClaimPart part{{0}, step, {}, "smallest step"};
         part.requirement.low = 0.0;
-        part.requirement.isLowExcluded = claim.isStrict;
+        part.requirement.isLowExcluded = isStrict(claim);
         part.requirement.isPercent = true;
-        part.requirement.text = std::string(claim.isStrict ? "strictly " : "") +
+        part.requirement.text = std::string(isStrict(claim) ? "strictly " : "") +
                                 (direction > 0 ? "increasing" : "decreasing") + " with " +
                                 claim.over.value_or("");
         part.onTimes = rising(direction);
@@ -144,8 +156,7 @@ Kind trend() {
         boundedSection(
             {"trend", "a", "", "grows or falls, or as a power; bounds are its exponent's", text()},
             {overKey("over", "along which"),
-             {"direction", "increasing | decreasing", "none", "which way",
-              choice({"increasing", "decreasing"})},
+             choiceKey("direction", kDirections, "none", "which way"),
              {"strictly", "true | false", "false", "no two equal; with direction", boolean()}},
             "direction"),
         readTrend, trendParts, Kind::Compares::Rows};

@@ -9,8 +9,10 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "engine/core/random.h"
+#include "runner/claims/kinds/operands.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
@@ -396,8 +398,10 @@ TEST(Claims, WhatIsPrintedMeetsABoundFromPrint) {
     EXPECT_EQ(errorOf("trend: t, over: number, at_least: 0.01, at_most: 225, kind: algorithmic"),
               isAnother + "exponent 1.5")
         << "evenly, but by any factor";
-    EXPECT_EQ(errorOf("tolerance: a, at_most: 50%"),
-              "claim 'C' has its bound from print, and how far from it a tolerance may be is not");
+    EXPECT_EQ(
+        errorOf("tolerance: a, at_most: 50%"),
+        "claim 'C' is 'tolerance', whose width is never printed; write 'bound_from: ours', or "
+        "'text'");
 }
 
 TEST(Claims, WhatCannotBeJudgedIsRefused) {
@@ -442,21 +446,6 @@ TEST(Claims, WhatReadsCalibratedCellsSaysSo) {
     EXPECT_EQ(reasonOf("document", "a < 2 * a"), "one sample; what it reads is calibrated");
     EXPECT_EQ(reasonOf("document", "b < 2 * b"), "one sample");
     EXPECT_EQ(reasonOf("calibrated", "a < 2 * a"), "one sample");
-}
-
-TEST(Claims, AToleranceIsLessThanThePrintedNumberItself) {
-    const auto errorOf = [](const std::string& within) {
-        const config::Experiment experiment = tables::experimentFrom(
-            "sweep: {number: [1]}\nlayout: {rows: number, columns: {a: {metric: bytes}}}\n"
-            "printed: {values: \"number,a\\n1,4\"}\nclaims:\n  C: {says: s, origin: document, "
-            "tolerance: a, at_most: " +
-            within + "}\n");
-        return refusalOf(experiment);
-    };
-    EXPECT_EQ(errorOf("99%"), "no error");
-    EXPECT_EQ(
-        errorOf("100%"),
-        "claim 'C' is within 100 % of what is printed or more, so that nothing is too little");
 }
 
 /// What has no interval is never told from its bound.
@@ -577,8 +566,10 @@ TEST(Claims, UnmeasuredNamesTheCell) {
     EXPECT_EQ(result.reason, "a at n=2: oom (killed at 2 GiB)");
     EXPECT_EQ(judgePowers("bound: a, at_most: 2, at: {n: 1}", maker.records()).verdict,
               Verdict::Holds);
-    EXPECT_EQ(judgePowers("trend: a, over: n, at_least: 0, at_most: 9, at: {n: 1}", maker.records())
-                  .reason,
+    config::Experiment one =
+        tables::experimentFrom(powersBody("trend: a, over: n, at_least: 0, at_most: 9"));
+    one.claims[0].at = {{"n", {Node::number(1.0)}}};
+    EXPECT_EQ(evaluateClaims(one, tables::buildTable(one, maker.records()), kSoftware)[0].reason,
               "needs at least 2 rows, found 1");
     const ClaimResult zero = judgePowers("trend: a, over: n, at_least: 0, at_most: 9",
                                          powers([](double n) { return n - 1.0; }));
@@ -1011,7 +1002,7 @@ TEST(Claims, AreJudgedOnWhatWasMeasuredNotOnWhatIsShown) {
 }
 
 /// Rows `method` × `scene`, columns a and b; one claim that compares methods.
-std::string acrossBody(const std::string& claim, const std::string& across = "across: method, ") {
+std::string acrossBody(const std::string& claim) {
     return R"(
 sweep: {method: [old, new], scene: [s, t]}
 layout:
@@ -1023,8 +1014,8 @@ printed:
     old,s,1,2
     new,s,10,4
 claims:
-  X: {says: as claimed, )" +
-           across + claim + "}\n";
+  X: {says: as claimed, across: method, )" +
+           claim + "}\n";
 }
 
 TEST(Claims, AcrossComparesRows) {
@@ -1042,9 +1033,7 @@ TEST(Claims, AcrossComparesRows) {
     EXPECT_EQ(result.reason, "worst at t, b; one sample");
     EXPECT_EQ(judge("order: old < new, at: {column: a}").verdict, Verdict::Holds);
     EXPECT_EQ(judge("order: old < new, at: {scene: s}").verdict, Verdict::Holds);
-    const std::string list = "order: [method=old, method=new], at: {scene: s}";
-    EXPECT_EQ(judgeOne(acrossBody(list, ""), maker.records()).required, "old < new");
-    EXPECT_EQ(judgeOne(acrossBody(list, ""), maker.records()).verdict, Verdict::Holds);
+    EXPECT_EQ(judge("order: old < new, at: {scene: s}").required, "old < new");
     result = judge("ratio: new / old, at_least: 20, at: {scene: t, column: a}");
     EXPECT_EQ(result.verdict, Verdict::Holds);
     EXPECT_EQ(result.measured, "20");
@@ -1087,17 +1076,43 @@ TEST(Claims, WhatIsNoExpressionOrReadsNoColumnIsRefusedBeforeAnythingIsMeasured)
         experiment.claims[0].operands[0] = operand;
         return errorText([&] { requireJudgeable(experiment, table); });
     };
-    for (const char* operand : {"a +", "(a", "a b", "foo(a)"}) {
+    EXPECT_THAT(refused("foo(a)"),
+                testing::StartsWith("t.yaml:4:2: claim 'X': 'foo' is no function"));
+    for (const char* operand : {"a +", "(a", "a b"}) {
         EXPECT_THAT(refused(operand),
                     testing::StartsWith(
                         fmt::format("t.yaml:4:2: claim 'X': '{}' is no expression: ", operand)));
     }
     EXPECT_THAT(refused("a b"), testing::HasSubstr("\"b\"")) << "by its name, not the parser's";
     EXPECT_EQ(refused("1 + 1"),
-              "t.yaml:4:2: claim 'X': '1 + 1' reads no column; axes are compared as [axis=a, "
-              "axis=b]");
+              "t.yaml:4:2: claim 'X': '1 + 1' reads no column; the rows of an axis are compared "
+              "with 'across: AXIS'");
     EXPECT_EQ(refused("max(a, b)"), "no error");
     EXPECT_EQ(refused("a + time"), "no error") << "a profile may have taken it away";
+}
+
+/// Each function that the documentation names.
+TEST(Claims, ExpressionsCallFunctions) {
+    config::Experiment experiment = tables::experimentFrom(powersBody("bound: a, at_most: 5"));
+    const tables::Table table = tables::buildTable(
+        experiment, powers([](double) { return 4.0; }, [](double) { return 100.0; }));
+    const auto measured = [&](const std::string& operand) {
+        experiment.claims[0].operands[0] = operand;
+        return evaluateClaims(experiment, table, kSoftware)[0].measured;
+    };
+    const std::map<std::string, std::string> expected = {
+        {"abs(-a)", "4"},       {"avg(a, b)", "52"},  {"exp(a - 4)", "1"},  {"ln(exp(a))", "4"},
+        {"log10(b)", "2"},      {"log2(a)", "2"},     {"max(a, b)", "100"}, {"min(a, b)", "4"},
+        {"rint(a + 0.4)", "4"}, {"sign(-a)", "-1"},   {"sqrt(a)", "2"},     {"sum(a, b)", "104"},
+        {"a ^ 2 / 8 - 1", "1"}, {"(a < b) + 1", "2"}, {"a > b", "0"}};
+    std::set<std::string> called;
+    for (const auto& [operand, value] : expected) {
+        EXPECT_EQ(measured(operand), value) << operand;
+        called.insert(operand.substr(0, operand.find('(')));
+    }
+    for (const std::string_view name : kFunctions) {
+        EXPECT_TRUE(called.contains(std::string(name))) << name;
+    }
 }
 
 TEST(Claims, ANumberThatIsAColumnIsNoNumber) {

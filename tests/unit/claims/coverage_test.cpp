@@ -182,7 +182,7 @@ TEST_P(Coverage, OfTheNoiseOfATable) {
 /// A trend that is there is rarely denied, one that is not is rarely affirmed.
 TEST_P(Coverage, OfADirection) {
     ClaimSpec rising = claimOf("trend");
-    rising.direction = 1;
+    rising.keys.set("direction", Node::scalar("increasing"));
     const double risen = shareOf("flat said to rise", GetParam(), [&](Random& random) {
         const Group group =
             groupOf({std::vector<double>(6, 10.0)}, {1, 2, 3, 4, 5, 6}, GetParam(), random);

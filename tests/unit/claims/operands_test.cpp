@@ -56,6 +56,10 @@ TEST(ClaimOperands, OtherNamesAreNoColumns) {
     EXPECT_EQ(problemOf("a + 'a_0.6'"), "'a_0.6' is no column; did you mean 'a_0.5'?" + columns);
     EXPECT_EQ(problemOf("a + 'a"), "quotes without an end: 'a");
     EXPECT_EQ(read("sum (a)"), "sum ([a])") << "called";
+    EXPECT_EQ(problemOf("mean(a)"),
+              "'mean' is no function; allowed: abs, avg, exp, ln, log10, log2, max, min, rint, "
+              "sign, sqrt, sum");
+    EXPECT_EQ(problemOf("squrt(a)"), "'squrt' is no function; did you mean 'sqrt'?");
 }
 
 TEST(ClaimOperands, SidesAreApartOutsideOfParenthesesAndColumns) {

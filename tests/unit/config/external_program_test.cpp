@@ -63,7 +63,7 @@ TEST(ExternalProgram, MayGiveAllFramesInOneRun) {
     EXPECT_FALSE(programOf("command: t {frame}\nframes: one").givesAllFrames);
     EXPECT_TRUE(programOf("command: t {frames}\nframes: all").givesAllFrames);
     EXPECT_EQ(errorOf("command: t\nframes: 3"),
-              "c.yaml:2:9: program: frames is 3; allowed: one, all");
+              "c.yaml:2:9: program: frames is 3; allowed: one | all");
     EXPECT_EQ(errorOf("command: t {frame}\nframes: all"),
               "c.yaml:1:10: program: {frame}, and one run gives all frames; allowed: {frames}, "
               "their number");
@@ -97,7 +97,7 @@ TEST(ExternalProgram, ThatTakesASeedHasItAsAParameter) {
     EXPECT_EQ(errorOf("command: t\nseeds: process"),
               "c.yaml:2:1: program: seeds: the command has no {seed}");
     EXPECT_EQ(errorOf("command: t {seed}\nseeds: repeat"),
-              "c.yaml:2:8: program: seeds is repeat; allowed: case, process");
+              "c.yaml:2:8: program: seeds is repeat; allowed: case | process");
     // Errors against a truth of another seed are random; those against one of its own are not.
     const std::string image = "command: t {seed} {n}\nparams: {n: 1}\nimages: {r: {file: r.png";
     EXPECT_FALSE(programOf(image + "}}").seedsByProcess);
@@ -206,7 +206,13 @@ TEST(ExternalProgram, DeclaresWhatItSays) {
         errorOf("command: t\nmetrics: {a: {unit: m, pattern: x}}"),
         "c.yaml:2:33: program: metric 'a': pattern is x; allowed: one with the number in ( )");
     EXPECT_EQ(errorOf("command: t\nmetrics: {a: {unit: m, better: more}}"),
-              "c.yaml:2:32: program: metric 'a': better is more; allowed: lower, higher");
+              "c.yaml:2:32: program: metric 'a': better is more; allowed: lower | higher");
+    EXPECT_EQ(errorOf("command: t\nmetrics: {a: {unit: m, optional: perhaps}}"),
+              "c.yaml:2:34: program: metric 'a': optional is perhaps; allowed: true | false");
+    EXPECT_EQ(errorOf("command: t {n}\nparams: {n: {default: 1, min: low}}"),
+              "c.yaml:2:31: program: parameter 'n': min is low; allowed: a number");
+    EXPECT_EQ(errorOf("command: t\ngpu: 2"),
+              "c.yaml:2:6: program: gpu is 2; allowed: true | false");
 }
 
 TEST(ExternalProgram, ATruthMayBeMadeByOtherParameters) {

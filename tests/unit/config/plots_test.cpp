@@ -57,7 +57,7 @@ TEST_F(PlotTest, ASlopeIsOfLogarithmicAxes) {
                   "log: [x, y]");
     for (const std::string bad : {"half", "nan", "[1]", ".inf"}) {
         EXPECT_EQ(plotError("{x: aa, y: bb, slope: " + bad + "}"),
-                  head + "31: plot 1: slope is " + bad + "; allowed: a number, the exponent of x");
+                  head + "31: plot 1: slope is " + bad + "; allowed: a number");
     }
 }
 
@@ -85,7 +85,9 @@ TEST_F(PlotTest, BadAxes) {
                                                  "22: plot 1: y is []; allowed: a column, or a "
                                                  "list");
     EXPECT_EQ(plotError("{x: size, y: aa, log: [z]}"),
-              head + "32: plot 1: log is z; allowed: x, y");
+              head + "32: plot 1: log is z; allowed: x | y");
+    EXPECT_EQ(plotError("{x: size, y: aa, log: [x, x]}"),
+              head + "35: plot 1: log: 'x' stands twice");
     EXPECT_EQ(
         plotError("{x: size, y: aa, zoom: 2}"),
         head + "26: plot 1: unknown key 'zoom'; allowed: x, y, by, panels, at, log, slope, title");

@@ -9,6 +9,7 @@
 #include <valijson/validator.hpp>
 
 #include "engine/core/files.h"
+#include "engine/scene/catalog.h"
 #include "runner/config/documents.h"
 #include "runner/config/schema.h"
 #include "tests/unit/config/experiment_fixture.h"
@@ -177,7 +178,7 @@ TEST_F(ExperimentTest, ReaderAndSchemaRefuseTheSame) {
              claim + "{says: s, crossover: [aa], over: scene, at_least: 1, at_most: 2}",
              claim + "{says: s, independent: aa, of: scene, at_most: 25}",
              claim + "{says: s, exact: aa, equals: about}",
-             claim + "{says: s, order: [scene=s]}",
+             claim + "{says: s, order: [aa, bb]}",
              claim + "{says: s, order: aa < bb, origin: mine}",
              claim + "{says: s, order: aa < bb, profile: fast}",
              head + "output: {width: 0}\n",  // ranges and types
@@ -197,6 +198,113 @@ TEST_F(ExperimentTest, ReaderAndSchemaRefuseTheSame) {
         EXPECT_NE(loadError(text), "no error") << text;
         EXPECT_NE(schema.complaintAbout(text), "") << text;
     }
+}
+
+/// The bounds that a type of JSON has of numbers, each with a little more and less; some others.
+void addNumbers(const nlohmann::json& type, std::set<double>& numbers) {
+    if (type.is_object()) {
+        const auto kind = type.find("type");
+        const bool isNumber = kind != type.end() && (*kind == "number" || *kind == "integer");
+        if (kind != type.end() && *kind == "array") return;
+        if (isNumber) numbers.insert({-1.0, 0.0, 0.5, 1.0, 2.0});
+        for (const char* key : {"minimum", "exclusiveMinimum", "maximum", "exclusiveMaximum"}) {
+            if (!isNumber || !type.contains(key)) continue;
+            const double bound = type[key], step = *kind == "integer" ? 1.0 : bound / 8.0;
+            numbers.insert({bound, bound + step, bound - step});
+        }
+    }
+    if (!type.is_structured()) return;
+    for (const auto& part : type) addNumbers(part, numbers);
+}
+
+/// For each key that takes a number a file that is right where "@" is one, by its section.
+const std::vector<std::pair<std::string, std::string>> kNumberPlaces = {
+    {"program_param.min",
+     "technique: external\nprogram:\n  command: t {n}\n"
+     "  params: {n: {default: 9.5, min: @}}\n"},
+    {"program_param.max",
+     "technique: external\nprogram:\n  command: t {n}\n"
+     "  params: {n: {default: -9.5, max: @}}\n"},
+    {"output", "output: {KEY: @}\n"},
+    {"measure", "measure: {KEY: @}\n"},
+    {"selection", "TABLE{aa: {metric: mean_brightness, KEY: @}}}\n"},
+    {"plot",
+     "TABLE{aa: mean_brightness, bb: mean_brightness}}\n"
+     "plots: [{x: aa, y: bb, log: [x, y], KEY: @}]\n"},
+    {"claim.ratio", "CLAIM{says: s, ratio: aa / bb, KEY: @}\n"},
+    {"claim.trend", "CLAIM{says: s, trend: aa, over: bb, KEY: @}\n"},
+    {"claim.independent", "CLAIM{says: s, independent: aa, of: bb, KEY: @}\n"},
+    {"claim.bound", "CLAIM{says: s, bound: aa, KEY: @}\n"},
+    {"claim.exact", "CLAIM{says: s, exact: aa, KEY: @}\n"},
+    {"claim.tolerance", "CLAIM{says: s, tolerance: aa, KEY: @}\n"},
+    {"claim.crossover", "CLAIM{says: s, crossover: [aa, bb], over: scene, KEY: @}\n"},
+    {"claim.same_mean", "CLAIM{says: s, same_mean: aa, KEY: @}\n"},
+    {"file_source", "{file: a.ply, KEY: @}"},
+    {"height_map_source.spacing_m", "{height_map: a.png, spacing_m: @}"},
+    {"height_map_source.detail_m",
+     "{height_map: a.png, spacing_m: 1, resample_to: 9, detail_m: @}"},
+    {"height_map_source", "{height_map: a.png, spacing_m: 1, KEY: @}"},
+    {"generator_source", "{generator: terrain, KEY: @}"},
+};
+
+std::string numberPlace(const std::string& section, const std::string& key) {
+    for (const auto& [place, text] : kNumberPlaces) {
+        if (place == section + "." + key || place == section) return text;
+    }
+    return "";
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    const std::size_t at = text.find(what);
+    return at == std::string::npos ? text : text.replace(at, what.size(), by);
+}
+
+// A range that stood twice would come apart: the reader takes a number exactly where the schema
+// does.
+TEST_F(ExperimentTest, ReaderAndSchemaTakeTheSameNumbers) {
+    const JsonSchema experiment("experiment"), scene("scene");
+    const std::string table = "sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: ";
+    const std::string claim = table +
+                              "{aa: mean_brightness, bb: mean_brightness}}\n"
+                              "printed: {values: \"scene,aa\\ns,1\"}\nclaims:\n  C: ";
+    const scene::GeneratorInfo terrain{"terrain", "", nullptr};
+    int taken = 0, refused = 0;
+    const auto hold = [&](const SchemaSection& section, const SchemaKey& key, bool isScene) {
+        std::set<double> numbers;
+        addNumbers(nlohmann::json::parse(key.json.dump()), numbers);
+        if (numbers.empty()) return;
+        const std::string place = numberPlace(section.name, key.name);
+        EXPECT_NE(place, "") << section.name << "." << key.name << " has no test";
+        for (const double number : numbers) {
+            std::string text = replaced(place, "KEY", key.name);
+            text = replaced(text, "@", Node::number(number).text());
+            text = replaced(replaced(text, "TABLE", table), "CLAIM", claim);
+            std::string error;
+            if (isScene) {
+                text = "scene: m/x\ndoc: d\nsources: [" + text + "]\n";
+                folder.write("scenes/m/x.yaml", text);
+                error = test::errorText([&] {
+                    const scene::Catalog catalog(folder.path() / "scenes", folder.path(),
+                                                 std::span(&terrain, 1));
+                });
+            } else {
+                const bool isTold = text.starts_with("technique");
+                text = std::string("table: p/1\ntitle: t\n") +
+                       (isTold ? "" : "technique: template\n") + text;
+                error = loadError(text);
+            }
+            const std::string complaint = (isScene ? scene : experiment).complaintAbout(text);
+            EXPECT_EQ(error == "no error", complaint.empty()) << text << error << complaint;
+            (complaint.empty() ? taken : refused) += 1;
+        }
+    };
+    for (const SchemaFile& file : schema()) {
+        for (const SchemaSection& section : file.sections) {
+            for (const SchemaKey& key : section.keys) hold(section, key, file.name == "scene");
+        }
+    }
+    EXPECT_GT(taken, 100);
+    EXPECT_GT(refused, 30);
 }
 
 TEST(JsonSchema, KnowsTheParametersOfEachTechnique) {

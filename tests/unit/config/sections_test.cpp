@@ -26,9 +26,39 @@ TEST_F(ExperimentTest, BadSections) {
               "comma needs quotes");
     EXPECT_EQ(errorWith("assumptions: {a: {valu: 1, why: w}}"),
               "DIR/zju/a.yaml:4:19: assumption 'a': unknown key 'valu'; did you mean 'value'?");
+    const std::string table =
+        "sweep: {scene: [s]}\nlayout: {rows: scene, columns: {aa: {metric: m, ";
+    for (const char* scale : {"big", "0", "-1"}) {
+        EXPECT_EQ(
+            errorWith(table + "scale: " + scale + "}}}"),
+            std::string("DIR/zju/a.yaml:5:56: scale is ") + scale + "; allowed: a number, above 0");
+    }
     EXPECT_EQ(errorWith("claims: {}"), "DIR/zju/a.yaml:4:1: 'claims' without 'layout'");
+    EXPECT_EQ(loadError("sweep_of: own\ntitle: t\ntechnique: x\nsweep: {n: [1, 2]}\nclaims:\n"
+                        "  C: {says: s, across: m, order: 1 < 2}\n"),
+              "DIR/zju/a.yaml:6:24: claim 'C': across is m; allowed: n");
     EXPECT_EQ(errorWith("printed: {values: \"a\\n1\"}"),
               "DIR/zju/a.yaml:4:11: printed: 'values' without 'layout'");
+}
+
+TEST_F(ExperimentTest, ShowsPicturesThatTheProgramLeaves) {
+    const auto error = [&](const std::string& name) {
+        return loadError(
+            "sweep_of: own\ntitle: t\nprogram: {command: t, images: {result: r.png}}\n"
+            "shows: [" +
+            name + "]\n");
+    };
+    EXPECT_EQ(error("result"), "no error");
+    EXPECT_EQ(error("nothing"), "DIR/zju/a.yaml:4:9: shows is nothing; allowed: result");
+}
+
+TEST_F(ExperimentTest, AProgramNeedsNoTechnique) {
+    const Experiment own = load("sweep_of: own\ntitle: t\nprogram: {command: t}\n");
+    EXPECT_EQ(own.technique, "external");
+    EXPECT_EQ(load("sweep_of: own\ntitle: t\ntechnique: x\nprogram: {command: t}\n").technique,
+              "x");
+    EXPECT_EQ(loadError("sweep_of: own\ntitle: t\n"),
+              "DIR/zju/a.yaml:1:1: neither 'technique' nor 'printed'; allowed: either or both");
 }
 
 TEST_F(ExperimentTest, WhatAPresetSaysOfThePrintNeedsNoLayout) {
@@ -284,13 +314,17 @@ TEST_F(ExperimentTest, BadClaimsOverAxes) {
                   "'scene'?");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, direction: down}"),
               head + "48: claim 'C': direction is down; allowed: increasing | decreasing");
+    EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, direction: increasing, strictly: maybe}"),
+              head + "70: claim 'C': strictly is maybe; allowed: true | false");
+    EXPECT_EQ(claimError("{says: s, bound: aa, at_least: big}"),
+              head + "37: claim 'C': at_least is big; allowed: a number");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, at_least: 1, at_most: 2, strictly: true}"),
               head + "72: claim 'C': strictly needs 'direction'");
     for (const char* share : {"25", "x%", "-1%", "[1]"}) {
         EXPECT_EQ(
             claimError(std::string("{says: s, independent: aa, of: bb, at_most: ") + share + "}"),
             head + "50: claim 'C': at_most is " + share +
-                "; allowed: a percentage as 25%, or a fraction 0 … 1");
+                "; allowed: a percentage as 25%, or a fraction, 0 … 1");
     }
     EXPECT_EQ(claimError("{says: s, exact: aa}"), head + "3: claim 'C' needs 'equals'");
     EXPECT_EQ(claimError("{says: s, exact: aa, equals: printed}"),
@@ -304,7 +338,16 @@ TEST_F(ExperimentTest, BadClaimsOverAxes) {
     for (const char* rate : {"0", "11%", "1", "-1%", "few"}) {
         EXPECT_EQ(claimError(std::string("{says: s, same_mean: aa, false_alarms: ") + rate + "}"),
                   head + "45: claim 'C': false_alarms is " + rate +
-                      "; allowed: a percentage as 1%, or a fraction, above 0 and to 10%");
+                      "; allowed: a percentage as 25%, or a fraction, above 0, at most 0.1");
+    }
+    // At 100 % of the printed value nothing would be too little.
+    for (const char* width : {"1", "100%", "-1%"}) {
+        EXPECT_EQ(errorWith("sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: {aa: m}}\n"
+                            "printed: {values: \"scene,aa\\ns,1\"}\n"
+                            "claims: {C: {says: s, tolerance: aa, at_most: " +
+                            std::string(width) + "}}"),
+                  head + "47: claim 'C': at_most is " + width +
+                      "; allowed: a percentage as 25%, or a fraction, at least 0, below 1");
     }
 }
 
@@ -442,15 +485,38 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
               head + "46: claim 'C': at: unknown key 'e'; allowed: scene, column");
     EXPECT_EQ(error("across: e, order: p < q, at: {column: p}}"),
               head + "54: claim 'C': at.column is p; allowed: aa | bb");
-    EXPECT_EQ(error("order: [e=p, e=q], at: {scene: s, column: [aa, bb]}}"), "no error");
-    EXPECT_EQ(error("order: [e=p, scene=s]}"),
-              head + "29: claim 'C' is scene=s; allowed: e=LABEL, as the others");
-    EXPECT_EQ(error("order: [e=p, e=r]}"),
-              head + "29: claim 'C': 'r' is no column; did you mean 'p'? (columns: p, q)");
-    EXPECT_EQ(error("order: [aa, bb]}"),
+    EXPECT_EQ(error("order: [p, q]}"),
+              head + "23: claim 'C': order is [p, q]; allowed: one line of text");
+    // What is missing is said.
+    const std::string hint = " is no column (columns: aa, bb); ";
+    EXPECT_EQ(error("order: p < q}"), head + "23: claim 'C': 'p'" + hint +
+                                          "'p' is a value of row axis 'e': add 'across: e'");
+    EXPECT_EQ(
+        error("ratio: \"max(p, q) / aa\", at_most: 1}"),
+        head + "23: claim 'C': 'p'" + hint + "'p' is a value of row axis 'e': add 'across: e'");
+    EXPECT_EQ(error("order: aa < bb, at: {column: aa}}"),
               head +
-                  "23: claim 'C': order is [aa, bb]; allowed: a < b < …, or [axis=a, axis=b] of "
-                  "a row axis");
+                  "37: claim 'C': at: 'column' is of a claim across a row axis: add 'across: "
+                  "AXIS' (e | scene)");
+}
+
+TEST_F(ExperimentTest, OneRowHasNoTrend) {
+    const auto error = [&](const std::string& claim, const std::string& sweep = "n: [1]") {
+        return errorWith(
+            "sweep: {" + sweep +
+            "}\nlayout: {rows: [n], columns: {aa: m, bb: m}}\nclaims:\n  C: {says: s, " + claim +
+            "}\n");
+    };
+    const std::string head = "DIR/zju/a.yaml:7:";
+    EXPECT_EQ(error("trend: aa, over: n, direction: increasing"),
+              head + "33: claim 'C': there is one row along 'n'; allowed: two or more");
+    EXPECT_EQ(error("trend: aa, over: bb, direction: increasing"),
+              head + "33: claim 'C': there is one row along 'bb'; allowed: two or more");
+    EXPECT_EQ(error("independent: aa, of: n, at_most: 5%"),
+              head + "37: claim 'C': there is one row along 'n'; allowed: two or more");
+    EXPECT_EQ(error("crossover: [aa, bb], over: n, at_most: 5, at: {n: 2}", "n: [1, 2]"),
+              head + "43: claim 'C': there is one row along 'n'; allowed: two or more");
+    EXPECT_EQ(error("trend: aa, over: n, direction: increasing", "n: [1, 2]"), "no error");
 }
 
 }  // namespace

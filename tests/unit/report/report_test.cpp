@@ -211,9 +211,9 @@ TEST(Report, NoRatioAtOtherParameters) {
     writeReport(folder.path() / "report.html", {&run, 1});
     std::string html = readFile(folder.path() / "report.html");
     EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
-    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light grid none (paper "
-                                "profile 16).</p>\n<div"));
-    EXPECT_THAT(html, HasSubstr(" title=\"at light grid none (paper profile 16)\">8.0"));
+    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light grid none (the "
+                                "config&#39;s 16).</p>\n<div"));
+    EXPECT_THAT(html, HasSubstr(" title=\"at light grid none (the config&#39;s 16)\">8.0"));
     EXPECT_THAT(
         html,
         HasSubstr(
@@ -571,7 +571,8 @@ TEST(Report, RunsStandSideBySide) {
              "2 at "
              "other parameters, which each table names.</p>",
              "<p class=\"parameters\"><b>A</b> Measured at the printed parameters.</p>\n"
-             "<p class=\"parameters\"><b>B</b> Measured at light grid none (paper profile 16).</p>",
+             "<p class=\"parameters\"><b>B</b> Measured at light grid none (the config&#39;s "
+             "16).</p>",
              "×0.5</span>",  // 8 of 16
              "<span class=\"soft\">B: </span>Noise of this one.</p>",
          }) {

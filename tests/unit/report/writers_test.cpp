@@ -76,7 +76,7 @@ TEST(Writers, TableFiles) {
         csv,
         HasSubstr(",ok,yes,9.0,8,8,8,95 % interval,ok,yes,Measured at the printed parameters\n"));
     EXPECT_THAT(csv, HasSubstr("0.3333333333333333,"));
-    EXPECT_THAT(csv, HasSubstr(",ok,no,Measured at light grid 4 (paper profile 16)\n"));
+    EXPECT_THAT(csv, HasSubstr(",ok,no,Measured at light grid 4 (the config's 16)\n"));
     EXPECT_THAT(csv, HasSubstr("models/lost,,,,,,,,,,,crash,,,,,,,crash,,\n"));
     const std::string markdown = run.read("tables/zju2005-9.9.md");
     EXPECT_THAT(markdown, HasSubstr("# Table 9.9. A table\n"));
@@ -94,6 +94,25 @@ TEST(Writers, TableFiles) {
     EXPECT_THAT(latex, testing::EndsWith("\\end{tabular}\n"
                                          "\\par{\\footnotesize \\gfxrepro{zju2005/9.9}\\par}\n"));
     EXPECT_THAT(latex, HasSubstr("\\textless{}b\\textgreater{}\\&\\textbar{}\\_\\%"));
+}
+
+TEST(Writers, EveryFormSaysOverWhatItsNumbersAreTaken) {
+    tables::RecordMaker maker;
+    for (const char* method : {"oct", "snorm"}) {
+        maker.beginCase("", R"({"method":")" + std::string(method) + "\"}").add("error", {1.0});
+    }
+    const Written run;
+    writeTables(
+        run.folder.path(),
+        tables::buildTables({tables::experimentFrom("sweep: {method: [oct, snorm]}\n"
+                                                    "layout: {columns: {e: {metric: error}}}\n")},
+                            maker.records()));
+    const std::string said = "Each number is taken over method (oct, snorm).";
+    EXPECT_THAT(run.read("tables/zju2005-9.9.md"), HasSubstr("\nNote: " + said + "\n"));
+    EXPECT_THAT(run.read("tables/zju2005-9.9.tex"), HasSubstr(said));
+    const std::string csv = run.read("tables/zju2005-9.9.csv");
+    EXPECT_THAT(csv, HasSubstr(",e_taken_over,"));
+    EXPECT_THAT(csv, HasSubstr(",method=oct|snorm,"));
 }
 
 /// Rounds share what lasts as long as a run.

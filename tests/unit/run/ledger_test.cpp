@@ -19,6 +19,7 @@ class Still : public technique::Technique {
     explicit Still(Params& params) {
         const double bias = params.getDouble("bias", 0.5, {"taken from the depth", "texels", 0, 1});
         const bool isStatic = params.getBool("static", false, {"drawn once"});
+        isStatic_ = isStatic;
         params.getInt("last", 0, {"frame that is drawn"});
         params.getText("view", "", {"a camera of the scene"});
         if (!isStatic) params.refuseGiven({"last"}, "'static: true'");
@@ -26,9 +27,21 @@ class Still : public technique::Technique {
             throw Error(params.locationOf("bias"), "bias is 0, but static needs one");
         }
     }
+    /// A test says by its lines whether it is of scenes.
+    static inline bool drawsScenes = false;
+    technique::SceneNeed sceneNeed() const override {
+        return drawsScenes && !isStatic_ ? technique::SceneNeed::Model
+                                         : technique::SceneNeed::Nothing;
+    }
+    void requireFrames(int frameCount) const override {
+        if (isStatic_) Technique::requireFrames(frameCount);
+    }
     void setup(technique::SetupContext&) override {}
     void render(technique::FrameContext&) override {}
     void record(technique::Recorder&) override {}
+
+  private:
+    bool isStatic_ = false;
 };
 
 const technique::TechniqueInfo kTechniques[] = {
@@ -57,6 +70,7 @@ struct Ledger {
                 scene::registeredGenerators()};
     }
     config::Experiment load(const std::string& lines) const {
+        Still::drawsScenes = lines.find("scene: ") != std::string::npos;
         const auto file =
             folder.write("t.yaml", "sweep_of: t\ntitle: t\ntechnique: still\n" + lines);
         return config::loadExperiment(file, {}, folder.path() / "configs");
@@ -77,6 +91,25 @@ struct Ledger {
         return test::errorText(check, folder.path());
     }
 };
+
+TEST(ResolveCases, RefusesKeysThatNothingReads) {
+    const Ledger ledger;
+    const auto errorOf = [&](const std::string& lines) {
+        return test::errorText([&] { ledger.cases(ledger.load(lines)); }, ledger.folder.path());
+    };
+    EXPECT_EQ(errorOf("scene: scan\nmeasure: {scene_seeds: 5}\n"),
+              "DIR/t.yaml:5:24: 'scene_seeds' is 5, and no case has a generated scene");
+    EXPECT_EQ(errorOf("measure: {scene_seeds: 5}\n"),
+              "DIR/t.yaml:4:24: 'scene_seeds' is 5, and no case has a generated scene");
+    EXPECT_EQ(errorOf("scene: grass\nmeasure: {scene_seeds: 5}\n"), "no error");
+    EXPECT_EQ(errorOf("params: {static: true}\nmeasure: {frames: 10}\n"),
+              "DIR/t.yaml:5:19: 10 frames: the technique draws the same in each; allowed: 1");
+    EXPECT_EQ(errorOf("measure: {frames: 10}\n"), "no error");
+    EXPECT_EQ(errorOf("scene: grass\nparams: {static: true}\n"),
+              "DIR/t.yaml:4:8: scene 'grass': technique 'still' reads none as it is set here");
+    EXPECT_EQ(errorOf("sweep: {static: [true, false], scene: [grass]}\n"), "no error")
+        << "some case reads it";
+}
 
 TEST(ResolveCases, RefusesACaseGivenTwice) {
     const Ledger ledger;
@@ -134,9 +167,10 @@ TEST(Ledger, TakesFramesFromWhatIsMeasured) {
     EXPECT_EQ(errorOf("measure.frames: {range: [8, 9], why: open}\n"),
               "DIR/t.yaml:6:27: assumption 'measure.frames': range is [8, 9]; allowed: one that "
               "holds what is measured, 7");
-    EXPECT_EQ(errorOf("measure.frames: {range: [0, 9], why: open}\n"),
-              "DIR/t.yaml:6:28: assumption 'measure.frames': range is 0; allowed: whole numbers, 1 "
-              "… 1000000");
+    EXPECT_EQ(
+        errorOf("measure.frames: {range: [0, 9], why: open}\n"),
+        "DIR/t.yaml:6:28: assumption 'measure.frames': range is 0; allowed: a whole number, 1 "
+        "… 1000000");
     EXPECT_EQ(errorOf("measure.frame: {why: open}\n"),
               "DIR/t.yaml:6:3: assumption 'measure.frame' needs 'value': it is no parameter of "
               "technique 'still'; did you mean 'measure.frames'?");
@@ -195,16 +229,15 @@ TEST(Ledger, RefusesRangesThatACaseCannotTake) {
         "[first, last]");
     EXPECT_EQ(
         ledger.errorOf("assumptions:\n  output: {range: [0, 512], why: open}\n"),
-        "DIR/t.yaml:5:20: assumption 'output': range is 0; allowed: whole numbers, 1 … 16384");
+        "DIR/t.yaml:5:20: assumption 'output': range is 0; allowed: a whole number, 1 … 16384");
     EXPECT_EQ(
         ledger.errorOf("scene: grass\nassumptions:\n  scene: {range: [tee], why: open}\n"),
         "DIR/t.yaml:6:19: assumption 'scene': range is tee; allowed: catalogued scenes; did you "
         "mean 'tree'?");
-    EXPECT_EQ(
-        ledger.errorOf("sweep: {scene: [grass, scan]}\n"
-                       "assumptions:\n  scene: {range: [tree], why: open}\n"),
-        "DIR/t.yaml:6:18: assumption 'scene': range is [tree]; allowed: {scene: [scenes]}, as "
-        "sweep/t has 2 scenes");
+    EXPECT_EQ(ledger.errorOf("sweep: {scene: [grass, scan]}\n"
+                             "assumptions:\n  scene: {range: [tree], why: open}\n"),
+              "DIR/t.yaml:6:18: assumption 'scene': range is [tree]; allowed: {NAME: [names]}, as "
+              "sweep/t has 2 scenes: grass, scan");
     EXPECT_EQ(ledger.errorOf("scene: grass\nassumptions:\n"
                              "  bias: {range: [0, 1], why: open}\n"
                              "  scene: {range: [tree, tree@2], why: open}\n"),
@@ -232,9 +265,10 @@ TEST(Ledger, RefusesScenesThatTakeNobodysPlace) {
                               range + "}, why: open}\n");
     };
     const std::string head = "DIR/t.yaml:6:";
-    EXPECT_EQ(errorOf("tree: [grass]"), head +
-                                            "19: assumption 'scene': range is tree; allowed: "
-                                            "scenes of sweep/t, grass | scan");
+    for (const std::string name : {"tree", "scene"}) {
+        EXPECT_EQ(errorOf(name + ": [grass]"), head + "19: assumption 'scene': range: '" + name +
+                                                   "' is no scene of sweep/t; it has grass, scan");
+    }
     EXPECT_EQ(errorOf("grass: [tree, tree]"),
               head + "33: assumption 'scene': range is tree; allowed: each scene once");
     EXPECT_EQ(errorOf("grass: [grass]"), head +

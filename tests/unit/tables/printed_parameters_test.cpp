@@ -40,24 +40,24 @@ TEST(PrintedParameters, AreTheSame) {
     EXPECT_TRUE(cellAt(empty, R"({"bias": 1})").isAtPrintedParameters) << "nothing is no value";
     EXPECT_TRUE(cellAt(R"({"bias": 1})", empty).isAtPrintedParameters);
     EXPECT_THAT(cellAt(R"({"cut": null})", R"({"cut": 5})").departures,
-                ElementsAre(Departure{"cut", {}, {"5"}}));
+                ElementsAre(Departure{"cut", {}, {"5"}, true}));
 }
 
 TEST(PrintedParameters, Differ) {
     const Cell cell =
         cellAt(R"({"light_grid": 4, "output": {"width": 128, "height": 512}})", kPrinted);
     EXPECT_FALSE(cell.isAtPrintedParameters);
-    EXPECT_THAT(cell.departures, ElementsAre(Departure{"output", {"128×512"}, {"512×512"}},
-                                             Departure{"light_grid", {"4"}, {"16"}}));
+    EXPECT_THAT(cell.departures, ElementsAre(Departure{"output", {"128×512"}, {"512×512"}, true},
+                                             Departure{"light_grid", {"4"}, {"16"}, true}));
     EXPECT_THAT(cellAt("{}", R"({"light_grid": 16})").departures,
-                ElementsAre(Departure{"light_grid", {}, {"16"}}));
+                ElementsAre(Departure{"light_grid", {}, {"16"}, true}));
 }
 
 TEST(PrintedParameters, FramesAreThoseOfTheProfiles) {
     const std::string frames =
         "measure: {frames: 10}\nprofiles: {paper: {measure: {frames: 1000}}}\n";
     EXPECT_THAT(cellAt(kPrinted, kPrinted, frames).departures,
-                ElementsAre(Departure{"frames", {"10"}, {"1000"}}));
+                ElementsAre(Departure{"frames", {"10"}, {"1000"}, true}));
     const std::string repeats =
         "measure: {repeats: 1}\n"
         "profiles: {paper: {measure: {repeats: 20, warmup: 3, processes: 6, lane: timing}}}\n";
@@ -87,8 +87,8 @@ TEST(PrintedParameters, WhatIsPrintedLiesOverTheProfile) {
                     Departure{"light_grid", {"16"}, {"32"}}, Departure{"frames", {"1"}, {"500"}}));
 }
 
-/// What the document leaves open is the profile's, not printed; unless `printed.at` says so.
-TEST(PrintedParameters, WhatIsOpenIsNotSaidToBePrinted) {
+/// What a config takes need not be printed; `printed.at` says what is.
+TEST(PrintedParameters, ANumberOfAConfigIsTheConfigs) {
     const auto lineAt = [](const std::string& at, const std::string& assumptions) {
         std::string body = std::string(kDuck) +
                            "measure: {frames: 3}\nprofiles: {paper: {measure: {frames: 50}}}\n" +
@@ -101,24 +101,22 @@ TEST(PrintedParameters, WhatIsOpenIsNotSaidToBePrinted) {
             withPaperCases(experimentFrom(body), {{"models/duck", kPrinted}}), maker.records()));
     };
     const std::string frames = "frames: {value: some, why: not said}";
-    EXPECT_EQ(
-        lineAt("", frames),
-        "Measured at output 8×8 (printed 512×512), light grid 4 (16), frames 3 (paper profile "
-        "50).");
+    EXPECT_EQ(lineAt("", frames),
+              "Measured at output 8×8 (the config's 512×512), light grid 4 (16), frames 3 (50).");
     EXPECT_EQ(lineAt("", "measure.frames: {why: not said}"), lineAt("", frames));
     EXPECT_EQ(lineAt("measure.frames: 60", frames),
-              "Measured at output 8×8 (printed 512×512), light grid 4 (16), frames 3 (60).");
-    EXPECT_EQ(lineAt("", "output: {range: [8, 512], why: not said}"),
-              "Measured at output 8×8 (paper profile 512×512), light grid 4 (printed 16), frames 3 "
-              "(50).");
+              "Measured at output 8×8 (the config's 512×512), light grid 4 (16), frames 3 (printed "
+              "60).");
+    EXPECT_EQ(lineAt("", "output: {range: [8, 512], why: not said}"), lineAt("", frames));
     EXPECT_EQ(lineAt("output.width: 512", "output: {range: [8, 512], why: not said}"),
-              "Measured at output 8×8 (printed 512×512), light grid 4 (16), frames 3 (50).");
+              "Measured at output 8×8 (printed 512×512), light grid 4 (the config's 16), frames 3 "
+              "(50).");
 }
 
 TEST(PrintedParameters, DefaultsAreNotSaidToBePrinted) {
     EXPECT_THAT(
         cellAt(R"({"yaw": 40, "bias": 2})", R"({"yaw": 0, "bias": 1})").departures,
-        ElementsAre(Departure{"yaw", {"40"}, {"0"}, true}, Departure{"bias", {"2"}, {"1"}, false}));
+        ElementsAre(Departure{"yaw", {"40"}, {"0"}, true}, Departure{"bias", {"2"}, {"1"}, true}));
 }
 
 /// A picture alone, and what is said of it in words.
@@ -134,7 +132,7 @@ TEST(PrintedParameters, NoneAreThoseOfATableWithoutPrintedNumbers) {
     };
     constexpr const char* kFewer = R"({"light_grid": 4, "output": {"width": 512, "height": 512}})";
     EXPECT_EQ(lineAt(kPrinted, ""), "Measured at the parameters of the profile paper.");
-    EXPECT_EQ(lineAt(kFewer, ""), "Measured at light grid 4 (paper profile 16).");
+    EXPECT_EQ(lineAt(kFewer, ""), "Measured at light grid 4 (the config's 16).");
     EXPECT_EQ(lineAt(kFewer, "printed: {at: {light_grid: 32}}\n"),
               "Measured at light grid 4 (printed 32).");
 }
@@ -150,7 +148,7 @@ TEST(PrintedParameters, AreNamedInTheConfigsWords) {
                        maker.records()));
     };
     EXPECT_EQ(lineAt(R"({"bias": 1, "light_grid": 4})", ""),
-              "Measured at light samples a side 4 (printed 16).");
+              "Measured at light samples a side 4 (the config's 16).");
     EXPECT_EQ(lineAt(R"({"bias": 1, "light_grid": 16})", "assumptions: {bias: {why: not given}}\n"),
               "Measured at the printed parameters as far as they are given (not: the bias).");
 }
@@ -177,7 +175,7 @@ TEST(PrintedParameters, AreThePrintedOnesAsFarAsTheyAreGiven) {
     maker.beginCase("models/duck", R"({"bias": 1, "n": 1, "output": {"width": 8, "height": 8}})");
     maker.add("gpu_time_ms", {8.0});
     EXPECT_EQ(parametersLine(buildTable(experiment, maker.records())),
-              "Measured at n 1 (printed 2); not given: output, bias.");
+              "Measured at n 1 (the config's 2); not given: output, bias.");
     EXPECT_EQ(
         printedCellsLine(countPrintedCells({{experiment}}, {{table}})),
         "Of 1 printed cell of tables 1 was measured again: 1 at the parameters that the document "
@@ -189,6 +187,7 @@ constexpr const char* kGrid = R"(
 sweep: {scene: [models/duck], light_grid: [4, 16]}
 layout: {rows: light_grid, columns: {ms: {metric: gpu_time_ms}}, cell: "{median:.1f}"}
 printed: {values: "light_grid,ms\n4,1\n16,2\n32,3"}
+assumptions: {other: {value: some, why: open}}
 )";
 
 Table gridTable(const char* four, const char* sixteen) {
@@ -278,18 +277,17 @@ TEST(PrintedParameters, LinesNameOnlyWhatDiffers) {
     EXPECT_EQ(openText({"a", "b", "c", "d", "e"}), "a, b, c, d, e");
     EXPECT_EQ(openText({"a", "b", "c", "d", "e", "f"}), "a, b, c, d, e, f");
     const Departure open{"frames", {"3"}, {"50"}, true}, view{"view", {"a"}, {"b"}, true};
-    EXPECT_EQ(lineOf({{open}}), "Measured at frames 3 (paper profile 50).");
+    EXPECT_EQ(lineOf({{open}}), "Measured at frames 3 (the config's 50).");
     EXPECT_EQ(lineOf({{output, grid, view, open}}),
-              "Measured at output 128×128 (printed 512×512), light grid 4 (16), view a (paper "
-              "profile b), frames 3 (50).");
+              "Measured at output 128×128 (printed 512×512), light grid 4 (16), view a (the "
+              "config's b), frames 3 (50).");
     EXPECT_EQ(lineOf({{{"view", {"path_1"}, {"path_1", "path_2"}, true}}}),
-              "Measured at view path 1 (paper profile path 1 / path 2).");
+              "Measured at view path 1 (the config's path 1 / path 2).");
     EXPECT_EQ(lineOf({{view, output}}),
-              "Measured at view a (paper profile b), output 128×128 (printed 512×512).");
-    EXPECT_EQ(
-        lineOf({{}, {open}}),
-        "Measured at the printed parameters in 1 of 2 cells, in the others at frames 3 (paper "
-        "profile 50).");
+              "Measured at view a (the config's b), output 128×128 (printed 512×512).");
+    EXPECT_EQ(lineOf({{}, {open}}),
+              "Measured at the printed parameters in 1 of 2 cells, in the others at frames 3 (the "
+              "config's 50).");
 }
 
 /// Behind a cell several cases, over which its mean is taken.
@@ -309,8 +307,8 @@ TEST(PrintedParameters, SeveralCasesOfACell) {
     const char *a1 = R"({"view": "a", "n": 1})", *a2 = R"({"view": "a", "n": 2})",
                *b1 = R"({"view": "b", "n": 1})", *b2 = R"({"view": "b", "n": 2})";
     EXPECT_THAT(departuresOf({b2, a1, a2, b1}), IsEmpty());
-    EXPECT_THAT(departuresOf({a1, a2}), ElementsAre(Departure{"view", {"a"}, {"a", "b"}}));
-    EXPECT_THAT(departuresOf({a1, b2}), ElementsAre(Departure{"cases", {"2"}, {"4"}}));
+    EXPECT_THAT(departuresOf({a1, a2}), ElementsAre(Departure{"view", {"a"}, {"a", "b"}, true}));
+    EXPECT_THAT(departuresOf({a1, b2}), ElementsAre(Departure{"cases", {"2"}, {"4"}, true}));
 }
 
 TEST(PrintedParameters, FailedCasesAreNotBehindACell) {
@@ -322,7 +320,7 @@ TEST(PrintedParameters, FailedCasesAreNotBehindACell) {
                        {{"models/duck", R"({"view": "a"})"}, {"models/duck", R"({"view": "b"})"}}),
         maker.records());
     EXPECT_FALSE(table.rows[0].cells[0].isAtPrintedParameters);
-    EXPECT_EQ(parametersLine(table), "Measured at view a (printed a / b).");
+    EXPECT_EQ(parametersLine(table), "Measured at view a (the config's a / b).");
 }
 
 /// Another seed of a generated scene is another sample of it; another scene is not.
@@ -382,6 +380,21 @@ TEST(PrintedParameters, AreNotKnownOfOlderRuns) {
               "not known.");
 }
 
+/// Whoever says of no parameter whether it is printed or open has not said that all are printed.
+TEST(PrintedParameters, AreTheConfigsWhereNobodySaysThatTheyArePrinted) {
+    RecordMaker maker;
+    maker.beginCase("models/duck", kPrinted).add("gpu_time_ms", {8.0});
+    const config::Experiment experiment =
+        withPaperCases(experimentFrom(kDuck), {{"models/duck", kPrinted}});
+    const Table table = buildTable(experiment, maker.records());
+    EXPECT_EQ(parametersLine(table), "Measured at the parameters of the profile paper.");
+    PrintedCells count;
+    count.add(experiment, table);
+    EXPECT_EQ(printedCellsLine(count),
+              "Of 1 printed cell of tables 1 was measured again: 1 at parameters of which it is "
+              "not known.");
+}
+
 TEST(PrintedParameters, NothingIsSaidOfWhatIsNotPublished) {
     RecordMaker maker;
     maker.beginCase("models/duck", kPrinted).add("gpu_time_ms", {8.0});
@@ -397,8 +410,9 @@ TEST(PrintedParameters, NothingIsSaidOfWhatIsNotPublished) {
 TEST(PrintedParameters, CellsOfTablesAreCounted) {
     RecordMaker maker;
     maker.beginCase("models/duck", kPrinted).add("gpu_time_ms", {8.0});
+    const std::string open = "assumptions: {other: {value: some, why: open}}\n";
     config::Experiment experiment =
-        withPaperCases(experimentFrom(kDuck), {{"models/duck", kPrinted}});
+        withPaperCases(experimentFrom(kDuck + open), {{"models/duck", kPrinted}});
     const Table table = buildTable(experiment, maker.records());
     PrintedCells count = countPrintedCells({{experiment, experiment}}, {{table, table}});
     EXPECT_EQ(printedCellsLine(count),

@@ -368,7 +368,7 @@ TEST(Catalog, TurnsFilesWhoseUpIsZ) {
         "DIR/scenes/m/x.yaml:3:11: 2 points wanted of a.ply, a cloud of 1; allowed: no more "
         "than it has");
     EXPECT_EQ(folders.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, up: x}]\n"),
-              "DIR/scenes/m/x.yaml:3:29: up is 'x'; allowed: y | z");
+              "DIR/scenes/m/x.yaml:3:29: up is x; allowed: y | z");
 }
 
 TEST(Catalog, RefusesBadEntries) {
@@ -389,15 +389,18 @@ TEST(Catalog, RefusesBadEntries) {
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{file: /a.ply}]\n"),
               "DIR/scenes/m/x.yaml:3:18: file is '/a.ply', but must be a path within the assets "
               "folder");
-    EXPECT_EQ(
-        f.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, refine_to: 0}]\n"),
-        "DIR/scenes/m/x.yaml:3:36: refine_to is 0; allowed: a number of triangles, at least 1");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, refine_to: 0}]\n"),
+              "DIR/scenes/m/x.yaml:3:36: refine_to is 0; allowed: a whole number, at least 1");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_modell}]\n"),
               "DIR/scenes/m/x.yaml:3:23: unknown generator 'sdf_modell'; did you mean 'sdf_model'? "
               "(there are: bathroom, bird_nest, city, four_objects, grass, living_room, "
               "object_on_plane, sdf_model, terrain, town_square, tree)");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_model, seed: -1}]\n"),
-              "DIR/scenes/m/x.yaml:3:40: seed is -1; allowed: at least 0");
+              "DIR/scenes/m/x.yaml:3:40: seed is -1; allowed: a whole number, at least 0");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{height_map: a.png, spacing_m: far}]\n"),
+              "DIR/scenes/m/x.yaml:3:42: spacing_m is far; allowed: a number, 1e-09 … 1000000");
+    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\ngenerated: maybe\nsources: [{file: a.ply}]\n"),
+              "DIR/scenes/m/x.yaml:3:12: generated is maybe; allowed: true | false");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\ngenerated: true\nsources: [{file: a.ply}]\n"),
               "DIR/scenes/m/x.yaml:4:11: source: a file cannot be the source of a generated scene");
 }

@@ -1,0 +1,95 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runner/tables/table.h"
+#include "tests/support/support.h"
+#include "tests/unit/tables/fixture.h"
+
+namespace gfxrepro::tables {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// Two methods at two depths.
+Table tableWith(const std::string& layout) {
+    RecordMaker maker;
+    for (const char* method : {"oct", "snorm"}) {
+        for (int bits : {8, 10}) {
+            maker.beginCase("", "{\"method\":\"" + std::string(method) +
+                                    "\",\"bits\":" + std::to_string(bits) + "}");
+            maker.add("error", {bits * (method[0] == 'o' ? 1.0 : 2.0)}, "", "1");
+        }
+    }
+    return buildTable(
+        experimentFrom("sweep: {method: [oct, snorm], bits: [8, 10]}\nlayout: " + layout + "\n"),
+        maker.records());
+}
+
+std::string refusalOf(const std::string& layout) {
+    const config::Experiment experiment =
+        experimentFrom("sweep: {method: [oct, snorm], bits: [8, 10]}\nlayout: " + layout + "\n");
+    const std::string text =
+        test::errorText([&] { requireToldApart(experiment, buildTable(experiment, Recorded())); });
+    const std::size_t at = text.find(".yaml:");
+    return at == std::string::npos ? text : text.substr(at + 6);
+}
+
+TEST(Pooled, ACellSaysOverWhatItIsTaken) {
+    const Table table = tableWith("{rows: bits, columns: {e: {metric: error}}}");
+    EXPECT_EQ(table.rows[0].cells[0].measured, "12") << "the median of two methods";
+    EXPECT_THAT(table.notes, Contains("Each number is taken over method (oct, snorm)."));
+    EXPECT_EQ(pooledText(table.rows[0].cells[0]), "method=oct|snorm");
+    const Table apart = tableWith("{rows: [bits, method], columns: {e: {metric: error}}}");
+    EXPECT_THAT(apart.notes, IsEmpty());
+    EXPECT_EQ(pooledText(apart.rows[0].cells[0]), "");
+}
+
+TEST(Pooled, SomeRowsAndColumnsAreNamed) {
+    const std::string oct = "oct: {where: {method: oct}}";
+    const Table row = tableWith("{rows: {" + oct + ", all: {where: {method: [oct, snorm]}}}, " +
+                                "columns: {e: {metric: error, where: {bits: 8}}}}");
+    EXPECT_THAT(row.notes, Contains("Each number of row all is taken over method (oct, snorm)."));
+    const Table average = tableWith("{rows: {" + oct + ", average: {}}, " +
+                                    "columns: {e: {metric: error, where: {bits: 8}}}}");
+    EXPECT_THAT(average.notes,
+                Contains("Each number of row average is taken over method (oct, snorm)."));
+    const Table column = tableWith(
+        "{rows: bits, columns: {oct: {metric: error, where: {method: "
+        "oct}}, both: {metric: error, where: {method: [oct, snorm]}}}}");
+    EXPECT_THAT(column.notes,
+                Contains("Each number of column both is taken over method (oct, snorm)."));
+    const Table two = tableWith("{columns: {e: {metric: error}}}");
+    EXPECT_THAT(two.notes,
+                Contains("Each number is taken over method (oct, snorm) and bits (8, 10)."));
+}
+
+TEST(Pooled, AnAxisThatTheLayoutDoesNotNameIsRefused) {
+    EXPECT_EQ(refusalOf("{rows: bits, columns: {e: {metric: error}}}"),
+              "5:1: layout: each number would be taken over method (oct, snorm), which is swept; "
+              "allowed: as an axis of rows or columns, or in a 'where': {method: [oct, snorm]} "
+              "takes its values together");
+    EXPECT_EQ(refusalOf("{rows: [bits, method], columns: {e: {metric: error}}}"), "no error");
+    EXPECT_EQ(refusalOf("{rows: bits, columns: {e: {metric: error}}, cell: {where: {method: "
+                        "[oct, snorm]}}}"),
+              "no error");
+    EXPECT_EQ(refusalOf("{rows: bits, columns: {oct: {metric: error, where: {method: oct}}, all: "
+                        "{metric: error}}}"),
+              "no error")
+        << "an average beside what it is of";
+}
+
+/// What goes together with a row is one value in each.
+TEST(Pooled, AxesThatGoTogetherAreNotTakenTogether) {
+    const config::Experiment experiment = experimentFrom(
+        "sweep: {zip: [{method: [oct, snorm], bits: [8, 10]}]}\n"
+        "layout: {rows: bits, columns: {e: {metric: error}}}\n");
+    const Table table = buildTable(experiment, Recorded());
+    EXPECT_THAT(table.notes, Not(Contains(HasSubstr("taken over"))));
+    EXPECT_EQ(test::errorText([&] { requireToldApart(experiment, table); }), "no error");
+}
+
+}  // namespace
+}  // namespace gfxrepro::tables
