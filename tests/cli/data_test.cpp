@@ -247,10 +247,9 @@ TEST_F(Data, BadImportsAreOneErrorEach) {
         refusal({"import", output, "--out", dir("a")}),
         "gfxrepro: DIR/f.csv:2: column 'output'; allowed of that: output.width, output.height\n");
     const std::string size = folder_.write("d.csv", "output.width,metric,value\nwide,mse,5\n");
-    EXPECT_EQ(
-        refusal({"import", size, "--out", dir("a")}),
-        "gfxrepro: DIR/d.csv:2: column 'output.width': 'wide'; allowed: a whole number from 1 "
-        "to 16384\n");
+    EXPECT_EQ(refusal({"import", size, "--out", dir("a")}),
+              "gfxrepro: DIR/d.csv:2: column 'output.width' is wide; allowed: a whole number, 1 … "
+              "16384\n");
 }
 
 TEST_F(Data, ARunHasItsCasesAsATable) {

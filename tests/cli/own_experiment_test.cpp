@@ -365,11 +365,11 @@ TEST(OwnExperiment, CheckSaysHowToNameAParameter) {
 
 TEST(OwnExperiment, NoTableIsNamedWhereNoCaseHasAResult) {
     const TemporaryFolder folder;
-    folder.write("rough.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
     const std::string config =
         folder.write("mine.yaml",
-                     "sweep_of: mine\ntitle: Mine\ntechnique: shadow_mapping\nscene: rough.obj\n"
-                     "params: {light_place: scene}\nmeasure: {lane: quality}\n");
+                     "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: shapes/torus\n"
+                     "params: {resolution: 1024}\n"
+                     "measure: {lane: quality, time_limit_s: 0.001}\n");
     const std::string dir = folder.path() / "run";
     const ProcessResult run =
         gfxrepro({"reproduce", config, "--device", "software", "--quiet", "--out", dir});
@@ -411,8 +411,8 @@ TEST(OwnExperiment, CheckKnowsMetricsAndPasses) {
         "that are: gpu_time_ms, cpu_time_ms, process_time_ms, and metrics of the technique\n");
     EXPECT_THAT(laidOut("{metric: voxels}, b: {of: a /}"), HasSubstr("'a /' is no expression"));
     EXPECT_THAT(laidOut("{metric: gpu_time_ms}"),
-                HasSubstr("DIR/mine.yaml:5:33: metric 'gpu_time_ms' is of a pass, and the cell "
-                          "names none; allowed: with pass: synthesis | "));
+                HasSubstr("DIR/mine.yaml:5:36: metric 'gpu_time_ms' is of a pass, and the cell "
+                          "names none; allowed: with pass: preprocess | "));
 }
 
 TEST(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {
@@ -435,18 +435,18 @@ TEST(OwnExperiment, WhatCheckRefusesIsNotMeasured) {
     const TemporaryFolder folder;
     const std::string head =
         "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: shapes/torus\n"
-        "sweep: {fill: [surface, solid], resolution: [16, 32]}\n";
+        "sweep: {fill: [surface, solid], resolution: [32, 64]}\n";
     const std::map<std::string, std::string> wrong = {
         {"layout: {rows: resolution, columns: {a: voxels}}\n",
          ":6:1: layout: each number would be taken over fill (surface, solid), which is swept; "
          "allowed: as an axis of rows or columns, or in a 'where': {fill: [surface, solid]} takes "
          "its values together\n"},
         {"layout: {rows: [fill, resolution], columns: {a: voxels}}\n"
-         "printed: {values: \"fill,resolution,a\\nsurface,64,7\"}\n",
-         ":7:11: printed: no profile measures the row 'surface,64,7'; allowed: fill surface | "
-         "solid; resolution 16 | 32\n"},
+         "printed: {values: \"fill,resolution,a\\nsurface,128,7\"}\n",
+         ":7:11: printed: no profile measures the row 'surface,128,7'; allowed: fill surface | "
+         "solid; resolution 32 | 64\n"},
         {"layout: {rows: [fill, resolution], columns: {a: {metric: voxels, format: '{max:.0f}'}}}\n"
-         "printed: {values: \"fill,resolution,a\\nsurface,16,many\"}\n",
+         "printed: {values: \"fill,resolution,a\\nsurface,32,many\"}\n",
          ":7:11: printed: a is 'many'; allowed: as the cell's format writes numbers, or empty "
          "where "
          "it is lost\n"},
@@ -471,7 +471,7 @@ TEST(OwnExperiment, ClaimsReadTheColumnsOfATableThatNobodyLaidOut) {
         return folder.write("mine.yaml",
                             "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\n"
                             "scene: shapes/torus\nmeasure: {lane: quality}\n"
-                            "sweep: {resolution: [16, 32], fill: [surface, solid]}\n"
+                            "sweep: {resolution: [32, 64], fill: [surface, solid]}\n"
                             "claims:\n  grows: {says: there are more voxels, trend: " +
                                 operand +
                                 ", over: resolution, direction: increasing}\n"
