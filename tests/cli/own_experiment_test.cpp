@@ -443,13 +443,12 @@ TEST(OwnExperiment, WhatCheckRefusesIsNotMeasured) {
          "its values together\n"},
         {"layout: {rows: [fill, resolution], columns: {a: voxels}}\n"
          "printed: {values: \"fill,resolution,a\\nsurface,128,7\"}\n",
-         ":7:11: printed: no profile measures the row 'surface,128,7'; allowed: fill surface | "
+         ":7:19: printed: no profile measures the row 'surface,128,7'; allowed: fill surface | "
          "solid; resolution 32 | 64\n"},
         {"layout: {rows: [fill, resolution], columns: {a: {metric: voxels, format: '{max:.0f}'}}}\n"
          "printed: {values: \"fill,resolution,a\\nsurface,32,many\"}\n",
-         ":7:11: printed: a is 'many'; allowed: as the cell's format writes numbers, or empty "
-         "where "
-         "it is lost\n"},
+         ":7:19: printed: a is 'many'; allowed: as the cell's format writes numbers, or empty "
+         "where it is lost\n"},
         {"layout: {rows: [fill, resolution], columns: {a: {metric: gpu_time_ms, pass: "
          "synthesis}}}\n"
          "claims: {C: {says: so, across: fill, order: surface < solid}}\n",
