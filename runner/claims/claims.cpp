@@ -346,8 +346,8 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
 }
 
 bool isOfGpu(const std::optional<ClaimSpec::TimeKind>& kind, const tables::Table& table) {
-    using Kind = ClaimSpec::TimeKind;
-    return kind == Kind::Architectural || (kind == Kind::Absolute && !table.goesByClock);
+    using Of = ClaimSpec::TimeKind;
+    return kind == Of::Architectural || (kind == Of::Absolute && !table.goesByClock);
 }
 
 std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {

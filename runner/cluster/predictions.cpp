@@ -52,20 +52,6 @@ double medianOf(std::vector<double> values) {
     return metrics::summarize(values, metrics::Statistic::Median);
 }
 
-run::Cost medianOf(const std::vector<run::Cost>& costs) {
-    const auto of = [&](auto member) {
-        std::vector<double> values;
-        for (const run::Cost& cost : costs) values.push_back(static_cast<double>(cost.*member));
-        return medianOf(std::move(values));
-    };
-    return {of(&run::Cost::loadS),
-            of(&run::Cost::setupS),
-            of(&run::Cost::renderS),
-            of(&run::Cost::recordS),
-            static_cast<long long>(of(&run::Cost::peakBytes)),
-            of(&run::Cost::onceS)};
-}
-
 /// The costs in a run's log, by case. Lines that are torn or without a cost are passed over.
 std::map<std::string, std::vector<run::Cost>> loggedCosts(const fs::path& runDir) {
     std::map<std::string, std::vector<run::Cost>> costs;
@@ -112,6 +98,22 @@ std::string_view sourceName(Prediction::Source source) {
     return kNames[static_cast<std::size_t>(source)];
 }
 
+run::Cost usualCost(const std::vector<run::Cost>& costs) {
+    double recordS = 0.0;
+    for (const run::Cost& cost : costs) recordS += cost.recordS / static_cast<double>(costs.size());
+    const auto of = [&](auto member) {
+        std::vector<double> values;
+        for (const run::Cost& cost : costs) values.push_back(static_cast<double>(cost.*member));
+        return medianOf(std::move(values));
+    };
+    return {of(&run::Cost::loadS),
+            of(&run::Cost::setupS),
+            of(&run::Cost::renderS),
+            recordS,
+            std::ranges::max(costs, {}, &run::Cost::peakBytes).peakBytes,
+            of(&run::Cost::onceS)};
+}
+
 std::vector<PastCase> readPastCases(const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
         throw Error(runDir.string() + ": is not a run directory (it has no plan.json)");
@@ -123,7 +125,7 @@ std::vector<PastCase> readPastCases(const fs::path& runDir) {
     for (config::Case& item : run::Plan::fromJsonFile(runDir / "plan.json").cases) {
         const auto found = costs.find(item.id);
         if (found == costs.end()) continue;
-        const run::Cost cost = medianOf(found->second);
+        const run::Cost cost = usualCost(found->second);
         past.push_back({std::move(item), cost});
     }
     return past;

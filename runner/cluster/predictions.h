@@ -35,8 +35,11 @@ std::string_view sourceName(Prediction::Source source);
 /// A case that an earlier run finished.
 struct PastCase {
     config::Case item;
-    run::Cost cost;  // the median over its processes
+    run::Cost cost;  // usualCost() of its processes
 };
+/// What one of a case's processes takes, at least one: medians, but the mean of recording and the
+/// most memory, for the first of them records more than the others.
+run::Cost usualCost(const std::vector<run::Cost>& costs);
 /// Those of a run directory: its plan and its log. Throws Error when it is no run.
 std::vector<PastCase> readPastCases(const std::filesystem::path& runDir);
 

@@ -32,6 +32,14 @@ TEST(Predictions, TheSameCaseFirstThenTheSameParameters) {
     EXPECT_DOUBLE_EQ(predictor.predict(thirdBuild)->timeS, 9.0);  // the first that is given
 }
 
+/// The first process makes the pictures; all six together take what they take.
+TEST(Predictions, TellWhatAllProcessesTake) {
+    const run::Cost first{1.0, 0.5, 2.0, 12.0, 4000, 12.0}, other{1.0, 0.5, 2.0, 0.0, 1000, 0.0};
+    const run::Cost usual = cluster::usualCost({first, other, other, other, other, other});
+    EXPECT_DOUBLE_EQ(6.0 * usual.totalS(), first.totalS() + 5.0 * other.totalS());
+    EXPECT_EQ(usual.peakBytes, 4000);
+}
+
 TEST(Predictions, FollowIterationsAndFrames) {
     Case item = makeCase("t/1", "a", 64);
     item.measure.warmup = 1;
