@@ -170,8 +170,11 @@ const Load kReadImages = [](const fs::path& path) {
 
 /// A file may fail, but only by an Error that names it, and within the memory that its size allows:
 /// decoders stop at 128 MiB or 500 times the file (and hold it twice where they convert).
+int inputCount = 0;  // up to here; the last test's property is of all
+
 void expectRefusedOrLoaded(const Load& load, const fs::path& path, std::uintmax_t folderBytes) {
     SCOPED_TRACE(path.string());
+    testing::Test::RecordProperty("inputs", ++inputCount);
     resetPeakMemory();
     try {
         load(path);
