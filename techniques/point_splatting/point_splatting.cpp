@@ -338,7 +338,7 @@ config::Outputs outputs() {
              "points of the whole model per second, drawn or not, in the same frames",
              Better::Higher},
             {"preprocess_ms", "ms", "time to make patches and levels, or to map them from a file",
-             Better::Lower, true, true},
+             Better::Lower, true, config::MetricInfo::Of::Either, true},
             {"patches", "patch", "patches of the model"},
             detail("patches_drawn", "patch", "patches drawn in a frame"),
             detail("patches_outside", "patch", "patches outside the view"),

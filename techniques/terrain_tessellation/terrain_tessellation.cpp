@@ -491,7 +491,7 @@ config::Outputs outputs() {
             detail("largest_fan", "triangle", "most triangles around one vertex of a seam"),
             detail("yardstick_ms", "ms", "time of clearing and shading without tessellation"),
             {"preprocess_ms", "ms", "time to make the tree of tiles, or to map it from a file",
-             Better::Lower, true, true},
+             Better::Lower, true, config::MetricInfo::Of::Either, true},
             detail("loaded_tiles", "tile", "tiles loaded in a frame"),
             detail("map_mib", "MiB", "size of the height map"),
             {"memory_bytes", "byte", "memory of tiles and patches on the device", Better::Lower},

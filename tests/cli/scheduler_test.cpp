@@ -193,7 +193,8 @@ TEST_F(PairedUnits, WhenOneCrashesTheOtherGoesOnAndThenItIsTriedAlone) {
 TEST_F(SchedulerTest, TablesThatShowSetUpAreNotPreparedInPairs) {
     const technique::TechniqueInfo techniques[] = {
         {"t", "", nullptr, [] {
-             return config::Outputs{{{"build_ms", "ms", "", config::Better::Lower, true, true}},
+             return config::Outputs{{{"build_ms", "ms", "", config::Better::Lower, true,
+                                      config::MetricInfo::Of::Either, true}},
                                     {{"draw", ""}, {"preprocess", "", true}}};
          }}};
     run::Plan plan;

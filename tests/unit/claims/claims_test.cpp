@@ -898,7 +898,7 @@ TEST(Claims, WhatWasJudgedByCpuTimeIsShown) {
     };
     EXPECT_THAT(columnsOf("trend: ms, over: n, at_most: 2"),
                 testing::ElementsAre("ms", "cpu_ms", "fps"));
-    EXPECT_THAT(columnsOf("order: [8, 1], across: n, at: {column: fps}, kind: algorithmic"),
+    EXPECT_THAT(columnsOf("order: 8 < 1, across: n, at: {column: fps}, kind: algorithmic"),
                 testing::ElementsAre("ms", "fps", "cpu_fps"));
     EXPECT_THAT(columnsOf("bound: ms, at_most: 9, kind: absolute"),
                 testing::ElementsAre("ms", "fps"));
