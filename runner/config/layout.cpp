@@ -210,6 +210,13 @@ void requireComputed(const Layout& layout, const Vocabulary& vocabulary) {
         for (const claims::OperandPiece& piece : claims::operandPieces(*selection.of, known)) {
             if (!piece.problem.empty()) refuse(selection, piece.problem);
         }
+        const std::string& format = selection.format ? *selection.format : *layout.cell.format;
+        for (const char* spread : {"{stddev", "{p95", "{p99"}) {
+            if (format.find(spread) == format.npos) continue;
+            refuse(selection, fmt::format("of cells no {} can be computed; allowed in its format: "
+                                          "median, mean, min, max, sum, count, rate",
+                                          spread + 1));
+        }
     }
 }
 

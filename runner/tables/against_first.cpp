@@ -26,8 +26,8 @@ Rivals rivalsOf(const std::vector<const config::Case*>& cases) {
         }
     }
     const auto isWord = [](const std::string& value) {
-        return !parseDouble(value) && value != "true" && value != "false" && value != kLeftOut &&
-               value.find_first_of("[],='\"") == value.npos;
+        return !value.empty() && !parseDouble(value) && value != "true" && value != "false" &&
+               value != kLeftOut && value.find_first_of("[],='\"") == value.npos;
     };
     for (Rivals& axis : axes) {
         const bool isSuch = axis.axis != "scene" && axis.values.size() > 1 &&

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <set>
 #include <span>
 #include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "runner/tables/curve.h"
 #include "runner/tables/expression.h"
 
 namespace gfxrepro::tables {
@@ -281,24 +283,27 @@ void boundShare(const CellQuery& query, const Gathered& gathered, Measured& meas
                  gathered.caseIds[0] + query.metric + query.pass);
 }
 
-/// Equal values of several processes of one seed are one sample. A share that was counted once has
-/// the bounds of its count.
+/// Several processes of it are one sample.
+void takeAsOne(Measured& measured) {
+    measured.rounds.clear();
+    measured.bounds = Bounds::None;
+    measured.interval = {measured.value, measured.value};
+}
+
+/// Equal values of several processes of the same seeds are one sample. A share that was counted
+/// once has the bounds of its count.
 void countSeeds(const Gathered& gathered, Cell& cell) {
     const auto isEven = [](const Measured& measured) {
         return std::ranges::all_of(measured.rounds, [&](const auto& round) {
             return round.second == measured.rounds.begin()->second;
         });
     };
-    const bool isOne = gathered.seeds.size() == 1;
     if (std::ranges::any_of(cell.values, &Measured::areDraws)) return;
-    if (isOne && !std::ranges::all_of(cell.values, isEven)) return;
+    const bool areEven = std::ranges::all_of(cell.values, isEven);
+    if (gathered.seeds.size() == 1 && !areEven) return;
     cell.seedCount = gathered.seeds.size();
-    if (!isOne) return;
-    for (Measured& measured : cell.values) {
-        measured.rounds.clear();
-        measured.bounds = Bounds::None;
-        measured.interval = {measured.value, measured.value};
-    }
+    if (cell.seedCount == 0 || !areEven) return;
+    std::ranges::for_each(cell.values, takeAsOne);
 }
 
 void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
@@ -331,77 +336,54 @@ void fillProcessTimes(const CellQuery& query, const LayoutCases& cases, const Sa
 
 // Equal time, equal error.
 
-/// A case on the curve: the other metric, and the cell's own.
-struct CurvePoint {
-    Sampled x, y;
-};
-
-/// Whether one of the values is no logarithm's.
-bool isLinear(std::span<const std::pair<double, double>> points, double at) {
-    return at <= 0.0 || std::ranges::any_of(points, [](const auto& point) {
-               return point.first <= 0.0 || point.second <= 0.0;
-           });
-}
-
-/// Not-a-number outside of the points.
-double readAt(std::vector<std::pair<double, double>> points, double at) {
-    std::ranges::sort(points);
-    const bool isPlain = isLinear(points, at);
-    const auto scaled = [&](double value) { return isPlain ? value : std::log(value); };
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        const auto [x0, y0] = points[i - 1];
-        const auto [x1, y1] = points[i];
-        if (at < x0 || at > x1) continue;
-        const double share = x1 > x0 ? (scaled(at) - scaled(x0)) / (scaled(x1) - scaled(x0)) : 0.5;
-        const double value = std::lerp(scaled(y0), scaled(y1), share);
-        return isPlain ? value : std::exp(value);
-    }
-    return std::numeric_limits<double>::quiet_NaN();
-}
-
 Sampled sampledOf(const Samples& samples, Statistic statistic) {
     Summary summary = summarize(samples, statistic);
     if (summary.rounds.size() < 2) summary.rounds.clear();  // no more than the value
     return {summary.value, std::move(summary.rounds), false};
 }
 
-Summary readCurve(std::span<const CurvePoint> curve, double at) {
-    std::vector<Sampled> all;
-    std::vector<std::pair<double, double>> points;
-    for (const CurvePoint& point : curve) {
-        all.insert(all.end(), {point.x, point.y});
-        points.emplace_back(point.x.point, point.y.point);
+/// The axis of numbers along which the curve goes: the one of those that the cell takes together.
+std::optional<std::size_t> curveAxis(const std::vector<Pooled>& pooled) {
+    for (std::size_t i = 0; i < pooled.size(); ++i) {
+        const bool isOfNumbers = std::ranges::all_of(
+            pooled[i].values,
+            [](const std::string& value) { return parseDouble(value).has_value(); });
+        if (isOfNumbers) return i;
     }
-    const double value = readAt(points, at);
-    std::map<int, double> rounds;
-    for (const int round : commonRounds(all)) {
-        points.clear();
-        for (const CurvePoint& point : curve) {
-            points.emplace_back(point.x.at(round), point.y.at(round));
-        }
-        const double own = readAt(points, at);
-        if (std::isfinite(own)) rounds[round] = own;
-    }
-    return summaryOf(value, std::isfinite(value) ? std::move(rounds) : std::map<int, double>(),
-                     false);
+    return std::nullopt;
 }
 
-/// The curve of each statistic of the format; empty, with the reason noted, where there is none.
+/// The cell's cases in the order of the curve's axis.
+std::vector<const CaseRecords*> casesAlong(const std::string& axis, const CellQuery& query,
+                                           const LayoutCases& cases) {
+    std::vector<const CaseRecords*> along = casesAt(query.where, cases);
+    const std::size_t place = cases.indexOf(axis);
+    std::ranges::stable_sort(along, {}, [&](const CaseRecords* item) {
+        return parseDouble(item->axes[place].value_or("")).value_or(0.0);
+    });
+    return along;
+}
+
+/// The curve of a statistic of the format; what is wrong with a case is noted.
 std::vector<CurvePoint> curveOf(const CellQuery& query, Statistic statistic,
-                                const LayoutCases& cases, Gathered& gathered) {
+                                std::span<const CaseRecords* const> along, Gathered& gathered) {
     std::vector<CurvePoint> curve;
-    for (const CaseRecords* run : casesAt(query.where, cases)) {
+    for (const CaseRecords* run : along) {
+        if (run->processes.empty()) gathered.note(records::Status::Missing, "a case was not run");
         CellQuery other = query;
         other.metric = query.equal->metric;
         other.pass = query.equal->pass;
         other.scale = 1.0;
+        other.isRateOfTime = false;
         Gathered x, y;
         std::map<int, int> unitsOfX, unitsOfY;
         int xCount = 0, yCount = 0;
         takeCase(*run, other, unitsOfX, xCount, x);
         takeCase(*run, query, unitsOfY, yCount, y);
-        gathered.note(x.worst, x.message);
-        gathered.note(y.worst, y.message);
+        for (Gathered* one : {&x, &y}) {
+            gathered.note(one->worst, one->message);
+            gathered.seeds.merge(one->seeds);
+        }
         gathered.units.merge(y.units);
         if (x.samples.processes.empty() || y.samples.processes.empty()) continue;
         curve.push_back({sampledOf(x.samples, statistic), sampledOf(y.samples, statistic)});
@@ -409,12 +391,12 @@ std::vector<CurvePoint> curveOf(const CellQuery& query, Statistic statistic,
     return curve;
 }
 
-std::vector<Measured> equalValues(const CellQuery& query, const LayoutCases& cases,
+std::vector<Measured> equalValues(const CellQuery& query, std::span<const CaseRecords* const> along,
                                   Gathered& gathered) {
     std::vector<Measured> values;
     for (const auto& placeholder : query.format.placeholders()) {
         const std::vector<CurvePoint> curve =
-            curveOf(query, placeholder.statistic, cases, gathered);
+            curveOf(query, placeholder.statistic, along, gathered);
         const auto& [metric, pass, at] = *query.equal;
         if (curve.size() < 2) {
             gathered.note(
@@ -428,27 +410,42 @@ std::vector<Measured> equalValues(const CellQuery& query, const LayoutCases& cas
         if (std::isfinite(measured.value)) continue;
         const auto [low, high] =
             std::ranges::minmax(curve, {}, [](const CurvePoint& point) { return point.x.point; });
-        gathered.note(records::Status::Missing,
-                      fmt::format("'{}' is from {:.4g} to {:.4g} there, and never {:.4g}", metric,
-                                  low.x.point, high.x.point, at));
+        gathered.note(
+            records::Status::Missing,
+            fmt::format("'{}' is from {:.4g} to {:.4g} there; {:.4g} not in every process, or "
+                        "at several places",
+                        metric, low.x.point, high.x.point, at));
         return {};
     }
     return values;
 }
 
 void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
-    Gathered gathered;
-    cell.values = equalValues(query, cases, gathered);
     for (const CaseRecords* run : casesAt(query.where, cases)) cell.caseIds.push_back(run->id);
-    cell.isTime |= config::isTimeMetric(query.equal->metric);
     cell.isPlanned = !cell.caseIds.empty();
+    const bool isOfTime = config::isTimeMetric(query.equal->metric);
+    if (isOfTime && !cell.isTime) cell.timePower = 1;  // a budget in ms
+    cell.isTime |= isOfTime;
+    Gathered gathered;
+    std::vector<const CaseRecords*> along;
+    if (const auto axis = curveAxis(cell.pooled)) {
+        along = casesAlong(cell.pooled[*axis].axis, query, cases);
+        cell.pooled.erase(cell.pooled.begin() + static_cast<std::ptrdiff_t>(*axis));
+    } else if (cell.isPlanned) {
+        gathered.note(records::Status::Missing, "equal needs a swept axis of numbers in the cell");
+    }
+    if (!along.empty()) cell.values = equalValues(query, along, gathered);
     cell.status = gathered.worst;
     cell.message = gathered.message;
     if (!query.isScaled && gathered.units.size() == 1) cell.unit = *gathered.units.begin();
     if (!cell.values.empty()) {
         if (const auto other = byProcessTime(query)) {
             Gathered beside;
-            cell.byProcess = equalValues(*other, cases, beside);
+            cell.byProcess = equalValues(*other, along, beside);
+        }
+        cell.seedCount = gathered.seeds.size();
+        for (Measured& measured : cell.values) {
+            if (cell.seedCount > 0 && cell.seedCount < measured.rounds.size()) takeAsOne(measured);
         }
         writeValues(query.format, cell);
     }
@@ -495,11 +492,11 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     Cell cell;
     cell.isTime = config::isTimeMetric(query.metric);
     cell.timePower = config::timePower(query.metric);
+    cell.pooled = pooledAt(query.where, cases);
     if (query.equal) {
         fillEqual(query, cases, cell);
         return cell;
     }
-    cell.pooled = pooledAt(query.where, cases);
     Gathered gathered = gather(query, cases);
     const bool hasSamples = !gathered.samples.processes.empty();
     const std::size_t notRun = gathered.notRun, planned = gathered.caseIds.size() + notRun;

@@ -40,6 +40,8 @@ struct Pooled {
     std::string axis;
     std::vector<std::string> values;
     bool isAsked = false;  // the layout names the axis
+
+    bool operator==(const Pooled&) const = default;
 };
 
 /// By which clock a time is told: the one on the wall, or what all threads of the process spent.

@@ -9,6 +9,7 @@
 
 #include "engine/core/text.h"
 #include "runner/claims/kinds/operands.h"
+#include "runner/tables/case_records.h"
 #include "runner/tables/cell_format.h"
 #include "runner/tables/labels.h"
 
@@ -95,8 +96,11 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
         const Measured& measured = named ? *named : *cell.find("", own);
         // A single round tells no more than the value.
         const bool hasRounds = measured.rounds.size() > 1;
+        // How well a spread is known nobody tells: as random numbers of one seed.
+        const bool isGuess = !hasRounds && !measured.statistic.empty() &&
+                             isSpread(metrics::statisticFromName(measured.statistic));
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
-                         measured.areDraws, cell.seedCount > 0});
+                         measured.areDraws, cell.seedCount > 0 || isGuess});
         values.push_back(measured.value);
     }
     std::vector<Sampled*> all;
@@ -105,6 +109,11 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     result.point = evaluate(values);
     result.areDraws = keepRoundsOrDraws(all);
     result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
+    // One sample of a part is one of the whole, however often the rest was measured.
+    if (std::ranges::any_of(
+            cells, [](const Sampled& cell) { return cell.isRandom && cell.rounds.empty(); })) {
+        return result;
+    }
     for (const int round : commonRounds(cells)) {
         for (std::size_t i = 0; i < cells.size(); ++i) values[i] = cells[i].at(round);
         result.rounds[round] = evaluate(values);
@@ -146,23 +155,55 @@ Cell cellElsewhere(const Elsewhere& place, const TableRow& row, const Table& tab
     for (const auto& [axis, label] : place.at) labels[axis] = label;
     const auto found = std::ranges::find(table.rows, labels, &TableRow::labels);
     if (found != table.rows.end()) return found->cells[place.column];
+    // A baseline without the others' parameters is one for all of their values.
+    for (const auto& [axis, label] : place.at) {
+        for (std::size_t other = 0; other < labels.size(); ++other) {
+            if (other != axis) labels[other] = kLeftOut;
+        }
+    }
+    const auto plain = std::ranges::find(table.rows, labels, &TableRow::labels);
+    if (plain != table.rows.end()) return plain->cells[place.column];
     Cell missing;
     missing.message = "this run has no row " + place.name;
     return missing;
 }
 
-/// What the expression does, as a power of two, where each cell becomes two to its `power` as
-/// large.
-int powerOf(Operand& operand, const TableRow& row, const std::function<int(const Cell&)>& power) {
+/// What the expression does as all times double, as a power of two.
+int powerOf(Operand& operand, const TableRow& row) {
     std::vector<double> before, after;
     double base = 1.0;
     for (const std::size_t column : operand.columns()) {
         base *= 1.7;  // no two alike: their difference is no 0
         before.push_back(base);
-        after.push_back(std::ldexp(base, power(row.cells[column])));
+        after.push_back(std::ldexp(base, row.cells[column].timePower));
     }
     const double exponent = std::log2(operand.evaluate(after) / operand.evaluate(before));
     return std::isfinite(exponent) ? static_cast<int>(std::lround(exponent)) : 0;
+}
+
+/// Whether cells are added, taken away and chosen from alone: what comes out is of their unit.
+bool isSumOf(const std::string& expression, std::span<const std::string> labels) {
+    static const std::set<std::string, std::less<>> kKeepUnit = {"",  "+",   "-",   "(",  ")",
+                                                                 ",", "min", "max", "abs"};
+    return std::ranges::all_of(operandPieces(expression, labels), [](const OperandPiece& piece) {
+        return piece.column.has_value() || kKeepUnit.contains(trimmed(piece.text));
+    });
+}
+
+/// Why the cells do not give these values: one of them has not the statistic, or they divide by 0.
+std::string problemOf(const std::vector<const Cell*>& read, const CellFormat& format,
+                      const std::vector<Measured>& values) {
+    const auto isFinite = [](const Measured& measured) { return std::isfinite(measured.value); };
+    for (const CellFormat::Placeholder& placeholder : format.placeholders()) {
+        for (const Cell* one : read) {
+            if (one->find(placeholder.name)) continue;
+            return fmt::format("a cell that it reads shows '{}' and no '{}'",
+                               one->values[0].statistic, placeholder.name);
+        }
+    }
+    const bool areFinite = std::ranges::all_of(
+        read, [&](const Cell* one) { return std::ranges::all_of(one->values, isFinite); });
+    return areFinite && !std::ranges::all_of(values, isFinite) ? "no number comes out" : "";
 }
 
 std::vector<Measured> computedValues(Operand& operand, const TableRow& row,
@@ -185,7 +226,6 @@ void gatherFrom(const Cell& from, Cell& cell) {
         cell.message = from.message;
     }
     cell.isCalibrated |= from.isCalibrated;
-    cell.isTime |= from.isTime;
     // One seed of a part is one of the whole.
     const bool isFirst = cell.seedCount == 0 || from.seedCount == 0;
     cell.seedCount = isFirst ? std::max(cell.seedCount, from.seedCount)
@@ -199,13 +239,18 @@ void gatherFrom(const Cell& from, Cell& cell) {
     add(from.caseIds, cell.caseIds);
     add(from.openParameters, cell.openParameters);
     add(from.departures, cell.departures);
+    add(from.pooled, cell.pooled);
 }
 
-/// `row` has the cells that the operand reads.
-void fillComputedCell(Operand& operand, const TableRow& row, const CellFormat& format, Cell& cell) {
+/// `row` has the cells that the operand reads. `isSum`: of their unit.
+void fillComputedCell(Operand& operand, const TableRow& row, const CellFormat& format, bool isSum,
+                      Cell& cell) {
     std::vector<const Cell*> read;
     for (const std::size_t column : operand.columns()) read.push_back(&row.cells[column]);
+    cell.isTime = std::ranges::any_of(read, &Cell::isTime);
+    cell.timePower = powerOf(operand, row);
     cell.isPlanned = std::ranges::all_of(read, &Cell::isPlanned);
+    cell.isUnrecorded = std::ranges::any_of(read, &Cell::isUnrecorded);
     if (!cell.isPlanned) return;
     cell.status = records::Status::Ok;
     cell.isAtPrintedParameters = true;
@@ -218,17 +263,21 @@ void fillComputedCell(Operand& operand, const TableRow& row, const CellFormat& f
         return;
     }
     cell.values = computedValues(operand, row, format, Clock::Wall);
+    if (const std::string problem = problemOf(read, format, cell.values); !problem.empty()) {
+        cell.status = records::Status::Missing;
+        cell.message = problem;
+        cell.values.clear();
+        writeStatus(records::statusName(cell.status), cell);
+        return;
+    }
     const bool hasProcessTimes = std::ranges::all_of(
         read, [](const Cell* one) { return !one->isTime || !one->byProcess.empty(); });
     if (cell.isTime && hasProcessTimes) {
         cell.byProcess = computedValues(operand, row, format, Clock::Process);
     }
-    cell.timePower = powerOf(operand, row, [](const Cell& one) { return one.timePower; });
     std::set<std::string> units;
     for (const Cell* one : read) units.insert(one->unit);
-    const bool isOfTheirUnit =
-        units.size() == 1 && powerOf(operand, row, [](const Cell&) { return 1; }) == 1;
-    if (isOfTheirUnit) cell.unit = *units.begin();
+    if (isSum && units.size() == 1) cell.unit = *units.begin();
     writeValues(format, cell);
     writeStatus(records::statusName(cell.status), cell);
 }
@@ -250,6 +299,7 @@ void fillComputed(const config::Layout& layout, Table& table) {
         for (std::size_t k = i; k < labels.size(); ++k) reading.columns.push_back({labels[k], ""});
         Operand operand(*selection->of, reading, selection->location,
                         "column '" + table.columns[i].label + "'");
+        const bool isSum = isSumOf(*selection->of, labels);
         std::set<std::string> units;
         for (TableRow& row : table.rows) {
             TableRow cells{row.labels,
@@ -258,7 +308,7 @@ void fillComputed(const config::Layout& layout, Table& table) {
             for (const Elsewhere& place : elsewhere) {
                 cells.cells.push_back(cellElsewhere(place, row, table));
             }
-            fillComputedCell(operand, cells, format, row.cells[i]);
+            fillComputedCell(operand, cells, format, isSum, row.cells[i]);
             if (!row.cells[i].values.empty()) units.insert(row.cells[i].unit);
         }
         if (units.size() == 1) table.columns[i].unit = *units.begin();

@@ -49,12 +49,6 @@ std::vector<double> byRepeat(const Units& units, Statistic statistic) {
     return values;
 }
 
-/// What one value does not have.
-bool isSpread(Statistic statistic) {
-    return statistic == Statistic::StdDev || statistic == Statistic::P95 ||
-           statistic == Statistic::P99;
-}
-
 /// One repeat of one unit in each process.
 bool hasOneValueEach(const Samples& samples) {
     return std::ranges::all_of(samples.processes, [](const auto& process) {
@@ -85,6 +79,11 @@ std::string_view boundsName(Bounds bounds) {
     return kNames[static_cast<std::size_t>(bounds)];
 }
 
+bool isSpread(Statistic statistic) {
+    return statistic == Statistic::StdDev || statistic == Statistic::P95 ||
+           statistic == Statistic::P99;
+}
+
 Summary summarize(const Samples& samples, Statistic statistic) {
     const Units all = pooled(samples);
     GFXREPRO_ASSERT(!all.empty());
@@ -102,9 +101,10 @@ Summary summarize(const Samples& samples, Statistic statistic) {
     summary.value = summarizeUnits(all, statistic);
     summary.interval = {summary.value, summary.value};
     if (!values.empty()) fillFromRounds(values, summary);
-    // A sum or a count of repeats is not what one of them gives.
+    // A sum, a count or a spread of repeats is not what one of them gives.
     const bool isOfRepeats =
-        all.size() == 1 && (statistic == Statistic::Sum || statistic == Statistic::Count);
+        all.size() == 1 &&
+        (statistic == Statistic::Sum || statistic == Statistic::Count || isSpread(statistic));
     if (values.size() != 1 || isOfRepeats) return summary;
     const std::vector<double> repeats = byRepeat(all, statistic);
     if (repeats.size() < 2) return summary;

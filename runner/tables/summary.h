@@ -43,6 +43,9 @@ struct Samples {
 /// each repeat alone would give. Frames are given, not drawn: a camera path is what it is.
 Summary summarize(const Samples& samples, metrics::Statistic statistic);
 
+/// Whether one value alone has none: stddev, p95, p99.
+bool isSpread(metrics::Statistic statistic);
+
 /// Of values in each round: their median, with bounds as summarize() gives them; of draws
 /// (shareDraws) the value as it is. Without rounds the value as it is, without bounds.
 Summary summaryOf(double value, std::map<int, double> rounds, bool areDraws);

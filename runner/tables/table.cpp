@@ -249,10 +249,10 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     if (given.hasDefaultLayout()) describeColumns(given, layout, table);
     addTimes(experiment, records, cases, table);
     table.notes.insert(table.notes.end(), notes.begin(), notes.end());
-    if (std::string note = seedNote(table); !note.empty()) table.notes.push_back(std::move(note));
     layPrintedBeside(experiment, table);
     blankWhatOthersHave(table);
     fillComputed(layout, table);
+    if (std::string note = seedNote(table); !note.empty()) table.notes.push_back(std::move(note));
     const std::vector<std::string> told = rivalNotes(rivals, against, table);
     table.notes.insert(table.notes.begin(), told.begin(), told.end());
     for (std::string& note : pooledNotes(table)) table.notes.push_back(std::move(note));

@@ -19,7 +19,7 @@ ProcessResult mockGfxrepro(std::vector<std::string> arguments) {
 }
 
 std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines) {
-    const bool hasScene = lines.starts_with("scene: ");
+    const bool hasScene = lines.find("scene: ") != lines.npos;
     return folder.write(
         "mock.yaml",
         "sweep_of: mock\ntitle: A mock\ntechnique: mock" +

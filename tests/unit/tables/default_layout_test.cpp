@@ -139,7 +139,9 @@ TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
     EXPECT_THAT(table.notes,
                 Contains("frame, fast against plain: less time in 1 row (0.9 times)."));
     EXPECT_THAT(table.notes, Contains("frame, alike against plain: not to be told apart in 1."));
-    // Numbers and scenes are no rivals.
+    // Numbers, scenes and what has no name are no rivals.
+    EXPECT_THAT(labelsOf(buildTable(sweepOf("{method: ['', fast]}"), ofMethods())),
+                testing::Not(Contains(testing::HasSubstr("÷"))));
     EXPECT_THAT(labelsOf(buildTable(sweepOf("{resolution: [32, 64]}"), recordedAt({32, 64}))),
                 testing::Not(Contains(testing::HasSubstr("÷"))));
 }

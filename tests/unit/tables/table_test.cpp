@@ -403,9 +403,12 @@ layout:
   columns:
     ms: {format: "{mean:.1f}/{max:.0f}"}
     pct: {of: "100 * ms / ms[step=all]", format: "{mean:.1f}"}
-    of_draw_pct: {of: "100 * ms / ms[step=draw]", format: "{median:.0f}/{max:.0f}"}
+    of_draw_pct: {of: "100 * ms / ms[step=draw]", format: "{mean:.0f}/{max:.0f}"}
     without_draw_ms: {of: "ms - ms[step=draw]"}
     twice_pct: {of: pct * 2}
+    seconds: {of: ms / 1000}
+    nothing: {of: ms / (pct - pct)}
+    other: {of: ms, format: "{min:.1f}"}
   cell: {format: "{mean:.1f}"}
 )";
 
@@ -449,6 +452,10 @@ TEST(Table, ColumnsOfColumnsAreComputedInEachProcess) {
     EXPECT_EQ(rest.unit, "ms");
     EXPECT_EQ(rest.timePower, 1);
     EXPECT_EQ(six.columns[3].unit, "ms");
+    EXPECT_EQ(six.columns[5].unit, "") << "no longer that of what it reads";
+    EXPECT_EQ(six.rows[0].cells[6].message, "no number comes out");
+    EXPECT_EQ(six.rows[0].cells[6].measured, "missing");
+    EXPECT_EQ(six.rows[0].cells[7].message, "a cell that it reads shows 'mean' and no 'min'");
 
     EXPECT_EQ(sharesOf(5).rows[0].cells[1].bounds(), Bounds::Range);
     EXPECT_EQ(sharesOf(1).rows[0].cells[1].measured, "20.0");
@@ -516,8 +523,57 @@ TEST(Table, AtEqualTimeAndAtEqualError) {
     EXPECT_TRUE(table.rows[0].cells[0].isTime) << "its clock decides";
     const Cell& beyond = table.rows[0].cells[2];
     EXPECT_EQ(beyond.status, records::Status::Missing);
-    EXPECT_EQ(beyond.message, "'rmse' is from 0.25 to 1 there, and never 0.1");
+    EXPECT_EQ(beyond.message,
+              "'rmse' is from 0.25 to 1 there; 0.1 not in every process, or at several "
+              "places");
     EXPECT_EQ(equalOf(1).rows[0].cells[1].bounds(), Bounds::None);
+}
+
+/// Which of three times has the error nobody can tell.
+TEST(Table, ACurveThatComesBySeveralTimesHasNoValueThere) {
+    RecordMaker maker;
+    const double errors[] = {0.5, 0.1, 0.12, 0.09};
+    for (int i = 0; i < 4; ++i) {
+        maker.beginCase("models/duck", fmt::format(R"({{"method": "a", "samples": {}}})", 1 << i));
+        maker.lane("timing").add("wall_time_ms", {10.0 * (1 << i)});
+        maker.add("rmse", {errors[i]}, "", "1");
+    }
+    const char* body = R"(
+scene: models/duck
+sweep: {method: [a], samples: [1, 2, 4, 8]}
+layout:
+  rows: method
+  columns:
+    ms_at_11_pct: {metric: wall_time_ms, equal: {metric: rmse, is: 0.11}}
+    ms_at_30_pct: {metric: wall_time_ms, equal: {metric: rmse, is: 0.3}}
+)";
+    const Table table = buildTable(experimentFrom(body), maker.records());
+    EXPECT_EQ(table.rows[0].cells[0].status, records::Status::Missing);
+    EXPECT_TRUE(table.rows[0].cells[1].isOk()) << table.rows[0].cells[1].message;
+}
+
+/// A baseline without the others' parameter is one for all values of it.
+TEST(Table, ARowElsewhereMayHaveLeftOutAxes) {
+    RecordMaker maker;
+    for (const char* params : {R"({"method": "none"})", R"({"method": "bins", "gain": 2})",
+                               R"({"method": "bins", "gain": 4})"}) {
+        maker.beginCase("models/duck", params).lane("timing");
+        maker.add("wall_time_ms", {params[12] == 'n' ? 10.0 : 5.0});
+    }
+    const char* body = R"(
+scene: models/duck
+sweep: {method: [none, bins], gain: [2, 4], when: {gain: {method: bins}}}
+layout:
+  rows: [method, gain]
+  columns:
+    ms: {metric: wall_time_ms, format: "{median:.0f}"}
+    speedup: {of: "ms[method=none] / ms", format: "{median:.0f}"}
+)";
+    const Table table = buildTable(experimentFrom(body), maker.records());
+    ASSERT_EQ(table.rows.size(), 3U);
+    for (const TableRow& row : table.rows) {
+        EXPECT_EQ(row.cells[1].measured, row.labels[0] == "none" ? "1" : "2");
+    }
 }
 
 TEST(Table, ASpreadOfOneValueIsMissing) {
