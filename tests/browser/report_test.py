@@ -216,7 +216,7 @@ class Report(unittest.TestCase):
         self.assertEqual(self.browser.script(text, "#overview .parameters"),
                          "Of 4 printed cells of tables 4 were measured again: 2 at the printed parameters; 2 at other parameters, which each table names.")
         for slug, line, ratios in (("demo2026-1", "Measured at the printed parameters.", 2),
-                                   ("demo2026-2", "Measured at pause 1 ms (paper profile 0).", 0)):
+                                   ("demo2026-2", "Measured at pause 1 ms (the config's 0).", 0)):
             self.open("#" + slug)
             self.assertEqual(self.browser.script(text, f"#{slug} .parameters"), line)
             self.assertEqual(self.shown(f"#{slug} .ratio"), ratios)
