@@ -118,7 +118,8 @@ std::vector<std::string> rivalNotes(const Rivals& rivals, const std::vector<std:
             part(tally.less, isTime ? "less time" : "less");
             part(tally.more, isTime ? "more time" : "more");
             if (tally.open > 0) {
-                parts.push_back(fmt::format("not to be told apart in {}", tally.open));
+                parts.push_back(fmt::format("not to be told apart in {} {}", tally.open,
+                                            tally.open == 1 ? "row" : "rows"));
             }
             if (parts.empty()) continue;
             notes.push_back(fmt::format("{}, {} against {}: {}.",

@@ -138,7 +138,8 @@ TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
     EXPECT_EQ(table.rows[1].cells[1].measured, "0.9");
     EXPECT_THAT(table.notes,
                 Contains("frame, fast against plain: less time in 1 row (0.9 times)."));
-    EXPECT_THAT(table.notes, Contains("frame, alike against plain: not to be told apart in 1."));
+    EXPECT_THAT(table.notes,
+                Contains("frame, alike against plain: not to be told apart in 1 row."));
     // Numbers, scenes and what has no name are no rivals.
     EXPECT_THAT(labelsOf(buildTable(sweepOf("{method: ['', fast]}"), ofMethods())),
                 testing::Not(Contains(testing::HasSubstr("÷"))));
