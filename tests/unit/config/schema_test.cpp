@@ -228,6 +228,7 @@ const std::vector<std::pair<std::string, std::string>> kNumberPlaces = {
     {"output", "output: {KEY: @}\n"},
     {"measure", "measure: {KEY: @}\n"},
     {"selection", "TABLE{aa: {metric: mean_brightness, KEY: @}}}\n"},
+    {"equal", "TABLE{aa: {metric: mean_brightness, equal: {metric: wall_time_ms, KEY: @}}}}\n"},
     {"plot",
      "TABLE{aa: mean_brightness, bb: mean_brightness}}\n"
      "plots: [{x: aa, y: bb, log: [x, y], KEY: @}]\n"},
