@@ -111,7 +111,7 @@ class Mock : public technique::Technique {
         std::this_thread::sleep_for(std::chrono::milliseconds(pauseMs_));
         // A slower build, for tests that compare two.
         const char* slower = std::getenv("GFXREPRO_MOCK_EXTRA_MS");
-        compute(busyMs_ + (slower ? std::atoi(slower) : 0));
+        compute(busyMs_ + (slower ? std::atof(slower) : 0));
         switch (behaviour_) {
             case Behaviour::Ok:
             case Behaviour::NotANumber:
@@ -181,7 +181,7 @@ class Mock : public technique::Technique {
     }
 
     /// Takes CPU time, whatever else the machine does.
-    static void compute(int timeMs) {
+    static void compute(double timeMs) {
         const auto spentMs = [] {
             return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
         };

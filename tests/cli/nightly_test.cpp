@@ -15,13 +15,13 @@ namespace fs = std::filesystem;
 
 class Nightly : public ::testing::Test {
   protected:
-    /// A bundle of the mock program, slower by `extraMs` in each iteration, its picture of `shade`.
-    std::string bundle(int extraMs) const {
-        const std::string name = "bundle-" + std::to_string(extraMs);
+    /// A bundle of the mock program, slower by `extraUs` in each iteration, its picture of `shade`.
+    std::string bundle(int extraUs) const {
+        const std::string name = "bundle-" + std::to_string(extraUs);
         fs::create_directories(folder.path() / name);
         const fs::path program = folder.write(
-            name + "/gfxrepro", "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraMs) +
-                                    " GFXREPRO_MOCK_SHADE=" + shade + " exec " +
+            name + "/gfxrepro", "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraUs) +
+                                    "e-3 GFXREPRO_MOCK_SHADE=" + shade + " exec " +
                                     GFXREPRO_MOCK_PROGRAM + " \"$@\"" +
                                     (isCrashing ? "$([ $1 != run ] || echo ' --set "
                                                   "behaviour=crash')\n"
@@ -29,16 +29,16 @@ class Nightly : public ::testing::Test {
         fs::permissions(program, fs::perms::owner_all);
         return program.parent_path();
     }
-    ProcessResult night(int extraMs, bool isFix = false, const std::string& reason = "") const {
+    ProcessResult night(int extraUs, bool isFix = false, const std::string& reason = "") const {
         std::vector<std::string> arguments = {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
                                               GFXREPRO_SOURCE "/scripts/nightly"};
         if (isFix) arguments.emplace_back("--fix");
         if (!reason.empty()) arguments.insert(arguments.end(), {"--accept", reason});
         const fs::path config =
             writeMockConfig(folder,
-                            "params: {busy_ms: 80}\n"
+                            "params: {busy_ms: 20}\n"
                             "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2}\n");
-        arguments.insert(arguments.end(), {"--rounds", "8", "--program", bundle(extraMs), config});
+        arguments.insert(arguments.end(), {"--rounds", "8", "--program", bundle(extraUs), config});
         return runProgram(arguments);
     }
     /// A night of a bundle whose program is this script.
@@ -47,7 +47,7 @@ class Nightly : public ::testing::Test {
         fs::permissions(program, fs::perms::owner_all);
         const fs::path config =
             writeMockConfig(folder,
-                            "params: {busy_ms: 80}\n"
+                            "params: {busy_ms: 20}\n"
                             "measure: {lane: timing, processes: 1, repeats: 2}\n");
         return runProgram({"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
                            GFXREPRO_SOURCE "/scripts/nightly", "--rounds", "8", "--program",
@@ -103,7 +103,7 @@ TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
     EXPECT_FALSE(fs::exists(state + "/landed"));
     ASSERT_EQ(night(0).exitCode, 0);
     EXPECT_EQ(nightOf("exit 0\n").exitCode, 2);
-    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
 }
 
 TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustComeToTheSame) {
@@ -116,15 +116,15 @@ TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustComeToTheSame) {
         EXPECT_EQ(blind.exitCode, 2) << blind.out << blind.err;
         EXPECT_NE(blind.err.find(" (code, tests), tonight's 0 0\n"), std::string::npos)
             << blind.err;
-        EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+        EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     }
     // One that is slower is found, whatever it says itself.
     const ProcessResult slow = nightOf(
         "[ $1 != compare ] || exit 0\n"
-        "export GFXREPRO_MOCK_EXTRA_MS=60\n" +
+        "export GFXREPRO_MOCK_EXTRA_MS=15\n" +
         mock);
     EXPECT_EQ(slow.exitCode, 1) << slow.out << slow.err;
-    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
 }
 
 /// The step of the workflow that shows a night.
@@ -164,24 +164,25 @@ TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
     ASSERT_EQ(night(0).exitCode, 0);
     const ProcessResult same = night(1);
     EXPECT_EQ(same.exitCode, 0) << same.out << same.err;
-    EXPECT_NE(landed().find("EXTRA_MS=1 "), std::string::npos) << "80 and 81 ms are the same";
+    EXPECT_NE(landed().find("EXTRA_MS=1e-3 "), std::string::npos)
+        << "a microsecond of 20 ms is nothing";
     EXPECT_TRUE(fs::exists(state + "/history.csv"));
     EXPECT_NE(readFile(state + "/history.html").find("<svg"), std::string::npos);
-    const ProcessResult slow = night(60);
+    const ProcessResult slow = night(15000);
     EXPECT_EQ(slow.exitCode, 1) << slow.out << slow.err;
     EXPECT_NE(slow.out.find("alarm; measuring again\n"), std::string::npos) << slow.out;
-    EXPECT_NE(landed().find("EXTRA_MS=1 "), std::string::npos) << "a slower build does not land";
+    EXPECT_NE(landed().find("EXTRA_MS=1e-3 "), std::string::npos) << "a slower build does not land";
     EXPECT_GE(keptRuns(), 28U) << "those of the alarm: two looks at both builds";
     // As it is meant to be slower:
-    const ProcessResult accepted = night(60, false, "it is \"right\" now");
+    const ProcessResult accepted = night(15000, false, "it is \"right\" now");
     EXPECT_EQ(accepted.exitCode, 0) << accepted.err;
-    EXPECT_NE(landed().find("EXTRA_MS=60 "), std::string::npos);
+    EXPECT_NE(landed().find("EXTRA_MS=15000e-3 "), std::string::npos);
     EXPECT_FALSE(fs::exists(state + "/history.csv")) << "begins anew";
     const std::string reasons = readFile(state + "/accepted.csv");
     EXPECT_NE(reasons.find(",1,\"it is \"\"right\"\" now\"\n"), std::string::npos) << reasons;
     const ProcessResult fixed = night(0, true);
     EXPECT_EQ(fixed.exitCode, 0) << fixed.err;
-    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
 }
 
 TEST_F(Nightly, AReasonIsKeptOfTheFirstNightToo) {
@@ -196,7 +197,7 @@ TEST_F(Nightly, ABuildWhosePictureChangedDoesNotLandAndTheEvidenceIsKept) {
     const ProcessResult other = night(1);
     EXPECT_EQ(other.exitCode, 1) << other.out << other.err;
     EXPECT_NE(other.out.find("picture/flat: changed: FLIP "), std::string::npos) << other.out;
-    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     std::size_t kept = 0;
     for (const auto& entry : fs::recursive_directory_iterator(state)) {
         const bool isKept = entry.path().string().find("/pictures/") != std::string::npos;
@@ -214,10 +215,10 @@ TEST_F(Nightly, ABuildThatCrashesIsNotAcceptedAndASoundOneLandsAfterIt) {
                                "case did not finish\n"),
               std::string::npos)
         << refused.err;
-    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     EXPECT_FALSE(fs::exists(state + "/accepted.csv"));
     EXPECT_EQ(night(1, true).exitCode, 4) << "nor does --fix";
-    EXPECT_NE(landed().find("EXTRA_MS=0 "), std::string::npos);
+    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     fs::remove_all(state + "/landed");
     fs::copy(bundle(1), state + "/landed");  // as where the landed one crashes since then
     const ProcessResult both = night(2);
@@ -225,7 +226,7 @@ TEST_F(Nightly, ABuildThatCrashesIsNotAcceptedAndASoundOneLandsAfterIt) {
     isCrashing = false;
     const ProcessResult sound = night(3);
     EXPECT_EQ(sound.exitCode, 0) << sound.out << sound.err;
-    EXPECT_NE(landed().find("EXTRA_MS=3 "), std::string::npos);
+    EXPECT_NE(landed().find("EXTRA_MS=3e-3 "), std::string::npos);
 }
 
 TEST_F(Nightly, OneNightAtATimeAndAKilledOneLosesNothing) {
@@ -241,7 +242,7 @@ TEST_F(Nightly, OneNightAtATimeAndAKilledOneLosesNothing) {
     other.signal(SIGKILL);
     other.wait();
     EXPECT_EQ(night(1).exitCode, 0);
-    EXPECT_NE(landed().find("EXTRA_MS=1 "), std::string::npos);
+    EXPECT_NE(landed().find("EXTRA_MS=1e-3 "), std::string::npos);
     EXPECT_FALSE(fs::exists(state + "/landed.old") || fs::exists(state + "/landed.new"));
 }
 
@@ -249,14 +250,14 @@ TEST_F(Nightly, WhatGotSlowerLittleByLittleIsFoundEachWeekAndInTheHistory) {
     ASSERT_EQ(night(0).exitCode, 0);
     // As if many nights had landed under the floor.
     fs::remove_all(state + "/landed");
-    fs::copy(bundle(60), state + "/landed", fs::copy_options::recursive);
+    fs::copy(bundle(15000), state + "/landed", fs::copy_options::recursive);
     letAWeekPass();
-    const ProcessResult week = night(60);
+    const ProcessResult week = night(15000);
     EXPECT_EQ(week.exitCode, 1) << week.out << week.err;
     EXPECT_NE(week.out.find("nightly: with the fixed build\nalarm; measuring again\n"),
               std::string::npos)
         << week.out;
-    EXPECT_NE(landed().find("EXTRA_MS=60 "), std::string::npos);
+    EXPECT_NE(landed().find("EXTRA_MS=15000e-3 "), std::string::npos);
     // Thirteen nights at a third of the time, and thirteen as tonight's, without an overlap.
     const std::string history = readFile(state + "/history.csv");
     const std::size_t begin = history.find("_time_ms,ms,") + 12;
@@ -269,7 +270,7 @@ TEST_F(Nightly, WhatGotSlowerLittleByLittleIsFoundEachWeekAndInTheHistory) {
         rows += history.substr(row, begin - row) + std::to_string(own) + '\n';
     }
     writeFileAtomic(state + "/history.csv", rows);
-    const ProcessResult step = night(60);
+    const ProcessResult step = night(15000);
     EXPECT_EQ(step.exitCode, 1) << step.out << step.err;
     EXPECT_NE(step.out.find("since night 14 of 27"), std::string::npos) << step.out;
 }
