@@ -12,6 +12,7 @@ WHAT  software  runs them on the software device into FOLDER/software, keeps eve
       hazards   of what draws and dispatches did, nothing is left to chance (hazards/hazards.h)
 Exit 77: skipped, the last line says why.
 """
+import concurrent.futures
 import csv
 import json
 import os
@@ -117,26 +118,26 @@ def compile_strictly():
     programs = {}
     for file in PROGRAMS.iterdir():
         programs.setdefault(file.stem, []).append(file)
-    failed = 0
-    for name, stages in sorted(programs.items()):
-        for options in [["-l"], ["-G", "-l", "--aml", "--amb", "-o", os.devnull]]:
-            run = subprocess.run([validator, *options, *stages], capture_output=True, text=True)
-            if run.returncode != 0 or "WARNING" in run.stdout:
-                failed += 1
-                print(*options, run.stdout, run.stderr)
+    commands = [[validator, *options, *stages] for _, stages in sorted(programs.items())
+                for options in (["-l"], ["-G", "-l", "--aml", "--amb", "-o", os.devnull])]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = list(pool.map(lambda command: subprocess.run(command, capture_output=True, text=True), commands))
+    refused = [run for run in runs if run.returncode != 0 or "WARNING" in run.stdout]
+    for run in refused:
+        print(*run.args, run.stdout, run.stderr)
     texts = {}
     for stages in programs.values():
         for file in stages:
             texts.setdefault(file.suffix[1:], []).append(set(file.read_text().splitlines()))
-    stage_files = sorted(file for folder in ("techniques", "runner") for stage in texts
+    stage_files = sorted(file for folder in ("engine", "techniques") for stage in texts
                          for file in (SOURCE / folder).rglob(f"*.{stage}.glsl"))
     asked, has = storage_blocks(texts)
     print(f"storage blocks of a stage: {has}")
     assert asked == has, f"doctor asks for {asked}"
     unseen = [file for file in stage_files if not any(lines_of(file) <= text for text in texts[file.suffixes[-2][1:]])]
-    print(f"{len(programs)} programs, {failed} refused; {len(stage_files)} files of stages, {len(unseen)} in none:")
+    print(f"{len(programs)} programs, {len(refused)} refused; {len(stage_files)} files of stages, {len(unseen)} in none:")
     print(*unseen, sep="\n")
-    assert programs and not failed and not unseen
+    assert programs and not refused and not unseen
 
 
 def lines_of(file):
