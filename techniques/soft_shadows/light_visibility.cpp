@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
 #include "engine/core/error.h"
@@ -13,11 +14,6 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-/// Across `direction`; the world's up unless the direction is close to it.
-glm::vec3 upFor(const glm::vec3& direction) {
-    return std::abs(direction.y) < 0.99F ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
-}
-
 bool isInside(const scene::Box& box, const glm::vec3& point) {
     return glm::all(glm::greaterThanEqual(point, box.min)) &&
            glm::all(glm::lessThanEqual(point, box.max));
@@ -25,15 +21,17 @@ bool isInside(const scene::Box& box, const glm::vec3& point) {
 
 }  // namespace
 
+glm::vec3 AreaLight::at(const glm::vec2& position) const {
+    return centre + halfEdge * (position.x * axes[0] + position.y * axes[1]);
+}
+
 glm::vec3 AreaLight::corner(int index) const {
-    constexpr glm::vec2 kSigns[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-    const glm::vec2 sign = kSigns[index];
-    return centre + sign.x * right + sign.y * up;
+    constexpr glm::vec2 kCorners[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    return at(kCorners[index]);
 }
 
 glm::vec3 AreaLight::sample(int i, int j, int n) const {
-    const glm::vec2 cell = (2.0F * glm::vec2(i, j) + 1.0F) / static_cast<float>(n) - 1.0F;
-    return centre + cell.x * right + cell.y * up;
+    return at((2.0F * glm::vec2(i, j) + 1.0F) / static_cast<float>(n) - 1.0F);
 }
 
 AreaLight makeAreaLight(const scene::Box& casters, const AreaLightSettings& settings) {
@@ -41,16 +39,13 @@ AreaLight makeAreaLight(const scene::Box& casters, const AreaLightSettings& sett
     const glm::vec3 toLight(std::sin(settings.azimuthRad) * std::cos(settings.elevationRad),
                             std::sin(settings.elevationRad),
                             std::cos(settings.azimuthRad) * std::cos(settings.elevationRad));
-    AreaLight light;
-    light.casters = casters;
-    light.centre = casters.centre() + settings.height * diagonal * toLight;
-    const glm::vec3 right = glm::normalize(glm::cross(upFor(toLight), toLight));
-    const glm::vec3 up = glm::cross(toLight, right);
+    // Two edges are horizontal, and of a light overhead along the world's x axis.
+    const glm::vec3 other = std::abs(toLight.y) < 0.99F ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
+    const glm::vec3 right = glm::normalize(glm::cross(other, toLight));
     // A square of diagonal d has half edges of d / √8.
-    const float halfEdge = settings.sizeRatio * diagonal / std::sqrt(8.0F);
-    light.right = right * halfEdge;
-    light.up = up * halfEdge;
-    return light;
+    return {casters.centre() + settings.height * diagonal * toLight,
+            glm::mat3(right, glm::cross(toLight, right), toLight),
+            settings.sizeRatio * diagonal / std::sqrt(8.0F), casters, settings.viewFrame};
 }
 
 kit::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx) {
@@ -64,32 +59,44 @@ kit::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx) 
             box.max.z));
     }
     const float diagonal = glm::length(box.size());
-    scene::Camera camera;
-    camera.position = point;
-    camera.target = box.centre();
-    const glm::vec3 forward = glm::normalize(camera.target - point);
-    camera.up = upFor(forward);
-    const glm::vec3 right = glm::normalize(glm::cross(forward, camera.up));
-    const glm::vec3 up = glm::cross(right, forward);
+    glm::mat3 axes = light.axes;
+    if (light.viewFrame == LightViewFrame::Aimed) {
+        axes[2] = glm::normalize(point - box.centre());
+        axes[0] = glm::normalize(glm::cross(light.axes[1], axes[2]));
+        axes[1] = glm::cross(axes[2], axes[0]);
+    }
     float nearest = std::numeric_limits<float>::infinity();
     float farthest = 0.0F;
-    float tangent = 0.0F;  // of half the angle that holds every corner
+    glm::vec2 least(std::numeric_limits<float>::infinity());  // tangents that hold every corner
+    glm::vec2 most = -least;
     for (int index = 0; index < 8; ++index) {
-        const glm::vec3 offset = box.corner(index) - point;
-        const float depth = glm::dot(offset, forward);
+        const glm::vec3 offset = glm::transpose(axes) * (box.corner(index) - point);
+        const float depth = -offset.z;
         // Corners beside the light (the light is not far above a flat scene) would need more than
         // half of space; what lies that far aside is cut off.
-        const float bounded = std::max(depth, 0.05F * diagonal);
+        const glm::vec2 tangents = glm::vec2(offset) / std::max(depth, 0.05F * diagonal);
         nearest = std::min(nearest, depth);
         farthest = std::max(farthest, depth);
-        tangent = std::max({tangent, std::abs(glm::dot(offset, right)) / bounded,
-                            std::abs(glm::dot(offset, up)) / bounded});
+        least = glm::min(least, tangents);
+        most = glm::max(most, tangents);
     }
-    tangent *= static_cast<float>(sizePx) / std::max(1.0F, static_cast<float>(sizePx) - 4.0F);
-    camera.verticalFovRad = 2.0F * std::atan(tangent);
-    camera.nearM = std::max(nearest - 0.01F * diagonal, 0.002F * diagonal);
-    camera.farM = farthest + 0.01F * diagonal;
-    return kit::viewOf(camera, glm::ivec2(sizePx));
+    if (light.viewFrame == LightViewFrame::Aimed) {
+        most = glm::max(most, -least);
+        least = -most;
+    }
+    const glm::vec2 middle = 0.5F * (least + most);
+    const float half = 0.5F * std::max(most.x - least.x, most.y - least.y) *
+                       static_cast<float>(sizePx) /
+                       std::max(1.0F, static_cast<float>(sizePx) - 4.0F);
+    kit::View view;
+    view.eyeWorld = point;
+    view.viewFromWorld = glm::translate(glm::mat4(glm::transpose(axes)), -point);
+    view.sizePx = glm::ivec2(sizePx);
+    view.nearM = std::max(nearest - 0.01F * diagonal, 0.002F * diagonal);
+    view.farM = farthest + 0.01F * diagonal;
+    const glm::vec2 low = view.nearM * (middle - half), high = view.nearM * (middle + half);
+    view.clipFromView = glm::frustum(low.x, high.x, low.y, high.y, view.nearM, view.farM);
+    return view;
 }
 
 namespace {
@@ -268,7 +275,7 @@ void FilteredShadows::render(const Receivers& receivers, const AreaLight& light,
     filter_.set("lightPosition", light.centre);
     filter_.set("lightForward", forwardOf(view));
     filter_.set("tangent", 1.0F / view.clipFromView[0].x);
-    filter_.set("halfLight", glm::length(light.right));
+    filter_.set("halfLight", light.halfEdge);
     filter_.set("nearM", view.nearM);
     filter_.setIfActive("farM", view.farM);
     filter_.set("biasPerDistance", shadowMap_.biasPerDistance(view));

@@ -14,20 +14,30 @@ namespace gfxrepro::soft_shadows {
 
 // A rectangular light and the views from its points.
 
+/// How the views from a light's points stand: the image's edges are along the light's in both.
+enum class LightViewFrame {
+    Parallel,  // image planes parallel to the light, frusta off centre (Heckbert and Herf 1997)
+    Aimed,     // each view looks at the centre of the casters' box
+};
+
 struct AreaLightSettings {
     float sizeRatio = 1.0F;     // diagonal of the light : diagonal of the scene's box; 0: a point
     float height = 1.5F;        // distance of its centre from the box's centre, in box diagonals
     float azimuthRad = 0.6F;    // of the direction to the light, about y, from +z towards +x
     float elevationRad = 1.0F;  // of that direction above the horizon
+    LightViewFrame viewFrame = LightViewFrame::Parallel;
 };
 
 /// A square in space that faces the centre of the scene's box. Corner order: around the square.
 struct AreaLight {
     glm::vec3 centre;
-    glm::vec3 right;  // half an edge each
-    glm::vec3 up;
+    glm::mat3 axes;      // unit: right and up along its edges, and the way back from the scene
+    float halfEdge;      // m
     scene::Box casters;  // what its views must hold
+    LightViewFrame viewFrame = LightViewFrame::Parallel;
 
+    /// The point at (x, y), each from −1 to 1 on the light.
+    glm::vec3 at(const glm::vec2& position) const;
     glm::vec3 corner(int index) const;  // 0 … 3
     /// Point (i, j) of an n × n grid: the middle of its cell.
     glm::vec3 sample(int i, int j, int n) const;
@@ -35,9 +45,9 @@ struct AreaLight {
 
 AreaLight makeAreaLight(const scene::Box& casters, const AreaLightSettings& settings);
 
-/// The view from a point on the light towards the centre of the casters; its frustum is as narrow
-/// as holds their box (square image, a margin of two pixels). Throws Error when the point lies
-/// inside the box: the frustum would have to be wider than half of space.
+/// The view from a point on the light, which need not be one of its samples. Its frustum is the
+/// narrowest square one that holds the casters' box, with a margin of two pixels. Throws Error when
+/// the point lies inside the box: the frustum would have to be wider than half of space.
 kit::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx);
 
 /// The output samples: what each pixel of the output image shows.

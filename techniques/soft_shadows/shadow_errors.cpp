@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "engine/core/error.h"
 #include "techniques/kit/depth_image_renderer.h"
@@ -46,6 +47,14 @@ float toleranceAt(const kit::View& view, float depth, int referenceSizePx) {
     return 2.0F * 2.0F * depth / (view.clipFromView[0].x * static_cast<float>(referenceSizePx));
 }
 
+/// The triangle that the eye sees at a point of the picture.
+unsigned triangleSeen(const raycast::RayTracer& tracer, const glm::vec3& eye,
+                      const glm::vec3& point) {
+    const auto hit = tracer.closestHit(
+        eye, point - eye, 0.0F, std::numeric_limits<float>::infinity(), raycast::Faces::Drawn);
+    return hit ? hit->flattenedTriangle : raycast::kNoTriangle;
+}
+
 }  // namespace
 
 int HostVisibilityMask::litSamples(std::size_t pixel) const {
@@ -62,7 +71,8 @@ std::size_t HostReceivers::covered() const {
 }
 
 HostReceivers readReceivers(const Receivers& receivers) {
-    return {receivers.view.sizePx, receivers.positions.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
+    return {receivers.view.sizePx, receivers.view.eyeWorld,
+            receivers.positions.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
             receivers.normals.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
             receivers.shading.read<glm::u8vec4>(GL_RGBA, GL_UNSIGNED_BYTE, 1)};
 }
@@ -80,11 +90,12 @@ HostVisibilityMask traceVisibility(const raycast::RayTracer& tracer, const HostR
                                    const AreaLight& light, int gridSize) {
     HostVisibilityMask mask{receivers.sizePx, gridSize * gridSize, {}};
     mask.bits.resize(layersOf(mask) * mask.pixelCount());
-    const float offset = 1e-4F * glm::length(light.casters.size());
+    const float offset = 1e-5F * glm::length(light.casters.size());
     tbb::parallel_for(std::size_t{0}, mask.pixelCount(), [&](std::size_t pixel) {
         const bool isSurface = receivers.positions[pixel].w != 0.0F;
-        const glm::vec3 origin =
-            glm::vec3(receivers.positions[pixel]) + offset * glm::vec3(receivers.normals[pixel]);
+        const glm::vec3 origin(receivers.positions[pixel]);
+        const unsigned own =
+            isSurface ? triangleSeen(tracer, receivers.eyeWorld, origin) : raycast::kNoTriangle;
         for (int sample = 0; sample < mask.sampleCount; ++sample) {
             const glm::vec3 toLight =
                 light.sample(sample % gridSize, sample / gridSize, gridSize) - origin;
@@ -92,7 +103,8 @@ HostVisibilityMask traceVisibility(const raycast::RayTracer& tracer, const HostR
             const bool isTurnedAway =
                 glm::dot(glm::vec3(receivers.normals[pixel]), toLight) <= 0.0F;
             if (isSurface &&
-                (isTurnedAway || tracer.isOccluded(origin, toLight, 0.0F, glm::length(toLight)))) {
+                (isTurnedAway || tracer.isOccluded(origin, toLight, offset, glm::length(toLight),
+                                                   raycast::Faces::All, own))) {
                 continue;
             }
             mask.bits[static_cast<std::size_t>(sample / 32) * mask.pixelCount() + pixel] |=

@@ -12,6 +12,7 @@ namespace gfxrepro::soft_shadows {
 
 struct HostReceivers {
     glm::ivec2 sizePx{0};
+    glm::vec3 eyeWorld{0.0F};
     std::vector<glm::vec4> positions, normals;  // as in Receivers, rows from the bottom
     std::vector<glm::u8vec4> shading;
 
@@ -36,8 +37,8 @@ struct HostVisibilityMask {
 HostReceivers readReceivers(const Receivers& receivers);
 HostVisibilityMask readMask(const VisibilityMask& mask);
 
-/// The same bits by shadow rays. No shadow map and no bias but the offset along the normal that
-/// keeps a ray off its own triangle: 10⁻⁴ of the casters' diagonal. On all cores.
+/// The same bits by shadow rays. No shadow map and no bias: the triangle that a pixel shows casts
+/// no shadow on it, and rays begin 10⁻⁵ of the casters' diagonal away. On all cores.
 HostVisibilityMask traceVisibility(const raycast::RayTracer& tracer, const HostReceivers& receivers,
                                    const AreaLight& light, int gridSize);
 

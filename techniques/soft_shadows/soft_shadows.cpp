@@ -29,6 +29,10 @@ constexpr Choice<Reconstruction> kReconstructions[] = {
     {Reconstruction::Classic, "classic", "triangles between neighbouring samples"},
 };
 
+constexpr Choice<LightViewFrame> kLightViewFrames[] = {
+    {LightViewFrame::Parallel, "parallel", "image planes parallel to the light, frusta off centre"},
+    {LightViewFrame::Aimed, "aimed", "each looks at the centre of the scene's box"},
+};
 constexpr Choice<kit::Redundancy> kRedundancies[] = {
     {kit::Redundancy::Pixel, "pixel",
      "an earlier image holds the triangle where the sample lands (algorithm 3)"},
@@ -60,6 +64,8 @@ AreaLightSettings readLight(Params& params) {
                {"direction to the light about y, from +z towards +x", "°", -360.0, 360.0}));
     light.elevationRad = glm::radians(
         number(params, "light_elevation_deg", 60.0, {"… above the horizon", "°", -90.0, 90.0}));
+    light.viewFrame = params.getEnum("light_view_frame", LightViewFrame::Parallel, kLightViewFrames,
+                                     {"how the views from the light's points stand"});
     return light;
 }
 
@@ -425,7 +431,7 @@ void SoftShadows::recordOnce(technique::Recorder& recorder) {
     if (!params_.seesFromLight) return;
     recordLightView(recorder, "inside", light_.centre);
     // As far beyond the edge as the edge is from the centre, seen from there.
-    recordLightView(recorder, "outside", light_.centre + 2.0F * light_.right);
+    recordLightView(recorder, "outside", light_.at({2.0F, 0.0F}));
 }
 
 void SoftShadows::recordPicture(technique::Recorder& recorder) {

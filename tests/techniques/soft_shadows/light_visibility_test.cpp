@@ -2,7 +2,10 @@
 // are known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "engine/core/files.h"
 #include "engine/gl/device.h"
@@ -145,23 +148,49 @@ TEST_F(LightVisibilityTest, PixelsWithoutSurfaceSeeTheWholeLight) {
     EXPECT_GT(background, 100U);
 }
 
+TEST(LightTruth, AStepOfAFewThousandthsOfAPercentCastsItsShadow) {
+    scene::MeshBuilder builder;
+    const float height = 5e-5F * std::sqrt(32.0F);  // as a share of the diagonal
+    builder.addQuad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2});
+    builder.addQuad({0, 0, -2}, {0, 0, 2}, {0, height, 2}, {0, height, -2});
+    scene::Scene scene = scene::sceneOf(builder.take("step", 0));
+    scene.materials.push_back({.isDoubleSided = true});
+    scene.meshes.front().material = 0;
+    // The light is 45° above the horizon, beyond the step; one point stands nearer to the step than
+    // it is high, the other farther away.
+    AreaLight light = makeAreaLight(scene.bounds(), {.sizeRatio = 0.0F});
+    light.centre = {10, 10, 0};
+    const HostReceivers receivers{{1, 2},
+                                  {-1, 5, 0},
+                                  {{-0.4F * height, 0, 0.1F, 1}, {-3.0F * height, 0, 0.1F, 1}},
+                                  {{0, 1, 0, 0}, {0, 1, 0, 0}},
+                                  {{}, {}}};
+    const HostVisibilityMask mask = traceVisibility(raycast::RayTracer(scene), receivers, light, 1);
+    EXPECT_EQ(mask.litSamples(0), 0);
+    EXPECT_EQ(mask.litSamples(1), 1);
+}
+
 TEST(AreaLight, SquareOfTheGivenDiagonalAcrossItsDirection) {
     const scene::Box box{{-1, 0, -1}, {1, 1, 1}};  // diagonal 3
     const AreaLight light = makeAreaLight(box, {.sizeRatio = 0.5F, .height = 2.0F});
     EXPECT_NEAR(glm::length(light.corner(2) - light.corner(0)), 1.5F, 1e-5F);
     EXPECT_NEAR(glm::length(light.corner(3) - light.corner(1)), 1.5F, 1e-5F);
     EXPECT_NEAR(glm::length(light.centre - box.centre()), 6.0F, 1e-5F);
-    EXPECT_NEAR(glm::dot(light.right, light.up), 0.0F, 1e-6F);
-    EXPECT_NEAR(glm::dot(light.right, light.centre - box.centre()), 0.0F, 1e-5F);
+    EXPECT_NEAR(glm::dot(light.axes[0], light.axes[1]), 0.0F, 1e-6F);
+    EXPECT_NEAR(glm::dot(light.axes[0], light.centre - box.centre()), 0.0F, 1e-5F);
     glm::vec3 mean(0.0F);
     for (int s = 0; s < 16; ++s) mean += light.sample(s % 4, s / 4, 4) / 16.0F;
     EXPECT_NEAR(glm::length(mean - light.centre), 0.0F, 1e-5F);
 }
 
+constexpr LightViewFrame kFrames[] = {LightViewFrame::Parallel, LightViewFrame::Aimed};
+
 TEST(AreaLight, ItsViewsHoldTheCastersWhole) {
     const scene::Box box{{-1, 0, -1}, {1, 1, 1}};
-    for (const float ratio : {0.0F, 1.0F, 4.0F}) {
-        const AreaLight light = makeAreaLight(box, {.sizeRatio = ratio});
+    for (int i = 0; i < 6; ++i) {
+        const float ratio = std::array{0.0F, 1.0F, 4.0F}[i % 3];
+        const AreaLight light =
+            makeAreaLight(box, {.sizeRatio = ratio, .viewFrame = kFrames[i / 3]});
         for (int c = 0; c < 4; ++c) {
             const kit::View view = lightView(light, light.corner(c), 256);
             for (int i = 0; i < 8; ++i) {
@@ -170,6 +199,59 @@ TEST(AreaLight, ItsViewsHoldTheCastersWhole) {
                 EXPECT_TRUE(kit::pixelOf(view, corner)) << "ratio " << ratio;
                 const glm::vec4 clip = view.clipFromWorld() * glm::vec4(corner, 1.0F);
                 EXPECT_LT(std::abs(clip.z), clip.w);
+            }
+        }
+    }
+}
+
+/// The width of a pixel of the view from a point, at the middle of the box.
+float pixelWidth(const AreaLight& light, const glm::vec3& point) {
+    const kit::View view = lightView(light, point, 1024);
+    return kit::footprintPerDepth(view) * glm::dot(light.casters.centre() - point, forwardOf(view));
+}
+
+/// Sizes of boxes as nest, meadow, city and tree have them.
+constexpr glm::vec3 kBoxSizes[] = {
+    {2.24F, 1.34F, 1.92F}, {3.02F, 0.81F, 2.97F}, {240, 75, 240}, {13.6F, 14.5F, 12.4F}};
+
+AreaLight lightOverBox(const glm::vec3& size, int step, const AreaLightSettings& settings) {
+    AreaLightSettings stepped = settings;
+    stepped.sizeRatio = 0.025F * static_cast<float>(step);
+    return makeAreaLight({-0.5F * size, 0.5F * size}, stepped);
+}
+
+TEST(AreaLight, PixelsFromItsCornersAreAsWideAsFromItsCentre) {
+    for (const glm::vec3& size : kBoxSizes) {
+        for (const float height : {0.75F, 1.0F, 1.5F}) {
+            for (int step = 0; step <= 40; ++step) {
+                const AreaLight light = lightOverBox(
+                    size, step, {.height = height, .elevationRad = glm::half_pi<float>()});
+                for (int c = 0; c < 4; ++c) {
+                    EXPECT_NEAR(
+                        pixelWidth(light, light.corner(c)) / pixelWidth(light, light.centre), 1.0F,
+                        0.1F)
+                        << size.y << " m high, light " << height << " diagonals away, step "
+                        << step;
+                }
+            }
+        }
+    }
+}
+
+TEST(AreaLight, PixelsChangeWithItsSizeWithoutAJump) {
+    for (const LightViewFrame frame : kFrames) {
+        for (const glm::vec3& size : kBoxSizes) {
+            for (const float elevation : {0.8F, 1.2F, 1.43F, glm::half_pi<float>()}) {
+                float before = 0.0F;
+                for (int step = 0; step <= 40; ++step) {
+                    const AreaLight light =
+                        lightOverBox(size, step, {.elevationRad = elevation, .viewFrame = frame});
+                    const float width = pixelWidth(light, light.corner(0));
+                    if (step > 0)
+                        EXPECT_NEAR(width / before, 1.0F, 0.02F)
+                            << size.y << ' ' << elevation << " step " << step;
+                    before = width;
+                }
             }
         }
     }
@@ -205,7 +287,7 @@ TEST(ShadowErrors, BitsBeyondTheLastSampleDoNotCount) {
 }
 
 TEST(ShadowErrors, PicturesShowTooBrightGreenAndTooDarkRed) {
-    const HostReceivers receivers{{1, 2}, {glm::vec4(1), glm::vec4(1)}, {}, {{}, {}}};
+    const HostReceivers receivers{{1, 2}, {}, {glm::vec4(1), glm::vec4(1)}, {}, {{}, {}}};
     const image::ImageF picture = errorPicture(receivers, {64.0F, -128.0F});
     EXPECT_EQ(picture.at(0, 1, 0), 0.0F);  // pixel 0 is the lower one
     EXPECT_EQ(picture.at(0, 1, 1), 1.0F);
