@@ -74,6 +74,10 @@ constexpr Choice<Earlier> kEarlier[] = {
     {Earlier::Views, "views", "what is visible from their views, as algorithm 2 has it"},
     {Earlier::Samples, "samples", "what they hold, with what they uncovered"},
 };
+constexpr Choice<OccludedIn> kOccludedIn[] = {
+    {OccludedIn::UpToOwn, "up_to_own", "the conventional images up to the image's own view"},
+    {OccludedIn::All, "all", "the conventional images of all views"},
+};
 constexpr Choice<Placement> kPlacements[] = {
     {Placement::Fixed, "fixed", "the triangle's corners, then evenly inside of it"},
     {Placement::Automatic, "automatic", "each next view where the images so far lack most"},
@@ -183,10 +187,16 @@ DepthSamplingParams::DepthSamplingParams(Params& params)
       showsPictures(params.getBool("pictures", false, {"save images with what was measured"})),
       measured(
           params.getEnum("measured", Measured::ReferenceImages, kMeasured, {"what is timed"})) {
+    measures.occluded =
+        params.getEnum("occluded", OccludedIn::UpToOwn, kOccludedIn,
+                       {"which images lack an occluded sample of a non-redundant one"});
     measures.usefulness = params.getBool(
         "usefulness", false, {"count the occluded samples that an output frame needs (measure 3)"});
     measures.availability = params.getBool(
         "availability", false, {"count what reference images have of output frames (measure 4)"});
+    if (method != Method::NonRedundant) {
+        params.refuseGiven({"occluded"}, "'method: non_redundant'");
+    }
     checkPlacement(params, *this);
     checkVisibility(params, *this);
     checkFrames(params, *this);
@@ -272,7 +282,6 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, boo
         recorder.metric("redundant_of_pixels_pct", kit::percent(counts.redundant, pixels), "%",
                         pass);
         ofSamples("occluded_pct", counts.occluded);
-        ofSamples("occluded_literal_pct", counts.occludedLiterally);
         occludedSumPct += kit::percent(counts.occluded, counts.samples);
         if (!hasUsefulness) continue;
         ofSamples("useful_of_samples_pct", counts.useful);
@@ -454,8 +463,8 @@ config::Outputs outputs() {
         {
             {"redundant_pct", "%", "share of an image's samples that an earlier image has already",
              Better::Lower},
-            {"occluded_pct", "%",
-             "share of an image's samples that the output view's own image lacks", Better::Higher},
+            {"occluded_pct", "%", "share of an image's samples that the conventional images lack",
+             Better::Higher},
             {"useful_pct", "%", "share of the occluded samples that some output frame shows",
              Better::Higher},
             {"occluded_sum_pct", "%", "occluded_pct, summed over all images", Better::Higher},
@@ -470,10 +479,6 @@ config::Outputs outputs() {
              kIsDetail},
             {"redundant_of_pixels_pct", "%", "redundant samples as a share of an image's pixels",
              Better::Lower, kIsDetail},
-            {"occluded_literal_pct", "%",
-             "share of an image's samples that are occluded by the definition exactly as it is "
-             "printed",
-             Better::Higher, kIsDetail},
             {"useful_of_samples_pct", "%",
              "share of an image's samples that are occluded and useful", Better::Higher, kIsDetail},
             {"reference_image_bytes", "byte", "memory of all images on the device", Better::Lower},

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "techniques/depth_sampling/pixel_measures.h"
@@ -11,6 +12,19 @@ namespace gfxrepro::depth_sampling {
 
 using kit::DepthImage;
 using kit::View;
+
+namespace {
+
+/// How many of the conventional images, from the first on, must lack an occluded sample of image
+/// `index`.
+std::size_t conventionalImages(Method method, OccludedIn occluded, std::size_t index,
+                               std::size_t all) {
+    // Departure [xie2017] Sec. 2.3.2, which has V₀ … Vᵢ₋₁: nothing of image 1 would be in one.
+    const bool isUpToOwn = method == Method::NonRedundant && occluded == OccludedIn::UpToOwn;
+    return isUpToOwn ? std::min(index + 1, all) : all;
+}
+
+}  // namespace
 
 PixelExperiment::PixelExperiment(const gl::ShaderLibrary& shaders, const scene::Scene& scene,
                                  Method method, kit::TriangleIds ids, kit::DepthFormat format,
@@ -65,19 +79,13 @@ void PixelExperiment::drawOutputFrame(gl::Profiler& profiler, std::size_t index)
     measures_.beginAvailability(*outputFrame_, first(images_, images_.size()));
 }
 
-void PixelExperiment::markImage(std::size_t index) {
+void PixelExperiment::markImage(std::size_t index, OccludedIn occluded) {
     const DepthImage& image = images_[index];
     gl::Texture& marks = marks_[index];
     // For the method's own sequence; a conventional image's earlier ones are conventional.
     measures_.mark(image, marks, first(images_, index), true, kSample, kRedundant);
-    const std::size_t all = conventional().size();
-    measures_.mark(image, marks, first(conventional(), all), false, kSample, kOccluded);
-    if (method_ == Method::Conventional) return;
-    // Departure [xie2017] Sec. 2.3.2: printed are the views 0 … i−1 for a non-redundant image and
-    // all for a peeled one. Of image 1 all samples are occluded so, by construction: beside ours.
-    const std::size_t printed = method_ == Method::DepthPeeling ? all : index;
-    measures_.mark(image, marks, first(conventional(), printed), false, kSample,
-                   kOccludedLiterally);
+    const std::size_t count = conventionalImages(method_, occluded, index, conventional().size());
+    measures_.mark(image, marks, first(conventional(), count), false, kSample, kOccluded);
 }
 
 namespace {
@@ -99,7 +107,8 @@ std::shared_ptr<const PixelExperiment::OutputFrames> PixelExperiment::sharedFram
     const std::size_t bytes = views_.frames.size() * bytesOfSamples(views_.frames.front().sizePx);
     if (!shared_ || bytes > shared_->mostBytes()) return nullptr;
     return technique::sharedResult<OutputFrames>(
-        shared_, "output frames", {"method", "peeled_from", "usefulness", "availability"}, [&] {
+        shared_, "output frames",
+        {"method", "peeled_from", "occluded", "usefulness", "availability"}, [&] {
             OutputFrames frames;
             for (const View& view : views_.frames) {
                 DepthImage& image = frames.images.emplace_back(renderer_.makeImage(view));
@@ -118,7 +127,7 @@ Measures PixelExperiment::measure(const MeasureSettings& settings) {
     marks_.clear();
     for (std::size_t i = 0; i < images_.size(); ++i) {
         marks_.push_back(measures_.makeMarks(images_[i]));
-        markImage(i);
+        markImage(i, settings.occluded);
     }
     // Of an image without occluded samples none can be useful: often of all conventional ones.
     std::vector<std::size_t> open;
@@ -158,7 +167,6 @@ Measures PixelExperiment::measure(const MeasureSettings& settings) {
         result.images.push_back({.samples = measures_.count(marks, kSample),
                                  .redundant = measures_.count(marks, kRedundant),
                                  .occluded = measures_.count(marks, kOccluded),
-                                 .occludedLiterally = measures_.count(marks, kOccludedLiterally),
                                  .useful = measures_.count(marks, kUseful)});
     }
     return result;
@@ -227,21 +235,23 @@ void VisibilityExperiment::makeReferenceImages(gl::Profiler& profiler) {
 
 Measures VisibilityExperiment::measure(const MeasureSettings& settings) {
     if (settings.usefulness) neededBy_ = frames_;
+    occluded_ = settings.occluded;
     Measures result;
     for (std::size_t i = 0; i < images_.size(); ++i) {
-        ImageCounts counts = countSamples(sequence_, i, conventional_, neededBy_);
-        // Departure [xie2017] Sec. 2.3.2: see PixelExperiment::markImage().
-        if (method_ == Method::Conventional) counts.occludedLiterally = 0;
-        if (method_ == Method::DepthPeeling) counts.occludedLiterally = counts.occluded;
-        result.images.push_back(counts);
+        result.images.push_back(
+            countSamples(sequence_, i, conventional_, occludedIn(i), neededBy_));
     }
     if (settings.availability) result.frames = countAvailable(sequence_, frames_);
     return result;
 }
 
+std::size_t VisibilityExperiment::occludedIn(std::size_t index) const {
+    return conventionalImages(method_, occluded_, index, conventional_.views().size());
+}
+
 MarkedImage VisibilityExperiment::markedImage(std::size_t index) const {
     const auto markOf = [&](const SurfacePoint& point) -> std::uint32_t {
-        if (conventional_.anyHolds(conventional_.views().size(), point)) return 0;
+        if (conventional_.anyHolds(occludedIn(index), point)) return 0;
         std::uint32_t marks = kOccluded;
         if (neededBy_.anyHolds(neededBy_.views().size(), point)) marks |= kUseful;
         return marks;

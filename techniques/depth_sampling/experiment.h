@@ -41,8 +41,16 @@ struct MarkedImage {
     std::vector<std::uint32_t> marks;
 };
 
-/// Which of the measures that look at all output frames are taken.
+/// Which conventional images a sample of a non-redundant image i must be missing in to be occluded.
+/// A sample of a peeled layer must be missing in all ([xie2017] Sec. 2.3.2).
+enum class OccludedIn {
+    UpToOwn,  // V₀ … Vᵢ
+    All,      // V₀ … Vₙ₋₁
+};
+
+/// What is measured beside samples and redundancy.
 struct MeasureSettings {
+    OccludedIn occluded = OccludedIn::UpToOwn;
     bool usefulness = false;
     bool availability = false;
 };
@@ -103,7 +111,7 @@ class PixelExperiment final : public Experiment {
     const std::vector<kit::DepthImage>& conventional() const {
         return method_ == Method::Conventional ? images_ : conventional_;
     }
-    void markImage(std::size_t index);
+    void markImage(std::size_t index, OccludedIn occluded);
 
     Method method_;
     Views views_;
@@ -131,7 +139,10 @@ class VisibilityExperiment final : public Experiment {
     std::size_t referenceImageBytes() const override;
 
   private:
+    std::size_t occludedIn(std::size_t index) const;
+
     Method method_;
+    OccludedIn occluded_ = OccludedIn::UpToOwn;
     raycast::RayTracer tracer_;
     SurfaceShading shading_;
     VisibilitySequence sequence_;

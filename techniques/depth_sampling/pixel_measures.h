@@ -20,11 +20,10 @@ using ImageSpan = std::span<const kit::DepthImage* const>;
 /// without a sample has none.
 enum Mark : std::uint32_t {
     kSample = 1,
-    kRedundant = 2,  // with an earlier conventional image (measure 1)
-    kOccluded = 4,   // in none of the conventional images V₀ … Vₙ₋₁ (measure 2)
-    kOccludedLiterally = 8,  // in none of the conventional images V₀ … Vᵢ₋₁ (measure 2, as printed)
-    kUseful = 16,            // occluded, and needed by an output frame (measure 3)
-    kAvailable = 32,  // of an output frame: in at least one reference image (measure 4)
+    kRedundant = 2,   // with an earlier conventional image (measure 1)
+    kOccluded = 4,    // in no conventional image that counts (measure 2)
+    kUseful = 8,      // occluded, and needed by an output frame (measure 3)
+    kAvailable = 16,  // of an output frame: in at least one reference image (measure 4)
 };
 
 /// Pixel redundancy of samples with images, tested one fragment a sample ([xie2017] Algorithm 3):

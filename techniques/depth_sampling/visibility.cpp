@@ -281,21 +281,18 @@ ImageCounts& ImageCounts::operator+=(const ImageCounts& other) {
     samples += other.samples;
     redundant += other.redundant;
     occluded += other.occluded;
-    occludedLiterally += other.occludedLiterally;
     useful += other.useful;
     return *this;
 }
 
 ImageCounts countSamples(const VisibilitySequence& sequence, std::size_t index,
-                         const VisibilitySequence& conventional,
+                         const VisibilitySequence& conventional, std::size_t conventionalCount,
                          const VisibilitySequence& outputs) {
     const glm::ivec2 size = sequence.views()[index].sizePx;
-    const std::size_t viewCount = conventional.views().size();
-    const std::size_t earlierCount = std::min(index, viewCount);
     // The nearest points on a view's rays are what its conventional image holds, whatever rounding
     // makes of a ray that is cast to one of them again.
-    const bool isConventional =
-        index == 0 && viewCount > 0 && isSameView(sequence.views()[0], conventional.views()[0]);
+    const bool isConventional = index == 0 && conventionalCount > 0 &&
+                                isSameView(sequence.views()[0], conventional.views()[0]);
     const auto countRows = [&](const tbb::blocked_range<int>& rows, ImageCounts counts) {
         std::size_t frameBefore = 0;
         for (int y = rows.begin(); y < rows.end(); ++y) {
@@ -304,9 +301,7 @@ ImageCounts countSamples(const VisibilitySequence& sequence, std::size_t index,
                 if (!point) continue;
                 ++counts.samples;
                 counts.redundant += sequence.isRedundant(index, *point) ? 1 : 0;
-                if (conventional.anyHolds(earlierCount, *point)) continue;
-                ++counts.occludedLiterally;
-                if (isConventional || conventional.anyHolds(viewCount, *point)) continue;
+                if (isConventional || conventional.anyHolds(conventionalCount, *point)) continue;
                 ++counts.occluded;
                 const auto frame = outputs.visibleFrom(*point, frameBefore);
                 if (!frame) continue;

@@ -17,9 +17,8 @@ namespace gfxrepro::depth_sampling {
 struct ImageCounts {
     std::uint64_t samples = 0;
     std::uint64_t redundant = 0;  // held by an earlier image of its own sequence (measure 1)
-    std::uint64_t occluded = 0;  // held by none of the conventional images V₀ … Vₙ₋₁ (measure 2)
-    std::uint64_t occludedLiterally = 0;  // by none of V₀ … Vᵢ₋₁, as printed; all of image 0
-    std::uint64_t useful = 0;             // occluded, and needed by an output frame (measure 3)
+    std::uint64_t occluded = 0;   // held by no conventional image that counts (measure 2)
+    std::uint64_t useful = 0;     // occluded, and needed by an output frame (measure 3)
 
     ImageCounts& operator+=(const ImageCounts& other);
     bool operator==(const ImageCounts&) const = default;
@@ -123,12 +122,13 @@ kit::HostDepthImage rayCastImage(const VisibilitySequence& sequence, std::size_t
 
 // The measures of [xie2017] Sec. 2.3.2 under the visibility definition, on the CPU.
 
-/// Of the samples of image `index` of `sequence`; V₀ … Vₙ₋₁ are the views of `conventional`, and
-/// the output frames those of `outputs` (both are conventional sequences; `outputs` may be empty).
-/// Measure 1 is the conventional sequence measured against itself; of a non-redundant or peeled
-/// sequence no sample is redundant. With fewer views than `index` all of them count literally.
+/// Of the samples of image `index` of `sequence`. Occluded is what the first `conventionalCount`
+/// images of `conventional` lack; the output frames are those of `outputs` (both are conventional
+/// sequences; `outputs` may be empty). Measure 1 is the conventional sequence measured against
+/// itself; of a non-redundant or peeled sequence no sample is redundant.
 ImageCounts countSamples(const VisibilitySequence& sequence, std::size_t index,
-                         const VisibilitySequence& conventional, const VisibilitySequence& outputs);
+                         const VisibilitySequence& conventional, std::size_t conventionalCount,
+                         const VisibilitySequence& outputs);
 
 /// For every image of `outputs` (a conventional sequence: the output frames).
 std::vector<FrameCounts> countAvailable(const VisibilitySequence& sequence,

@@ -159,14 +159,11 @@ TEST_F(PixelMeasuresTest, NonRedundantImagesHoldTheOccludedAndUsefulSamplesThatD
             Expected expected(e.nonRedundant[i]);
             expected.mark(HostImages(e.nonRedundant).first(i), true, kSample, kRedundant);
             expected.mark(e.conventional, false, kSample, kOccluded);
-            expected.mark(HostImages(e.conventional).first(i), false, kSample, kOccludedLiterally);
 
             const DepthImage& image = nonRedundant.images[i];
             gl::Texture marks = measures.makeMarks(image);
             measures.mark(image, marks, nonRedundant.span().first(i), true, kSample, kRedundant);
             measures.mark(image, marks, conventional.span(), false, kSample, kOccluded);
-            measures.mark(image, marks, conventional.span().first(i), false, kSample,
-                          kOccludedLiterally);
             for (std::size_t frame = 0; frame < e.outputs.size(); ++frame) {
                 expected.mark({&e.outputs[frame], 1}, true, kOccluded, kUseful);
                 measures.mark(image, marks, outputs.span().subspan(frame, 1), true, kOccluded,
@@ -174,7 +171,7 @@ TEST_F(PixelMeasuresTest, NonRedundantImagesHoldTheOccludedAndUsefulSamplesThatD
             }
             const std::vector<std::uint32_t> actual = read(marks);
             expectEqualMarks(expected, actual);
-            for (const Mark bit : {kRedundant, kOccluded, kOccludedLiterally, kUseful}) {
+            for (const Mark bit : {kRedundant, kOccluded, kUseful}) {
                 EXPECT_EQ(measures.count(marks, bit), countOf(actual, bit)) << bit;
             }
             EXPECT_EQ(measures.count(marks, kOccluded | kUseful), countOf(actual, kUseful));

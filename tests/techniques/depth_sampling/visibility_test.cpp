@@ -369,20 +369,20 @@ TEST(VisibilityMeasures, CountTwoSquares) {
 
     // 32 pixels for 4 m: the front square fills 16². The back one, a metre further, is seen at
     // 0.5 · 4/5 = 0.4 m of half size: samples at 0.125 · (k + 0.5) m, so 2 · 3 = 6 a side.
-    EXPECT_EQ(countSamples(conventional, 0, conventional, before),
-              (ImageCounts{.samples = 256, .occludedLiterally = 256}));
-    EXPECT_EQ(countSamples(conventional, 1, conventional, before),
+    EXPECT_EQ(countSamples(conventional, 0, conventional, 2, before),
+              (ImageCounts{.samples = 256}));
+    EXPECT_EQ(countSamples(conventional, 1, conventional, 2, before),
               (ImageCounts{.samples = 256, .redundant = 256}));
-    EXPECT_EQ(
-        countSamples(layers, 1, conventional, before),
-        (ImageCounts{.samples = 36, .redundant = 0, .occluded = 36, .occludedLiterally = 36}));
+    EXPECT_EQ(countSamples(layers, 1, conventional, 2, before),
+              (ImageCounts{.samples = 36, .occluded = 36}));
     // From far aside the gap between the squares shows all of the back one.
-    EXPECT_EQ(countSamples(layers, 1, conventional, aside),
-              (ImageCounts{.samples = 36, .occluded = 36, .occludedLiterally = 36, .useful = 36}));
-    EXPECT_EQ(countSamples(layers, 2, conventional, aside), ImageCounts{});
-    // V₁ has what V₀ has not: occluded in the literal reading alone.
-    EXPECT_EQ(countSamples(layers, 1, aside, aside),
-              (ImageCounts{.samples = 36, .occludedLiterally = 36}));
+    EXPECT_EQ(countSamples(layers, 1, conventional, 2, aside),
+              (ImageCounts{.samples = 36, .occluded = 36, .useful = 36}));
+    EXPECT_EQ(countSamples(layers, 2, conventional, 2, aside), ImageCounts{});
+    // V₁ has what V₀ has not.
+    EXPECT_EQ(countSamples(layers, 1, aside, 1, aside),
+              (ImageCounts{.samples = 36, .occluded = 36, .useful = 36}));
+    EXPECT_EQ(countSamples(layers, 1, aside, 2, aside), (ImageCounts{.samples = 36}));
 }
 
 TEST(VisibilityMeasures, AvailabilityOfTwoSquares) {
@@ -433,19 +433,16 @@ TEST(VisibilityMeasures, CountsAgreeWithALoopOverTriangles) {
             const auto point = bruteSequence.sample(j, rayThrough(views[j], at + 0.5F));
             if (!point) continue;
             ++expected.samples;
-            if (isHeld(bruteConventional, j, *point)) continue;
-            ++expected.occludedLiterally;
-            if (isHeld(bruteConventional, 3, *point)) continue;
+            if (isHeld(bruteConventional, j + 1, *point)) continue;
             ++expected.occluded;
             expected.useful += isHeld(bruteOutputs, 3, *point);
         }
-        const ImageCounts counts = countSamples(sequence, j, conventional, outputs);
+        const ImageCounts counts = countSamples(sequence, j, conventional, j + 1, outputs);
         EXPECT_EQ(counts.redundant, 0U);
         // A few samples lie so near to an edge that rounding decides.
         constexpr double kFew = 3.0;
         EXPECT_NEAR(counts.samples, expected.samples, kFew);
         EXPECT_NEAR(counts.occluded, expected.occluded, kFew);
-        EXPECT_NEAR(counts.occludedLiterally, expected.occludedLiterally, kFew);
         EXPECT_NEAR(counts.useful, expected.useful, kFew);
         useful += counts.useful;
         if (j > 0) EXPECT_GT(counts.occluded, counts.useful);
