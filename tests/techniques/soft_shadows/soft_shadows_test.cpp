@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 
 #include "engine/core/random.h"
@@ -293,6 +294,155 @@ TEST_F(SoftShadowsTest, SameCaseGivesTheSameNumbersAndPictures) {
     ASSERT_EQ(a.images.size(), 7U);
     for (const auto& [name, image] : a.images) {
         EXPECT_TRUE(std::ranges::equal(image.values(), b.images.at(name).values())) << name;
+    }
+}
+
+struct Strip {
+    glm::vec2 centre, along;  // on the plane y = 0, (x, z); half its length
+    float halfWidth;
+
+    /// (along, across) of a point, each from −1 to 1 on the strip.
+    glm::vec2 at(const glm::vec2& point) const {
+        const glm::vec2 d = point - centre;
+        const float length = glm::length(along);
+        return {glm::dot(d, along) / (length * length),
+                (d.x * along.y - d.y * along.x) / (length * halfWidth)};
+    }
+    /// Which of the strip's two triangles holds a point; 0: neither.
+    int triangleAt(const glm::vec2& point) const {
+        const glm::vec2 place = at(point);
+        if (std::max(std::abs(place.x), std::abs(place.y)) >= 1.0F) return 0;
+        return place.x > place.y ? 1 : 2;
+    }
+};
+
+constexpr float kSideM = 4.0F, kSeenM = 3.6F, kSpecksM = 1.0F, kFloorM = -0.3F;
+
+/// Strips of 1 to 4 pixels' width at every angle, one in each cell of a grid.
+std::vector<Strip> flatStrips(float pixelM) {
+    constexpr int kCells = 14;
+    std::vector<Strip> strips;
+    Random random(5);
+    for (int cell = 0; cell < kCells * kCells; ++cell) {
+        const glm::vec2 place = (glm::vec2(cell % kCells, cell / kCells) + 0.5F) / float{kCells};
+        const float angle = random.uniform(0.0F, 6.2831853F);
+        strips.push_back(
+            {0.93F * kSeenM * (place - 0.5F),
+             random.uniform(0.075F, 0.11F) * glm::vec2(std::cos(angle), std::sin(angle)),
+             pixelM * random.uniform(0.5F, 2.0F)});
+    }
+    return strips;
+}
+
+/// The strips, a floor under them, and far above them four specks, so that the views from the
+/// light's corners have the plane in different grids. The camera looks down; its near plane hides
+/// the strips, not the floor.
+scene::Scene sceneOfStrips(const std::vector<Strip>& strips) {
+    scene::MeshBuilder builder;
+    const auto add = [&](const Strip& strip, float y) {
+        const glm::vec3 centre(strip.centre.x, y, strip.centre.y),
+            along(strip.along.x, 0, strip.along.y);
+        const glm::vec3 across =
+            strip.halfWidth * glm::normalize(glm::vec3(strip.along.y, 0, -strip.along.x));
+        builder.addQuad(centre - along - across, centre + along - across, centre + along + across,
+                        centre - along + across);
+    };
+    add({{0, 0}, {0.5F * kSideM, 0}, 0.5F * kSideM}, kFloorM);
+    for (const glm::vec2& corner : {glm::vec2(-1, -1), {1, -1}, {-1, 1}, {1, 1}}) {
+        add({0.5F * kSideM * corner, {1e-4F, 0}, 1e-4F}, kSpecksM);
+    }
+    for (const Strip& strip : strips) add(strip, 0.0F);
+    scene::Scene scene = scene::sceneOf(builder.take("strips", -1));
+    scene::Camera camera;
+    camera.position = {0, 3, 0};
+    camera.target = {0, 0, 0};
+    camera.up = {0, 0, 1};
+    camera.verticalFovRad = 2.0F * std::atan(0.5F * kSeenM / (camera.position.y - kFloorM));
+    camera.nearM = camera.position.y - 0.5F * kFloorM;
+    scene.cameras = {camera};
+    return scene;
+}
+
+/// Areas that reconstructions shadow too much and too little, m² on the strips' plane, worked out
+/// from pixel grids alone: a sample stands for its pixel, wherever the pixel's middle lies on the
+/// strip. Conventional images add up; of non-redundant ones a later image adds the samples that
+/// land on a pixel of no earlier one (algorithm 3).
+glm::dvec2 wrongAreas(const std::vector<Strip>& strips, const std::vector<kit::View>& views,
+                      bool isNonRedundant, float pixelM) {
+    const float stepM = pixelM / 5.0F, marginM = 1.5F * pixelM;
+    const auto middleAt = [](const kit::View& view, const glm::vec2& point) {
+        const glm::vec2 pixel = glm::floor(*kit::project(view, {point.x, 0, point.y}));
+        const glm::vec3 middle = kit::unproject(view, pixel + 0.5F, view.eyeWorld.y);
+        return glm::vec2(middle.x, middle.z);
+    };
+    glm::dvec2 areas(0.0);
+    for (const Strip& strip : strips) {
+        const float length = glm::length(strip.along);
+        const glm::vec2 along = strip.along / length, across(along.y, -along.x);
+        for (float u = -length - marginM; u < length + marginM; u += stepM) {
+            for (float v = -strip.halfWidth - marginM; v < strip.halfWidth + marginM; v += stepM) {
+                const glm::vec2 point = strip.centre + u * along + v * across;
+                bool isCovered = false;
+                for (std::size_t i = 0; i < views.size() && !isCovered; ++i) {
+                    const glm::vec2 middle = middleAt(views[i], point);
+                    const int triangle = strip.triangleAt(middle);
+                    isCovered = triangle != 0;
+                    for (std::size_t j = 0; j < i && isNonRedundant && isCovered; ++j) {
+                        isCovered = strip.triangleAt(middleAt(views[j], middle)) != triangle;
+                    }
+                }
+                const bool isInside = strip.triangleAt(point) != 0;
+                areas += double{stepM} * stepM *
+                         glm::dvec2(isCovered && !isInside, !isCovered && isInside);
+            }
+        }
+    }
+    return areas;
+}
+
+TEST_F(SoftShadowsTest, StripsUnderASmallLightAreAsDarkAndLitAsTheirPixelsSay) {
+    constexpr int kReferenceSize = 256;
+    outputSizePx_ = {720, 720};
+    const glm::vec3 half{0.5F * kSideM, 0.5F * (kSpecksM - kFloorM), 0.5F * kSideM};
+    const glm::vec3 middle{0, 0.5F * (kSpecksM + kFloorM), 0};
+    const auto lightOf = [&](float ratio) {
+        return makeAreaLight({middle - half, middle + half},
+                             {.sizeRatio = ratio, .elevationRad = 1.5707963F});
+    };
+    const kit::View centre = lightView(lightOf(0.0F), lightOf(0.0F).centre, kReferenceSize);
+    const float lightM = centre.eyeWorld.y;
+    const float pixelM = kit::footprintPerDepth(centre) * lightM;
+    const std::vector<Strip> strips = flatStrips(pixelM);
+    const scene::Scene scene = sceneOfStrips(strips);
+    // Of all that the picture shows, as seen on the strips' plane from the light.
+    const double pictureM2 = std::pow(kSeenM * lightM / (lightM - kFloorM), 2.0);
+    for (const char* method : kReconstructing) {
+        for (const float ratio : {0.05F, 0.08F}) {
+            SCOPED_TRACE(fmt::format("{} {}", method, ratio));
+            const Metrics metrics =
+                recorded(
+                    fmt::format(
+                        "{{method: {}, light_ratio: {}, light_elevation_deg: 90, light_grid: 1, "
+                        "reference_size: {}, shadow_map_size: 2048, ground: false}}",
+                        method, ratio, kReferenceSize),
+                    &scene)
+                    .metrics;
+            const bool isPeeling = method == std::string("depth_peeling");
+            std::vector<kit::View> views;
+            const AreaLight light = lightOf(ratio);
+            for (int corner = 0; corner < (isPeeling ? 1 : 4); ++corner) {
+                views.push_back(lightView(light, isPeeling ? light.centre : light.corner(corner),
+                                          kReferenceSize));
+            }
+            const glm::dvec2 expected =
+                wrongAreas(strips, views, method == std::string("non_redundant"), pixelM) /
+                pictureM2 * 256.0;
+            const double dark = metrics.at("wrongly_dark_mean/geometry");
+            const double lit = metrics.at("wrongly_lit_mean/geometry");
+            EXPECT_NEAR(dark, expected.x, 0.15 * expected.x);
+            // What four images leave lit is hardly there: a hundredth of the other side is as good.
+            EXPECT_NEAR(lit, expected.y, std::max(0.15 * expected.y, 0.01 * expected.x));
+        }
     }
 }
 
