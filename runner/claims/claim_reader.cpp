@@ -166,6 +166,18 @@ std::string ClaimReader::groupName(const Rows& rows) const {
     return joined(parts);
 }
 
+std::string ClaimReader::sceneOf(const Rows& rows) const {
+    const auto axis = std::ranges::find(table_.rowAxes, "scene") - table_.rowAxes.begin();
+    if (axis == std::ssize(table_.rowAxes)) return "";
+    const auto labelOf = [&](std::size_t row) {
+        return table_.rows[row].labels[static_cast<std::size_t>(axis)];
+    };
+    const std::string scene = labelOf(rows[0]);
+    if (!std::ranges::all_of(rows, [&](std::size_t row) { return labelOf(row) == scene; }))
+        return "";
+    return tables::shownValue("scene", scene, table_.words);
+}
+
 bool isCalibrated(const tables::Cell& cell) {
     return cell.isPlanned && cell.isCalibrated;
 }

@@ -50,6 +50,9 @@ class ClaimReader {
 
     /// The labels that the rows share: "scene=models/duck".
     std::string groupName(const Rows& rows) const;
+    /// The name of the one scene that the rows are of; empty of several, or of a table without the
+    /// row axis `scene`.
+    std::string sceneOf(const Rows& rows) const;
 
     /// Whether the table has a row for it.
     bool readsAny() const { return !rows().empty(); }

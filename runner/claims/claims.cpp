@@ -83,8 +83,32 @@ Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
     return outcome;
 }
 
+/// The worst verdict on the rows of each scene, by its name in the table, in the table's order.
+using SceneVerdicts = std::vector<std::pair<std::string, Verdict>>;
+
+void addToScene(SceneVerdicts& scenes, const std::string& scene, Verdict verdict) {
+    if (scene.empty()) return;
+    const auto found = std::ranges::find(scenes, scene, &SceneVerdicts::value_type::first);
+    if (found == scenes.end()) {
+        scenes.emplace_back(scene, verdict);
+    } else if (severity(verdict) > severity(found->second)) {
+        found->second = verdict;
+    }
+}
+
+/// "3 of 4 scenes, not on tree"; empty where it holds on all of them or on none.
+std::string holdsOn(const SceneVerdicts& scenes) {
+    std::vector<std::string> others;
+    for (const auto& [scene, verdict] : scenes) {
+        if (verdict != Verdict::Holds) others.push_back(scene);
+    }
+    if (others.empty() || others.size() == scenes.size()) return "";
+    return fmt::format("{} of {} scenes, not on {}", scenes.size() - others.size(), scenes.size(),
+                       joined(others));
+}
+
 Outcome judgePart(const ClaimPart& part, ClaimReader& reader, const std::vector<Rows>& groups,
-                  const std::optional<TimeRule>& times) {
+                  const std::optional<TimeRule>& times, SceneVerdicts& scenes) {
     std::optional<Outcome> worst;
     for (const Rows& rows : groups) {
         const ClaimReader::Reading reading = reader.read(part, rows);
@@ -92,6 +116,7 @@ Outcome judgePart(const ClaimPart& part, ClaimReader& reader, const std::vector<
         const std::string name = reader.groupName(rows);
         const bool isNamed = groups.size() > 1 && !name.empty();
         Outcome outcome = judgeGroup(part, reading, name, isNamed, times);
+        addToScene(scenes, reader.sceneOf(rows), outcome.judgement.verdict);
         if (!worst || isWorse(outcome, *worst)) worst = std::move(outcome);
     }
     if (worst) return *worst;
@@ -243,8 +268,9 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
     const std::vector<Rows> groups = reader.groups();
     std::vector<std::string> measured;
     std::optional<Outcome> worst;
+    SceneVerdicts scenes;
     for (const ClaimPart& part : partsOf(claim)) {
-        Outcome outcome = judgePart(part, reader, groups, times);
+        Outcome outcome = judgePart(part, reader, groups, times, scenes);
         if (!outcome.judgement.measured.empty()) measured.push_back(outcome.judgement.measured);
         if (worst && !isWorse(outcome, *worst)) continue;
         result.margin = outcome.judgement.marginText;
@@ -255,6 +281,8 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
     result.measured = joined(measured, "; ");
     result.verdict = worst->judgement.verdict;
     result.reason = worst->reason;
+    result.holdsOn = holdsOn(scenes);
+    if (!result.holdsOn.empty()) result.reason += "; holds on " + result.holdsOn;
     const std::string part = result.rows.empty() ? "" : fmt::format("on {}", result.rows);
     for (const std::string& note :
          {clock, balanceNote(result, context), calibratedNote(claim, reader), part}) {
@@ -372,13 +400,19 @@ void markRepeats(std::vector<ClaimResult>& results) {
 
 std::string claimSummaryLine(const std::vector<ClaimResult>& results) {
     if (results.empty()) return "no claims";
-    std::map<Verdict, int> counts;
-    for (const ClaimResult& result : results) ++counts[result.verdict];
+    std::map<Verdict, int> counts, inPart;
+    for (const ClaimResult& result : results) {
+        ++counts[result.verdict];
+        inPart[result.verdict] += result.holdsOn.empty() ? 0 : 1;
+    }
     std::vector<std::string> parts;
     for (const auto& [verdict, count] : counts) {
         std::string word(verdictName(verdict));
         if (verdict == Verdict::Holds && count != 1) word = "hold";
         if (verdict == Verdict::Fails && count != 1) word = "fail";
+        if (inPart[verdict] > 0)
+            word += fmt::format(" ({} hold{} on some scenes)", inPart[verdict],
+                                inPart[verdict] == 1 ? "s" : "");
         parts.push_back(std::to_string(count) + " " + word);
     }
     return joined(parts);

@@ -81,6 +81,8 @@ struct ClaimResult {
     /// Of which part of the rows of the profile `paper` it is: "1 of 4 values of scene"; empty of
     /// all of them, and where these are not known.
     std::string rows;
+    /// Of a claim about several scenes that does not hold on all: "3 of 4 scenes, not on tree".
+    std::string holdsOn = {};
     std::string sameAs;     // "TABLE CLAIM": ClaimSpec
     bool isRepeat = false;  // that one has the same verdict: markRepeats()
 
@@ -160,7 +162,8 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
 /// Marks the claims whose `sameAs` is among them and has the same verdict.
 void markRepeats(std::vector<ClaimResult>& results);
 
-/// "12 hold, 1 fails, 2 unmeasured": only those that occur; "no claims" for none.
+/// "12 hold, 3 fail (2 hold on some scenes), 2 unmeasured": only those that occur; "no
+/// claims" for none.
 std::string claimSummaryLine(const std::vector<ClaimResult>& results);
 
 /// "of the documents' own claims 40 hold, 12 fail; on part of their rows, or said twice 3 hold;

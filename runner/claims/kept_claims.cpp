@@ -58,6 +58,7 @@ std::vector<ClaimResult> readClaims(const std::filesystem::path& file) {
         claim.because = row["because"];
         claim.restsOn = row["rests_on"];
         claim.rows = row["rows"];
+        claim.holdsOn = row["holds_on"];
         claim.sameAs = row["same_as"];
         claim.known.reset();
         if (!row["known"].empty()) claim.known = verdictAt(reader.location(), row["known"]);

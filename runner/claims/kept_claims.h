@@ -13,10 +13,10 @@
 namespace gfxrepro::claims {
 
 /// The columns of claims.csv.
-inline constexpr std::array<std::string_view, 18> kClaimsColumns = {
-    "claim",      "says",   "table",   "device",   "profile",  "origin",
-    "bound_from", "kind",   "verdict", "known",    "measured", "required",
-    "margin",     "reason", "because", "rests_on", "rows",     "same_as"};
+inline constexpr std::array<std::string_view, 19> kClaimsColumns = {
+    "claim",   "says",     "table", "device",   "profile",  "origin", "bound_from",
+    "kind",    "verdict",  "known", "measured", "required", "margin", "reason",
+    "because", "rests_on", "rows",  "holds_on", "same_as"};
 
 /// The verdict of that name. Throws Error at `where` for a name that is none.
 Verdict verdictAt(const SourceLocation& where, const std::string& name);

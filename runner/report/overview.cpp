@@ -390,6 +390,15 @@ std::string paragraphHtml(const DocumentPages& document, const Counts& own) {
         "<strong>{} fail{}</strong>. ",
         sumOf(own), sumOf(own) == 1 ? "" : "s", holding + failing, holding, holding == 1 ? "s" : "",
         failing, failing == 1 ? "s" : "");
+    const std::size_t inPart = countOf(
+        countClaims(
+            document.pages(), 0,
+            [](const ClaimResult& claim) { return claim.isCounted() && !claim.holdsOn.empty(); }),
+        Verdict::Fails);
+    if (inPart > 0) {
+        html += fmt::format("Of those that fail, {} hold{} on some of the scenes. ", inPart,
+                            inPart == 1 ? "s" : "");
+    }
     const std::size_t resting =
         countOf(countClaims(document.pages(), 0,
                             [](const ClaimResult& claim) {

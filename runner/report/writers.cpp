@@ -238,7 +238,8 @@ std::string claimsCsv(const std::vector<claims::ClaimResult>& results,
         row.text(claims::verdictName(result.verdict))
             .text(result.known ? claims::verdictName(*result.known) : "");
         row.text(result.measured).text(result.required).text(result.margin).text(result.reason);
-        row.text(result.because).text(result.restsOn).text(result.rows).text(result.sameAs).end();
+        row.text(result.because).text(result.restsOn).text(result.rows);
+        row.text(result.holdsOn).text(result.sameAs).end();
     }
     return text;
 }

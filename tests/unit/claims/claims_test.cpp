@@ -1030,7 +1030,7 @@ TEST(Claims, AcrossComparesRows) {
     ClaimResult result = judge("order: old < new");
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.measured, "smallest gap -50 %");
-    EXPECT_EQ(result.reason, "worst at t, b; one sample");
+    EXPECT_EQ(result.reason, "worst at t, b; one sample; holds on 1 of 2 scenes, not on t");
     EXPECT_EQ(judge("order: old < new, at: {column: a}").verdict, Verdict::Holds);
     EXPECT_EQ(judge("order: old < new, at: {scene: s}").verdict, Verdict::Holds);
     EXPECT_EQ(judge("order: old < new, at: {scene: s}").required, "old < new");
@@ -1177,6 +1177,34 @@ TEST(Claims, AClaimOnPartOfItsRowsSaysSoAndDoesNotCountAsAHold) {
     for (const ClaimResult& claim : judged("s, t", "1, 2, 8, 16")) {
         EXPECT_EQ(claim.rows, "") << "other values, and not fewer";
     }
+}
+
+TEST(Claims, OfSeveralScenesAVerdictNamesThoseOnWhichItDoesNotHold) {
+    const auto judged = [](const std::string& claim, double a, double b, double c) {
+        tables::RecordMaker maker;
+        for (const auto& [scene, value] :
+             {std::pair("outdoor/nest", a), {"city", b}, {"tree", c}}) {
+            for (const int n : {1, 2}) {
+                maker.beginCase(scene, fmt::format("{{\"n\":{}}}", n)).add("a", {value * n});
+            }
+        }
+        return judgeOne(
+            "sweep: {scene: [outdoor/nest, city, tree], n: [1, 2]}\nlayout: {rows: [scene, "
+            "n], columns: {a: {metric: a}}}\nclaims:\n  X: {says: s, " +
+                claim + "}\n",
+            maker.records());
+    };
+    const std::string bound = "bound: a, at_most: 4";
+    EXPECT_EQ(judged(bound, 1, 2, 2).holdsOn, "") << "all";
+    EXPECT_EQ(judged(bound, 3, 3, 3).holdsOn, "") << "none, each at one n";
+    const ClaimResult some = judged(bound, 3, 1, 1);
+    EXPECT_EQ(some.verdict, Verdict::Fails);
+    EXPECT_EQ(some.holdsOn, "2 of 3 scenes, not on nest");
+    EXPECT_EQ(some.reason, "worst at nest, n 2; one sample; holds on 2 of 3 scenes, not on nest");
+    EXPECT_EQ(claimSummaryLine({some, judged(bound, 3, 3, 3)}), "2 fail (1 holds on some scenes)");
+    EXPECT_EQ(judged("trend: a, over: n, at_least: 0.9, at_most: 1.1", 1, 1, -1).holdsOn,
+              "2 of 3 scenes, not on tree");
+    EXPECT_EQ(judged("across: scene, order: city < tree", 1, 2, 1).holdsOn, "") << "between scenes";
 }
 
 TEST(Claims, OneTruthCountsOnce) {

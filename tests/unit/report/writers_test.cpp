@@ -212,20 +212,20 @@ TEST(Writers, ClaimFiles) {
     EXPECT_EQ(
         run.read("claims.csv"),
         "claim,says,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
-        "margin,reason,because,rests_on,rows,same_as\n"
+        "margin,reason,because,rests_on,rows,holds_on,same_as\n"
         "A,\"a < b & \"\"c\"\"\",zju2005/9.9,llvmpipe,quick,ours,ours,algorithmic,holds,holds,\"8 "
         "[8, "
         "8]\",draw_ms ≤ 10,2,by the clock: "
         "no CPU time was "
         "recorded of these,,"
-        "none of the 5 tried,1 of 4 values of scene,\n"
+        "none of the 5 tried,1 of 4 values of scene,,\n"
         "B,no,zju2005/9.9,llvmpipe,quick,document,text,algorithmic,fails,fails,\"8 [8, "
         "8]\",draw_ms "
         "≤ 1,-7,by the clock: no CPU time was recorded of these,\"slow, measured\",not tried: "
-        "holds then,,zju2005/1 A\n"
+        "holds then,,,zju2005/1 A\n"
         "C,maybe,zju2005/9.9,llvmpipe,quick,ours,ours,algorithmic,unmeasured,holds,,draw_ms ≤ "
         "1,,draw_ms at "
-        "scene=models/lost: crash (signal <11>),,,,\n");
+        "scene=models/lost: crash (signal <11>),,,,,\n");
     const auto kept = claims::readClaims(run.folder.path() / "claims.csv");
     ASSERT_EQ(kept.size(), results.size());
     EXPECT_EQ(kept[1].origin, config::ClaimSpec::Origin::Document);
