@@ -1,6 +1,7 @@
 #include "engine/image/exr_io.h"
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticities.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
@@ -8,6 +9,8 @@
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfRgbaFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVersion.h>
@@ -147,9 +150,17 @@ void checkAttributeSizes(std::span<const std::byte> bytes, bool isMultiPart,
     }
 }
 
+std::string channelNames(const Imf::Header& header) {
+    std::string names;
+    for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
+        names += (names.empty() ? "" : ", ") + std::string(i.name());
+    }
+    return names;
+}
+
 /// Checks what the headers declare before the library allocates for it. Throws Error, which begins
-/// with `name`, for what is no OpenEXR image, is deep, or declares more than checkDeclaredSize()
-/// allows.
+/// with `name`, for what is no OpenEXR image, has several parts, is deep, or declares more than
+/// checkDeclaredSize() allows.
 void checkExrHeader(std::span<const std::byte> bytes, const std::string& name) {
     unsigned char start[8];  // magic number and version, little-endian
     if (bytes.size() < sizeof(start)) throw Error(name + ": not an OpenEXR file");
@@ -168,8 +179,23 @@ void checkExrHeader(std::span<const std::byte> bytes, const std::string& name) {
     checkAttributeSizes(bytes, Imf::isMultiPart(version), name);
     MemoryStream stream(bytes, name);
     stream.seekg(sizeof(start));
-    Imf::Header header;
-    header.readFrom(stream, version);
+    std::vector<Imf::Header> parts;
+    bool isLast = false;
+    while (!isLast) {
+        parts.emplace_back().readFrom(stream, version);
+        isLast = !Imf::isMultiPart(version) || stream.tellg() >= bytes.size() ||
+                 bytes[stream.tellg()] == std::byte{0};
+    }
+    if (parts.size() > 1) {
+        std::string names;
+        for (const Imf::Header& part : parts) {
+            names += (names.empty() ? "'" : ", '") + (part.hasName() ? part.name() : "") +
+                     "' with " + channelNames(part);
+        }
+        throw Error(name + ": has " + std::to_string(parts.size()) + " parts: " + names +
+                    "; one is allowed, which 'exrmultipart -separate' makes of each");
+    }
+    const Imf::Header& header = parts.front();
     if (Imf::isNonImage(version) || (header.hasType() && Imf::isDeepData(header.type()))) {
         throw Error(name + ": deep images are not supported");
     }
@@ -211,16 +237,113 @@ ExrPixelType pixelTypeOf(Imf::PixelType type) {
                                 : ExrPixelType::Uint;
 }
 
+bool hasChroma(const Imf::Header& header) {
+    const Imf::ChannelList& channels = header.channels();
+    return channels.findChannel("Y") != nullptr &&
+           (channels.findChannel("RY") != nullptr || channels.findChannel("BY") != nullptr);
+}
+
+/// Puts R, G and B in the place of Y, RY and BY, as the library makes them: by the luminance of the
+/// file's primaries, chroma filtered to every pixel.
+void addColours(std::span<const std::byte> bytes, const std::string& name, ExrImage& image) {
+    MemoryStream stream(bytes, name);
+    Imf::RgbaInputFile file(stream, kCallingThreadOnly);
+    ImageF colours(image.width(), image.height(), 3);
+    std::vector<Imf::Rgba> pixels(colours.values().size() / 3);
+    const Imath::Box2i window = file.dataWindow();
+    file.setFrameBuffer(Imf::ComputeBasePointer(pixels.data(), window), 1,
+                        static_cast<std::size_t>(image.width()));
+    file.readPixels(window.min.y, window.max.y);
+    std::erase_if(image.channels, [](const ExrImage::Channel& channel) {
+        return channel.name == "Y" || channel.name == "RY" || channel.name == "BY";
+    });
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        colours.values()[3 * i] = pixels[i].r;
+        colours.values()[3 * i + 1] = pixels[i].g;
+        colours.values()[3 * i + 2] = pixels[i].b;
+    }
+    image.add(colours, {"R", "G", "B"});
+    image.notes.emplace_back("its luminance and chroma (Y, RY, BY) are read as R, G, B");
+}
+
+/// Makes R, G and B those of Rec. 709's primaries, what a file without chromaticities has. White
+/// stays what it is: a colour keeps its X, Y, Z.
+void takePrimaries(const Imf::Chromaticities& given, ExrImage& image) {
+    const Imf::Chromaticities rec709;
+    if (given == rec709) return;
+    ImageF* planes[3] = {};
+    for (ExrImage::Channel& channel : image.channels) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (channel.name == std::string(1, "RGB"[c])) planes[c] = &channel.values;
+        }
+    }
+    if (planes[0] == nullptr || planes[1] == nullptr || planes[2] == nullptr) return;
+    const Imath::M44f matrix = Imf::RGBtoXYZ(given, 1.0F) * Imf::XYZtoRGB(rec709, 1.0F);
+    for (int i = 0; i < 9; ++i) {
+        if (!std::isfinite(matrix[i / 3][i % 3])) {
+            throw std::runtime_error("its chromaticities are those of no colours");
+        }
+    }
+    for (std::size_t i = 0; i < planes[0]->values().size(); ++i) {
+        const Imath::V3f colour =
+            Imath::V3f(planes[0]->values()[i], planes[1]->values()[i], planes[2]->values()[i]) *
+            matrix;
+        for (int c = 0; c < 3; ++c) planes[c]->values()[i] = colour[c];
+    }
+    image.notes.emplace_back("R, G, B are converted from its chromaticities to those of Rec. 709");
+}
+
+/// Names what might change how the pixels are seen and is not used here.
+void noteOthers(const Imf::Header& header, ExrImage& image) {
+    static constexpr std::string_view kChangeNothing[] = {"capDate",
+                                                          "channels",
+                                                          "chromaticities",
+                                                          "chunkCount",
+                                                          "compression",
+                                                          "dataWindow",
+                                                          "displayWindow",
+                                                          "dwaCompressionLevel",
+                                                          "lineOrder",
+                                                          "maxSamplesPerPixel",
+                                                          "name",
+                                                          "owner",
+                                                          "preview",
+                                                          "screenWindowCenter",
+                                                          "screenWindowWidth",
+                                                          "tiles",
+                                                          "type",
+                                                          "utcOffset",
+                                                          "version"};
+    std::string others;
+    for (auto i = header.begin(); i != header.end(); ++i) {
+        const std::string name = i.name();
+        const std::string type = i.attribute().typeName();
+        if (std::ranges::find(kChangeNothing, name) != std::end(kChangeNothing)) continue;
+        if (type == "string" || type == "m44f") continue;  // kept
+        if (name == "pixelAspectRatio" && header.pixelAspectRatio() == 1.0F) continue;
+        others += (others.empty() ? "" : ", ") + name;
+    }
+    if (!others.empty()) image.notes.push_back("not used of its attributes: " + others);
+}
+
+Rectangle rectangleOf(const Imath::Box2i& box) {
+    return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
+}
+
 ExrImage decoded(std::span<const std::byte> bytes, const std::string& name) {
     checkExrHeader(bytes, name);
     MemoryStream stream(bytes, name);
     Imf::InputFile file(stream, kCallingThreadOnly);
     const Imf::Header& header = file.header();
     const Imath::Box2i window = header.dataWindow();
-    const int width = window.max.x - window.min.x + 1;
-    const int height = window.max.y - window.min.y + 1;
+    const auto [left, top, width, height] = rectangleOf(window);
 
     ExrImage image;
+    image.left = left;
+    image.top = top;
+    if (header.displayWindow() != window) {
+        image.displayWindow = rectangleOf(header.displayWindow());
+    }
     Imf::FrameBuffer frameBuffer;
     for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
         const Imf::Channel& channel = i.channel();
@@ -242,6 +365,9 @@ ExrImage decoded(std::span<const std::byte> bytes, const std::string& name) {
         channel.values =
             repeated(channel.values, width, height, stored.xSampling, stored.ySampling);
     }
+    if (hasChroma(header)) addColours(bytes, name, image);
+    if (Imf::hasChromaticities(header)) takePrimaries(Imf::chromaticities(header), image);
+    noteOthers(header, image);
     for (auto i = header.begin(); i != header.end(); ++i) {
         const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute());
         if (text != nullptr) image.attributes[i.name()] = text->value();
@@ -314,7 +440,10 @@ struct StoredChannel {
 
 std::string encoded(const ExrImage& image) {
     checkWritable(image);
-    Imf::Header header(image.width(), image.height());
+    const auto boxOf = [](const Rectangle& r) {
+        return Imath::Box2i({r.left, r.top}, {r.left + r.width - 1, r.top + r.height - 1});
+    };
+    Imf::Header header(boxOf(image.shownWindow()), boxOf(image.dataWindow()));
     header.compression() = Imf::ZIP_COMPRESSION;
     header.zipCompressionLevel() = kZipLevel;
     for (const auto& [key, value] : image.attributes) {
@@ -331,8 +460,9 @@ std::string encoded(const ExrImage& image) {
     for (const ExrImage::Channel& channel : image.channels) {
         StoredChannel& to = stored.emplace_back(channel);
         header.channels().insert(channel.name, Imf::Channel(to.type));
-        frameBuffer.insert(channel.name, Imf::Slice(to.type, to.bytes.data(), to.valueBytes,
-                                                    width * to.valueBytes));
+        frameBuffer.insert(channel.name,
+                           Imf::Slice::Make(to.type, to.bytes.data(), header.dataWindow(),
+                                            to.valueBytes, width * to.valueBytes));
     }
     Imf::StdOSStream stream;
     {

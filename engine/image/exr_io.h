@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,15 @@ struct ExrImage {
     /// matrix of GLM has the same 16 numbers in the same order.
     std::map<std::string, std::array<float, 16>> matrices;
 
+    /// Column and row of the first pixel: where the data window begins.
+    int left = 0, top = 0;
+    /// What a display shows, in the same columns and rows; none: these pixels.
+    std::optional<Rectangle> displayWindow;
+    /// What reading did to the values, and which attributes it passed over: a line each.
+    std::vector<std::string> notes;
+
+    Rectangle dataWindow() const { return {left, top, width(), height()}; }
+    Rectangle shownWindow() const { return displayWindow.value_or(dataWindow()); }
     int width() const { return channels.empty() ? 0 : channels.front().values.width(); }
     int height() const { return channels.empty() ? 0 : channels.front().values.height(); }
     /// Null when there is no such channel.
@@ -43,12 +53,15 @@ struct ExrImage {
     ImageF colour() const;
 };
 
-/// Scanline or tiled, any compression that OpenEXR reads, level 0 of the first part. Attributes of
-/// other types than text and m44f are passed over. Throws Error with the path and the library's
-/// reason; memory is bounded as in png_io.h.
+/// Scanline or tiled, any compression that OpenEXR reads, level 0. Luminance and chroma (Y, RY, BY)
+/// become R, G, B, and colours of other primaries those of Rec. 709. Attributes of other types than
+/// text and m44f are passed over; `notes` names those that might change what is seen. Throws Error
+/// with the path and the library's reason, and for a file of several parts; memory is bounded as in
+/// png_io.h.
 ExrImage readExr(const std::filesystem::path& path);
-/// ZIP-compressed scanlines, written atomically. Throws Error for what a file cannot hold: channels
-/// of different sizes, two of one name, numbers in a Uint channel that are not whole or beyond 2²⁴.
+/// ZIP-compressed scanlines, without the notes, written atomically. Throws Error for what a file
+/// cannot hold: channels of different sizes, two of one name, numbers in a Uint channel that are
+/// not whole or beyond 2²⁴.
 void writeExr(const std::filesystem::path& path, const ExrImage& image);
 
 }  // namespace gfxrepro::image

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/image/srgb.h"
@@ -31,6 +32,19 @@ void checkDeclaredSize(std::int64_t width, std::int64_t height, std::size_t byte
         throw Error(declared + " pixels of " + std::to_string(bytesPerPixel) +
                     " bytes, too many for a file of " + std::to_string(fileBytes) + " bytes");
     }
+}
+
+Rectangle intersection(const Rectangle& a, const Rectangle& b) {
+    const auto common = [](std::int64_t from, std::int64_t size, std::int64_t otherFrom,
+                           std::int64_t otherSize) {
+        const std::int64_t begin = std::max(from, otherFrom);
+        const std::int64_t end = std::min(from + size, otherFrom + otherSize);
+        return std::pair(static_cast<int>(begin),
+                         static_cast<int>(std::max<std::int64_t>(0, end - begin)));
+    };
+    const auto [left, width] = common(a.left, a.width, b.left, b.width);
+    const auto [top, height] = common(a.top, a.height, b.top, b.height);
+    return {left, top, width, height};
 }
 
 namespace {
@@ -91,7 +105,7 @@ Image8 toSrgb8(const ImageF& linear) {
     for (std::size_t i = 0; i < from.size(); i += channels) {
         for (std::size_t c = 0; c < channels; ++c) {
             const float value = clampedToUnit(from[i + c]);
-            to[i + c] = c == 3 ? quantized(value) : kRanges.encode(value);
+            to[i + c] = isAlpha(c, channels) ? quantized(value) : kRanges.encode(value);
         }
     }
     return result;

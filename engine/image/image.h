@@ -72,12 +72,29 @@ class Image {
     std::vector<T> values_;
 };
 
+/// Pixels from (left, top) on.
+struct Rectangle {
+    int left = 0;
+    int top = 0;
+    int width = 0;
+    int height = 0;
+
+    bool operator==(const Rectangle&) const = default;
+};
+/// What is in both; of no width or height where nothing is.
+Rectangle intersection(const Rectangle& a, const Rectangle& b);
+
 using Image8 = Image<std::uint8_t>;
 using Image16 = Image<std::uint16_t>;
 using ImageF = Image<float>;
 
-/// Linear to sRGB (IEC 61966-2-1), clamped to [0, 1] and rounded to 8 bits. The fourth channel, if
-/// there is one, is alpha and stays linear. Not-a-number becomes 0.
+/// The second of two channels and the fourth of four.
+constexpr bool isAlpha(std::size_t channel, std::size_t channels) {
+    return channels % 2 == 0 && channel == channels - 1;
+}
+
+/// Linear to sRGB (IEC 61966-2-1), clamped to [0, 1] and rounded to 8 bits. Alpha stays linear.
+/// Not-a-number becomes 0.
 Image8 toSrgb8(const ImageF& linear);
 
 }  // namespace gfxrepro::image

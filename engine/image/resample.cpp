@@ -136,21 +136,26 @@ ImageF cropped(const ImageF& image, const Rectangle& part, int scale) {
 
 ExrImage cropped(const ExrImage& image, const Rectangle& part, int scale) {
     ExrImage result = image;
+    result.left = 0;
+    result.top = 0;
+    result.displayWindow.reset();
     for (ExrImage::Channel& channel : result.channels) {
         channel.values = partOf(channel.values, part, scale);
     }
     const auto ndc = result.matrices.find("worldToNDC");
     if (ndc == result.matrices.end()) return result;
-    // x' = (x·width − left·w) / part.width for each of the four rows (x, y, z, w), y likewise.
+    // x' = (x·width − left·w) / part.width for each of the four rows (x, y, z, w), y likewise;
+    // width and left are the display window's.
+    const Rectangle whole = image.shownWindow();
+    const auto left = static_cast<float>(image.left + part.left - whole.left);
+    const auto top = static_cast<float>(image.top + part.top - whole.top);
     for (std::size_t row = 0; row < 4; ++row) {
         float* values = &ndc->second[4 * row];
         const float w = values[3];
-        values[0] =
-            (values[0] * static_cast<float>(image.width()) - static_cast<float>(part.left) * w) /
-            static_cast<float>(part.width);
-        values[1] =
-            (values[1] * static_cast<float>(image.height()) - static_cast<float>(part.top) * w) /
-            static_cast<float>(part.height);
+        values[0] = (values[0] * static_cast<float>(whole.width) - left * w) /
+                    static_cast<float>(part.width);
+        values[1] = (values[1] * static_cast<float>(whole.height) - top * w) /
+                    static_cast<float>(part.height);
     }
     return result;
 }
@@ -169,8 +174,11 @@ Image8 resizedTo(const Image8& image, int width) {
     }
     const auto height = static_cast<int>(heightAt(image, width));
     const std::array<float, 256> linear = srgbDecoding();
+    const auto channels = static_cast<std::size_t>(image.channels());
     const auto lightOf = [&](std::uint8_t value, int channel) {
-        return channel == 3 ? static_cast<float>(value) / 255.0F : linear[value];
+        return isAlpha(static_cast<std::size_t>(channel), channels)
+                   ? static_cast<float>(value) / 255.0F
+                   : linear[value];
     };
     ImageF result(width, height, image.channels());
     std::vector<Shares> columns;

@@ -15,26 +15,19 @@ ImageF averaged(const ImageF& image, int factor);
 /// them, and beyond the border, nothing weighs.
 ImageF gaussianAveraged(const ImageF& image, int factor, double sigma);
 
-/// Pixels from (left, top) on.
-struct Rectangle {
-    int left = 0;
-    int top = 0;
-    int width = 0;
-    int height = 0;
-};
-
 /// The part of an image, each pixel `scale` times as wide and high. Throws Error when the part is
 /// empty or reaches beyond the image, the scale is below 1, or a side gets beyond 32768 pixels.
 Image8 cropped(const Image8& image, const Rectangle& part, int scale = 1);
 Image16 cropped(const Image16& image, const Rectangle& part, int scale = 1);
 ImageF cropped(const ImageF& image, const Rectangle& part, int scale = 1);
-/// All channels and attributes; worldToNDC becomes that of the part.
+/// All channels and attributes. The part is counted from the first stored pixel and becomes a
+/// picture of its own: its display window is itself, and worldToNDC is that of the part.
 ExrImage cropped(const ExrImage& image, const Rectangle& part, int scale = 1);
 
 /// How high an image of that width is; at least 1.
 std::int64_t heightAt(const Image8& image, int width);
 /// As wide as that, and as high as its shape asks for: each pixel the mean of the light that falls
-/// on it. Of sRGB values; a fourth channel is alpha. Throws Error beyond 32768 pixels a side.
+/// on it. Of sRGB values beside alpha. Throws Error beyond 32768 pixels a side.
 Image8 resizedTo(const Image8& image, int width);
 
 }  // namespace gfxrepro::image

@@ -47,10 +47,21 @@ float luminanceOf(std::span<const float> colour) {
 
 }  // namespace
 
+ImageF withStraightAlpha(ImageF image) {
+    const auto channels = static_cast<std::size_t>(image.channels());
+    if (!isAlpha(channels - 1, channels)) return image;
+    for (std::size_t i = 0; i < image.values().size(); i += channels) {
+        const float alpha = image.values()[i + channels - 1];
+        if (!(alpha > 0.0F)) continue;
+        for (float& value : image.values().subspan(i, channels - 1)) value /= alpha;
+    }
+    return image;
+}
+
 ImageF toneMapped(const ImageF& linear, float exposureStops, ToneMap toneMap) {
     const float scale = std::exp2(exposureStops);
     const auto channels = static_cast<std::size_t>(linear.channels());
-    const std::size_t colours = std::min(channels, std::size_t{3});
+    const std::size_t colours = channels - (isAlpha(channels - 1, channels) ? 1 : 0);
     ImageF result = linear;
     for (std::size_t i = 0; i < result.values().size(); i += channels) {
         const std::span<float> colour = result.values().subspan(i, colours);

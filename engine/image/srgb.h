@@ -32,8 +32,12 @@ struct AcesCurve {
     double d0 = 0.14;
 };
 
-/// 2^exposure times the image, mapped to [0, 1], still linear. Negative values count as 0; a fourth
-/// channel is alpha and stays. Reinhard's needs 3 or 4 channels or 1.
+/// Colours divided by their alpha, the second of two channels or the fourth of four, as PNG files
+/// have them; what has no alpha stays.
+ImageF withStraightAlpha(ImageF premultiplied);
+
+/// 2^exposure times the image, mapped to [0, 1], still linear. Negative values count as 0; alpha
+/// stays.
 ImageF toneMapped(const ImageF& linear, float exposureStops, ToneMap toneMap);
 
 }  // namespace gfxrepro::image

@@ -181,56 +181,56 @@ void printChannel(const image::ExrImage::Channel& channel) {
 
 int imageInfo(const std::string& file) {
     if (!image::isExrFile(file)) {
-        const image::ImageF image = image::readStored(file);
+        const image::ImageF image = image::readPicture(file).stored;
         say("png {}x{}, {} {}\n", image.width(), image.height(), image.channels(),
             image.channels() == 1 ? "channel" : "channels");
         return kExitOk;
     }
     const image::ExrImage exr = image::readExr(file);
-    say("exr {}x{}\n", exr.width(), exr.height());
+    const auto [left, top, width, height] = exr.dataWindow();
+    const image::Rectangle display = exr.shownWindow();
+    say("exr {}x{}\ndata window {}x{} from ({}, {}), display window {}x{} from ({}, {})\n", width,
+        height, width, height, left, top, display.width, display.height, display.left, display.top);
     for (const image::ExrImage::Channel& channel : exr.channels) printChannel(channel);
     for (const auto& [name, text] : exr.attributes) say("{}: {}\n", name, text);
     for (const auto& [name, matrix] : exr.matrices) {
         say("{}: {}\n", name, fmt::format("{:.6g}", fmt::join(matrix, " ")));
     }
+    for (const std::string& note : exr.notes) say("{}\n", note);
     return kExitOk;
 }
 
 namespace {
 
 struct Pair {
-    bool isLinear = false;   // EXR; else sRGB as stored in PNG files
-    ImageF reference, test;  // as stored
-    ImageF linearReference, linearTest;
+    image::Picture reference, test;
+    bool isLinear() const { return reference.isLinear; }
 };
 
 Pair readPair(const ImageDiffOptions& options) {
-    Pair pair;
-    pair.isLinear = image::isExrFile(options.reference);
-    if (image::isExrFile(options.test) != pair.isLinear) {
+    if (!options.out.empty()) image::isExrFile(options.out);
+    Pair pair{image::readPicture(options.reference), image::readPicture(options.test)};
+    if (pair.test.isLinear != pair.isLinear()) {
         throw UsageError(fmt::format(
             "image diff: {} and {} are of different kinds; an EXR is linear, a PNG is not",
             options.reference, options.test));
     }
-    if (!options.out.empty()) image::isExrFile(options.out);
-    pair.reference = image::readStored(options.reference);
-    pair.test = image::readStored(options.test);
-    metrics::requireComparable(pair.reference, pair.test);
-    metrics::requireFlipSize(pair.reference);
-    pair.linearReference = pair.isLinear ? pair.reference : image::readLinear(options.reference);
-    pair.linearTest = pair.isLinear ? pair.test : image::readLinear(options.test);
+    image::keepCommon(pair.reference, pair.test);
+    metrics::requireComparable(pair.reference.stored, pair.test.stored);
+    metrics::requireFlipSize(pair.reference.stored);
+    if (!pair.reference.isWhole()) tell("compared are {}\n", image::placeOf(pair.reference));
     return pair;
 }
 
 bool usesHdrFlip(const ImageDiffOptions& options, const Pair& pair) {
     if (options.flip != "auto") return options.flip == "hdr";
-    return pair.isLinear &&
-           (metrics::exceedsDisplay(pair.reference) || metrics::exceedsDisplay(pair.test));
+    return pair.isLinear() && (metrics::exceedsDisplay(pair.reference.linear) ||
+                               metrics::exceedsDisplay(pair.test.linear));
 }
 
 ImageF flipMapOf(const ImageDiffOptions& options, const Pair& pair) {
-    const ImageF reference = metrics::coloursOf(pair.linearReference);
-    const ImageF test = metrics::coloursOf(pair.linearTest);
+    const ImageF reference = metrics::coloursOf(pair.reference.linear);
+    const ImageF test = metrics::coloursOf(pair.test.linear);
     return usesHdrFlip(options, pair) ? metrics::hdrFlipMap(reference, test)
                                       : metrics::flipMap(reference, test);
 }
@@ -241,8 +241,8 @@ constexpr int kLeastSsimPx = 11;
 std::vector<std::pair<std::string, double>> differencesOf(const ImageDiffOptions& options,
                                                           const Pair& pair,
                                                           std::optional<ImageF>& flipMap) {
-    const ImageF& a = pair.reference;
-    const ImageF& b = pair.test;
+    const ImageF& a = pair.reference.stored;
+    const ImageF& b = pair.test.stored;
     const auto isWanted = [&](const char* name) {
         return options.metrics.empty() || std::find(options.metrics.begin(), options.metrics.end(),
                                                     name) != options.metrics.end();
@@ -268,11 +268,11 @@ ImageF numbersOf(const ImageDiffOptions& options, const Pair& pair, const ImageF
     if (flipMap != nullptr) return *flipMap;
     const auto gain = static_cast<float>(options.gain);
     if (options.map == "abs") {
-        return metrics::absoluteDifference(pair.reference, pair.test, gain);
+        return metrics::absoluteDifference(pair.reference.stored, pair.test.stored, gain);
     }
-    ImageF difference = pair.reference;
+    ImageF difference = pair.reference.stored;
     for (std::size_t i = 0; i < difference.values().size(); ++i) {
-        difference.values()[i] = gain * (difference.values()[i] - pair.test.values()[i]);
+        difference.values()[i] = gain * (difference.values()[i] - pair.test.stored.values()[i]);
     }
     return difference;
 }
@@ -283,8 +283,8 @@ image::Image8 diffPicture(const ImageDiffOptions& options, const Pair& pair,
     if (flipMap != nullptr) return metrics::flipPicture(*flipMap);
     const auto draw =
         options.map == "abs" ? metrics::absoluteErrorPicture : metrics::signedErrorPicture;
-    return draw(pair.linearReference, pair.linearTest, static_cast<float>(options.gain),
-                pair.isLinear ? metrics::ErrorOf::Linear : metrics::ErrorOf::Displayed);
+    return draw(pair.reference.linear, pair.test.linear, static_cast<float>(options.gain),
+                pair.isLinear() ? metrics::ErrorOf::Linear : metrics::ErrorOf::Displayed);
 }
 
 void writeMap(const ImageDiffOptions& options, const Pair& pair, std::optional<ImageF> flipMap) {
@@ -343,9 +343,8 @@ image::ColourMap colourMapOf(const std::string& name) {
 
 /// The channels that are named, in that order, with all attributes.
 ExrImage picked(const ExrImage& image, const std::string& names, const std::string& file) {
-    ExrImage result;
-    result.attributes = image.attributes;
-    result.matrices = image.matrices;
+    ExrImage result = image;
+    result.channels.clear();
     std::vector<std::string> known;
     for (const ExrImage::Channel& channel : image.channels) known.push_back(channel.name);
     for (const std::string& name : split(names, ',')) {
@@ -431,14 +430,17 @@ Image8 directionPicture(const ImageF& directions) {
 }
 
 Image8 shown(const ImageF& linear, const ImageConvertOptions& options) {
-    return image::toSrgb8(image::toneMapped(linear, static_cast<float>(options.exposureStops),
+    return image::toSrgb8(image::toneMapped(image::withStraightAlpha(linear),
+                                            static_cast<float>(options.exposureStops),
                                             toneMapOf(options.toneMap)));
 }
 
 Image8 convertedPicture(const ImageConvertOptions& options) {
     if (options.channels.empty()) {
         if (!options.range.empty()) throw UsageError("--range is of one channel: give --channels");
-        return shown(image::readLinear(options.in), options);
+        const image::Picture picture = image::readPicture(options.in);
+        if (!picture.isWhole()) tell("{}: {}\n", options.in, image::placeOf(picture));
+        return shown(picture.linear, options);
     }
     if (!image::isExrFile(options.in)) {
         throw UsageError(options.in + ": --channels is for EXR files");
@@ -467,7 +469,7 @@ ExrImage exrFrom(const ImageConvertOptions& options) {
         throw UsageError("--tonemap and --range are for PNG files; an EXR keeps its numbers");
     }
     ExrImage exr = image::isExrFile(options.in) ? image::readExr(options.in)
-                                                : exrOf(image::readLinear(options.in));
+                                                : exrOf(image::readPicture(options.in).linear);
     if (!options.channels.empty()) exr = picked(exr, options.channels, options.in);
     const auto scale = static_cast<float>(std::exp2(options.exposureStops));
     for (ExrImage::Channel& channel : exr.channels) {
@@ -519,7 +521,8 @@ int imageSheet(const ImageSheetOptions& options) {
     requireNoInput(options.out, options.files);
     std::vector<image::Image8> images;
     for (const std::string& file : options.files) {
-        images.push_back(image::isExrFile(file) ? image::toSrgb8(image::readLinear(file))
+        images.push_back(image::isExrFile(file) ? image::toSrgb8(image::withStraightAlpha(
+                                                      image::readPicture(file).linear))
                                                 : image::readPng8(file));
     }
     image::SheetLayout layout;

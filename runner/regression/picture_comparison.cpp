@@ -44,9 +44,10 @@ Picture readPicture(const PictureFiles& files, bool isExr) {
             picture.channels.emplace(channel.name, std::move(channel.values));
         }
     } else {
-        ImageF stored = image::readStored(files.png);
-        picture.colours = metrics::coloursOf(image::readLinear(files.png));
-        picture.channels.emplace(fmt::format("{} channels", stored.channels()), std::move(stored));
+        image::Picture png = image::readPicture(files.png);
+        picture.colours = metrics::coloursOf(png.linear);
+        picture.channels.emplace(fmt::format("{} channels", png.stored.channels()),
+                                 std::move(png.stored));
     }
     picture.width = picture.colours.width();
     picture.height = picture.colours.height();

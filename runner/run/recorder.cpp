@@ -15,6 +15,7 @@
 #include "engine/core/output_files.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
+#include "engine/image/srgb.h"
 #include "runner/run/manifest.h"
 
 namespace gfxrepro::run {
@@ -195,7 +196,7 @@ void RunRecorder::image(std::string_view name, const image::ImageF& image,
     exr.add(image, kChannels[channels]);
     describeImage(exr, item_, frame_, command_, options);
     image::writeExr(runDir_ / (stem + ".exr"), exr);
-    image::writePng(runDir_ / (stem + ".png"), image::toSrgb8(image));
+    image::writePng(runDir_ / (stem + ".png"), image::toSrgb8(image::withStraightAlpha(image)));
     result_.images.push_back({item_.id, item_.experiment, frame_, std::string(name), stem + ".png",
                               stem + ".exr", item_.title(), options.truthOf,
                               sha256OfFile(runDir_ / (stem + ".png")),

@@ -261,15 +261,24 @@ class External : public technique::Technique {
 
     void recordPicture(const config::ProgramPicture& picture, technique::Recorder& recorder) {
         const std::string what = nameOf(picture);
-        const Picture own = ownPicture(picture);
+        Picture own = ownPicture(picture);
+        if (!picture.hasTruth()) return recorder.image(picture.name, own.linear);
+        Picture truth = truthOf(picture, what + ": truth", askedSize());
+        keepCommonOf(own, truth, what + " and its truth");
         recorder.image(picture.name, own.linear);
-        if (!picture.hasTruth()) return;
-        const Picture truth = truthOf(picture, what + ": truth", askedSize());
         technique::ImageOptions options;
         options.truthOf = picture.name;
         recorder.image(picture.name + "_truth", truth.linear, options);
         recordErrors(own, truth, picture.name, recorder);
         if (picture.truthFrames > 1) addSample(picture, own, what, recorder);
+    }
+
+    static void keepCommonOf(Picture& own, Picture& truth, const std::string& what) {
+        try {
+            image::keepCommon(own, truth);
+        } catch (const Error& error) {
+            throw Error(fmt::format("{}: {}", what, error.what()));
+        }
     }
 
     /// Each frame is another seed; behind the last one they are held against the truth's.
@@ -278,10 +287,15 @@ class External : public technique::Technique {
         Samples& samples = samples_[picture.name];
         samples.push_back(metrics::tileMeans(own.linear));
         if (frame_ + 1 < frameCount_ || samples.size() < 2) return;
-        const glm::ivec2 size{own.linear.width(), own.linear.height()};
+        const glm::ivec2 size{own.width, own.height};
         Samples truths;
         for (int i = 0; i < picture.truthFrames; ++i) {
-            const Picture truth = truthOf(picture, what + ": truth", size, i);
+            Picture truth = truthOf(picture, what + ": truth", size, i), same = own;
+            keepCommonOf(same, truth, what + " and its truth");
+            if (same.part != own.part) {
+                throw Error(fmt::format("{} and its truth: {} and {}; all seeds show one place",
+                                        what, image::placeOf(own), image::placeOf(same)));
+            }
             truths.push_back(metrics::tileMeans(truth.linear));
         }
         recordSameMean(samples, truths, picture.name, recorder);

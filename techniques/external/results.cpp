@@ -10,7 +10,6 @@
 #include "engine/core/files.h"
 #include "engine/core/json_shape.h"
 #include "engine/core/text.h"
-#include "engine/image/image_file.h"
 #include "engine/metrics/flip.h"
 #include "engine/metrics/image_error.h"
 #include "engine/metrics/mean_test.h"
@@ -171,14 +170,14 @@ Picture readPicture(const fs::path& file, const std::string& what, glm::ivec2 si
     }
     Picture picture;
     try {
-        picture.isPng = !image::isExrFile(file);
-        picture.stored = withoutLoneAlpha(image::readStored(file));
-        picture.linear = picture.isPng ? withoutLoneAlpha(image::readLinear(file)) : picture.stored;
+        picture = image::readPicture(file);
+        picture.stored = withoutLoneAlpha(picture.stored);
+        picture.linear = withoutLoneAlpha(picture.linear);
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", what, error.what()));
     }
     requireFinite(picture.stored, what);
-    const glm::ivec2 found{picture.stored.width(), picture.stored.height()};
+    const glm::ivec2 found{picture.width, picture.height};
     if (sizePx.x > 0 && found != sizePx) {
         throw Error(fmt::format("{}: has {} × {} pixels; {} × {} were asked for", what, found.x,
                                 found.y, sizePx.x, sizePx.y));
@@ -211,7 +210,7 @@ config::Outputs errorOutputs() {
 
 void recordErrors(const Picture& picture, const Picture& truth, const std::string& name,
                   technique::Recorder& recorder) {
-    if (picture.isPng != truth.isPng) {
+    if (picture.isLinear != truth.isLinear) {
         throw Error(
             fmt::format("image '{}': one of it and its truth is an EXR file, which is "
                         "linear, the other a PNG file, which is not",

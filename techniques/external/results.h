@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/image/image.h"
+#include "engine/image/image_file.h"
 #include "runner/config/external_program.h"
 #include "runner/technique/technique.h"
 
@@ -31,14 +31,11 @@ std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame,
 /// where its group is no number.
 std::optional<double> numberIn(std::string_view output, const config::ProgramPattern& pattern);
 
-struct Picture {
-    image::ImageF linear;  // 1, 3 or 4 channels
-    image::ImageF stored;  // of a PNG file sRGB, as it is compared; of an EXR file the same
-    bool isPng = false;
-};
+using image::Picture;
 
-/// A link is followed. Throws Error, beginning with `what`, where the file is not there, cannot be
-/// read to its end, has a value that is not finite or, if that is not 0, another size.
+/// Of 1, 3 or 4 channels. A link is followed. Throws Error, beginning with `what`, where the file
+/// is not there, cannot be read to its end, has a value that is not finite or, if that is not 0, is
+/// of another whole.
 Picture readPicture(const std::filesystem::path& file, const std::string& what,
                     glm::ivec2 sizePx = {0, 0});
 

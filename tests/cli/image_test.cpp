@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
@@ -319,9 +320,38 @@ TEST_F(ImageCommands, NothingIsWrittenOverWhatIsRead) {
               "gfxrepro: --export DIR/m.obj is the input DIR/m.obj; allowed: another file\n");
 }
 
+/// A part of the picture, from (left, top) on, as a renderer leaves it that draws a region.
+TEST_F(ImageCommands, PartsOfAPictureKeepTheirPlace) {
+    const auto partOf = [&](const char* name, int left, int top) {
+        ExrImage part;
+        part.add(ImageF(8, 6, 3, 0.25F), {"R", "G", "B"});
+        part.left = left;
+        part.top = top;
+        part.displayWindow = {0, 0, 16, 12};
+        return write(name, part);
+    };
+    const std::string whole = write("a.exr", gbuffer(0.5F)), first = partOf("b.exr", 0, 0),
+                      last = partOf("c.exr", 8, 6);
+    EXPECT_EQ(refusal({"image", "diff", first, last}),
+              "gfxrepro: the images show no place that both have: 8x6 pixels from (0, 0) of 16x12 "
+              "and 8x6 pixels from (8, 6) of 16x12\n");
+    for (const auto& [part, psnr, place] :
+         {std::tuple(first, "psnr_db inf\n", "(0, 0)"), {last, "psnr_db 12.0412\n", "(8, 6)"}}) {
+        const ProcessResult result = gfxrepro({"image", "diff", whole, part, "--metric", "psnr"});
+        EXPECT_EQ(result.out, psnr);
+        EXPECT_EQ(result.err, std::string("compared are 8x6 pixels from ") + place + " of 16x12\n");
+    }
+    EXPECT_NE(out({"image", "info", last})
+                  .find("data window 8x6 from (8, 6), display window 16x12 from (0, 0)\n"),
+              std::string::npos);
+    out({"image", "convert", last, "--out", at("d.exr"), "--channels", "R"});
+    EXPECT_EQ(image::readExr(at("d.exr")).dataWindow(), (image::Rectangle{8, 6, 8, 6}));
+}
+
 TEST_F(ImageCommands, InfoNamesChannelsAndAttributes) {
     EXPECT_EQ(out({"image", "info", write("a.exr", gbuffer(0.5F))}),
               "exr 16x12\n"
+              "data window 16x12 from (0, 0), display window 16x12 from (0, 0)\n"
               "channel B          half  0.25 to 0.5, mean 0.375\n"
               "channel G          half  0.25 to 0.5, mean 0.375\n"
               "channel N.X        half  0 to 0, mean 0\n"

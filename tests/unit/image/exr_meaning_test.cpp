@@ -1,0 +1,219 @@
+// What an EXR file says of its pixels: where they lie, and what they mean.
+#include <gtest/gtest.h>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfRgbaFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+
+#include "engine/image/exr_io.h"
+#include "engine/image/image_file.h"
+#include "engine/image/png_io.h"
+#include "engine/image/srgb.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::image {
+namespace {
+
+using test::errorText;
+using test::TemporaryFolder;
+
+class ExrMeaning : public testing::Test {
+  protected:
+    /// Pixels of the columns and rows of `data`: red is their column, green their row.
+    std::filesystem::path write(const char* name, const Rectangle& data,
+                                const Rectangle& display) const {
+        ImageF colour(data.width, data.height, 3);
+        for (int y = 0; y < data.height; ++y) {
+            for (int x = 0; x < data.width; ++x) {
+                colour.at(x, y, 0) = static_cast<float>(data.left + x);
+                colour.at(x, y, 1) = static_cast<float>(data.top + y);
+            }
+        }
+        ExrImage exr;
+        exr.add(colour, {"R", "G", "B"}, ExrPixelType::Float);
+        exr.left = data.left;
+        exr.top = data.top;
+        exr.displayWindow = display;
+        writeExr(path(name), exr);
+        return path(name);
+    }
+
+    /// Of 4 × 4 pixels.
+    static Imf::Slice sliceOf(std::vector<float>& plane) {
+        return Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(plane.data()), sizeof(float),
+                          4 * sizeof(float));
+    }
+
+    /// 4 × 4 like pixels of these channels, under a header of the library's.
+    std::filesystem::path writeEven(const char* name, Imf::Header header,
+                                    std::vector<std::pair<const char*, float>> channels) const {
+        Imf::FrameBuffer buffer;
+        std::vector<std::vector<float>> planes;
+        for (const auto& [channel, value] : channels) {
+            header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+            planes.emplace_back(16, value);
+            buffer.insert(channel, sliceOf(planes.back()));
+        }
+        Imf::OutputFile file(path(name).c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(4);
+        return path(name);
+    }
+
+    std::filesystem::path path(const char* name) const { return folder_.path() / name; }
+    std::string errorOf(const char* name) const {
+        return errorText([&] { readPicture(path(name)); }, folder_.path());
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(ExrMeaning, BothWindowsAreKept) {
+    const ExrImage read = readExr(write("a.exr", {-2, 5, 4, 3}, {1, 2, 8, 9}));
+    EXPECT_EQ(read.dataWindow(), (Rectangle{-2, 5, 4, 3}));
+    EXPECT_EQ(read.shownWindow(), (Rectangle{1, 2, 8, 9}));
+    EXPECT_EQ(read.find("R")->at(0, 0), -2.0F);
+    EXPECT_EQ(read.find("G")->at(3, 2), 7.0F);
+    writeExr(path("b.exr"), read);
+    EXPECT_EQ(readExr(path("b.exr")).dataWindow(), read.dataWindow());
+    EXPECT_EQ(readExr(path("b.exr")).shownWindow(), read.shownWindow());
+}
+
+TEST_F(ExrMeaning, APictureIsWhatTheDisplayWindowShows) {
+    const Picture overscan = readPicture(write("a.exr", {-1, -1, 10, 10}, {0, 0, 8, 8}));
+    EXPECT_TRUE(overscan.isWhole());
+    EXPECT_EQ(overscan.linear.width(), 8);
+    EXPECT_EQ(overscan.linear.at(0, 0, 0), 0.0F);
+    EXPECT_EQ(overscan.stored.at(7, 7, 1), 7.0F);
+    const Picture corner = readPicture(write("b.exr", {6, 7, 4, 4}, {2, 2, 8, 8}));
+    EXPECT_EQ(placeOf(corner), "4x3 pixels from (4, 5) of 8x8");
+    EXPECT_EQ(corner.linear.at(3, 2, 0), 9.0F);
+    EXPECT_EQ(corner.linear.at(3, 2, 1), 9.0F);
+    write("c.exr", {8, 8, 4, 4}, {0, 0, 8, 8});
+    EXPECT_EQ(errorOf("c.exr"),
+              "DIR/c.exr: its pixels, 4x4 from (8, 8), lie outside of its display window, 8x8 from "
+              "(0, 0)");
+}
+
+TEST_F(ExrMeaning, PicturesAreComparedWhereBothHavePixels) {
+    Picture a = readPicture(write("a.exr", {0, 0, 5, 8}, {0, 0, 8, 8}));
+    Picture b = readPicture(write("b.exr", {3, 2, 5, 6}, {0, 0, 8, 8}));
+    keepCommon(a, b);
+    EXPECT_EQ(placeOf(a), "2x6 pixels from (3, 2) of 8x8");
+    EXPECT_EQ(a.stored, b.stored);
+    EXPECT_EQ(a.linear.at(0, 0, 0), 3.0F);
+    Picture first = readPicture(write("c.exr", {0, 0, 4, 4}, {0, 0, 8, 8}));
+    Picture second = readPicture(write("d.exr", {4, 4, 4, 4}, {0, 0, 8, 8}));
+    EXPECT_EQ(errorText([&] { keepCommon(first, second); }),
+              "the images show no place that both have: 4x4 pixels from (0, 0) of 8x8 and 4x4 "
+              "pixels from (4, 4) of 8x8");
+    Picture other = readPicture(write("e.exr", {0, 0, 4, 4}, {0, 0, 8, 9}));
+    EXPECT_EQ(errorText([&] { keepCommon(first, other); }),
+              "the images show no place that both have: 4x4 pixels from (0, 0) of 8x8 and 4x4 "
+              "pixels from (0, 0) of 8x9");
+}
+
+TEST_F(ExrMeaning, LuminanceAndChromaAreColours) {
+    {
+        Imf::Header header(8, 8);
+        Imf::RgbaOutputFile file(path("yc.exr").c_str(), header, Imf::WRITE_YC);
+        std::vector<Imf::Rgba> red(64, Imf::Rgba(1.0F, 0.0F, 0.0F));
+        file.setFrameBuffer(red.data(), 1, 8);
+        file.writePixels(8);
+    }
+    const ExrImage exr = readExr(path("yc.exr"));
+    EXPECT_EQ(exr.notes,
+              std::vector<std::string>{"its luminance and chroma (Y, RY, BY) are read as R, G, B"});
+    const ImageF colour = readPicture(path("yc.exr")).linear;
+    ASSERT_EQ(colour.channels(), 3);
+    EXPECT_NEAR(colour.at(4, 4, 0), 1.0F, 2e-3);
+    EXPECT_NEAR(colour.at(4, 4, 1), 0.0F, 2e-3);
+    EXPECT_NEAR(colour.at(4, 4, 2), 0.0F, 2e-3);
+}
+
+TEST_F(ExrMeaning, OfSeveralPartsNoneIsTaken) {
+    std::vector<Imf::Header> headers(2, Imf::Header(4, 4));
+    headers[0].setName("depth");
+    headers[0].channels().insert("Z", Imf::Channel(Imf::FLOAT));
+    headers[1].setName("beauty");
+    for (const char* channel : {"R", "G", "B"}) {
+        headers[1].channels().insert(channel, Imf::Channel(Imf::FLOAT));
+    }
+    for (Imf::Header& header : headers) header.setType(Imf::SCANLINEIMAGE);
+    {
+        Imf::MultiPartOutputFile file(path("parts.exr").c_str(), headers.data(), 2);
+        std::vector<float> plane(16, 0.5F);
+        for (int part = 0; part < 2; ++part) {
+            Imf::FrameBuffer buffer;
+            const Imf::ChannelList& channels = file.header(part).channels();
+            for (auto i = channels.begin(); i != channels.end(); ++i) {
+                buffer.insert(i.name(), sliceOf(plane));
+            }
+            Imf::OutputPart output(file, part);
+            output.setFrameBuffer(buffer);
+            output.writePixels(4);
+        }
+    }
+    EXPECT_EQ(errorOf("parts.exr"),
+              "DIR/parts.exr: has 2 parts: 'depth' with Z, 'beauty' with B, G, R; one is allowed, "
+              "which 'exrmultipart -separate' makes of each");
+}
+
+/// Red of Rec. 709 in X, Y, Z, whose white is that of equal energy.
+TEST_F(ExrMeaning, ColoursOfOtherPrimariesAreThoseOfRec709) {
+    Imf::Header header(4, 4);
+    Imf::addChromaticities(header, {{1, 0}, {0, 1}, {0, 0}, {1.0F / 3, 1.0F / 3}});
+    const ExrImage exr = readExr(
+        writeEven("xyz.exr", header, {{"R", 0.412391F}, {"G", 0.212639F}, {"B", 0.019331F}}));
+    EXPECT_EQ(exr.notes, std::vector<std::string>{
+                             "R, G, B are converted from its chromaticities to those of Rec. 709"});
+    EXPECT_NEAR(exr.find("R")->at(1, 2), 1.0F, 1e-3);
+    EXPECT_NEAR(exr.find("G")->at(1, 2), 0.0F, 1e-3);
+    EXPECT_NEAR(exr.find("B")->at(1, 2), 0.0F, 1e-3);
+    // Those of Rec. 709 itself change no bit.
+    Imf::Header plain(4, 4);
+    Imf::addChromaticities(plain, {});
+    const ExrImage same =
+        readExr(writeEven("709.exr", plain, {{"R", 0.1F}, {"G", 0.2F}, {"B", 0.3F}}));
+    EXPECT_EQ(same.find("B")->at(0, 0), 0.3F);
+    EXPECT_TRUE(same.notes.empty());
+    Imf::addChromaticities(header, {{0.3F, 0.3F}, {0.3F, 0.3F}, {0.3F, 0.3F}, {0.3F, 0.3F}});
+    writeEven("none.exr", header, {{"R", 0.1F}, {"G", 0.2F}, {"B", 0.3F}});
+    EXPECT_TRUE(errorOf("none.exr").starts_with("DIR/none.exr: ")) << errorOf("none.exr");
+}
+
+TEST_F(ExrMeaning, AttributesThatAreNotUsedAreNamed) {
+    Imf::Header header(4, 4, 2.0F);
+    header.insert("exposureOfNobody", Imf::FloatAttribute(3.0F));
+    const ExrImage exr = readExr(writeEven("a.exr", header, {{"Y", 0.5F}}));
+    EXPECT_EQ(exr.notes, std::vector<std::string>{
+                             "not used of its attributes: exposureOfNobody, pixelAspectRatio"});
+}
+
+/// An orange at half cover: a display shows the colour that is covered, and PNG files hold that.
+TEST_F(ExrMeaning, ColoursAreDividedByAlphaForPng) {
+    ImageF half(2, 1, 4);
+    const float values[] = {0.5F, 0.25F, 0.125F, 0.5F, 0.25F, 0.0F, 0.0F, 0.0F};
+    std::copy(std::begin(values), std::end(values), half.values().begin());
+    const Image8 shown = toSrgb8(withStraightAlpha(half));
+    const std::uint8_t expected[] = {255, 188, 137, 128, 137, 0, 0, 0};
+    EXPECT_TRUE(std::equal(std::begin(expected), std::end(expected), shown.values().begin()));
+    writePng(path("a.png"), shown);
+    const Picture read = readPicture(path("a.png"));
+    EXPECT_FLOAT_EQ(read.stored.at(0, 0, 0), 1.0F);
+    EXPECT_NEAR(read.linear.at(0, 0, 0), 0.5F, 0.005F);
+    EXPECT_NEAR(read.linear.at(0, 0, 1), 0.25F, 0.005F);
+    // Grey and alpha likewise.
+    ImageF grey(1, 1, 2, 0.25F);
+    grey.at(0, 0, 1) = 0.5F;
+    EXPECT_EQ(toSrgb8(withStraightAlpha(grey)).at(0, 0, 0), 188);
+    EXPECT_EQ(toSrgb8(withStraightAlpha(grey)).at(0, 0, 1), 128);
+}
+
+}  // namespace
+}  // namespace gfxrepro::image
