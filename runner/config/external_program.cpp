@@ -505,8 +505,8 @@ std::vector<SchemaSection> programKeys() {
          {{"unit", "text", "required", "spelt out: byte, ms, triangle; 1 for none", text()},
           choiceKey("better", kBetter, "none", "which way is better"),
           {"pattern", "regular expression", "none",
-           "reads it off what the program prints: the number is its first group, the last match "
-           "counts",
+           "reads it off what the program prints: the number is its first group, as a whole; the "
+           "last match counts",
            text()},
           {"optional", "boolean", "false", "whether a run may be without it", boolean()},
           {"doc", "line", "\"\"", "what it means", text()}}},

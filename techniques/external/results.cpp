@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <tuple>
+#include <utility>
 
 #include "engine/core/files.h"
 #include "engine/core/json_shape.h"
@@ -21,7 +23,7 @@ using Json = nlohmann::json;
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20;
 constexpr std::size_t kLongestShown = 80;
-constexpr std::size_t kLongestMatched = 4096;  // std::regex takes stack with every letter
+constexpr std::size_t kLongestMatched = 4096;  // by a matcher that takes stack with every letter
 
 std::string shown(std::string_view line) {
     return line.size() <= kLongestShown ? std::string(line)
@@ -106,23 +108,178 @@ std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame,
     return metrics;
 }
 
+namespace {
+
+/// A match in a line, and its first group.
+struct Found {
+    std::string_view line;
+    std::size_t begin = 0, end = 0;            // of the group
+    std::size_t matchBegin = 0, matchEnd = 0;  // of all that the pattern matches
+
+    std::string_view number() const { return line.substr(begin, end - begin); }
+};
+
+/// Searches lines of any length. std::regex takes stack with every letter, but for its matcher of
+/// polynomial time. That one finds the longest match instead of the first one of lazy quantifiers
+/// and alternatives, and so says only where a match begins, in lines that are too long.
+class PatternSearch {
+  public:
+    explicit PatternSearch(const config::ProgramPattern& pattern)
+        : pattern_(pattern), regex_(pattern.regex) {}
+
+    std::optional<Found> lastIn(std::string_view line) {
+        std::optional<Found> last;
+        std::size_t from = 0;
+        while (const std::optional<Found> found = firstIn(line, from)) {
+            if (!last || found->begin < found->end) last = found;
+            from = std::max(found->matchEnd, found->matchBegin + 1);
+            if (from > line.size()) break;
+        }
+        return last;
+    }
+
+  private:
+    using Match = std::match_results<std::string_view::const_iterator>;
+
+    std::optional<Found> firstIn(std::string_view line, std::size_t from) {
+        using namespace std::regex_constants;
+        std::size_t end = line.size();
+        match_flag_type flags = match_default;
+        if (end - from > kLongestMatched) {
+            Match longest;
+            if (!linear_) linear_ = linear(line);
+            if (!std::regex_search(line.begin() + static_cast<std::ptrdiff_t>(from), line.end(),
+                                   longest, *linear_, before(from))) {
+                return std::nullopt;
+            }
+            from += static_cast<std::size_t>(longest.position());
+            const auto length = static_cast<std::size_t>(longest.length());
+            flags = match_continuous;
+            if (end - from > kLongestMatched) {
+                const bool looksAhead = pattern_.regex.find("(?=") != std::string::npos ||
+                                        pattern_.regex.find("(?!") != std::string::npos;
+                if (length >= kLongestMatched || looksAhead) failOf(line);
+                end = from + kLongestMatched;
+                flags |= match_not_eol;
+            }
+        }
+        Match match;
+        const auto begin = line.begin() + static_cast<std::ptrdiff_t>(from);
+        if (!std::regex_search(begin, line.begin() + static_cast<std::ptrdiff_t>(end), match,
+                               regex_, flags | before(from))) {
+            return std::nullopt;
+        }
+        const auto placeOf = [&](int group) {
+            const std::size_t first = from + static_cast<std::size_t>(match.position(group));
+            return std::pair(first, first + static_cast<std::size_t>(match.length(group)));
+        };
+        Found found{line};
+        if (match[1].matched) std::tie(found.begin, found.end) = placeOf(1);
+        std::tie(found.matchBegin, found.matchEnd) = placeOf(0);
+        return found;
+    }
+
+    /// '^' is the line's begin alone.
+    static std::regex_constants::match_flag_type before(std::size_t from) {
+        return from > 0 ? std::regex_constants::match_prev_avail
+                        : std::regex_constants::match_default;
+    }
+
+    std::regex linear(std::string_view line) const {
+        try {
+            return std::regex(pattern_.regex,
+                              std::regex::ECMAScript | std::regex_constants::__polynomial);
+        } catch (const std::regex_error&) {
+            failOf(line);
+        }
+    }
+
+    [[noreturn]] void failOf(std::string_view line) const {
+        throw Error(fmt::format(
+            "metric '{}': a line of {} bytes, more than {}, is searched by no pattern that matches "
+            "more than {}, looks ahead or refers back to a group",
+            pattern_.metric, line.size(), kLongestMatched, kLongestMatched));
+    }
+
+    const config::ProgramPattern& pattern_;
+    std::regex regex_;
+    std::optional<std::regex> linear_;
+};
+
+bool isDigit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+bool isLetter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/// Whether the number goes on before or behind the group. A comma that the pattern names and
+/// matches is a separator.
+bool isPartOfNumber(const Found& found, std::string_view regex) {
+    const auto at = [&](std::size_t i) { return i < found.line.size() ? found.line[i] : '\0'; };
+    const auto before = [&](std::size_t i) {
+        return i <= found.begin ? at(found.begin - i) : '\0';
+    };
+    const auto behind = [&](std::size_t i) { return at(found.end + i - 1); };
+    const bool namesComma = regex.find(',') != regex.npos;
+    const auto groups = [&](char c, bool isMatched) {  // digits: 1,234 and 1'234 and 1_234
+        return c == '\'' || c == '_' || (c == ',' && !(namesComma && isMatched));
+    };
+    const auto isSign = [](char c) { return c == '-' || c == '+'; };
+    const auto isExponent = [](char c) { return c == 'e' || c == 'E'; };
+    const auto isOfNumber = [](char c) { return isDigit(c) || c == '.'; };
+    const char last = before(1), next = behind(1);
+    const bool goesBefore = isDigit(last) ||
+                            (last == '.' && before(2) != '.' && !isLetter(before(2))) ||
+                            (groups(last, found.matchBegin < found.begin) && isDigit(before(2))) ||
+                            (last == '-' && !isOfNumber(before(2)) && !isLetter(before(2)) &&
+                             before(2) != '-' && before(2) != ')') ||
+                            (isExponent(last) && isOfNumber(before(2))) ||
+                            (isSign(last) && isExponent(before(2)) && isOfNumber(before(3)));
+    const auto exponentAt = [&](std::size_t i) {
+        return isExponent(behind(i)) &&
+               (isDigit(behind(i + 1)) || (isSign(behind(i + 1)) && isDigit(behind(i + 2))));
+    };
+    return goesBefore || isDigit(next) || exponentAt(1) ||
+           (next == '.' && (isDigit(behind(2)) || exponentAt(2))) ||
+           (groups(next, found.matchEnd > found.end) && isDigit(behind(2))) ||
+           (found.number() == "0" && (next == 'x' || next == 'X'));
+}
+
+/// The word that the group is a part of.
+std::string_view wordAround(const Found& found) {
+    const auto isOfWord = [](char c) {
+        return isDigit(c) || isLetter(c) ||
+               std::string_view(".,'_+-").find(c) != std::string_view::npos;
+    };
+    std::size_t begin = found.begin, end = found.end;
+    while (begin > 0 && isOfWord(found.line[begin - 1])) --begin;
+    while (end < found.line.size() && isOfWord(found.line[end])) ++end;
+    return found.line.substr(begin, end - begin);
+}
+
+}  // namespace
+
 std::optional<double> numberIn(std::string_view output, const config::ProgramPattern& pattern) {
-    const std::regex regex(pattern.regex);
-    std::optional<std::string> last;
+    PatternSearch search(pattern);
+    std::optional<Found> last;
     while (!output.empty()) {
         const std::string_view line = output.substr(0, output.find_first_of("\r\n"));
         output.remove_prefix(std::min(line.size() + 1, output.size()));
-        std::match_results<std::string_view::const_iterator> match;
-        if (line.size() <= kLongestMatched &&
-            std::regex_search(line.begin(), line.end(), match, regex)) {
-            last = match[1].str();
-        }
+        if (const std::optional<Found> found = search.lastIn(line)) last = found;
     }
     if (!last) return std::nullopt;
-    const std::optional<double> number = parseDouble(*last);
+    const std::optional<double> number = parseDouble(last->number());
     if (!number) {
         throw Error(fmt::format("metric '{}': its pattern finds '{}'; allowed: a number",
-                                pattern.metric, shown(*last)));
+                                pattern.metric, shown(last->number())));
+    }
+    if (isPartOfNumber(*last, pattern.regex)) {
+        throw Error(
+            fmt::format("metric '{}': its pattern finds '{}' of '{}'; allowed: a whole "
+                        "number",
+                        pattern.metric, shown(last->number()), shown(wordAround(*last))));
     }
     return number;
 }

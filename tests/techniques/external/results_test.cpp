@@ -117,8 +117,74 @@ TEST(MetricLines, APatternTakesItsLastMatch) {
     EXPECT_EQ(numberIn("", pattern), std::nullopt);
     EXPECT_EQ(errorText([&] { numberIn("Rays: 1.2.3\n", pattern); }),
               "metric 'rays': its pattern finds '1.2.3'; allowed: a number");
-    // No line is so long that matching it would take the stack.
-    EXPECT_EQ(numberIn("Rays: 5\n" + std::string(10'000'000, 'x'), pattern), 5.0);
+}
+
+double numberOf(const std::string& regex, const std::string& output) {
+    return numberIn(output, {"m", regex}).value();
+}
+
+TEST(MetricLines, APatternSearchesLinesOfAnyLength) {
+    const std::string rest(1'000'000, 'x');
+    EXPECT_EQ(numberOf("m=(\\d+)", "m=1\n" + rest + "m=7"), 7.0);
+    EXPECT_EQ(numberOf("m=(\\d+)", rest + "m=7" + rest + "m=8" + rest), 8.0);
+    EXPECT_EQ(numberOf("m=(\\d+)$", rest + "m=7" + rest + " m=8"), 8.0);
+    EXPECT_EQ(numberIn(rest, {"m", "^m=(\\d+)"}), std::nullopt);
+    EXPECT_EQ(numberIn(rest + "m=7", {"m", "^m=(\\d+)"}), std::nullopt);
+    EXPECT_EQ(numberIn("m=7" + rest, {"m", "m=(\\d+)$"}), std::nullopt);
+    // As in a short line: a lazy quantifier takes the first end.
+    EXPECT_EQ(numberOf("m=.*?n=(\\d+)", "m=1 n=2;" + rest + "n=3"), 2.0);
+}
+
+TEST(MetricLines, ALineThatAPatternCannotSearchIsAnError) {
+    const std::string line = "a=1 b=2" + std::string(5000, 'x') + "m=7";
+    for (const char* regex : {".*m=(\\d+)", "(a=1).*\\1", "a=(\\d)(?=.*m)"}) {
+        EXPECT_EQ(
+            errorText([&] {
+                numberIn(line, {"m", regex});
+            }),
+            "metric 'm': a line of 5010 bytes, more than 4096, is searched by no pattern that "
+            "matches more than 4096, looks ahead or refers back to a group")
+            << regex;
+    }
+}
+
+TEST(MetricLines, APatternTakesTheLastMatchOfALineToo) {
+    EXPECT_EQ(numberOf("m=(\\d+)", "m=1 m=2 m=3"), 3.0);
+    EXPECT_EQ(numberOf("(\\d*)$", "m=1"), 1.0);
+}
+
+TEST(MetricLines, APatternTakesNoPartOfANumber) {
+    const auto errorOfPattern = [](const std::string& regex, const std::string& line) {
+        return errorText([&] { numberIn(line, {"m", regex}); });
+    };
+    const auto partOf = [](const std::string& part, const std::string& whole) {
+        return "metric 'm': its pattern finds '" + part + "' of '" + whole +
+               "'; allowed: a whole number";
+    };
+    const std::string digits = "m=([0-9]+)", decimal = "m=([0-9.]+)";
+    EXPECT_EQ(errorOfPattern(decimal, "m=1.5e-03"), partOf("1.5", "1.5e-03"));
+    EXPECT_EQ(errorOfPattern(decimal, "m=2E7"), partOf("2", "2E7"));
+    EXPECT_EQ(errorOfPattern(decimal, "m=1,234.5"), partOf("1", "1,234.5"));
+    EXPECT_EQ(errorOfPattern(decimal, "m=1'234"), partOf("1", "1'234"));
+    EXPECT_EQ(errorOfPattern(digits, "m=12,5"), partOf("12", "12,5"));
+    EXPECT_EQ(errorOfPattern(digits, "m=12.5 s"), partOf("12", "12.5"));
+    EXPECT_EQ(errorOfPattern(digits, "m=5.e3"), partOf("5", "5.e3"));
+    EXPECT_EQ(errorOfPattern(digits, "m=0x1F"), partOf("0", "0x1F"));
+    EXPECT_EQ(errorOfPattern("m=([0-9]{2})", "m=123"), partOf("12", "123"));
+    EXPECT_EQ(errorOfPattern("([0-9]+) s", "12.5 s"), partOf("5", "12.5"));
+    EXPECT_EQ(errorOfPattern("([0-9]+) s", "in .5 s"), partOf("5", ".5"));
+    EXPECT_EQ(errorOfPattern("([0-9]+) rays", "1,234 rays"), partOf("234", "1,234"));
+    EXPECT_EQ(errorOfPattern("([0-9]+)$", "m=1e-5"), partOf("5", "1e-5"));
+    EXPECT_EQ(errorOfPattern("m=.*?([0-9]+)", "m= -5"), partOf("5", "-5"));
+    // Whole ones: ends of sentences, lists, dates, names, leaders, units.
+    EXPECT_EQ(numberOf(digits, "m=12."), 12.0);
+    EXPECT_EQ(numberOf(digits, "m=12, n=3"), 12.0);
+    EXPECT_EQ(numberOf("([0-9]+) rays", "m-5 rays"), 5.0);
+    EXPECT_EQ(numberOf("Rays[.]+([0-9]+)", "Rays....12"), 12.0);
+    EXPECT_EQ(numberOf(digits, "m=12ms"), 12.0);
+    EXPECT_EQ(numberOf("m=(-?[0-9.e+-]+)", "m=-1.5e-3,"), -1.5e-3);
+    // A pattern that names the comma knows what it separates.
+    EXPECT_EQ(numberOf("^time,([0-9]+),", "time,3,4.5"), 3.0);
 }
 
 using image::ImageF;
