@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <new>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -19,6 +21,7 @@
 #include "engine/gl/egl_context.h"
 #include "engine/gl/gl.h"
 #include "engine/gl/nvml.h"
+#include "engine/gl/profiler.h"
 #include "engine/gl/unused_gpus.h"
 
 namespace gfxrepro::gl {
@@ -80,24 +83,32 @@ std::string mesaVersionIn(const std::string& version) {
     return version.substr(begin, version.find(' ', begin) - begin);
 }
 
-/// The smallest step between stamps that the device takes in a row. Steps between answers of
+/// From stamps that the device takes in a row. Steps between answers of
 /// glGetInteger64v(GL_TIMESTAMP) would be how long the question takes: a microsecond and more on a
 /// GPU.
-double measureTimerResolutionNs() {
+DeviceTimer measureTimer() {
+    DeviceTimer timer;
+    glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &timer.bits);
+    if (timer.bits <= 0) return {0};
+    constexpr std::chrono::milliseconds kCoarsest(50);  // a clock that steps more rarely is none
     std::array<GLuint, 256> stamps = {};
     glCreateQueries(GL_TIMESTAMP, static_cast<GLsizei>(stamps.size()), stamps.data());
-    for (const GLuint stamp : stamps) glQueryCounter(stamp, GL_TIMESTAMP);
-    GLuint64 smallestNs = std::numeric_limits<GLuint64>::max();
-    GLuint64 lastNs = std::numeric_limits<GLuint64>::max();
-    for (const GLuint stamp : stamps) {
-        GLuint64 nowNs = 0;
-        glGetQueryObjectui64v(stamp, GL_QUERY_RESULT, &nowNs);
-        if (nowNs > lastNs) smallestNs = std::min(smallestNs, nowNs - lastNs);
-        lastNs = nowNs;
-    }
+    const auto begin = std::chrono::steady_clock::now();
+    do {
+        for (const GLuint stamp : stamps) glQueryCounter(stamp, GL_TIMESTAMP);
+        std::optional<GLuint64> last;
+        for (const GLuint stamp : stamps) {
+            GLuint64 now = 0;
+            glGetQueryObjectui64v(stamp, GL_QUERY_RESULT, &now);
+            const auto step = static_cast<double>(nsBetween(last.value_or(now), now, timer.bits));
+            const bool isForwards = step > 0.0 && step < std::ldexp(0.5, timer.bits);
+            if (isForwards && (timer.stepNs == 0.0 || step < timer.stepNs)) timer.stepNs = step;
+            timer.repeats |= last == now;
+            last = now;
+        }
+    } while (timer.stepNs == 0.0 && std::chrono::steady_clock::now() - begin < kCoarsest);
     glDeleteQueries(static_cast<GLsizei>(stamps.size()), stamps.data());
-    const bool hasTicked = smallestNs != std::numeric_limits<GLuint64>::max();
-    return hasTicked ? static_cast<double>(smallestNs) : 0.0;
+    return timer.stepNs > 0.0 ? timer : DeviceTimer{0};
 }
 
 std::set<std::string, std::less<>> readExtensions() {
@@ -137,7 +148,7 @@ DeviceInfo readInfo(const egl::Candidate& candidate) {
     info.mesaVersion = mesaVersionIn(info.version);
     info.isSoftware = isSoftwareContext();
     info.countsWork = readExtensions().contains("GL_ARB_pipeline_statistics_query");
-    info.timerResolutionNs = measureTimerResolutionNs();
+    info.timer = measureTimer();
     return info;
 }
 

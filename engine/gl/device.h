@@ -23,6 +23,15 @@ struct DeviceBalance {
     double fragmentShare() const { return fragmentGflops / computeGflops; }
 };
 
+/// Its clock, which GL_TIMESTAMP asks.
+struct DeviceTimer {
+    /// GL_QUERY_COUNTER_BITS: stamps are told modulo 2^bits ns. 0: the device has no clock for
+    /// them, or one that does not go forwards.
+    int bits = 64;
+    double stepNs = 0.0;   // the smallest between stamps in a row
+    bool repeats = false;  // stamps in a row are equal, too: so may those of a short pass be
+};
+
 /// What a device says of itself; goes into the manifest.
 struct DeviceInfo {
     int index = 0;            // as `doctor` lists it and --device takes it
@@ -36,7 +45,7 @@ struct DeviceInfo {
     /// GL_ARB_pipeline_statistics_query: whether repeats did the same is told by counts, else by
     /// their pictures alone.
     bool countsWork = false;
-    double timerResolutionNs = 0.0;        // smallest step between GL_TIMESTAMP stamps in a row
+    DeviceTimer timer;
     std::optional<DeviceBalance> balance;  // of hardware, once a run has asked for it
 };
 

@@ -1,5 +1,6 @@
 #include "engine/gl/profiler.h"
 
+#include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
@@ -36,6 +37,10 @@ double processTimeMs() {
     return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
+std::uint64_t nsBetween(std::uint64_t first, std::uint64_t second, int bits) {
+    return bits < 64 ? (second - first) & ((std::uint64_t{1} << bits) - 1) : second - first;
+}
+
 std::size_t Profiler::beginGpu(std::string_view pass) {
     entries_.push_back({std::string(pass), PassTime::Clock::Gpu, {}, {}});
     entries_.back().begin = stamp(isSoftwareDevice_);
@@ -49,20 +54,41 @@ void Profiler::endGpu(std::size_t entry) {
     entries_[entry].end = stamp(isSoftwareDevice_);
 }
 
+/// A driver's clock may be wrong: it is held against the processor's, from the scope's begin to
+/// now.
+double Profiler::gpuTimeMs(const Entry& entry) const {
+    GFXREPRO_ASSERT(entry.end.get() != 0);  // a scope is still open
+    const GLuint64 begin = timeNs(entry.begin.get()), end = timeNs(entry.end.get());
+    const std::chrono::duration<double, std::milli> passed =
+        std::chrono::steady_clock::now() - entry.begun;
+    const double timeMs = static_cast<double>(nsBetween(begin, end, timer_.bits)) * 1e-6;
+    // Quartzes differ by less than 1 %, and both stamps are rounded to steps of the clock.
+    const bool isAhead = timeMs > 1.01 * passed.count() + 2e-6 * timer_.stepNs;
+    const bool standsStill = begin == end && (begin == 0 || !timer_.repeats);
+    if (!isAhead && !standsStill) return timeMs;
+    throw Error(
+        fmt::format("pass '{}': the device's clock {}: {} to {} ns in at most {:.3g} ms of "
+                    "the processor's clock; its GPU times cannot be used",
+                    entry.pass,
+                    standsStill                        ? "stands still"
+                    : timer_.bits >= 64 && end < begin ? "runs backwards"
+                                                       : "runs ahead",
+                    begin, end, passed.count()));
+}
+
 std::vector<PassTime> Profiler::collect() {
     std::vector<PassTime> times;
     for (const Entry& entry : entries_) {
-        double timeMs = entry.cpuTimeMs;
+        std::optional<double> timeMs = entry.cpuTimeMs;
         if (entry.clock == PassTime::Clock::Gpu) {
-            GFXREPRO_ASSERT(entry.end.get() != 0);  // a scope is still open
-            timeMs =
-                static_cast<double>(timeNs(entry.end.get()) - timeNs(entry.begin.get())) * 1e-6;
+            timeMs.reset();
+            if (timer_.bits > 0) timeMs = gpuTimeMs(entry);
         }
         const auto same = std::ranges::find_if(times, [&](const PassTime& time) {
             return time.pass == entry.pass && time.clock == entry.clock;
         });
         if (same != times.end()) {
-            same->timeMs += timeMs;
+            if (timeMs) *same->timeMs += *timeMs;
             same->processTimeMs += entry.processTimeMs;
         } else {
             times.push_back({entry.pass, entry.clock, timeMs, entry.processTimeMs});

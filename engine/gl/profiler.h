@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,8 +19,8 @@ struct PassTime {
     enum class Clock { Gpu, Cpu };
     std::string pass;
     Clock clock = Clock::Gpu;
-    double timeMs = 0.0;
-    double processTimeMs = 0.0;  // CPU time of all threads of the process meanwhile
+    std::optional<double> timeMs = 0.0;  // none by a device without a clock (DeviceTimer)
+    double processTimeMs = 0.0;          // CPU time of all threads of the process meanwhile
 };
 
 /// CPU time, user and system, that all threads of this process have spent
@@ -27,16 +28,22 @@ struct PassTime {
 /// else wants the cores.
 double processTimeMs();
 
+/// From one stamp of the device to the next, which are told modulo 2^bits.
+std::uint64_t nsBetween(std::uint64_t first, std::uint64_t second, int bits);
+
 /// Collects scopes of one iteration. On a software device everything is finished before and
 /// after each stamp, so that no pass's work is counted with its neighbour (llvmpipe runs vertex
 /// work when the draw is called, and rasterizes and takes the stamp at the next flush). So the CPU
 /// time of a pass is its own, too.
 class Profiler {
   public:
-    explicit Profiler(bool isSoftwareDevice) : isSoftwareDevice_(isSoftwareDevice) {}
+    explicit Profiler(bool isSoftwareDevice, const DeviceTimer& timer = {})
+        : isSoftwareDevice_(isSoftwareDevice), timer_(timer) {}
+    explicit Profiler(const DeviceInfo& device) : Profiler(device.isSoftware, device.timer) {}
 
     /// The scopes since the last call, in the order in which they began, scopes of one name and
-    /// clock summed. Waits for the device.
+    /// clock summed. Waits for the device. Throws Error, naming the pass, where the device's clock
+    /// ran backwards, stood still, or is ahead of the processor's.
     std::vector<PassTime> collect();
 
   private:
@@ -48,11 +55,14 @@ class Profiler {
         detail::Name<detail::deleteQuery> begin, end;
         double cpuTimeMs = 0.0;
         double processTimeMs = 0.0;  // less what it was at the begin
+        std::chrono::steady_clock::time_point begun = std::chrono::steady_clock::now();
     };
+    double gpuTimeMs(const Entry& entry) const;
     std::size_t beginGpu(std::string_view pass);
     void endGpu(std::size_t entry);
 
     bool isSoftwareDevice_;
+    DeviceTimer timer_;
     std::vector<Entry> entries_;
 };
 

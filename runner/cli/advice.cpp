@@ -85,12 +85,20 @@ void addDeviceFindings(const MachineFacts& facts, Findings& findings) {
 
 void addLimitFindings(const DeviceFacts& device, Findings& findings) {
     if (!device.problem.empty()) return;
-    if (device.timerResolutionNs > kMaxTimerStepNs) {
+    if (device.timer.bits == 0) {
+        findings.push_back(
+            {"no_timer", Severity::Timing,
+             fmt::format("Device {}: it has no clock for GPU times, or one that does "
+                         "not go forwards, so passes have none.",
+                         device.index),
+             "Compare times of the whole frame (wall_time_ms), update its driver, "
+             "or take another device."});
+    } else if (device.timer.stepNs > kMaxTimerStepNs) {
         findings.push_back(
             {"coarse_timer", Severity::Timing,
              fmt::format("Device {}: its clock moves in steps of {:.0f} ns, so short passes cannot "
                          "be told apart.",
-                         device.index, device.timerResolutionNs),
+                         device.index, device.timer.stepNs),
              "Compare times of this device with more frames (--set measure.repeats=50), or "
              "take another device."});
     }

@@ -18,7 +18,7 @@ struct DeviceFacts {
     std::string problem;  // why it does not serve; empty: it does
     bool isSoftware = false;
     bool isGpu = false;  // as far as EGL tells, of one that does not serve
-    double timerResolutionNs = 0.0;
+    gl::DeviceTimer timer;
     int maxTextureSizePx = 0;
     int max3dTextureSizePx = 0;
     long long maxStorageBlockBytes = 0;

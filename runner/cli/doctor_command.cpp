@@ -79,7 +79,7 @@ std::vector<DeviceFacts> deviceFacts(const std::vector<gl::DeviceReport>& report
     std::vector<DeviceFacts> devices;
     for (const gl::DeviceReport& report : reports) {
         devices.push_back({report.info.index, report.info.renderer, report.problem,
-                           report.info.isSoftware, report.isGpu, report.info.timerResolutionNs,
+                           report.info.isSoftware, report.isGpu, report.info.timer,
                            report.limits.maxTextureSizePx, report.limits.max3dTextureSizePx,
                            report.limits.maxStorageBlockBytes, report.limits.maxStorageBlocks,
                            report.info.balance});
@@ -179,8 +179,12 @@ void printDevice(const Json& device) {
         device["renderer"].get<std::string>(), device["platform"].get<std::string>(),
         device["is_software"].get<bool>() ? "software" : "gpu");
     if (const std::string uuid = device["uuid"]; !uuid.empty()) say("           UUID {}\n", uuid);
-    say("           OpenGL {}, timer resolution {:.0f} ns\n", device["version"].get<std::string>(),
-        device["timer_resolution_ns"].get<double>());
+    const int bits = device["timer_bits"];
+    const std::string timer = bits == 0
+                                  ? "no clock for GPU times"
+                                  : fmt::format("GPU times of {} bits in steps of {:.0f} ns", bits,
+                                                device["timer_resolution_ns"].get<double>());
+    say("           OpenGL {}, {}\n", device["version"].get<std::string>(), timer);
     say("           textures {}², 3D {}³, {} layers, storage blocks {} MiB,\n",
         limits["max_texture_size_px"].get<int>(), limits["max_3d_texture_size_px"].get<int>(),
         limits["max_array_layers"].get<int>(),

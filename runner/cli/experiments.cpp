@@ -163,9 +163,10 @@ run::Request requestOf(const Selection& selection, const std::vector<std::string
 }
 
 void tellDevice(const gl::DeviceInfo& device) {
-    tell("device {}: {} ({}), OpenGL {}{}\n", device.index, device.renderer,
+    tell("device {}: {} ({}), OpenGL {}{}{}\n", device.index, device.renderer,
          device.isSoftware ? "software" : "gpu", device.version,
-         device.uuid.empty() ? "" : ", UUID " + device.uuid);
+         device.uuid.empty() ? "" : ", UUID " + device.uuid,
+         device.timer.bits > 0 ? "" : "; it has no clock for GPU times");
 }
 
 void tellDevice(const std::string& asked) {

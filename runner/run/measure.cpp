@@ -160,7 +160,9 @@ void recordPasses(const std::vector<gl::PassTime>& times, bool isSoftware, RunRe
     std::map<std::string, double> processTimesMs;
     for (const gl::PassTime& time : times) {
         const bool isGpu = time.clock == gl::PassTime::Clock::Gpu;
-        recorder.metric(isGpu ? "gpu_time_ms" : "cpu_time_ms", time.timeMs, "ms", time.pass);
+        if (time.timeMs) {
+            recorder.metric(isGpu ? "gpu_time_ms" : "cpu_time_ms", *time.timeMs, "ms", time.pass);
+        }
         processTimesMs[time.pass] += time.processTimeMs;
     }
     if (!isSoftware) return;
@@ -480,7 +482,7 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
         recordScene(*scene, recorder);
     }
 
-    gl::Profiler profiler(context.device.info().isSoftware);
+    gl::Profiler profiler(context.device.info());
     technique::SetupContext setup{context.device,
                                   context.shaders,
                                   context.scenes,

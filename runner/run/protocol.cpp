@@ -10,12 +10,17 @@ namespace gfxrepro::run {
 
 namespace {
 
-constexpr JsonMember kDevice[] = {
-    {"/index", JsonKind::Int},           {"/platform", JsonKind::Text},
-    {"/vendor", JsonKind::Text},         {"/renderer", JsonKind::Text},
-    {"/version", JsonKind::Text},        {"/mesa_version", JsonKind::Text},
-    {"/uuid", JsonKind::Text},           {"/is_software", JsonKind::Boolean},
-    {"/counts_work", JsonKind::Boolean}, {"/timer_resolution_ns", JsonKind::Number}};
+constexpr JsonMember kDevice[] = {{"/index", JsonKind::Int},
+                                  {"/platform", JsonKind::Text},
+                                  {"/vendor", JsonKind::Text},
+                                  {"/renderer", JsonKind::Text},
+                                  {"/version", JsonKind::Text},
+                                  {"/mesa_version", JsonKind::Text},
+                                  {"/uuid", JsonKind::Text},
+                                  {"/is_software", JsonKind::Boolean},
+                                  {"/counts_work", JsonKind::Boolean},
+                                  {"/timer_bits", JsonKind::Int},
+                                  {"/timer_resolution_ns", JsonKind::Number}};
 constexpr JsonMember kBalance[] = {{"/fragment_gflops", JsonKind::Number},
                                    {"/compute_gflops", JsonKind::Number},
                                    {"/fill_gpixels_per_s", JsonKind::Number},
@@ -85,7 +90,8 @@ Json toJson(const gl::DeviceInfo& info) {
                  {"uuid", info.uuid},
                  {"is_software", info.isSoftware},
                  {"counts_work", info.countsWork},
-                 {"timer_resolution_ns", info.timerResolutionNs}};
+                 {"timer_bits", info.timer.bits},
+                 {"timer_resolution_ns", info.timer.stepNs}};
     if (info.balance) json["balance"] = toJson(*info.balance);
     return json;
 }
@@ -102,7 +108,8 @@ gl::DeviceInfo deviceInfoFromJson(const Json& json) {
     json.at("uuid").get_to(info.uuid);
     json.at("is_software").get_to(info.isSoftware);
     json.at("counts_work").get_to(info.countsWork);
-    json.at("timer_resolution_ns").get_to(info.timerResolutionNs);
+    json.at("timer_bits").get_to(info.timer.bits);
+    json.at("timer_resolution_ns").get_to(info.timer.stepNs);
     if (json.contains("balance"))
         info.balance = balanceFromJson(json["balance"], kAnswer, "/balance");
     return info;

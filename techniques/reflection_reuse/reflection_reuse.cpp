@@ -330,7 +330,7 @@ class ReflectionReuse final : public technique::Technique {
             renderer_.emplace(shaders, frame_->objects, *tracer_, settings, frame_->samplesPx(),
                               frame_->scene.diagonalM());
         }
-        if (params_.fitsRecompute) recomputeTimes_.emplace(context.device.info().isSoftware);
+        if (params_.fitsRecompute) recomputeTimes_.emplace(context.device.info());
     }
 
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
@@ -486,7 +486,7 @@ class ReflectionReuse final : public technique::Technique {
     /// Of a frame's repetitions the fastest counts: what else runs on the machine only adds.
     void keepLeastRecomputeTime() {
         for (const gl::PassTime& time : recomputeTimes_->collect()) {
-            leastRecomputeMs_ = std::min(leastRecomputeMs_.value_or(time.timeMs), time.timeMs);
+            if (!leastMs_ || time.timeMs < leastMs_) leastMs_ = time.timeMs;
         }
     }
 
@@ -495,9 +495,8 @@ class ReflectionReuse final : public technique::Technique {
     void recordRecomputeFit(technique::Recorder& recorder, const ReuseCounts& counts) {
         if (!recomputeTimes_) return;
         keepLeastRecomputeTime();
-        if (leastRecomputeMs_)
-            recomputed_.emplace_back(counts.recomputedSamples, *leastRecomputeMs_);
-        leastRecomputeMs_.reset();
+        if (leastMs_) recomputed_.emplace_back(counts.recomputedSamples, *leastMs_);
+        leastMs_.reset();
         if (frameIndex_ + 1 < frameCount_) return;
         const std::optional<LinearFit> fit = linearFit(recomputed_);
         if (!fit) return;
@@ -584,7 +583,7 @@ class ReflectionReuse final : public technique::Technique {
     int frameCount_ = 0;
 
     std::optional<gl::Profiler> recomputeTimes_;  // of `recompute_fit`
-    std::optional<double> leastRecomputeMs_;      // of the frame at hand
+    std::optional<double> leastMs_;               // of recomputing, in the frame at hand
     std::vector<glm::dvec2> recomputed_;          // (samples, ms) of frames that are not key frames
 };
 

@@ -329,7 +329,7 @@ void TerrainTessellation::setup(technique::SetupContext& context) {
     scene_ = context.scene;
     shaders_ = &context.shaders;
     shared_ = context.shared;
-    isSoftware_ = context.device.info().isSoftware;
+    device_ = &context.device.info();
     sizePx_ = context.outputSizePx;
     const scene::HeightMap& map = *scene_->heights;
     const Clock::time_point begin = Clock::now();
@@ -341,7 +341,7 @@ void TerrainTessellation::setup(technique::SetupContext& context) {
     terrain_.emplace(map, *metadata_, params_.heights);
     camera_.emplace(*scene_, params_.view);
     RenderSettings settings = params_.render;
-    if (isSoftware_) settings.batches.emplace();
+    if (device_->isSoftware) settings.batches.emplace();
     if (params_.method == Method::Patches) settings = untessellated(settings);
     if (hasColourMap(settings.shading)) {
         colourMap_ = colourMapOf(*scene_, settings.shading);
@@ -425,7 +425,7 @@ void TerrainTessellation::render(technique::FrameContext& context) {
         const auto pages = static_cast<std::size_t>(terrain_->pages().capacity());
         if (selection_.tiles.size() <= pages) terrain_->pages().load(selection_.tiles);
     }
-    drawTime_.emplace(isSoftware_);
+    drawTime_.emplace(*device_);
     {
         const gl::GpuScope own(*drawTime_, "draw");
         const gl::GpuScope scope(context.profiler, "draw");

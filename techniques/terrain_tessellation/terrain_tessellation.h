@@ -111,7 +111,7 @@ class TerrainTessellation final : public technique::Technique {
     double preprocessMs_ = 0.0;
     const gl::ShaderLibrary* shaders_ = nullptr;
     technique::SharedResults* shared_ = nullptr;
-    bool isSoftware_ = false;
+    const gl::DeviceInfo* device_ = nullptr;
     std::optional<TerrainMetadata> metadata_;
     std::optional<TileTree> tree_;
     std::optional<TerrainView> camera_;

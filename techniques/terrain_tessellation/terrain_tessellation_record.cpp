@@ -71,9 +71,9 @@ image::ImageF cullingPicture(const scene::HeightMap& map, std::span<const Tile> 
     return picture;
 }
 
-/// Of the one scope of a profiler.
+/// Of the one scope of a profiler; not a number by a device without a clock.
 double secondsOf(gl::Profiler& profiler) {
-    return 1e-3 * profiler.collect().front().timeMs;
+    return 1e-3 * profiler.collect().front().timeMs.value_or(std::nan(""));
 }
 
 DepthMap readDepths(const gl::Texture& depth, const kit::View& view) {
@@ -130,7 +130,7 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     const double drawS = secondsOf(*drawTime_);
     const auto triangles = static_cast<double>(counts.triangles);
     count("drawn_triangles", triangles, "triangle");
-    count("triangles_per_second", triangles / drawS, "triangle/s");
+    if (drawS > 0.0) count("triangles_per_second", triangles / drawS, "triangle/s");
     count("draw_calls", counts.drawCalls, "call");
     count("tiles", static_cast<double>(selection_.tiles.size()), "tile");
     count("visited_tiles", selection_.visitedCount, "tile");
@@ -154,7 +154,7 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
             ? static_cast<double>(renderer_->countSkirtTriangles(selection_.tiles, view_))
             : 0.0;
     count("surface_triangles", triangles - skirts, "triangle");
-    if (params_.drawsYardstick) recordNetRate(recorder, counts, drawS);
+    if (params_.drawsYardstick && drawS > 0.0) recordNetRate(recorder, counts, drawS);
 }
 
 void TerrainTessellation::recordFactors(technique::Recorder& recorder) {
@@ -194,7 +194,7 @@ void TerrainTessellation::recordNetRate(technique::Recorder& recorder, const Dra
     constexpr int kDraws = 3;
     double leastS = std::numeric_limits<double>::infinity();
     for (int i = 0; i < kDraws; ++i) {
-        gl::Profiler profiler(isSoftware_);
+        gl::Profiler profiler(*device_);
         {
             const gl::GpuScope scope(profiler, "yardstick");
             target_->clear();

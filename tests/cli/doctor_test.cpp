@@ -16,7 +16,7 @@ namespace {
 DeviceFacts gpu() {
     DeviceFacts device;
     device.renderer = "a GPU";
-    device.timerResolutionNs = 40.0;
+    device.timer.stepNs = 40.0;
     device.maxTextureSizePx = 16384;
     device.max3dTextureSizePx = 2048;
     device.maxStorageBlockBytes = 128LL << 20;
@@ -178,11 +178,20 @@ TEST(Doctor, AGpuThatDoesNotServe) {
 
 TEST(Doctor, CoarseTimer) {
     MachineFacts facts = goodMachine();
-    facts.devices[0].timerResolutionNs = 20000.0;
+    facts.devices[0].timer.stepNs = 20000.0;
     EXPECT_EQ(linesOf(facts),
               "times coarse_timer: Device 0: its clock moves in steps of 20000 ns, so short passes "
               "cannot be told apart. → Compare times of this device with more frames (--set "
               "measure.repeats=50), or take another device.\n");
+}
+
+TEST(Doctor, NoTimer) {
+    MachineFacts facts = goodMachine();
+    facts.devices[0].timer = {0};
+    EXPECT_EQ(linesOf(facts),
+              "times no_timer: Device 0: it has no clock for GPU times, or one that does not go "
+              "forwards, so passes have none. → Compare times of the whole frame (wall_time_ms), "
+              "update its driver, or take another device.\n");
 }
 
 TEST(Doctor, SmallLimits) {

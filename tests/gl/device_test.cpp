@@ -30,8 +30,8 @@ TEST(DeviceTest, OpensSoftwareByNameAndByIndex) {
     EXPECT_THAT(byName.info().version, StartsWith("4.5"));
     EXPECT_THAT(byName.info().version, HasSubstr("Mesa " + byName.info().mesaVersion));
     EXPECT_FALSE(byName.info().mesaVersion.empty());
-    EXPECT_GT(byName.info().timerResolutionNs, 0.0);
-    EXPECT_LT(byName.info().timerResolutionNs, 1e6);
+    EXPECT_GT(byName.info().timer.stepNs, 0.0);
+    EXPECT_LT(byName.info().timer.stepNs, 1e6);
     EXPECT_EQ(byName.info().countsWork, byName.hasExtension("GL_ARB_pipeline_statistics_query"));
     for (const gl::DeviceReport& report : gl::listDevices()) {
         if (report.info.index != byName.info().index) continue;

@@ -18,7 +18,7 @@ using Clock = WorkerHandle::Clock;
 
 constexpr const char* kReady =
     R"({"ready": {"index": 0, "platform": "p", "vendor": "v", "renderer": "r", "version": "4.5",
-"mesa_version": "", "uuid": "", "is_software": true, "counts_work": true, "timer_resolution_ns": 1.0}})";
+"mesa_version": "", "uuid": "", "is_software": true, "counts_work": true, "timer_bits": 64, "timer_resolution_ns": 1.0}})";
 
 class Worker : public testing::Test {
   protected:

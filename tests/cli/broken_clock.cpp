@@ -1,0 +1,58 @@
+// To be preloaded into the program (LD_PRELOAD): the device's time stamps are those of a driver
+// whose clock is BROKEN_CLOCK: "none" (0 bits), "zero", "wraps" (24 bits: every 17 ms), or,
+// once something is drawn, "back", "still" and "ahead".
+#include <dlfcn.h>
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+namespace {
+
+bool hasDrawn = false;
+
+bool is(std::string_view mode) {
+    const char* asked = std::getenv("BROKEN_CLOCK");
+    return asked && mode == asked;
+}
+
+template <class Function>
+Function real(const char* name) {
+    return reinterpret_cast<Function>(::dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+extern "C" {
+
+__attribute__((visibility("default"))) void APIENTRY glUseProgram(GLuint program) {
+    hasDrawn = true;
+    real<decltype(&glUseProgram)>("glUseProgram")(program);
+}
+
+__attribute__((visibility("default"))) void APIENTRY glGetQueryiv(GLenum target, GLenum name,
+                                                                  GLint* value) {
+    real<decltype(&glGetQueryiv)>("glGetQueryiv")(target, name, value);
+    if (target != GL_TIMESTAMP || name != GL_QUERY_COUNTER_BITS) return;
+    if (is("none")) *value = 0;
+    if (is("wraps")) *value = 24;
+}
+
+__attribute__((visibility("default"))) void APIENTRY glGetQueryObjectui64v(GLuint query,
+                                                                           GLenum name,
+                                                                           GLuint64* value) {
+    real<decltype(&glGetQueryObjectui64v)>("glGetQueryObjectui64v")(query, name, value);
+    constexpr GLuint64 kLeastTime = 1'000'000'000;  // less are counts of work
+    if (name != GL_QUERY_RESULT || *value < kLeastTime) return;
+    static const GLuint64 first = *value;
+    if (is("zero") || is("none")) *value = 0;
+    if (is("wraps")) *value &= (GLuint64{1} << 24) - 1;
+    if (is("back") && hasDrawn) *value = GLuint64{1'000'000'000'000'000} - *value;
+    if (is("still") && hasDrawn) *value = first;
+    if (is("ahead") && hasDrawn) *value *= 1000;
+}
+
+}  // extern "C"

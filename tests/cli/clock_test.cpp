@@ -1,0 +1,86 @@
+// A device whose clock is broken: no number of it is believed, and that is said.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "engine/core/files.h"
+#include "tests/cli/cli_support.h"
+
+namespace gfxrepro::test {
+namespace {
+
+using testing::HasSubstr;
+
+class BrokenClock : public testing::Test {
+  protected:
+    BrokenClock() {
+        writeFileAtomic(folder.path() / "torus.yaml",
+                        "sweep_of: torus\ntitle: A torus\ntechnique: voxelization\n"
+                        "scene: shapes/torus\nparams: {resolution: 32}\n"
+                        "output: {width: 32, height: 32}\n"
+                        "measure: {lane: timing, processes: 1, warmup: 0, repeats: 20}\n");
+    }
+    ProcessResult with(const std::string& clock, std::vector<std::string> arguments) const {
+        arguments.insert(arguments.begin(), GFXREPRO_PROGRAM);
+        return runProgram(arguments,
+                          {"LD_PRELOAD=" GFXREPRO_BROKEN_CLOCK, "BROKEN_CLOCK=" + clock});
+    }
+    ProcessResult measured(const std::string& clock) const {
+        return with(clock, {"run", folder.path() / "torus.yaml", "--device", "software", "--quiet",
+                            "--out", runOf(clock)});
+    }
+    std::filesystem::path runOf(const std::string& clock) const { return folder.path() / clock; }
+
+    TemporaryFolder folder;
+};
+
+TEST_F(BrokenClock, OneThatNeverMovesGivesNoTimesOfTheDevice) {
+    for (const std::string clock : {"none", "zero"}) {
+        const ProcessResult run = measured(clock);
+        EXPECT_EQ(run.exitCode, 0) << run.err;
+        EXPECT_THAT(run.err, HasSubstr("; it has no clock for GPU times\n")) << clock;
+        EXPECT_TRUE(rowsOf(runOf(clock), "gpu_time_ms").empty()) << clock;
+        // What other clocks told is kept.
+        EXPECT_FALSE(rowsOf(runOf(clock), "wall_time_ms").empty()) << clock;
+        EXPECT_FALSE(rowsOf(runOf(clock), "process_time_ms").empty()) << clock;
+        const ProcessResult doctor = with(clock, {"doctor"});
+        EXPECT_THAT(doctor.out, HasSubstr(", no clock for GPU times\n")) << clock;
+        EXPECT_THAT(doctor.out, HasSubstr("it has no clock for GPU times, or one that")) << clock;
+    }
+}
+
+TEST_F(BrokenClock, OneThatBreaksEndsTheCase) {
+    const std::map<std::string, std::string> words = {
+        {"back", "runs backwards"}, {"still", "stands still"}, {"ahead", "runs ahead"}};
+    for (const auto& [clock, what] : words) {
+        const ProcessResult run = measured(clock);
+        EXPECT_EQ(run.exitCode, 4) << clock << run.err;
+        EXPECT_TRUE(rowsOf(runOf(clock), "gpu_time_ms").empty()) << clock;
+        EXPECT_THAT(readFile(runOf(clock) / "records.csv"),
+                    testing::ContainsRegex("pass '[a-z_]+': the device's clock " + what + ": "));
+    }
+}
+
+TEST_F(BrokenClock, OneOfFewBitsIsReadPastItsEnd) {
+    const ProcessResult run = measured("wraps");
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    std::map<int, double> wallMs;
+    for (const auto& row : rowsOf(runOf("wraps"), "wall_time_ms")) wallMs[row.repeat] = row.value;
+    EXPECT_EQ(wallMs.size(), 20U);
+    const std::vector<records::Record> rows = rowsOf(runOf("wraps"), "gpu_time_ms");
+    EXPECT_GE(rows.size(), 20U);
+    for (const records::Record& row : rows) {
+        if (row.repeat == records::kSetup) continue;
+        EXPECT_GT(row.value, 0.0) << row.repeat;
+        EXPECT_LE(row.value, wallMs[row.repeat]) << row.repeat;
+    }
+}
+
+TEST_F(BrokenClock, DoctorSaysWhatAGoodOneIsWorth) {
+    EXPECT_THAT(with("", {"doctor"}).out,
+                testing::ContainsRegex("GPU times of [0-9]+ bits in steps of [1-9][0-9]* ns"));
+}
+
+}  // namespace
+}  // namespace gfxrepro::test
