@@ -49,6 +49,11 @@ HeightMap::Extremes HeightMap::extremes() const {
     return {*lowest, *highest, {index % sizeSamples.x, index / sizeSamples.x}};
 }
 
+float HeightMap::Extremes::reliefM() const {
+    const float heightM = std::max(std::abs(lowestM), std::abs(highestM));
+    return std::max({highestM - lowestM, 1e-5F * heightM, 1e-6F});  // 1e-6: a plain at 0
+}
+
 Box HeightMap::bounds() const {
     Box box;
     if (isEmpty()) return box;

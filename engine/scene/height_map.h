@@ -51,6 +51,9 @@ struct HeightMap {
     struct Extremes {
         float lowestM = 0.0F, highestM = 0.0F;
         glm::ivec2 highestSample{0};  // the first of them, row by row
+        /// From the lowest to the highest, or a hundred thousandth of the height where that is
+        /// more: what a plain is drawn with is rounded to some millionths.
+        float reliefM() const;
     };
     /// Of a map with samples.
     Extremes extremes() const;

@@ -102,7 +102,8 @@ void TerrainRenderer::setShading(const gl::Pass& pass) const {
     glDisable(GL_BLEND);
     glPolygonMode(GL_FRONT_AND_BACK, settings_.isWireframe ? GL_LINE : GL_FILL);
     pass.setIfActive("lastSample", glm::vec2(terrain_->metadata().sizeSamples() - 1));
-    pass.setIfActive("heightExtent", glm::vec2(terrain_->lowestM(), terrain_->highestM()));
+    const scene::HeightMap::Extremes ends{terrain_->lowestM(), terrain_->highestM()};
+    pass.setIfActive("lowestAndRelief", glm::vec2(ends.lowestM, ends.reliefM()));
 }
 
 template <class Draw>

@@ -233,7 +233,6 @@ image::Image8 groundPicture(const scene::HeightMap& map, int sidePx) {
         glm::max(glm::ivec2(glm::ceil(glm::vec2(cells) / samplesPerPx)), glm::ivec2(1));
     image::Image8 picture(size.x, size.y, 3);
     const scene::HeightMap::Extremes ends = map.extremes();
-    const float relief = std::max(ends.highestM - ends.lowestM, 1e-6F);
     const int step = std::max(1, static_cast<int>(samplesPerPx));
     const auto paintRow = [&](int y) {
         for (int x = 0; x < size.x; ++x) {
@@ -244,7 +243,7 @@ image::Image8 groundPicture(const scene::HeightMap& map, int sidePx) {
                 map.clampedHeightM(at.x, at.y + step) - map.clampedHeightM(at.x, at.y - step);
             const float slope =
                 std::hypot(east, south) / (2.0F * static_cast<float>(step) * map.spacingM);
-            const float altitude = (map.clampedHeightM(at.x, at.y) - ends.lowestM) / relief;
+            const float altitude = (map.clampedHeightM(at.x, at.y) - ends.lowestM) / ends.reliefM();
             const glm::vec3 colour = groundColour(glm::vec2(x, y), altitude, slope);
             for (int c = 0; c < 3; ++c) {
                 picture.at(x, y, c) = static_cast<std::uint8_t>(

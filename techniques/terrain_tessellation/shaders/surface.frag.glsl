@@ -11,7 +11,7 @@ uniform sampler2D colourMap;
 #elif SHADING == 4
 flat in ivec2 surfacePatch;  // on the chequer: 0 or 1; level
 #else
-uniform vec2 heightExtent;  // lowest, highest
+uniform vec2 lowestAndRelief;  // relief: Extremes::reliefM()
 #endif
 layout(location = 0) out vec4 colour;
 
@@ -27,8 +27,7 @@ void main() {
     vec3 ground = (surfacePatch.x == 0 ? vec3(0.12, 0.42, 0.16) : vec3(0.55, 0.22, 0.60)) *
                   exp2(-0.3 * float(surfacePatch.y));
 #else
-    // A flat terrain has no altitudes: 1e-6 m keeps the division finite.
-    float altitude = (surfaceHeight - heightExtent.x) / max(heightExtent.y - heightExtent.x, 1e-6);
+    float altitude = (surfaceHeight - lowestAndRelief.x) / lowestAndRelief.y;
     vec3 ground = mix(vec3(0.16, 0.27, 0.09), vec3(0.42, 0.36, 0.24), smoothstep(0.1, 0.5, altitude));
     ground = mix(ground, vec3(0.85, 0.88, 0.92), smoothstep(0.6, 0.85, altitude));
     ground = mix(vec3(0.33, 0.30, 0.27), ground, smoothstep(0.55, 0.85, n.y));  // bare rock

@@ -304,6 +304,23 @@ TEST_F(TerrainTessellationTest, DrawsTinyAndFlatTerrain) {
     EXPECT_EQ(m.at("crack_pixels/background"), 0.0);
 }
 
+TEST_F(TerrainTessellationTest, APlainHasOneColourAtAnyHeight) {
+    const auto picture = [&](float heightM) {
+        scene::Scene plain = terrain({65, 65});
+        std::ranges::fill(plain.heights->heightsM, heightM);
+        return recorded("{cache: false, view: steep, pictures: true}", &plain).images.at("image");
+    };
+    const image::ImageF atZero = picture(0.0F);
+    for (const float heightM : {0.5F, 500.0F, 8000.0F, -400.0F}) {
+        const image::ImageF high = picture(heightM);
+        int others = 0;  // at the plain's border rounding moves an edge
+        for (std::size_t i = 0; i < high.values().size(); ++i) {
+            others += std::abs(high.values()[i] - atZero.values()[i]) > 0.02F ? 1 : 0;
+        }
+        EXPECT_LE(others, static_cast<int>(high.values().size()) / 100) << heightM;
+    }
+}
+
 TEST_F(TerrainTessellationTest, SeesNothingFromUnderTheGroundAndFarOutside) {
     scene::Scene scene = terrain({129, 129});
     scene::Camera camera;
