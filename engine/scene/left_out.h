@@ -1,4 +1,4 @@
-// What loaders leave out of a file.
+// What loaders leave out of a file, and what is saved out of a scene.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,6 +20,11 @@ class LeftOut {
     }
 
     /// "left out: the line 'l' (12 times)" of each kind.
+    std::vector<std::string> lines() const {
+        std::vector<std::string> lines;
+        tell(lines);
+        return lines;
+    }
     void tell(std::vector<std::string>& warnings) const {
         for (const auto& [what, count] : counts_) {
             warnings.push_back(fmt::format("left out: {}{}", what,

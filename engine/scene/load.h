@@ -4,6 +4,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "engine/scene/scene.h"
 
@@ -31,9 +33,12 @@ Scene loadObj(const std::filesystem::path& path);
 /// targets, materials, textures, cameras.
 Scene loadGltf(const std::filesystem::path& path);
 
+// Saving returns a line for each kind of what a format has no place for.
+
 /// Binary little-endian PLY of the flattened scene (or of its points when it has no triangles).
-void savePly(const std::filesystem::path& path, const Scene& scene);
-/// GLB with instances, materials, textures and cameras.
-void saveGlb(const std::filesystem::path& path, const Scene& scene);
+std::vector<std::string> savePly(const std::filesystem::path& path, const Scene& scene);
+/// GLB with instances, materials, textures, cameras and lights; camera paths, motions, and how far
+/// cameras look and lights reach, are among its extras.
+std::vector<std::string> saveGlb(const std::filesystem::path& path, const Scene& scene);
 
 }  // namespace gfxrepro::scene

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/scene/gltf_extras.h"
 #include "engine/scene/left_out.h"
 #include "engine/scene/load.h"
 #include "engine/scene/load_gltf_file.h"
@@ -57,7 +58,7 @@ class SceneBuilder {
     /// `offset` is subtracted from everything in world space.
     SceneBuilder(const gltf::File& file, const glm::dvec3& offset)
         : file_(file),
-          worldFromFile_(glm::translate(glm::dmat4(1.0), -offset)),
+          offset_(offset),
           isMoved_(offset != glm::dvec3(0.0)),
           leftOut_(file.leftOut),
           accessors_(file),
@@ -86,6 +87,10 @@ class SceneBuilder {
         }
         for (const std::size_t camera : unaimed_) aim(scene_.cameras[camera], scene_.bounds());
         lights_.moveTo(scene_);
+        if (!model().scenes.empty()) {
+            const auto& from = model().scenes[std::max(model().defaultScene, 0)];
+            scene_.paths = gltf::pathsIn(from.extras, offset_, leftOut_);
+        }
         for (const auto& [accessor, isUsed] : usedPositions_) {
             leftOut_.add("a vertex that no triangle uses", std::ranges::count(isUsed, false));
         }
@@ -276,7 +281,7 @@ class SceneBuilder {
     /// The tree below `root`, without recursion: files decide how deep it is. Transforms are
     /// composed in floats; where the scene is moved, in double until the offset is subtracted.
     void visit(int root) {
-        std::vector<Open> open{{root, glm::mat4(1.0F), worldFromFile_}};
+        std::vector<Open> open{{root, glm::mat4(1.0F), glm::translate(glm::dmat4(1.0), -offset_)}};
         while (!open.empty()) {
             const Open parent = open.back();
             open.pop_back();
@@ -359,6 +364,7 @@ class SceneBuilder {
         if (node.mesh < 0) return;
         const tinygltf::Mesh& mesh = gltf::elementOf(
             model().meshes, node.mesh, "{}: node {}: mesh {}", file_.name, index, node.mesh);
+        std::optional<Motion> motion = gltf::motionIn(node.extras, offset_, leftOut_);
         const Parts& parts =
             partsOf({node.mesh, node.skin, node.weights.empty() ? mesh.weights : node.weights});
         // Joints say where a skinned mesh is, whatever its node says.
@@ -370,7 +376,13 @@ class SceneBuilder {
             checkFinite(worldFromMesh, index);
             checkReach(worldFromMesh, parts.bounds, fmt::format("node {}", index));
             accessors_.charge(parts.meshes.size(), sizeof(Instance));
-            for (const int part : parts.meshes) scene_.instances.push_back({part, worldFromMesh});
+            for (const int part : parts.meshes) {
+                if (motion) {
+                    motion->instance = static_cast<int>(scene_.instances.size());
+                    scene_.motions.push_back(*motion);
+                }
+                scene_.instances.push_back({part, worldFromMesh});
+            }
             for (const PointCloud& cloud : parts.clouds) addPoints(cloud, worldFromMesh);
         }
     }
@@ -459,18 +471,15 @@ class SceneBuilder {
                                                            : std::max(1000.0F, 1e5F * camera.nearM);
         camera.position = glm::vec3(worldFromNode[3]);
         const glm::vec3 forward = -unitNormal(glm::vec3(worldFromNode[2]));
-        const double targetM = node.extras.Has(gltf::kTargetM)
-                                   ? node.extras.Get(gltf::kTargetM).GetNumberAsDouble()
-                                   : 0.0;
-        if (!(targetM > 0.0)) unaimed_.push_back(scene_.cameras.size());
-        camera.target =
-            camera.position + (targetM > 0.0 ? static_cast<float>(targetM) : 1.0F) * forward;
+        const std::optional<double> targetM = gltf::lengthExtra(node.extras, gltf::kTargetM);
+        if (!targetM) unaimed_.push_back(scene_.cameras.size());
+        camera.target = camera.position + static_cast<float>(targetM.value_or(1.0)) * forward;
         camera.up = unitNormal(glm::vec3(worldFromNode[1]));
         scene_.cameras.push_back(std::move(camera));
     }
 
     const gltf::File& file_;
-    glm::dmat4 worldFromFile_;
+    glm::dvec3 offset_;
     bool isMoved_;
     LeftOut leftOut_;
     gltf::Accessors accessors_;

@@ -20,9 +20,6 @@
 
 namespace gfxrepro::scene::gltf {
 
-/// Of a camera's node, among its extras: how far its target is, which glTF itself does not say.
-inline constexpr const char* kTargetM = "target_m";
-
 /// Nothing in `model` has been checked against anything else: indices and ranges are as written.
 /// Images that lie in the file's buffers have no content of their own; others hold the bytes of
 /// their file, not decoded.

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/scene/gltf_extras.h"
 #include "engine/scene/model_files.h"
 
 namespace gfxrepro::scene::gltf {
@@ -212,7 +213,11 @@ void Lights::add(const tinygltf::Node& node, int index, const glm::mat4& worldFr
         throw Error(fmt::format("{}: light {}: intensity {} of a channel; 0 and more is allowed",
                                 file_.name, light, candela[channel]));
     }
-    lights_.push_back({glm::vec3(worldFromNode[3]), candela});
+    if (const auto radiusM = lengthExtra(from.extras, kRadiusM)) {
+        ours_.push_back({worldFromNode[3], candela, static_cast<float>(*radiusM)});
+    } else {
+        lights_.push_back({worldFromNode[3], candela});
+    }
 }
 
 void Lights::moveTo(Scene& scene) {
@@ -227,13 +232,14 @@ void Lights::moveTo(Scene& scene) {
         const glm::vec3& candela = light.intensity;
         sum += double{std::max({candela.r, candela.g, candela.b})};
     }
-    if (sum == 0.0) return;
+    if (sum == 0.0) lights_.clear();
     const float radiusM = 0.5F * glm::length(scene.bounds().size());
     for (PointLight& light : lights_) {
         light.intensity *= static_cast<float>(double{kAllLights} / sum);
         light.radiusM = std::max(radiusM, 1e-6F);  // one point: no 0 / 0
     }
-    scene.lights = std::move(lights_);
+    scene.lights = std::move(ours_);
+    scene.lights.insert(scene.lights.end(), lights_.begin(), lights_.end());
 }
 
 }  // namespace gfxrepro::scene::gltf

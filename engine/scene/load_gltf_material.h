@@ -35,14 +35,15 @@ class Lights {
     explicit Lights(const File& file) : file_(file) {}
     /// Nothing where the node has none. Throws Error for lights that are not there or broken.
     void add(const tinygltf::Node& node, int index, const glm::mat4& worldFromNode);
-    /// How bright a candela is depends on the exposure, which a file does not say. All lights
-    /// together get the intensity kAllLights, each its share, and a radius of half the scene's
-    /// diagonal.
+    /// How bright a candela is depends on the exposure, which only files of ours say. All other
+    /// lights together get the intensity kAllLights, each its share, and a radius of half the
+    /// scene's diagonal.
     void moveTo(Scene& scene);
 
   private:
     const File& file_;
     std::vector<PointLight> lights_;  // intensities in candela
+    std::vector<PointLight> ours_;    // of files of ours, as they were saved
     int spots_ = 0, directional_ = 0;
 };
 

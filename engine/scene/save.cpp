@@ -2,17 +2,20 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/core/files.h"
 #include "engine/image/png_io.h"
+#include "engine/scene/gltf_extras.h"
+#include "engine/scene/left_out.h"
 #include "engine/scene/load.h"
-#include "engine/scene/load_gltf_file.h"
 #include "engine/scene/load_ply_header.h"
 
 namespace gfxrepro::scene {
@@ -116,6 +119,10 @@ class GlbBuilder {
         addMeshes();
         if (!scene_.points.positions.empty()) addPoints();
         for (const Camera& camera : scene_.cameras) addCamera(camera);
+        for (const PointLight& light : scene_.lights) addLight(light);
+        if (!scene_.paths.empty()) {
+            model_.scenes[0].extras = gltf::pathsExtra(scene_.paths, scene_.offset);
+        }
         std::sort(model_.extensionsUsed.begin(), model_.extensionsUsed.end());
         if (model_.buffers[0].data.empty()) model_.buffers.clear();
         return std::move(model_);
@@ -185,9 +192,15 @@ class GlbBuilder {
                                             TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
             addMesh(mesh.name, std::move(primitive));
         }
-        for (const Instance& instance : scene_.instances) {
+        for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+            const Instance& instance = scene_.instances[i];
             if (glbMesh[instance.mesh] < 0) continue;
             tinygltf::Node& node = addNode();
+            const auto motion =
+                std::ranges::find(scene_.motions, static_cast<int>(i), &Motion::instance);
+            if (motion != scene_.motions.end()) {
+                node.extras = gltf::motionExtra(*motion, scene_.offset);
+            }
             node.mesh = glbMesh[instance.mesh];
             if (instance.worldFromMesh != glm::mat4(1.0F) || isMoved()) {
                 node.matrix = matrixOf(instance.worldFromMesh, scene_.offset);
@@ -293,11 +306,27 @@ class GlbBuilder {
         node.name = from.name;
         node.camera = static_cast<int>(model_.cameras.size()) - 1;
         const double targetM{glm::length(from.position - from.target)};
-        node.extras =
-            tinygltf::Value(tinygltf::Value::Object{{gltf::kTargetM, tinygltf::Value(targetM)}});
+        node.extras = gltf::numberExtra(gltf::kTargetM, targetM);
         node.matrix = matrixOf({glm::vec4(right, 0.0F), glm::vec4(glm::cross(back, right), 0.0F),
                                 glm::vec4(back, 0.0F), glm::vec4(from.position, 1.0F)},
                                scene_.offset);
+    }
+
+    void addLight(const PointLight& from) {
+        const auto index = static_cast<int>(model_.lights.size());
+        tinygltf::Light& to = model_.lights.emplace_back();
+        to.type = "point";
+        // A power of two, so that the product is what it was.
+        const float most = std::max({from.intensity.r, from.intensity.g, from.intensity.b});
+        to.intensity = most > 0.0F ? std::exp2(std::ceil(std::log2(double{most}))) : 1.0;
+        const glm::dvec3 color = glm::dvec3(from.intensity) / to.intensity;
+        to.color = {color.r, color.g, color.b};
+        to.extras = gltf::numberExtra(gltf::kRadiusM, from.radiusM);
+        tinygltf::Node& node = addNode();
+        const glm::dvec3 position = glm::dvec3(from.position) + scene_.offset;
+        node.translation = {position.x, position.y, position.z};
+        node.extensions["KHR_lights_punctual"] =
+            tinygltf::Value(tinygltf::Value::Object{{"light", tinygltf::Value(index)}});
     }
 
     const Scene& scene_;
@@ -306,13 +335,31 @@ class GlbBuilder {
 
 }  // namespace
 
-void savePly(const std::filesystem::path& path, const Scene& scene) {
+std::vector<std::string> savePly(const std::filesystem::path& path, const Scene& scene) {
+    LeftOut leftOut;
+    leftOut.add("a camera", scene.cameras.size());
+    leftOut.add("a camera path", scene.paths.size());
+    leftOut.add("a height map", scene.heights ? 1 : 0);
+    leftOut.add("a light", scene.lights.size());
+    leftOut.add("a material", scene.materials.size());
+    leftOut.add("a motion", scene.motions.size());
+    leftOut.add("a texture", scene.textures.size());
     if (scene.triangleCount() > 0) {
         const Mesh mesh = flattened(scene);
+        const auto countLost = [&](const char* what, auto attribute) {
+            const bool isKept = !(mesh.*attribute).empty();
+            const auto isThere = [&](const Mesh& one) { return !(one.*attribute).empty(); };
+            leftOut.add(fmt::format("the {} of a mesh, as others have none", what),
+                        isKept ? 0 : std::ranges::count_if(scene.meshes, isThere));
+        };
+        countLost("normals", &Mesh::normals);
+        countLost("texture coordinates", &Mesh::texcoords);
+        countLost("colours", &Mesh::colors);
+        leftOut.add("a point beside triangles", scene.points.positions.size());
         const PlyVertices vertices{mesh.positions, mesh.normals, mesh.texcoords,
                                    mesh.colors,    {},           scene.offset};
         writeFileAtomic(path, plyContent(vertices, mesh.triangles));
-        return;
+        return leftOut.lines();
     }
     const PointCloud& points = scene.points;
     if (points.positions.empty()) {
@@ -322,9 +369,10 @@ void savePly(const std::filesystem::path& path, const Scene& scene) {
         path,
         plyContent(
             {points.positions, points.normals, {}, points.colors, points.radii, scene.offset}, {}));
+    return leftOut.lines();
 }
 
-void saveGlb(const std::filesystem::path& path, const Scene& scene) {
+std::vector<std::string> saveGlb(const std::filesystem::path& path, const Scene& scene) {
     const tinygltf::Model model = GlbBuilder(scene).build();
     std::ostringstream stream;
     constexpr bool kPretty = false;
@@ -337,6 +385,10 @@ void saveGlb(const std::filesystem::path& path, const Scene& scene) {
         throw Error("cannot write " + path.string() + ": a GLB file holds at most 4 GiB");
     }
     writeFileAtomic(path, content);
+    LeftOut leftOut;
+    leftOut.add("a height map", scene.heights ? 1 : 0);
+    leftOut.add("the radius of a point", scene.points.radii.size());
+    return leftOut.lines();
 }
 
 }  // namespace gfxrepro::scene

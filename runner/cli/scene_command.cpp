@@ -44,14 +44,16 @@ void printScene(const scene::Scene& scene) {
 }
 
 void exportTo(const fs::path& path, const scene::Scene& scene) {
+    std::vector<std::string> leftOut;
     if (path.extension() == ".glb") {
-        scene::saveGlb(path, scene);
+        leftOut = scene::saveGlb(path, scene);
     } else if (path.extension() == ".ply") {
-        scene::savePly(path, scene);
+        leftOut = scene::savePly(path, scene);
     } else {
         throw UsageError("--export " + path.string() + ": .glb or .ply is allowed");
     }
     say("exported   {}\n", path.string());
+    for (const std::string& line : leftOut) say("warning    {}\n", line);
 }
 
 gl::Device openDevice(const std::string& name) {

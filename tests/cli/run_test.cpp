@@ -74,6 +74,32 @@ TEST(Run, AnExportedSceneMeasuresAsTheCataloguesDoes) {
     }
 }
 
+// Lights, camera paths and motions, too.
+TEST(Run, AnExportedRoomShowsTheCataloguesPicture) {
+    const TemporaryFolder folder;
+    const ProcessResult exported =
+        gfxrepro({"scene", "indoor/living_room", "--export", folder.path() / "room.glb"});
+    ASSERT_EQ(exported.exitCode, 0) << exported.err;
+    const std::string config = folder.write(
+        "room.yaml",
+        "sweep_of: room\ntitle: R\ntechnique: reflection_reuse\n"
+        "measure: {lane: quality, frames: 2}\n"
+        "params: {method: ray_traced, pictures: true, view: path_1, path_frames: 9, first_frame: "
+        "3, motion: true}\n"
+        "output: {width: 64, height: 48}\nsweep: {scene: [indoor/living_room, room.glb]}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run = gfxrepro({"run", config, "--device", "software", "--out", dir});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    std::vector<fs::path> pictures;
+    for (const auto& entry : fs::recursive_directory_iterator(dir + "/images")) {
+        if (entry.path().string().ends_with("result-f0001.exr")) pictures.push_back(entry.path());
+    }
+    ASSERT_EQ(pictures.size(), 2U);
+    const ProcessResult diff = gfxrepro({"image", "diff", pictures[0], pictures[1]});
+    EXPECT_EQ(diff.exitCode, 0) << diff.err;
+    EXPECT_THAT(diff.out, testing::ContainsRegex("flip +0(\\.0+)?\n")) << diff.out;
+}
+
 TEST(Run, TableThatIsOnlyPrinted) {
     const TemporaryFolder folder;
     const std::string config = folder.write(

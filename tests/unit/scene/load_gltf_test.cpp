@@ -282,6 +282,30 @@ TEST_F(LoadGltf, TakesPointLightsWithTheirShareOfWhatAllGive) {
               "DIR/a.gltf: light 0: intensity -1 of a channel; 0 and more is allowed");
 }
 
+TEST_F(LoadGltf, LeavesOutExtrasThatItCannotRead) {
+    for (const char* paths :
+         {"[1]", R"([{"name":"a"}])", R"([{"name":"a","keys":[]}])", R"([{"name":1,"keys":[{}]}])",
+          R"([{"name":"a","keys":[{"position":[0,0,0],"target":[0,0,0],"up":[0,1,0],"yfov":1,
+              "znear":1,"zfar":2}]}])",
+          R"([{"name":"a","keys":[{"position":[0,0,1e99],"target":[0,0,0],"up":[0,1,0],"yfov":1,
+              "znear":1,"zfar":2}]}])"}) {
+        Document document = square();
+        document["nodes"] = R"([{"mesh":0,"extras":{"motion":{"pivot":[0,0]}}}])";
+        document["scenes"] =
+            fmt::format(R"([{{"nodes":[0],"extras":{{"camera_paths":{}}}}}])", paths);
+        const Scene scene = load(document);
+        EXPECT_TRUE(scene.paths.empty() && scene.motions.empty()) << paths;
+        EXPECT_EQ(scene.warnings, (std::vector<std::string>{
+                                      "left out: a camera path among extras that cannot be read",
+                                      "left out: a motion among extras that cannot be read"}))
+            << paths;
+    }
+    // Those of others, of any form.
+    EXPECT_EQ(loadWith("scenes", R"([{"nodes":[0],"extras":[1]}])").warnings.size(), 0U);
+    EXPECT_EQ(loadWith("scenes", R"([{"nodes":[0],"extras":{"camera_paths":1}}])").paths.size(),
+              0U);
+}
+
 TEST_F(LoadGltf, RefusesTexturesThatAreNotThere) {
     Document document = square();
     document["images"] = kWhitePixel;

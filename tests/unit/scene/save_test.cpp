@@ -2,6 +2,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
+#include <vector>
 
 #include "engine/core/random.h"
 #include "engine/scene/load.h"
@@ -12,6 +13,7 @@ namespace {
 
 using test::errorText;
 using test::TemporaryFolder;
+using Lines = std::vector<std::string>;
 
 /// A mesh whose numbers use all their bits.
 Mesh randomMesh(std::uint64_t seed) {
@@ -167,6 +169,94 @@ TEST(SaveGlb, KeepsEveryMemberOfAMaterial) {
         EXPECT_EQ(a.transmission, b.transmission);
         EXPECT_EQ(a.indexOfRefraction, b.indexOfRefraction);
     }
+}
+
+/// Numbers that use all their bits, as far away as floats allow or relative to an offset.
+Scene litAndMoving(const glm::dvec3& offset) {
+    Scene scene = sceneOf(randomMesh(7));
+    scene.instances.push_back({0, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F, 2, 3))});
+    scene.offset = offset;
+    scene.lights = {{{0.1F, 2, 3}, {0.3F, 0.7F, 1.9F}, 4.3F}, {{1, 0, 0}, glm::vec3(0.0F), 1.1F}};
+    Camera key;
+    key.position = {0.1F, 0.2F, 0.3F};
+    key.up = {0.6F, 0.8F, 0};
+    key.verticalFovRad = 0.9F;
+    key.nearM = 0.3F;
+    scene.paths = {{"path_1", {key, Camera{}}}, {"path_2", {Camera{}}}};
+    scene.motions = {{1, {0.1F, 2, 3}, {0.6F, 0, 0.8F}, 0.7F, {0, 0.3F, 0}, 2.5F}};
+    return scene;
+}
+
+TEST(SaveGlb, KeepsLightsPathsAndMotions) {
+    const TemporaryFolder folder;
+    const Scene scene = litAndMoving(glm::dvec3(0.0));
+    EXPECT_EQ(saveGlb(folder.path() / "a.glb", scene), Lines{});
+    const Scene back = loadGltf(folder.path() / "a.glb");
+    EXPECT_EQ(back.warnings, Lines{});
+    ASSERT_EQ(back.lights.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(back.lights[i].position, scene.lights[i].position);
+        EXPECT_EQ(back.lights[i].intensity, scene.lights[i].intensity);
+        EXPECT_EQ(back.lights[i].radiusM, scene.lights[i].radiusM);
+    }
+    ASSERT_EQ(back.paths.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(back.paths[i].name, scene.paths[i].name);
+        ASSERT_EQ(back.paths[i].keys.size(), scene.paths[i].keys.size());
+        const Camera &a = back.paths[i].keys[0], &b = scene.paths[i].keys[0];
+        EXPECT_EQ(a.position, b.position);
+        EXPECT_EQ(a.target, b.target);
+        EXPECT_EQ(a.up, b.up);
+        EXPECT_EQ(a.verticalFovRad, b.verticalFovRad);
+        EXPECT_EQ(a.nearM, b.nearM);
+        EXPECT_EQ(a.farM, b.farM);
+    }
+    ASSERT_EQ(back.motions.size(), 1U);
+    const Motion &a = back.motions[0], &b = scene.motions[0];
+    EXPECT_EQ(a.instance, b.instance);
+    EXPECT_EQ(a.pivot, b.pivot);
+    EXPECT_EQ(a.axis, b.axis);
+    EXPECT_EQ(a.turnRad, b.turnRad);
+    EXPECT_EQ(a.swing, b.swing);
+    EXPECT_EQ(a.swingCount, b.swingCount);
+}
+
+TEST(SaveGlb, KeepsLightsPathsAndMotionsFarAway) {
+    const TemporaryFolder folder;
+    const Scene scene = litAndMoving({5e6, 0, 0});
+    saveGlb(folder.path() / "a.glb", scene);
+    const Scene back = loadGltf(folder.path() / "a.glb");
+    const auto expectNear = [&](const glm::vec3& a, const glm::vec3& b) {
+        const glm::dvec3 apart = glm::dvec3(a) + back.offset - glm::dvec3(b) - scene.offset;
+        EXPECT_LT(glm::length(apart), 1e-5);
+    };
+    EXPECT_NE(back.offset, glm::dvec3(0.0));
+    expectNear(back.lights.at(0).position, scene.lights[0].position);
+    expectNear(back.paths.at(0).keys[0].target, scene.paths[0].keys[0].target);
+    expectNear(back.motions.at(0).pivot, scene.motions[0].pivot);
+    EXPECT_EQ(back.motions[0].swing, scene.motions[0].swing);
+}
+
+TEST(Save, SaysWhatIsLeftOut) {
+    const TemporaryFolder folder;
+    Scene scene = litAndMoving(glm::dvec3(0.0));
+    scene.meshes.push_back(scene.meshes[0]);
+    scene.meshes[1].normals.clear();
+    scene.instances.push_back({1, glm::mat4(1.0F)});
+    scene.cameras = {Camera{}};
+    scene.materials = {Material{}, Material{}};
+    scene.textures.emplace_back(1, 1, 3, std::uint8_t{7});
+    scene.points.positions = {glm::vec3(1.0F)};
+    scene.points.radii = {0.1F};
+    scene.heights = HeightMap{};
+    EXPECT_EQ(saveGlb(folder.path() / "a.glb", scene),
+              (Lines{"left out: a height map", "left out: the radius of a point"}));
+    EXPECT_EQ(
+        savePly(folder.path() / "a.ply", scene),
+        (Lines{"left out: a camera", "left out: a camera path (2 times)", "left out: a height map",
+               "left out: a light (2 times)", "left out: a material (2 times)",
+               "left out: a motion", "left out: a point beside triangles", "left out: a texture",
+               "left out: the normals of a mesh, as others have none"}));
 }
 
 TEST(SaveGlb, KeepsPoints) {
