@@ -50,13 +50,14 @@ bool holds(const metrics::Interval& interval, double truth) {
 }
 
 /// The share of trials in which `trial` is true; printed for people.
-double shareOf(const char* name, int processes, const std::function<bool(Random&)>& trial) {
+double shareOf(const char* name, int processes, const std::function<bool(Random&)>& trial,
+               int trials = kTrials) {
     int count = 0;
-    for (int i = 0; i < kTrials; ++i) {
+    for (int i = 0; i < trials; ++i) {
         Random random(static_cast<std::uint64_t>(1000 * i + processes));
         count += trial(random) ? 1 : 0;
     }
-    const double share = static_cast<double>(count) / kTrials;
+    const double share = static_cast<double>(count) / trials;
     std::printf("  %s, %d processes: %.1f %%\n", name, processes, 100.0 * share);
     return share;
 }
@@ -255,12 +256,16 @@ TEST_P(ScatterCoverage, OfCellsColumnsAndClaims) {
             shareOf("ratio", processes,
                     [&](Random& random) { return isHeld(rounds(random), "ratio", 1.0 / 1.5); }),
             kRequired);
-        EXPECT_GE(shareOf("equal times, no order", processes,
-                          [&](Random& random) {
-                              const Group pair = pairOf(GetParam(), 1.0, processes, random);
-                              return verdictOn(pair, claimOf("order")) == Verdict::Ambiguous;
-                          }),
-                  atLeast(0.94));
+        // 2000 trials would leave half a percent open, more than lies between the rule's own 4.9 %
+        // of alarms (the exact chance in ten rounds and in twenty) and the 5 % that are allowed.
+        const double silent = shareOf(
+            "equal times, no order", processes,
+            [&](Random& random) {
+                const Group pair = pairOf(GetParam(), 1.0, processes, random);
+                return verdictOn(pair, claimOf("order")) == Verdict::Ambiguous;
+            },
+            25 * kTrials);
+        EXPECT_GE(silent, atLeast(0.95));
     }
 }
 
