@@ -383,6 +383,13 @@ std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {
     try {
         return ClaimReader(claim, own).readsAny() ? "" : "no row that it reads";
     } catch (const AbsentColumnError& error) {
+        for (std::size_t axis = 0; axis < own.rowAxes.size() && !claim.across; ++axis) {
+            for (const tables::TableRow& row : own.rows) {
+                const std::string& label = row.labels[axis];
+                if (!error.text().starts_with(fmt::format("'{}' is no column", label))) continue;
+                return error.text() + acrossHint(label, own.rowAxes[axis]);
+            }
+        }
         return error.text();
     }
 }

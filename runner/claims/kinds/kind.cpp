@@ -87,6 +87,10 @@ void ClaimKeys::readSides(std::string_view separator, ClaimSpec& claim) const {
     addOperands(operands, sidesOf(text, separator, columns), claim);
 }
 
+std::string acrossHint(const std::string& value, const std::string& axis) {
+    return fmt::format("; '{0}' is a value of row axis '{1}': add 'across: {1}'", value, axis);
+}
+
 /// What to write where one of the texts is the value of a row axis; else empty.
 std::string ClaimKeys::acrossHint(const Texts& texts) const {
     for (const auto& [axis, values] : rowValues) {
@@ -94,8 +98,7 @@ std::string ClaimKeys::acrossHint(const Texts& texts) const {
         for (const Node& value : values) {
             if (!value.isScalar() || std::ranges::find(texts, value.text()) == texts.end())
                 continue;
-            return fmt::format("; '{}' is a value of row axis '{}': add 'across: {}'", value.text(),
-                               axis, axis);
+            return claims::acrossHint(value.text(), axis);
         }
     }
     return "";

@@ -78,6 +78,9 @@ struct ClaimPart {
     bool isOfSeeds = false;  // what it reads is a test of several seeds itself
 };
 
+/// What to write where a column's place has the value of a row axis: "; 'a' is a value of …".
+std::string acrossHint(const std::string& value, const std::string& axis);
+
 /// The keys of a claim, as its kind reads them. What is wrong is an Error at its place.
 struct ClaimKeys {
     const Node& node;

@@ -1091,6 +1091,16 @@ TEST(Claims, WhatIsNoExpressionOrReadsNoColumnIsRefusedBeforeAnythingIsMeasured)
     EXPECT_EQ(refused("a + time"), "no error") << "a profile may have taken it away";
 }
 
+/// Without a layout the columns are known once there is a table.
+TEST(Claims, ARowInThePlaceOfAColumnIsHinted) {
+    config::Experiment experiment = tables::experimentFrom(
+        "sweep: {m: [oct, snorm]}\nlayout: {rows: m, columns: {a: {metric: bytes}}}\n"
+        "claims: {X: {says: s, origin: ours, order: a < 2 * a}}\n");
+    experiment.claims[0].operands = {"oct", "snorm"};
+    EXPECT_EQ(whatIsAbsent(experiment.claims[0], tables::buildTable(experiment, {})),
+              "'oct' is no column (columns: a); 'oct' is a value of row axis 'm': add 'across: m'");
+}
+
 /// Each function that the documentation names.
 TEST(Claims, ExpressionsCallFunctions) {
     config::Experiment experiment = tables::experimentFrom(powersBody("bound: a, at_most: 5"));
