@@ -2,6 +2,7 @@
 // lists them, `check` and the recorder refuse others, and a table without a layout shows them.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +53,9 @@ struct Outputs {
     void requirePass(std::string_view pass, const std::string& owner,
                      const SourceLocation& where = {}) const;
 };
+
+/// What is recorded of each picture that has a truth; its name is the pass.
+std::span<const MetricInfo> pictureErrors();
 
 /// Ends the name of what a share is of.
 inline constexpr std::string_view kShareOf = "_of";

@@ -370,8 +370,10 @@ std::string pageHtml(const Page& page, const Model& model) {
     html += paragraph("Printed numbers: ", shown->table.hardware, kSmall);
     html += paragraph("Remark: ", shown->table.remark, kSmall);
     for (std::size_t run = 0; run < page.parts.size(); ++run) {
-        for (const std::string& note : page.parts[run].table.notes) {
-            html += paragraph(model.prefix(run), note, " class=\"small soft\"");
+        const tables::Table& table = page.parts[run].table;
+        for (std::size_t i = 0; i < table.notes.size(); ++i) {
+            html += paragraph(model.prefix(run), table.notes[i],
+                              i < table.toldNotes ? kSmall : " class=\"small soft\"");
         }
     }
     html += curvesHtml(page, model);

@@ -230,7 +230,8 @@ std::string cellHtml(const Cell* cell, std::size_t run) {
         return fmt::format("<td class=\"num\"{}><span class=\"status\">{}</span></td>", attributes,
                            escapeXml(cell->measured));
     }
-    std::string html = fmt::format("<td class=\"num\"{}>{}", attributes, escapeXml(cell->measured));
+    std::string html = fmt::format("<td class=\"num{}\"{}>{}", cell->isWithinNoise ? " soft" : "",
+                                   attributes, escapeXml(cell->measured));
     if (cell->isCalibrated) {
         html += fmt::format(" <abbr title=\"calibrated\">{}</abbr>", tables::kCalibratedMark);
     }
@@ -344,6 +345,9 @@ std::string smallPrintHtml(const Page& page) {
     }
     if (has([](const Cell& cell) { return cell.hasShownBounds() && !cell.hasInterval(); })) {
         parts.emplace_back("range a … b, of too few processes for an interval");
+    }
+    if (has([](const Cell& cell) { return cell.isWithinNoise; })) {
+        parts.emplace_back("a grey ratio is within the noise");
     }
     if (has([](const Cell& cell) { return !ratioHtml(cell).empty(); })) {
         parts.emplace_back("× measured ÷ printed, where it was measured at the printed parameters");

@@ -69,19 +69,23 @@ struct RivalCount {
 struct RivalTally {
     RivalCount less, more;
     std::size_t open = 0;
+
+    std::size_t rows() const { return less.rows + more.rows + open; }
 };
 
-RivalTally rivalTallyOf(const Table& table, std::size_t axis, const std::string& rival,
+/// Marks the cells that are not apart.
+RivalTally rivalTallyOf(Table& table, std::size_t axis, const std::string& rival,
                         std::size_t column) {
     RivalTally tally;
-    for (const TableRow& row : table.rows) {
-        const Cell& cell = row.cells[column];
+    for (TableRow& row : table.rows) {
+        Cell& cell = row.cells[column];
         if (row.labels[axis] != rival || !cell.isOk()) continue;
         const Measured& ratio = cell.values[0];
         const bool isTold = ratio.bounds == Bounds::Interval && ratio.value > 0.0 &&
                             (ratio.interval.high < 1.0 || ratio.interval.low > 1.0);
         const double noise = cell.isTime ? table.wallNoise.value_or(0.0) : 0.0;
-        if (!isTold || std::abs(std::log(ratio.value)) <= noise) {
+        cell.isWithinNoise = !isTold || std::abs(std::log(ratio.value)) <= noise;
+        if (cell.isWithinNoise) {
             ++tally.open;
         } else {
             (ratio.value < 1.0 ? tally.less : tally.more).add(ratio.value);
@@ -90,44 +94,72 @@ RivalTally rivalTallyOf(const Table& table, std::size_t axis, const std::string&
     return tally;
 }
 
+/// What less and more of the metric is called, and what of a rival is divided.
+struct RivalWords {
+    const char *less, *more, *what;
+
+    static RivalWords of(const std::string& metric) {
+        const auto errors = config::pictureErrors();
+        if (config::isTimeMetric(metric)) return {"faster", "slower", "time"};
+        if (std::ranges::find(errors, metric, &config::MetricInfo::name) != errors.end()) {
+            return {"nearer to its truth", "farther from its truth", "error"};
+        }
+        return {"lower", "higher", "value"};
+    }
+};
+
+/// "fast is faster than plain in 2 of 3 rows (0.85 to 0.91 times its time)".
+std::string rivalSentence(const RivalTally& tally, const std::string& rival,
+                          const std::string& first, const RivalWords& words) {
+    std::vector<std::string> parts;
+    const auto part = [&](std::size_t rows, const std::string& what, const std::string& times) {
+        if (rows == 0) return;
+        const std::string where = tally.rows() == 1 ? "the one row"
+                                  : rows == tally.rows()
+                                      ? fmt::format("all {} rows", rows)
+                                      : fmt::format("{} of {} rows", rows, tally.rows());
+        parts.push_back(fmt::format("{} in {}{}", what, where, times));
+    };
+    const auto compared = [&](const RivalCount& count, const char* what) {
+        part(count.rows, fmt::format("{} is {} than {}", rival, what, first),
+             fmt::format(" ({} its {})", count.times(), words.what));
+    };
+    compared(tally.less, words.less);
+    compared(tally.more, words.more);
+    part(tally.open, fmt::format("{} and {} cannot be told apart", rival, first), "");
+    return joined(parts, "; ");
+}
+
 }  // namespace
 
-std::vector<std::string> rivalNotes(const Rivals& rivals, const std::vector<std::string>& columns,
-                                    const Table& table) {
-    std::vector<std::string> notes;
+void compareRivals(const Rivals& rivals, const std::vector<std::string>& columns, Table& table) {
+    std::vector<std::string> told, open;
     const auto axis = std::ranges::find(table.rowAxes, rivals.axis);
     for (const std::string& label : columns) {
         const auto column = table.findColumn(label);
         if (!column || axis == table.rowAxes.end()) continue;
-        const bool hasIntervals = std::ranges::any_of(table.rows, [&](const TableRow& row) {
-            return row.cells[*column].bounds() == Bounds::Interval;
-        });
+        std::string metric;
+        bool hasIntervals = false;
+        for (const TableRow& row : table.rows) {
+            if (row.cells[*column].bounds() != Bounds::Interval) continue;
+            hasIntervals = true;
+            metric = row.cells[*column - 1].metric;  // of the column beside which it stands
+        }
         if (!hasIntervals) continue;
-        const bool isTime = std::ranges::any_of(
-            table.rows, [&](const TableRow& row) { return row.cells[*column].isTime; });
         for (std::size_t i = 1; i < rivals.values.size(); ++i) {
             const RivalTally tally =
                 rivalTallyOf(table, static_cast<std::size_t>(axis - table.rowAxes.begin()),
                              rivals.values[i], *column);
-            std::vector<std::string> parts;
-            const auto part = [&](const RivalCount& count, const char* what) {
-                if (count.rows == 0) return;
-                parts.push_back(fmt::format("{} in {} {} ({})", what, count.rows,
-                                            count.rows == 1 ? "row" : "rows", count.times()));
-            };
-            part(tally.less, isTime ? "less time" : "less");
-            part(tally.more, isTime ? "more time" : "more");
-            if (tally.open > 0) {
-                parts.push_back(fmt::format("not to be told apart in {} {}", tally.open,
-                                            tally.open == 1 ? "row" : "rows"));
-            }
-            if (parts.empty()) continue;
-            notes.push_back(fmt::format("{}, {} against {}: {}.",
-                                        label.substr(0, label.find(" ÷ ")), rivals.values[i],
-                                        rivals.values[0], joined(parts, "; ")));
+            if (tally.rows() == 0) continue;
+            (tally.open == tally.rows() ? open : told)
+                .push_back(fmt::format("{}: {}.", label.substr(0, label.find(" ÷ ")),
+                                       rivalSentence(tally, rivals.values[i], rivals.values[0],
+                                                     RivalWords::of(metric))));
         }
     }
-    return notes;
+    table.toldNotes = told.size();
+    table.notes.insert(table.notes.begin(), open.begin(), open.end());
+    table.notes.insert(table.notes.begin(), told.begin(), told.end());
 }
 
 }  // namespace gfxrepro::tables

@@ -25,10 +25,10 @@ std::pair<std::string, config::Selection> columnAgainst(const Rivals& rivals,
                                                         const std::string& column,
                                                         const config::Experiment& experiment);
 
-/// Which rivals are faster or slower, lower or higher than the first, in how many rows and by how
-/// much, by the intervals of those columns; a time only beyond the noise of the table. None where a
-/// column has no intervals.
-std::vector<std::string> rivalNotes(const Rivals& rivals, const std::vector<std::string>& columns,
-                                    const Table& table);
+/// Puts before the notes which rivals are faster or slower, nearer to their truth or farther from
+/// it, than the first, in how many rows and by how much: by the intervals of those columns, a time
+/// only beyond the noise of the table. Behind what is told (Table::toldNotes) stands what cannot
+/// be. Marks the cells that are not apart. Nothing where a column has no intervals.
+void compareRivals(const Rivals& rivals, const std::vector<std::string>& columns, Table& table);
 
 }  // namespace gfxrepro::tables

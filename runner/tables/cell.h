@@ -68,6 +68,8 @@ struct Cell {
     std::vector<std::optional<double>> printedValues;  // beside the format's statistics
     std::vector<std::string> caseIds;                  // whose records it takes
     std::vector<Pooled> pooled;                        // of several cases: along which axes
+    bool lacksCurve = false;     // it has `equal`, and no axis of numbers along which its cases lie
+    bool isWithinNoise = false;  // of a column "÷ A": from 1 it cannot be told apart
     std::string metric;   // what it shows; empty of a share, and, as its unit, where it is scaled
     bool isTime = false;  // a time, a rate of time, or a share of one
     int timePower = 0;    // as timePower() of its metric; a share of times stays as they double
@@ -111,6 +113,9 @@ struct Cell {
     /// The statistic of that name, the first if the name is empty; null when it is not there.
     const Measured* find(const std::string& statistic, Clock clock = Clock::Wall) const;
 };
+
+/// The seeds of what is computed of two numbers: one of a part is one of the whole. 0: not random.
+std::size_t fewerSeeds(std::size_t a, std::size_t b);
 
 /// Which cases the cell shows.
 Where whereOf(const config::Layout& layout, const Key& row, const Key& column);

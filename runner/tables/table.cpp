@@ -253,8 +253,7 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     blankWhatOthersHave(table);
     fillComputed(layout, table);
     if (std::string note = seedNote(table); !note.empty()) table.notes.push_back(std::move(note));
-    const std::vector<std::string> told = rivalNotes(rivals, against, table);
-    table.notes.insert(table.notes.begin(), told.begin(), told.end());
+    compareRivals(rivals, against, table);
     for (std::string& note : pooledNotes(table)) table.notes.push_back(std::move(note));
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {
         table.notes.push_back(std::move(note));

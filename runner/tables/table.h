@@ -59,6 +59,7 @@ struct Table {
     /// "triangles 69,451": what a table that nobody laid out has in all rows alike.
     std::vector<std::string> constants;
     std::vector<std::string> notes;  // printed rows that found no place, and the like
+    std::size_t toldNotes = 0;       // of these the first, which tell methods apart (compareRivals)
     std::string timesOf;  // where its times are another table's: a sentence without its end
     /// By how much two equal cases of this table would differ (frame_times.h), as a share; none
     /// with too few rounds.
@@ -134,7 +135,8 @@ std::vector<std::string> pooledNotes(const Table& table);
 std::string pooledText(const Cell& cell);
 
 /// Throws Error, at the layout, where a cell would take cases together that differ along an axis
-/// which the layout does not name. `table` may have been built from no records.
+/// which the layout does not name, and where those of a column with `equal` have no curve. `table`
+/// may have been built from no records.
 void requireToldApart(const config::Experiment& experiment, const Table& table);
 
 // Times that are not of one clock: a GPU whose clock moved while a case was timed.

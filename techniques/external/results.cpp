@@ -344,24 +344,17 @@ Picture readPicture(const fs::path& file, const std::string& what, glm::ivec2 si
 
 config::Outputs errorOutputs() {
     using config::Better;
-    config::Outputs outputs{
-        {{"mse", "1", "mean squared error of all values: EXR linear, PNG sRGB", Better::Lower},
-         {"rmse", "1", "its square root", Better::Lower},
-         {"rel_mse", "1", "mean of squared errors ÷ (squared truth + 0.01)", Better::Lower},
-         {"psnr_db", "dB", "10 · log10(1 ÷ mse)", Better::Higher},
-         {"ssim", "1", "structural similarity of luminance", Better::Higher},
-         {"flip", "1", "mean FLIP; HDR-FLIP of EXR files with values beyond 1", Better::Lower},
-         {"same_mean_p", "1",
-          "chance that frames and truths of one expectation differ as these do: a claim "
-          "same_mean judges it",
-          Better::Neither},
-         {"bias_seen", "1",
-          "of a tile, as a share of the mean value: what same_mean_p shows more often than not "
-          "at 1 % of false alarms",
-          Better::Lower}},
-        {}};
-    // Each is of a picture, whose name is its pass.
-    for (config::MetricInfo& info : outputs.metrics) info.of = config::MetricInfo::Of::Pass;
+    constexpr bool kIsDetail = true;
+    const auto errors = config::pictureErrors();
+    config::Outputs outputs{{errors.begin(), errors.end()}};
+    outputs.metrics.push_back({"same_mean_p", "1",
+                               "chance that frames and truths of one expectation differ as these "
+                               "do: a claim same_mean judges it",
+                               Better::Neither, !kIsDetail, config::MetricInfo::Of::Pass});
+    outputs.metrics.push_back({"bias_seen", "1",
+                               "of a tile, as a share of the mean value: what same_mean_p shows "
+                               "more often than not at 1 % of false alarms",
+                               Better::Lower, !kIsDetail, config::MetricInfo::Of::Pass});
     return outputs;
 }
 

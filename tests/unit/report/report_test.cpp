@@ -550,6 +550,22 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
     }
 }
 
+TEST(Report, WhatIsWithinTheNoiseIsGrey) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    run.tables[0].notes = {"A is faster than B.", "C and B cannot be told apart."};
+    run.tables[0].toldNotes = 1;
+    run.tables[0].rows[0].cells[1].isWithinNoise = true;
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    EXPECT_THAT(
+        html, HasSubstr("<p class=\"small\"><span class=\"soft\"></span>A is faster than B.</p>"));
+    EXPECT_THAT(html,
+                HasSubstr("<p class=\"small soft\"><span class=\"soft\"></span>C and B cannot be"));
+    EXPECT_THAT(html, testing::ContainsRegex("<td class=\"num soft\"[^>]*>8.0"));
+    EXPECT_THAT(html, HasSubstr("a grey ratio is within the noise"));
+}
+
 TEST(Report, RunsStandSideBySide) {
     const test::TemporaryFolder a, b, out;
     std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
