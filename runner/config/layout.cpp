@@ -42,9 +42,9 @@ Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
     if (const Node* equal = node.find("equal")) {
         requireKeys(*equal, "equal", keysOf("equal"));
         const std::string what = "equal";
-        selection.equal =
-            Equal{lineOf(requiredAt(*equal, "metric", what), "metric"),
-                  optionalLine(*equal, "pass", what), requiredAt(*equal, "is", what).asDouble()};
+        selection.equal = Equal{lineOf(requiredAt(*equal, "metric", what), "metric"),
+                                optionalLine(*equal, "pass", what),
+                                numberIn(requiredAt(*equal, "is", what), {}, "equal: is")};
     }
     if (const Node* of = node.find("of")) {
         selection.of = lineOf(*of, "of");

@@ -144,6 +144,7 @@ struct Gathered {  // what the records of a cell came to
     std::set<std::string> units;
     std::vector<std::string> caseIds;
     std::set<std::uint64_t> seeds;    // of random numbers that the values hang on
+    std::size_t fewestSeeds = 0;      // of a curve's cases
     std::size_t notRun = 0;           // further cases
     std::vector<double> shareCounts;  // of shares that say so: how many samples each is a share of
 
@@ -364,57 +365,71 @@ std::vector<const CaseRecords*> casesAlong(const std::string& axis, const CellQu
     return along;
 }
 
-/// The curve of a statistic of the format; what is wrong with a case is noted.
-std::vector<CurvePoint> curveOf(const CellQuery& query, Statistic statistic,
-                                std::span<const CaseRecords* const> along, Gathered& gathered) {
-    std::vector<CurvePoint> curve;
+/// What a case has of the other metric, x, and of the cell's own, y.
+struct CurveCase {
+    Samples x, y;
+};
+
+/// The cases that have both; what is wrong with one is noted.
+std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRecords* const> along,
+                                  Gathered& gathered) {
+    CellQuery other = query;
+    other.metric = query.equal->metric;
+    other.pass = query.equal->pass;
+    other.scale = 1.0;
+    other.isRateOfTime = false;
+    std::vector<CurveCase> cases;
     for (const CaseRecords* run : along) {
         if (run->processes.empty()) gathered.note(records::Status::Missing, "a case was not run");
-        CellQuery other = query;
-        other.metric = query.equal->metric;
-        other.pass = query.equal->pass;
-        other.scale = 1.0;
-        other.isRateOfTime = false;
         Gathered x, y;
         std::map<int, int> unitsOfX, unitsOfY;
         int xCount = 0, yCount = 0;
         takeCase(*run, other, unitsOfX, xCount, x);
         takeCase(*run, query, unitsOfY, yCount, y);
-        for (Gathered* one : {&x, &y}) {
+        for (const Gathered* one : {&x, &y}) {
             gathered.note(one->worst, one->message);
-            gathered.seeds.merge(one->seeds);
+            gathered.fewestSeeds = fewerSeeds(gathered.fewestSeeds, one->seeds.size());
         }
         gathered.units.merge(y.units);
         if (x.samples.processes.empty() || y.samples.processes.empty()) continue;
-        curve.push_back({sampledOf(x.samples, statistic), sampledOf(y.samples, statistic)});
+        cases.push_back({std::move(x.samples), std::move(y.samples)});
     }
-    return curve;
+    return cases;
+}
+
+/// Why the curve has no value there.
+std::string whyNotOn(std::span<const CurvePoint> curve, const config::Equal& equal) {
+    const auto [low, high] =
+        std::ranges::minmax(curve, {}, [](const CurvePoint& point) { return point.x.point; });
+    if (low.x.point <= equal.is && equal.is <= high.x.point) {
+        return fmt::format("'{}' passes {:.4g} more than once, or not in every process",
+                           equal.metric, equal.is);
+    }
+    return fmt::format("'{}' goes from {:.4g} to {:.4g} and does not reach {:.4g}", equal.metric,
+                       low.x.point, high.x.point, equal.is);
 }
 
 std::vector<Measured> equalValues(const CellQuery& query, std::span<const CaseRecords* const> along,
                                   Gathered& gathered) {
+    const std::vector<CurveCase> cases = curveCases(query, along, gathered);
+    if (cases.size() < 2) {
+        gathered.note(records::Status::Missing,
+                      fmt::format("equal needs two cases with '{}' and '{}'", query.equal->metric,
+                                  query.metric));
+        return {};
+    }
     std::vector<Measured> values;
     for (const auto& placeholder : query.format.placeholders()) {
-        const std::vector<CurvePoint> curve =
-            curveOf(query, placeholder.statistic, along, gathered);
-        const auto& [metric, pass, at] = *query.equal;
-        if (curve.size() < 2) {
-            gathered.note(
-                records::Status::Missing,
-                fmt::format("equal needs two cases with '{}' and '{}'", metric, query.metric));
-            return {};
+        std::vector<CurvePoint> curve;
+        for (const CurveCase& one : cases) {
+            curve.push_back(
+                {sampledOf(one.x, placeholder.statistic), sampledOf(one.y, placeholder.statistic)});
         }
         Measured& measured = values.emplace_back();
-        static_cast<Summary&>(measured) = readCurve(curve, at);
+        static_cast<Summary&>(measured) = readCurve(curve, query.equal->is);
         measured.statistic = placeholder.name;
         if (std::isfinite(measured.value)) continue;
-        const auto [low, high] =
-            std::ranges::minmax(curve, {}, [](const CurvePoint& point) { return point.x.point; });
-        gathered.note(
-            records::Status::Missing,
-            fmt::format("'{}' is from {:.4g} to {:.4g} there; {:.4g} not in every process, or "
-                        "at several places",
-                        metric, low.x.point, high.x.point, at));
+        gathered.note(records::Status::Missing, whyNotOn(curve, *query.equal));
         return {};
     }
     return values;
@@ -432,6 +447,7 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
         along = casesAlong(cell.pooled[*axis].axis, query, cases);
         cell.pooled.erase(cell.pooled.begin() + static_cast<std::ptrdiff_t>(*axis));
     } else if (cell.isPlanned) {
+        cell.lacksCurve = true;
         gathered.note(records::Status::Missing, "equal needs a swept axis of numbers in the cell");
     }
     if (!along.empty()) cell.values = equalValues(query, along, gathered);
@@ -443,7 +459,7 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
             Gathered beside;
             cell.byProcess = equalValues(*other, along, beside);
         }
-        cell.seedCount = gathered.seeds.size();
+        cell.seedCount = gathered.fewestSeeds;
         for (Measured& measured : cell.values) {
             if (cell.seedCount > 0 && cell.seedCount < measured.rounds.size()) takeAsOne(measured);
         }
@@ -453,6 +469,10 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
 }
 
 }  // namespace
+
+std::size_t fewerSeeds(std::size_t a, std::size_t b) {
+    return a == 0 || b == 0 ? std::max(a, b) : std::min(a, b);
+}
 
 const Measured* Cell::find(const std::string& statistic, Clock clock) const {
     for (const Measured& candidate : clock == Clock::Wall ? values : byProcess) {

@@ -23,7 +23,9 @@ bool keepRoundsOrDraws(std::span<Sampled* const> values) {
         values, [](const Sampled* value) { return !value->rounds.empty() && !value->areDraws; });
     if (!hasRounds) return std::ranges::any_of(values, &Sampled::areDraws);
     for (Sampled* value : values) {
-        if (value->areDraws) *value = {value->point, {}, false, value->isRandom};
+        if (value->areDraws) {
+            *value = {value->point, {}, false, value->isRandom, value->seedCount};
+        }
     }
     return false;
 }
@@ -87,6 +89,7 @@ double Operand::evaluate(std::span<const double> values) {
 }
 
 Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& statistic) {
+    Sampled result;
     std::vector<Sampled> cells;
     std::vector<double> values;
     for (const std::size_t column : columns_) {
@@ -100,12 +103,12 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
         const bool isGuess = !hasRounds && !measured.statistic.empty() &&
                              isSpread(metrics::statisticFromName(measured.statistic));
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
-                         measured.areDraws, cell.seedCount > 0 || isGuess});
+                         measured.areDraws, cell.seedCount > 0 || isGuess, cell.seedCount});
         values.push_back(measured.value);
+        result.seedCount = fewerSeeds(result.seedCount, cell.seedCount);
     }
     std::vector<Sampled*> all;
     for (Sampled& cell : cells) all.push_back(&cell);
-    Sampled result;
     result.point = evaluate(values);
     result.areDraws = keepRoundsOrDraws(all);
     result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
@@ -226,10 +229,6 @@ void gatherFrom(const Cell& from, Cell& cell) {
         cell.message = from.message;
     }
     cell.isCalibrated |= from.isCalibrated;
-    // One seed of a part is one of the whole.
-    const bool isFirst = cell.seedCount == 0 || from.seedCount == 0;
-    cell.seedCount = isFirst ? std::max(cell.seedCount, from.seedCount)
-                             : std::min(cell.seedCount, from.seedCount);
     cell.isAtPrintedParameters &= from.isAtPrintedParameters;
     const auto add = [](const auto& items, auto& all) {
         for (const auto& item : items) {
@@ -262,6 +261,7 @@ void fillComputedCell(Operand& operand, const TableRow& row, const CellFormat& f
         writeStatus(records::statusName(cell.status), cell);
         return;
     }
+    cell.seedCount = operand.evaluate(row, Clock::Wall).seedCount;
     cell.values = computedValues(operand, row, format, Clock::Wall);
     if (const std::string problem = problemOf(read, format, cell.values); !problem.empty()) {
         cell.status = records::Status::Missing;

@@ -93,6 +93,8 @@ TEST_F(ExperimentTest, BadLayouts) {
               head + "37: a cell's selection: unknown key 'metrics'; did you mean 'metric'?");
     EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, where: {metod: x}}}}"),
               head + "56: where: unknown key 'metod'; did you mean 'method'?");
+    EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m, equal: {metric: e, is: x}}}}"),
+              head + "71: equal: is is x; allowed: a number");
     const auto computed = [&](const std::string& of) {
         return layoutError("{rows: scene, columns: {a: {metric: m}, b: {of: \"" + of + "\"}}}");
     };

@@ -81,6 +81,16 @@ TEST(Pooled, AnAxisThatTheLayoutDoesNotNameIsRefused) {
         << "an average beside what it is of";
 }
 
+/// Its cells would all be missing.
+TEST(Pooled, AColumnAtEqualErrorNeedsACurve) {
+    const std::string columns = ", columns: {at: {metric: ms, equal: {metric: error, is: 1}}}}";
+    EXPECT_EQ(refusalOf("{rows: [method, bits]" + columns),
+              "5:1: layout: column 'at' has 'equal', and its cells have no curve: each needs the "
+              "values of an axis of numbers that is swept and that names neither rows nor columns");
+    EXPECT_THAT(refusalOf("{rows: bits" + columns), HasSubstr("has 'equal'")) << "of words";
+    EXPECT_EQ(refusalOf("{rows: method" + columns), "no error");
+}
+
 /// What goes together with a row is one value in each.
 TEST(Pooled, AxesThatGoTogetherAreNotTakenTogether) {
     const config::Experiment experiment = experimentFrom(

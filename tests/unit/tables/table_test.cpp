@@ -523,9 +523,7 @@ TEST(Table, AtEqualTimeAndAtEqualError) {
     EXPECT_TRUE(table.rows[0].cells[0].isTime) << "its clock decides";
     const Cell& beyond = table.rows[0].cells[2];
     EXPECT_EQ(beyond.status, records::Status::Missing);
-    EXPECT_EQ(beyond.message,
-              "'rmse' is from 0.25 to 1 there; 0.1 not in every process, or at several "
-              "places");
+    EXPECT_EQ(beyond.message, "'rmse' goes from 0.25 to 1 and does not reach 0.1");
     EXPECT_EQ(equalOf(1).rows[0].cells[1].bounds(), Bounds::None);
 }
 
@@ -549,7 +547,62 @@ layout:
 )";
     const Table table = buildTable(experimentFrom(body), maker.records());
     EXPECT_EQ(table.rows[0].cells[0].status, records::Status::Missing);
+    EXPECT_EQ(table.rows[0].cells[0].message,
+              "'rmse' passes 0.11 more than once, or not in every process");
     EXPECT_TRUE(table.rows[0].cells[1].isOk()) << table.rows[0].cells[1].message;
+}
+
+/// Six processes; the errors of the last case have the seeds `last`, those before it `others`.
+Table tableOfSeeds(config::Measure::Seeds others, config::Measure::Seeds last) {
+    RecordMaker maker;
+    for (const int samples : {1, 4, 16}) {
+        const config::Measure::Seeds seeds = samples == 16 ? last : others;
+        maker.beginCase("models/duck", fmt::format(R"({{"samples": {}}})", samples)).seeds(seeds);
+        for (int process = 0; process < 6; ++process) {
+            const double noise = seeds == config::Measure::Seeds::Process ? 0.01 * process : 0.0;
+            maker.process(process).add("wall_time_ms", {samples * (1.0 + 0.01 * process)});
+            maker.add("rmse", {(1.0 + noise) / std::sqrt(samples)}, "", "1");
+        }
+    }
+    return buildTable(experimentFrom(R"(
+scene: models/duck
+sweep: {samples: [1, 4, 16]}
+layout:
+  rows: {all: {where: {}}}
+  columns:
+    ms: {metric: wall_time_ms, where: {samples: 1}}
+    error: {metric: rmse, where: {samples: 1}}
+    last_error: {metric: rmse, where: {samples: 16}}
+    pooled_error: {metric: rmse, where: {samples: [1, 4]}}
+    ms_at_half: {metric: wall_time_ms, equal: {metric: rmse, is: 0.4}}
+    cost: {of: error * ms}
+    errors: {of: error * last_error}
+    of_pooled: {of: pooled_error * ms}
+    speedup: {of: ms_at_half / ms}
+)"),
+                      maker.records());
+}
+
+/// However often the rest was measured.
+TEST(Table, WhatIsComputedOfOneSeedIsOneSample) {
+    using Seeds = config::Measure::Seeds;
+    const auto bounded = [](const Table& table) {
+        std::vector<std::string> labels;
+        for (std::size_t i = 0; i < table.columns.size(); ++i) {
+            const Cell& cell = table.rows[0].cells[i];
+            EXPECT_TRUE(cell.isOk()) << table.columns[i].label << ": " << cell.message;
+            EXPECT_EQ(cell.bounds() == Bounds::None, cell.isOfOneSeed()) << table.columns[i].label;
+            if (cell.bounds() == Bounds::Interval) labels.push_back(table.columns[i].label);
+        }
+        return labels;
+    };
+    EXPECT_THAT(bounded(tableOfSeeds(Seeds::Case, Seeds::Case)), ElementsAre("ms"));
+    EXPECT_EQ(bounded(tableOfSeeds(Seeds::Process, Seeds::Process)).size(), 9U);
+    const Table mixed = tableOfSeeds(Seeds::Process, Seeds::Case);
+    EXPECT_THAT(bounded(mixed), ElementsAre("ms", "error", "pooled_error", "cost", "of_pooled"));
+    EXPECT_EQ(mixed.rows[0].cells[5].seedCount, 6U);
+    EXPECT_THAT(mixed.notes,
+                Contains(HasSubstr("numbers: last error, ms at half, errors, speedup.")));
 }
 
 /// A baseline without the others' parameter is one for all values of it.
