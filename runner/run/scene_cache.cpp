@@ -334,16 +334,19 @@ std::string ProgramCache::versionOf(const config::ExternalProgram& program,
     for (const std::string& argument : program.version) {
         command.push_back(config::filled(argument, {{config::placeholder::kHere, program.here}}));
     }
-    const auto [known, isNew] = versions_.try_emplace(sha256 + ' ' + joined(command, " "));
-    if (!isNew) return known->second;
+    const std::string key = gfxrepro::sha256(sha256 + ' ' + joined(command, " "));
+    const fs::path file = folder_ / ("version-" + key.substr(0, 16));
+    if (fs::is_regular_file(file)) return readFile(file);
     const std::string path = config::findExecutable(command.front(), program.here).string();
     if (path.empty()) {
         throw UnsupportedError("the program '" + command.front() +
                                "', which says the version, is not on this machine");
     }
     command.front() = path;
-    known->second = firstLine(runToEnd(command, kVersionLimit).output);
-    return known->second;
+    const std::string version = firstLine(runToEnd(command, kVersionLimit).output);
+    makeFolder(folder_);
+    writeFileAtomic(file, version);
+    return version;
 }
 
 }  // namespace gfxrepro::run

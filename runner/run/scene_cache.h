@@ -3,9 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <list>
-#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/scene/catalog.h"
@@ -57,6 +58,9 @@ class SceneCache : public technique::SceneProvider {
 
 class ProgramCache {
   public:
+    /// In `folder` workers of one run leave each other what programs said of their versions.
+    explicit ProgramCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
     /// The case's program with its version, and the files that it reads. Throws UnsupportedError
     /// where the program is not on this machine, and Error where it, or a file, is not what it was
     /// when the run was planned.
@@ -65,8 +69,8 @@ class ProgramCache {
   private:
     std::string versionOf(const config::ExternalProgram& program, const std::string& sha256);
 
+    std::filesystem::path folder_;
     config::FileDigests digests_;
-    std::map<std::string, std::string> versions_;  // by the program's hash and what asks it
 };
 
 }  // namespace gfxrepro::run

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <new>
 
@@ -17,6 +18,7 @@
 #include "runner/run/plan_json.h"
 #include "runner/run/process_memory.h"
 #include "runner/run/protocol.h"
+#include "runner/run/run_directory.h"
 
 namespace gfxrepro::run {
 
@@ -75,7 +77,7 @@ void serve(gl::Device& device, const WorkerOptions& options,
                                  generators);
     const gl::ShaderLibrary shaders(dataFolder("shaders"));
     // A timing worker keeps nothing but the scene at hand, so that memory is the case's own.
-    ProgramCache programs;
+    ProgramCache programs(std::filesystem::path(options.runDir) / kScratchFolder);
     SceneCache scenes(catalog,
                       options.lane == config::Measure::Lane::Timing ? 0 : kSceneBudgetBytes);
     MeasureContext context{device,

@@ -209,12 +209,14 @@ TEST_F(ExternalProgram, RecordsWhatItSaysAndHowFarItsPictureIsFromTheTruth) {
 }
 
 TEST_F(ExternalProgram, RunsHoldTheHashOfTheProgramAndItsVersion) {
-    const std::string config = write("measure: {lane: quality}\n");
-    const std::string text = readFile(config);
+    const std::string config = write("measure: {lane: timing, processes: 2}\n");
+    const std::string text = readFile(config), asked = (folder.path() / "asked").string();
+    folder.write("version.sh", "echo once >>" + asked + "; echo Renderer 1.2\n");
     folder.write("mine.yaml", text.substr(0, text.find("  params:")) +
-                                  "  version: [echo, \"Renderer 1.2\"]\n" +
+                                  "  version: [sh, \"{here}/version.sh\"]\n" +
                                   text.substr(text.find("  params:")));
     ASSERT_EQ(run(config).exitCode, 0);
+    EXPECT_EQ(readFile(asked), "once\n") << "in a run of two processes of each case";
     const nlohmann::json programs = manifest()["programs"];
     ASSERT_EQ(programs.size(), 2U) << programs;
     EXPECT_EQ(programs[0]["file"], folder.path().string() + "/renderer.sh");
@@ -243,7 +245,7 @@ TEST_F(ExternalProgram, RunsHoldTheHashOfTheProgramAndItsVersion) {
     const ProcessResult again = runProgram({artifact + "/scripts/sweep-mine.sh"},
                                            {std::string("GFXREPRO=") + GFXREPRO_PROGRAM});
     EXPECT_EQ(again.exitCode, 0) << again.err;
-    EXPECT_EQ(rowsOf(artifact + "/again/sweep-mine", "number").size(), 1U);
+    EXPECT_EQ(rowsOf(artifact + "/again/sweep-mine", "number").size(), 2U);
 }
 
 TEST_F(ExternalProgram, AnArtifactHoldsNoFileThatChangedSince) {
