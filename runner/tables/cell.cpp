@@ -124,15 +124,15 @@ bool isFrameTime(const std::string& metric) {
     return metric == "wall_time_ms" || metric == "gpu_time_ms" || metric == "cpu_time_ms";
 }
 
-/// The same place by the CPU time of the process, where such is recorded.
+/// The same place by the CPU time of the process, where such is recorded. What is shown at a time
+/// by the clock has none: at as much CPU time it would be another number.
 std::optional<CellQuery> byProcessTime(const CellQuery& query) {
     const bool isRate = query.metric == "frame_rate";
     const bool isTime = isRate || isFrameTime(query.metric);
-    if (!isTime && !(query.equal && isFrameTime(query.equal->metric))) return std::nullopt;
+    if (!isTime || (query.equal && isFrameTime(query.equal->metric))) return std::nullopt;
     CellQuery other = query;
-    if (isTime) other.metric = "process_time_ms";
+    other.metric = "process_time_ms";
     other.isRateOfTime = isRate;
-    if (other.equal && isFrameTime(other.equal->metric)) other.equal->metric = "process_time_ms";
     return other;
 }
 

@@ -503,6 +503,7 @@ Table equalOf(int processes) {
             maker.lane("timing");
             for (int process = 0; process < processes; ++process) {
                 maker.process(process).add("wall_time_ms", {samples * (1.0 + 0.01 * process)});
+                maker.add("process_time_ms", {2.0 * samples});
                 if (process == 0) maker.add("rmse", {factor / std::sqrt(samples)}, "", "1");
             }
         }
@@ -521,6 +522,9 @@ TEST(Table, AtEqualTimeAndAtEqualError) {
     EXPECT_EQ(table.rows[0].cells[1].bounds(), Bounds::Interval);
     EXPECT_EQ(table.rows[0].cells[1].unit, "ms");
     EXPECT_TRUE(table.rows[0].cells[0].isTime) << "its clock decides";
+    EXPECT_TRUE(table.rows[0].cells[0].byProcess.empty()) << "2 ms are by the clock that it shows";
+    ASSERT_EQ(table.rows[0].cells[1].byProcess.size(), 1U);
+    EXPECT_DOUBLE_EQ(table.rows[0].cells[1].byProcess[0].value, 32.0);
     const Cell& beyond = table.rows[0].cells[2];
     EXPECT_EQ(beyond.status, records::Status::Missing);
     EXPECT_EQ(beyond.message, "'rmse' goes from 0.25 to 1 and does not reach 0.1");
