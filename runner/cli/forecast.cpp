@@ -23,9 +23,8 @@ struct TimedRounds {
     double roundS = 0.0;
 
     double totalS() const {
-        const int certain = measure->certainRounds();
-        const double affordable = std::floor(measure->timeBudgetS / std::max(roundS, 1e-9));
-        const double rounds = std::clamp<double>(affordable, certain, measure->processes);
+        int rounds = measure->certainRounds();
+        while (rounds < measure->processes && measure->mayFollow(rounds, roundS)) ++rounds;
         return roundS * rounds;
     }
 };

@@ -48,6 +48,9 @@ struct Measure {
     bool mayContinue() const;
     /// Rounds that are measured whatever they take.
     int certainRounds() const;
+    /// Whether a round may follow the first `rounds`, which took so long each: it ends within
+    /// `timeBudgetS`; or all `processes` take a quarter more at most, as five give no interval.
+    bool mayFollow(int rounds, double roundS) const;
 };
 
 /// What the seed grows by from one process of a case to the next, with Seeds::Process.

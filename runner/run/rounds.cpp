@@ -192,8 +192,7 @@ std::vector<Unit> Rounds::next(const std::string& experiment) {
     }
     // A round takes as long as those before it did.
     const int measured = std::max(table.roundsBegun, measure.certainRounds());
-    const bool isAffordable =
-        table.spent.count() * (measured + 1) / measured <= measure.timeBudgetS;
+    const bool isAffordable = measure.mayFollow(measured, table.spent.count() / measured);
     const bool isAsked = process < measure.processes;
     const bool isUnknown = measure.mayContinue() && process < measure.processesAtMost &&
                            !table.times.isKnownTo(measure.relativeError, measure.processes);

@@ -166,6 +166,30 @@ TEST(Rounds, EndBeforeTheBudgetIsOverdrawn) {
     EXPECT_EQ(rounds.ending("t/1")["ended_by"], "time_budget_s");
 }
 
+/// Five rounds have no interval: a quarter more time is taken for the sixth, and no more.
+TEST(Rounds, TheSixthMayTakeAQuarterMore) {
+    run::Plan plan = timedPlan();
+    for (config::Case& item : plan.cases) {
+        item.measure.isWithinBudget = true;
+        item.measure.relativeError = 0.0;
+    }
+    const auto roundsOf = [&](int secondsEach) {
+        run::Rounds own(plan, {}, {});
+        for (int round = 0;; ++round) {
+            for (const records::Record& row : rows(plan, round + 1, 0.0)) {
+                if (row.process == round) own.add({row});
+            }
+            own.begin("t/1", after(round * secondsEach));
+            own.end("t/1", after((round + 1) * secondsEach));
+            if (own.next("t/1").empty()) return round + 1;
+        }
+    };
+    EXPECT_EQ(roundsOf(16), 6);
+    EXPECT_EQ(roundsOf(20), 6);
+    EXPECT_EQ(roundsOf(21), 4);
+    EXPECT_EQ(roundsOf(60), 1);
+}
+
 /// A truth, a first start and pictures took most of it; no further round makes them.
 TEST(Rounds, WhatIsMadeOnceIsNoPartOfTheNext) {
     const run::Plan plan = timedPlan();
