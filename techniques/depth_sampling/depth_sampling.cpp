@@ -41,7 +41,6 @@ enum class Measured { ReferenceImages, OutputFrame };
 struct DepthSamplingParams {
     Method method = Method::Conventional;
     Redundancy redundancy = Redundancy::Pixel;
-    Earlier earlier = Earlier::Views;  // by visibility
     int views = 3;
     Placement placement = Placement::Fixed;
     PeeledFrom peeledFrom = PeeledFrom::Centre;
@@ -69,10 +68,6 @@ constexpr Choice<Redundancy> kRedundancies[] = {
      "the earlier image's pixel has the same triangle (algorithm 3); drawn on the device"},
     {Redundancy::Visibility, "visibility",
      "visible from the earlier image's view (algorithm 2); ray cast on the CPU"},
-};
-constexpr Choice<Earlier> kEarlier[] = {
-    {Earlier::Views, "views", "what is visible from their views, as algorithm 2 has it"},
-    {Earlier::Samples, "samples", "what they hold, with what they uncovered"},
 };
 constexpr Choice<OccludedIn> kOccludedIn[] = {
     {OccludedIn::UpToOwn, "up_to_own", "the conventional images up to the image's own view"},
@@ -143,10 +138,7 @@ void checkPlacement(const Params& params, const DepthSamplingParams& read) {
 
 /// Rays have neither a depth buffer nor primitives.
 void checkVisibility(const Params& params, const DepthSamplingParams& read) {
-    if (read.redundancy == Redundancy::Pixel) {
-        params.refuseGiven({"earlier"}, "'redundancy: visibility'");
-        return;
-    }
+    if (read.redundancy == Redundancy::Pixel) return;
     params.refuseGiven({"depth_format", "triangle_ids"}, "'redundancy: pixel'");
     if (read.measured == Measured::OutputFrame) {
         refuse(params, "measured", "'measured: output_frame' needs 'redundancy: pixel'");
@@ -165,8 +157,6 @@ DepthSamplingParams::DepthSamplingParams(Params& params)
     : method(params.getEnum("method", Method::Conventional, kMethods, {"which images are taken"})),
       redundancy(params.getEnum("redundancy", Redundancy::Pixel, kRedundancies,
                                 {"which samples count as captured"})),
-      earlier(params.getEnum("earlier", Earlier::Views, kEarlier,
-                             {"what of earlier images a non-redundant one leaves out"})),
       views(params.getInt("views", 3,
                           {"reference images, or layers of depth peeling", "images", 1,
                            kit::kMaxEarlierImages + 1})),
@@ -314,8 +304,8 @@ class DepthSampling final : public technique::Technique {
         if (params_.method == Method::DepthPeeling) checkViews(tracer, {&views.images[0], 1});
 
         if (params_.redundancy == Redundancy::Visibility) {
-            experiment_ = std::make_unique<VisibilityExperiment>(
-                scene, std::move(tracer), params_.method, views, params_.earlier);
+            experiment_ = std::make_unique<VisibilityExperiment>(scene, std::move(tracer),
+                                                                 params_.method, views);
             return;
         }
         auto experiment = std::make_unique<PixelExperiment>(

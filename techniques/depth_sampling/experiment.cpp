@@ -51,7 +51,7 @@ void PixelExperiment::makeReferenceImages(gl::Profiler& profiler) {
     for (std::size_t i = 0; i < images_.size(); ++i) {
         const gl::GpuScope one(profiler, imageName(i));
         const std::size_t earlier = method_ == Method::Conventional ? 0 : i;
-        renderer_.render(scene_, images_[i], first(images_, earlier));
+        renderer_.render(scene_, images_[i], first(images_));
     }
 }
 
@@ -214,7 +214,7 @@ std::vector<std::uint32_t> marksOf(const VisibilitySequence& sequence, std::size
 }  // namespace
 
 VisibilityExperiment::VisibilityExperiment(const scene::Scene& scene, raycast::RayTracer tracer,
-                                           Method method, const Views& views, Earlier earlier)
+                                           Method method, const Views& views)
     : method_(method),
       tracer_(std::move(tracer)),
       shading_(scene),

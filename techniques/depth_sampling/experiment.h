@@ -130,7 +130,7 @@ class PixelExperiment final : public Experiment {
 class VisibilityExperiment final : public Experiment {
   public:
     VisibilityExperiment(const scene::Scene& scene, raycast::RayTracer tracer, Method method,
-                         const Views& views, Earlier earlier);
+                         const Views& views);
 
     void makeReferenceImages(gl::Profiler& profiler) override;
     Measures measure(const MeasureSettings& settings) override;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 
 #include "engine/core/error.h"
@@ -40,14 +39,6 @@ glm::vec3 forwardOf(const View& view) {
     return {-m[0].z, -m[1].z, -m[2].z};
 }
 
-/// Memory for the hits of one walk, reused from query to query. Walks nest (a walk of image j asks
-/// for earlier images), each under its image's index; a deque keeps the outer ones in place.
-std::vector<TriangleHit>& hitsOfWalk(std::size_t index) {
-    thread_local std::deque<std::vector<TriangleHit>> buffers;
-    while (buffers.size() <= index) buffers.emplace_back();
-    return buffers[index];
-}
-
 }  // namespace
 
 bool isSameView(const View& a, const View& b) {
@@ -65,20 +56,13 @@ struct VisibilitySequence::Sight {
 };
 
 VisibilitySequence::VisibilitySequence(const raycast::RayTracer& tracer, std::vector<View> views,
-                                       bool isNonRedundant, Earlier earlier)
+                                       bool isNonRedundant)
     : tracer_(&tracer),
       views_(std::move(views)),
-      nextOfView_(views_.size(), views_.size()),
       isNonRedundant_(isNonRedundant),
-      earlier_(earlier),
-      isPeeling_(isNonRedundant) {
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-        isPeeling_ = isPeeling_ && isSameView(views_[i], views_[0]);
-        for (std::size_t j = views_.size() - 1; j > i; --j) {
-            if (isSameView(views_[i], views_[j])) nextOfView_[i] = j;
-        }
-    }
-}
+      isPeeling_(isNonRedundant && std::ranges::all_of(views_, [&](const View& view) {
+                     return isSameView(view, views_.front());
+                 })) {}
 
 /// Nothing where the image cannot hold the point: outside of its frustum, or turned away.
 std::optional<VisibilitySequence::Sight> VisibilitySequence::sightOf(
@@ -102,59 +86,74 @@ bool VisibilitySequence::isVisible(std::size_t index, const SurfacePoint& point)
                                          Faces::Drawn, point.triangleId - 1);
 }
 
-/// Whether everything before the point, seen from Vⱼ, is held by earlier images: then image j or an
-/// earlier one holds the point.
-bool VisibilitySequence::isReached(std::size_t index, const SurfacePoint& point) const {
+bool VisibilitySequence::isVisibleFromOneOf(std::size_t count, const SurfacePoint& point) const {
+    for (std::size_t j = 0; j < count; ++j) {
+        if (isVisible(j, point)) return true;
+    }
+    return false;
+}
+
+/// What a ray meets before a point, nearest first. Good until the thread asks again.
+const std::vector<TriangleHit>& VisibilitySequence::hitsBefore(const Sight& sight,
+                                                               const SurfacePoint& point) const {
+    thread_local std::vector<TriangleHit> hits;
+    tracer_->hitsBetween(sight.eye, sight.direction, sight.begin, sight.end(), Faces::Drawn, hits);
+    std::erase_if(hits, [&](const TriangleHit& h) { return h.triangle == point.triangleId - 1; });
+    return hits;
+}
+
+/// Whether image j holds the point unless an earlier view sees it: whether one does see all that
+/// lies before the point on the ray from Vⱼ.
+bool VisibilitySequence::isFirstNew(std::size_t index, const SurfacePoint& point) const {
     const auto sight = sightOf(index, point);
     if (!sight) return false;
-    std::vector<TriangleHit>& hits = hitsOfWalk(index);
-    tracer_->hitsBetween(sight->eye, sight->direction, sight->begin, sight->end(), Faces::Drawn,
-                         hits);
-    std::erase_if(hits, [&](const TriangleHit& h) { return h.triangle == point.triangleId - 1; });
-    if (isPeeling_) {
-        // The same in closed form, without a ray for every hit: the rank along the ray.
-        std::size_t rank = 0;
-        float distance = sight->distance;
-        for (auto hit = hits.rbegin(); hit != hits.rend(); ++hit) {
-            if (hit->distance >= strictlyBefore(distance, sight->eye)) continue;
-            distance = hit->distance;
-            ++rank;
-        }
-        return rank <= index;
-    }
-    // From the back, where hits are hidden most often: the first that is not held decides.
+    // From the back, where hits are hidden most often: the first that no view sees decides.
+    const std::vector<TriangleHit>& hits = hitsBefore(*sight, point);
     const glm::vec3 unit = sight->direction / sight->distance;
     return std::all_of(hits.rbegin(), hits.rend(), [&](const TriangleHit& hit) {
-        return isRedundant(index, {sight->eye + hit.distance * unit, hit.triangle + 1});
+        return isVisibleFromOneOf(index, {sight->eye + hit.distance * unit, hit.triangle + 1});
     });
 }
 
-bool VisibilitySequence::anyHolds(std::size_t count, const SurfacePoint& point) const {
-    // What is visible from Vⱼ, image j or an earlier one holds; this settles most points. Images of
-    // one view reach the farther the later they come, so the last one speaks for all.
-    for (std::size_t i = 0; i < count; ++i) {
-        if (isLastOfItsView(i, count) && isVisible(i, point)) return true;
+/// How many surfaces lie before the point; nothing where no layer can hold it.
+std::optional<std::size_t> VisibilitySequence::layerOf(const SurfacePoint& point) const {
+    const auto sight = sightOf(0, point);
+    if (!sight) return std::nullopt;
+    const std::vector<TriangleHit>& hits = hitsBefore(*sight, point);
+    std::size_t layer = 0;
+    float distance = sight->distance;
+    for (auto hit = hits.rbegin(); hit != hits.rend(); ++hit) {
+        if (hit->distance >= strictlyBefore(distance, sight->eye)) continue;
+        distance = hit->distance;
+        ++layer;
     }
-    if (!isNonRedundant_) return false;
-    for (std::size_t i = 1; i < count; ++i) {
-        if (isLastOfItsView(i, count) && isReached(i, point)) return true;
+    return layer;
+}
+
+bool VisibilitySequence::isRedundant(std::size_t count, const SurfacePoint& point) const {
+    // Departure [xie2017] Algorithm 2: a layer is tested against the layers before, of whose one
+    // view the algorithm would see the first alone.
+    if (isPeeling_) return anyHolds(count, point);
+    return isVisibleFromOneOf(count, point);
+}
+
+bool VisibilitySequence::anyHolds(std::size_t count, const SurfacePoint& point) const {
+    if (isPeeling_) {
+        const auto layer = layerOf(point);
+        return layer && *layer < count;
+    }
+    // The first view that sees a point has it in its image; this settles most points.
+    if (isVisibleFromOneOf(count, point)) return true;
+    for (std::size_t j = 1; isNonRedundant_ && j < count; ++j) {
+        if (isFirstNew(j, point)) return true;
     }
     return false;
 }
 
 bool VisibilitySequence::holds(std::size_t index, const SurfacePoint& point) const {
-    if (!isNonRedundant_ || index == 0) return isVisible(index, point);
-    return isReached(index, point) && !isRedundant(index, point);
-}
-
-bool VisibilitySequence::isRedundant(std::size_t count, const SurfacePoint& point) const {
-    // Departure [xie2017] Algorithm 2: a layer is tested against the layers before, of whose one
-    // view the algorithm would see the first alone; Earlier::Samples does so of all images.
-    if (isPeeling_ || earlier_ == Earlier::Samples) return anyHolds(count, point);
-    for (std::size_t i = 0; i < count; ++i) {
-        if (isLastOfItsView(i, count) && isVisible(i, point)) return true;
-    }
-    return false;
+    if (isPeeling_) return layerOf(point) == index;
+    if (!isNonRedundant_) return isVisible(index, point);
+    return isFirstNew(index, point) && !isVisibleFromOneOf(index, point);
 }
 
 std::optional<std::size_t> VisibilitySequence::visibleFrom(const SurfacePoint& point,
@@ -182,7 +181,7 @@ std::optional<SurfacePoint> VisibilitySequence::sample(std::size_t index, glm::i
     const SurfacePoint nearest = pointOf(first->distance, first->flattenedTriangle);
     if (!isNonRedundant_ || !isRedundant(index, nearest)) return nearest;
 
-    std::vector<TriangleHit>& hits = hitsOfWalk(index);
+    std::vector<TriangleHit> hits;
     tracer_->hitsBetween(view.eyeWorld, direction, first->distance, end, Faces::Drawn, hits);
     for (const TriangleHit& hit : hits) {
         const SurfacePoint point = pointOf(hit.distance, hit.triangle);

@@ -39,12 +39,6 @@ struct SurfacePoint {
     std::uint32_t triangleId = 0;  // as in depth images: 1 + index into the flattened scene
 };
 
-/// What a non-redundant image is tested against.
-enum class Earlier {
-    Views,    // what is visible from the earlier views: [xie2017] Algorithm 2 by the letter
-    Samples,  // what the earlier images hold, with what they uncovered
-};
-
 bool isSameView(const kit::View& a, const kit::View& b);
 
 /// Which points of the scene images with infinitely many pixels hold; their resolution does not
@@ -52,16 +46,16 @@ bool isSameView(const kit::View& a, const kit::View& b);
 /// not held, and back faces neither hide nor are held (raycast::Faces::Drawn).
 ///
 /// A sequence of views stands for a sequence of images. Conventional: image j holds what is visible
-/// from Vⱼ. Non-redundant: image j holds, on each ray from Vⱼ, the first point that no earlier
-/// image of the sequence holds or, by Earlier::Views, that is not visible from an earlier view.
-/// Peeled layers are the same with one view repeated, always against what the layers before hold.
+/// from Vⱼ. Non-redundant: image j holds, on each ray from Vⱼ, the first point that is visible from
+/// no earlier view. Peeled layers are what one view repeated gives: layer j holds the points that
+/// have j others before them.
 ///
 /// All queries may run on several threads at once.
 class VisibilitySequence {
   public:
     /// `tracer` is of the scene whose flattened triangles carry the ids; it must outlive this.
     VisibilitySequence(const raycast::RayTracer& tracer, std::vector<kit::View> views,
-                       bool isNonRedundant, Earlier earlier = Earlier::Samples);
+                       bool isNonRedundant);
 
     const std::vector<kit::View>& views() const { return views_; }
 
@@ -73,30 +67,29 @@ class VisibilitySequence {
     /// Whether the point is redundant with images [0, count) as image `count` is made.
     bool isRedundant(std::size_t count, const SurfacePoint& point) const;
 
-    /// An image from whose view the point is visible; image `first` is tried first (with many
-    /// images a caller saves time with the answer for a point nearby; whether there is one does not
-    /// depend on it).
+    /// A view from which the point is visible; view `first` is tried first (with many views a
+    /// caller saves time with the answer for a point nearby; whether there is one does not depend
+    /// on it).
     std::optional<std::size_t> visibleFrom(const SurfacePoint& point, std::size_t first = 0) const;
 
     /// The image's sample in the direction of a pixel's centre: what Algorithm 1 leaves there.
     std::optional<SurfacePoint> sample(std::size_t index, glm::ivec2 pixel) const;
 
   private:
-    /// From an image's near plane to a little before a point.
+    /// From a view's near plane to a little before a point.
     struct Sight;
     std::optional<Sight> sightOf(std::size_t index, const SurfacePoint& point) const;
+    const std::vector<raycast::TriangleHit>& hitsBefore(const Sight& sight,
+                                                        const SurfacePoint& point) const;
     bool isVisible(std::size_t index, const SurfacePoint& point) const;
-    bool isReached(std::size_t index, const SurfacePoint& point) const;
-    bool isLastOfItsView(std::size_t index, std::size_t count) const {
-        return nextOfView_[index] >= count;
-    }
+    bool isVisibleFromOneOf(std::size_t count, const SurfacePoint& point) const;
+    bool isFirstNew(std::size_t index, const SurfacePoint& point) const;
+    std::optional<std::size_t> layerOf(const SurfacePoint& point) const;
 
     const raycast::RayTracer* tracer_;
     std::vector<kit::View> views_;
-    std::vector<std::size_t> nextOfView_;  // the next image of the same view, or views_.size()
     bool isNonRedundant_;
-    Earlier earlier_;
-    bool isPeeling_;  // all images have one view
+    bool isPeeling_;  // non-redundant, and all images have one view
 };
 
 // Depth images sampled by ray casting: the pictures of visibility redundancy.

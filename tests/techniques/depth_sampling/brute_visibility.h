@@ -28,7 +28,8 @@ class BruteVisibility {
     bool isUnclear() const { return isUnclear_; }
     void start() { isUnclear_ = false; }
 
-    /// Walks the ray from Vⱼ to the point; the first hit that no earlier image holds must be it.
+    /// Walks the ray from Vⱼ to the point; the first hit that no earlier view sees (of layers, that
+    /// no earlier layer holds) must be it.
     bool holds(std::size_t index, const SurfacePoint& point) {
         if (!isInFrustum(index, glm::dvec3(point.positionWorld))) return false;
         const glm::dvec3 eye(views_[index].eyeWorld);
@@ -56,10 +57,19 @@ class BruteVisibility {
 
     bool isSkipped(std::size_t index, const Found& hit) {
         if (!isNonRedundant_) return false;
+        const bool isPeeling = std::ranges::all_of(
+            views_, [&](const kit::View& view) { return isSameView(view, views_.front()); });
         for (std::size_t i = 0; i < index; ++i) {
-            if (holds(i, hit.point)) return true;
+            if (isPeeling ? holds(i, hit.point) : isVisible(i, hit.point)) return true;
         }
         return false;
+    }
+
+    bool isVisible(std::size_t index, const SurfacePoint& point) {
+        if (!isInFrustum(index, glm::dvec3(point.positionWorld))) return false;
+        const glm::dvec3 eye(views_[index].eyeWorld);
+        const auto hits = hitsAlong(index, glm::dvec3(point.positionWorld) - eye);
+        return !hits.empty() && hits.front().point.triangleId == point.triangleId;
     }
 
     bool isInFrustum(std::size_t index, const glm::dvec3& point) {

@@ -7,7 +7,6 @@
 namespace gfxrepro::kit {
 namespace {
 
-using depth_sampling::Earlier;
 using depth_sampling::VisibilitySequence;
 
 /// The three images of `views`, each without what the views before see.
@@ -32,7 +31,7 @@ TEST_F(DepthImageTest, WhatEarlierViewsSeeIsDroppedAsRaysDropIt) {
     const scene::Scene scene = scene::sceneOf(randomTriangles(400, 0.15F, 3));
     const std::vector<View> views = threeViews(64);
     const raycast::RayTracer tracer(scene);
-    const VisibilitySequence rays(tracer, views, true, Earlier::Views);
+    const VisibilitySequence rays(tracer, views, true);
     DepthImageRenderer renderer = makeRenderer();
     const std::vector<HostDepthImage> images =
         drawnByVisibility(renderer, DrawableScene(scene), views);
