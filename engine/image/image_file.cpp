@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/files.h"
 #include "engine/image/exr_io.h"
+#include "engine/image/formats.h"
 #include "engine/image/png_io.h"
 #include "engine/image/resample.h"
 #include "engine/image/srgb.h"
@@ -15,17 +17,49 @@
 namespace gfxrepro::image {
 namespace {
 
-ImageF storedPng(const std::filesystem::path& path) {
+struct Format {
+    std::string_view name;
+    std::string_view magic;    // that its files begin with
+    std::string_view endings;  // ".a.b"
+};
+using namespace std::string_view_literals;
+constexpr Format kFormats[] = {
+    {"exr", "v/1\x01", ".exr"},
+    {"png", "\x89PNG", ".png"},
+    {"pfm", "PF\n", ".pfm"},
+    {"pfm", "Pf\n", ".pfm"},
+    {"hdr", "#?", ".hdr"},
+    {"pnm", "P5", ".pgm.ppm.pnm"},
+    {"pnm", "P6", ".pgm.ppm.pnm"},
+    {"tga", "", ".tga"},
+    {"tiff", "II*\0"sv, ".tif.tiff"},
+    {"tiff", "MM\0*"sv, ".tif.tiff"},
+    {"jpeg", "\xFF\xD8\xFF", ".jpg.jpeg"},
+};
+
+Decoded decodedPng(const std::filesystem::path& path) {
     PngRows stored(path, kMaxSidePx, ImageUse::Picture);
-    ImageF result(stored.width(), stored.height(), stored.channels());
-    std::vector<std::uint16_t> row(result.row(0).size());
-    for (int y = 0; y < result.height(); ++y) {
+    Decoded result{ImageF(stored.width(), stored.height(), stored.channels()), false,
+                   stored.bitDepth() == 16 ? 16 : 8};
+    ImageF& values = result.values;
+    std::vector<std::uint16_t> row(values.row(0).size());
+    for (int y = 0; y < values.height(); ++y) {
         stored.read(row.data());
-        std::ranges::transform(row, result.row(y).begin(), [](std::uint16_t value) {
+        std::ranges::transform(row, values.row(y).begin(), [](std::uint16_t value) {
             return static_cast<float>(value) / 65535.0F;
         });
     }
     return result;
+}
+
+Decoded decodedFile(const std::filesystem::path& path, std::string_view format) {
+    if (format == "png") return decodedPng(path);
+    if (format == "tiff") return readTiff(path);
+    const MappedFile file(path);
+    if (format == "jpeg") return decodeJpeg(file.bytes(), path.string());
+    if (format == "hdr") return decodeHdr(file.bytes(), path.string());
+    if (format == "tga") return decodeTga(file.bytes(), path.string());
+    return decodeNetpbm(file.bytes(), path.string());
 }
 
 /// Of sRGB beside its alpha.
@@ -57,8 +91,13 @@ Picture shownOf(ImageF linear, const Rectangle& data, const Rectangle& display,
     if (part.width < data.width || part.height < data.height) linear = cropped(linear, part);
     part.left += data.left - display.left;
     part.top += data.top - display.top;
-    Picture picture{linear, {}, true, display.width, display.height, part};
+    Picture picture;
+    picture.stored = linear;
     picture.linear = std::move(linear);
+    picture.isLinear = true;
+    picture.width = display.width;
+    picture.height = display.height;
+    picture.part = part;
     return picture;
 }
 
@@ -70,17 +109,55 @@ bool isExrFile(const std::filesystem::path& path) {
     throw UsageError(path.string() + ": is neither .exr nor .png");
 }
 
+const std::string& readEndings() {
+    static const std::string kText = [] {
+        std::string text;
+        for (const Format& format : kFormats) {
+            if (text.find(format.endings) == std::string::npos) text += format.endings;
+        }
+        for (std::size_t at = 1; (at = text.find('.', at)) != std::string::npos; at += 3) {
+            text.replace(at, 1, ", .");
+        }
+        return text;
+    }();
+    return kText;
+}
+
+bool hasReadEnding(const std::string& name) {
+    const std::string ending = std::filesystem::path(name).extension();
+    return ending.size() > 1 && (readEndings() + ",").find(ending + ",") != std::string::npos;
+}
+
+std::string_view formatOf(const std::filesystem::path& path) {
+    const MappedFile file(path);
+    for (const Format& format : kFormats) {
+        if (!format.magic.empty() && file.text().starts_with(format.magic)) return format.name;
+    }
+    const std::string ending = path.extension();
+    for (const Format& format : kFormats) {
+        if (hasReadEnding(path) && format.endings.find(ending) != std::string_view::npos) {
+            return format.name;
+        }
+    }
+    throw Error(path.string() + ": no picture of a format that is read; allowed: " + readEndings());
+}
+
 Picture readPicture(const std::filesystem::path& path) {
-    if (isExrFile(path)) {
+    const std::string_view format = formatOf(path);
+    if (format == "exr") {
         const ExrImage exr = readExr(path);
         return shownOf(exr.colour(), exr.dataWindow(), exr.shownWindow(), path);
     }
+    Decoded decoded = decodedFile(path, format);
+    const Rectangle whole{0, 0, decoded.values.width(), decoded.values.height()};
+    if (decoded.isLinear) return shownOf(std::move(decoded.values), whole, whole, path);
     Picture picture;
-    picture.stored = storedPng(path);
-    picture.linear = lightOf(picture.stored);
-    picture.width = picture.stored.width();
-    picture.height = picture.stored.height();
-    picture.part = {0, 0, picture.width, picture.height};
+    picture.linear = lightOf(decoded.values);
+    picture.stored = std::move(decoded.values);
+    picture.bits = decoded.bits;
+    picture.width = whole.width;
+    picture.height = whole.height;
+    picture.part = whole;
     return picture;
 }
 

@@ -1,22 +1,34 @@
-// Images by their file names: .exr or .png.
+// Pictures of files, whichever format they have.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "engine/image/image.h"
 
 namespace gfxrepro::image {
 
-/// Throws UsageError for any other ending.
+/// Of a file that is written: .exr, not .png. Throws UsageError for any other ending.
 bool isExrFile(const std::filesystem::path& path);
 
+/// The endings of the formats that are read: ".exr, .png, …".
+const std::string& readEndings();
+/// Whether a name has one of them.
+bool hasReadEnding(const std::string& name);
+
+/// exr, png, pfm, hdr, pnm, tga, tiff or jpeg: by what a file begins with, else by its ending.
+/// Throws Error where it is none of them.
+std::string_view formatOf(const std::filesystem::path& path);
+
 /// What a file shows, of 1 to 4 channels: grey, grey and alpha, RGB, RGB and alpha. Of an EXR file
-/// it is what lies in its display window.
+/// it is what lies in its display window. EXR, PFM, HDR and TIFF of floats are linear; PNG, PNM,
+/// TGA, JPEG and other TIFF are sRGB. Colour profiles and gamma of a file are not read.
 struct Picture {
-    ImageF stored;  // of a PNG file sRGB in [0, 1], not multiplied by alpha; else as `linear`
+    ImageF stored;  // sRGB in [0, 1], not multiplied by alpha; of a linear file as `linear`
     ImageF linear;  // light of Rec. 709's primaries, multiplied by alpha
     bool isLinear = false;
+    int bits = 8;               // of a value of sRGB: 8 or 16
     int width = 0, height = 0;  // of the whole
     Rectangle part;             // that has these pixels: of an EXR file it may be smaller
 

@@ -22,6 +22,7 @@
 #include "engine/core/checks.h"
 #include "engine/core/error.h"
 #include "engine/core/node.h"
+#include "engine/image/formats.h"
 #include "engine/image/image.h"
 #include "engine/image/png_io.h"
 #include "engine/scene/height_map.h"
@@ -215,35 +216,12 @@ constexpr std::uint32_t kGeoPixelScale = 33550, kGeoKeys = 34735;
 /// Tiles of 1,024² of floats across the widest map.
 constexpr std::size_t kMostTileRowBytes = std::size_t{260} << 20;
 
-int keepFirstMessage(TIFF*, void* to, const char*, const char* format, va_list arguments) {
-    auto& message = *static_cast<std::string*>(to);
-    if (!message.empty()) return 1;
-    char text[256];
-    std::vsnprintf(text, sizeof text, format, arguments);
-    message = text;
-    return 1;
-}
-
-/// Unknown tags, which GeoTIFF is full of, are no harm. A tag that lies beyond the end of the file
-/// is: it may be the one that says which values are none.
-int keepReadWarning(TIFF* tiff, void* to, const char* module, const char* format,
-                    va_list arguments) {
-    if (std::strstr(format, "IO error") == nullptr) return 1;
-    return keepFirstMessage(tiff, to, module, format, arguments);
-}
-
 /// Grey TIFF of 8 or 16 bit integers or 32 bit floats, in strips or tiles, with GDAL's no-data tag
 /// (libtiff).
 class TiffRows : public HeightRows {
   public:
-    explicit TiffRows(const fs::path& path) : name_(path.string()) {
-        const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(
-            TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
-        TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keepFirstMessage, &message_);
-        TIFFOpenOptionsSetWarningHandlerExtR(options.get(), keepReadWarning, &message_);
-        // Not mapped ("m"): what is read of a file need not stay.
-        tiff_.reset(TIFFOpenExt(name_.c_str(), "rm", options.get()));
-        if (!tiff_ || !message_.empty()) fail();
+    explicit TiffRows(const fs::path& path)
+        : name_(path.string()), tiff_(image::openTiff(path, message_)) {
         fileBytes_ = fs::file_size(path);
         readHeader();
         sizeSamples = {static_cast<int>(width_), static_cast<int>(height_)};
@@ -409,7 +387,7 @@ class TiffRows : public HeightRows {
 
     std::string name_;
     std::string message_;
-    std::unique_ptr<TIFF, void (*)(TIFF*)> tiff_{nullptr, TIFFClose};
+    std::unique_ptr<TIFF, void (*)(TIFF*)> tiff_;
     std::uintmax_t fileBytes_ = 0;
     std::uint32_t width_ = 0;
     std::uint32_t height_ = 0;

@@ -1,7 +1,5 @@
 #include "engine/scene/model_files.h"
 
-#include <stb/stb_image.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -15,6 +13,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/image/formats.h"
 #include "engine/image/image.h"
 #include "engine/image/png_io.h"
 #include "engine/scene/load_gltf_keys.h"
@@ -31,55 +30,6 @@ bool beginsWith(std::span<const std::byte> bytes, std::span<const unsigned char>
 
 constexpr std::array<unsigned char, 4> kPng{0x89, 'P', 'N', 'G'};
 constexpr std::array<unsigned char, 3> kJpeg{0xFF, 0xD8, 0xFF};
-
-/// Without the stuffed bytes (FF 00) that some programs leave between a scan and the next marker:
-/// stb takes them for a marker.
-std::vector<std::byte> withoutStuffedEnds(std::span<const std::byte> bytes) {
-    std::vector<std::byte> kept;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-        const auto at = [&](std::size_t ahead) {
-            return i + ahead < bytes.size() ? std::to_integer<int>(bytes[i + ahead]) : -1;
-        };
-        const bool isRestart = at(3) >= 0xD0 && at(3) <= 0xD7;
-        const bool isMarker = at(2) == 0xFF && at(3) > 0 && at(3) < 0xFF && !isRestart;
-        if (at(0) == 0xFF && at(1) == 0 && isMarker) {
-            ++i;
-        } else {
-            kept.push_back(bytes[i]);
-        }
-    }
-    return kept;
-}
-
-/// JPEG, and PNG with 16 bits a channel, which stb rounds to 8.
-image::Image8 decodedByStb(std::span<const std::byte> bytes, const std::string& name) {
-    if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-        throw Error(name + ": an image of more than 2 GiB");
-    }
-    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-    const auto size = static_cast<int>(bytes.size());
-    int width = 0;
-    int height = 0;
-    int channels = 0;
-    if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
-        throw Error(name + ": " + stbi_failure_reason());
-    }
-    image::checkDeclaredSize(width, height, 4, bytes.size(), name);
-    const int wanted = channels % 2 == 0 ? 4 : 3;
-    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-        stbi_load_from_memory(data, size, &width, &height, &channels, wanted), stbi_image_free);
-    if (pixels == nullptr) {
-        const std::string reason = stbi_failure_reason();
-        if (reason == "unknown marker") {
-            const std::vector<std::byte> mended = withoutStuffedEnds(bytes);
-            if (mended.size() < bytes.size()) return decodedByStb(mended, name);
-        }
-        throw Error(name + ": " + reason);
-    }
-    image::Image8 image(width, height, wanted);
-    std::copy_n(pixels.get(), image.values().size(), image.values().begin());
-    return image;
-}
 
 /// Grey becomes three equal channels; alpha stays.
 image::Image8 asColour(const image::Image8& image) {
@@ -101,9 +51,9 @@ image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string&
     if (beginsWith(bytes, kPng)) {
         constexpr std::size_t kBitDepthAt = 24;  // signature, length, "IHDR", width, height
         const bool isDeep = bytes.size() > kBitDepthAt && bytes[kBitDepthAt] == std::byte{16};
-        return isDeep ? decodedByStb(bytes, name) : asColour(image::decodePng8(bytes, name));
+        return asColour(isDeep ? image::decodeByStb(bytes, name) : image::decodePng8(bytes, name));
     }
-    if (beginsWith(bytes, kJpeg)) return decodedByStb(bytes, name);
+    if (beginsWith(bytes, kJpeg)) return asColour(image::decodeByStb(bytes, name));
     throw Error(name + ": neither a PNG nor a JPEG image");
 }
 

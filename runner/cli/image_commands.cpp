@@ -33,7 +33,7 @@ using image::ImageF;
 
 namespace {
 
-CLI::Option* addFile(CLI::App* app, const char* name, std::string& file, const char* doc) {
+CLI::Option* addFile(CLI::App* app, const char* name, std::string& file, const std::string& doc) {
     return app->add_option(name, file, doc)->required()->option_text("FILE");
 }
 
@@ -50,8 +50,9 @@ CLI::Option* addChoice(CLI::App* app, const char* name, std::string& value, cons
 }
 
 void addDiff(CLI::App& image, ImageDiffOptions& o, std::function<int()>& command) {
+    const std::string kinds = "a linear file (EXR, PFM, HDR, float TIFF) or one of sRGB (the rest)";
     CLI::App* app = image.add_subcommand("diff", "errors of an image, and a map of them");
-    addFile(app, "reference", o.reference, "the reference: EXR (linear) or PNG (sRGB)");
+    addFile(app, "reference", o.reference, "the reference: " + kinds);
     addFile(app, "test", o.test, "the image to compare with it, of the same kind");
     app->add_option("--metric", o.metrics,
                     "one or more, separated by commas (default: all that apply)")
@@ -59,7 +60,7 @@ void addDiff(CLI::App& image, ImageDiffOptions& o, std::function<int()>& command
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"mse", "psnr", "ssim", "flip", "max"}))
         ->option_text("mse|psnr|ssim|flip|max");
-    addChoice(app, "--flip", o.flip, "auto|ldr|hdr", "auto: hdr for EXR with values above 1");
+    addChoice(app, "--flip", o.flip, "auto|ldr|hdr", "auto: hdr for linear values above 1");
     app->add_option("--out", o.out, "write the error map: .png to look at, .exr for numbers")
         ->option_text("FILE");
     addChoice(app, "--map", o.map, "abs|signed|flip", "signed: red where the test is too dark");
@@ -71,8 +72,8 @@ void addDiff(CLI::App& image, ImageDiffOptions& o, std::function<int()>& command
 }
 
 void addConvert(CLI::App& image, ImageConvertOptions& o, std::function<int()>& command) {
-    CLI::App* app = image.add_subcommand("convert", "EXR to PNG and back; one channel in colours");
-    addFile(app, "in", o.in, "EXR or PNG");
+    CLI::App* app = image.add_subcommand("convert", "any to EXR or PNG; one channel in colours");
+    addFile(app, "in", o.in, image::readEndings());
     addOut(app, o.out, "EXR or PNG");
     app->add_option("--exposure", o.exposureStops, "colours times 2^STOPS")
         ->check(CLI::Range(-100.0, 100.0))
@@ -90,8 +91,8 @@ void addConvert(CLI::App& image, ImageConvertOptions& o, std::function<int()>& c
 
 void addCrop(CLI::App& image, ImageCropOptions& o, std::function<int()>& command) {
     CLI::App* app = image.add_subcommand("crop", "a part of an image, its pixels magnified");
-    addFile(app, "in", o.in, "EXR (all channels stay) or PNG");
-    addOut(app, o.out, "a file of the same kind");
+    addFile(app, "in", o.in, "EXR (all channels stay), or any other");
+    addOut(app, o.out, "EXR of a linear file, else PNG");
     const auto addNumber = [&](const char* name, int& number, const char* doc, const char* text) {
         app->add_option(name, number, doc)->required()->option_text(text);
     };
@@ -105,7 +106,7 @@ void addCrop(CLI::App& image, ImageCropOptions& o, std::function<int()>& command
 
 void addSheet(CLI::App& image, ImageSheetOptions& o, std::function<int()>& command) {
     CLI::App* app = image.add_subcommand("contact-sheet", "many images on one PNG");
-    app->add_option("files", o.files, "EXR or PNG, row by row")->required()->option_text("FILE");
+    app->add_option("files", o.files, "pictures, row by row")->required()->option_text("FILE");
     addOut(app, o.out, "PNG");
     app->add_option("--columns", o.columns, "images side by side")
         ->check(CLI::Range(1, 100))
@@ -131,14 +132,14 @@ void requireNoInput(const std::string& out, std::span<const std::string> inputs,
 
 void addImageCommands(CLI::App& app, ImageCommandOptions& options, std::function<int()>& command) {
     CLI::App* image =
-        app.add_subcommand("image", "diff, convert, crop, contact-sheet, info for EXR and PNG");
+        app.add_subcommand("image", "diff, convert, crop, contact-sheet, info of pictures");
     image->require_subcommand(1);
     addDiff(*image, options.diff, command);
     addConvert(*image, options.convert, command);
     addCrop(*image, options.crop, command);
     addSheet(*image, options.sheet, command);
     CLI::App* info = image->add_subcommand("info", "size, channels and attributes of a file");
-    addFile(info, "file", options.file, "EXR or PNG");
+    addFile(info, "file", options.file, image::readEndings());
     info->callback([&] { command = [&] { return imageInfo(options.file); }; });
 }
 
@@ -180,10 +181,12 @@ void printChannel(const image::ExrImage::Channel& channel) {
 }  // namespace
 
 int imageInfo(const std::string& file) {
-    if (!image::isExrFile(file)) {
-        const image::ImageF image = image::readPicture(file).stored;
-        say("png {}x{}, {} {}\n", image.width(), image.height(), image.channels(),
-            image.channels() == 1 ? "channel" : "channels");
+    const std::string_view format = image::formatOf(file);
+    if (format != "exr") {
+        const image::Picture picture = image::readPicture(file);
+        const int channels = picture.stored.channels();
+        say("{} {}x{}, {} {}, {}\n", format, picture.width, picture.height, channels,
+            channels == 1 ? "channel" : "channels", picture.isLinear ? "linear" : "sRGB");
         return kExitOk;
     }
     const image::ExrImage exr = image::readExr(file);
@@ -211,9 +214,11 @@ Pair readPair(const ImageDiffOptions& options) {
     if (!options.out.empty()) image::isExrFile(options.out);
     Pair pair{image::readPicture(options.reference), image::readPicture(options.test)};
     if (pair.test.isLinear != pair.isLinear()) {
-        throw UsageError(fmt::format(
-            "image diff: {} and {} are of different kinds; an EXR is linear, a PNG is not",
-            options.reference, options.test));
+        throw UsageError(
+            fmt::format("image diff: {} and {} are of different kinds: one is linear, as EXR files "
+                        "are, the other "
+                        "sRGB, as PNG files are",
+                        options.reference, options.test));
     }
     image::keepCommon(pair.reference, pair.test);
     metrics::requireComparable(pair.reference.stored, pair.test.stored);
@@ -277,7 +282,7 @@ ImageF numbersOf(const ImageDiffOptions& options, const Pair& pair, const ImageF
     return difference;
 }
 
-/// Differences of what is compared above: linear light of EXR files, displayed values of PNG files.
+/// Differences of what is compared above: linear light, or displayed values of sRGB files.
 image::Image8 diffPicture(const ImageDiffOptions& options, const Pair& pair,
                           const ImageF* flipMap) {
     if (flipMap != nullptr) return metrics::flipPicture(*flipMap);
@@ -442,7 +447,7 @@ Image8 convertedPicture(const ImageConvertOptions& options) {
         if (!picture.isWhole()) tell("{}: {}\n", options.in, image::placeOf(picture));
         return shown(picture.linear, options);
     }
-    if (!image::isExrFile(options.in)) {
+    if (image::formatOf(options.in) != "exr") {
         throw UsageError(options.in + ": --channels is for EXR files");
     }
     const ExrImage image = picked(image::readExr(options.in), options.channels, options.in);
@@ -456,11 +461,11 @@ Image8 convertedPicture(const ImageConvertOptions& options) {
     return shown(interleaved(image), options);
 }
 
-ExrImage exrOf(const ImageF& image) {
+ExrImage exrOf(const ImageF& image, image::ExrPixelType type = image::ExrPixelType::Half) {
     static const std::vector<std::string> kNames[] = {
         {}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     ExrImage exr;
-    exr.add(image, kNames[image.channels()]);
+    exr.add(image, kNames[image.channels()], type);
     return exr;
 }
 
@@ -468,8 +473,9 @@ ExrImage exrFrom(const ImageConvertOptions& options) {
     if (options.toneMap != "none" || !options.range.empty()) {
         throw UsageError("--tonemap and --range are for PNG files; an EXR keeps its numbers");
     }
-    ExrImage exr = image::isExrFile(options.in) ? image::readExr(options.in)
-                                                : exrOf(image::readPicture(options.in).linear);
+    ExrImage exr = image::formatOf(options.in) == "exr"
+                       ? image::readExr(options.in)
+                       : exrOf(image::readPicture(options.in).linear);
     if (!options.channels.empty()) exr = picked(exr, options.channels, options.in);
     const auto scale = static_cast<float>(std::exp2(options.exposureStops));
     for (ExrImage::Channel& channel : exr.channels) {
@@ -484,7 +490,6 @@ ExrImage exrFrom(const ImageConvertOptions& options) {
 }  // namespace
 
 int imageConvert(const ImageConvertOptions& options) {
-    image::isExrFile(options.in);
     requireNoInput(options.out, {&options.in, 1});
     if (image::isExrFile(options.out)) {
         image::writeExr(options.out, exrFrom(options));
@@ -494,9 +499,24 @@ int imageConvert(const ImageConvertOptions& options) {
     return kExitOk;
 }
 
+namespace {
+
+template <class T>
+image::Image<T> quantized(const ImageF& unit) {
+    constexpr auto kMost = static_cast<float>(std::numeric_limits<T>::max());
+    image::Image<T> result(unit.width(), unit.height(), unit.channels());
+    std::ranges::transform(unit.values(), result.values().begin(),
+                           [](float value) { return static_cast<T>(value * kMost + 0.5F); });
+    return result;
+}
+
+}  // namespace
+
 int imageCrop(const ImageCropOptions& options) {
-    const bool isExr = image::isExrFile(options.in);
-    if (image::isExrFile(options.out) != isExr) {
+    const bool isExr = image::formatOf(options.in) == "exr";
+    image::Picture picture;
+    if (!isExr) picture = image::readPicture(options.in);
+    if (image::isExrFile(options.out) != (isExr || picture.isLinear)) {
         throw UsageError(
             fmt::format("image crop: {} and {} are of different kinds; 'image "
                         "convert' makes one of the other",
@@ -504,12 +524,17 @@ int imageCrop(const ImageCropOptions& options) {
     }
     requireNoInput(options.out, {&options.in, 1});
     const image::Rectangle part{options.left, options.top, options.width, options.height};
-    if (isExr) {
-        image::writeExr(options.out,
-                        image::cropped(image::readExr(options.in), part, options.scale));
+    if (isExr || picture.isLinear) {
+        const ExrImage exr =
+            isExr ? image::readExr(options.in) : exrOf(picture.linear, image::ExrPixelType::Float);
+        image::writeExr(options.out, image::cropped(exr, part, options.scale));
     } else {
-        image::writePng(options.out,
-                        image::cropped(image::readPng8(options.in), part, options.scale));
+        const ImageF cropped = image::cropped(picture.stored, part, options.scale);
+        if (picture.bits == 16) {
+            image::writePng(options.out, quantized<std::uint16_t>(cropped));
+        } else {
+            image::writePng(options.out, quantized<std::uint8_t>(cropped));
+        }
     }
     return kExitOk;
 }
@@ -521,9 +546,7 @@ int imageSheet(const ImageSheetOptions& options) {
     requireNoInput(options.out, options.files);
     std::vector<image::Image8> images;
     for (const std::string& file : options.files) {
-        images.push_back(image::isExrFile(file) ? image::toSrgb8(image::withStraightAlpha(
-                                                      image::readPicture(file).linear))
-                                                : image::readPng8(file));
+        images.push_back(image::toSrgb8(image::withStraightAlpha(image::readPicture(file).linear)));
     }
     image::SheetLayout layout;
     layout.columns = options.columns;

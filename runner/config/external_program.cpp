@@ -11,6 +11,7 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
+#include "engine/image/image_file.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 
@@ -284,8 +285,8 @@ void readTruthFrames(const Node& truth, const std::string& what, const ExternalP
 /// Of one that ends with a placeholder the type is not known yet.
 void requirePictureType(const Node& file, const std::string& what) {
     const std::string& text = file.text();
-    if (text.ends_with('}') || text.ends_with(".exr") || text.ends_with(".png")) return;
-    throwNotAllowed(file, what, "a name that ends in .exr or .png");
+    if (text.ends_with('}') || image::hasReadEnding(text)) return;
+    throwNotAllowed(file, what, "a name that ends in one of " + image::readEndings());
 }
 
 void readTruth(const Node& truth, const std::string& what, const Names& known,
@@ -473,7 +474,8 @@ std::vector<SchemaSection> programKeys() {
           {"metrics", "{name: unit | metric}", "{}", "what it says of itself",
            mapOf(anyOf({text(), refTo("program_metric")}))},
           {"passes", "{name: meaning}", "{}", "what tells values of a metric apart", mapOf(text())},
-          {"images", "{name: file | image}", "{}", "pictures that it leaves in {out}, .exr or .png",
+          {"images", "{name: file | image}", "{}",
+           "pictures that it leaves in {out}: " + image::readEndings(),
            mapOf(anyOf({text(), refTo("program_image")}))},
           {"env", "{NAME: text}", "{}", "variables of its environment", mapOf(text())},
           {"version", "line | [arguments]", "none", "what prints its version", oneOrMore(text())},
@@ -513,8 +515,8 @@ std::vector<SchemaSection> programKeys() {
         {"program_image",
          "program.images.NAME.",
          "With a truth its errors are recorded, under the image's name as pass: `gfxrepro "
-         "describe` of the technique lists them. An EXR file is linear, a PNG file sRGB, as is its "
-         "truth.",
+         "describe` of the technique lists them. EXR, PFM, HDR and TIFF of floats are linear, the "
+         "others sRGB, as is their truth.",
          {{"file", "file", "required", "in {out}", text()},
           {"truth", "file | {parameter: value}", "none",
            "a file, or parameters (seed and frame, too) laid over the case's, with which the "

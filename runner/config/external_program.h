@@ -49,7 +49,7 @@ struct ProgramParam {
     std::vector<std::string> choices;  // of a choice alone
 };
 
-/// A picture that the program leaves, .exr or .png.
+/// A picture that the program leaves, of a format that image::readPicture() reads.
 struct ProgramPicture {
     std::string name;
     std::string file;  // with placeholders; below the output folder

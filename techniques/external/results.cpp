@@ -362,8 +362,8 @@ void recordErrors(const Picture& picture, const Picture& truth, const std::strin
                   technique::Recorder& recorder) {
     if (picture.isLinear != truth.isLinear) {
         throw Error(
-            fmt::format("image '{}': one of it and its truth is an EXR file, which is "
-                        "linear, the other a PNG file, which is not",
+            fmt::format("image '{}': one of it and its truth is linear, as EXR files are, the "
+                        "other sRGB, as PNG files are",
                         name));
     }
     const ImageF& test = picture.stored;

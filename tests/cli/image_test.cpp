@@ -154,9 +154,10 @@ TEST_F(ImageCommands, DiffOfSmallImagesHasNoSimilarity) {
 
 TEST_F(ImageCommands, DiffRefuses) {
     const std::string exr = write("a.exr", gbuffer(1.0F)), png = write("b.png", Image8(4, 4, 3));
-    EXPECT_EQ(refusal({"image", "diff", exr, png}),
-              "gfxrepro: image diff: DIR/a.exr and DIR/b.png are of different kinds; an EXR is "
-              "linear, a PNG is not\n");
+    EXPECT_EQ(
+        refusal({"image", "diff", exr, png}),
+        "gfxrepro: image diff: DIR/a.exr and DIR/b.png are of different kinds: one is linear, "
+        "as EXR files are, the other sRGB, as PNG files are\n");
     EXPECT_EQ(refusal({"image", "diff", png, write("c.png", Image8(5, 4, 3))}),
               "gfxrepro: the images differ in shape: 4x4 with 3 channels and 5x4 with 3 "
               "channels\n");
@@ -362,7 +363,8 @@ TEST_F(ImageCommands, InfoNamesChannelsAndAttributes) {
               "channel id         uint  0 to 70000, mean 35000\n"
               "case: 0123456789ab\n"
               "worldToNDC: 0.0625 0 0 0 0 0.0833333 0 0 0 0 1 0 0 0 0 1\n");
-    EXPECT_EQ(out({"image", "info", write("b.png", Image8(4, 5, 1))}), "png 4x5, 1 channel\n");
+    EXPECT_EQ(out({"image", "info", write("b.png", Image8(4, 5, 1))}),
+              "png 4x5, 1 channel, sRGB\n");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "engine/core/files.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/image_file.h"
+#include "engine/image/png_io.h"
 #include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 
@@ -68,6 +69,43 @@ TEST_F(PicturesOfPrograms, APartOfThePictureIsHeldAgainstThatPartOfItsTruth) {
     EXPECT_EQ(run("wide.exr", "whole.exr").exitCode, 4);
     EXPECT_THAT(readFile(dir + "/records.csv"),
                 HasSubstr("image 'result': has 17 × 12 pixels; 16 × 12 were asked for"));
+}
+
+TEST_F(PicturesOfPrograms, OtherFormatsAreReadAsTheirKind) {
+    const ImageF light(16, 12, 3, 0.25F);
+    image::ExrImage exr;
+    exr.add(light, {"R", "G", "B"}, image::ExrPixelType::Float);
+    image::writeExr(folder.path() / "truth.exr", exr);
+    image::writePng(folder.path() / "truth.png", image::Image8(16, 12, 3, 51));
+    const auto values = light.values();
+    folder.write("p.pfm",
+                 "PF\n16 12\n-1\n" + std::string(reinterpret_cast<const char*>(values.data()),
+                                                 values.size_bytes()));
+    std::string hdr = "#?RADIANCE\n\n-Y 12 +X 16\n";
+    for (int i = 0; i < 16 * 12; ++i) hdr += "\x80\x80\x80\x7f";
+    folder.write("p.hdr", hdr);
+    folder.write("p.ppm", "P6\n16 12\n255\n" + std::string(16 * 12 * 3, '\x33'));
+    folder.write("p.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\x10\0\x0c\0\x18\0", 18) +
+                              std::string(16 * 12 * 3, '\x33'));
+    for (const auto& [made, truth] : {std::pair("p.pfm", "truth.exr"),
+                                      {"p.hdr", "truth.exr"},
+                                      {"p.hdr", "p.pfm"},
+                                      {"p.ppm", "truth.png"},
+                                      {"p.tga", "truth.png"},
+                                      {"truth.png", "p.ppm"}}) {
+        ASSERT_EQ(run(made, truth).exitCode, 0) << made << readFile(dir + "/records.csv");
+        EXPECT_EQ(rowsOf(dir, "mse").at(0).value, 0.0) << made;
+    }
+    const auto images = records::readImages(dir);
+    EXPECT_NEAR(image::readPicture(dir + "/" + images[0].exr).linear.at(3, 3, 1), 0.0331F, 1e-4);
+    EXPECT_EQ(run("p.pfm", "truth.png").exitCode, 4);
+    EXPECT_THAT(readFile(dir + "/records.csv"),
+                HasSubstr("image 'result': one of it and its truth is linear, as EXR files are, "
+                          "the other sRGB, as PNG files are"));
+    const ProcessResult refused = run("p.gif", "truth.png");
+    EXPECT_EQ(refused.exitCode, 2);
+    EXPECT_THAT(refused.err, HasSubstr("file is result.gif; allowed: a name that ends in one of "
+                                       ".exr, .png, .pfm, "));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
+#include <stb/stb_image_write.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include "engine/core/json_shape.h"
 #include "engine/core/random.h"
 #include "engine/image/exr_io.h"
+#include "engine/image/image_file.h"
 #include "engine/image/png_io.h"
 #include "engine/scene/load.h"
 #include "runner/config/experiment.h"
@@ -147,6 +149,7 @@ const Load kLoadPly = [](const fs::path& path) { expectConsistent(scene::loadPly
 const Load kLoadObj = [](const fs::path& path) { expectConsistent(scene::loadObj(path)); };
 const Load kLoadGltf = [](const fs::path& path) { expectConsistent(scene::loadGltf(path)); };
 const Load kReadPng = [](const fs::path& path) { image::readPng16(path); };
+const Load kReadPicture = [](const fs::path& path) { image::readPicture(path); };
 const Load kReadExr = [](const fs::path& path) {
     const image::ExrImage exr = image::readExr(path);
     for (const auto& channel : exr.channels) {
@@ -387,6 +390,44 @@ TEST(LoaderFuzz, Exr) {
     std::uint64_t number = 0;
     for (const fs::path& seed : seeds("exr", {own.path() / "a.exr"})) {
         fuzz(kReadExr, seed, ++number, work.path());
+    }
+}
+
+/// 9 × 5 pixels of RGB, in one strip behind the tags.
+std::string smallTiff(const std::string& bytes) {
+    const auto word = [](std::uint32_t value, int count) {
+        return std::string(reinterpret_cast<const char*>(&value), static_cast<std::size_t>(count));
+    };
+    constexpr std::uint32_t kTags[][2] = {{256, 9}, {257, 5}, {258, 8}, {259, 1},   {262, 2},
+                                          {273, 0}, {277, 3}, {278, 5}, {279, 135}, {339, 1}};
+    const auto count = static_cast<std::uint32_t>(std::size(kTags));
+    std::string file = "II*" + std::string(1, '\0') + word(8, 4) + word(count, 2);
+    for (const auto& [tag, value] : kTags) {
+        file += word(tag, 2) + word(4, 2) + word(1, 4);
+        file += word(tag == 273 ? 14 + 12 * count : value, 4);
+    }
+    return file + word(0, 4) + bytes;
+}
+
+TEST(LoaderFuzz, OtherPictures) {
+    const test::TemporaryFolder own, work;
+    const std::string bytes(4 * 9 * 5 * 3, '\x40');
+    stbi_write_jpg((own.path() / "a.jpg").c_str(), 9, 5, 3, bytes.data(), 90);
+    const std::string seeds[] = {
+        own.path() / "a.jpg",
+        own.write("a.tif", smallTiff(bytes)),
+        own.write("a.pfm", "PF\n9 5\n-1\n" + bytes),
+        own.write("a.ppm", "P6 9 5 255\n" + bytes),
+        own.write("a.hdr", "#?RADIANCE\nEXPOSURE=2\n\n-Y 5 +X 9\n" + bytes),
+        own.write("rle.hdr",
+                  std::string("#?RADIANCE\n\n-Y 1 +X 9\n\2\2\0\x09\x89\1\x89\2\x89\3\x89\4", 35)),
+        own.write("a.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\x09\0\5\0\x18\0", 18) + bytes),
+        own.write("rle.tga", std::string("\0\0\x0b\0\0\0\0\0\0\0\0\0\x09\0\1\0\x08\0\x88\7", 20)),
+    };
+    std::uint64_t number = 0;
+    for (const std::string& seed : seeds) {
+        EXPECT_EQ(image::readPicture(seed).width, 9) << seed;
+        for (int round = 0; round < 20; ++round) fuzz(kReadPicture, seed, ++number, work.path());
     }
 }
 

@@ -298,9 +298,10 @@ TEST(Pictures, RefusesATruthOfAnotherKind) {
     const Picture png = readPicture(writePng(folder, "p.png", 16, 51), "p");
     const Picture wide = readPicture(writePng(folder, "w.png", 32, 51), "w");
     test::MetricRecorder recorder;
-    EXPECT_EQ(errorText([&] { recordErrors(png, exr, "result", recorder); }),
-              "image 'result': one of it and its truth is an EXR file, which is linear, the other "
-              "a PNG file, which is not");
+    EXPECT_EQ(
+        errorText([&] { recordErrors(png, exr, "result", recorder); }),
+        "image 'result': one of it and its truth is linear, as EXR files are, the other sRGB, "
+        "as PNG files are");
     EXPECT_EQ(errorText([&] { recordErrors(png, wide, "result", recorder); }),
               "image 'result' and its truth: the images differ in shape: 32x16 with 3 channels and "
               "16x16 with 3 channels");

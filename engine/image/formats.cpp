@@ -1,0 +1,355 @@
+#include "engine/image/formats.h"
+
+#include <fmt/format.h>
+#include <stb/stb_image.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/error.h"
+#include "engine/core/text.h"
+
+namespace gfxrepro::image {
+namespace {
+
+/// The bytes of a file, from the front on.
+class Bytes {
+  public:
+    Bytes(std::span<const std::byte> bytes, const std::string& name)
+        : rest_(bytes), size_(bytes.size()), name_(name) {}
+
+    [[noreturn]] void fail(const std::string& why) const { throw Error(name_ + ": " + why); }
+
+    std::span<const std::byte> rest() const { return rest_; }
+    std::span<const std::byte> take(std::size_t count) {
+        if (count > rest_.size()) fail("the file ends early");
+        const auto taken = rest_.first(count);
+        rest_ = rest_.subspan(count);
+        return taken;
+    }
+    int byte() { return std::to_integer<int>(take(1)[0]); }
+    int littleWord() {
+        const int low = byte();
+        return low + 256 * byte();
+    }
+    /// Up to the end of the line, without it.
+    std::string line() {
+        std::string text;
+        for (int c = byte(); c != '\n'; c = byte()) text += static_cast<char>(c);
+        return text;
+    }
+    /// Between blanks, behind comments of '#'; one blank behind it is taken, too.
+    std::string word() {
+        std::string text;
+        while (true) {
+            const int c = byte();
+            if (c == '#' && text.empty()) {
+                line();
+            } else if (std::string_view(" \t\r\n").find(static_cast<char>(c)) ==
+                       std::string_view::npos) {
+                text += static_cast<char>(c);
+            } else if (!text.empty()) {
+                return text;
+            }
+        }
+    }
+    int number() {
+        const std::string text = word();
+        const auto value = parseInteger(text);
+        if (!value || *value < 0 || *value > std::numeric_limits<int>::max()) {
+            fail("its header has '" + text + "' where a number is allowed");
+        }
+        return static_cast<int>(*value);
+    }
+    void checkSize(int width, int height, std::size_t pixelBytes) const {
+        checkDeclaredSize(width, height, pixelBytes, size_, name_, kMaxSidePx, ImageUse::Picture);
+    }
+
+  private:
+    std::span<const std::byte> rest_;
+    std::size_t size_;
+    const std::string& name_;
+};
+
+float unitOf(std::byte value) {
+    return static_cast<float>(std::to_integer<int>(value)) / 255.0F;
+}
+
+/// Without the stuffed bytes (FF 00) that some programs leave between a scan and the next marker:
+/// stb takes them for a marker.
+std::vector<std::byte> withoutStuffedEnds(std::span<const std::byte> bytes) {
+    std::vector<std::byte> kept;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        const auto at = [&](std::size_t ahead) {
+            return i + ahead < bytes.size() ? std::to_integer<int>(bytes[i + ahead]) : -1;
+        };
+        const bool isRestart = at(3) >= 0xD0 && at(3) <= 0xD7;
+        const bool isMarker = at(2) == 0xFF && at(3) > 0 && at(3) < 0xFF && !isRestart;
+        if (at(0) == 0xFF && at(1) == 0 && isMarker) {
+            ++i;
+        } else {
+            kept.push_back(bytes[i]);
+        }
+    }
+    return kept;
+}
+
+}  // namespace
+
+void flipRows(ImageF& image) {
+    for (int y = 0; y < image.height() / 2; ++y) {
+        std::ranges::swap_ranges(image.row(y), image.row(image.height() - 1 - y));
+    }
+}
+
+Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, ImageUse use) {
+    if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+        throw Error(name + ": an image of more than 2 GiB");
+    }
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    const auto size = static_cast<int>(bytes.size());
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
+        throw Error(name + ": " + stbi_failure_reason());
+    }
+    checkDeclaredSize(width, height, 4, bytes.size(), name, kMaxSidePx, use);
+    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+        stbi_load_from_memory(data, size, &width, &height, &channels, channels), stbi_image_free);
+    if (pixels == nullptr) {
+        const std::string reason = stbi_failure_reason();
+        if (reason == "unknown marker") {
+            const std::vector<std::byte> mended = withoutStuffedEnds(bytes);
+            if (mended.size() < bytes.size()) return decodeByStb(mended, name, use);
+        }
+        throw Error(name + ": " + reason);
+    }
+    Image8 image(width, height, channels);
+    std::copy_n(pixels.get(), image.values().size(), image.values().begin());
+    return image;
+}
+
+Decoded decodeJpeg(std::span<const std::byte> bytes, const std::string& name) {
+    std::span<const std::byte> end = bytes;  // stb fills up what is not there
+    while (!end.empty() && end.back() == std::byte{0}) end = end.first(end.size() - 1);
+    if (end.size() < 2 || end.back() != std::byte{0xD9} || end[end.size() - 2] != std::byte{0xFF}) {
+        throw Error(name + ": the file ends early");
+    }
+    const Image8 image = decodeByStb(bytes, name, ImageUse::Picture);
+    Decoded result{ImageF(image.width(), image.height(), image.channels())};
+    std::ranges::transform(image.values(), result.values.values().begin(),
+                           [](std::uint8_t value) { return static_cast<float>(value) / 255.0F; });
+    return result;
+}
+
+namespace {
+
+Decoded floatsOfPfm(Bytes& file, int channels) {
+    const int width = file.number(), height = file.number();
+    const std::string text = file.word();
+    const std::optional<double> scale = parseDouble(text);
+    if (!scale || std::abs(*scale) != 1.0) {
+        file.fail("its scale is " + text + "; 1 or -1 are allowed, as readers differ in others");
+    }
+    file.checkSize(width, height, static_cast<std::size_t>(channels) * sizeof(float));
+    Decoded result{ImageF(width, height, channels), true};
+    const auto values = result.values.values();
+    std::memcpy(values.data(), file.take(values.size_bytes()).data(), values.size_bytes());
+    if ((*scale > 0.0) != (std::endian::native == std::endian::big)) {
+        for (float& value : values) {
+            value = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
+        }
+    }
+    flipRows(result.values);
+    return result;
+}
+
+}  // namespace
+
+Decoded decodeNetpbm(std::span<const std::byte> bytes, const std::string& name) {
+    Bytes file(bytes, name);
+    const std::string kind = file.word();
+    if (kind == "PF" || kind == "Pf") return floatsOfPfm(file, kind == "PF" ? 3 : 1);
+    if (kind != "P5" && kind != "P6") {
+        file.fail("a file of kind " + kind + "; P5, P6, Pf and PF are read");
+    }
+    const int width = file.number(), height = file.number(), most = file.number();
+    if (most < 1 || most > 65535) {
+        file.fail(fmt::format("its largest value is {}; 1 to 65535 are allowed", most));
+    }
+    const std::size_t valueBytes = most < 256 ? 1 : 2;
+    const int channels = kind == "P6" ? 3 : 1;
+    file.checkSize(width, height, static_cast<std::size_t>(channels) * sizeof(float));
+    Decoded result{ImageF(width, height, channels), false, most < 256 ? 8 : 16};
+    const auto raster = file.take(result.values.values().size() * valueBytes);
+    for (std::size_t i = 0; i < result.values.values().size(); ++i) {
+        int value = std::to_integer<int>(raster[i * valueBytes]);
+        if (valueBytes == 2) value = 256 * value + std::to_integer<int>(raster[2 * i + 1]);
+        if (value > most) file.fail(fmt::format("holds {}, its largest value is {}", value, most));
+        result.values.values()[i] = static_cast<float>(value) / static_cast<float>(most);
+    }
+    if (!file.rest().empty() && file.rest()[0] == std::byte{'P'}) {
+        file.fail("has several pictures; one is allowed");
+    }
+    return result;
+}
+
+namespace {
+
+/// What the lines of the header multiply the values of each channel by.
+std::array<float, 3> factorsOfHdr(Bytes& file) {
+    std::array<float, 3> factors{1.0F, 1.0F, 1.0F};
+    const auto numbersOf = [&](const std::string& line, std::size_t count) {
+        std::vector<float> numbers;
+        for (const std::string& word : split(line.substr(line.find('=') + 1), ' ')) {
+            const auto number = parseDouble(trimmed(word));
+            if (number) numbers.push_back(static_cast<float>(*number));
+        }
+        if (numbers.size() != count) file.fail("its header has '" + line + "'");
+        return numbers;
+    };
+    for (std::string line = file.line(); !line.empty(); line = file.line()) {
+        if (line.starts_with("FORMAT=") && trimmed(line) != "FORMAT=32-bit_rle_rgbe") {
+            file.fail(line + " is not read; 32-bit_rle_rgbe is");
+        }
+        const bool isExposure = line.starts_with("EXPOSURE=");
+        if (isExposure || line.starts_with("COLORCORR=")) {
+            const auto numbers = numbersOf(line, isExposure ? 1 : 3);
+            for (std::size_t c = 0; c < 3; ++c) factors[c] *= numbers[isExposure ? 0 : c];
+        }
+        if (line.starts_with("PRIMARIES=")) {
+            // Radiance's own, whose white is that of equal energy, everybody takes for sRGB's.
+            static constexpr float kRec709[] = {0.64F, 0.33F, 0.30F,   0.60F,
+                                                0.15F, 0.06F, 0.3127F, 0.329F};
+            const auto numbers = numbersOf(line, 8);
+            for (std::size_t i = 0; i < numbers.size(); ++i) {
+                if (std::abs(numbers[i] - kRec709[i]) > 0.03F) {
+                    file.fail(line + ": other primaries than those of Rec. 709");
+                }
+            }
+        }
+    }
+    return factors;
+}
+
+using Rgbe = std::array<int, 4>;
+
+/// A row whose four channels lie one behind the other.
+void readPlanes(Bytes& file, std::vector<Rgbe>& row) {
+    for (std::size_t c = 0; c < 4; ++c) {
+        for (std::size_t x = 0; x < row.size();) {
+            const int code = file.byte();
+            const std::size_t count = static_cast<std::size_t>(code > 128 ? code - 128 : code);
+            if (count == 0 || count > row.size() - x) file.fail("a run is longer than its row");
+            const int run = code > 128 ? file.byte() : 0;
+            for (std::size_t i = 0; i < count; ++i) {
+                row[x++][c] = code > 128 ? run : file.byte();
+            }
+        }
+    }
+}
+
+/// A row of pixels; (1, 1, 1, n) repeats the one before.
+void readPixels(Bytes& file, std::vector<Rgbe>& row, Rgbe pixel) {
+    int shift = 0;
+    for (std::size_t x = 0; x < row.size();) {
+        if (pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1 && x > 0) {
+            const std::size_t count = static_cast<std::size_t>(pixel[3]) << shift;
+            if (count > row.size() - x) file.fail("a run is longer than its row");
+            for (std::size_t i = 0; i < count; ++i, ++x) row[x] = row[x - 1];
+            shift = std::min(shift + 8, 24);
+        } else {
+            row[x++] = pixel;
+            shift = 0;
+        }
+        if (x == row.size()) return;
+        for (int& value : pixel) value = file.byte();
+    }
+}
+
+}  // namespace
+
+Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name) {
+    Bytes file(bytes, name);
+    file.line();  // "#?RADIANCE"
+    const std::array<float, 3> factors = factorsOfHdr(file);
+    const std::string size = file.line();
+    const std::vector<std::string> words = split(trimmed(size), ' ');
+    const auto height =
+        words.size() == 4 && words[0] == "-Y" ? parseInteger(words[1]) : std::optional<long long>();
+    const auto width =
+        words.size() == 4 && words[2] == "+X" ? parseInteger(words[3]) : std::optional<long long>();
+    if (!height || !width) {
+        file.fail("its size is '" + size + "'; allowed: -Y height +X width, rows from the top");
+    }
+    checkDeclaredSize(*width, *height, 3 * sizeof(float), bytes.size(), name, kMaxSidePx,
+                      ImageUse::Picture);
+    Decoded result{ImageF(static_cast<int>(*width), static_cast<int>(*height), 3), true};
+    std::vector<Rgbe> row(static_cast<std::size_t>(*width));
+    for (int y = 0; y < result.values.height(); ++y) {
+        Rgbe first{};
+        for (int& value : first) value = file.byte();
+        if (first[0] == 2 && first[1] == 2 && first[2] * 256 + first[3] == *width && *width >= 8) {
+            readPlanes(file, row);
+        } else {
+            readPixels(file, row, first);
+        }
+        for (std::size_t x = 0; x < row.size(); ++x) {
+            const float step = row[x][3] == 0 ? 0.0F : std::ldexp(1.0F, row[x][3] - 136);
+            for (std::size_t c = 0; c < 3; ++c) {
+                result.values.row(y)[3 * x + c] = static_cast<float>(row[x][c]) * step / factors[c];
+            }
+        }
+    }
+    return result;
+}
+
+Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
+    Bytes file(bytes, name);
+    const auto idBytes = static_cast<std::size_t>(file.byte());
+    const int hasPalette = file.byte(), type = file.byte();
+    file.take(9);  // of the palette; where a screen has the picture
+    const int width = file.littleWord(), height = file.littleWord();
+    const int bits = file.byte(), flags = file.byte();
+    const bool isGrey = type % 8 == 3, isEncoded = type > 8;
+    const bool isRead = (type == 2 || type == 10) ? bits == 24 || bits == 32
+                                                  : (type == 3 || type == 11) && bits == 8;
+    if (!isRead || hasPalette != 0 || (flags & 0xD0) != 0) {
+        file.fail(
+            fmt::format("a TGA file of type {}, {} bits and flags {:#x}; grey of 8, RGB of "
+                        "24 and RGBA of 32 bits, columns from the left, are read",
+                        type, bits, flags));
+    }
+    file.take(idBytes);
+    const std::size_t pixelBytes = static_cast<std::size_t>(bits) / 8;
+    const bool hasAlpha = bits == 32 && (flags & 15) == 8;
+    file.checkSize(width, height, 4 * sizeof(float));
+    Decoded result{ImageF(width, height, isGrey ? 1 : hasAlpha ? 4 : 3)};
+    const auto channels = static_cast<std::size_t>(result.values.channels());
+    const auto values = result.values.values();
+    for (std::size_t i = 0; i < values.size();) {
+        const int code = isEncoded ? file.byte() : 0;
+        const auto count = static_cast<std::size_t>(code % 128 + 1);
+        std::span<const std::byte> pixel = file.take(pixelBytes);
+        for (std::size_t k = 0; k < count; ++k) {
+            if (i == values.size()) file.fail("a run is longer than the picture");
+            if (k > 0 && code < 128) pixel = file.take(pixelBytes);
+            for (std::size_t c = 0; c < channels; ++c) {  // blue, green, red, alpha
+                values[i++] = unitOf(pixel[channels == 1 || c == 3 ? c : 2 - c]);
+            }
+        }
+    }
+    if ((flags & 0x20) == 0) flipRows(result.values);
+    return result;
+}
+
+}  // namespace gfxrepro::image

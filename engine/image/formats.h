@@ -1,0 +1,50 @@
+// Formats of pictures that programs leave, beside EXR and PNG.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "engine/image/image.h"
+
+struct tiff;
+
+namespace gfxrepro::image {
+
+/// Values of 1 to 4 channels.
+struct Decoded {
+    ImageF values;
+    bool isLinear = false;  // light, multiplied by alpha; else sRGB in [0, 1] beside its alpha
+    int bits = 8;           // of a value of sRGB: 8 or 16
+};
+
+// Each throws Error, which begins with `name`, for what it does not read; memory is bounded as in
+// png_io.h.
+
+/// JPEG of 8 bits a channel, and what else stb_image reads; it rounds 16 bits to 8.
+Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name,
+                   ImageUse use = ImageUse::Texture);
+
+/// sRGB of 8 bits. A file that ends early is refused.
+Decoded decodeJpeg(std::span<const std::byte> bytes, const std::string& name);
+/// sRGB: binary PGM and PPM of up to 16 bits. Linear: PFM, rows from the bottom.
+Decoded decodeNetpbm(std::span<const std::byte> bytes, const std::string& name);
+/// Radiance's HDR, linear: divided by its EXPOSURE and COLORCORR.
+Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name);
+/// sRGB: grey, RGB or RGBA of 8 bits, run-length encoded or not.
+Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name);
+/// sRGB of 8 or 16 bits, or linear floats of 16 or 32, in strips or tiles. Of several pages those
+/// that are reductions of the first are passed over.
+Decoded readTiff(const std::filesystem::path& path);
+
+/// Rows from the bottom become rows from the top, and back.
+void flipRows(ImageF& image);
+
+/// Opened for reading, not mapped. The first error, or warning of a failed read, goes to `message`,
+/// which stays where it is meanwhile. Throws Error.
+std::unique_ptr<tiff, void (*)(tiff*)> openTiff(const std::filesystem::path& path,
+                                                std::string& message);
+
+}  // namespace gfxrepro::image

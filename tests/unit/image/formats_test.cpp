@@ -1,0 +1,327 @@
+// Pictures of programs in other formats than EXR and PNG.
+#include <gtest/gtest.h>
+
+#include <stb/stb_image_write.h>
+#include <tiffio.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/core/files.h"
+#include "engine/image/image_file.h"
+#include "engine/image/png_io.h"
+#include "engine/image/srgb.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::image {
+namespace {
+
+using test::errorText;
+using test::TemporaryFolder;
+
+class Formats : public testing::Test {
+  protected:
+    static constexpr int kWidth = 11, kHeight = 5;
+
+    /// Of every pixel and channel another one.
+    static std::vector<std::uint8_t> values(int channels) {
+        std::vector<std::uint8_t> result(static_cast<std::size_t>(kWidth * kHeight * channels));
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            result[i] = static_cast<std::uint8_t>(i * 37 + i / 7);
+        }
+        return result;
+    }
+    static std::vector<float> light() {
+        std::vector<float> result(kWidth * kHeight * 3);
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            result[i] =
+                0.01F * static_cast<float>(1 + i % 50) * std::exp2(static_cast<float>(i % 9));
+        }
+        return result;
+    }
+    std::string path(const char* name) const { return folder_.path() / name; }
+    std::string errorOf(const std::string& name, const std::string& content) const {
+        return errorText([&] { readPicture(folder_.write(name, content)); }, folder_.path());
+    }
+    template <class T>
+    static std::string bytesOf(const std::vector<T>& numbers) {
+        return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)};
+    }
+    /// The picture is that of values(): sRGB, its rows from the top.
+    void expectValues(const char* name, int channels, int tolerance = 0) const {
+        const Picture picture = readPicture(path(name));
+        EXPECT_FALSE(picture.isLinear) << name;
+        EXPECT_EQ(picture.width, kWidth) << name;
+        EXPECT_EQ(picture.height, kHeight) << name;
+        ASSERT_EQ(picture.stored.channels(), channels) << name;
+        const auto expected = values(channels);
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            ASSERT_NEAR(255.0F * picture.stored.values()[i], static_cast<float>(expected[i]),
+                        static_cast<float>(tolerance) + 1e-3F)
+                << name << " " << i;
+        }
+        if (channels == 3) {
+            EXPECT_EQ(picture.linear.at(2, 1, 1), linearOf(picture.stored.at(2, 1, 1)));
+        }
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Formats, PortableAnymapsAreSrgb) {
+    folder_.write("a.ppm", "P6\n# by hand\n11 5\n255\n" + bytesOf(values(3)));
+    expectValues("a.ppm", 3);
+    folder_.write("a.pgm", "P5 11 5 255\n" + bytesOf(values(1)));
+    expectValues("a.pgm", 1);
+    const Picture deep =
+        readPicture(folder_.write("b.ppm", std::string("P6 1 1 1000\n\x03\xe8\x01\xf4\0\0", 18)));
+    EXPECT_EQ(deep.bits, 16);
+    EXPECT_EQ(deep.stored.at(0, 0, 0), 1.0F);
+    EXPECT_EQ(deep.stored.at(0, 0, 1), 0.5F);
+    EXPECT_EQ(errorOf("c.ppm", "P6 2 1 255\nabcde"), "DIR/c.ppm: the file ends early");
+    EXPECT_EQ(errorOf("c.ppm", "P3 1 1 255\n1 2 3\n"),
+              "DIR/c.ppm: a file of kind P3; P5, P6, Pf and PF are read");
+    EXPECT_EQ(errorOf("c.ppm", "P6 x 1 255\nabc"),
+              "DIR/c.ppm: its header has 'x' where a number is allowed");
+    EXPECT_EQ(errorOf("c.ppm", "P5 1 1 100\nz"), "DIR/c.ppm: holds 122, its largest value is 100");
+    EXPECT_EQ(errorOf("c.ppm", "P5 1 1 0\nz"),
+              "DIR/c.ppm: its largest value is 0; 1 to 65535 are allowed");
+    EXPECT_EQ(errorOf("c.ppm", "P5 1 1 255\nzP5 1 1 255\nz"),
+              "DIR/c.ppm: has several pictures; one is allowed");
+    EXPECT_EQ(errorOf("c.ppm", "P5 30000 30000 255\n"),
+              "DIR/c.ppm: the header declares 30000 x 30000 pixels of 4 bytes, too many for a file "
+              "of 19 bytes");
+}
+
+TEST_F(Formats, PortableFloatMapsAreLinear) {
+    const std::vector<float> rows = {1.5F, -2.0F, 0.25F, 4.0F, 0.0F, 1e-5F,
+                                     7.0F, 8.0F,  9.0F,  1.0F, 2.0F, 3.0F};
+    const Picture picture = readPicture(folder_.write("a.pfm", "PF\n2 2\n-1.0\n" + bytesOf(rows)));
+    EXPECT_TRUE(picture.isLinear);
+    EXPECT_EQ(picture.linear.at(0, 1, 0), 1.5F);  // the last row comes first
+    EXPECT_EQ(picture.stored.at(1, 0, 2), 3.0F);
+    std::string swapped = bytesOf(std::vector<float>{1.5F, 2.5F});
+    for (std::size_t i = 0; i < swapped.size(); i += 4) std::reverse(&swapped[i], &swapped[i] + 4);
+    EXPECT_EQ(readPicture(folder_.write("b.pfm", "Pf\n2 1\n1\n" + swapped)).linear.at(1, 0), 2.5F);
+    EXPECT_EQ(errorOf("c.pfm", "Pf\n1 1\n-2\nabcd"),
+              "DIR/c.pfm: its scale is -2; 1 or -1 are allowed, as readers differ in others");
+    EXPECT_EQ(errorOf("c.pfm", "Pf\n1 1\n-1\nabc"), "DIR/c.pfm: the file ends early");
+}
+
+TEST_F(Formats, RadiancesPicturesAreLinear) {
+    const std::vector<float> colours = light();
+    ASSERT_NE(stbi_write_hdr(path("a.hdr").c_str(), kWidth, kHeight, 3, colours.data()), 0);
+    const Picture picture = readPicture(path("a.hdr"));
+    EXPECT_TRUE(picture.isLinear);
+    ASSERT_EQ(picture.linear.values().size(), colours.size());
+    for (std::size_t i = 0; i < colours.size(); i += 3) {
+        const float most = std::max({colours[i], colours[i + 1], colours[i + 2]});
+        for (std::size_t c = i; c < i + 3; ++c) {
+            EXPECT_NEAR(picture.linear.values()[c], colours[c], most / 128.0F) << c;
+        }
+    }
+    // Of fewer than 8 columns the pixels lie one behind the other; (1, 1, 1, n) repeats one.
+    const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n";
+    const std::string pixels = "\n-Y 1 +X 4\n\x80\x40\x20\x81\x01\x01\x01\x02\x80\x80\x80\x80";
+    const Picture small = readPicture(folder_.write("b.hdr", head + pixels));
+    EXPECT_EQ(small.linear.at(2, 0, 0), 1.0F);
+    EXPECT_EQ(small.linear.at(2, 0, 2), 0.25F);
+    EXPECT_EQ(small.linear.at(3, 0, 1), 0.5F);
+    // What the header multiplied by is divided out again.
+    const Picture exposed = readPicture(
+        folder_.write("c.hdr", head + "EXPOSURE=2\nEXPOSURE= 4\nCOLORCORR=1 2 1\n" + pixels));
+    EXPECT_EQ(exposed.linear.at(2, 0, 0), 0.125F);
+    EXPECT_EQ(exposed.linear.at(3, 0, 1), 0.03125F);
+    EXPECT_EQ(errorOf("d.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 4\n"),
+              "DIR/d.hdr: FORMAT=32-bit_rle_xyze is not read; 32-bit_rle_rgbe is");
+    EXPECT_EQ(errorOf("d.hdr", head + "PRIMARIES=1 0 0 1 0 0 .33 .33\n" + pixels),
+              "DIR/d.hdr: PRIMARIES=1 0 0 1 0 0 .33 .33: other primaries than those of Rec. 709");
+    EXPECT_EQ(errorOf("d.hdr", head + "\n+Y 1 +X 4\n"),
+              "DIR/d.hdr: its size is '+Y 1 +X 4'; allowed: -Y height +X width, rows from the top");
+    const std::string whole = readFile(path("a.hdr"));
+    for (std::size_t size = 2; size < whole.size(); size += 9) {
+        EXPECT_EQ(errorOf("d.hdr", whole.substr(0, size)), "DIR/d.hdr: the file ends early")
+            << size;
+    }
+}
+
+TEST_F(Formats, TargaIsSrgb) {
+    for (const int isEncoded : {0, 1}) {
+        stbi_write_tga_with_rle = isEncoded;
+        for (const int channels : {1, 3, 4}) {
+            stbi_write_tga(path("a.tga").c_str(), kWidth, kHeight, channels,
+                           values(channels).data());
+            expectValues("a.tga", channels);
+        }
+        const std::string whole = readFile(path("a.tga"));
+        EXPECT_EQ(errorOf("b.tga", whole.substr(0, whole.size() / 2)),
+                  "DIR/b.tga: the file ends early");
+    }
+    std::string head(18, '\0');
+    head[2] = 1;
+    head[16] = 8;
+    EXPECT_EQ(
+        errorOf("b.tga", head),
+        "DIR/b.tga: a TGA file of type 1, 8 bits and flags 0x0; grey of 8, RGB of 24 and RGBA "
+        "of 32 bits, columns from the left, are read");
+}
+
+TEST_F(Formats, JpegIsSrgb) {
+    std::vector<std::uint8_t> even(kWidth * kHeight * 3, 100);
+    stbi_write_jpg(path("a.jpg").c_str(), kWidth, kHeight, 3, even.data(), 100);
+    const Picture picture = readPicture(path("a.jpg"));
+    EXPECT_FALSE(picture.isLinear);
+    ASSERT_EQ(picture.stored.channels(), 3);
+    EXPECT_NEAR(255.0F * picture.stored.at(3, 2, 1), 100.0F, 1.5F);
+    const std::string whole = readFile(path("a.jpg"));
+    EXPECT_EQ(errorOf("b.jpg", whole.substr(0, whole.size() - 3)),
+              "DIR/b.jpg: the file ends early");
+    // By what it is, not by its name.
+    EXPECT_EQ(readPicture(folder_.write("c.png", whole)).stored, picture.stored);
+}
+
+/// How a TIFF file is laid out; what is not said is as in most.
+struct Layout {
+    int channels = 3;
+    int bits = 8;
+    int isFloat = 0;
+    int isTiled = 0;
+    int planes = PLANARCONFIG_CONTIG;
+    int orientation = ORIENTATION_TOPLEFT;
+    int alpha = EXTRASAMPLE_UNASSALPHA;
+    int colours = PHOTOMETRIC_RGB;
+    int pages = 1;
+};
+
+/// `valueOf(i)` of the value at that place, of width × height × channels.
+template <class T, class ValueOf>
+void writeTiff(const std::string& path, int width, int height, const Layout& layout,
+               ValueOf&& valueOf) {
+    TIFF* file = TIFFOpen(path.c_str(), "w");
+    ASSERT_NE(file, nullptr);
+    for (int page = 0; page < layout.pages; ++page) {
+        TIFFSetField(file, TIFFTAG_IMAGEWIDTH, width);
+        TIFFSetField(file, TIFFTAG_IMAGELENGTH, height);
+        TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, layout.bits);
+        TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, layout.channels);
+        TIFFSetField(file, TIFFTAG_SAMPLEFORMAT,
+                     layout.isFloat ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT);
+        TIFFSetField(file, TIFFTAG_PHOTOMETRIC,
+                     layout.channels < 3 ? PHOTOMETRIC_MINISBLACK : layout.colours);
+        TIFFSetField(file, TIFFTAG_PLANARCONFIG, layout.planes);
+        TIFFSetField(file, TIFFTAG_ORIENTATION, layout.orientation);
+        const auto kind = static_cast<std::uint16_t>(layout.alpha);
+        if (layout.channels % 2 == 0) TIFFSetField(file, TIFFTAG_EXTRASAMPLES, 1, &kind);
+        const int side = layout.isTiled ? 16 : 0;
+        if (side > 0) {
+            TIFFSetField(file, TIFFTAG_TILEWIDTH, side);
+            TIFFSetField(file, TIFFTAG_TILELENGTH, side);
+        }
+        const bool isSeparate = layout.planes == PLANARCONFIG_SEPARATE;
+        const int stored = isSeparate ? 1 : layout.channels;
+        for (int plane = 0; plane < (isSeparate ? layout.channels : 1); ++plane) {
+            const int rows = side > 0 ? side : 1, columns = side > 0 ? side : width;
+            for (int top = 0; top < height; top += rows) {
+                for (int left = 0; left < width; left += columns) {
+                    std::vector<T> values(static_cast<std::size_t>(rows * columns * stored));
+                    for (int i = 0; i < static_cast<int>(values.size()); ++i) {
+                        const int x = left + i / stored % columns, y = top + i / stored / columns;
+                        if (x >= width || y >= height) continue;
+                        values[static_cast<std::size_t>(i)] = valueOf(
+                            (y * width + x) * layout.channels + (isSeparate ? plane : i % stored));
+                    }
+                    if (side > 0) {
+                        TIFFWriteTile(file, values.data(), static_cast<std::uint32_t>(left),
+                                      static_cast<std::uint32_t>(top), 0,
+                                      static_cast<std::uint16_t>(plane));
+                    } else {
+                        TIFFWriteScanline(file, values.data(), static_cast<std::uint32_t>(top),
+                                          static_cast<std::uint16_t>(plane));
+                    }
+                }
+            }
+        }
+        TIFFWriteDirectory(file);
+    }
+    TIFFClose(file);
+}
+
+TEST_F(Formats, TiffOfWholeNumbersIsSrgb) {
+    for (const int isTiled : {0, 1}) {
+        for (const int planes : {PLANARCONFIG_CONTIG, PLANARCONFIG_SEPARATE}) {
+            for (const int channels : {1, 2, 3, 4}) {
+                const auto expected = values(channels);
+                writeTiff<std::uint8_t>(
+                    path("a.tif"), kWidth, kHeight,
+                    {.channels = channels, .isTiled = isTiled, .planes = planes},
+                    [&](int i) { return expected[static_cast<std::size_t>(i)]; });
+                expectValues("a.tif", channels);
+            }
+        }
+    }
+    writeTiff<std::uint16_t>(path("b.tif"), 2, 1, {.bits = 16},
+                             [](int i) { return static_cast<std::uint16_t>(13107 * i); });
+    const Picture deep = readPicture(path("b.tif"));
+    EXPECT_EQ(deep.bits, 16);
+    EXPECT_FLOAT_EQ(deep.stored.at(1, 0, 0), 0.6F);
+    // Multiplied by alpha, which sRGB is not here.
+    writeTiff<std::uint8_t>(path("c.tif"), 1, 1, {.channels = 4, .alpha = EXTRASAMPLE_ASSOCALPHA},
+                            [](int i) { return static_cast<std::uint8_t>(i == 3 ? 102 : 51); });
+    EXPECT_FLOAT_EQ(readPicture(path("c.tif")).stored.at(0, 0, 0), 0.5F);
+}
+
+TEST_F(Formats, TiffOfFloatsIsLinear) {
+    writeTiff<float>(path("a.tif"), 2, 2,
+                     {.bits = 32, .isFloat = 1, .orientation = ORIENTATION_BOTLEFT},
+                     [](int i) { return 0.5F * static_cast<float>(i); });
+    const Picture picture = readPicture(path("a.tif"));
+    EXPECT_TRUE(picture.isLinear);
+    EXPECT_EQ(picture.linear.at(1, 1, 2), 2.5F);
+    EXPECT_EQ(picture.linear.at(1, 0, 2), 5.5F);
+    writeTiff<std::uint16_t>(path("b.tif"), 1, 1, {.channels = 1, .bits = 16, .isFloat = 1},
+                             [](int) { return std::uint16_t{0x4200}; });
+    EXPECT_EQ(readPicture(path("b.tif")).linear.at(0, 0), 3.0F);
+    writeTiff<float>(path("c.tif"), 1, 1, {.channels = 4, .bits = 32, .isFloat = 1},
+                     [](int i) { return i == 3 ? 0.25F : 2.0F; });
+    EXPECT_EQ(readPicture(path("c.tif")).linear.at(0, 0, 0), 0.5F);
+}
+
+TEST_F(Formats, OtherTiffFilesAreRefused) {
+    const auto refusalOf = [&](const Layout& layout) {
+        writeTiff<std::uint32_t>(path("a.tif"), 2, 2, layout, [](int) { return 0U; });
+        return errorText([&] { readPicture(path("a.tif")); }, folder_.path());
+    };
+    EXPECT_EQ(refusalOf({.bits = 32}),
+              "DIR/a.tif: 3 channels of 32 bits (sample format 1, photometric 2); allowed: grey or "
+              "RGB, with or without alpha, of 8 or 16 bits or 16 or 32 bit floats");
+    EXPECT_EQ(refusalOf({.bits = 32, .isFloat = 1, .orientation = ORIENTATION_RIGHTTOP}),
+              "DIR/a.tif: orientation 6; allowed: 1 (from the top) and 4 (from the bottom)");
+    EXPECT_EQ(refusalOf({.bits = 32, .isFloat = 1, .pages = 3}),
+              "DIR/a.tif: has 3 pages; one is allowed");
+    EXPECT_EQ(refusalOf({.bits = 32, .isFloat = 1}), "no error");
+    const std::string whole = readFile(path("a.tif"));
+    for (std::size_t size = 4; size < whole.size(); size += 11) {
+        EXPECT_TRUE(errorOf("b.tif", whole.substr(0, size)).starts_with("DIR/b.tif: ")) << size;
+    }
+}
+
+TEST_F(Formats, WhatIsNoneNamesThoseThatAreRead) {
+    EXPECT_EQ(errorOf("a.gif", "GIF89a"),
+              "DIR/a.gif: no picture of a format that is read; allowed: .exr, .png, .pfm, .hdr, "
+              ".pgm, .ppm, .pnm, .tga, .tif, .tiff, .jpg, .jpeg");
+    EXPECT_EQ(errorOf("a.png", "GIF89a"), "DIR/a.png: not a PNG file");
+    EXPECT_EQ(errorOf("a.tif", ""), "DIR/a.tif: Cannot read TIFF header");
+    EXPECT_EQ(errorText([&] { readPicture(path("none.ppm")); }, folder_.path()),
+              "cannot read DIR/none.ppm: No such file or directory");
+    EXPECT_TRUE(hasReadEnding("a.b.tif"));
+    EXPECT_TRUE(hasReadEnding("{frame}.jpeg"));
+    EXPECT_FALSE(hasReadEnding("a.ti"));
+    EXPECT_FALSE(hasReadEnding("a.gif"));
+    EXPECT_FALSE(hasReadEnding("a"));
+}
+
+}  // namespace
+}  // namespace gfxrepro::image
