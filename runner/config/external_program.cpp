@@ -231,6 +231,11 @@ void readMetrics(const Node& metrics, ExternalProgram& program) {
         if (optional && flagOf(*optional, what + ": optional"))
             program.optionalMetrics.push_back(name);
         const Node* pattern = map.find("pattern");
+        const Node* scale = map.find("scale");
+        if (scale && !pattern) {
+            throw Error(map.keyLocation("scale"),
+                        what + ": 'scale' is of a pattern's number alone");
+        }
         if (!pattern) continue;
         if (program.givesAllFrames) {
             throw Error(pattern->location(), what +
@@ -245,7 +250,8 @@ void readMetrics(const Node& metrics, ExternalProgram& program) {
         } catch (const std::regex_error& error) {
             throw Error(pattern->location(), what + ": pattern: " + error.what());
         }
-        program.patterns.push_back({name, text});
+        const double factor = scale ? numberIn(*scale, kScales, what + ": scale") : 1.0;
+        program.patterns.push_back({name, text, factor});
     }
 }
 
@@ -510,6 +516,8 @@ std::vector<SchemaSection> programKeys() {
            "reads it off what the program prints: the number is its first group, as a whole; the "
            "last match counts",
            text()},
+          numberKey("scale", kScales, "1",
+                    "multiplies that number: 1000 for ms of what is printed in seconds"),
           {"optional", "boolean", "false", "whether a run may be without it", boolean()},
           {"doc", "line", "\"\"", "what it means", text()}}},
         {"program_image",

@@ -68,7 +68,8 @@ struct ProgramPicture {
 /// A metric that is read off what the program prints.
 struct ProgramPattern {
     std::string metric;
-    std::string regex;  // ECMAScript; its first group is the number; the last match counts
+    std::string regex;   // ECMAScript; its first group is the number; the last match counts
+    double scale = 1.0;  // of the number, for the metric's unit
 };
 
 struct ExternalProgram {

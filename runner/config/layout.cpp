@@ -13,8 +13,6 @@ namespace gfxrepro::config {
 
 namespace {
 
-constexpr NumberRange kScales{.least = 0, .isLeastExcluded = true};
-
 /// Case axes, and `frame`: the frames of a path.
 Names referableAxes(const Vocabulary& vocabulary) {
     Names names = vocabulary.axisNames();

@@ -22,6 +22,9 @@ namespace gfxrepro::config {
 
 using Names = std::vector<std::string>;
 
+/// What a value may be multiplied by.
+inline constexpr NumberRange kScales{.least = 0, .isLeastExcluded = true};
+
 template <class Range, class Value>
 bool contains(const Range& range, const Value& value) {
     return std::ranges::find(range, value) != std::ranges::end(range);

@@ -281,7 +281,7 @@ std::optional<double> numberIn(std::string_view output, const config::ProgramPat
                         "number",
                         pattern.metric, shown(last->number()), shown(wordAround(*last))));
     }
-    return number;
+    return *number * pattern.scale;
 }
 
 namespace {

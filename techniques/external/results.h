@@ -27,9 +27,9 @@ struct GivenMetric {
 /// link).
 std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame, int count = 1);
 
-/// The number that the pattern finds last in what the program printed, line by line. Throws Error
-/// where its group is no number or a part of one, as 1.5 of 1.5e-03 and 12 of 12,5, and where a
-/// line is too long for it.
+/// The number that the pattern finds last in what the program printed, line by line, scaled. Throws
+/// Error where its group is no number or a part of one, as 1.5 of 1.5e-03 and 12 of 12,5, and where
+/// a line is too long for it.
 std::optional<double> numberIn(std::string_view output, const config::ProgramPattern& pattern);
 
 using image::Picture;

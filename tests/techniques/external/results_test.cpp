@@ -148,6 +148,12 @@ TEST(MetricLines, ALineThatAPatternCannotSearchIsAnError) {
     }
 }
 
+TEST(MetricLines, APatternsNumberIsScaled) {
+    const std::string regex = R"(Trace Time: .*\(([0-9.]+) seconds\))";
+    const std::string line = "  Trace Time:       0 hours  0 minutes  1 seconds (1.234 seconds)\n";
+    EXPECT_DOUBLE_EQ(numberIn(line, {"trace_ms", regex, 1000.0}).value(), 1234.0);
+}
+
 TEST(MetricLines, APatternTakesTheLastMatchOfALineToo) {
     EXPECT_EQ(numberOf("m=(\\d+)", "m=1 m=2 m=3"), 3.0);
     EXPECT_EQ(numberOf("(\\d*)$", "m=1"), 1.0);

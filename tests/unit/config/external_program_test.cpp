@@ -174,6 +174,7 @@ TEST(ExternalProgram, DeclaresWhatItSays) {
         "  rays: ray\n"
         "  bytes: {unit: byte, better: lower, doc: of it, optional: true}\n"
         "  facets: {unit: facet, pattern: 'Facets: +([0-9]+)'}\n"
+        "  trace_ms: {unit: ms, pattern: '([0-9.]+) s$', scale: 1000}\n"
         "passes: {trace: the rays}\n"
         "images:\n"
         "  depth: depth.exr\n"
@@ -182,6 +183,8 @@ TEST(ExternalProgram, DeclaresWhatItSays) {
     EXPECT_EQ(program.outputs.find("bytes")->better, Better::Lower);
     EXPECT_THAT(program.optionalMetrics, ElementsAre("bytes"));
     EXPECT_EQ(program.patterns.at(0).metric, "facets");
+    EXPECT_EQ(program.patterns.at(0).scale, 1.0);
+    EXPECT_EQ(program.patterns.at(1).scale, 1000.0);
     EXPECT_TRUE(program.outputs.hasPass("trace"));
     EXPECT_TRUE(program.outputs.hasPass("result"));
     EXPECT_FALSE(program.outputs.hasPass("depth"));
@@ -205,6 +208,10 @@ TEST(ExternalProgram, DeclaresWhatItSays) {
     EXPECT_EQ(
         errorOf("command: t\nmetrics: {a: {unit: m, pattern: x}}"),
         "c.yaml:2:33: program: metric 'a': pattern is x; allowed: one with the number in ( )");
+    EXPECT_EQ(errorOf("command: t\nmetrics: {a: {unit: m, scale: 2}}"),
+              "c.yaml:2:24: program: metric 'a': 'scale' is of a pattern's number alone");
+    EXPECT_EQ(errorOf("command: t\nmetrics: {a: {unit: m, pattern: '(.)', scale: 0}}"),
+              "c.yaml:2:47: program: metric 'a': scale is 0; allowed: a number, above 0");
     EXPECT_EQ(errorOf("command: t\nmetrics: {a: {unit: m, better: more}}"),
               "c.yaml:2:32: program: metric 'a': better is more; allowed: lower | higher");
     EXPECT_EQ(errorOf("command: t\nmetrics: {a: {unit: m, optional: perhaps}}"),
@@ -289,6 +296,12 @@ TEST(ExternalProgram, OneThatIsNotHereHasNoKey) {
     EXPECT_EQ(absentOf(filesOf(absent, {}))->name, "no-such-program-anywhere");
     const ExternalProgram starter = programOf("command: sh\nstarts: [no-such-program-anywhere]");
     EXPECT_EQ(absentOf(filesOf(starter, {}))->name, "no-such-program-anywhere");
+    // From the config's folder on, with and without a placeholder.
+    for (const char* name : {"\"{here}/sh\"", "./sh"}) {
+        const ExternalProgram beside =
+            programOf("command: sh\nstarts: [" + std::string(name) + "]\nhere: /bin");
+        EXPECT_EQ(filesOf(beside, {{"here", "/bin"}}).at(1).path, "/bin/sh");
+    }
     const ExternalProgram other = programOf("command: sh\nfiles: [no-such-file]\nhere: /usr");
     EXPECT_EQ(errorText([&] { filesOf(other, {}); }),
               "program: files: there is no file /usr/no-such-file");

@@ -225,6 +225,9 @@ const std::vector<std::pair<std::string, std::string>> kNumberPlaces = {
     {"program_param.max",
      "technique: external\nprogram:\n  command: t {n}\n"
      "  params: {n: {default: -9.5, max: @}}\n"},
+    {"program_metric",
+     "technique: external\nprogram:\n  command: t\n"
+     "  metrics: {n: {unit: m, pattern: '(.)', KEY: @}}\n"},
     {"output", "output: {KEY: @}\n"},
     {"measure", "measure: {KEY: @}\n"},
     {"selection", "TABLE{aa: {metric: mean_brightness, KEY: @}}}\n"},
