@@ -169,6 +169,10 @@ std::string Params::getText(std::string_view name, std::string_view fallback,
     const Node fallbackNode = Node::scalar(std::string(fallback), {}, true);
     const Node* given = declare(name, describeParam(name, "text", fallbackNode, "", spec));
     if (given && !given->isScalar()) throwBadValue(owner_, name, *given, "text");
+    if (given && given->text().find('\0') != std::string::npos) {  // it would end an argument
+        throw Error(given->location(), owner_ + ": " + std::string(name) +
+                                           " has a byte of 0; allowed: text without one");
+    }
     // Quoted, so that `12` given for a text stays text when a plan is read back.
     Node value = given ? Node::scalar(given->text(), given->location(), true) : fallbackNode;
     resolved_.set(std::string(name), value);

@@ -388,6 +388,9 @@ int run(int argc, const char* const* argv, std::span<const technique::TechniqueI
         std::span<const scene::GeneratorInfo> generators) {
     // Inherited as ignored, the ends of children would be known to nobody: a crash would be "ok".
     std::signal(SIGCHLD, SIG_DFL);
+    // A file that may not grow beyond `ulimit -f` is then a write that fails, with a line of its
+    // own.
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         const int code = runCommand(argc, argv, techniques, generators);
         if (std::fflush(stdout) == 0) return code;

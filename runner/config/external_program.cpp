@@ -161,6 +161,10 @@ std::string templateOf(const Node& node, std::string_view what, const Names& kno
     if (!node.isScalar()) {
         throwNotAllowed(node, what, "text; one that begins with a brace needs quotes");
     }
+    if (node.text().find('\0') != std::string::npos) {
+        throw Error(node.location(),
+                    fmt::format("{} has a byte of 0; allowed: text without one", what));
+    }
     if (hasOpenBrace(node.text())) {
         throw Error(node.location(), fmt::format("{}: a brace of '{}' is not closed; braces as "
                                                  "such are {{{{ and }}}}",

@@ -69,6 +69,8 @@ Page& pageOf(const std::string& id, Model& model) {
     page.label = id;
     page.slug = id;
     std::ranges::replace(page.slug, '/', '-');
+    const auto isTaken = [&](const Page& other) { return other.slug == page.slug; };
+    while (std::ranges::any_of(model.pages, isTaken)) page.slug += '-';
     page.parts.resize(model.runs.size());
     return model.pages.emplace_back(std::move(page));
 }

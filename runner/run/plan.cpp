@@ -1,6 +1,7 @@
 #include "runner/run/plan.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -53,13 +54,17 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
         experiment.paperCases = resolvePaperCases(experiment, catalog, techniques);
     }
     std::size_t units = 0;
-    std::set<std::string> experimentIds;
+    std::map<std::string, std::string> idsOfFiles;
     std::set<std::string> caseIds;
     config::FileDigests digests;
     for (config::Experiment& experiment : plan.experiments) {
-        if (!experimentIds.insert(experiment.id).second) {
+        const auto [first, isNew] = idsOfFiles.try_emplace(experiment.slug(), experiment.id);
+        if (!isNew) {
+            const bool isSame = first->second == experiment.id;
             throw Error(experiment.file.string() + ": the experiment '" + experiment.id +
-                        "' is given twice");
+                        (isSame ? "' is given twice"
+                                : "' and '" + first->second + "' would write the same files, '" +
+                                      first->first + "'; allowed: one of them in a run"));
         }
         std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
         bindAssumptions(experiment, cases, catalog, techniques);

@@ -177,13 +177,17 @@ std::string shownName(std::string_view name, const Words& words) {
 
 std::map<std::string, std::string> shownNames(const std::set<std::string>& names,
                                               const Words& words) {
-    std::map<std::string, int> uses;
-    for (const std::string& name : names) ++uses[shownName(name, words)];
     std::map<std::string, std::string> shown;
-    for (const std::string& name : names) {
-        const std::string text = shownName(name, words);
-        shown[name] = uses[text] == 1 ? text : isName(name) ? withBlanks(name) : name;
-    }
+    for (const std::string& name : names) shown[name] = shownName(name, words);
+    const auto keepApart = [&](auto&& longerOf) {
+        std::map<std::string, int> uses;
+        for (const auto& [name, text] : shown) ++uses[text];
+        for (auto& [name, text] : shown) {
+            if (uses[text] > 1) text = longerOf(name);
+        }
+    };
+    keepApart([](const std::string& name) { return isName(name) ? withBlanks(name) : name; });
+    keepApart([](const std::string& name) { return name; });
     return shown;
 }
 

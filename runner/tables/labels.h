@@ -40,7 +40,7 @@ std::string unitLabel(const std::string& unit);
 /// quantityOf(name, words).text().
 std::string shownName(std::string_view name, const Words& words = {});
 
-/// The shown names of an axis; those that would be alike keep their folder.
+/// The shown names of an axis; those that would be alike keep their folder, or all that they are.
 std::map<std::string, std::string> shownNames(const std::set<std::string>& names,
                                               const Words& words = {});
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -61,12 +62,21 @@ GivenMetric metricOf(std::string_view text, int number, int frame, int count) {
         throw Error(fmt::format("{} has more than {} brackets in each other: {}", what,
                                 kMostJsonLevels, shown(text)));
     }
-    const Json line = Json::parse(text, nullptr, false);
+    std::set<std::string> keys;
+    std::string twice;  // of which the parser would take the last value
+    const auto noteKey = [&](int level, Json::parse_event_t event, const Json& parsed) {
+        if (event == Json::parse_event_t::key && level == 1 && !keys.insert(parsed).second) {
+            twice = parsed;
+        }
+        return true;
+    };
+    const Json line = Json::parse(text, noteKey, false);
     if (!line.is_object()) {
         const bool isNan = text.find("NaN") != text.npos || text.find("Infinity") != text.npos;
         throw Error(fmt::format("{} is no JSON object{}: {}", what,
                                 isNan ? ", which has no NaN and no Infinity" : "", shown(text)));
     }
+    if (!twice.empty()) throw Error(fmt::format("{}: \"{}\" stands twice", what, twice));
     static constexpr std::string_view kKeys[] = {"metric", "pass", "frame", "value", "unit"};
     for (const auto& [key, value] : line.items()) {
         if (std::ranges::find(kKeys, key) != std::end(kKeys)) continue;

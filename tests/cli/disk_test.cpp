@@ -21,6 +21,19 @@ ProcessResult mockWithFullDisk(const std::string& arguments, int blocks) {
                            GFXREPRO_MOCK_PROGRAM + " " + arguments});
 }
 
+TEST(Disk, ALimitOnFilesIsAWriteThatFails) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
+    const std::string dir = folder.path() / "run";
+    const ProcessResult run =
+        runProgram({"/bin/sh", "-c",
+                    std::string("ulimit -f 1; exec ") + GFXREPRO_MOCK_PROGRAM + " run " + config +
+                        " --device software --out " + dir});
+    EXPECT_EQ(run.exitCode, 2) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("gfxrepro: cannot write " + dir));
+    EXPECT_THAT(run.err, HasSubstr(": File too large\n"));
+}
+
 TEST(Disk, AFullDiskLosesNothingMeasured) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(

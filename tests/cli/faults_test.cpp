@@ -36,6 +36,34 @@ TEST(Faults, EveryFailureBecomesARow) {
                             "number, or ∞ dB)"));
 }
 
+/// 'a-b/c' and 'a/b-c' both have the files a-b-c.csv, .md and .tex, and that place in a page.
+TEST(Faults, TablesOfOneFileNameAreNoRunTogether) {
+    const TemporaryFolder folder;
+    const auto write = [&](const char* file, const std::string& id) {
+        return folder
+            .write(file, "table: " + id +
+                             "\ntitle: T\ntechnique: mock\nsweep: {number: [1]}\n"
+                             "measure: {lane: quality}\noutput: {width: 8, height: 8}\n"
+                             "layout: {rows: number, columns: {n: {metric: number}}}\n")
+            .string();
+    };
+    const std::string first = write("first.yaml", "a-b/c"), second = write("second.yaml", "a/b-c");
+    const ProcessResult both = mockGfxrepro({"plan", first, second});
+    EXPECT_EQ(both.exitCode, 2);
+    EXPECT_EQ(both.err, "gfxrepro: " + second +
+                            ": the experiment 'a/b-c' and 'a-b/c' would write the same files, "
+                            "'a-b-c'; allowed: one of them in a run\n");
+    const std::string a = folder.path() / "a", b = folder.path() / "b",
+                      page = folder.path() / "p.html";
+    for (const auto& [config, dir] : {std::pair(first, a), std::pair(second, b)}) {
+        ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    }
+    const ProcessResult report = mockGfxrepro({"report", a, b, "--out", page});
+    ASSERT_EQ(report.exitCode, 0) << report.err;
+    EXPECT_THAT(readFile(page), HasSubstr("<section class=\"page\" id=\"a-b-c\">"));
+    EXPECT_THAT(readFile(page), HasSubstr("<section class=\"page\" id=\"a-b-c-\">"));
+}
+
 TEST(Faults, WhatPassesAtTheSecondTryIsFlaky) {
     const TemporaryFolder folder;
     const std::string marker = folder.path() / "marker";

@@ -57,6 +57,8 @@ TEST(MetricLines, RefusesOthersByTheirNumber) {
     EXPECT_EQ(errorOf("{\"metric\": \"rays\", \"vlaue\": 1, \"unit\": \"ray\"}"),
               "line 1 of its metrics: unknown key \"vlaue\"; allowed: metric, pass, frame, value, "
               "unit");
+    EXPECT_EQ(errorOf("{\"metric\": \"rays\", \"value\": 1, \"value\": 2, \"unit\": \"ray\"}"),
+              "line 1 of its metrics: \"value\" stands twice");
     EXPECT_EQ(errorOf("{\"metric\": \"rays\", \"val"),
               "line 1 of its metrics is no JSON object: {\"metric\": \"rays\", \"val");
 }

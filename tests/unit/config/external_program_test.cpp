@@ -329,6 +329,8 @@ TEST(ExternalProgram, RefusesWhatItCouldNotTake) {
               "c.yaml:1:10: program: command: a brace of 't -o {out' is not closed; braces as such "
               "are {{ and }}");
     EXPECT_EQ(errorOf("command: t {{out"), "no error");
+    EXPECT_EQ(errorOf(R"(command: [t, "a\0b"])"),
+              "c.yaml:1:14: program: command has a byte of 0; allowed: text without one");
     EXPECT_EQ(errorOf("command: t\nmetrics: {m: null}"),
               "c.yaml:2:11: program: metric 'm' needs 'unit'; \"1\" for none");
     EXPECT_EQ(errorOf("command: t\nimages: {r: r.gif}"),

@@ -33,6 +33,11 @@ TEST(Labels, AFileOfOnesOwnIsItsName) {
     const auto shown = shownNames({"/a/x.obj", "/b/x.obj", "/b/y.obj"});
     EXPECT_EQ(shown.at("/a/x.obj"), "/a/x.obj");
     EXPECT_EQ(shown.at("/b/y.obj"), "y.obj");
+    const auto texts = shownNames({"a_b", "a b", "c_d", "one/model", "other/model"});
+    EXPECT_EQ(texts.at("a_b"), "a_b");
+    EXPECT_EQ(texts.at("a b"), "a b");
+    EXPECT_EQ(texts.at("c_d"), "c d");
+    EXPECT_EQ(texts.at("one/model"), "one/model");
     EXPECT_EQ(shownCase("sweep/mine scene=/a/x.obj light_ratio=0.25", "sweep/mine"),
               "x.obj, light ratio 0.25");
 }
