@@ -198,15 +198,24 @@ std::string descriptionOf(const SceneSource& source) {
 
 /// What was up +z stands up +y.
 void turnUp(Scene& scene) {
-    const auto turned = [](const glm::vec3& v) { return glm::vec3(v.x, v.z, -v.y); };
-    const glm::mat4 turn(glm::vec4(turned({1, 0, 0}), 0), glm::vec4(turned({0, 1, 0}), 0),
-                         glm::vec4(turned({0, 0, 1}), 0), glm::vec4(0, 0, 0, 1));
+    const auto turn = [](auto&... vectors) {
+        ((vectors = {vectors.x, vectors.z, -vectors.y}), ...);
+    };
+    const glm::mat4 turned(glm::vec4(1, 0, 0, 0), glm::vec4(0, 0, -1, 0), glm::vec4(0, 1, 0, 0),
+                           glm::vec4(0, 0, 0, 1));
     for (Instance& instance : scene.instances) {
-        instance.worldFromMesh = turn * instance.worldFromMesh;
+        instance.worldFromMesh = turned * instance.worldFromMesh;
     }
-    for (glm::vec3& position : scene.points.positions) position = turned(position);
-    for (glm::vec3& normal : scene.points.normals) normal = turned(normal);
-    scene.offset = {scene.offset.x, scene.offset.z, -scene.offset.y};
+    for (glm::vec3& position : scene.points.positions) turn(position);
+    for (glm::vec3& normal : scene.points.normals) turn(normal);
+    const auto turnCamera = [&](Camera& c) { turn(c.position, c.target, c.up); };
+    for (Camera& camera : scene.cameras) turnCamera(camera);
+    for (CameraPath& path : scene.paths) {
+        for (Camera& key : path.keys) turnCamera(key);
+    }
+    for (PointLight& light : scene.lights) turn(light.position);
+    for (Motion& motion : scene.motions) turn(motion.pivot, motion.axis, motion.swing);
+    turn(scene.offset);
 }
 
 /// All instances as one mesh of the wanted count; materials and cameras stay.
@@ -365,16 +374,21 @@ const SceneEntry& Catalog::entryNamed(const Node& reference) const {
 
 namespace {
 
-/// How the values of a height map of one's own become metres.
-void takeUnits(const std::string& name, const Node& params, SceneSource& source) {
-    HeightMapUnits& units = source.heightMap->units;
-    static const std::vector<std::string> kNames = {"spacing_m", "height_scale_m", "no_data"};
+/// How the values of a file of one's own become metres, and where up is.
+void takeFileParams(const std::string& name, const Node& params, SceneSource& source) {
+    HeightMapUnits noUnits;
+    HeightMapUnits& units = source.heightMap ? source.heightMap->units : noUnits;
+    const std::vector<std::string> names =
+        source.heightMap ? std::vector<std::string>{"spacing_m", "height_scale_m", "no_data"}
+                         : std::vector<std::string>{"up"};
     for (const auto& [key, value] : params.entries()) {
-        if (std::ranges::find(kNames, key) == kNames.end()) {
+        if (std::ranges::find(names, key) == names.end()) {
             throw Error(params.keyLocation(key),
-                        fmt::format("height map '{}' has no parameter '{}'{}; allowed: {}", name,
-                                    key, suggestion(key, kNames), joined(kNames)));
+                        fmt::format("{} '{}' has no parameter '{}'{}; allowed: {}",
+                                    source.heightMap ? "height map" : "model", name, key,
+                                    suggestion(key, names), joined(names)));
         }
+        if (key == "up") source.isZUp = kUps[choiceOf(value, kUps, "up")] == "z";
         if (key == "spacing_m") units.spacingM = readMetres(value, key);
         if (key == "height_scale_m") units.heightScaleM = readMetres(value, key);
         if (key == "no_data") units.noData = static_cast<float>(numberIn(value, {}, key));
@@ -401,8 +415,8 @@ std::string_view kindName(Origin::Kind kind) {
 }
 
 void takeParams(const std::string& name, const Node& params, SceneSource& source) {
-    if (source.heightMap && isSceneFile(name)) {
-        takeUnits(name, params, source);
+    if (isSceneFile(name)) {
+        takeFileParams(name, params, source);
         return;
     }
     if (!source.generator) {

@@ -59,8 +59,8 @@ struct SceneEntry {
 };
 
 /// Lays parameters over those of the source's generator; of a height map's own file they are
-/// spacing_m (what the file says, or 1), height_scale_m (1) and no_data. Throws Error where the
-/// scene `name` is neither, and for what is not taken.
+/// spacing_m (what the file says, or 1), height_scale_m (1) and no_data, of a model's own file up
+/// (y or z). Throws Error where the scene `name` is none of these, and for what is not taken.
 void takeParams(const std::string& name, const Node& params, SceneSource& source);
 
 class Catalog {

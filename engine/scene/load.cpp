@@ -16,10 +16,8 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {".ply", &loadPly},
-    {".obj", &loadObj},
-    {".gltf", &loadGltf},
-    {".glb", &loadGltf},
+    {".ply", &loadPly},  {".obj", &loadObj}, {".gltf", &loadGltf},
+    {".glb", &loadGltf}, {".off", &loadOff}, {".stl", &loadStl},
 };
 
 const Format& formatOf(const std::filesystem::path& path) {
@@ -27,7 +25,7 @@ const Format& formatOf(const std::filesystem::path& path) {
     const auto found = std::ranges::find(kFormats, extension, &Format::extension);
     if (found != std::end(kFormats)) return *found;
     throw Error(path.string() + ": unknown extension '" + extension +
-                "'; .ply, .obj, .gltf and .glb are allowed");
+                "'; .ply, .obj, .gltf, .glb, .off and .stl are allowed");
 }
 
 }  // namespace

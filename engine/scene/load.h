@@ -18,7 +18,7 @@ constexpr float kMaxCoordinate = 1e9F;
 /// Throws Error for a file that loadScene() does not know by its extension.
 void requireKnownExtension(const std::filesystem::path& path);
 
-/// By extension (.ply .obj .gltf .glb, any case); others are an Error that lists these.
+/// By extension (.ply .obj .gltf .glb .off .stl, any case); others are an Error that lists these.
 /// `origin` is Real, with the file's sha256.
 Scene loadScene(const std::filesystem::path& path);
 
@@ -29,6 +29,11 @@ Scene loadPly(const std::filesystem::path& path);
 /// Wavefront OBJ with MTL: v/vt/vn, negative indices, polygons of any shape, materials split into
 /// meshes, and these by which attributes their triangles have.
 Scene loadObj(const std::filesystem::path& path);
+/// Geomview's OFF in text: polygons of any shape, normals, colours and texture coordinates of
+/// vertices.
+Scene loadOff(const std::filesystem::path& path);
+/// STL, binary or in text: one mesh whose triangles share no vertices, so that each is flat.
+Scene loadStl(const std::filesystem::path& path);
 /// glTF 2.0, text or binary, through tinygltf: node transforms, the default pose of skins and morph
 /// targets, materials, textures, cameras.
 Scene loadGltf(const std::filesystem::path& path);

@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 namespace {
 
 scene::Scene loadNamed(const Context& context, const SceneOptions& options) {
-    const bool isModel =
-        scene::isSceneFile(options.name) && !scene::isHeightMapFile(scene::sceneName(options.name));
-    if (isModel) return scene::loadScene(options.name);
+    const std::string file = scene::sceneName(options.name);
+    const bool isPlain = options.name == file && scene::isSceneFile(file);
+    if (isPlain && !scene::isHeightMapFile(file)) return scene::loadScene(options.name);
     return openCatalog(context, options.assets).load(Node::scalar(options.name));
 }
 

@@ -49,4 +49,10 @@ scene::Camera cameraFor(const scene::Scene& scene, const std::string& view, int 
     return cameraAtTime(scene, view, frameTime(frame, frameCount), aspect);
 }
 
+scene::Camera stillCamera(const scene::Scene& scene, const std::string& view, float aspect) {
+    if (view.empty() && !scene.cameras.empty()) return scene.cameras.front();
+    if (view.empty()) return scene::framingCamera(scene.bounds(), aspect);
+    return cameraAtTime(scene, view, 0.5, aspect);
+}
+
 }  // namespace gfxrepro::kit

@@ -20,4 +20,8 @@ scene::Camera cameraAtTime(const scene::Scene& scene, const std::string& view, d
 scene::Camera cameraFor(const scene::Scene& scene, const std::string& view, int frame,
                         int frameCount, float aspect);
 
+/// The camera of what stands still: `view` names a path of the scene, whose middle it is, or a
+/// camera; empty: the first camera, else one that frames the scene. Throws as cameraAtTime().
+scene::Camera stillCamera(const scene::Scene& scene, const std::string& view, float aspect);
+
 }  // namespace gfxrepro::kit

@@ -7,9 +7,11 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/trigonometric.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/path_view.h"
 #include "techniques/kit/percent.h"
 #include "techniques/kit/picture.h"
 #include "techniques/kit/requirements.h"
@@ -41,6 +43,7 @@ struct ShadowMappingParams {
     bool comparesMethods = false;
     bool drawsYardstick = false;
     bool showsPictures = false;
+    std::string view;  // kit::stillCamera()
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
     explicit ShadowMappingParams(Params& params);
@@ -132,6 +135,9 @@ ShadowMappingParams::ShadowMappingParams(Params& params) {
         {"how many times the caster's change of depth from texel to texel is added to the bias",
          "1", 0.0, 100.0});
     readLights(params, *this);
+    view = params.getText(
+        "view", "",
+        {"a path of the scene, seen from its middle, or a camera; none: its first camera"});
     isStatic = params.getBool("static", false, {"the maps are drawn once and used again"});
     measuresErrors = params.getBool("errors", false, {"compares with shadow rays"});
     comparesMethods =
@@ -267,9 +273,7 @@ class ShadowMapping final : public technique::Technique {
         }
         shadedView_.emplace(context.shaders, params_.maps);
         const glm::vec2 size(context.outputSizePx);
-        const scene::Camera camera = scene.cameras.empty()
-                                         ? scene::framingCamera(scene.bounds(), size.x / size.y)
-                                         : scene.cameras.front();
+        const scene::Camera camera = kit::stillCamera(scene, params_.view, size.x / size.y);
         image_.emplace(makeShadedImage(kit::viewOf(camera, context.outputSizePx), false));
         // [zju2005] Sec. 4.1: the map is used again while the light and the objects stand still.
         if (params_.isStatic) maps_->render(*drawable_, lights_);
@@ -279,6 +283,7 @@ class ShadowMapping final : public technique::Technique {
 
     void requireScene(const scene::Scene& scene) const override {
         kit::requireTriangles(scene, "shadow_mapping");
+        kit::stillCamera(scene, params_.view, 1.0F);
         makeLights(params_, scene);  // refuses a scene with fewer lights than are asked for
     }
 

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/path_view.h"
 #include "techniques/kit/percent.h"
 #include "techniques/kit/picture.h"
 #include "techniques/kit/requirements.h"
@@ -103,6 +104,9 @@ SoftShadowsParams::SoftShadowsParams(Params& params)
       simplificationError(
           number(params, "simplification_error", 0.001,
                  {"bound on how far simplification moves the surface", "diagonals", 0.0, 1.0})),
+      view(params.getText(
+          "view", "",
+          {"a path of the scene, seen from its middle, or a camera; none: its first camera"})),
       light(readLight(params)),
       lightGrid(params.getInt("light_grid", 8,
                               {"light samples along each edge; the thesis has 16", "1", 1, 64})),
@@ -165,12 +169,6 @@ bool SoftShadowsParams::reconstructs() const {
 
 namespace {
 
-/// Where the receivers are seen from: the scene's own camera or one that frames it.
-scene::Camera outputCamera(const scene::Scene& scene, float aspect) {
-    return scene.cameras.empty() ? scene::framingCamera(scene.bounds(), aspect)
-                                 : scene.cameras.front();
-}
-
 /// A floor under the box, below whatever floor the scene has.
 void addGround(scene::Scene& scene, float sizeInDiagonals) {
     const scene::Box box = scene.bounds();
@@ -216,6 +214,7 @@ SoftShadows::SoftShadows(Params& params) : params_(params) {}
 
 void SoftShadows::requireScene(const scene::Scene& scene) const {
     kit::requireTriangles(scene, "soft_shadows");
+    kit::stillCamera(scene, params_.view, 1.0F);
 }
 
 void SoftShadows::setup(technique::SetupContext& context) {
@@ -225,7 +224,7 @@ void SoftShadows::setup(technique::SetupContext& context) {
     light_ = makeAreaLight(scene_.bounds(), params_.light);
     for (int corner = 0; corner < 4; ++corner) lightView(light_, light_.corner(corner), 64);
     const glm::vec2 size(context.outputSizePx);
-    const scene::Camera camera = outputCamera(scene_, size.x / size.y);
+    const scene::Camera camera = kit::stillCamera(scene_, params_.view, size.x / size.y);
     if (params_.hasGround) addGround(scene_, params_.groundSize);
 
     drawable_.emplace(scene_);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "runner/technique/technique.h"
@@ -42,6 +43,7 @@ struct SoftShadowsParams {
     ReconstructionSettings reconstruction;
     float simplifyTo = 1.0F;             // share of the triangles; 1: as reconstructed
     float simplificationError = 0.001F;  // of the box's diagonal
+    std::string view;                    // kit::stillCamera()
     AreaLightSettings light;
     int lightGrid = 16;
     ShadowMapSettings shadowMap;

@@ -108,6 +108,9 @@ TEST(Mutation, OfModelsAndPictures) {
     expectAnswers(ply, [&](std::mt19937&) { return Arguments{"scene", ply}; });
     const fs::path obj = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/1 2 3\n");
     expectAnswers(obj, [&](std::mt19937&) { return Arguments{"scene", obj}; });
+    const fs::path off =
+        folder.write("a.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n");
+    expectAnswers(off, [&](std::mt19937&) { return Arguments{"scene", off}; });
     const fs::path png = folder.path() / "a.png";
     image::writePng(png, image::Image8(8, 8, 3, std::uint8_t{128}));
     expectAnswers(png, [&](std::mt19937&) { return Arguments{"image", "info", png}; });

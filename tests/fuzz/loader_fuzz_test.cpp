@@ -335,6 +335,31 @@ TEST(LoaderFuzz, Obj) {
     }
 }
 
+TEST(LoaderFuzz, OffAndStl) {
+    const test::TemporaryFolder own;
+    std::string binary(80, ' ');
+    binary += std::string("\2\0\0\0", 4);
+    const float facet[] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+    for (int i = 0; i < 2; ++i) {
+        binary.append(reinterpret_cast<const char*>(facet), sizeof(facet));
+        binary += std::string(2, '\0');
+    }
+    const std::vector<fs::path> all = {
+        own.write("a.off",
+                  "STCNOFF\n4 2 0\n0 0 0 0 0 1 9 9 9 0 0\n1 0 0 0 0 1 9 9 9 0 1\n"
+                  "1 1 0 0 0 1 9 9 9 1 1\n0.2 0.2 0 0 0 1 9 9 9 0 1\n4 0 1 2 3 1 0 0\n3 0 1 2\n"),
+        own.write("text.stl",
+                  "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                  "vertex 0 1e0 0\nendloop\nendfacet\nendsolid a\n"),
+        own.write("binary.stl", binary)};
+    const Load load = [](const fs::path& path) { expectConsistent(scene::loadScene(path)); };
+    const test::TemporaryFolder work;
+    std::uint64_t number = 0;
+    for (const fs::path& seed : all) {
+        for (int round = 0; round < 2; ++round) fuzz(load, seed, ++number, work.path());
+    }
+}
+
 /// A triangle with a joint for each corner and a morph target.
 constexpr std::string_view kPosedGltf = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1,2]}],
 "buffers":[{"byteLength":96,"uri":"posed%20triangle.bin"}],"bufferViews":[

@@ -52,6 +52,16 @@ TEST(PathView, WithoutANameTakesTheFirstThatThereIs) {
               scene::framingCamera(scene.bounds(), 1.5F).position);
 }
 
+TEST(PathView, AStillTakesTheFirstCameraOrTheOneThatIsNamed) {
+    scene::Scene scene = boxWithViews();
+    EXPECT_EQ(stillCamera(scene, "", 1.0F).position.x, 10.0F);
+    EXPECT_EQ(stillCamera(scene, "side", 1.0F).position.x, 11.0F);
+    EXPECT_FLOAT_EQ(stillCamera(scene, "through", 1.0F).position.x, 6.0F);
+    scene.cameras.clear();
+    EXPECT_EQ(stillCamera(scene, "", 1.5F).position,
+              scene::framingCamera(scene.bounds(), 1.5F).position);
+}
+
 TEST(PathView, NamesWhatThereIsWhenANameIsUnknown) {
     EXPECT_EQ(test::errorText([] { cameraFor(boxWithViews(), "back", 0, 1, 1.0F); }),
               "the scene has no path or camera 'back'; paths: 'round', 'through'; cameras: "

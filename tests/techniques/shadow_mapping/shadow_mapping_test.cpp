@@ -103,6 +103,18 @@ TEST_F(ShadowMappingTest, DeclaresTheStepsOfTable43) {
     EXPECT_EQ(hardware["comparisons/shading_pass"], 0.0);
 }
 
+TEST_F(ShadowMappingTest, TakesTheViewThatIsNamed) {
+    scene_.cameras.push_back(scene_.cameras[0]);
+    scene_.cameras[1].name = "away";
+    scene_.cameras[1].position = {3.0F, 12.0F, 15.0F};
+    const auto points = [&](const char* yaml) {
+        return recorded(yaml, &scene_).metrics.at("compared_points");
+    };
+    EXPECT_LT(points("{errors: true, view: away}"), 0.5 * points("{errors: true}"));
+    EXPECT_EQ(errorText([&] { recorded("{view: back}", &scene_); }).substr(0, 39),
+              "the scene has no path or camera 'back';");
+}
+
 TEST_F(ShadowMappingTest, BadInput) {
     const auto message = [&](const std::string& yaml) {
         return errorText([&] { recorded(yaml, &scene_); });

@@ -2,6 +2,7 @@
 #include "techniques/soft_shadows/soft_shadows.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <map>
@@ -160,6 +161,12 @@ TEST_F(SoftShadowsTest, APictureOfNothingIsRefusedAndTheShareOfOneIsRecorded) {
     EXPECT_GT(without, 0.0);
     EXPECT_GT(withGround, without);
     EXPECT_LE(withGround, 100.0);
+    scene.cameras.push_back(scene.cameras[0]);
+    scene.cameras[1].name = "near";
+    scene.cameras[1].position = {0.5F, 2.0F, 2.5F};
+    EXPECT_GT(run("geometry", "ground: false, view: near", scene).at("coverage_pct"), without);
+    EXPECT_THAT(errorText([&] { run("geometry", "view: back", scene); }),
+                testing::StartsWith("the scene has no path or camera 'back'"));
     scene.cameras[0].target = {1.0F, 9.0F, 4.0F};  // up and away
     for (const std::string method : {"geometry", "non_redundant", "ray_traced"}) {
         EXPECT_EQ(errorText([&] { run(method, "", scene); }),

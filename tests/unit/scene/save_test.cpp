@@ -73,8 +73,9 @@ TEST(SavePly, RefusesNothing) {
 }
 
 TEST(LoadScene, ListsTheExtensions) {
-    EXPECT_EQ(errorText([] { loadScene("model.stl"); }),
-              "model.stl: unknown extension '.stl'; .ply, .obj, .gltf and .glb are allowed");
+    EXPECT_EQ(errorText([] { loadScene("model.fbx"); }),
+              "model.fbx: unknown extension '.fbx'; .ply, .obj, .gltf, .glb, .off and .stl are "
+              "allowed");
 }
 
 Material unusualMaterial() {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "engine/image/png_io.h"
+#include "engine/scene/load.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
 #include "tests/support/topology.h"
@@ -320,13 +321,54 @@ TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
     EXPECT_EQ(test::errorText([&] { catalog.load(missing); }, folders.folder.path()),
               "DIR/mine/table.yaml:2:3: scene file '../no.obj' is not there; looked at DIR/no.obj");
     // Known before it is looked for, so that a check without a device finds it.
-    const auto unknown = Node::scalar("my.STL", {config, 2, 3});
+    const auto unknown = Node::scalar("my.FBX", {config, 2, 3});
     EXPECT_EQ(test::errorText([&] { catalog.resolve(unknown); }, folders.folder.path()),
-              "DIR/mine/table.yaml:2:3: scene file my.STL: unknown extension '.stl'; .ply, .obj, "
-              ".gltf and .glb are allowed");
-    EXPECT_EQ(folders.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.stl}]\n"),
-              "DIR/scenes/m/x.yaml:3:18: file a.stl: unknown extension '.stl'; .ply, .obj, "
-              ".gltf and .glb are allowed");
+              "DIR/mine/table.yaml:2:3: scene file my.FBX: unknown extension '.fbx'; .ply, .obj, "
+              ".gltf, .glb, .off and .stl are allowed");
+    EXPECT_EQ(folders.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.fbx}]\n"),
+              "DIR/scenes/m/x.yaml:3:18: file a.fbx: unknown extension '.fbx'; .ply, .obj, "
+              ".gltf, .glb, .off and .stl are allowed");
+}
+
+TEST(Catalog, TurnsAUsersModelUp) {
+    const Folders folders;
+    const Catalog catalog = folders.catalog();
+    Scene tall =
+        sceneOf(Mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 5}}, .triangles = {{0, 1, 2}}});
+    tall.lights = {{{1, 2, 3}}};
+    Camera camera;
+    camera.position = {0, -4, 1};
+    camera.target = {0, 0, 1};
+    camera.up = {0, 0, 1};
+    tall.cameras = {camera};
+    tall.paths = {{"round", {camera}}};
+    tall.motions = {{0, {1, 2, 3}, {0, 0, 1}, 1.0F, {0, 0, 1}, 1.0F}};
+    saveGlb(folders.folder.path() / "tall.glb", tall);
+    const std::string file = folders.folder.path() / "tall.glb";
+    const auto load = [&](const std::string& params) {
+        return catalog.load(Node::scalar(file + params));
+    };
+    EXPECT_EQ(load("?up=y").bounds().max, glm::vec3(1, 2, 5));
+    const Scene turned = load("?up=z");
+    const auto expectNear = [](const glm::vec3& a, const glm::vec3& b) {
+        EXPECT_LT(glm::length(a - b), 1e-5F);
+    };
+    expectNear(turned.bounds().max, {1, 5, 0});
+    // What is in it turns, too.
+    expectNear(turned.cameras.at(0).position, {0, 1, 4});
+    expectNear(turned.cameras[0].up, {0, 1, 0});
+    expectNear(turned.paths.at(0).keys[0].target, {0, 1, 0});
+    expectNear(turned.lights.at(0).position, {1, 3, -2});
+    expectNear(turned.motions.at(0).pivot, {1, 3, -2});
+    expectNear(turned.motions[0].axis, {0, 1, 0});
+    expectNear(turned.motions[0].swing, {0, 1, 0});
+    const auto key = [&](const std::string& params) {
+        return catalog.contentKey(Node::scalar(file + params));
+    };
+    EXPECT_NE(key("?up=z"), key("?up=y"));
+    EXPECT_EQ(test::errorText([&] { load("?upp=z"); }, folders.folder.path()),
+              "model 'DIR/tall.glb' has no parameter 'upp'; did you mean 'up'?; allowed: up");
+    EXPECT_EQ(test::errorText([&] { load("?up=x"); }), "up is x; allowed: y | z");
 }
 
 TEST(Catalog, SaysWhereItLookedAndHowToGetIt) {

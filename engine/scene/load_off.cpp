@@ -1,0 +1,167 @@
+// OFF as Geomview describes it, in text.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/core/files.h"
+#include "engine/scene/left_out.h"
+#include "engine/scene/load.h"
+#include "engine/scene/load_lines.h"
+#include "engine/scene/polygon.h"
+#include "engine/scene/topology.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+class OffParser {
+  public:
+    OffParser(std::string_view text, const std::string& file, const glm::dvec3& offset)
+        : lines_(text, file), offset_(offset) {}
+
+    Scene parse() {
+        parseHeader();
+        for (std::uint64_t i = 0; i < vertexCount_; ++i) parseVertex();
+        for (std::uint64_t i = 0; i < faceCount_; ++i) parseFace();
+        makeLinear(mesh_.colors);
+        LeftOut leftOut;
+        leftOut.add(kOverlap, filler_.overlappingCount());
+        leftOut.add("a face of fewer than 3 corners", thinFaces_);
+        leftOut.add("a number behind a vertex", extraNumbers_);
+        leftOut.add("the alpha of a vertex's colour", alphas_);
+        leftOut.add("the colour of a face", faceColours_);
+        Scene scene;
+        if (mesh_.triangles.empty()) {
+            leftOut.add("the texture coordinates of a point", mesh_.texcoords.size());
+            scene.points = {
+                std::move(mesh_.positions), std::move(mesh_.normals), {}, std::move(mesh_.colors)};
+        } else {
+            leftOut.add("a vertex that no face uses", dropUnusedVertices(mesh_));
+            scene = sceneOf(std::move(mesh_));
+        }
+        leftOut.tell(scene.warnings);
+        return scene;
+    }
+
+  private:
+    /// The next line with a word in it; its first word.
+    std::string_view nextWord() {
+        while (lines_.nextLine()) {
+            if (const std::string_view word = lines_.word(); !word.empty()) return word;
+        }
+        lines_.fail("the file ends early");
+    }
+
+    std::uint64_t whole(std::string_view word, std::uint64_t end, const char* what) const {
+        const std::optional<std::uint64_t> value = parsedNumber<std::uint64_t>(word);
+        if (value && *value < end) return *value;
+        lines_.fail(fmt::format("{} is no {}; 0 to {} are allowed", inQuotes(word), what, end - 1));
+    }
+
+    /// [ST][C][N]OFF; some files have no such word, or the first count right behind it.
+    void parseHeader() {
+        std::string_view word = nextWord();
+        if (const std::size_t at = word.find("OFF"); at != word.npos) {
+            std::string_view kind = word.substr(0, at);
+            hasTexcoords_ = takePrefix(kind, "ST");
+            hasColors_ = takePrefix(kind, "C");
+            hasNormals_ = takePrefix(kind, "N");
+            if (!kind.empty()) {
+                lines_.fail(fmt::format("{} is not read; OFF is, with ST, C and N before it",
+                                        inQuotes(word)));
+            }
+            word = word.substr(at + 3);
+            if (word.empty()) word = lines_.word();
+            if (word == "BINARY") lines_.fail("binary OFF is not read; text is");
+            if (word.empty()) word = nextWord();
+        }
+        constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+        vertexCount_ = whole(word, kMost, "count of vertices");
+        word = lines_.word();
+        faceCount_ = whole(word.empty() ? nextWord() : word, kMost, "count of faces");
+        if (vertexCount_ == 0) lines_.fail("no vertices");
+    }
+
+    static bool takePrefix(std::string_view& text, std::string_view prefix) {
+        const bool isThere = text.starts_with(prefix);
+        if (isThere) text.remove_prefix(prefix.size());
+        return isThere;
+    }
+
+    double coordinate(std::string_view word) const {
+        const std::optional<double> value = parsedNumber<double>(word);
+        if (value && std::abs(*value) <= double{kMaxCoordinate}) return *value;
+        lines_.fail(fmt::format("{} is no coordinate; {:g} to {:g} are allowed", inQuotes(word),
+                                -kMaxCoordinate, kMaxCoordinate));
+    }
+
+    void parseVertex() {
+        glm::dvec3 position(0.0);
+        position.x = coordinate(nextWord());
+        position.y = coordinate(lines_.word());
+        position.z = coordinate(lines_.word());
+        mesh_.positions.emplace_back(position - offset_);
+        const auto vector = [&] {
+            glm::vec3 v;
+            for (int i = 0; i < 3; ++i) v[i] = lines_.number();
+            return v;
+        };
+        if (hasNormals_) mesh_.normals.push_back(unitNormal(vector()));
+        std::vector<float> rest;
+        if (hasColors_) mesh_.colors.push_back(vector());
+        while (const auto value = lines_.optionalNumber()) rest.push_back(*value);
+        const std::size_t texcoordAt = hasColors_ && rest.size() % 2 == 1 ? 1 : 0;  // behind alpha
+        if (texcoordAt == 1 && rest[0] != 1.0F && rest[0] != 255.0F) ++alphas_;
+        std::size_t used = texcoordAt;
+        if (hasTexcoords_) {
+            if (rest.size() < used + 2) lines_.fail("the vertex lacks texture coordinates");
+            mesh_.texcoords.emplace_back(rest[used], rest[used + 1]);
+            used += 2;
+        }
+        extraNumbers_ += rest.size() - used;
+    }
+
+    void parseFace() {
+        const std::uint64_t count = whole(nextWord(), 1U << 30, "count of corners");
+        std::vector<std::uint32_t> corners;
+        std::vector<glm::vec3> places;
+        for (std::uint64_t i = 0; i < count; ++i) {
+            const std::string_view word = lines_.word();
+            if (word.empty()) lines_.fail("the face lacks corners");
+            corners.push_back(
+                static_cast<std::uint32_t>(whole(word, vertexCount_, "vertex of the file")));
+            places.push_back(mesh_.positions[corners.back()]);
+        }
+        if (!lines_.word().empty()) ++faceColours_;
+        if (count < 3) {
+            ++thinFaces_;
+            return;
+        }
+        for (const glm::uvec3& t : filler_.fill(places)) {
+            mesh_.triangles.emplace_back(corners[t.x], corners[t.y], corners[t.z]);
+        }
+    }
+
+    LineReader lines_;
+    glm::dvec3 offset_;
+    bool hasTexcoords_ = false, hasColors_ = false, hasNormals_ = false;
+    std::uint64_t vertexCount_ = 0, faceCount_ = 0;
+    Mesh mesh_;
+    PolygonFiller filler_;
+    std::size_t alphas_ = 0, extraNumbers_ = 0, faceColours_ = 0, thinFaces_ = 0;  // left out
+};
+
+}  // namespace
+
+Scene loadOff(const std::filesystem::path& path) {
+    const MappedFile mapped(path);
+    return loadedNearOrigin([&](const glm::dvec3& offset) {
+        return OffParser(mapped.text(), path.string(), offset).parse();
+    });
+}
+
+}  // namespace gfxrepro::scene

@@ -1,0 +1,142 @@
+// STL, binary or text. Facets share no vertices: each is flat, as the file has it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/scene/left_out.h"
+#include "engine/scene/load.h"
+#include "engine/scene/load_lines.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::size_t kStlHeaderBytes = 84;  // 80 of text, and the count of facets
+constexpr std::size_t kFacetBytes = 50;      // normal, three corners, two bytes of no set meaning
+
+std::uint64_t declaredBytes(std::string_view bytes) {
+    std::uint32_t facets = 0;
+    if (bytes.size() < kStlHeaderBytes) return 0;
+    std::memcpy(&facets, bytes.data() + 80, sizeof(facets));
+    return kStlHeaderBytes + kFacetBytes * std::uint64_t{facets};
+}
+
+bool isTextStl(std::string_view bytes) {
+    // Exporters of binary files write "solid" there, too.
+    if (bytes.substr(0, 1024).find('\0') != bytes.npos) return false;
+    bytes = withoutByteOrderMark(bytes);
+    const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+    return std::ranges::equal(bytes.substr(begin, 5), std::string_view("solid"), {},
+                              [](unsigned char c) { return std::tolower(c); });
+}
+
+std::uint32_t addCorner(Mesh& mesh, const glm::vec3& position) {
+    mesh.positions.push_back(position);
+    return static_cast<std::uint32_t>(mesh.positions.size() - 1);
+}
+
+Mesh binaryMesh(std::string_view bytes, const std::string& file, const glm::dvec3& offset,
+                LeftOut& leftOut) {
+    const std::uint64_t needed = declaredBytes(bytes);
+    if (needed == 0 || needed > bytes.size()) {
+        throw Error(fmt::format(
+            "{}: has {} bytes; a binary STL file of its {} facets has {}, one "
+            "in text begins with 'solid'",
+            file, bytes.size(), needed == 0 ? 0 : (needed - kStlHeaderBytes) / kFacetBytes,
+            std::max<std::uint64_t>(needed, kStlHeaderBytes)));
+    }
+    leftOut.add("a byte behind the facets", bytes.size() - needed);
+    std::size_t attributes = 0;
+    Mesh mesh;
+    mesh.positions.reserve((needed - kStlHeaderBytes) / kFacetBytes * 3);
+    for (std::size_t at = kStlHeaderBytes; at < needed; at += kFacetBytes) {
+        std::array<glm::vec3, 4> facet;  // its normal, and its corners
+        std::memcpy(facet.data(), bytes.data() + at, sizeof(facet));
+        glm::uvec3 triangle(0);
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 corner(facet[static_cast<std::size_t>(i) + 1]);
+            for (int axis = 0; axis < 3; ++axis) {
+                if (std::abs(corner[axis]) <= double{kMaxCoordinate}) continue;
+                throw Error(fmt::format(
+                    "{}: facet {}: a coordinate is {:g}; {:g} to {:g} are "
+                    "allowed",
+                    file, mesh.triangles.size(), corner[axis], -kMaxCoordinate, kMaxCoordinate));
+            }
+            triangle[i] = addCorner(mesh, corner - offset);
+        }
+        mesh.triangles.push_back(triangle);
+        if (bytes[at + 48] != 0 || bytes[at + 49] != 0) ++attributes;
+    }
+    leftOut.add("the attribute of a facet, which some programs take for a colour", attributes);
+    return mesh;
+}
+
+Mesh textMesh(std::string_view text, const std::string& file, const glm::dvec3& offset) {
+    LineReader lines(text, file);
+    Mesh mesh;
+    std::size_t corners = 0;
+    while (lines.nextLine()) {
+        for (std::string word(lines.word()); !word.empty(); word = lines.word()) {
+            std::ranges::transform(word, word.begin(),
+                                   [](unsigned char c) { return std::tolower(c); });
+            if (word == "solid" || word == "endsolid") break;  // a name follows
+            if (word == "vertex") {
+                glm::dvec3 position;
+                for (int axis = 0; axis < 3; ++axis) {
+                    position[axis] = lines.number<double>();
+                    if (std::abs(position[axis]) <= double{kMaxCoordinate}) continue;
+                    lines.fail(fmt::format("a coordinate is {:g}; {:g} to {:g} are allowed",
+                                           position[axis], -kMaxCoordinate, kMaxCoordinate));
+                }
+                addCorner(mesh, position - offset);
+                ++corners;
+            } else if (word == "facet") {
+                for (int i = 0; i < 4; ++i) lines.word();  // "normal" and its numbers
+            } else if (word == "endloop") {
+                if (corners != 3) {
+                    lines.fail(fmt::format("a facet of {} corners; 3 are allowed", corners));
+                }
+                const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+                mesh.triangles.emplace_back(last - 2, last - 1, last);
+                corners = 0;
+            } else if (word != "outer" && word != "loop" && word != "endfacet") {
+                lines.fail(fmt::format(
+                    "{} is unknown; solid, facet normal, outer loop, vertex, endloop, endfacet "
+                    "and endsolid are allowed",
+                    inQuotes(word)));
+            }
+        }
+    }
+    if (corners > 0) lines.fail("the file ends within a facet");
+    return mesh;
+}
+
+}  // namespace
+
+Scene loadStl(const std::filesystem::path& path) {
+    const MappedFile mapped(path);
+    const std::string file = path.string();
+    const bool isText = isTextStl(mapped.text());
+    return loadedNearOrigin([&](const glm::dvec3& offset) {
+        LeftOut leftOut;
+        Mesh mesh = isText ? textMesh(mapped.text(), file, offset)
+                           : binaryMesh(mapped.text(), file, offset, leftOut);
+        if (mesh.triangles.empty()) throw Error(file + ": no facets");
+        Scene scene = sceneOf(std::move(mesh));
+        leftOut.tell(scene.warnings);
+        return scene;
+    });
+}
+
+}  // namespace gfxrepro::scene
