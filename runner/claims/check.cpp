@@ -54,9 +54,15 @@ int processesOfPaper(const config::Experiment& experiment) {
 }
 
 /// Why a claim's kind of time is not that of what it reads; empty if it is.
-std::string whyWrongKind(const ClaimSpec& claim, ClaimReader& reader) {
+std::string whyWrongKind(const ClaimSpec& claim, const config::Experiment& experiment,
+                         ClaimReader& reader) {
     if (!reader.readsTime()) return claim.timeKind ? "has a 'kind' and reads no time" : "";
-    if (!reader.timeKind()) return "reads a time and needs 'kind': algorithmic | architectural";
+    if (!reader.timeKind()) {
+        // A program's times are the clock's, whatever decides them.
+        return config::goesByClock(experiment)
+                   ? ""
+                   : "reads a time and needs 'kind': algorithmic | architectural";
+    }
     if (*reader.timeKind() != ClaimSpec::TimeKind::Absolute && reader.asksForATimeAsSuch()) {
         return "holds a time against a number, which neither a count of work nor another machine "
                "decides; its 'kind' is absolute";
@@ -254,7 +260,8 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
                 "reads nothing but cells that an input of ours was fitted to "
                 "('printed.calibrated'): its origin is calibrated");
         }
-        if (const std::string why = whyWrongKind(claim, reader); !why.empty()) complain(why);
+        if (const std::string why = whyWrongKind(claim, experiment, reader); !why.empty())
+            complain(why);
         if (isOfDocument && timeKind && paperProcesses < config::kFewestRounds) {
             complain(
                 fmt::format("is of a time: the paper profile needs processes: {} or more, has {}",

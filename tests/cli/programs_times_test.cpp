@@ -68,7 +68,7 @@ TEST_F(Timed, AProgramThatWaitsIsJudgedByTheClock) {
         "sweep: {number: [1, 2, 4]}\n"
         "layout: {rows: number, columns: {ms: {metric: wall_time_ms}, own: {metric: own_ms}}}\n"
         "claims:\n"
-        "  slope: {says: it falls with the number, kind: algorithmic, trend: ms, over: number, "
+        "  slope: {says: it falls with the number, trend: ms, over: number, "
         "at_least: -1.2, at_most: -0.6}\n"
         "  slower: {says: two take longer than four, kind: algorithmic, across: number, "
         "ratio: \"'2' / '4'\", at_least: 1.3, at: {column: ms}}\n"
