@@ -126,6 +126,10 @@ std::string rivalSentence(const RivalTally& tally, const std::string& rival,
     };
     compared(tally.less, words.less);
     compared(tally.more, words.more);
+    if (tally.open > 1 && tally.open == tally.rows()) {
+        return fmt::format("{} and {} cannot be told apart in any of {} rows", rival, first,
+                           tally.open);
+    }
     part(tally.open, fmt::format("{} and {} cannot be told apart", rival, first), "");
     return joined(parts, "; ");
 }
