@@ -127,6 +127,17 @@ double relativeMeanSquaredError(const ImageF& truth, const ImageF& test) {
     return sum / static_cast<double>(truth.values().size());
 }
 
+std::vector<double> largestDifferences(const ImageF& a, const ImageF& b) {
+    requireComparable(a, b);
+    const auto channels = static_cast<std::size_t>(a.channels());
+    std::vector<double> largest(a.values().size() / channels, 0.0);
+    for (std::size_t i = 0; i < a.values().size(); ++i) {
+        const double difference = std::abs(double{a.values()[i]} - b.values()[i]);
+        largest[i / channels] = std::max(largest[i / channels], difference);
+    }
+    return largest;
+}
+
 double maxAbsoluteError(const ImageF& a, const ImageF& b) {
     requireComparable(a, b);
     double largest = 0.0;

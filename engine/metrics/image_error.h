@@ -1,6 +1,8 @@
 // Differences of images.
 #pragma once
 
+#include <vector>
+
 #include "engine/image/image.h"
 
 namespace gfxrepro::metrics {
@@ -18,6 +20,8 @@ double peakSignalToNoiseDb(const image::ImageF& a, const image::ImageF& b);
 /// much as one in the light, and the 0.01 keeps black from dividing by zero. Throws as
 /// meanSquaredError().
 double relativeMeanSquaredError(const image::ImageF& truth, const image::ImageF& test);
+/// Of each pixel the largest absolute difference of a value; throws as meanSquaredError().
+std::vector<double> largestDifferences(const image::ImageF& a, const image::ImageF& b);
 /// Largest absolute difference.
 double maxAbsoluteError(const image::ImageF& a, const image::ImageF& b);
 /// Mean structural similarity of luminance (Wang et al. 2004: 11×11 Gaussian window, σ 1.5, K 0.01

@@ -349,10 +349,10 @@ void readPictures(const Node& pictures, const Names& known, ExternalProgram& pro
             readTruth(*truth, what + ": truth", known, program, picture);
         }
         program.pictures.push_back(picture);
-        const bool isPass = program.outputs.hasPass(name);
-        if (picture.hasTruth() && !isPass) {
-            program.outputs.passes.push_back({name, "the picture against its truth"});
-        }
+        if (!picture.hasTruth()) continue;
+        program.outputs.withTruth.push_back(name);
+        if (program.outputs.hasPass(name)) continue;
+        program.outputs.passes.push_back({name, "the picture against its truth"});
     }
 }
 

@@ -57,16 +57,20 @@ void Outputs::requirePass(std::string_view pass, const std::string& owner,
 
 std::span<const MetricInfo> pictureErrors() {
     using Of = MetricInfo::Of;
+    constexpr bool kIsDetail = true;
     static const std::vector<MetricInfo> errors = {
-        {"mse", "1", "mean squared error of all values, linear or sRGB as in the file", Better::Lower, false,
-         Of::Pass},
+        {"mse", "1", "mean squared error of all values, linear or sRGB as in the file",
+         Better::Lower, false, Of::Pass},
         {"rmse", "1", "its square root", Better::Lower, false, Of::Pass},
         {"rel_mse", "1", "mean of squared errors ÷ (squared truth + 0.01)", Better::Lower, false,
          Of::Pass},
         {"psnr_db", "dB", "10 · log10(1 ÷ mse)", Better::Higher, false, Of::Pass},
         {"ssim", "1", "structural similarity of luminance", Better::Higher, false, Of::Pass},
-        {"flip", "1", "mean FLIP; HDR-FLIP of linear files with values beyond 1", Better::Lower, false,
-         Of::Pass}};
+        {"flip", "1", "mean FLIP; HDR-FLIP of pictures with values beyond 1", Better::Lower, false,
+         Of::Pass},
+        {"error_p95", "1", "the largest difference of a pixel's values that 95 % of pixels keep to",
+         Better::Lower, kIsDetail, Of::Pass},
+        {"error_p99", "1", "likewise 99 %", Better::Lower, kIsDetail, Of::Pass}};
     return errors;
 }
 

@@ -43,6 +43,8 @@ struct Outputs {
     /// They depend on the seed of SetupContext: Monte Carlo, jitter, a random order. Not where it
     /// only makes an input that all methods share.
     bool areRandom = false;
+    /// The pictures of which a truth is recorded: the runner takes their errors (pictureErrors).
+    std::vector<std::string> withTruth = {};
 
     /// Of the share `m`, `m`_of is a metric, too. Null where there is none.
     const MetricInfo* find(std::string_view metric) const;
@@ -54,7 +56,8 @@ struct Outputs {
                      const SourceLocation& where = {}) const;
 };
 
-/// What is recorded of each picture that has a truth; its name is the pass.
+/// What is recorded of each picture that has a truth; its name is the pass. Of several truths the
+/// first counts, which the report shows, too.
 std::span<const MetricInfo> pictureErrors();
 
 /// Ends the name of what a share is of.

@@ -144,6 +144,7 @@ class Gallery {
         shot.caseTitle = entry.title;
         shot.name = nameOf(entry);
         shot.baseName = entry.name;
+        shot.frame = entry.frame;
         shot.png = entry.png;
         shot.content = entry.truthOf.empty() ? "" : content;
         const records::ImageEntry* truth = isTooLarge(entry) ? nullptr : truthOf(entry);

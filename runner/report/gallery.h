@@ -41,13 +41,14 @@ struct Shot {
     std::string caseTitle;
     std::string name;      // "result"; with its frame where there are several
     std::string baseName;  // without it
-    std::string png;       // below the run's folder
+    int frame = 0;
+    std::string png;  // below the run's folder
     std::string thumbnail;
-    std::string full;     // empty: the thumbnail is the image itself
-    std::string truth;    // name of the shot that this one is compared with; empty: none
-    std::string content;  // of a truth: the same text for the same picture; empty: no truth
-    std::string flip;     // FLIP map against the truth, as `thumbnail`; empty: none
-    double flipMean = 0.0;
+    std::string full;          // empty: the thumbnail is the image itself
+    std::string truth;         // name of the shot that this one is compared with; empty: none
+    std::string content;       // of a truth: the same text for the same picture; empty: no truth
+    std::string flip;          // FLIP map against the truth, as `thumbnail`; empty: none
+    double flipMean = 0.0;     // what was recorded of it; of older runs that of the map
     std::uintmax_t bytes = 0;  // of the PNG
     int width = 0;             // of what the viewer opens
     int height = 0;

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <optional>
+#include <string_view>
+#include <tuple>
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
@@ -75,11 +78,27 @@ Page& pageOf(const std::string& id, Model& model) {
     return model.pages.emplace_back(std::move(page));
 }
 
+/// The error that a table shows of a picture is that below the picture, too; of the last process,
+/// whose picture is there.
+void takeRecordedErrors(const std::vector<records::Record>& records, std::vector<Shot>& shots) {
+    std::map<std::tuple<std::string_view, std::string_view, int>, const records::Record*> flips;
+    for (const records::Record& record : records) {
+        if (record.metric != "flip" || std::isnan(record.value)) continue;
+        const records::Record*& last = flips[{record.caseId, record.pass, record.frame}];
+        if (!last || last->process <= record.process) last = &record;
+    }
+    for (Shot& shot : shots) {
+        const auto found = flips.find({shot.caseId, shot.baseName, shot.frame});
+        if (found != flips.end()) shot.flipMean = found->second->value;
+    }
+}
+
 void addRun(std::size_t index, const GalleryPlace& place, const PicturesDone& progress,
             Model& model) {
     const ReportRun& run = model.runs[index];
     GFXREPRO_ASSERT_EQ(run.experiments.size(), run.tables.size());
-    const std::vector<Shot> shots = gatherShots(place, progress);
+    std::vector<Shot> shots = gatherShots(place, progress);
+    takeRecordedErrors(run.records, shots);
     for (std::size_t i = 0; i < run.experiments.size(); ++i) {
         const config::Experiment& experiment = run.experiments[i];
         Page& page = pageOf(experiment.id, model);

@@ -10,12 +10,17 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "engine/core/hash.h"
 #include "engine/core/output_files.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
 #include "engine/image/srgb.h"
+#include "engine/metrics/flip.h"
+#include "engine/metrics/image_error.h"
+#include "engine/metrics/statistics.h"
 #include "runner/run/manifest.h"
 
 namespace gfxrepro::run {
@@ -145,6 +150,35 @@ void makeBelow(const fs::path& runDir, const fs::path& folder) {
 
 }  // namespace
 
+namespace {
+
+/// By the names of config::pictureErrors(); `seen` is the picture in linear light.
+std::vector<std::pair<const char*, double>> errorsOf(const image::ImageF& test,
+                                                     const image::ImageF& truth,
+                                                     const image::ImageF& seen,
+                                                     const image::ImageF& seenTruth) {
+    constexpr int kLeastSsimPx = 11;  // structural similarity has no value for smaller pictures
+    const double mse = metrics::meanSquaredError(truth, test);
+    std::vector<std::pair<const char*, double>> errors = {
+        {"mse", mse},
+        {"rmse", std::sqrt(mse)},
+        {"rel_mse", metrics::relativeMeanSquaredError(truth, test)},
+        {"psnr_db", metrics::peakSignalToNoiseDb(truth, test)}};
+    if (test.width() >= kLeastSsimPx && test.height() >= kLeastSsimPx) {
+        errors.emplace_back("ssim", metrics::structuralSimilarity(truth, test));
+    }
+    const image::ImageF colours = metrics::coloursOf(seen), known = metrics::coloursOf(seenTruth);
+    const bool isHdr = metrics::exceedsDisplay(colours) || metrics::exceedsDisplay(known);
+    errors.emplace_back("flip",
+                        isHdr ? metrics::hdrFlip(known, colours) : metrics::flip(known, colours));
+    const std::vector<double> largest = metrics::largestDifferences(truth, test);
+    errors.emplace_back("error_p95", metrics::summarize(largest, metrics::Statistic::P95));
+    errors.emplace_back("error_p99", metrics::summarize(largest, metrics::Statistic::P99));
+    return errors;
+}
+
+}  // namespace
+
 void RunRecorder::metric(std::string_view metric, double value, std::string_view unit,
                          std::string_view pass) {
     requireDeclared(metric, unit, pass);
@@ -185,6 +219,7 @@ void RunRecorder::image(std::string_view name, const image::ImageF& image,
                     " channels; 1, 3 or 4 are allowed");
     }
     checkFileName(name);
+    keepCompared(name, image, options);
     makeBelow(runDir_, "images/" + item_.slug());
     std::string stem = "images/" + fileStem(item_) + shortName(name);
     if (item_.measure.frames > 1) {
@@ -203,7 +238,32 @@ void RunRecorder::image(std::string_view name, const image::ImageF& image,
                               sha256OfFile(runDir_ / (stem + ".exr"))});
 }
 
-void RunRecorder::checkTruths() const {
+void RunRecorder::keepCompared(std::string_view name, const image::ImageF& image,
+                               const technique::ImageOptions& options) {
+    const auto isDeclared = [&](std::string_view picture) {
+        return std::ranges::find(outputs_.withTruth, picture) != outputs_.withTruth.end();
+    };
+    const std::optional<image::ImageF> stored =
+        options.stored ? std::optional(*options.stored) : std::nullopt;
+    if (isDeclared(name)) {
+        Compared& own = compared_[std::string(name)];
+        own.picture = image;
+        own.pictureStored = stored;
+    }
+    if (options.truthOf.empty()) return;
+    if (!isDeclared(options.truthOf)) {
+        throw Error(
+            fmt::format("image '{}' is the truth of '{}', of which technique '{}' does not "
+                        "declare that it has one",
+                        name, options.truthOf, item_.technique));
+    }
+    Compared& own = compared_[options.truthOf];
+    if (own.truth) return;
+    own.truth = image;
+    own.truthStored = stored;
+}
+
+void RunRecorder::compareWithTruths() {
     for (const records::ImageEntry& truth : result_.images) {
         if (truth.frame != frame_ || truth.truthOf.empty()) continue;
         const bool isThere = std::any_of(
@@ -215,6 +275,20 @@ void RunRecorder::checkTruths() const {
                         "', which is not among the frame's images");
         }
     }
+    for (const auto& [name, own] : compared_) {
+        if (!own.picture || !own.truth) continue;
+        const image::ImageF& test = own.pictureStored ? *own.pictureStored : *own.picture;
+        const image::ImageF& reference = own.truthStored ? *own.truthStored : *own.truth;
+        try {
+            metrics::requireComparable(reference, test);
+        } catch (const Error& error) {
+            throw Error(fmt::format("image '{}' and its truth: {}", name, error.what()));
+        }
+        for (const auto& [metric, value] : errorsOf(test, reference, *own.picture, *own.truth)) {
+            this->metric(metric, value, metric == "psnr_db" ? "dB" : "1", name);
+        }
+    }
+    compared_.clear();
 }
 
 fs::path RunRecorder::artifact(std::string_view fileName) {

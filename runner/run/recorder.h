@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -56,12 +58,16 @@ class RunRecorder : public technique::Recorder {
     void image(std::string_view name, const image::ImageF& image,
                const technique::ImageOptions& options) override;
     std::filesystem::path artifact(std::string_view fileName) override;
-    /// Throws Error when an image of this frame is the truth of one that was not given.
-    void checkTruths() const;
+    /// Takes the errors of this frame's images that have a truth, and lets go of them. Throws Error
+    /// when an image is the truth of one that was not given or is not declared
+    /// (Outputs::withTruth), and when the two cannot be compared.
+    void compareWithTruths();
 
   private:
     void requireDeclared(std::string_view metric, std::string_view unit,
                          std::string_view pass) const;
+    void keepCompared(std::string_view name, const image::ImageF& image,
+                      const technique::ImageOptions& options);
 
     std::filesystem::path runDir_;
     std::string command_;
@@ -71,6 +77,10 @@ class RunRecorder : public technique::Recorder {
     int frame_ = records::kSetup;
     int repeat_ = records::kSetup;
     std::set<std::tuple<int, int, std::string, std::string>> given_;  // frame, repeat, pass, metric
+    struct Compared {
+        std::optional<image::ImageF> picture, pictureStored, truth, truthStored;
+    };
+    std::map<std::string, Compared> compared_;  // of this frame, by picture
 };
 
 }  // namespace gfxrepro::run

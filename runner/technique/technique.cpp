@@ -1,6 +1,7 @@
 #include "runner/technique/technique.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
@@ -58,13 +59,30 @@ std::span<const config::MetricInfo> commonMetrics() {
     return metrics;
 }
 
+namespace {
+
+/// Declares the errors of its pictures, but what a technique declares of the same name.
+config::Outputs withPictureErrors(config::Outputs outputs) {
+    for (const std::string& picture : outputs.withTruth) {
+        if (outputs.hasPass(picture)) continue;
+        outputs.passes.push_back({picture, "the picture against its truth"});
+    }
+    if (outputs.withTruth.empty()) return outputs;
+    for (const config::MetricInfo& error : config::pictureErrors()) {
+        if (!outputs.find(error.name)) outputs.metrics.push_back(error);
+    }
+    return outputs;
+}
+
+}  // namespace
+
 config::Outputs outputsOf(const TechniqueInfo& technique, const Node& program) {
     const config::Outputs own = technique.outputs();
     const std::span<const config::MetricInfo> common = commonMetrics();
-    config::Outputs all{{common.begin(), common.end()}, own.passes, own.areRandom};
+    config::Outputs all{{common.begin(), common.end()}, own.passes, own.areRandom, own.withTruth};
     if (program.isNull()) {
         all.metrics.insert(all.metrics.end(), own.metrics.begin(), own.metrics.end());
-        return all;
+        return withPictureErrors(std::move(all));
     }
     const config::Outputs said = config::readProgram(program).outputs;
     for (const config::MetricInfo& info : said.metrics) {
@@ -79,7 +97,8 @@ config::Outputs outputsOf(const TechniqueInfo& technique, const Node& program) {
     all.metrics.insert(all.metrics.end(), said.metrics.begin(), said.metrics.end());
     all.metrics.insert(all.metrics.end(), own.metrics.begin(), own.metrics.end());
     all.passes.insert(all.passes.end(), said.passes.begin(), said.passes.end());
-    return all;
+    all.withTruth = said.withTruth;
+    return withPictureErrors(std::move(all));
 }
 
 std::unique_ptr<Technique> makeTechnique(const TechniqueInfo& info, const Node& program,

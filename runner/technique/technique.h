@@ -71,6 +71,9 @@ struct ImageOptions {
     /// Further channels of the same size, for the EXR file alone: "Z", "N.X", "id", "error.R". Its
     /// attributes go into the file, too.
     image::ExrImage layers = {};
+    /// In whose values its errors are taken; null: the image itself. A program's PNG is compared as
+    /// it is stored.
+    const image::ImageF* stored = nullptr;
 };
 
 /// Takes what a technique has to report of the last iteration.
@@ -86,6 +89,7 @@ class Recorder {
     /// not recorded.
     void share(std::string_view metric, double part, double whole, std::string_view unit,
                std::string_view pass = "");
+    /// An image that has a truth (Outputs::withTruth) gets its errors (config::pictureErrors()).
     /// Saved as images/<case>-<name>.exr, with a PNG beside it for the report (linear, shown as
     /// sRGB). 1, 3 or 4 channels.
     virtual void image(std::string_view name, const image::ImageF& image,

@@ -262,14 +262,17 @@ class External : public technique::Technique {
     void recordPicture(const config::ProgramPicture& picture, technique::Recorder& recorder) {
         const std::string what = nameOf(picture);
         Picture own = ownPicture(picture);
-        if (!picture.hasTruth()) return recorder.image(picture.name, own.linear);
+        if (!picture.hasTruth()) {
+            return recorder.image(picture.name, own.linear, {.stored = &own.stored});
+        }
         Picture truth = truthOf(picture, what + ": truth", askedSize());
         keepCommonOf(own, truth, what + " and its truth");
-        recorder.image(picture.name, own.linear);
+        recorder.image(picture.name, own.linear, {.stored = &own.stored});
         technique::ImageOptions options;
         options.truthOf = picture.name;
+        options.stored = &truth.stored;
+        requireOneKind(own, truth, picture.name);
         recorder.image(picture.name + "_truth", truth.linear, options);
-        recordErrors(own, truth, picture.name, recorder);
         if (picture.truthFrames > 1) addSample(picture, own, what, recorder);
     }
 

@@ -43,11 +43,10 @@ Picture readPicture(const std::filesystem::path& file, const std::string& what,
 /// The tiles (metrics::tileMeans) of pictures of several seeds.
 using Samples = std::vector<std::vector<double>>;
 
-/// What recordErrors() and recordSameMean() record.
+/// What the runner takes of pictures, and what recordSameMean() records.
 config::Outputs errorOutputs();
-/// Under pass `name`. Throws Error where the two are not of one kind, size and number of channels.
-void recordErrors(const Picture& picture, const Picture& truth, const std::string& name,
-                  technique::Recorder& recorder);
+/// Throws Error where one of a picture and its truth is an EXR file and the other a PNG.
+void requireOneKind(const Picture& picture, const Picture& truth, const std::string& name);
 /// Under pass `name`, whether pictures and truths, independent of each other, have one expectation
 /// (metrics::testMeans). Throws Error where several are the same picture: then nothing is random.
 void recordSameMean(const Samples& pictures, const Samples& truths, const std::string& name,

@@ -393,7 +393,9 @@ config::Outputs outputs() {
             {"radius", "of radii"},
             {"total", "of the whole point"},
             {"device", "of a point on the device, with what all points share"},
-        }};
+        },
+        false,
+        {"image"}};
 }
 
 }  // namespace

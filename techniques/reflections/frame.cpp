@@ -182,6 +182,7 @@ config::Outputs withFrameOutputs(config::Outputs own) {
     constexpr bool kIsDetail = true;
     config::Outputs all;
     all.passes = std::move(own.passes);
+    all.withTruth = {"result"};
     all.metrics = {
         {"channel_error", "level",
          "mean absolute difference of a colour channel (0 … 255) to the truth, over reflective "

@@ -450,7 +450,9 @@ config::Outputs outputs() {
             {"yardstick_pass", "drawing the same geometry without shadows"},
             {"blur_along_x", "blurring the maps' variances along x"},
             {"blur_along_y", "blurring the maps' variances along y"},
-        }};
+        },
+        false,
+        {"shadow_0", "shadow_1", "shadow_2", "shadow_3"}};
 }
 
 }  // namespace

@@ -579,7 +579,9 @@ config::Outputs outputs() {
             {"ray_traced", "errors against traced rays"},
             {"inside", "as seen from the light's centre"},
             {"outside", "as seen from beyond the light's edge"},
-        }};
+        },
+        false,
+        {"shadow", "casters_inside", "casters_outside"}};
 }
 
 }  // namespace

@@ -167,7 +167,9 @@ config::Outputs outputs() {
     return {
         {{"mean_brightness", "1", "of all pixels", config::Better::Neither},
          {"wrong_pct", "%", "of all pixels, that are not as in the truth", config::Better::Lower}},
-        {{"draw", "the whole picture"}}};
+        {{"draw", "the whole picture"}},
+        false,
+        {"result"}};
 }
 
 }  // namespace

@@ -506,7 +506,9 @@ config::Outputs outputs() {
             {"tiles", "between tiles"},
             {"background", "pixels that show the background"},
             {"underside", "pixels that show the underside of the ground"},
-        }};
+        },
+        false,
+        {"image"}};
 }
 
 }  // namespace

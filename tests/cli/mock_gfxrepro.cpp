@@ -211,7 +211,10 @@ std::unique_ptr<technique::Technique> create(Params& params) {
 }
 
 config::Outputs outputs() {
-    return {{{"number", "1", "as asked for"}, {"psnr_db", "dB", "of a perfect picture"}}, {}};
+    return {{{"number", "1", "as asked for"}, {"psnr_db", "dB", "of a perfect picture"}},
+            {},
+            false,
+            {"flat"}};
 }
 
 /// Draws random numbers, and a picture that is another in each process where it `wobbles`.

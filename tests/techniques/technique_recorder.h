@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,18 +30,23 @@ class MetricRecorder final : public technique::Recorder {
         }
     }
     void image(std::string_view name, const image::ImageF& image,
-               const technique::ImageOptions&) override {
+               const technique::ImageOptions& options) override {
         images.emplace(name, image);
+        if (!options.truthOf.empty()) withTruth.insert(options.truthOf);
     }
     std::filesystem::path artifact(std::string_view name) override { return folder / name; }
 
-    /// Every metric, unit and pass is one that the technique declares.
+    /// Every metric, unit, pass and picture with a truth is one that the technique declares.
     void expectDeclared(const config::Outputs& outputs) const {
         for (const Given& one : given) {
             const config::MetricInfo* info = outputs.find(one.metric);
             ASSERT_NE(info, nullptr) << one.metric;
             if (info->name == one.metric) EXPECT_EQ(info->unit, one.unit) << one.metric;
             if (!one.pass.empty()) EXPECT_TRUE(outputs.hasPass(one.pass)) << one.pass;
+        }
+        for (const std::string& picture : withTruth) {
+            const auto& declared = outputs.withTruth;
+            EXPECT_TRUE(std::ranges::find(declared, picture) != declared.end()) << picture;
         }
     }
 
@@ -49,7 +56,8 @@ class MetricRecorder final : public technique::Recorder {
     std::vector<Given> given;
     std::map<std::string, double> metrics;
     std::map<std::string, image::ImageF> images;
-    std::filesystem::path folder;  // of artifacts
+    std::set<std::string> withTruth;  // the pictures of which a truth was recorded
+    std::filesystem::path folder;     // of artifacts
 };
 
 class NoScenes final : public technique::SceneProvider {

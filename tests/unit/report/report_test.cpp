@@ -550,6 +550,25 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
     }
 }
 
+/// One number of a picture on a page: the table's.
+TEST(Report, TheErrorBelowAPictureIsTheRecordedOne) {
+    const test::TemporaryFolder folder;
+    ReportRun run = runIn(folder.path());
+    const std::string id = records()[0].caseId;
+    image::writePng(folder.path() / "images/a.png", picture(128));
+    image::writePng(folder.path() / "images/t.png", picture(0));
+    records::ImageWriter(folder.path())
+        .append({{id, "zju2005/9.9", 0, "surface", "images/a.png", "", "duck"},
+                 {id, "zju2005/9.9", 0, "truth", "images/t.png", "", "duck", "surface"}});
+    tables::RecordMaker maker;
+    maker.beginCase("models/duck").add("flip", {0.1234}, "surface", "1");
+    run.records.push_back(maker.records().back());
+    run.records.back().caseId = id;
+    writeReport(folder.path() / "report.html", {&run, 1});
+    EXPECT_THAT(readFile(folder.path() / "report.html"),
+                HasSubstr("<figcaption>error: FLIP 0.1234 to truth</figcaption>"));
+}
+
 TEST(Report, WhatIsWithinTheNoiseIsGrey) {
     const test::TemporaryFolder folder;
     ReportRun run = runIn(folder.path());

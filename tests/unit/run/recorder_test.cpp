@@ -1,6 +1,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
+#include <string>
+
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
@@ -87,17 +91,90 @@ TEST(ImageAttributes, CameraIsAsOpenExrDefinesIt) {
     expectNear(ndc({5.0F, -2.0F, 11.0F}), {1.0F, 1.0F, 0.0F});
 }
 
+config::Outputs withTruthOf(const char* picture) {
+    const auto errors = config::pictureErrors();
+    return {{errors.begin(), errors.end()}, {{picture, ""}}, false, {picture}};
+}
+
+std::map<std::string, double> errorsIn(const CaseResult& result) {
+    std::map<std::string, double> errors;
+    for (const Sample& sample : result.samples) errors[sample.metric] = sample.value;
+    return errors;
+}
+
+TEST(RunRecorder, ErrorsAreThoseOfKnownPictures) {
+    const test::TemporaryFolder folder;
+    CaseResult result;
+    const Case item = someCase();
+    RunRecorder recorder(folder.path(), "", item, withTruthOf("result"), result);
+    recorder.setIteration(0, 0);
+    image::ImageF picture(16, 16, 3, 0.75F);
+    picture.at(0, 0, 1) = 1.0F;
+    recorder.image("result", picture, {});
+    recorder.image("truth", image::ImageF(16, 16, 3, 0.5F), {.truthOf = "result"});
+    recorder.image("other", image::ImageF(16, 16, 3, 0.1F), {.truthOf = "result"});
+    recorder.compareWithTruths();
+    std::map<std::string, double> errors = errorsIn(result);
+    EXPECT_EQ(errors.size(), config::pictureErrors().size());
+    const double mse = (767.0 * 0.0625 + 0.25) / 768.0;
+    EXPECT_NEAR(errors["mse"], mse, 1e-12) << "against the first truth";
+    EXPECT_NEAR(errors["rmse"], std::sqrt(mse), 1e-12);
+    EXPECT_NEAR(errors["rel_mse"], mse / 0.26, 1e-9);
+    EXPECT_NEAR(errors["psnr_db"], -10.0 * std::log10(mse), 1e-9);
+    EXPECT_LT(errors["ssim"], 1.0);
+    EXPECT_GT(errors["flip"], 0.0);
+    EXPECT_DOUBLE_EQ(errors["error_p95"], 0.25) << "one pixel of 256 is worse";
+    EXPECT_DOUBLE_EQ(errors["error_p99"], 0.25);
+    EXPECT_EQ(result.samples[0].pass, "result");
+    // Of the next frame its own.
+    recorder.setIteration(1, 0);
+    recorder.image("result", image::ImageF(4, 4, 3, 0.5F), {});
+    recorder.compareWithTruths();
+    EXPECT_EQ(errorsIn(result), errors);
+}
+
+TEST(RunRecorder, APngIsComparedAsItIsStored) {
+    const test::TemporaryFolder folder;
+    CaseResult result;
+    const Case item = someCase();
+    RunRecorder recorder(folder.path(), "", item, withTruthOf("result"), result);
+    recorder.setIteration(0, 0);
+    const image::ImageF stored(16, 16, 3, 0.4F), storedTruth(16, 16, 3, 0.2F);
+    recorder.image("result", image::ImageF(16, 16, 3, 0.1329F), {.stored = &stored});
+    recorder.image("truth", image::ImageF(16, 16, 3, 0.0331F),
+                   {.truthOf = "result", .stored = &storedTruth});
+    recorder.compareWithTruths();
+    EXPECT_NEAR(errorsIn(result)["rmse"], 0.2, 1e-6);
+}
+
+TEST(RunRecorder, WhatCannotBeComparedIsAnError) {
+    const test::TemporaryFolder folder;
+    CaseResult result;
+    const Case item = someCase();
+    RunRecorder recorder(folder.path(), "", item, withTruthOf("result"), result);
+    recorder.image("result", image::ImageF(16, 16, 3), {});
+    recorder.image("truth", image::ImageF(32, 16, 3), {.truthOf = "result"});
+    EXPECT_EQ(test::errorText([&] { recorder.compareWithTruths(); }),
+              "image 'result' and its truth: the images differ in shape: 32x16 with 3 channels and "
+              "16x16 with 3 channels");
+    EXPECT_EQ(test::errorText(
+                  [&] { recorder.image("truth", image::ImageF(4, 4, 3), {.truthOf = "other"}); }),
+              "image 'truth' is the truth of 'other', of which technique 'clustered_reflections' "
+              "does not declare that it has one");
+}
+
 TEST(RunRecorder, KeepsLayersTruthsAndAttributes) {
     const test::TemporaryFolder folder;
     CaseResult result;
     const Case item = someCase();
-    RunRecorder recorder(folder.path(), "gfxrepro run x.yaml", item, {}, result);
+    RunRecorder recorder(folder.path(), "gfxrepro run x.yaml", item, withTruthOf("result"), result);
+    recorder.setIteration(0, 0);
     technique::ImageOptions options;
     options.layers.add(image::ImageF(4, 2, 1, 7.0F), {"id"}, image::ExrPixelType::Uint);
     options.layers.attributes["about_id"] = "reflector";
     recorder.image("result", image::ImageF(4, 2, 3, 0.5F), options);
     recorder.image("truth", image::ImageF(4, 2, 3, 0.25F), {.truthOf = "result"});
-    recorder.checkTruths();
+    recorder.compareWithTruths();
     ASSERT_EQ(result.images.size(), 2U);
     EXPECT_EQ(result.images[0].truthOf, "");
     EXPECT_EQ(result.images[1].truthOf, "result");
@@ -115,13 +192,13 @@ TEST(RunRecorder, TruthsNeedTheirImage) {
     const test::TemporaryFolder folder;
     CaseResult result;
     const Case item = someCase();
-    RunRecorder recorder(folder.path(), "", item, {}, result);
+    RunRecorder recorder(folder.path(), "", item, withTruthOf("result"), result);
     recorder.setIteration(0, 0);
     recorder.image("result", image::ImageF(1, 1, 1), {});
-    recorder.checkTruths();
+    recorder.compareWithTruths();
     recorder.setIteration(1, 0);
     recorder.image("truth", image::ImageF(1, 1, 1), {.truthOf = "result"});
-    EXPECT_EQ(test::errorText([&] { recorder.checkTruths(); }),
+    EXPECT_EQ(test::errorText([&] { recorder.compareWithTruths(); }),
               "image 'truth' is the truth of 'result', which is not among the frame's images");
 }
 
