@@ -25,8 +25,10 @@ constexpr float kWall = 0.24F;
 /// Twigs start no higher than this share of the ellipsoid's height: the rim curls in a little.
 constexpr float kRim = 0.16F;
 
-/// A twig of three sides and two stretches with its caps.
-constexpr int kLeastTwigTriangles = 14;
+/// Of a twig of two stretches with its caps.
+constexpr int leastTwigTriangles(int sides) {
+    return 4 * sides + 2 * (sides - 2);
+}
 /// Of a twig, where `twigs` says nothing; with few triangles twigs get coarser, to the second
 /// number, before they get fewer.
 constexpr int kUsualTwigTriangles = 530;
@@ -287,8 +289,7 @@ int sidesFor(int trianglesPerTwig) {
 }
 
 /// `count` twigs of `triangles` together, any even number.
-Mesh twigs(int triangles, int count, float thickness, std::uint64_t seed, int material) {
-    const int sides = sidesFor(triangles / count);
+Mesh twigs(int triangles, int count, int sides, float thickness, std::uint64_t seed, int material) {
     const int stretches = (triangles - count * 2 * (sides - 2)) / (2 * sides);
     // Volume is length · radius²: with the usual number of twigs the bowl holds as much wood
     // whatever the count of triangles.
@@ -326,6 +327,11 @@ Scene birdNest(Params& params, std::uint64_t seed) {
          "", 0, 250'000});
     const double thickness = params.getDouble(
         "twig_thickness", 1.0, {"factor on the twigs' radii, whatever their number", "", 0.2, 5.0});
+    const int wantedSides = params.getInt(
+        "sides", 0,
+        {"sides of a twig, 3 or more: fewer are wider, and stretches shorter; 0: such that "
+         "stretches are five times as long as sides are wide",
+         "", 0, 24});
     params.finish();
     if (triangles % 2 != 0) {
         throw Error(params.locationOf("triangles"),
@@ -335,18 +341,24 @@ Scene birdNest(Params& params, std::uint64_t seed) {
     }
     const int ofTwigs = triangles - kEggs * kEggTriangles - kBranchTriangles;
     const int count = wantedTwigs > 0 ? wantedTwigs : usualTwigs(ofTwigs);
-    if (count > ofTwigs / kLeastTwigTriangles) {
+    if (wantedSides == 1 || wantedSides == 2) {
+        throw Error(params.locationOf("sides"), "sides: " + std::to_string(wantedSides) +
+                                                    " enclose nothing; allowed: 0 and 3 … 24");
+    }
+    const int leastOfTwig = leastTwigTriangles(std::max(wantedSides, 3));
+    if (count > ofTwigs / leastOfTwig) {
         throw Error(params.locationOf("twigs"),
                     "twigs: " + std::to_string(count) + " take at least " +
-                        std::to_string(static_cast<long long>(count) * kLeastTwigTriangles) +
+                        std::to_string(static_cast<long long>(count) * leastOfTwig) +
                         " triangles, but " + std::to_string(ofTwigs) + " are left of " +
                         std::to_string(triangles) + " beside eggs and branch");
     }
     Scene scene;
     scene.materials = {diffuse("twigs", glm::vec3(1.0F)), diffuse("eggs", {0.30F, 0.60F, 0.62F}),
                        diffuse("bark", glm::vec3(1.0F))};
-    scene.meshes = {twigs(ofTwigs, count, static_cast<float>(thickness), seed, 0), eggs(seed, 1),
-                    branch(2)};
+    const int sides = wantedSides > 0 ? wantedSides : sidesFor(ofTwigs / count);
+    scene.meshes = {twigs(ofTwigs, count, sides, static_cast<float>(thickness), seed, 0),
+                    eggs(seed, 1), branch(2)};
     scene.instances = {{0}, {1}, {2}};
     Camera camera;
     camera.name = "three_quarter";

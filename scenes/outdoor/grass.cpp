@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/random.h"
+#include "engine/scene/refine.h"
 #include "scenes/outdoor/outdoor.h"
 #include "scenes/shared/mesh_builder.h"
 #include "scenes/shared/sdf.h"
@@ -224,13 +226,8 @@ int usualBlades(int triangles) {
 }
 
 /// `count` blades of `triangles` together, any even number.
-Mesh bladeMesh(int triangles, int count, float width, const Field& field, std::uint64_t seed,
+Mesh bladeMesh(int triangles, int count, float widthScale, const Field& field, std::uint64_t seed,
                int material) {
-    // Blades stay as wide against the distance to their neighbours, which is 1/√count for the
-    // usual count. Their area then grows by √count: finer grass is denser grass, as from a lawn to
-    // moss.
-    const float widthScale = width * std::sqrt(static_cast<float>(kReferenceBlades) /
-                                               static_cast<float>(usualBlades(triangles)));
     // The front of a blade has an odd number of triangles: where their sum has the wrong parity,
     // one blade is cut off.
     const int fronts = triangles / 2;
@@ -263,21 +260,33 @@ Scene grass(Params& params, std::uint64_t seed) {
          "", 0, 600'000});
     const double width = params.getDouble(
         "blade_width", 1.0, {"factor on the blades' width, whatever their number", "", 0.2, 5.0});
+    const int ofBlade = params.getInt(
+        "blade_triangles", 0,
+        {"of a blade, both sides together, even: the ground takes what blades leave; 0: blades "
+         "share what a ground of 2048 leaves",
+         "", 0, 1000});
     params.finish();
     if (triangles % 2 != 0) {
         throw Error(params.locationOf("triangles"),
                     "triangles: " + std::to_string(triangles) +
                         " is odd, but a blade has two sides, which takes an even number");
     }
-    const int ofBlades = triangles - kGroundTriangles;
-    const int count = wantedBlades > 0 ? wantedBlades : usualBlades(ofBlades);
-    if (count > ofBlades / kLeastBladeTriangles) {
+    if (ofBlade % 2 != 0) {
+        throw Error(params.locationOf("blade_triangles"),
+                    "blade_triangles: " + std::to_string(ofBlade) +
+                        " is odd, but a blade has two sides, which takes an even number");
+    }
+    const int beside = triangles - kGroundTriangles;
+    const int count = wantedBlades > 0 ? wantedBlades : usualBlades(beside);
+    const int leastOfBlade = ofBlade > 0 ? ofBlade : kLeastBladeTriangles;
+    if (count > beside / leastOfBlade) {
         throw Error(params.locationOf("blades"),
                     "blades: " + std::to_string(count) + " take at least " +
-                        std::to_string(static_cast<long long>(count) * kLeastBladeTriangles) +
-                        " triangles, but " + std::to_string(ofBlades) + " are left of " +
+                        std::to_string(static_cast<long long>(count) * leastOfBlade) +
+                        " triangles, but " + std::to_string(beside) + " are left of " +
                         std::to_string(triangles) + " beside the ground");
     }
+    const int ofBlades = ofBlade > 0 ? count * ofBlade : beside;
     const Field field{Random(seed, kFieldStream)};
     Scene scene;
     Material blades;
@@ -287,8 +296,14 @@ Scene grass(Params& params, std::uint64_t seed) {
     earth.name = "earth";
     earth.baseColor = glm::vec4(1.0F);
     scene.materials = {blades, earth};
-    scene.meshes = {bladeMesh(ofBlades, count, static_cast<float>(width), field, seed, 0),
-                    groundMesh(field, 1)};
+    // Blades stay as wide against the distance to their neighbours, which is 1/√count for the
+    // usual count. Their area then grows by √count: finer grass is denser grass, as from a lawn to
+    // moss.
+    const float widthScale =
+        static_cast<float>(width) *
+        std::sqrt(static_cast<float>(kReferenceBlades) / static_cast<float>(usualBlades(beside)));
+    scene.meshes = {bladeMesh(ofBlades, count, widthScale, field, seed, 0), groundMesh(field, 1)};
+    if (ofBlade > 0) scene.meshes[1] = refinedTo(std::move(scene.meshes[1]), triangles - ofBlades);
     scene.instances = {{0}, {1}};
     Camera camera;
     camera.name = "three_quarter";

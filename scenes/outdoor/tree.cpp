@@ -290,6 +290,9 @@ Scene tree(Params& params, std::uint64_t seed) {
          "", 0, 500'000});
     const double leafSize = params.getDouble(
         "leaf_size", 1.0, {"factor on the leaves' length, whatever their number", "", 0.2, 5.0});
+    const int faces = params.getInt(
+        "faces", 2,
+        {"polygons of a leaf: one, not drawn from behind, or one for each side", "", 1, 2});
     params.finish();
     if (triangles % 2 != 0) {
         throw Error(params.locationOf("triangles"),
@@ -305,15 +308,16 @@ Scene tree(Params& params, std::uint64_t seed) {
     addGround(ground, 3.2F);
     const std::size_t wood = grower.bark().triangleCount() + ground.triangleCount();
     GFXREPRO_ASSERT(wood < wanted && wood % 2 == 0);
-    const std::size_t fronts = (wanted - wood) / 2;
+    const auto sides = static_cast<std::size_t>(faces);
+    const std::size_t fronts = (wanted - wood) / sides;
     const std::size_t count = wantedLeaves > 0 ? static_cast<std::size_t>(wantedLeaves)
-                                               : std::max(fronts * 7 / 20, std::size_t{1});
+                                               : std::max((wanted - wood) * 7 / 40, std::size_t{1});
     if (count > fronts / 2) {
         throw Error(params.locationOf("leaves"),
                     "leaves: " + std::to_string(count) + " take at least " +
-                        std::to_string(4 * count) + " triangles, but " +
-                        std::to_string(2 * fronts) + " are left of " + std::to_string(triangles) +
-                        " beside wood and ground");
+                        std::to_string(2 * sides * count) + " triangles, but " +
+                        std::to_string(sides * fronts) + " are left of " +
+                        std::to_string(triangles) + " beside wood and ground");
     }
     // The usual leaves' area together stays what it is.
     MeshBuilder leaves;
@@ -324,7 +328,7 @@ Scene tree(Params& params, std::uint64_t seed) {
     addMesh(scene, ground, "ground");
     addMesh(scene, grower.bark(), "bark");
     addMesh(scene, leaves, "leaves");
-    addBackSides(scene.meshes.back());
+    if (faces == 2) addBackSides(scene.meshes.back());
     GFXREPRO_ASSERT_EQ(scene.triangleCount(), wanted);
     const glm::vec3 target(0.0F, 0.5F * scene.bounds().max.y, 0.0F);
     scene.cameras.push_back(fittedCamera(scene, target, {0.55F, 0.22F, 1.0F}, 0.7F, 0.88F));

@@ -139,6 +139,19 @@ TEST(Tree, LeavesShareTheTriangles) {
     EXPECT_NEAR(large / usual, 2.25, 0.01);
 }
 
+TEST(Tree, ALeafMayBeOnePolygon) {
+    EXPECT_EQ(digestOf(generated("tree", "{faces: 2}")), digestOf(generated("tree", "{}")));
+    const Scene two = generated("tree", "{leaves: 4000}");
+    const Scene one = generated("tree", "{leaves: 4000, faces: 1}");
+    EXPECT_EQ(one.triangleCount(), 113'000U);
+    const Mesh& leaves = meshNamed(one, "leaves");
+    expectSoundMesh(leaves);
+    // As many triangles on one side: leaves are as large, not twice.
+    EXPECT_EQ(leaves.triangles.size(), meshNamed(two, "leaves").triangles.size());
+    EXPECT_NEAR(surfaceArea(leaves) / surfaceArea(meshNamed(two, "leaves")), 0.5, 0.02);
+    for (const Material& material : one.materials) EXPECT_FALSE(material.isDoubleSided);
+}
+
 TEST(CityAndTree, AnotherSeedIsAnotherScene) {
     for (const char* name : {"city", "tree"}) {
         EXPECT_EQ(digestOf(grown(name, 12'000, 1)), digestOf(grown(name, 12'000, 1)));
@@ -237,12 +250,18 @@ TEST(CityAndTree, BadParametersAreLocated) {
         test::errorText([] { generated("tree", "{leaves: 30000}"); }),
         "t.yaml:1:10: leaves: 30000 take at least 120000 triangles, but 82418 are left of 113000 "
         "beside wood and ground");
+    EXPECT_EQ(
+        test::errorText([] { generated("tree", "{leaves: 41210, faces: 1}"); }),
+        "t.yaml:1:10: leaves: 41210 take at least 82420 triangles, but 82418 are left of 113000 "
+        "beside wood and ground");
+    EXPECT_EQ(test::errorText([] { generated("tree", "{faces: 3}"); }),
+              "t.yaml:1:9: generator 'tree': faces is 3; allowed: 1 … 2");
     EXPECT_EQ(test::errorText([] { generated("tree", "{leaf_size: 0}"); }),
               "t.yaml:1:13: generator 'tree': leaf_size is 0; allowed: 0.2 … 5");
     EXPECT_EQ(
         test::errorText([] { generated("tree", "{leafs: 1}"); }),
         "t.yaml:1:2: generator 'tree': unknown parameter 'leafs'; allowed: triangles, leaves, "
-        "leaf_size");
+        "leaf_size, faces");
     EXPECT_EQ(test::errorText([] { generated("four_objects", "{triangles: 48}"); }),
               "t.yaml:1:2: generator 'four_objects': unknown parameter 'triangles'; it has none");
 }

@@ -157,6 +157,34 @@ TEST(BirdNest, TwigsShareTheTriangles) {
     }
 }
 
+TEST(BirdNest, SidesOfTwigsAreFree) {
+    const auto nest = [](int sides) {
+        return generated("bird_nest", "{twigs: 120, sides: " + std::to_string(sides) + "}");
+    };
+    // Twigs of 536 triangles have ten sides of their own.
+    EXPECT_EQ(digestOf(nest(10)), digestOf(nest(0)));
+    for (const int sides : {3, 4, 24}) {
+        SCOPED_TRACE(sides);
+        const Scene scene = nest(sides);
+        EXPECT_EQ(scene.triangleCount(), 67'000U);
+        const Mesh& twigs = meshNamed(scene, "twigs");
+        expectSound(twigs);
+        const Topology topology = topologyOf(twigs);
+        EXPECT_TRUE(topology.isClosed() && topology.isManifold() && topology.isOriented());
+        EXPECT_EQ(topology.components, 120U);
+        // Caps alone are flat: two a twig, each of as many triangles as it has sides, less two.
+        const auto flat =
+            static_cast<int>(std::ranges::count_if(twigs.triangles, [&twigs](const glm::uvec3& t) {
+                return twigs.normals[t.x] == twigs.normals[t.y] &&
+                       twigs.normals[t.x] == twigs.normals[t.z];
+            }));
+        const int ofCaps = 120 * 2 * (sides - 2);
+        EXPECT_GE(flat, ofCaps);
+        EXPECT_LT(flat, ofCaps + 2 * sides) << "what is less than a stretch may split some";
+        EXPECT_NEAR(signedVolume(twigs) / signedVolume(meshNamed(nest(0), "twigs")), 1.0, 0.03);
+    }
+}
+
 TEST(BirdNest, ThicknessIsIndependentOfTheNumberOfTwigs) {
     const auto woodIn = [](const std::string& yaml) {
         return signedVolume(meshNamed(generated("bird_nest", yaml), "twigs"));
@@ -261,6 +289,28 @@ TEST(Grass, BladesShareTheTriangles) {
                 0.001);
 }
 
+TEST(Grass, TrianglesOfABladeAreFree) {
+    const Mesh shared = meshNamed(generated("grass", "{blades: 2000}"), "blades");
+    for (const int ofBlade : {2, 4, 6, 26}) {
+        SCOPED_TRACE(ofBlade);
+        const Scene scene = generated(
+            "grass", "{blades: 2000, blade_triangles: " + std::to_string(ofBlade) + "}", 3);
+        EXPECT_EQ(scene.triangleCount(), 56'000U);
+        const Mesh& blades = meshNamed(scene, "blades");
+        expectSound(blades);
+        expectTwoSidedSheet(blades);
+        EXPECT_EQ(blades.triangles.size(), static_cast<std::size_t>(2000 * ofBlade));
+        EXPECT_EQ(bladeStarts(blades).size(), 4000U);
+        // As wide and as long as those that share what the ground leaves.
+        EXPECT_NEAR(surfaceArea(blades) / surfaceArea(shared), 1.0, 0.3);
+        // The same ground in more triangles.
+        const Mesh& ground = meshNamed(scene, "ground");
+        expectSound(ground);
+        EXPECT_EQ(ground.bounds().max.y,
+                  meshNamed(generated("grass", "{}", 3), "ground").bounds().max.y);
+    }
+}
+
 TEST(Grass, DensityGrowsOnTheSameGround) {
     const Scene sparse = sized("grass", 56'000);
     const Scene dense = sized("grass", 2'048 + 4 * (56'000 - 2'048));
@@ -302,9 +352,22 @@ TEST(NestAndGrass, BadParametersAreLocated) {
     EXPECT_EQ(
         test::errorText([] { generated("grass", "{leaves: 7}"); }),
         "t.yaml:1:2: generator 'grass': unknown parameter 'leaves'; allowed: triangles, blades, "
-        "blade_width");
+        "blade_width, blade_triangles");
+    EXPECT_EQ(
+        test::errorText([] { generated("grass", "{blade_triangles: 7}"); }),
+        "t.yaml:1:19: blade_triangles: 7 is odd, but a blade has two sides, which takes an even "
+        "number");
+    EXPECT_EQ(
+        test::errorText([] { generated("grass", "{blades: 6745, blade_triangles: 8}"); }),
+        "t.yaml:1:10: blades: 6745 take at least 53960 triangles, but 53952 are left of 56000 "
+        "beside the ground");
     EXPECT_EQ(test::errorText([] { generated("bird_nest", "{twigs: 5000}"); }),
               "t.yaml:1:9: twigs: 5000 take at least 70000 triangles, but 64404 are left of 67000 "
+              "beside eggs and branch");
+    EXPECT_EQ(test::errorText([] { generated("bird_nest", "{sides: 2}"); }),
+              "t.yaml:1:9: sides: 2 enclose nothing; allowed: 0 and 3 … 24");
+    EXPECT_EQ(test::errorText([] { generated("bird_nest", "{twigs: 4000, sides: 4}"); }),
+              "t.yaml:1:9: twigs: 4000 take at least 80000 triangles, but 64404 are left of 67000 "
               "beside eggs and branch");
     EXPECT_EQ(test::errorText([] { generated("bird_nest", "{twig_thickness: 0.1}"); }),
               "t.yaml:1:18: generator 'bird_nest': twig_thickness is 0.1; allowed: 0.2 … 5");
