@@ -22,17 +22,22 @@ namespace {
 
 /// Of a kept fit, behind the row axes.
 constexpr std::array kFitColumns{"column",   "table", "printed", "measured",
-                                 "residual", "rms",   "edges"};
+                                 "residual", "rms",   "unit",    "edges"};
 
 const Cell* cellOf(const TableRow& row, const Table& table, const std::string& column) {
     const auto at = table.findColumn(column);
     return at ? &row.cells[*at] : nullptr;
 }
 
+/// Of the root mean square.
 std::string unitOf(const Fit& fit, const Table& table) {
     const auto at = table.findColumn(fit.targets.front().column);
     const std::string unit = at ? table.columns[*at].unit : "";
-    return unit == "%" ? " percentage points" : unit.empty() ? "" : " " + unit;
+    return unit == "%" ? "in log-odds" : unit;
+}
+
+std::string rmsText(double rms, const std::string& unit) {
+    return fmt::format("{:.2f}{}{}", rms, unit.empty() ? "" : " ", unit);
 }
 
 std::vector<std::string> edgesOf(const Fit& fit, const Table& table) {
@@ -54,6 +59,12 @@ std::vector<std::string> edgesOf(const Fit& fit, const Table& table) {
 
 }  // namespace
 
+double logOdds(double pct) {
+    constexpr double kFinestPct = 0.01;
+    const double share = std::clamp(pct, kFinestPct, 100.0 - kFinestPct);
+    return std::log(share / (100.0 - share));
+}
+
 Fit fitOf(const config::Experiment& experiment, const Table& table) {
     Fit fit{.targets = config::fitTargets(experiment), .rows = {}, .edges = {}};
     if (fit.targets.empty()) return fit;
@@ -63,8 +74,12 @@ Fit fitOf(const config::Experiment& experiment, const Table& table) {
         for (const config::FitTarget& target : fit.targets) {
             const Cell* cell = cellOf(table.rows[i], table, target.column);
             if (!cell || !cell->isOk() || cell->isPartial) break;
-            row.residuals.push_back(cell->values.front().value - target.printed);
-            squares += row.residuals.back() * row.residuals.back();
+            const double measured = cell->values.front().value;
+            row.residuals.push_back(measured - target.printed);
+            const bool isShare = table.columns[*table.findColumn(target.column)].unit == "%";
+            const double off =
+                isShare ? logOdds(measured) - logOdds(target.printed) : row.residuals.back();
+            squares += off * off;
         }
         if (row.residuals.size() < fit.targets.size()) {
             ++fit.unmeasured;
@@ -95,16 +110,17 @@ std::vector<std::string> fitNotes(const Fit& fit, const Table& table) {
     }
     notes.push_back(fmt::format(
         "Fitted to {} printed cells, none of which compares methods: {}. Root mean square of the "
-        "residuals {:.2f}{}; printed → measured: {}",
-        fit.targets.size(), table.rowName(best.row), best.rms, unitOf(fit, table), joined(cells)));
+        "residuals {}; printed → measured: {}",
+        fit.targets.size(), table.rowName(best.row), rmsText(best.rms, unitOf(fit, table)),
+        joined(cells)));
     if (!fit.edges.empty()) {
         notes.push_back(
             fmt::format("The best row lies at the edge of what was tried: {}", joined(fit.edges)));
     }
     if (fit.rows.size() > 1) {
-        notes.push_back(fmt::format("Second best of {} rows: {}, {:.2f}{}", fit.rows.size(),
-                                    table.rowName(fit.rows[1].row), fit.rows[1].rms,
-                                    unitOf(fit, table)));
+        notes.push_back(fmt::format("Second best of {} rows: {}, {}", fit.rows.size(),
+                                    table.rowName(fit.rows[1].row),
+                                    rmsText(fit.rows[1].rms, unitOf(fit, table))));
     }
     return notes;
 }
@@ -123,7 +139,7 @@ std::string fitCsv(const Fit& fit, const Table& table) {
         for (const std::string& label : table.rows[best.row].labels) line.text(label);
         line.text(target.column).text(target.table).number(target.printed);
         line.number(target.printed + best.residuals[i]).number(best.residuals[i]);
-        line.number(best.rms).text(joined(fit.edges)).end();
+        line.number(best.rms).text(unitOf(fit, table)).text(joined(fit.edges)).end();
     }
     return text;
 }
@@ -152,8 +168,7 @@ void addCalibration(const fs::path& file, TableNotes& kept) {
     }
     std::map<std::string, std::vector<std::string>> cells;  // by table
     std::size_t count = 0;
-    double rms = 0.0;
-    std::string edges;
+    std::string rms, edges;
     for (; reader.next(row); ++count) {
         if (row.size() != header.size()) {
             throw Error(reader.location(),
@@ -164,7 +179,7 @@ void addCalibration(const fs::path& file, TableNotes& kept) {
         cells[line["table"]].push_back(fmt::format("{} {:g} → {:.2f}", line["column"],
                                                    numberOf(line, "printed", reader.location()),
                                                    numberOf(line, "measured", reader.location())));
-        rms = numberOf(line, "rms", reader.location());
+        rms = rmsText(numberOf(line, "rms", reader.location()), line["unit"]);
         if (count > 0) continue;
         if (!line["edges"].empty()) edges = "; at the edge of what was tried: " + line["edges"];
         for (auto name = header.begin(); name != first; ++name) {
@@ -174,7 +189,7 @@ void addCalibration(const fs::path& file, TableNotes& kept) {
     for (const auto& [table, ofTable] : cells) {
         kept[table].push_back(fmt::format(
             "Calibrated blind, {}: {} fitted to {} printed cells that compare no methods; of this "
-            "table {} (root mean square of all residuals {:.2f}{})",
+            "table {} (root mean square of all residuals {}{})",
             file.stem().string(), joined(fitted), count, joined(ofTable), rms, edges));
     }
 }

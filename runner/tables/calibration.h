@@ -15,7 +15,7 @@ namespace gfxrepro::tables {
 struct FitRow {
     std::size_t row = 0;            // of the table
     std::vector<double> residuals;  // measured − printed, beside the targets; in the cells' unit
-    double rms = 0.0;               // root mean square of them
+    double rms = 0.0;               // root mean square of them, of shares in log-odds
 };
 
 struct Fit {
@@ -34,7 +34,13 @@ Fit fitOf(const config::Experiment& experiment, const Table& table);
 /// the grid, and the second best.
 std::vector<std::string> fitNotes(const Fit& fit, const Table& table);
 
-/// The best row, a line a target: row axes, column, table, printed, measured, residual, rms, edges.
+/// The log-odds ln(p / (100 − p)) of a share in %: one of 98 % and one of 99 are as far apart as
+/// one of 2 and one of 1, as they are by what is missing. All and nothing count as a hundredth of a
+/// percent from it, which is as fine as shares are printed.
+double logOdds(double pct);
+
+/// The best row, a line a target: row axes, column, table, printed, measured, residual (in the
+/// column's unit), rms with its unit, edges.
 /// Empty without a best row.
 std::string fitCsv(const Fit& fit, const Table& table);
 

@@ -40,7 +40,8 @@ config::Experiment experimentOf() {
 }
 
 TEST(Fit, TakesTheRowWithTheLeastSquares) {
-    const Table table = tableOf({{60, 50}, {73, 46}, {-1, 50}, {77, 57}});
+    Table table = tableOf({{60, 50}, {73, 46}, {-1, 50}, {77, 57}});
+    for (TableColumn& column : table.columns) column.unit = "ms";
     const Fit fit = fitOf(experimentOf(), table);
     ASSERT_EQ(fit.rows.size(), 3U);
     EXPECT_EQ(fit.unmeasured, 1U);
@@ -52,12 +53,30 @@ TEST(Fit, TakesTheRowWithTheLeastSquares) {
         fitNotes(fit, table),
         ElementsAre("rows of the fit that are not measured: 1",
                     "Fitted to 2 printed cells, none of which compares methods: spread=2. Root "
-                    "mean square of the residuals 3.54 percentage points; printed → measured: a of "
+                    "mean square of the residuals 3.54 ms; printed → measured: a of "
                     "p/1 70 → 73.00 (+3.00), b of p/2 50 → 46.00 (-4.00)",
-                    "Second best of 3 rows: spread=4, 7.00 percentage points"));
+                    "Second best of 3 rows: spread=4, 7.00 ms"));
     EXPECT_EQ(fitCsv(fit, table),
-              "spread,column,table,printed,measured,residual,rms,edges\n"
-              "2,a,p/1,70,73,3,3.5355339059327378,\n2,b,p/2,50,46,-4,3.5355339059327378,\n");
+              "spread,column,table,printed,measured,residual,rms,unit,edges\n"
+              "2,a,p/1,70,73,3,3.5355339059327378,ms,\n"
+              "2,b,p/2,50,46,-4,3.5355339059327378,ms,\n");
+}
+
+TEST(Fit, HoldsSharesAgainstEachOtherByLogOdds) {
+    EXPECT_DOUBLE_EQ(logOdds(75), std::log(3.0));
+    EXPECT_DOUBLE_EQ(logOdds(25), -logOdds(75));
+    EXPECT_DOUBLE_EQ(logOdds(100), logOdds(99.99));
+    EXPECT_DOUBLE_EQ(logOdds(0), logOdds(0.01));
+    // Of 99 % and 50 %, 99.8 lacks a fifth of what it should, though it is 0.8 points off; 54 is 4.
+    config::Experiment experiment;
+    experiment.document =
+        parseYaml("fit: {a: {id: p/1, printed: 99}, b: {id: p/2, printed: 50}}", "t.yaml");
+    const Table table = tableOf({{99.8, 50}, {99, 54}});
+    const Fit fit = fitOf(experiment, table);
+    EXPECT_EQ(fit.rows[0].row, 1U);
+    EXPECT_DOUBLE_EQ(fit.rows[0].rms, std::log(54.0 / 46.0) / std::sqrt(2.0));
+    EXPECT_NEAR(fit.rows[1].rms, std::log(499.0 / 99.0) / std::sqrt(2.0), 1e-12);
+    EXPECT_THAT(fitNotes(fit, table), Contains(HasSubstr("residuals 0.11 in log-odds; printed")));
 }
 
 TEST(Fit, TellsThatABetterRowMayLieBeyondTheGrid) {
@@ -69,8 +88,8 @@ TEST(Fit, TellsThatABetterRowMayLieBeyondTheGrid) {
     EXPECT_THAT(fit.edges, ElementsAre("spread 1 of 1 to 2"));
     EXPECT_THAT(fitNotes(fit, table),
                 Contains("The best row lies at the edge of what was tried: spread 1 of 1 to 2"));
-    EXPECT_THAT(fitCsv(fit, table), HasSubstr("1,8000,flat,a,p/1,70,73,3,3.5355339059327378,"
-                                              "spread 1 of 1 to 2\n"));
+    EXPECT_THAT(fitCsv(fit, table), HasSubstr("1,8000,flat,a,p/1,70,73,3,0.1539713236471667,"
+                                              "in log-odds,spread 1 of 1 to 2\n"));
 }
 
 TEST(Fit, SaysNothingWithoutOne) {
@@ -94,9 +113,10 @@ TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
     addNotes(keptCalibrations(folder.path()), tables);
     EXPECT_THAT(
         tables[0].notes,
-        ElementsAre("Calibrated blind, nest: spread 2 fitted to 2 printed cells that "
-                    "compare no methods; of this table a 70 → 73.00 (root mean square of "
-                    "all residuals 3.54; at the edge of what was tried: spread 2 of 1 to 2)"));
+        ElementsAre(
+            "Calibrated blind, nest: spread 2 fitted to 2 printed cells that "
+            "compare no methods; of this table a 70 → 73.00 (root mean square of "
+            "all residuals 0.15 in log-odds; at the edge of what was tried: spread 2 of 1 to 2)"));
     EXPECT_THAT(tables[1].notes, IsEmpty());
     EXPECT_THAT(keptCalibrations(folder.path() / "none"), IsEmpty());
 }
@@ -109,10 +129,10 @@ TEST(Fit, RefusesKeptFilesOfAnotherKind) {
     };
     EXPECT_EQ(errorOf("spread,column\n1,a\n"),
               "DIR/nest.csv:1: is no fit, whose columns end in column, table, printed, measured, "
-              "residual, rms, edges");
-    const std::string head = "spread,column,table,printed,measured,residual,rms,edges\n";
-    EXPECT_EQ(errorOf(head + "1,a,p/1,70\n"), "DIR/nest.csv:2: 4 fields; the head has 8");
-    EXPECT_EQ(errorOf(head + "1,a,p/1,many,73,3,3,\n"),
+              "residual, rms, unit, edges");
+    const std::string head = "spread,column,table,printed,measured,residual,rms,unit,edges\n";
+    EXPECT_EQ(errorOf(head + "1,a,p/1,70\n"), "DIR/nest.csv:2: 4 fields; the head has 9");
+    EXPECT_EQ(errorOf(head + "1,a,p/1,many,73,3,3,,\n"),
               "DIR/nest.csv:2: printed 'many' is no number");
 }
 
