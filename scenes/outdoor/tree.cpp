@@ -290,9 +290,10 @@ Scene tree(Params& params, std::uint64_t seed) {
          "", 0, 500'000});
     const double leafSize = params.getDouble(
         "leaf_size", 1.0, {"factor on the leaves' length, whatever their number", "", 0.2, 5.0});
-    const int faces = params.getInt(
-        "faces", 2,
-        {"polygons of a leaf: one, not drawn from behind, or one for each side", "", 1, 2});
+    constexpr Choice<std::size_t> kFaces[] = {{1, "one", "not drawn from behind"},
+                                              {2, "two", "one for each side"}};
+    const std::size_t faces =
+        params.getEnum("faces", std::size_t{2}, kFaces, {"polygons of a leaf"});
     params.finish();
     if (triangles % 2 != 0) {
         throw Error(params.locationOf("triangles"),
@@ -308,15 +309,14 @@ Scene tree(Params& params, std::uint64_t seed) {
     addGround(ground, 3.2F);
     const std::size_t wood = grower.bark().triangleCount() + ground.triangleCount();
     GFXREPRO_ASSERT(wood < wanted && wood % 2 == 0);
-    const auto sides = static_cast<std::size_t>(faces);
-    const std::size_t fronts = (wanted - wood) / sides;
+    const std::size_t fronts = (wanted - wood) / faces;
     const std::size_t count = wantedLeaves > 0 ? static_cast<std::size_t>(wantedLeaves)
                                                : std::max((wanted - wood) * 7 / 40, std::size_t{1});
     if (count > fronts / 2) {
         throw Error(params.locationOf("leaves"),
                     "leaves: " + std::to_string(count) + " take at least " +
-                        std::to_string(2 * sides * count) + " triangles, but " +
-                        std::to_string(sides * fronts) + " are left of " +
+                        std::to_string(2 * faces * count) + " triangles, but " +
+                        std::to_string(faces * fronts) + " are left of " +
                         std::to_string(triangles) + " beside wood and ground");
     }
     // The usual leaves' area together stays what it is.

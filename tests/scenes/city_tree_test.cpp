@@ -140,9 +140,9 @@ TEST(Tree, LeavesShareTheTriangles) {
 }
 
 TEST(Tree, ALeafMayBeOnePolygon) {
-    EXPECT_EQ(digestOf(generated("tree", "{faces: 2}")), digestOf(generated("tree", "{}")));
+    EXPECT_EQ(digestOf(generated("tree", "{faces: two}")), digestOf(generated("tree", "{}")));
     const Scene two = generated("tree", "{leaves: 4000}");
-    const Scene one = generated("tree", "{leaves: 4000, faces: 1}");
+    const Scene one = generated("tree", "{leaves: 4000, faces: one}");
     EXPECT_EQ(one.triangleCount(), 113'000U);
     const Mesh& leaves = meshNamed(one, "leaves");
     expectSoundMesh(leaves);
@@ -251,11 +251,11 @@ TEST(CityAndTree, BadParametersAreLocated) {
         "t.yaml:1:10: leaves: 30000 take at least 120000 triangles, but 82418 are left of 113000 "
         "beside wood and ground");
     EXPECT_EQ(
-        test::errorText([] { generated("tree", "{leaves: 41210, faces: 1}"); }),
+        test::errorText([] { generated("tree", "{leaves: 41210, faces: one}"); }),
         "t.yaml:1:10: leaves: 41210 take at least 82420 triangles, but 82418 are left of 113000 "
         "beside wood and ground");
     EXPECT_EQ(test::errorText([] { generated("tree", "{faces: 3}"); }),
-              "t.yaml:1:9: generator 'tree': faces is 3; allowed: 1 … 2");
+              "t.yaml:1:9: generator 'tree': faces is 3; allowed: one | two");
     EXPECT_EQ(test::errorText([] { generated("tree", "{leaf_size: 0}"); }),
               "t.yaml:1:13: generator 'tree': leaf_size is 0; allowed: 0.2 … 5");
     EXPECT_EQ(
