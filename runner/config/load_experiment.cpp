@@ -1,4 +1,7 @@
 // From a file on disk to the one document that is read: extends, profile, overrides, scene files.
+#include <fmt/format.h>
+#include <glob.h>
+
 #include <algorithm>
 #include <iterator>
 #include <optional>
@@ -158,6 +161,45 @@ Node withSceneFile(const Node& reference, const std::optional<fs::path>& folder 
     return Node::scalar(file.string(), reference.location(), true);
 }
 
+/// "scans/*.ply" of a sweep as the files of that name, sorted; parameters behind it are each one's.
+void addMatches(const Node& reference, Node::Sequence& files) {
+    const std::string pattern = reference.isScalar() ? scene::sceneName(reference.text()) : "";
+    if (!scene::isSceneFile(pattern) || pattern.find('*') == pattern.npos) {
+        files.push_back(reference);
+        return;
+    }
+    const std::string params = reference.text().substr(pattern.size());
+    glob_t found = {};
+    ::glob(withSceneFile(Node::scalar(pattern, reference.location())).text().c_str(), 0, nullptr,
+           &found);
+    for (std::size_t i = 0; i < found.gl_pathc; ++i) {
+        files.push_back(Node::scalar(found.gl_pathv[i] + params, reference.location(), true));
+    }
+    const bool isNone = found.gl_pathc == 0;
+    ::globfree(&found);
+    if (isNone) {
+        throw Error(reference.location(), fmt::format("no file is called '{}'; looked beside {}",
+                                                      pattern, reference.location().file.text()));
+    }
+}
+
+Node withSceneMatches(const Node& sweep) {
+    if (!sweep.isMap()) return sweep;
+    Node result = sweep;
+    for (const auto& [key, value] : sweep.entries()) {
+        if (!scene::isSceneKey(key) || !(value.isScalar() || value.isSequence())) continue;
+        Node::Sequence files;
+        if (value.isScalar()) addMatches(value, files);
+        if (value.isSequence()) {
+            for (const Node& item : value.items()) addMatches(item, files);
+        }
+        const bool isAsItWas = value.isScalar() && files[0].text() == value.text();
+        if (isAsItWas) continue;
+        result.set(key, Node::sequence(std::move(files), value.location()), sweep.keyLocation(key));
+    }
+    return result;
+}
+
 /// The same for every scene::isSceneKey() below a node whose maps go by axis (`isAxisMap`), or
 /// below the selectors `where` and `at`.
 Node withSceneFiles(const Node& node, bool isAxisMap) {
@@ -195,7 +237,8 @@ void resolveScenes(Node& document) {
     if (Node* scene = document.find("scene")) *scene = withSceneFile(*scene);
     if (Node* params = document.find("params")) *params = withSceneFiles(*params, true);
     if (Node* params = document.find("params_by_scene")) *params = withSceneFileKeys(*params);
-    if (Node* sweep = document.find("sweep")) *sweep = withSceneFiles(*sweep, true);
+    if (Node* sweep = document.find("sweep"))
+        *sweep = withSceneFiles(withSceneMatches(*sweep), true);
     for (const char* key : {"layout", "claims"}) {
         if (Node* section = document.find(key)) *section = withSceneFiles(*section, false);
     }

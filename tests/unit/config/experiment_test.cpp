@@ -416,6 +416,28 @@ TEST_F(ExperimentTest, SceneFilesStandBesideTheirConfig) {
     EXPECT_EQ(table.layout.columns[0].labels[0].second.where[0].value.text(), file);
 }
 
+TEST_F(ExperimentTest, SweepsTakeTheSceneFilesThatMatch) {
+    for (const char* name : {"zju/scans/b.ply", "zju/scans/a.ply", "zju/scans/c.obj"})
+        folder.write(name, "");
+    const auto scenes = [&](const std::string& sweep) {
+        std::string all;
+        for (const Case& item :
+             expandCases(load("table: p/1\ntitle: t\ntechnique: x\nsweep: {" + sweep + "}\n"))) {
+            std::string scene = item.scene.text();
+            if (scene.starts_with(folder.path().string())) {
+                scene = scene.substr(folder.path().string().size());
+            }
+            all += scene + ' ';
+        }
+        return all;
+    };
+    EXPECT_EQ(scenes("scene: 'scans/*.ply'"), "/zju/scans/a.ply /zju/scans/b.ply ");
+    EXPECT_EQ(scenes("scene: ['scans/*.obj', m/x, 'scans/b*.ply?up=z']"),
+              "/zju/scans/c.obj m/x /zju/scans/b.ply?up=z ");
+    EXPECT_EQ(errorText([&] { scenes("scene: 'scans/*.stl'"); }, folder.path()),
+              "DIR/zju/a.yaml:4:16: no file is called 'scans/*.stl'; looked beside DIR/zju/a.yaml");
+}
+
 TEST_F(ExperimentTest, SceneFilesOfTheCommandLineStandInTheCurrentFolder) {
     ExperimentOptions options;
     options.sets = {parseOverride("scene=m.obj")};
