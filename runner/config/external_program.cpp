@@ -73,8 +73,13 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
         throw Error(params.keyLocation(name),
                     what + ": plans and tables have that of every case; give it another name");
     }
-    // A value alone is its default.
-    const Node map = given.isMap() ? given : Node::map({{"default", given}}, given.location());
+    // A value alone is its default, a list all that is allowed, the default first.
+    Node map = given;
+    if (given.isSequence() && !given.items().empty()) {
+        map = Node::map({{"default", given.items()[0]}, {"choices", given}}, given.location());
+    } else if (!given.isMap()) {
+        map = Node::map({{"default", given}}, given.location());
+    }
     requireKeys(map, what, keysOf("program_param"));
     const Node* fallback = map.find("default");
     if (!fallback || !fallback->isScalar()) {
@@ -479,8 +484,9 @@ std::vector<SchemaSection> programKeys() {
          "that GFXREPRO_METRICS_FILE names.",
          {{"command", "line | [arguments]", "required",
            "the program and its arguments; a line is cut at its blanks", oneOrMore(text())},
-          {"params", "{name: default | parameter}", "{}", "what `params` and `sweep` may have",
-           mapOf(anyOf({text(), refTo("program_param")}))},
+          {"params", "{name: default | [values] | parameter}", "{}",
+           "what `params` and `sweep` may have",
+           mapOf(anyOf({text(), listOf(text(), 1), refTo("program_param")}))},
           {"metrics", "{name: unit | metric}", "{}", "what it says of itself",
            mapOf(anyOf({text(), refTo("program_metric")}))},
           {"passes", "{name: meaning}", "{}", "what tells values of a metric apart", mapOf(text())},
@@ -503,7 +509,7 @@ std::vector<SchemaSection> programKeys() {
           {"here", "folder", "that of this file", "what {here} is", text()}}},
         {"program_param",
          "program.params.NAME.",
-         "A value alone is the default.",
+         "A value alone is the default, a list all that is allowed, the default first.",
          {{"default", "value", "required",
            "in cases that do not say: 4 is a whole number, 4.0 any number, \"4\" text", text()},
           {"unit", "text", "\"\"", "spelt out", text()},

@@ -113,25 +113,27 @@ TEST(ExternalProgram, ThatTakesASeedHasItAsAParameter) {
 
 TEST(ExternalProgram, TypesAreThoseOfTheDefaults) {
     const ExternalProgram program = programOf(
-        "command: t {a} {b} {c} {d} {e} {f}\n"
+        "command: t {a} {b} {c} {d} {e} {f} {g}\n"
         "params:\n"
         "  a: 4\n"
         "  b: {default: 4.0, min: 0, max: 8, unit: m, doc: a length}\n"
         "  c: true\n"
         "  d: some text\n"
         "  e: {default: x, choices: [x, y]}\n"
-        "  f: 0.5\n");
+        "  f: 0.5\n"
+        "  g: [sobol, jittered]\n");
     Params params(parseYaml("{b: 2.5, e: y}", "p"), "technique 't'");
     program.declare(params);
     params.finish();
     EXPECT_EQ(params.resolved().toFlowText(),
-              "{a: 4, b: 2.5, c: true, d: some text, e: y, f: 0.5}");
+              "{a: 4, b: 2.5, c: true, d: some text, e: y, f: 0.5, g: sobol}");
     EXPECT_EQ(params.declared()[0].type, "integer");
     EXPECT_EQ(params.declared()[1].range, "0 … 8");
     EXPECT_EQ(params.declared()[1].unit, "m");
     EXPECT_EQ(params.declared()[4].doc, "x | y");
+    EXPECT_EQ(params.declared()[6].doc, "sobol | jittered");
     const Placeholders values = program.valuesOf(params.resolved());
-    EXPECT_EQ(filled("{a} {b} {c} {d} {e} {f}", values), "4 2.5 true some text y 0.5");
+    EXPECT_EQ(filled("{a} {b} {c} {d} {e} {f} {g}", values), "4 2.5 true some text y 0.5 sobol");
 }
 
 TEST(ExternalProgram, RefusesValuesThatAParameterDoesNotTake) {
