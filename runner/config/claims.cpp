@@ -144,7 +144,17 @@ class ClaimParser {
                 throwNotAllowed(*same, what_ + ": same_as", "TABLE CLAIM");
             }
         }
-        if (const Node* across = node_.find("across")) readAcross(*across);
+        const std::string& name = claim_.kind->name();
+        const Node& operands = *node_.find(name);
+        const auto axis =
+            claim_.kind->axisOf ? claim_.kind->axisOf(operands, what_ + ": " + name) : std::nullopt;
+        const Node* across = node_.find("across");
+        if (axis && across) {
+            throw Error(across->location(),
+                        fmt::format("{}: across, and {} names its axis", what_, name));
+        }
+        if (axis) readAcross(Node::scalar(*axis, operands.location(), true), "axis of " + name);
+        if (across) readAcross(*across, "across");
     }
 
     void readAt(const Node& at) {
@@ -159,11 +169,11 @@ class ClaimParser {
     }
 
     /// From here on the axis and the columns have changed places.
-    void readAcross(const Node& node) {
-        const std::string axis = lineOf(node, what_ + ": across");
+    void readAcross(const Node& node, const std::string& key) {
+        const std::string axis = lineOf(node, what_ + ": " + key);
         const auto found = std::ranges::find(names_.rowAxes, axis);
         if (found == names_.rowAxes.end()) {
-            throwNotAllowed(node, what_ + ": across", joined(names_.rowAxes, " | "));
+            throwNotAllowed(node, what_ + ": " + key, joined(names_.rowAxes, " | "));
         }
         claim_.across = axis;
         names_.rowAxes.erase(found);

@@ -436,7 +436,7 @@ TEST(Overrides, ANumberThatWasAColumnIsNoConstant) {
                         "sweep: {number: [1, 2]}\n"
                         "layout:\n  rows: number\n  columns: {n: {metric: number}}\n"
                         "  cell: \"{median:.0f}\"\n"
-                        "claims:\n  rises: {says: it does, across: number, order: 1 < 2}\n");
+                        "claims:\n  rises: {says: it does, order: [number=1, number=2]}\n");
     EXPECT_EQ(mockGfxrepro({"check", config, "--sweep", "number=7,8"}).out,
               config + ": ok, sweep/mock, 2 cases, 1 claim\n" + config +
                   ": claim 'rises' will be unmeasured: '1' is no column (columns: 7, 8)\n");

@@ -451,7 +451,7 @@ TEST(OwnExperiment, WhatCheckRefusesIsNotMeasured) {
          "where it is lost\n"},
         {"layout: {rows: [fill, resolution], columns: {a: {metric: gpu_time_ms, pass: "
          "synthesis}}}\n"
-         "claims: {C: {says: so, across: fill, order: surface < solid}}\n",
+         "claims: {C: {says: so, order: [fill=surface, fill=solid]}}\n",
          ":7:10: claim 'C' reads a time and needs 'kind': algorithmic | architectural\n"}};
     for (const auto& [lines, error] : wrong) {
         const std::string file = folder.write("mine.yaml", head + lines);
@@ -474,8 +474,8 @@ TEST(OwnExperiment, ClaimsReadTheColumnsOfATableThatNobodyLaidOut) {
                             "claims:\n  grows: {says: there are more voxels, trend: " +
                                 operand +
                                 ", over: resolution, direction: increasing}\n"
-                                "  solid: {says: a solid has more, across: fill, order: surface < "
-                                "solid, at: {column: voxels}}\n");
+                                "  solid: {says: a solid has more, order: "
+                                "[fill=surface, fill=solid], at: {column: voxels}}\n");
     };
     const ProcessResult bad = gfxrepro({"check", configOf("voxel")});
     EXPECT_EQ(bad.exitCode, 2);

@@ -141,6 +141,8 @@ struct Kind {
     const char* metric = nullptr;  // the only one that its operand may be
     /// What `check` refuses, to follow the claim's name; empty where nothing is wrong.
     std::string (*refused)(const ClaimSpec& claim, const Sampling& sampling) = nullptr;
+    /// The row axis whose values the operands name, which implies `across`; `what` begins messages.
+    std::optional<std::string> (*axisOf)(const Node& operands, const std::string& what) = nullptr;
 
     const std::string& name() const { return section.keys.front().name; }
 };

@@ -1,14 +1,71 @@
-// order: a < b < c.
+// order: a < b < c, of columns; [n=1, n=2], of the rows with these values of an axis.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/core/checks.h"
 #include "engine/core/text.h"
 #include "runner/claims/kinds/kind.h"
+#include "runner/claims/kinds/operands.h"
 
 namespace gfxrepro::claims {
 
 namespace {
 
+/// The axis and the value of "light_ratio=0.25".
+std::pair<std::string, std::string> valueIn(const Node& item, const std::string& what) {
+    const std::string& text = lineOf(item, what);
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals >= text.size() - 1) throwNotAllowed(item, what, "AXIS=VALUE");
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::optional<std::string> axisOf(const Node& operands, const std::string& what) {
+    std::optional<std::string> axis;
+    for (const Node& item : operands.isSequence() ? operands.items() : Node::Sequence()) {
+        const std::string own = valueIn(item, what).first;
+        if (axis.value_or(own) != own) {
+            throw Error(item.location(), fmt::format("{}: '{}' and '{}' are two axes; allowed: "
+                                                     "values of one",
+                                                     what, *axis, own));
+        }
+        axis = own;
+    }
+    return axis;
+}
+
+/// Values in the place of columns read as if they were compared as such: "0.25 < 4".
+void refuseValues(const ClaimKeys& keys, const ClaimSpec& claim) {
+    const std::vector<std::string> sides =
+        sidesOf(lineOf(keys.operands, keys.what + ": order"), "<", keys.columns);
+    for (const auto& [axis, values] : keys.rowValues) {
+        std::string list;
+        const bool areValues = std::ranges::all_of(sides, [&](const std::string& side) {
+            list += fmt::format("{}{}={}", list.empty() ? "" : ", ", axis, side);
+            const bool isColumn = std::ranges::find(keys.columns, side) != keys.columns.end();
+            return isColumn == claim.across.has_value() &&
+                   std::ranges::any_of(values, [&](const Node& value) {
+                       return value.isScalar() && value.text() == side;
+                   });
+        });
+        if (areValues && claim.across.value_or(axis) == axis) {
+            keys.refuse(keys.operands, "order", "[" + list + "]");
+        }
+    }
+}
+
 void readOrder(const ClaimKeys& keys, ClaimSpec& claim) {
-    keys.readSides("<", claim);
-    if (claim.operands.size() < 2) keys.refuse(keys.operands, "order", "a < b < …");
+    if (keys.operands.isSequence()) {
+        for (const Node& item : keys.operands.items()) {
+            keys.addOperands(item, {valueIn(item, keys.what).second}, claim);
+        }
+    } else {
+        refuseValues(keys, claim);
+        keys.readSides("<", claim);
+    }
+    if (claim.operands.size() < 2) {
+        keys.refuse(keys.operands, "order", "a < b < … | [AXIS=VALUE, AXIS=VALUE, …]");
+    }
 }
 
 /// The smallest relative difference of neighbours over the rows.
@@ -51,8 +108,15 @@ std::vector<ClaimPart> orderParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind order() {
-    return {sectionOf({"order", "a < b < c", "", "in this order", types::text()}, {}), readOrder,
-            orderParts};
+    const Json pair = {{"type", "string"}, {"pattern", "^[^=]+=.+$"}};
+    Kind kind{sectionOf({"order", "a < b < c | [AXIS=VALUE, …]", "",
+                         "in this order: of columns, or of the rows with these values of an axis, "
+                         "column by column, which implies `across`",
+                         types::anyOf({types::text(), types::listOf(pair, 2)})},
+                        {}),
+              readOrder, orderParts};
+    kind.axisOf = axisOf;
+    return kind;
 }
 
 }  // namespace gfxrepro::claims

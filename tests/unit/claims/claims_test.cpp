@@ -282,12 +282,12 @@ TEST(Claims, WhatReadsATimeHasAKind) {
     EXPECT_EQ(
         provenanceError("bound: a, at_most: 1, at: {e: much}, origin: document, bound_from: print"),
         "claim 'C' has its bound from print, and the table has no printed values: text | ours");
-    EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: slow}, origin: document"),
+    EXPECT_EQ(provenanceError("order: [scene=s, scene=t], at: {e: slow}, origin: document"),
               "claim 'C' reads a time and needs 'kind': algorithmic | architectural");
-    EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: slow}, origin: document, kind: "
+    EXPECT_EQ(provenanceError("order: [scene=s, scene=t], at: {e: slow}, origin: document, kind: "
                               "algorithmic"),
               "no error");
-    EXPECT_EQ(provenanceError("across: scene, order: s < t, at: {e: much}, origin: document, kind: "
+    EXPECT_EQ(provenanceError("order: [scene=s, scene=t], at: {e: much}, origin: document, kind: "
                               "algorithmic"),
               "claim 'C' has a 'kind' and reads no time");
     const std::string isAbsolute =
@@ -316,9 +316,8 @@ TEST(Claims, WhatReadsATimeHasAKind) {
     EXPECT_EQ(provenanceError("trend: n, over: a, direction: increasing, at: {e: slow}, origin: "
                               "document"),
               "claim 'C' reads a time and needs 'kind': algorithmic | architectural");
-    EXPECT_EQ(
-        provenanceError("across: e, order: slow < often, origin: document, kind: algorithmic"),
-        isAbsolute);
+    EXPECT_EQ(provenanceError("order: [e=slow, e=often], origin: document, kind: algorithmic"),
+              isAbsolute);
     // A reason for where it is not judged is of an earlier claim.
     const std::string ofGpu =
         "order: a < 2 * a, at: {e: slow}, origin: document, kind: architectural, because: "
@@ -341,9 +340,8 @@ TEST(Claims, WhatReadsATimeHasAKind) {
     EXPECT_EQ(provenanceError("bound: a, at_most: 100, at: {e: slow}", true), "no error");
     EXPECT_EQ(provenanceError("bound: a, at_most: 100, at: {e: slow}, kind: algorithmic", true),
               isAbsolute);
-    EXPECT_EQ(
-        provenanceError("across: scene, order: s < t, at: {e: slow}, kind: algorithmic", true),
-        "no error");
+    EXPECT_EQ(provenanceError("order: [scene=s, scene=t], at: {e: slow}, kind: algorithmic", true),
+              "no error");
 }
 
 TEST(Claims, ABoundFromPrintReadsWhatIsPrinted) {
@@ -898,7 +896,7 @@ TEST(Claims, WhatWasJudgedByCpuTimeIsShown) {
     };
     EXPECT_THAT(columnsOf("trend: ms, over: n, at_most: 2"),
                 testing::ElementsAre("ms", "cpu_ms", "fps"));
-    EXPECT_THAT(columnsOf("order: 8 < 1, across: n, at: {column: fps}, kind: algorithmic"),
+    EXPECT_THAT(columnsOf("order: [n=8, n=1], at: {column: fps}, kind: algorithmic"),
                 testing::ElementsAre("ms", "fps", "cpu_fps"));
     EXPECT_THAT(columnsOf("bound: ms, at_most: 9, kind: absolute"),
                 testing::ElementsAre("ms", "fps"));
@@ -1014,7 +1012,7 @@ printed:
     old,s,1,2
     new,s,10,4
 claims:
-  X: {says: as claimed, across: method, )" +
+  X: {says: as claimed, )" +
            claim + "}\n";
 }
 
@@ -1027,19 +1025,20 @@ TEST(Claims, AcrossComparesRows) {
     const auto judge = [&](const std::string& claim) {
         return judgeOne(acrossBody(claim), maker.records());
     };
-    ClaimResult result = judge("order: old < new");
+    ClaimResult result = judge("order: [method=old, method=new]");
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.measured, "smallest gap -50 %");
     EXPECT_EQ(result.reason, "worst at t, b; one sample; holds on 1 of 2 scenes, not on t");
-    EXPECT_EQ(judge("order: old < new, at: {column: a}").verdict, Verdict::Holds);
-    EXPECT_EQ(judge("order: old < new, at: {scene: s}").verdict, Verdict::Holds);
-    EXPECT_EQ(judge("order: old < new, at: {scene: s}").required, "old < new");
-    result = judge("ratio: new / old, at_least: 20, at: {scene: t, column: a}");
+    EXPECT_EQ(judge("order: [method=old, method=new], at: {column: a}").verdict, Verdict::Holds);
+    EXPECT_EQ(judge("order: [method=old, method=new], at: {scene: s}").verdict, Verdict::Holds);
+    EXPECT_EQ(judge("order: [method=old, method=new], at: {scene: s}").required, "old < new");
+    result = judge("across: method, ratio: new / old, at_least: 20, at: {scene: t, column: a}");
     EXPECT_EQ(result.verdict, Verdict::Holds);
     EXPECT_EQ(result.measured, "20");
     // The printed numbers have moved along.
-    EXPECT_EQ(judge("exact: new, equals: printed, at: {column: a}").verdict, Verdict::Holds);
-    result = judge("exact: new, equals: printed");
+    EXPECT_EQ(judge("across: method, exact: new, equals: printed, at: {column: a}").verdict,
+              Verdict::Holds);
+    result = judge("across: method, exact: new, equals: printed");
     EXPECT_EQ(result.measured, "largest difference 1");
 }
 
@@ -1214,7 +1213,7 @@ TEST(Claims, OfSeveralScenesAVerdictNamesThoseOnWhichItDoesNotHold) {
     EXPECT_EQ(claimSummaryLine({some, judged(bound, 3, 3, 3)}), "2 fail (1 holds on some scenes)");
     EXPECT_EQ(judged("trend: a, over: n, at_least: 0.9, at_most: 1.1", 1, 1, -1).holdsOn,
               "2 of 3 scenes, not on tree");
-    EXPECT_EQ(judged("across: scene, order: city < tree", 1, 2, 1).holdsOn, "") << "between scenes";
+    EXPECT_EQ(judged("order: [scene=city, scene=tree]", 1, 2, 1).holdsOn, "") << "between scenes";
 }
 
 TEST(Claims, OneTruthCountsOnce) {

@@ -15,7 +15,7 @@ layout:
   cell: "{median:.1f}"
 claims:
   bound: {says: the meadow has many, bound: share, at_least: 5, at: {scene: grass}}
-  order: {says: and more than the scan, across: scene, order: scan < grass}
+  order: {says: and more than the scan, order: [scene=scan, scene=grass]}
 )";
 
 /// The meadow's share at each seed; the scan, which has none, has 6.

@@ -154,8 +154,11 @@ TEST_F(ExperimentTest, ReaderAndSchemaRefuseTheSame) {
     const std::string claim = table + "{aa: mean_brightness, bb: mean_brightness}}\nclaims:\n  C: ";
     ASSERT_EQ(loadError(head), "no error");
     ASSERT_EQ(schema.complaintAbout(head), "");
-    ASSERT_EQ(loadError(claim + "{says: s, order: aa < bb}"), "no error");
-    ASSERT_EQ(schema.complaintAbout(claim + "{says: s, order: aa < bb}"), "");
+    for (const char* order : {"aa < bb", "[scene=s, scene=t]"}) {
+        const std::string ordered = claim + "{says: s, order: " + order + "}";
+        ASSERT_EQ(loadError(ordered), "no error");
+        ASSERT_EQ(schema.complaintAbout(ordered), "");
+    }
     for (const std::string& text : {
              std::string("title: t\ntechnique: template\n"),    // no identity
              head + "figure: p/2\n",                            // two
@@ -179,6 +182,7 @@ TEST_F(ExperimentTest, ReaderAndSchemaRefuseTheSame) {
              claim + "{says: s, independent: aa, of: scene, at_most: 25}",
              claim + "{says: s, exact: aa, equals: about}",
              claim + "{says: s, order: [aa, bb]}",
+             claim + "{says: s, order: [scene=s]}",
              claim + "{says: s, order: aa < bb, origin: mine}",
              claim + "{says: s, order: aa < bb, profile: fast}",
              head + "output: {width: 0}\n",  // ranges and types

@@ -35,8 +35,8 @@ TEST_F(ExperimentTest, BadSections) {
     }
     EXPECT_EQ(errorWith("claims: {}"), "DIR/zju/a.yaml:4:1: 'claims' without 'layout'");
     EXPECT_EQ(loadError("sweep_of: own\ntitle: t\ntechnique: x\nsweep: {n: [1, 2]}\nclaims:\n"
-                        "  C: {says: s, across: m, order: 1 < 2}\n"),
-              "DIR/zju/a.yaml:6:24: claim 'C': across is m; allowed: n");
+                        "  C: {says: s, order: [m=1, m=2]}\n"),
+              "DIR/zju/a.yaml:6:23: claim 'C': axis of order is m; allowed: n");
     EXPECT_EQ(errorWith("printed: {values: \"a\\n1\"}"),
               "DIR/zju/a.yaml:4:11: printed: 'values' without 'layout'");
 }
@@ -277,8 +277,9 @@ TEST_F(ExperimentTest, BadClaims) {
               head +
                   "32: claim 'C': unknown key 'at_least'; allowed: says, at, across, "
                   "profile, origin, same_as, bound_from, kind, because, order");
-    EXPECT_EQ(claimError("{says: s, order: aa}"),
-              head + "23: claim 'C': order is aa; allowed: a < b < …");
+    EXPECT_EQ(
+        claimError("{says: s, order: aa}"),
+        head + "23: claim 'C': order is aa; allowed: a < b < … | [AXIS=VALUE, AXIS=VALUE, …]");
     EXPECT_EQ(claimError("{says: s, order: aa < bb < aa}"),
               head + "23: claim 'C' compares 'aa' with itself");
     EXPECT_EQ(claimError("{says: s, order: aa < }"),
@@ -477,22 +478,35 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
             claim);
     };
     const std::string head = "DIR/zju/a.yaml:7:";
-    EXPECT_EQ(error("across: e, order: p < q, at: {scene: s, column: [aa, bb]}}"), "no error");
+    EXPECT_EQ(error("order: [e=p, e=q], at: {scene: s, column: [aa, bb]}}"), "no error");
+    EXPECT_EQ(error("across: e, order: p / q < q, at: {scene: s, column: aa}}"), "no error");
     EXPECT_EQ(error("across: e, trend: p / q, over: scene, at_least: 1, at_most: 2}"), "no error");
-    EXPECT_EQ(error("across: f, order: p < q}"),
+    EXPECT_EQ(error("across: f, order: p / q < q}"),
               head + "24: claim 'C': across is f; allowed: e | scene");
     EXPECT_EQ(error("across: e, order: aa < bb}"),
               head + "34: claim 'C': 'aa' is no column (columns: p, q)");
-    EXPECT_EQ(error("across: e, order: p < q, at: {e: p}}"),
-              head + "46: claim 'C': at: unknown key 'e'; allowed: scene, column");
-    EXPECT_EQ(error("across: e, order: p < q, at: {column: p}}"),
-              head + "54: claim 'C': at.column is p; allowed: aa | bb");
-    EXPECT_EQ(error("order: [p, q]}"),
-              head + "23: claim 'C': order is [p, q]; allowed: one line of text");
+    EXPECT_EQ(error("order: [e=p, e=q], at: {e: p}}"),
+              head + "40: claim 'C': at: unknown key 'e'; allowed: scene, column");
+    EXPECT_EQ(error("order: [e=p, e=q], at: {column: p}}"),
+              head + "48: claim 'C': at.column is p; allowed: aa | bb");
+    EXPECT_EQ(error("order: [p, q]}"), head + "24: claim 'C': order is p; allowed: AXIS=VALUE");
+    EXPECT_EQ(error("order: [e=p, scene=s]}"),
+              head + "29: claim 'C': order: 'e' and 'scene' are two axes; allowed: values of one");
+    EXPECT_EQ(error("order: [e=p, e=rrr]}"),
+              head + "29: claim 'C': 'rrr' is no column (columns: p, q)");
+    EXPECT_EQ(error("order: [e=p]}"),
+              head +
+                  "23: claim 'C': order is [e=p]; allowed: a < b < … | [AXIS=VALUE, "
+                  "AXIS=VALUE, …]");
+    EXPECT_EQ(error("order: [e=p, e=q], across: e}"),
+              head + "43: claim 'C': across, and order names its axis");
+    EXPECT_EQ(error("across: e, order: p < q}"),
+              head + "34: claim 'C': order is p < q; allowed: [e=p, e=q]");
+    EXPECT_EQ(error("order: p < q}"), head + "23: claim 'C': order is p < q; allowed: [e=p, e=q]");
     // What is missing is said.
     const std::string hint = " is no column (columns: aa, bb); ";
-    EXPECT_EQ(error("order: p < q}"), head + "23: claim 'C': 'p'" + hint +
-                                          "'p' is a value of row axis 'e': add 'across: e'");
+    EXPECT_EQ(error("order: p / 2 < q}"), head + "23: claim 'C': 'p'" + hint +
+                                              "'p' is a value of row axis 'e': add 'across: e'");
     EXPECT_EQ(
         error("ratio: \"max(p, q) / aa\", at_most: 1}"),
         head + "23: claim 'C': 'p'" + hint + "'p' is a value of row axis 'e': add 'across: e'");
