@@ -36,21 +36,40 @@ std::optional<std::string> nameIn(const Node& map, const char* key, const std::s
     return choice ? std::optional<std::string>(names[*choice]) : std::nullopt;
 }
 
-ClaimSpec::Known readKnown(const Node& node, const std::string& what) {
-    requireKeys(node, what, keysOf("because"));
-    ClaimSpec::Known known;
-    for (const char* key : {"verdict", "reason"}) {
-        if (!node.find(key)) throw Error(node.location(), what + " needs '" + key + "'");
-    }
-    known.verdict = *nameIn(node, "verdict", what, kKnownVerdicts);
-    known.device = nameIn(node, "device", what, kDeviceClasses);
-    known.profile = nameIn(node, "profile", what, kProfiles);
-    known.scenes = nameIn(node, "scenes", what, kSceneClasses);
-    known.reason = lineOf(*node.find("reason"), what + ": reason");
-    if (const Node* shown = node.find("shown_by")) {
-        known.shownBy = lineOf(*shown, what + ": shown_by");
-    }
-    return known;
+/// The keys of an entry of `because`.
+const std::vector<ReadKey<ClaimSpec::Known>>& knownKeys() {
+    using K = ClaimSpec::Known;
+    using Text = const std::string&;
+    static const auto named = [](const Node& node, std::span<const std::string_view> names,
+                                 Text what) {
+        return std::string(names[choiceOf(node, names, what)]);
+    };
+    static const std::vector<ReadKey<K>> all = {
+        {choiceKey("verdict", kKnownVerdicts, "required", "what it comes to"),
+         [](K& known, const Node& node, Text what) {
+             known.verdict = named(node, kKnownVerdicts, what);
+         }},
+        {{"reason", "line", "required",
+          "the cause, in a sentence or two that a reader of the document understands", text()},
+         [](K& known, const Node& node, Text what) { known.reason = lineOf(node, what); }},
+        {{"shown_by", "PAGE.md#ANCHOR", "none",
+          "the place in results/findings that has the numbers which prove it", text()},
+         [](K& known, const Node& node, Text what) { known.shownBy = lineOf(node, what); }},
+        {choiceKey("device", kDeviceClasses, "any", "on this class of devices"),
+         [](K& known, const Node& node, Text what) {
+             known.device = named(node, kDeviceClasses, what);
+         }},
+        {choiceKey("profile", kProfiles, "any", "in this profile"),
+         [](K& known, const Node& node, Text what) {
+             known.profile = named(node, kProfiles, what);
+         }},
+        {choiceKey(
+             "scenes", kSceneClasses, "any",
+             "where all scenes were made of files, or none, as where a real model is not at hand"),
+         [](K& known, const Node& node, Text what) {
+             known.scenes = named(node, kSceneClasses, what);
+         }}};
+    return all;
 }
 
 std::string knownPlace(const ClaimSpec::Known& known) {
@@ -212,7 +231,7 @@ class ClaimParser {
         const Node::Sequence entries =
             because->isSequence() ? because->items() : Node::Sequence{*because};
         for (const Node& entry : entries) {
-            claim_.because.push_back(readKnown(entry, what_ + ": because"));
+            readKeys(knownKeys(), entry, what_ + ": because", claim_.because.emplace_back());
         }
         requireApart(claim_.because, entries, what_ + ": because");
     }
@@ -268,28 +287,11 @@ SchemaSection common() {
         false};
 }
 
-SchemaSection because() {
-    return {
-        "because",
-        "claims.ID.because.",
-        "",
-        {choiceKey("verdict", kKnownVerdicts, "required", "what it comes to"),
-         {"reason", "line", "required",
-          "the cause, in a sentence or two that a reader of the document understands", text()},
-         {"shown_by", "PAGE.md#ANCHOR", "none",
-          "the place in results/findings that has the numbers which prove it", text()},
-         choiceKey("device", kDeviceClasses, "any", "on this class of devices"),
-         choiceKey("profile", kProfiles, "any", "in this profile"),
-         choiceKey(
-             "scenes", kSceneClasses, "any",
-             "where all scenes were made of files, or none, as where a real model is not at hand")},
-        false};
-}
-
 }  // namespace
 
 std::vector<SchemaSection> claimSections() {
-    std::vector<SchemaSection> sections = {common(), because()};
+    std::vector<SchemaSection> sections = {common(),
+                                           sectionOf("because", "claims.ID.because.", knownKeys())};
     for (const claims::Kind& kind : claims::kinds()) sections.push_back(kind.section);
     return sections;
 }

@@ -119,6 +119,7 @@ struct PlotSpec {
     RowFilter at;
     bool isLogX = false;
     bool isLogY = false;
+    std::optional<double> slope = {};  // exponent of x that is expected: both axes are logarithmic
     SourceLocation location;
 };
 
@@ -199,11 +200,6 @@ inline bool goesByClock(const Experiment& experiment) {
     if (experiment.technique == kImported) return true;
     return experiment.document.isMap() && experiment.document.find("program");
 }
-
-/// `slope` of a plot: the exponent of x that its curves are expected to have, drawn as a dashed
-/// line; both axes of such a plot are logarithmic. `plot`: its place in experiment.plots. None
-/// where it says none.
-std::optional<double> referenceSlope(const Experiment& experiment, std::size_t plot);
 
 /// Begins the place of what was given there.
 inline constexpr const char* kCommandLine = "command line, ";

@@ -30,23 +30,52 @@ class PlotReader {
         : node_(node), names_(names), what_(fmt::format("plot {}", number)) {}
 
     PlotSpec read() {
-        requireKeys(node_, what_, keysOf("plot"));
         plot_.location = node_.location();
-        plot_.title = optionalLine(node_, "title", what_);
-        readX(requiredAt(node_, "x", what_));
-        readY(requiredAt(node_, "y", what_));
-        if (const Node* by = node_.find("by")) plot_.by = readAxis(*by, "by");
-        if (const Node* panels = node_.find("panels")) {
-            for (const Node& axis : listed(*panels)) {
-                plot_.panels.push_back(readAxis(axis, "panels"));
-            }
-        }
-        if (const Node* at = node_.find("at"))
-            plot_.at = readRowFilter(*at, what_ + ": at", names_);
-        if (const Node* log = node_.find("log")) readLog(*log);
-        if (const Node* slope = node_.find("slope")) requireSlope(*slope);
+        readKeys(keys(), node_, what_, *this);
         requirePlaces();
         return std::move(plot_);
+    }
+
+    static const std::vector<ReadKey<PlotReader>>& keys() {
+        using namespace types;
+        using R = PlotReader;
+        using Text = const std::string&;
+        static const std::vector<ReadKey<R>> all = {
+            {{"x", "row axis | column", "required", "a row axis has to be of numbers", text()},
+             [](R& r, const Node& node, Text what) { r.readX(node, what); }},
+            {{"y", "column | [columns]", "required", "a curve each; the first statistic of a cell",
+              oneOrMore(text())},
+             [](R& r, const Node& node, Text what) { r.readY(node, what); }},
+            {{"by", "row axis", "none", "of each y a curve a value", text()},
+             [](R& r, const Node& node, Text what) { r.plot_.by = r.readAxis(node, what); }},
+            {{"panels", "row axis | [axes]", "none", "a panel for each combination of values",
+              oneOrMore(text())},
+             [](R& r, const Node& node, Text what) {
+                 for (const Node& axis : listed(node)) {
+                     r.plot_.panels.push_back(r.readAxis(axis, what));
+                 }
+             }},
+            {{"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
+             [](R& r, const Node& node, Text what) {
+                 r.plot_.at = readRowFilter(node, what, r.names_);
+             }},
+            {{"log", "x | y | [x, y]", "[]", "axes that are logarithmic",
+              anyOf({choice(kPlotAxes), setOf(choice(kPlotAxes))})},
+             [](R& r, const Node& node, Text what) { r.readLog(node, what); }},
+            {{"slope", "number", "none",
+              "exponent of x that is expected: a dashed line through the mean of each curve's "
+              "points, on two logarithmic axes",
+              number()},
+             [](R& r, const Node& node, Text what) {
+                 r.plot_.slope = numberIn(node, {}, what);
+                 if (r.plot_.isLogX && r.plot_.isLogY) return;
+                 throw Error(node.location(), what +
+                                                  " is a straight line on logarithmic axes alone; "
+                                                  "allowed: with log: [x, y]");
+             }},
+            {{"title", "line", "the file's", "above the curves", text()},
+             [](R& r, const Node& node, Text what) { r.plot_.title = lineOf(node, what); }}};
+        return all;
     }
 
   private:
@@ -68,8 +97,8 @@ class PlotReader {
         return known;
     }
 
-    void readX(const Node& node) {
-        const std::string& name = lineOf(node, what_ + ": x");
+    void readX(const Node& node, const std::string& what) {
+        const std::string& name = lineOf(node, what);
         if (contains(names_.rowAxes, name)) {
             if (const Node* text = firstText(name, names_)) {
                 throw Error(
@@ -86,9 +115,9 @@ class PlotReader {
         plot_.x = name;
     }
 
-    void readY(const Node& node) {
+    void readY(const Node& node, const std::string& what) {
         for (const Node& item : listed(node)) {
-            const std::string& name = lineOf(item, what_ + ": y");
+            const std::string& name = lineOf(item, what);
             if (!isColumn(name)) {
                 throw Error(item.location(), fmt::format("{}: unknown column '{}'{}", what_, name,
                                                          suggestionOrAll(name, names_.columns)));
@@ -99,11 +128,10 @@ class PlotReader {
             }
             plot_.y.push_back(name);
         }
-        if (plot_.y.empty()) throwNotAllowed(node, what_ + ": y", "a column, or a list");
+        if (plot_.y.empty()) throwNotAllowed(node, what, "a column, or a list");
     }
 
-    std::string readAxis(const Node& node, const char* key) {
-        const std::string what = fmt::format("{}: {}", what_, key);
+    std::string readAxis(const Node& node, const std::string& what) {
         const std::string& name = lineOf(node, what);
         if (!contains(names_.rowAxes, name)) {
             throwNotAllowed(node, what, joined(names_.rowAxes, " | "));
@@ -120,23 +148,13 @@ class PlotReader {
         used_.push_back(axis);
     }
 
-    void readLog(const Node& node) {
+    void readLog(const Node& node, const std::string& what) {
         for (const Node& item : listed(node)) {
-            const std::string what = what_ + ": log";
             const bool isX = choiceOf(item, kPlotAxes, what) == 0;
             bool& isLog = isX ? plot_.isLogX : plot_.isLogY;
             if (isLog) throw Error(item.location(), what + ": '" + item.text() + "' stands twice");
             isLog = true;
         }
-    }
-
-    void requireSlope(const Node& node) const {
-        (void)numberIn(node, {}, what_ + ": slope");
-        if (plot_.isLogX && plot_.isLogY) return;
-        throw Error(node.location(),
-                    what_ +
-                        ": slope is a straight line on logarithmic axes alone; allowed: with "
-                        "log: [x, y]");
     }
 
     /// Two rows at one place of a curve would be drawn over each other.
@@ -166,13 +184,6 @@ class PlotReader {
 
 }  // namespace
 
-std::optional<double> referenceSlope(const Experiment& experiment, std::size_t plot) {
-    const Node* plots = experiment.document.find("plots");
-    if (!plots || !plots->isSequence() || plot >= plots->items().size()) return std::nullopt;
-    const Node* slope = plots->items()[plot].find("slope");
-    return slope ? slope->tryDouble() : std::nullopt;
-}
-
 std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names) {
     if (!node.isSequence()) throwNotAllowed(node, "plots", "a list of plots");
     std::vector<PlotSpec> plots;
@@ -183,25 +194,7 @@ std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names) {
 }
 
 SchemaSection plotKeys() {
-    using namespace types;
-    return {"plot",
-            "plot.",
-            "",
-            {{"x", "row axis | column", "required", "a row axis has to be of numbers", text()},
-             {"y", "column | [columns]", "required", "a curve each; the first statistic of a cell",
-              oneOrMore(text())},
-             {"by", "row axis", "none", "of each y a curve a value", text()},
-             {"panels", "row axis | [axes]", "none", "a panel for each combination of values",
-              oneOrMore(text())},
-             {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
-             {"log", "x | y | [x, y]", "[]", "axes that are logarithmic",
-              anyOf({choice(kPlotAxes), setOf(choice(kPlotAxes))})},
-             {"slope", "number", "none",
-              "exponent of x that is expected: a dashed line through the mean of each curve's "
-              "points, on two logarithmic axes",
-              number()},
-             {"title", "line", "the file's", "above the curves", text()}},
-            false};
+    return sectionOf("plot", "plot.", PlotReader::keys());
 }
 
 }  // namespace gfxrepro::config

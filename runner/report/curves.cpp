@@ -113,9 +113,7 @@ class FigureDrawing {
         drawLegend();
         if (!figure_.panels.empty()) drawPanels();
         constexpr std::string_view kSmall = "font-size=\"11\"";
-        for (const std::string& note : figure_.notes) {
-            addLines(wrapped(note, width_), kSmall);
-        }
+        for (const std::string& note : figure_.notes) addLines(wrapped(note, width_), kSmall);
         return svgElement(width_, end_ + 4.0, title, svg_);
     }
 
@@ -323,8 +321,7 @@ std::string figureSvg(const tables::Figure& figure, const std::string& title, do
 namespace {
 
 /// `file` is where it goes as one; empty: nowhere.
-Curve drawCurve(const tables::Table& table, const config::PlotSpec& plot,
-                std::optional<double> slope, const fs::path& file) {
+Curve drawCurve(const tables::Table& table, const config::PlotSpec& plot, const fs::path& file) {
     Curve curve{table.id, plot.title.empty() ? table.title : plot.title, "", ""};
     const std::string absent = tables::whatIsAbsent(plot, table);
     tables::Figure figure = absent.empty() ? tables::makeFigure(plot, table) : tables::Figure();
@@ -334,7 +331,7 @@ Curve drawCurve(const tables::Table& table, const config::PlotSpec& plot,
         if (!file.empty()) fs::remove(file);  // of a run before this one
         return curve;
     }
-    if (slope) tables::addReference(figure, *slope);
+    if (plot.slope) tables::addReference(figure, *plot.slope);
     curve.svg = figureSvg(figure, curve.title, kWidePx);
     if (!file.empty()) writeFileAtomic(file, curve.svg);
     curve.svg += figureSvg(figure, curve.title, kNarrowPx);
@@ -348,16 +345,14 @@ std::vector<Curve> drawCurves(const fs::path& folder, const std::vector<tables::
     GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
     std::vector<Curve> curves;
     for (std::size_t i = 0; i < experiments.size(); ++i) {
-        const bool areOwn = !experiments[i].hasDefaultLayout();
-        const std::vector<config::PlotSpec> plots =
-            areOwn ? experiments[i].plots : tables::defaultPlots(tables[i]);
+        const std::vector<config::PlotSpec> plots = experiments[i].hasDefaultLayout()
+                                                        ? tables::defaultPlots(tables[i])
+                                                        : experiments[i].plots;
         for (std::size_t n = 0; n < plots.size(); ++n) {
             const std::string suffix = n == 0 ? "" : fmt::format("-{}", n + 1);
             const fs::path file = "plots/" + tables[i].slug + suffix + ".svg";
-            const auto slope =
-                areOwn ? config::referenceSlope(experiments[i], n) : std::optional<double>();
             curves.push_back(
-                drawCurve(tables[i], plots[n], slope, folder.empty() ? fs::path() : folder / file));
+                drawCurve(tables[i], plots[n], folder.empty() ? fs::path() : folder / file));
         }
     }
     return curves;

@@ -4,6 +4,8 @@
 
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <type_traits>
+#include <vector>
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
@@ -63,28 +65,36 @@ constexpr JsonMember kCase[] = {{"/id", JsonKind::Text},
                                 {"/seed", JsonKind::Text},
                                 {"/program_key", JsonKind::Text, false},
                                 {"/scene_sample", JsonKind::Int, false}};
-constexpr JsonMember kMeasure[] = {{"/lane", JsonKind::Text},
-                                   {"/warmup", JsonKind::Int},
-                                   {"/repeats", JsonKind::Int},
-                                   {"/processes", JsonKind::Int},
-                                   {"/relative_error", JsonKind::Number},
-                                   {"/processes_at_most", JsonKind::Int},
-                                   {"/time_budget_s", JsonKind::Number},
-                                   {"/frames", JsonKind::Int},
-                                   {"/time_limit_s", JsonKind::Number},
-                                   {"/within_budget", JsonKind::Boolean, false},
-                                   {"/seeds", JsonKind::Text, false}};
+
+/// What a plan has of `measure` in numbers, each key once.
+template <class Measure, class Each>
+void eachNumber(Measure& measure, Each each) {
+    each("/warmup", measure.warmup);
+    each("/repeats", measure.repeats);
+    each("/processes", measure.processes);
+    each("/relative_error", measure.relativeError);
+    each("/processes_at_most", measure.processesAtMost);
+    each("/time_budget_s", measure.timeBudgetS);
+    each("/frames", measure.frames);
+    each("/time_limit_s", measure.timeLimitS);
+}
+
+std::vector<JsonMember> measureMembers() {
+    std::vector<JsonMember> members = {{"/lane", JsonKind::Text},
+                                       {"/within_budget", JsonKind::Boolean, false},
+                                       {"/seeds", JsonKind::Text, false}};
+    config::Measure measure;
+    eachNumber(measure, [&](const char* place, auto value) {
+        members.push_back(
+            {place, std::is_same_v<decltype(value), int> ? JsonKind::Int : JsonKind::Number});
+    });
+    return members;
+}
 
 Json measureJson(const config::Measure& measure) {
-    Json json = {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"},
-                 {"warmup", measure.warmup},
-                 {"repeats", measure.repeats},
-                 {"processes", measure.processes},
-                 {"relative_error", measure.relativeError},
-                 {"processes_at_most", measure.processesAtMost},
-                 {"time_budget_s", measure.timeBudgetS},
-                 {"frames", measure.frames},
-                 {"time_limit_s", measure.timeLimitS}};
+    Json json = {{"lane", measure.lane == config::Measure::Lane::Timing ? "timing" : "quality"}};
+    eachNumber(measure,
+               [&](const char* place, auto value) { json[Json::json_pointer(place)] = value; });
     if (measure.isWithinBudget) json["within_budget"] = true;
     using Seeds = config::Measure::Seeds;
     if (measure.seeds != Seeds::None) {
@@ -97,14 +107,9 @@ config::Measure measureFrom(const Json& json) {
     config::Measure measure;
     measure.lane = json.at("lane") == "timing" ? config::Measure::Lane::Timing
                                                : config::Measure::Lane::Quality;
-    json.at("warmup").get_to(measure.warmup);
-    json.at("repeats").get_to(measure.repeats);
-    json.at("processes").get_to(measure.processes);
-    json.at("relative_error").get_to(measure.relativeError);
-    json.at("processes_at_most").get_to(measure.processesAtMost);
-    json.at("time_budget_s").get_to(measure.timeBudgetS);
-    json.at("frames").get_to(measure.frames);
-    json.at("time_limit_s").get_to(measure.timeLimitS);
+    eachNumber(measure, [&](const char* place, auto& value) {
+        json.at(Json::json_pointer(place)).get_to(value);
+    });
     measure.isWithinBudget = json.value("within_budget", false);
     const std::string seeds = json.value("seeds", "");
     if (!seeds.empty()) {
@@ -303,7 +308,7 @@ Json toJson(const Case& item) {
 
 Case caseFromJson(const Json& json, const SourceLocation& where, const std::string& prefix) {
     requireMembers(json, kCase, where, prefix);
-    requireMembers(json.at("measure"), kMeasure, where, prefix + "/measure");
+    requireMembers(json.at("measure"), measureMembers(), where, prefix + "/measure");
     const auto node = [&](const char* key) {
         const auto found = json.find(key);
         return found == json.end() ? Node() : nodeFromJson(*found, where);
