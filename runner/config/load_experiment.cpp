@@ -11,7 +11,7 @@
 #include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
 #include "runner/config/external_program.h"
-#include "runner/config/printed.h"
+#include "runner/config/printed_section.h"
 #include "runner/config/schema.h"
 #include "runner/config/sections.h"
 

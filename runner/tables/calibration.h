@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/config/printed.h"
+#include "runner/config/printed_section.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::tables {

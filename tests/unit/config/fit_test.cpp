@@ -1,4 +1,4 @@
-#include "runner/config/printed.h"
+#include "runner/config/printed_section.h"
 
 #include <gmock/gmock.h>
 
