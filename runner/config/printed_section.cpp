@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -130,16 +131,19 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
     printed.location = values->location();
     const Names lines = split(values->text(), '\n');
     std::set<std::string> keys;
+    bool isHeader = true;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const std::string_view line = trimmed(lines[i]);
         if (line.empty() || line.front() == '#') continue;
         const SourceLocation where = values->lineLocation(i);
-        Names row = cellsOf(lines[i]);
-        if (printed.header.empty()) {
-            requireHeader(row, names, where);
-            printed.header = std::move(row);
+        if (isHeader) {  // one that ends in a comma goes on in the next line
+            isHeader = line.back() == ',';
+            const std::string part(isHeader ? line.substr(0, line.size() - 1) : line);
+            std::ranges::move(cellsOf(part), std::back_inserter(printed.header));
+            if (!isHeader) requireHeader(printed.header, names, where);
             continue;
         }
+        Names row = cellsOf(lines[i]);
         if (row.size() != printed.header.size()) {
             throw Error(where, fmt::format("printed: {} cells in a row; the header has {}",
                                            row.size(), printed.header.size()));
@@ -368,34 +372,36 @@ std::vector<FitTarget> fitTargets(const Experiment& experiment) {
 
 std::vector<SchemaSection> printedKeys() {
     using namespace types;
-    return {{"printed",
-             "printed.",
-             "",
-             {{"hardware", "text", "\"\"", "what the paper measured on", text()},
-              {"remark", "text", "\"\"", "misprints and the like", text()},
-              {"values",
-               "CSV block",
-               "none",
-               "a header of row axes and columns, then the rows",
-               {{"type", "string"}}},
-              {"compared", "[method]", "[]",
-               "methods that the paper compares with a usual one: no fit reads their cells",
-               listOf(text())},
-              {"calibrated", "[{row axis: value, column: name}]", "[]",
-               "cells for which an input of ours was fitted, so that they come out: marked in "
-               "every form of the table. Each value may be a list; what is left out is any",
-               listOf(pairs())},
-              {"at", "{parameter: value}", "{}",
-               "what the paper measured at, where the profile paper departs from it: a parameter, "
-               "scene, output.width, output.height, measure.frames",
-               pairs()}}},
-            {"fit",
-             "fit.COLUMN.",
-             "Only the cells that are named are read, and none of another method.",
-             {{"table", "file", "required", "of the table, in configs/", text()},
-              {"row", "{row axis: value}", "required", "all row axes of that table", pairs()},
-              {"column", "name", "required", "of that table", text()}},
-             false}};
+    return {
+        {"printed",
+         "printed.",
+         "",
+         {{"hardware", "text", "\"\"", "what the paper measured on", text()},
+          {"remark", "text", "\"\"", "misprints and the like", text()},
+          {"values",
+           "CSV block",
+           "none",
+           "a header of row axes and columns, which goes on behind a comma at the end of its line; "
+           "then the rows",
+           {{"type", "string"}}},
+          {"compared", "[method]", "[]",
+           "methods that the paper compares with a usual one: no fit reads their cells",
+           listOf(text())},
+          {"calibrated", "[{row axis: value, column: name}]", "[]",
+           "cells for which an input of ours was fitted, so that they come out: marked in "
+           "every form of the table. Each value may be a list; what is left out is any",
+           listOf(pairs())},
+          {"at", "{parameter: value}", "{}",
+           "what the paper measured at, where the profile paper departs from it: a parameter, "
+           "scene, output.width, output.height, measure.frames",
+           pairs()}}},
+        {"fit",
+         "fit.COLUMN.",
+         "Only the cells that are named are read, and none of another method.",
+         {{"table", "file", "required", "of the table, in configs/", text()},
+          {"row", "{row axis: value}", "required", "all row axes of that table", pairs()},
+          {"column", "name", "required", "of that table", text()}},
+         false}};
 }
 
 }  // namespace gfxrepro::config

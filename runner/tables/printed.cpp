@@ -50,11 +50,13 @@ Cells absentColumns(const config::Printed& printed, const Table& table) {
 std::vector<SourceLocation> linesOf(const Node& values) {
     std::vector<SourceLocation> lines;
     const std::vector<std::string> texts = split(values.text(), '\n');
+    bool isHeader = true;
     for (std::size_t i = 0; i < texts.size(); ++i) {
         const std::string_view line = trimmed(texts[i]);
-        if (!line.empty() && line.front() != '#') lines.push_back(values.lineLocation(i));
+        if (line.empty() || line.front() == '#') continue;
+        if (!isHeader) lines.push_back(values.lineLocation(i));
+        isHeader = isHeader && line.back() == ',';
     }
-    lines.erase(lines.begin());  // the header
     return lines;
 }
 

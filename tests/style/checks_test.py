@@ -77,6 +77,10 @@ for says in ("… too", '"and so on"', "nor this", '"and, unlike it, that"'):
 expect("check_style", {TABLE: "  A:\n    says: >-\n      and so on\n"}, f"{TABLE}:2: a claim is read alone: say of what it goes on")
 expect("check_style", {TABLE: "printed:\n  values: |\n    a\nclaims:\n  A: {says: " + "x" * 150 + "}\n"},
        f"{TABLE}:5: 163 characters, at most 160\n")
+expect("check_style", {TABLE: "printed:\n  values: |\n    " + "a," * 80 + "a\n"}, f"{TABLE}:3: 165 characters, at most 160\n")
+for reason in ('"Edges. Pixels; lights."', ">-\n        Edges and\n        pixels. Lights. Others"):
+    expect("check_style", {TABLE: f"    because:\n      verdict: fails\n      reason: {reason}\n"},
+           f"{TABLE}:3: a reason of 3 sentences, at most 2: numbers stand in results/findings\n")
 expect("check_style", {TABLE: 'printed: {remark: "text. full_ewa_ms is ours"}\n'},
        f"{TABLE}:1: 'full_ewa_ms' in a remark, which people read: say it in words")
 expect("check_style", {TABLE: "printed:\n  remark: >-\n    text.\n\n    ray_traced is theirs\n  values: a_b\n"},
@@ -85,7 +89,7 @@ expect("check_style", {TABLE: "title: What c_min decides\n"}, f"{TABLE}:1: 'c_mi
 expect("check_style", {TABLE: "  A: {says: full_ewa is fast, ratio: a_b / c_d}\n"}, f"{TABLE}:1: 'full_ewa' in a says, which")
 code, output = run("check_style", {**GOOD, "configs/README.md": "", "configs/x/README.md": "", TABLE:
     "  A: {says: soft shadows do, ratio: a_b / c_d}\n  remark: see sweeps/soft_shadows-light.yaml, a D3DFMT_32F\n"
-    "printed:\n  values: |\n    " + "a," * 90 + "\n"})
+    "printed:\n  values: |\n    " + "a," * 70 + "\n"})
 if code != 0:
     sys.exit(f"check_style found something in good words:\n{output}")
 MAY_STAY = ("env", "frames", "gpu", "here", "passes", "seeds")  # of `program`

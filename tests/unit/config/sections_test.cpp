@@ -156,6 +156,12 @@ TEST_F(ExperimentTest, BadPrintedValues) {
             lines);
     };
     EXPECT_EQ(printedError("    # remark\n    scene,e,time\n\n    s,p,1\n    s,q,\n"), "no error");
+    EXPECT_EQ(printedError("    scene,e,\n    time\n    s,p,1\n    s,q,\n"), "no error");
+    EXPECT_EQ(printedError("    scene,e,\n    time\n    s,p\n"),
+              "DIR/zju/a.yaml:10: printed: 2 cells in a row; the header has 3");
+    EXPECT_EQ(printedError("    scene,e,\n    tme\n    s,p,1\n"),
+              "DIR/zju/a.yaml:9: printed: 'tme' is neither a row axis nor a column; did you mean "
+              "'time'?");
     EXPECT_EQ(printedError("    scene,e,tme\n    s,p,1\n"),
               "DIR/zju/a.yaml:8: printed: 'tme' is neither a row axis nor a column; did you mean "
               "'time'?");
