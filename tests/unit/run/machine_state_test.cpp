@@ -211,18 +211,25 @@ class Told : public run::Observer {
     void tick(std::string_view) override {}
 };
 
-std::optional<gl::GpuReading> noGpu() {
-    return std::nullopt;
-}
-
-TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
-    using Lane = config::Measure::Lane;
-    const TemporaryFolder runs;
-    const auto directory = run::RunDirectory::create(runs.path() / "run");
+/// A watch in a run folder of its own, over a machine and perhaps a GPU.
+class MachineWatch : public testing::Test {
+  protected:
+    TemporaryFolder runs_;
+    run::RunDirectory directory = run::RunDirectory::create(runs_.path() / "run");
     Machine machine;
-    machine.read();
     Told told;
-    run::MachineWatch watch(told, directory, {}, machine.root(), noGpu);
+    std::optional<gl::GpuReading> gpu;
+    run::MachineWatch watch{told, directory, {}, machine.root(), [&] { return gpu; }};
+
+    void setClock(double clockHz) { gpu.emplace().clockHz = clockHz; }
+    tables::MovedClocks moved() const {
+        return run::movedClocks({{"machine_states", watch.states()}});
+    }
+};
+
+TEST_F(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
+    using Lane = config::Measure::Lane;
+    machine.read();
     const auto run = [&](const config::Case& item, double othersS) {
         const run::Unit unit{&item, 0, {}};
         watch.unitBegan(unit);
@@ -259,15 +266,9 @@ TEST(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
 }
 
 /// Its clock rises while frames warm up and falls while a case loads: neither is in its times.
-TEST(MachineWatch, TellsWhichCasesAreNotOfOneClock) {
-    const TemporaryFolder runs;
-    const auto directory = run::RunDirectory::create(runs.path() / "run");
-    const Machine machine;
-    Told told;
-    gl::GpuReading gpu;
-    run::MachineWatch watch(told, directory, {}, machine.root(), [&] { return gpu; });
+TEST_F(MachineWatch, TellsWhichCasesAreNotOfOneClock) {
     const auto see = [&](const char* phase, int clockMHz) {
-        gpu.clockHz = 1e6 * clockMHz;
+        setClock(1e6 * clockMHz);
         watch.tick(phase);
     };
     const auto run = [&](const config::Case& item, int process, int first, int second) {
@@ -291,7 +292,7 @@ TEST(MachineWatch, TellsWhichCasesAreNotOfOneClock) {
     run(apart, 1, 1695, 1695);
     const tables::MovedClocks expected = {{moving.id, {1.41e9, 1.98e9}},
                                           {apart.id, {1.695e9, 1.98e9}}};
-    EXPECT_EQ(run::movedClocks({{"machine_states", watch.states()}}), expected);
+    EXPECT_EQ(moved(), expected);
     // Of a run that goes on, too.
     const auto states = run::machineStatesIn(run::readJournal(directory.path() / "journal.jsonl"));
     const Json again = {{"machine_states", {{"t/1", states.at("t/1").json()}}}};
@@ -300,42 +301,30 @@ TEST(MachineWatch, TellsWhichCasesAreNotOfOneClock) {
 }
 
 /// A twin's times were taken on the machine as it was then.
-TEST(MachineWatch, ATableThatTakesTimesTakesTheirState) {
-    const TemporaryFolder runs;
-    const auto directory = run::RunDirectory::create(runs.path() / "run");
-    const Machine machine;
-    Told told;
-    gl::GpuReading gpu;
-    gpu.clockHz = 1.98e9;
-    run::MachineWatch watch(told, directory, {}, machine.root(), [&] { return gpu; });
+TEST_F(MachineWatch, ATableThatTakesTimesTakesTheirState) {
+    setClock(1.98e9);
     const config::Case item = makeCase("t/1", "a", 1, config::Measure::Lane::Timing);
     const config::Case twin = makeCase("t/2", "a", 1, config::Measure::Lane::Timing);
     const run::Unit unit{&item, 0, {}};
     watch.unitBegan(unit);
     watch.tick("render");
-    gpu.clockHz = 1.41e9;
+    setClock(1.41e9);
     watch.unitEnded(unit, records::Status::Ok, "");
     watch.unitEnded({&twin, 0, {}, {}, &item}, records::Status::Ok, "");
     const tables::MovedClocks expected = {{item.id, {1.41e9, 1.98e9}}, {twin.id, {1.41e9, 1.98e9}}};
-    EXPECT_EQ(run::movedClocks({{"machine_states", watch.states()}}), expected);
+    EXPECT_EQ(moved(), expected);
 }
 
 /// A frame that is drawn between two ticks: the clock behind it is its own.
-TEST(MachineWatch, SeesTheClockOfShortFrames) {
-    const TemporaryFolder runs;
-    const auto directory = run::RunDirectory::create(runs.path() / "run");
-    const Machine machine;
-    Told told;
-    gl::GpuReading gpu;
-    gpu.clockHz = 1.98e9;
-    run::MachineWatch watch(told, directory, {}, machine.root(), [&] { return gpu; });
+TEST_F(MachineWatch, SeesTheClockOfShortFrames) {
+    setClock(1.98e9);
     const config::Case item = makeCase("t/1", "a", 1, config::Measure::Lane::Timing);
     const run::Unit unit{&item, 0, {}};
     watch.unitBegan(unit);
     watch.tick("render");
-    gpu.clockHz = 1.41e9;
+    setClock(1.41e9);
     watch.unitEnded(unit, records::Status::Ok, "");
-    EXPECT_EQ(run::movedClocks({{"machine_states", watch.states()}}).size(), 1U);
+    EXPECT_EQ(moved().size(), 1U);
 }
 
 }  // namespace
