@@ -92,30 +92,26 @@ using EmbreeTracerTest = TracerTest;
 
 TEST_F(EmbreeTracerTest, MirrorFloorShowsTheRoom) {
     const scene::Scene source = mirrorFloorRoom();
-    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
-    tracer.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
-    ASSERT_EQ(samples.size(), 48U * 36U);
+    const EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
+    ASSERT_EQ(traced.samples.size(), 48U * 36U);
 
     int count = 0;
     bool isSeen[6] = {};
-    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
-        const FloorRay ray = floorRay(gbuffer.view, pixel);
+    forEachReflective(traced.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const FloorRay ray = floorRay(traced.gbuffer.view, pixel);
         const WallHit hit = wallHit(roomBox(), ray.origin, ray.direction);
-        EXPECT_NEAR(samples[index].distanceM, hit.distanceM, kSnappedM);
+        EXPECT_NEAR(traced.samples[index].distanceM, hit.distanceM, kSnappedM);
         if (hit.edgeDistanceM < 1e-4) return;
-        EXPECT_EQ(samples[index].object, 1U + static_cast<unsigned>(hit.side));
-        EXPECT_LT(largestDifference(samples[index].radiance, shown(source, hit)), 1e-4F);
+        EXPECT_EQ(traced.samples[index].object, 1U + static_cast<unsigned>(hit.side));
+        EXPECT_LT(largestDifference(traced.samples[index].radiance, shown(source, hit)), 1e-4F);
         isSeen[hit.side] = true;
         ++count;
     });
     EXPECT_GT(count, 800);
     EXPECT_TRUE(isSeen[0] && isSeen[1] && isSeen[3] && isSeen[4]);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (gbuffer.isReflective(i)) continue;
-        EXPECT_EQ(samples[i].object, 0U);
+    for (std::size_t i = 0; i < traced.samples.size(); ++i) {
+        if (traced.gbuffer.isReflective(i)) continue;
+        EXPECT_EQ(traced.samples[i].object, 0U);
     }
 }
 
@@ -124,28 +120,24 @@ TEST_F(EmbreeTracerTest, MirrorSphereShowsTheRoom) {
     source.materials[2] = matt({0.2F, 0.2F, 0.9F});
     const glm::vec3 centre(0.2F, 1.0F, 0.3F);
     addPart(source, sphere(centre), mirror());
-    Prepared prepared(shaders, source, camera({0.4F, 1.3F, 1.9F}, centre), kSizePx);
-    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
-    tracer.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+    const EmbreeTrace traced = trace(source, camera({0.4F, 1.3F, 1.9F}, centre), kSizePx);
 
     int count = 0;
     bool isSeen[6] = {};
-    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+    forEachReflective(traced.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
         // From where the drawn sphere is, about the normal of the true one.
-        const glm::dvec3 origin(gbuffer.positionWorld(pixel));
+        const glm::dvec3 origin(traced.gbuffer.positionWorld(pixel));
         const glm::dvec3 normal = glm::normalize(origin - glm::dvec3(centre));
         const glm::dvec3 direction =
-            glm::reflect(glm::normalize(origin - glm::dvec3(gbuffer.view.eyeWorld)), normal);
+            glm::reflect(glm::normalize(origin - glm::dvec3(traced.gbuffer.view.eyeWorld)), normal);
         // Rays that graze the true sphere enter the drawn one.
         if (glm::dot(direction, normal) < 0.1) return;
         const WallHit hit = wallHit(roomBox(), origin, direction);
         // The interpolated normal is not quite the true one.
         if (hit.edgeDistanceM < 0.02) return;
-        EXPECT_EQ(samples[index].object, 1U + static_cast<unsigned>(hit.side));
-        EXPECT_NEAR(samples[index].distanceM, hit.distanceM, 5e-3);
-        EXPECT_LT(largestDifference(samples[index].radiance, shown(source, hit)), 5e-3F);
+        EXPECT_EQ(traced.samples[index].object, 1U + static_cast<unsigned>(hit.side));
+        EXPECT_NEAR(traced.samples[index].distanceM, hit.distanceM, 5e-3);
+        EXPECT_LT(largestDifference(traced.samples[index].radiance, shown(source, hit)), 5e-3F);
         isSeen[hit.side] = true;
         ++count;
     });
@@ -166,19 +158,16 @@ TEST_F(EmbreeTracerTest, AttributesOfMirroredInstancesStayWithTheirVertices) {
     }
     source.instances[3].worldFromMesh = glm::scale(
         glm::translate(glm::mat4(1.0F), glm::vec3(middle, 0.0F, 0.0F)), glm::vec3(-1, 1, 1));
-    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
-    tracer.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+    const EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
     int count = 0;
-    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
-        const FloorRay ray = floorRay(gbuffer.view, pixel);
+    forEachReflective(traced.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const FloorRay ray = floorRay(traced.gbuffer.view, pixel);
         const WallHit hit = wallHit(box, ray.origin, ray.direction);
         if (hit.side != 3 || hit.edgeDistanceM < 1e-4) return;
         const auto x = static_cast<float>(hit.position.x);
         const glm::vec3 albedo((box.max.x - x) / box.size().x, 0.5F, 0.25F);
-        EXPECT_LT(largestDifference(samples[index].radiance, shown(source, hit, albedo)), 1e-4F);
+        EXPECT_LT(largestDifference(traced.samples[index].radiance, shown(source, hit, albedo)),
+                  1e-4F);
         ++count;
     });
     EXPECT_GT(count, 200);
@@ -194,15 +183,11 @@ TEST_F(EmbreeTracerTest, GlossyMeanOfOneColourIsThatColour) {
     materials[2].baseColor = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
     materials[2].emissive = colour;
     addRoom(source, roomBox(), materials);
-    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
-    tracer.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+    const EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
     int count = 0;
-    forEachReflective(gbuffer, [&](glm::ivec2, std::size_t index) {
+    forEachReflective(traced.gbuffer, [&](glm::ivec2, std::size_t index) {
         // The G-buffer keeps ten bits of a colour's root.
-        EXPECT_LT(largestDifference(samples[index].radiance, colour), 2e-3F);
+        EXPECT_LT(largestDifference(traced.samples[index].radiance, colour), 2e-3F);
         ++count;
     });
     EXPECT_GT(count, 800);
@@ -217,18 +202,14 @@ TEST_F(EmbreeTracerTest, GlossyRaysFadeTowardsTheFarPlane) {
     materials[2] = mirror(0.2F);
     materials[2].baseColor = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
     addRoom(source, roomBox(), materials);
-    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
     const LobeSettings lobe{12, 0.5F, 4.0F};
-    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, lobe);
-    tracer.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+    const EmbreeTrace traced = trace(source, aboveFloor(), kSizePx, lobe);
 
     const float glossiness = 51.0F / 255.0F;
     const double farPlane = double{glm::length(roomBox().size())} * std::pow(0.8, 4.0);
     int faded = 0, whole = 0;
-    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
-        const FloorRay ray = floorRay(gbuffer.view, pixel);
+    forEachReflective(traced.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const FloorRay ray = floorRay(traced.gbuffer.view, pixel);
         double weights = 0.0;
         for (int i = 0; i < 12; ++i) {
             const glm::dvec3 direction(
@@ -238,8 +219,8 @@ TEST_F(EmbreeTracerTest, GlossyRaysFadeTowardsTheFarPlane) {
             weights += std::clamp(3.0 * (1.0 - hit.distanceM / farPlane), 0.0, 1.0);
         }
         const glm::vec3 expected = static_cast<float>(weights / 12.0) * colour;
-        EXPECT_LT(largestDifference(samples[index].radiance, expected), 2e-4F);
-        EXPECT_NEAR(samples[index].distanceM,
+        EXPECT_LT(largestDifference(traced.samples[index].radiance, expected), 2e-4F);
+        EXPECT_NEAR(traced.samples[index].distanceM,
                     wallHit(roomBox(), ray.origin, ray.direction).distanceM, kSnappedM);
         ++(weights < 11.999 ? faded : whole);
     });
@@ -250,24 +231,21 @@ TEST_F(EmbreeTracerTest, GlossyRaysFadeTowardsTheFarPlane) {
 /// The ceiling goes up by a metre; the gap shows the environment.
 TEST_F(EmbreeTracerTest, MovedObjectsAreMetWhereTheyAre) {
     const scene::Scene source = mirrorFloorRoom();
-    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
-    tracer.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const EnvironmentMap::Host environment = prepared.map.read();
-    const std::vector<TracedSample> before = tracer.trace(gbuffer);
+    EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
+    const EnvironmentMap::Host environment = traced.prepared.map.read();
 
-    std::vector<glm::mat4> poses(prepared.objects.poses().begin(), prepared.objects.poses().end());
+    std::vector<glm::mat4> poses(traced.prepared.objects.poses().begin(),
+                                 traced.prepared.objects.poses().end());
     poses[3] = glm::translate(poses[3], glm::vec3(0.0F, 1.0F, 0.0F));
-    prepared.objects.setPoses(poses);
-    tracer.update(prepared.objects, profiler);
-    const std::vector<TracedSample> after = tracer.trace(gbuffer);
+    traced.prepared.objects.setPoses(poses);
+    traced.tracer.update(traced.prepared.objects, profiler);
+    const std::vector<TracedSample> after = traced.tracer.trace(traced.gbuffer);
 
     scene::Box raised = roomBox();
     raised.max.y += 1.0F;
     int onCeiling = 0, throughGap = 0, unchanged = 0;
-    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
-        const FloorRay ray = floorRay(gbuffer.view, pixel);
+    forEachReflective(traced.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const FloorRay ray = floorRay(traced.gbuffer.view, pixel);
         const WallHit hit = wallHit(raised, ray.origin, ray.direction);
         const double rim = double{roomBox().max.y};
         if (hit.edgeDistanceM < 1e-3 || std::abs(hit.position.y - rim) < 1e-3) return;
@@ -275,17 +253,17 @@ TEST_F(EmbreeTracerTest, MovedObjectsAreMetWhereTheyAre) {
             EXPECT_EQ(after[index].object, 0U);
             EXPECT_EQ(after[index].distanceM, 0.0F);
             EXPECT_EQ(after[index].radiance,
-                      environment.radianceFrom(gbuffer.mirrorDirection(pixel)));
+                      environment.radianceFrom(traced.gbuffer.mirrorDirection(pixel)));
             ++throughGap;
             return;
         }
         EXPECT_NEAR(after[index].distanceM, hit.distanceM, kSnappedM);
         EXPECT_LT(largestDifference(after[index].radiance, shown(source, hit)), 1e-4F);
         if (hit.side == 3) {
-            EXPECT_GT(after[index].distanceM, before[index].distanceM + 0.9F);
+            EXPECT_GT(after[index].distanceM, traced.samples[index].distanceM + 0.9F);
             ++onCeiling;
         } else {
-            EXPECT_EQ(after[index].distanceM, before[index].distanceM);
+            EXPECT_EQ(after[index].distanceM, traced.samples[index].distanceM);
             ++unchanged;
         }
     });
@@ -301,21 +279,19 @@ TEST_F(EmbreeTracerTest, MissesTakeTheMapAsItWasDrawnLast) {
     addPart(source, rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0}), mirror());
     addPart(source, block({glm::vec3(-0.2F, 0.1F, -2.9F), glm::vec3(0.2F, 2.0F, -2.5F)}),
             glowing({1.0F, 0.5F, 0.0F}));
-    Prepared prepared(shaders, source, camera({0, 1.5F, 2.5F}, {0, 0, 0}), kSizePx);
-    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
-    tracer.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    std::vector<glm::mat4> poses(prepared.objects.poses().begin(), prepared.objects.poses().end());
+    EmbreeTrace traced = trace(source, camera({0, 1.5F, 2.5F}, {0, 0, 0}), kSizePx);
+    std::vector<glm::mat4> poses(traced.prepared.objects.poses().begin(),
+                                 traced.prepared.objects.poses().end());
     poses[1] = glm::translate(poses[1], glm::vec3(1.0F, 0.0F, 0.0F));
-    prepared.objects.setPoses(poses);
-    prepared.map.render(prepared.objects);
-    tracer.update(prepared.objects, profiler);
-    const EnvironmentMap::Host environment = prepared.map.read();
-    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
+    traced.prepared.objects.setPoses(poses);
+    traced.prepared.map.render(traced.prepared.objects);
+    traced.tracer.update(traced.prepared.objects, profiler);
+    const EnvironmentMap::Host environment = traced.prepared.map.read();
+    const std::vector<TracedSample> samples = traced.tracer.trace(traced.gbuffer);
     int glowingCount = 0, count = 0;
-    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+    forEachReflective(traced.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
         if (samples[index].object != 0) return;
-        const glm::vec3 expected = environment.radianceFrom(gbuffer.mirrorDirection(pixel));
+        const glm::vec3 expected = environment.radianceFrom(traced.gbuffer.mirrorDirection(pixel));
         EXPECT_EQ(samples[index].radiance, expected);
         glowingCount += expected.x > 0.9F ? 1 : 0;
         ++count;
@@ -326,45 +302,38 @@ TEST_F(EmbreeTracerTest, MissesTakeTheMapAsItWasDrawnLast) {
 
 TEST_F(EmbreeTracerTest, MirrorRaysEndWhereTheyDoWithRadiance) {
     const scene::Scene source = mirrorFloorRoom();
-    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
-    tracer.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> samples = tracer.trace(gbuffer);
-    const std::vector<TracedSample> ends = tracer.traceMirrorRays(gbuffer);
-    ASSERT_EQ(ends.size(), samples.size());
+    EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
+    const std::vector<TracedSample> ends = traced.tracer.traceMirrorRays(traced.gbuffer);
+    ASSERT_EQ(ends.size(), traced.samples.size());
     std::size_t met = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        EXPECT_EQ(ends[i].distanceM, samples[i].distanceM);
-        EXPECT_EQ(ends[i].object, samples[i].object);
+    for (std::size_t i = 0; i < traced.samples.size(); ++i) {
+        EXPECT_EQ(ends[i].distanceM, traced.samples[i].distanceM);
+        EXPECT_EQ(ends[i].object, traced.samples[i].object);
         EXPECT_EQ(ends[i].radiance, glm::vec3(0.0F));
         met += ends[i].object != 0 ? 1 : 0;
     }
-    EXPECT_GT(met, samples.size() / 10);
-    EXPECT_EQ(readSurfaces(prepared.gbuffer), gbuffer.surface);
+    EXPECT_GT(met, traced.samples.size() / 10);
+    EXPECT_EQ(readSurfaces(traced.prepared.gbuffer), traced.gbuffer.surface);
 }
 
 TEST_F(EmbreeTracerTest, WritesWantedSamplesOnly) {
     const scene::Scene source = mirrorFloorRoom();
-    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
-    tracer.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> all = tracer.trace(gbuffer);
-    std::vector<std::uint8_t> wantedSamples(all.size());
-    for (std::size_t i = 0; i < all.size(); ++i) wantedSamples[i] = i % 3 == 0 ? 1 : 0;
+    EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
+    std::vector<std::uint8_t> wantedSamples(traced.samples.size());
+    for (std::size_t i = 0; i < traced.samples.size(); ++i) wantedSamples[i] = i % 3 == 0 ? 1 : 0;
     gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSizePx);
     wanted.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wantedSamples.data());
     ReflectionTarget target(kSizePx);
-    tracer.trace(prepared.gbuffer, &wanted, target, profiler);
+    traced.tracer.trace(traced.prepared.gbuffer, &wanted, target, profiler);
 
     const std::vector<float> radiance = target.radiance.read<float>(GL_RGBA, GL_FLOAT, 4);
     const std::vector<float> distances = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (wantedSamples[i] == 0 || !gbuffer.isReflective(i)) continue;
-        EXPECT_EQ(distances[i], all[i].distanceM);
+    for (std::size_t i = 0; i < traced.samples.size(); ++i) {
+        if (wantedSamples[i] == 0 || !traced.gbuffer.isReflective(i)) continue;
+        EXPECT_EQ(distances[i], traced.samples[i].distanceM);
         const glm::vec3 written(radiance[4 * i], radiance[4 * i + 1], radiance[4 * i + 2]);
-        EXPECT_LT(largestDifference(written, all[i].radiance), 1.0F / 2048.0F);  // half floats
+        EXPECT_LT(largestDifference(written, traced.samples[i].radiance),
+                  1.0F / 2048.0F);  // half floats
         EXPECT_EQ(radiance[4 * i + 3], 1.0F);
     }
     std::vector<std::string> passes;
@@ -381,20 +350,17 @@ TEST_F(EmbreeTracerTest, TransfersGoWithTheWantedSamples) {
     std::vector<scene::Material> materials(6, glowing({0.8F, 0.6F, 0.4F}));
     materials[2] = mirror(0.2F);  // glossy, so that the diffuse colour counts
     addRoom(source, roomBox(), materials);
-    Prepared prepared(shaders, source, aboveFloor(), kSizePx);
-    EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
-    tracer.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::size_t mask = gbuffer.surface.size();
+    EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
+    const std::size_t mask = traced.gbuffer.surface.size();
     constexpr glm::vec4 kLeftThere(5.0F);
     std::size_t leastBytes = 0;
     for (const std::size_t stride : {400U, 40U, 4U}) {
-        std::vector<std::uint8_t> wantedSamples(gbuffer.surface.size());
+        std::vector<std::uint8_t> wantedSamples(traced.gbuffer.surface.size());
         std::size_t count = 0, selected = 0;
         for (std::size_t i = 0; i < wantedSamples.size(); i += stride) {
             wantedSamples[i] = 1;
             ++selected;
-            count += gbuffer.isReflective(i) ? 1 : 0;
+            count += traced.gbuffer.isReflective(i) ? 1 : 0;
         }
         gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSizePx);
         wanted.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wantedSamples.data());
@@ -403,7 +369,7 @@ TEST_F(EmbreeTracerTest, TransfersGoWithTheWantedSamples) {
         const std::vector<glm::vec4> before(wantedSamples.size(), kLeftThere);
         target.radiance.upload(GL_RGBA, GL_FLOAT, before.data());
         bytesReadBack() = 0;
-        tracer.trace(prepared.gbuffer, &wanted, target, profiler);
+        traced.tracer.trace(traced.prepared.gbuffer, &wanted, target, profiler);
         const std::size_t bytes = bytesReadBack();
         EXPECT_GT(count, 0U);
         EXPECT_GE(bytes, mask + count * 28);
@@ -411,10 +377,10 @@ TEST_F(EmbreeTracerTest, TransfersGoWithTheWantedSamples) {
         EXPECT_GT(bytes, leastBytes);
         leastBytes = bytes;
 
-        const std::vector<TracedSample> expected = tracer.trace(gbuffer);
+        const std::vector<TracedSample> expected = traced.tracer.trace(traced.gbuffer);
         const auto radiance = target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
         for (std::size_t i = 0; i < radiance.size(); ++i) {
-            if (wantedSamples[i] == 0 || !gbuffer.isReflective(i)) {
+            if (wantedSamples[i] == 0 || !traced.gbuffer.isReflective(i)) {
                 ASSERT_EQ(radiance[i], kLeftThere) << "is left alone";
             } else {
                 ASSERT_LT(largestDifference(glm::vec3(radiance[i]), expected[i].radiance),
@@ -426,7 +392,7 @@ TEST_F(EmbreeTracerTest, TransfersGoWithTheWantedSamples) {
     none.clearToZero();
     ReflectionTarget target(kSizePx);
     bytesReadBack() = 0;
-    tracer.trace(prepared.gbuffer, &none, target, profiler);
+    traced.tracer.trace(traced.prepared.gbuffer, &none, target, profiler);
     EXPECT_EQ(bytesReadBack(), mask);
 }
 

@@ -67,25 +67,22 @@ bool isSeen(const HostGBuffer& gbuffer, const glm::vec3& point, const glm::vec3&
 }
 
 TEST_F(ScreenSpaceTracerTest, AgreesWithRaysWhereTheEyeSeesWhatIsReflected) {
-    const Prepared prepared(shaders, pillarsOnMirror(), beforePillars(), kScreenSizePx);
-    EmbreeTracer embree(shaders, prepared.scene, prepared.map, {});
-    embree.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> truth = embree.trace(gbuffer);
-    const Traced traced = this->traced(prepared, {});
-    const EnvironmentMap::Host environment = prepared.map.read();
+    const EmbreeTrace rays = trace(pillarsOnMirror(), beforePillars(), kScreenSizePx);
+    const Traced traced = this->traced(rays.prepared, {});
+    const EnvironmentMap::Host environment = rays.prepared.map.read();
 
     int seenCount = 0, agreeing = 0, missCount = 0, misses = 0;
-    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
-        const glm::vec3 direction = gbuffer.mirrorDirection(pixel);
-        const TracedSample& sample = truth[index];
+    forEachReflective(rays.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const glm::vec3 direction = rays.gbuffer.mirrorDirection(pixel);
+        const TracedSample& sample = rays.samples[index];
         const bool isEnvironment =
             traced.distanceM[index] == 0.0F &&
             largestDifference(traced.radiance[index], environment.radianceFrom(direction)) < 2e-3F;
         if (sample.object == 0) {
             ++missCount;
             misses += isEnvironment ? 1 : 0;
-        } else if (isSeen(gbuffer, gbuffer.positionWorld(pixel) + sample.distanceM * direction,
+        } else if (isSeen(rays.gbuffer,
+                          rays.gbuffer.positionWorld(pixel) + sample.distanceM * direction,
                           direction)) {
             ++seenCount;
             const bool agrees = std::abs(traced.distanceM[index] - sample.distanceM) < 0.05F &&
@@ -109,28 +106,25 @@ TEST_F(ScreenSpaceTracerTest, RaysPassBehindWhatIsInFrontOfThem) {
     addPart(source, rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}), mirror());
     addPart(source, rectangle({0, 2, -1.9F}, {2, 0, 0}, {0, 2, 0}), glowing({0.2F, 0.6F, 0.3F}));
     addPart(source, rectangle({0, 0.75F, 1.2F}, {0.6F, 0, 0}, {0, 0.1F, 0}), glowing({1, 0, 0}));
-    const Prepared prepared(shaders, source, camera({0, 0.9F, 2.2F}, {0, 0.5F, 0}), kScreenSizePx);
-    EmbreeTracer embree(shaders, prepared.scene, prepared.map, {});
-    embree.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> truth = embree.trace(gbuffer);
-    const Traced traced = this->traced(prepared, {});
+    const EmbreeTrace rays = trace(source, camera({0, 0.9F, 2.2F}, {0, 0.5F, 0}), kScreenSizePx);
+    const Traced traced = this->traced(rays.prepared, {});
     int count = 0, behindCount = 0, agreeing = 0;
-    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
-        const glm::vec3 direction = gbuffer.mirrorDirection(pixel);
-        const glm::vec3 point = gbuffer.positionWorld(pixel) + truth[index].distanceM * direction;
-        if (truth[index].object != 2 || !isSeen(gbuffer, point, direction)) return;
+    forEachReflective(rays.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const glm::vec3 direction = rays.gbuffer.mirrorDirection(pixel);
+        const glm::vec3 point =
+            rays.gbuffer.positionWorld(pixel) + rays.samples[index].distanceM * direction;
+        if (rays.samples[index].object != 2 || !isSeen(rays.gbuffer, point, direction)) return;
         // In this symmetric image rays go straight up.
         bool isBehind = false;
-        const int wallY = kit::pixelOf(gbuffer.view, point)->y;
+        const int wallY = kit::pixelOf(rays.gbuffer.view, point)->y;
         for (int y = pixel.y; y < wallY; ++y) {
-            const float depth = gbuffer.depthM[gbuffer.indexOf({pixel.x, y})];
+            const float depth = rays.gbuffer.depthM[rays.gbuffer.indexOf({pixel.x, y})];
             isBehind = isBehind || (depth > 0.0F && depth < 1.2F);
         }
         ++count;
         behindCount += isBehind ? 1 : 0;
         agreeing +=
-            largestDifference(traced.radiance[index], truth[index].radiance) < 2e-3F ? 1 : 0;
+            largestDifference(traced.radiance[index], rays.samples[index].radiance) < 2e-3F ? 1 : 0;
     });
     EXPECT_GT(behindCount, 100);
     EXPECT_GE(agreeing, 0.99 * count);
@@ -138,20 +132,17 @@ TEST_F(ScreenSpaceTracerTest, RaysPassBehindWhatIsInFrontOfThem) {
 
 /// The eye looks at the mirror alone: all that is reflected is above the image.
 TEST_F(ScreenSpaceTracerTest, TakesTheEnvironmentForWhatIsOutsideOfTheImage) {
-    const Prepared prepared(shaders, pillarsOnMirror(),
-                            camera({0.0F, 0.8F, 1.6F}, {0.0F, 0.0F, 1.0F}), kScreenSizePx);
-    EmbreeTracer embree(shaders, prepared.scene, prepared.map, {});
-    embree.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> truth = embree.trace(gbuffer);
-    const Traced traced = this->traced(prepared, {});
-    const EnvironmentMap::Host environment = prepared.map.read();
+    const EmbreeTrace rays =
+        trace(pillarsOnMirror(), camera({0.0F, 0.8F, 1.6F}, {0.0F, 0.0F, 1.0F}), kScreenSizePx);
+    const Traced traced = this->traced(rays.prepared, {});
+    const EnvironmentMap::Host environment = rays.prepared.map.read();
     int count = 0, outside = 0;
-    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
-        const glm::vec3 direction = gbuffer.mirrorDirection(pixel);
-        const glm::vec3 point = gbuffer.positionWorld(pixel) + truth[index].distanceM * direction;
-        const bool isOnPillar = truth[index].object > 1;
-        if (isOnPillar && kit::pixelOf(gbuffer.view, point)) return;
+    forEachReflective(rays.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+        const glm::vec3 direction = rays.gbuffer.mirrorDirection(pixel);
+        const glm::vec3 point =
+            rays.gbuffer.positionWorld(pixel) + rays.samples[index].distanceM * direction;
+        const bool isOnPillar = rays.samples[index].object > 1;
+        if (isOnPillar && kit::pixelOf(rays.gbuffer.view, point)) return;
         EXPECT_EQ(traced.distanceM[index], 0.0F);
         EXPECT_LT(largestDifference(traced.radiance[index], environment.radianceFrom(direction)),
                   2e-3F);
@@ -183,24 +174,22 @@ TEST_F(ScreenSpaceTracerTest, GlossyMeanOfOneColourIsThatColour) {
 
 /// Where whole lobes meet what the eye sees, their means agree with Embree's.
 TEST_F(ScreenSpaceTracerTest, GlossyMeansAgreeWithRays) {
-    const Prepared prepared(shaders, pillarsOnMirror(0.15F), beforePillars(), kScreenSizePx);
     // Reflections end at 0.8 m.
     const LobeSettings lobe{16, 0.6F, 12.0F};
-    EmbreeTracer embree(shaders, prepared.scene, prepared.map, lobe);
-    embree.update(prepared.objects, profiler);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    const std::vector<TracedSample> truth = embree.trace(gbuffer);
-    const Traced traced = this->traced(prepared, lobe);
+    const EmbreeTrace rays = trace(pillarsOnMirror(0.15F), beforePillars(), kScreenSizePx, lobe);
+    const Traced traced = this->traced(rays.prepared, lobe);
     int count = 0, agreeing = 0;
-    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+    forEachReflective(rays.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
         // The wide pillar's front fills the lobe.
-        const glm::vec3 point =
-            gbuffer.positionWorld(pixel) + truth[index].distanceM * gbuffer.mirrorDirection(pixel);
-        if (truth[index].object != 2 || point.x < -0.65F || point.x > -0.25F) return;
-        if (truth[index].distanceM > 0.8F || !isSeen(gbuffer, point, glm::vec3(0, 0, -1))) return;
+        const glm::vec3 point = rays.gbuffer.positionWorld(pixel) +
+                                rays.samples[index].distanceM * rays.gbuffer.mirrorDirection(pixel);
+        if (rays.samples[index].object != 2 || point.x < -0.65F || point.x > -0.25F) return;
+        if (rays.samples[index].distanceM > 0.8F ||
+            !isSeen(rays.gbuffer, point, glm::vec3(0, 0, -1)))
+            return;
         ++count;
         agreeing +=
-            largestDifference(traced.radiance[index], truth[index].radiance) < 0.02F ? 1 : 0;
+            largestDifference(traced.radiance[index], rays.samples[index].radiance) < 0.02F ? 1 : 0;
     });
     EXPECT_GT(count, 50);
     EXPECT_GE(agreeing, 0.95 * count);

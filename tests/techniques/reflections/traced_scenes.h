@@ -126,9 +126,32 @@ struct Prepared {
     }
 };
 
+/// Also traced by Embree.
+struct EmbreeTrace {
+    Prepared prepared;
+    EmbreeTracer tracer;
+    HostGBuffer gbuffer;
+    std::vector<TracedSample> samples;
+
+    EmbreeTrace(const gl::ShaderLibrary& shaders, const scene::Scene& source,
+                const scene::Camera& from, glm::ivec2 sizePx, const LobeSettings& lobe,
+                gl::Profiler& profiler)
+        : prepared(shaders, source, from, sizePx),
+          tracer(shaders, prepared.scene, prepared.map, lobe) {
+        tracer.update(prepared.objects, profiler);
+        gbuffer = readGBuffer(prepared.gbuffer);
+        samples = tracer.trace(gbuffer);
+    }
+};
+
 class TracerTest : public ReflectionsTest {
   protected:
     gl::Profiler profiler{true};
+
+    EmbreeTrace trace(const scene::Scene& source, const scene::Camera& from, glm::ivec2 sizePx,
+                      const LobeSettings& lobe = {}) {
+        return {shaders, source, from, sizePx, lobe, profiler};
+    }
 };
 
 /// Calls action(pixel, index) for the reflective samples.
