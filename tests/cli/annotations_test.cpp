@@ -14,15 +14,16 @@ using testing::Not;
 
 const std::vector<std::string> kOnGitHub = {"GITHUB_ACTIONS=true"};
 
-TEST(Annotations, NameThePlaceAndCannotBecomeAnotherCommand) {
+using Annotations = test::RunTest;
+
+TEST_F(Annotations, NameThePlaceAndCannotBecomeAnotherCommand) {
     EXPECT_EQ(cli::annotation("error", {"a.yaml", 3, 5}, "T: a, b", "50 % lost\n::set-env::x"),
               "::error file=a.yaml,line=3,col=5,title=T%3A a%2C b::50 %25 lost%0A::set-env::x");
     EXPECT_EQ(cli::annotation("notice", {}, "", "m"), "::notice::m");
     EXPECT_EQ(cli::annotation("error", {"./b/../a.yaml", 0, 0}, "", "m"), "::error file=a.yaml::m");
 }
 
-TEST(Annotations, OfAConfigThatIsWrong) {
-    const TemporaryFolder folder;
+TEST_F(Annotations, OfAConfigThatIsWrong) {
     const std::string config = writeMockConfig(folder, "params: {nummer: 1}\n");
     const std::vector<std::string> command = {GFXREPRO_MOCK_PROGRAM, "check", config};
     EXPECT_THAT(runProgram(command, kOnGitHub).err,
@@ -34,8 +35,7 @@ TEST(Annotations, OfAConfigThatIsWrong) {
     EXPECT_THAT(runProgram(command, {"GITHUB_ACTIONS="}).err, Not(HasSubstr("::error")));
 }
 
-TEST(Annotations, OfCasesAndClaimsThatFailed) {
-    const TemporaryFolder folder;
+TEST_F(Annotations, OfCasesAndClaimsThatFailed) {
     const std::string config = writeMockConfig(
         folder,
         "sweep: {number: [1, 2], behaviour: [ok, crash]}\n"
@@ -45,7 +45,6 @@ TEST(Annotations, OfCasesAndClaimsThatFailed) {
         "  known: {says: it is, bound: n, bound_from: ours, less_than: 1, "
         "because: {verdict: fails, reason: r}}\n"
         "  fresh: {says: it is, bound: n, bound_from: ours, less_than: 2}\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = runProgram({GFXREPRO_MOCK_PROGRAM, "reproduce", config, "--device",
                                           "software", "--quiet", "--out", dir},
                                          kOnGitHub);

@@ -15,6 +15,12 @@
 
 namespace gfxrepro::test {
 
+/// A test with a folder, and the place of a run in it.
+class RunTest : public FolderTest {
+  protected:
+    const std::string dir = folder.path() / "run";
+};
+
 /// The program, and the one with the failing technique; both on the software device.
 ProcessResult gfxrepro(std::vector<std::string> arguments);
 ProcessResult mockGfxrepro(std::vector<std::string> arguments);

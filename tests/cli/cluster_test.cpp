@@ -109,8 +109,9 @@ TEST(Plan, NewestRunsTellAndBrokenOnesDoNotStop) {
     EXPECT_THAT(run.err, HasSubstr(" tells\n"));
 }
 
-TEST(Shards, MergeToTheTablesOfOneRun) {
-    const TemporaryFolder folder;
+using Shards = test::FolderTest;
+
+TEST_F(Shards, MergeToTheTablesOfOneRun) {
     const std::string config = writeNumbers(folder, 10);
     const std::string whole = folder.path() / "whole";
     const std::string merged = folder.path() / "merged";
@@ -154,8 +155,7 @@ TEST(Shards, MergeToTheTablesOfOneRun) {
     expectSameTables(merged, whole);
 }
 
-TEST(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
-    const TemporaryFolder folder;
+TEST_F(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
     const std::string config = writeNumbers(folder, 4);
     const std::string s1 = folder.path() / "s1", s2 = folder.path() / "s2";
     const std::string merged = folder.path() / "merged", whole = folder.path() / "whole";
@@ -184,8 +184,7 @@ TEST(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
     EXPECT_EQ(rowsOf(merged, "number").size(), 4U);
 }
 
-TEST(Shards, MergeRefusesOtherPlansAndNoRuns) {
-    const TemporaryFolder folder;
+TEST_F(Shards, MergeRefusesOtherPlansAndNoRuns) {
     const std::string config = writeNumbers(folder, 4);
     const std::string s1 = folder.path() / "s1", s2 = folder.path() / "s2";
     ASSERT_EQ(measure(config, s1, {"--shard", "1/2"}).exitCode, 0);
@@ -200,8 +199,7 @@ TEST(Shards, MergeRefusesOtherPlansAndNoRuns) {
     EXPECT_THAT(none.err, HasSubstr("gfxrepro: merge: none of the folders holds a run\n"));
 }
 
-TEST(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
-    const TemporaryFolder folder;
+TEST_F(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
     const std::string config = writeNumbers(folder, 3, "measure: {lane: timing, processes: 1}\n");
     const std::string dir = folder.path() / "run";
     ASSERT_EQ(measure(config, dir).exitCode, 0);
@@ -225,8 +223,7 @@ TEST(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
     EXPECT_EQ(records::readRecords(dir + "/records-replaced.csv").size(), two.size());
 }
 
-TEST(Shards, ValuesOfSeveralMachinesAreMarked) {
-    const TemporaryFolder folder;
+TEST_F(Shards, ValuesOfSeveralMachinesAreMarked) {
     const std::string config = writeNumbers(folder, 2);
     const std::string dir = folder.path() / "run", other = folder.path() / "other";
     ASSERT_EQ(measure(config, dir, {"--shard", "1/2"}).exitCode, 0);
@@ -285,8 +282,9 @@ TEST(Resume, WithConfigsBeginsOrGoesOn) {
               "gfxrepro: --out and --resume exclude each other: both name the folder\n");
 }
 
-TEST(Submit, CommandsMeasureAndMerge) {
-    const TemporaryFolder folder;
+using Submit = test::FolderTest;
+
+TEST_F(Submit, CommandsMeasureAndMerge) {
     const std::string config = writeMockConfig(
         folder, std::string("sweep:\n  zip:\n    - {number: [1, 2, 3, 4, 5], behaviour: [ok, ok, "
                             "throw, ok, ok]}\n") +
@@ -324,8 +322,7 @@ TEST(Submit, CommandsMeasureAndMerge) {
               "gfxrepro: OUT: holds another submission; give another folder\n");
 }
 
-TEST(Submit, WhatWasSubmittedIsMeasured) {
-    const TemporaryFolder folder;
+TEST_F(Submit, WhatWasSubmittedIsMeasured) {
     const std::string config = writeNumbers(folder, 2);
     const std::string out = folder.path() / "out";
     const std::vector<std::string> command = {"submit", config,     "--device", "software", "--out",
@@ -394,8 +391,7 @@ std::uintmax_t sizeOf(const fs::path& folder) {
 }
 
 /// What a shard keeps and says is of its own two cases, whatever the others have.
-TEST(Submit, AShardHasTheSizeOfItsOwnCases) {
-    const TemporaryFolder folder;
+TEST_F(Submit, AShardHasTheSizeOfItsOwnCases) {
     std::uintmax_t planned[2], measured[2], command[2];
     for (const int i : {0, 1}) {
         const std::string out = folder.path() / std::to_string(i);
@@ -412,8 +408,7 @@ TEST(Submit, AShardHasTheSizeOfItsOwnCases) {
     EXPECT_EQ(command[1], command[0]) << "the merge names no shard";
 }
 
-TEST(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
-    const TemporaryFolder folder;
+TEST_F(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
     const std::string out = folder.path() / "out", alone = folder.path() / "alone";
     const std::vector<std::string> lines = submitPairs(folder, 4, out);
     const ProcessResult early = mockGfxrepro({"table", out + "/shards/1"});
@@ -447,8 +442,7 @@ TEST(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
                                      ": 2 of 4 measured, 0 failed, 2 missing\n"));
 }
 
-TEST(Submit, AReplacedPlanIsNotMerged) {
-    const TemporaryFolder folder;
+TEST_F(Submit, AReplacedPlanIsNotMerged) {
     const std::string out = folder.path() / "out", other = folder.path() / "other";
     for (const std::string& line : submitPairs(folder, 4, out)) {
         ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
@@ -483,8 +477,7 @@ TEST(Submit, AReplacedPlanIsNotMerged) {
 }
 
 /// What has ended says itself what it came to; what was changed since is counted anew.
-TEST(Submit, TheStatusOfWhatEndedNeedsNoPlan) {
-    const TemporaryFolder folder;
+TEST_F(Submit, TheStatusOfWhatEndedNeedsNoPlan) {
     const std::string out = folder.path() / "out";
     for (const std::string& line : submitPairs(folder, 4, out)) {
         ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
@@ -511,8 +504,7 @@ TEST(Submit, TheStatusOfWhatEndedNeedsNoPlan) {
     EXPECT_TRUE(fs::exists(records));
 }
 
-TEST(Submit, TheProgramThatWasSubmittedRunsWhateverIsBuiltLater) {
-    const TemporaryFolder folder;
+TEST_F(Submit, TheProgramThatWasSubmittedRunsWhateverIsBuiltLater) {
     const std::string config = writeNumbers(folder, 2);
     const std::string out = folder.path() / "out", program = folder.path() / "built/gfxrepro";
     const fs::path shaders = fs::path(GFXREPRO_MOCK_PROGRAM).parent_path() / "../../shaders";
@@ -541,8 +533,7 @@ TEST(Submit, TheProgramThatWasSubmittedRunsWhateverIsBuiltLater) {
     EXPECT_THAT(merged.out, HasSubstr(": 2 of 2 measured, 0 failed, 0 missing\n"));
 }
 
-TEST(Submit, WithoutACopyOfTheProgramNothingIsSubmitted) {
-    const TemporaryFolder folder;
+TEST_F(Submit, WithoutACopyOfTheProgramNothingIsSubmitted) {
     const std::string config = writeNumbers(folder, 2);
     const fs::path out = folder.path() / "out";
     folder.write("data/shaders/a.glsl", "");
@@ -557,8 +548,7 @@ TEST(Submit, WithoutACopyOfTheProgramNothingIsSubmitted) {
     EXPECT_FALSE(fs::exists(out));
 }
 
-TEST(Submit, DryRunWritesNothing) {
-    const TemporaryFolder folder;
+TEST_F(Submit, DryRunWritesNothing) {
     const std::string config = writeNumbers(folder, 6, "measure: {lane: timing, processes: 1}\n");
     const std::string out = folder.path() / "out";
     const ProcessResult result = mockGfxrepro(
@@ -587,8 +577,7 @@ std::string fakeSlurm(const TemporaryFolder& folder, const std::string& sbatch,
     return "PATH=" + (folder.path() / "bin").string() + ":/usr/bin:/bin";
 }
 
-TEST(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
-    const TemporaryFolder folder;
+TEST_F(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
     const std::string config = writeNumbers(folder, 4);
     const std::string out = folder.path() / "out";
     const std::vector<std::string> command = {GFXREPRO_MOCK_PROGRAM,
@@ -654,8 +643,7 @@ TEST(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
                 HasSubstr(": shard 2 is SUSPENDED already; wait, or scancel 43\n"));
 }
 
-TEST(Submit, WhatWasRefusedIsNotQueued) {
-    const TemporaryFolder folder;
+TEST_F(Submit, WhatWasRefusedIsNotQueued) {
     const std::string out = folder.path() / "out";
     const auto submitted = [&](const fs::path& config, const std::string& path) {
         return runProgram({GFXREPRO_MOCK_PROGRAM, "submit", config, "--device", "software", "--out",
@@ -688,8 +676,7 @@ TEST(Submit, WhatWasRefusedIsNotQueued) {
     EXPECT_EQ(rowsOf(out + "/shards/1", "number").size(), 3U);
 }
 
-TEST(Submit, ARefusedMergeAndAnAnswerWithoutANumber) {
-    const TemporaryFolder folder;
+TEST_F(Submit, ARefusedMergeAndAnAnswerWithoutANumber) {
     const std::string config = writeNumbers(folder, 2);
     const auto submitted = [&](const std::string& out, const std::string& sbatch) {
         return runProgram({GFXREPRO_MOCK_PROGRAM, "submit", config, "--device", "software", "--out",
@@ -716,11 +703,10 @@ TEST(Submit, ARefusedMergeAndAnAnswerWithoutANumber) {
     EXPECT_THAT(unknown.err, HasSubstr("/b: sbatch gave no number of a job, so shard 1 may be "));
 }
 
-TEST(Submit, SaysWhatItNeeds) {
+TEST_F(Submit, SaysWhatItNeeds) {
     EXPECT_EQ(mockGfxrepro({"submit"}).err,
               "gfxrepro: submit: give PAPER, PAPER/TABLE or config files and --out DIR, or "
               "--status DIR\n");
-    const TemporaryFolder folder;
     EXPECT_EQ(mockGfxrepro({"submit", "--status", folder.path()}).err,
               "gfxrepro: " + folder.path().string() + ": holds no submission\n");
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");

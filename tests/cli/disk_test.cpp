@@ -21,10 +21,10 @@ ProcessResult mockWithFullDisk(const std::string& arguments, int blocks) {
                            GFXREPRO_MOCK_PROGRAM + " " + arguments});
 }
 
-TEST(Disk, ALimitOnFilesIsAWriteThatFails) {
-    const TemporaryFolder folder;
+using Disk = test::RunTest;
+
+TEST_F(Disk, ALimitOnFilesIsAWriteThatFails) {
     const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run =
         runProgram({"/bin/sh", "-c",
                     std::string("ulimit -f 1; exec ") + GFXREPRO_MOCK_PROGRAM + " run " + config +
@@ -34,8 +34,7 @@ TEST(Disk, ALimitOnFilesIsAWriteThatFails) {
     EXPECT_THAT(run.err, HasSubstr(": File too large\n"));
 }
 
-TEST(Disk, AFullDiskLosesNothingMeasured) {
-    const TemporaryFolder folder;
+TEST_F(Disk, AFullDiskLosesNothingMeasured) {
     const std::string config = writeMockConfig(
         folder,
         "sweep:\n  number: {range: [1, 40]}\nmeasure: {lane: quality, repeats: 9}\n"
@@ -67,11 +66,9 @@ TEST(Disk, AFullDiskLosesNothingMeasured) {
 }
 
 /// A folder stands where the picture of the first case belongs: a write that fails once.
-TEST(Disk, AFailedWriteOfTheRunnerIsNoneOfTheCase) {
-    const TemporaryFolder folder;
+TEST_F(Disk, AFailedWriteOfTheRunnerIsNoneOfTheCase) {
     const std::string config =
         writeMockConfig(folder, "sweep: {number: [1, 2]}\nmeasure: {lane: quality}\n");
-    const std::string dir = folder.path() / "run";
     ASSERT_EQ(
         mockGfxrepro({"run", config, "--device", "software", "--out", dir, "--jobs", "1"}).exitCode,
         0);
@@ -92,10 +89,8 @@ TEST(Disk, AFailedWriteOfTheRunnerIsNoneOfTheCase) {
         << "none is flaky";
 }
 
-TEST(Disk, AnExportIsThereAsAWholeOrNotAtAll) {
-    const TemporaryFolder folder;
+TEST_F(Disk, AnExportIsThereAsAWholeOrNotAtAll) {
     const std::string config = writeMockConfig(folder, "sweep: {number: {range: [1, 60]}}\n");
-    const std::string dir = folder.path() / "run";
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
     for (const std::string tidy : {"", " --tidy"}) {
         const fs::path out = folder.path() / ("out" + tidy.substr(0, 1)) / "artifact";
@@ -110,8 +105,7 @@ TEST(Disk, AnExportIsThereAsAWholeOrNotAtAll) {
     }
 }
 
-TEST(Disk, AFolderThatCannotBeWrittenIsNamed) {
-    const TemporaryFolder folder;
+TEST_F(Disk, AFolderThatCannotBeWrittenIsNamed) {
     const std::string config = writeMockConfig(folder, "");
     // Nobody, root either, makes folders there.
     const ProcessResult run =
@@ -124,11 +118,9 @@ TEST(Disk, AFolderThatCannotBeWrittenIsNamed) {
     EXPECT_EQ(run.out, "");
 }
 
-TEST(Disk, AReadOnlyRunIsNotContinued) {
+TEST_F(Disk, AReadOnlyRunIsNotContinued) {
     if (::geteuid() == 0) GTEST_SKIP() << "root writes to read-only folders";
-    const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, "params: {number: 3}\n");
-    const std::string dir = folder.path() / "run";
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
     fs::permissions(dir, fs::perms::owner_read | fs::perms::owner_exec);
     const ProcessResult table = mockGfxrepro({"table", dir});

@@ -14,13 +14,13 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-TEST(Faults, EveryFailureBecomesARow) {
-    const TemporaryFolder folder;
+using Faults = test::RunTest;
+
+TEST_F(Faults, EveryFailureBecomesARow) {
     const std::string config = writeMockConfig(
         folder,
         "sweep:\n  behaviour: [ok, crash, exit, hang, throw, bad_alloc, unsupported, device_lost,"
         " not_a_number]\nmeasure: {lane: quality, time_limit_s: 2}\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run =
         mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
     EXPECT_EQ(run.exitCode, 4);
@@ -37,8 +37,7 @@ TEST(Faults, EveryFailureBecomesARow) {
 }
 
 /// 'a-b/c' and 'a/b-c' both have the files a-b-c.csv, .md and .tex, and that place in a page.
-TEST(Faults, TablesOfOneFileNameAreNoRunTogether) {
-    const TemporaryFolder folder;
+TEST_F(Faults, TablesOfOneFileNameAreNoRunTogether) {
     const auto write = [&](const char* file, const std::string& id) {
         return folder
             .write(file, "table: " + id +
@@ -64,15 +63,13 @@ TEST(Faults, TablesOfOneFileNameAreNoRunTogether) {
     EXPECT_THAT(readFile(page), HasSubstr("<section class=\"page\" id=\"a-b-c-\">"));
 }
 
-TEST(Faults, WhatPassesAtTheSecondTryIsFlaky) {
-    const TemporaryFolder folder;
+TEST_F(Faults, WhatPassesAtTheSecondTryIsFlaky) {
     const std::string marker = folder.path() / "marker";
     const std::string config =
         writeMockConfig(folder, "params: {behaviour: flake, marker: " + marker +
                                     "}\nsweep: {number: [1, 2]}\n"
                                     "layout:\n  rows: number\n  columns:\n"
                                     "    n: {metric: number, format: \"{median:.0f}\"}\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run =
         mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
     EXPECT_EQ(run.exitCode, 0) << run.err;
@@ -88,12 +85,10 @@ TEST(Faults, WhatPassesAtTheSecondTryIsFlaky) {
               "0 of 0 finished; records: " + dir + "/records.csv\n");
 }
 
-TEST(Faults, AFlakyCaseIsMeasuredAgainWhereThatIsAskedFor) {
-    const TemporaryFolder folder;
+TEST_F(Faults, AFlakyCaseIsMeasuredAgainWhereThatIsAskedFor) {
     const std::string config = writeMockConfig(
         folder, "params: {behaviour: flake, marker: " + (folder.path() / "marker").string() +
                     "}\nsweep: {number: [1, 2]}\n");
-    const std::string dir = folder.path() / "run";
     mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
     ASSERT_EQ(statusLines(dir).size(), 2U);
     const ProcessResult again = mockGfxrepro({"run", "--resume", dir, "--retry"});
@@ -102,8 +97,7 @@ TEST(Faults, AFlakyCaseIsMeasuredAgainWhereThatIsAskedFor) {
     EXPECT_THAT(statusLines(dir), ElementsAre("flake: ok", "flake: ok"));
 }
 
-TEST(Faults, WhatALibraryThrowsNamesTheFile) {
-    const TemporaryFolder folder;
+TEST_F(Faults, WhatALibraryThrowsNamesTheFile) {
     const std::string name = std::string(300, 'x') + ".obj";
     const std::string config = writeMockConfig(folder, "scene: " + name + "\n");
     const ProcessResult check = mockGfxrepro({"check", config});
@@ -113,8 +107,7 @@ TEST(Faults, WhatALibraryThrowsNamesTheFile) {
     EXPECT_THAT(check.err, testing::Not(HasSubstr("filesystem error")));
 }
 
-TEST(Faults, MeasurementsAreCountedAsCasesAre) {
-    const TemporaryFolder folder;
+TEST_F(Faults, MeasurementsAreCountedAsCasesAre) {
     const std::string config = writeMockConfig(
         folder, "sweep: {number: [1, 2]}\nmeasure: {lane: quality, processes: 600000}\n");
     const std::string why =
@@ -122,7 +115,6 @@ TEST(Faults, MeasurementsAreCountedAsCasesAre) {
     EXPECT_EQ(mockGfxrepro({"check", config}).err, "gfxrepro: " + config + ": " + why);
     EXPECT_THAT(mockGfxrepro({"run", config, "--device", "software"}).err, HasSubstr(why));
     // In a plan of someone else it would be as much memory.
-    const std::string dir = folder.path() / "run";
     writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
     std::string plan = readFile(dir + "/plan.json");
@@ -138,8 +130,7 @@ TEST(Faults, MeasurementsAreCountedAsCasesAre) {
     }
 }
 
-TEST(Faults, CheckTellsOfARunWithVeryManyRows) {
-    const TemporaryFolder folder;
+TEST_F(Faults, CheckTellsOfARunWithVeryManyRows) {
     const auto rows = [&](const std::string& lines) {
         const std::string config = writeMockConfig(folder, lines);
         return mockGfxrepro({"check", config}).out;
@@ -153,24 +144,20 @@ TEST(Faults, CheckTellsOfARunWithVeryManyRows) {
                           "--shard)\n"));
 }
 
-TEST(Faults, AMetricIsGivenOnce) {
-    const TemporaryFolder folder;
+TEST_F(Faults, AMetricIsGivenOnce) {
     const std::string config = writeMockConfig(folder, "sweep: {behaviour: [twice]}\n");
-    const std::string dir = folder.path() / "run";
     EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
     EXPECT_THAT(statusLines(dir),
                 ElementsAre("twice: error (metric 'number' is given twice for frame 0, repeat 0)"));
 }
 
-TEST(Faults, APerfectPictureIsInfinitelyGood) {
-    const TemporaryFolder folder;
+TEST_F(Faults, APerfectPictureIsInfinitelyGood) {
     const std::string config =
         writeMockConfig(folder,
                         "sweep: {behaviour: [infinite]}\n"
                         "layout:\n  rows: behaviour\n  columns:\n"
                         "    psnr: {metric: psnr_db, format: \"{median:.1f} dB\"}\n"
                         "claims:\n  C: {says: it is good, bound: psnr, at_least: 40}\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run =
         mockGfxrepro({"reproduce", config, "--device", "software", "--out", dir});
     EXPECT_EQ(run.exitCode, 0) << run.out << run.err;
@@ -188,11 +175,9 @@ TEST(Faults, APerfectPictureIsInfinitelyGood) {
     EXPECT_NE(readFile(dir + "/claims.csv").find(",holds,"), std::string::npos);
 }
 
-TEST(Faults, WhatSetUpMeasuredIsNoFrame) {
-    const TemporaryFolder folder;
+TEST_F(Faults, WhatSetUpMeasuredIsNoFrame) {
     const std::string config =
         writeMockConfig(folder, "measure: {lane: timing, processes: 1, frames: 2, repeats: 2}\n");
-    const std::string dir = folder.path() / "run";
     EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
     ASSERT_EQ(rowsOf(dir, "setup_time_ms").size(), 1U);
     EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].frame, records::kSetup);
@@ -200,14 +185,12 @@ TEST(Faults, WhatSetUpMeasuredIsNoFrame) {
 }
 
 /// In the place of / a machine of which nothing but a heat is told.
-TEST(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
-    const TemporaryFolder folder;
+TEST_F(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
     const std::string zone = "machine/sys/class/thermal/thermal_zone0/";
     folder.write(zone + "temp", "97000\n");
     const std::string machine = folder.path() / "machine";
     const std::string config = writeMockConfig(
         folder, "measure: {lane: timing, processes: 1, repeats: 2}\nsweep: {number: [1, 2]}\n");
-    const std::string dir = folder.path() / "run";
     const auto run = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments = {GFXREPRO_MOCK_PROGRAM, "reproduce"};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -236,12 +219,10 @@ TEST(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
     EXPECT_EQ(cool.err.find("not quiet"), std::string::npos) << cool.err;
 }
 
-TEST(Faults, SideBySideAndInFreshProcesses) {
-    const TemporaryFolder folder;
+TEST_F(Faults, SideBySideAndInFreshProcesses) {
     const std::string config = writeMockConfig(
         folder,
         "sweep:\n  number: [1, 2, 3]\nmeasure: {lane: quality, processes: 2, repeats: 2}\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run =
         mockGfxrepro({"run", config, "--device", "software", "--jobs", "2", "--out", dir});
     EXPECT_EQ(run.exitCode, 0) << run.err;
@@ -249,15 +230,13 @@ TEST(Faults, SideBySideAndInFreshProcesses) {
     EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 12U);
 }
 
-TEST(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
-    const TemporaryFolder folder;
+TEST_F(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
     const std::string config =
         writeMockConfig(folder,
                         "sweep: {behaviour: [ok, blank, unequal]}\n"
                         "measure: {lane: timing, processes: 1, repeats: 3}\n"
                         "layout:\n  rows: behaviour\n  columns:\n    fps: {metric: frame_rate}\n"
                         "    n: {metric: number, format: \"{median:.0f}\"}\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
     EXPECT_EQ(run.exitCode, 4) << run.err;
     EXPECT_EQ(run.out, "3 of 3 finished, 2 with void times; records: " + dir + "/records.csv\n");
@@ -289,9 +268,8 @@ std::vector<std::pair<int, double>> roundsOf(const std::string& dir) {
 }
 
 /// Cases take turns, forth and back, and rounds go on while times are too uncertain.
-TEST(Faults, TimesAreMeasuredInRounds) {
-    const TemporaryFolder folder;
-    const auto measure = [&](const std::string& keys, const std::string& dir) {
+TEST_F(Faults, TimesAreMeasuredInRounds) {
+    const auto measure = [&](const std::string& keys, const std::string& into) {
         const std::string config = writeMockConfig(
             folder,
             "sweep: {number: [1, 2]}\nparams: {pause_ms: 5}\n"
@@ -300,10 +278,10 @@ TEST(Faults, TimesAreMeasuredInRounds) {
                 "}\n"
                 "layout:\n  rows: number\n  columns:\n    ms: {metric: wall_time_ms}\n");
         const ProcessResult run =
-            mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+            mockGfxrepro({"run", config, "--device", "software", "--out", into});
         EXPECT_EQ(run.exitCode, 0) << run.err;
-        EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
-        return readFile(dir + "/tables/sweep-mock.md");
+        EXPECT_EQ(mockGfxrepro({"table", into}).exitCode, 0);
+        return readFile(into + "/tables/sweep-mock.md");
     };
     const std::string fixed = folder.path() / "fixed";
     EXPECT_NE(measure("processes: 3", fixed).find("bounds are a range"), std::string::npos);
@@ -311,7 +289,6 @@ TEST(Faults, TimesAreMeasuredInRounds) {
                 ElementsAre(std::pair(0, 1.0), std::pair(0, 2.0), std::pair(1, 2.0),
                             std::pair(1, 1.0), std::pair(2, 1.0), std::pair(2, 2.0)));
     // No time is ever known to a millionth: rounds go on until they are as many as allowed.
-    const std::string dir = folder.path() / "run";
     const std::string table =
         measure("processes: 6, relative_error: 0.000001, processes_at_most: 8", dir);
     EXPECT_NE(table.find("Times of 8 rounds, the most that are allowed"), std::string::npos)
@@ -334,8 +311,7 @@ TEST(Faults, TimesAreMeasuredInRounds) {
               "1 of 1 finished; records: " + dir + "/records.csv\n");
 }
 
-TEST(Faults, NoSuchDevice) {
-    const TemporaryFolder folder;
+TEST_F(Faults, NoSuchDevice) {
     const std::string config = writeMockConfig(folder, "");
     const ProcessResult run =
         mockGfxrepro({"run", config, "--device", "77", "--out", (folder.path() / "run").string()});
@@ -362,8 +338,9 @@ TEST(Titles, AreRefusedBeforeTheyAreMeasured) {
     EXPECT_EQ(mockGfxrepro({"check", config}).exitCode, 0);
 }
 
-TEST(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
-    const TemporaryFolder folder;
+using Overrides = test::RunTest;
+
+TEST_F(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
     const std::string config = writeMockConfig(
         folder,
         "sweep: {marker: [x, y], number: [1, 2]}\n"
@@ -382,7 +359,6 @@ TEST(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
                   "(columns: x)\n");
     EXPECT_EQ(checked("number=1"), config + ": ok, sweep/mock, 2 cases, 2 claims\n" + config +
                                        ": claim 'two' will be unmeasured: no row that it reads\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--device",
                                             "software", "--quiet", "--out", dir});
     EXPECT_EQ(run.exitCode, 0) << run.err;
@@ -391,8 +367,7 @@ TEST(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
     EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
 }
 
-TEST(Overrides, CheckSaysHowManyCasesOnlyLeaves) {
-    const TemporaryFolder folder;
+TEST_F(Overrides, CheckSaysHowManyCasesOnlyLeaves) {
     const std::string config = writeMockConfig(folder, "sweep: {marker: [x, y], number: [1, 2]}\n");
     const auto checked = [&](const std::string& only) {
         return mockGfxrepro({"check", config, "--only", only});
@@ -405,8 +380,7 @@ TEST(Overrides, CheckSaysHowManyCasesOnlyLeaves) {
     EXPECT_THAT(checked("numbr=1").err, testing::HasSubstr("did you mean 'number'?"));
 }
 
-TEST(Overrides, WhatTheyTakeFromPlotsIsLeftOutAndSaidBefore) {
-    const TemporaryFolder folder;
+TEST_F(Overrides, WhatTheyTakeFromPlotsIsLeftOutAndSaidBefore) {
     const std::string config =
         writeMockConfig(folder,
                         "sweep: {marker: [x, y], number: [1, 2]}\n"
@@ -418,7 +392,6 @@ TEST(Overrides, WhatTheyTakeFromPlotsIsLeftOutAndSaidBefore) {
     EXPECT_EQ(mockGfxrepro({"check", config, "--sweep", "marker=x"}).out,
               config + ": ok, sweep/mock, 2 cases, 0 claims\n" + config +
                   ": plot 2 will be left out: 'y' is no column (columns: x)\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--device",
                                             "software", "--quiet", "--out", dir});
     EXPECT_EQ(run.exitCode, 0) << run.err;
@@ -429,8 +402,7 @@ TEST(Overrides, WhatTheyTakeFromPlotsIsLeftOutAndSaidBefore) {
                 HasSubstr("not among what was measured: &#39;y&#39; is no column (columns: x)"));
 }
 
-TEST(Overrides, ANumberThatWasAColumnIsNoConstant) {
-    const TemporaryFolder folder;
+TEST_F(Overrides, ANumberThatWasAColumnIsNoConstant) {
     const std::string config =
         writeMockConfig(folder,
                         "sweep: {number: [1, 2]}\n"
@@ -440,7 +412,6 @@ TEST(Overrides, ANumberThatWasAColumnIsNoConstant) {
     EXPECT_EQ(mockGfxrepro({"check", config, "--sweep", "number=7,8"}).out,
               config + ": ok, sweep/mock, 2 cases, 1 claim\n" + config +
                   ": claim 'rises' will be unmeasured: '1' is no column (columns: 7, 8)\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = mockGfxrepro({"reproduce", config, "--sweep", "number=7,8",
                                             "--device", "software", "--quiet", "--out", dir});
     EXPECT_EQ(run.exitCode, 0) << run.err;
@@ -456,8 +427,7 @@ TEST(Overrides, ANumberThatWasAColumnIsNoConstant) {
                           "column; written otherwise, as 2.0, the number)\n"));
 }
 
-TEST(Faults, FramesThatATechniqueDoesNotHaveAreRefusedBeforeTheRun) {
-    const TemporaryFolder folder;
+TEST_F(Faults, FramesThatATechniqueDoesNotHaveAreRefusedBeforeTheRun) {
     const std::string config = writeMockConfig(folder, "measure: {frames: 501}\n");
     for (const char* command : {"check", "plan", "run"}) {
         const ProcessResult result = mockGfxrepro({command, config});
@@ -468,10 +438,9 @@ TEST(Faults, FramesThatATechniqueDoesNotHaveAreRefusedBeforeTheRun) {
     EXPECT_EQ(mockGfxrepro({"check", all}).exitCode, 0);
 }
 
-TEST(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
-    const TemporaryFolder folder;
+TEST_F(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
     const std::string config = writeMockConfig(folder, "sweep: {behaviour: [ok, throw]}\n");
-    const std::string dir = folder.path() / "run", out = folder.path() / "out.html";
+    const std::string out = folder.path() / "out.html";
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
     for (const std::vector<std::string>& command : {std::vector<std::string>{"table", dir},
                                                     {"claims", dir},
@@ -491,10 +460,9 @@ TEST(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
                 HasSubstr("incomplete: 0 not run, 2 failed (2 crash); no case has a result\n"));
 }
 
-TEST(Faults, NamesOfThreeHundredLettersAreNoReasonToLoseACase) {
-    const TemporaryFolder folder;
+TEST_F(Faults, NamesOfThreeHundredLettersAreNoReasonToLoseACase) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
-    const std::string dir = folder.path() / "run", name(300, 'n');
+    const std::string name(300, 'n');
     const ProcessResult run =
         runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir},
                    {"GFXREPRO_MOCK_PICTURE=" + name});
@@ -518,9 +486,8 @@ TEST(Faults, NamesOfThreeHundredLettersAreNoReasonToLoseACase) {
                              "named after it\n");
 }
 
-TEST(Faults, WhatAConfigMayNameARunMayReadAgain) {
+TEST_F(Faults, WhatAConfigMayNameARunMayReadAgain) {
     // The character DEL, escaped, and a path longer than a key of YAML may be.
-    const TemporaryFolder folder;
     fs::path deep = folder.path();
     for (int i = 0; i < 6; ++i) deep /= std::string(200, 'd');
     fs::create_directories(deep);
@@ -535,7 +502,6 @@ TEST(Faults, WhatAConfigMayNameARunMayReadAgain) {
                      "output: {width: 8, height: 8}\nparams: {marker: \"/a\\x7fb\"}\n"
                      "scene: " +
                          (deep / "a.ply").string() + "\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
     ASSERT_EQ(run.exitCode, 0) << run.err;
     for (const std::vector<std::string>& command : {std::vector<std::string>{"table", dir},

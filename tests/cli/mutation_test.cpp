@@ -83,8 +83,9 @@ void expectAnswers(const fs::path& file, const std::function<Arguments(std::mt19
     }
 }
 
-TEST(Mutation, OfConfigs) {
-    const TemporaryFolder folder;
+using Mutation = test::FolderTest;
+
+TEST_F(Mutation, OfConfigs) {
     const fs::path config = writeMockConfig(
         folder,
         "params: {behaviour: ok}\nsweep:\n  number: {range: [1, 4]}\n"
@@ -98,8 +99,7 @@ TEST(Mutation, OfConfigs) {
     });
 }
 
-TEST(Mutation, OfModelsAndPictures) {
-    const TemporaryFolder folder;
+TEST_F(Mutation, OfModelsAndPictures) {
     const fs::path ply = folder.write(
         "a.ply",
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
@@ -116,8 +116,7 @@ TEST(Mutation, OfModelsAndPictures) {
     expectAnswers(png, [&](std::mt19937&) { return Arguments{"image", "info", png}; });
 }
 
-TEST(Mutation, OfRunFolders) {
-    const TemporaryFolder folder;
+TEST_F(Mutation, OfRunFolders) {
     const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
     const std::string whole = folder.path() / "whole", dir = folder.path() / "run";
     const std::string out = folder.path() / "out";

@@ -31,8 +31,9 @@ std::set<int> processesOf(const std::vector<records::Record>& rows) {
     return processes;
 }
 
-TEST(OwnExperiment, AFewLinesGiveTimesPicturesAndACurve) {
-    const TemporaryFolder folder;
+using OwnExperiment = test::FolderTest;
+
+TEST_F(OwnExperiment, AFewLinesGiveTimesPicturesAndACurve) {
     const std::string config =
         folder.write("mine.yaml",
                      "sweep_of: mine\ntitle: Mine at three\ntechnique: template\n"
@@ -115,8 +116,7 @@ const FiveLines kFiveLines[] = {
 INSTANTIATE_TEST_SUITE_P(Each, OwnExperimentOf, testing::ValuesIn(kFiveLines),
                          [](const auto& each) { return std::string(each.param.technique); });
 
-TEST(OwnExperiment, RoundsOfWhoNamesNoLaneEndWithTheirBudget) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, RoundsOfWhoNamesNoLaneEndWithTheirBudget) {
     const std::string config =
         folder.write("mine.yaml",
                      "sweep_of: mine\ntitle: T\ntechnique: mock\nparams: {pause_ms: 300}\n"
@@ -129,8 +129,7 @@ TEST(OwnExperiment, RoundsOfWhoNamesNoLaneEndWithTheirBudget) {
     EXPECT_THAT(readFile(dir / "journal.jsonl"), HasSubstr("\"ended_by\":\"time_budget_s\""));
 }
 
-TEST(OwnExperiment, LatestIsTheNewestAndRunsAreListed) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, LatestIsTheNewestAndRunsAreListed) {
     const std::string config = writeMockConfig(folder, "");
     const auto inFolder = [&](const std::string& words) {
         return runProgram(
@@ -162,8 +161,7 @@ std::string checked(const TemporaryFolder& folder, const std::string& lines) {
     return result.err;
 }
 
-TEST(OwnExperiment, CheckFindsWhatARunWouldFailBy) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, CheckFindsWhatARunWouldFailBy) {
     folder.write("model.glb", "no model");
     folder.write("model.fbx", "no model");
     const std::string voxels = "technique: voxelization\n";
@@ -191,8 +189,7 @@ TEST(OwnExperiment, CheckFindsWhatARunWouldFailBy) {
               "allowed: in 'params' or in 'sweep'\n");
 }
 
-TEST(OwnExperiment, CheckFindsWhatIsBothFixedAndSweptInEveryFormOfASweep) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, CheckFindsWhatIsBothFixedAndSweptInEveryFormOfASweep) {
     const std::string scene = "technique: voxelization\nscene: shapes/torus\n";
     const std::string allowed = "allowed: in 'params' or in 'sweep'\n";
     EXPECT_EQ(checked(folder, scene + "params: {resolution: 64}\n"
@@ -221,8 +218,7 @@ TEST(OwnExperiment, CheckFindsWhatIsBothFixedAndSweptInEveryFormOfASweep) {
                   allowed);
 }
 
-TEST(OwnExperiment, CheckFindsWhatASceneReferenceOrAProfileFixesAndTheFileSweeps) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, CheckFindsWhatASceneReferenceOrAProfileFixesAndTheFileSweeps) {
     EXPECT_EQ(checked(folder,
                       "technique: soft_shadows\nscene: outdoor/city?building_height=2\n"
                       "sweep: {scene.building_height: [1, 2]}"),
@@ -245,8 +241,7 @@ void writeRamp(const TemporaryFolder& folder, const std::string& name, int step)
     image::writePng(folder.path() / name, heights);
 }
 
-TEST(OwnExperiment, HeightsThatStandAsSpikesAreSaidBeforeTheyAreMeasured) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, HeightsThatStandAsSpikesAreSaidBeforeTheyAreMeasured) {
     writeRamp(folder, "steep.png", 100);
     const std::string head =
         "sweep_of: mine\ntitle: Mine\ntechnique: terrain_tessellation\n"
@@ -273,8 +268,7 @@ TEST(OwnExperiment, HeightsThatStandAsSpikesAreSaidBeforeTheyAreMeasured) {
     EXPECT_THAT(shown.out, HasSubstr("warning    heights from 0 to 1600 m"));
 }
 
-TEST(OwnExperiment, CheckLooksForASecondModelBesideTheFile) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, CheckLooksForASecondModelBesideTheFile) {
     const std::string voxels = "technique: voxelization\nscene: shapes/torus\n";
     EXPECT_THAT(checked(folder, voxels + "params: {csg: union, scene_b: none.obj}\n"),
                 AllOf(HasSubstr("mine.yaml:5:31: "), HasSubstr("none.obj")));
@@ -287,8 +281,7 @@ TEST(OwnExperiment, CheckLooksForASecondModelBesideTheFile) {
     EXPECT_EQ(gfxrepro({"check", config}).exitCode, 0);
 }
 
-TEST(OwnExperiment, CheckAsksTheTechniqueWhetherItTakesTheScene) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, CheckAsksTheTechniqueWhetherItTakesTheScene) {
     folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\np 1 2 3\n");
     folder.write("rough.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
     EXPECT_THAT(checked(folder, "technique: voxelization\nscene: points.obj\n"),
@@ -322,8 +315,7 @@ TEST(OwnExperiment, CheckAsksTheTechniqueWhetherItTakesTheScene) {
                     HasSubstr("mine.yaml:4:8: the scene has no path or camera 'walk'"));
     }
 }
-TEST(OwnExperiment, AFixedValueIsThatOfTheCasesThatASweepLeavesItTo) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, AFixedValueIsThatOfTheCasesThatASweepLeavesItTo) {
     const std::string config = folder.write(
         "mine.yaml",
         "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: shapes/torus\n"
@@ -331,8 +323,7 @@ TEST(OwnExperiment, AFixedValueIsThatOfTheCasesThatASweepLeavesItTo) {
     EXPECT_EQ(gfxrepro({"check", config}).exitCode, 0);
 }
 
-TEST(OwnExperiment, ThePageRunsAgainWhatTheRunWasAskedFor) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, ThePageRunsAgainWhatTheRunWasAskedFor) {
     const std::string config = folder.write(
         "mine.yaml", "sweep_of: mine\ntitle: T\ntechnique: template\nmeasure: {lane: quality}\n");
     const std::string dir = folder.path() / "run";
@@ -347,8 +338,7 @@ TEST(OwnExperiment, ThePageRunsAgainWhatTheRunWasAskedFor) {
                           "brightness=0.25,1 --only brightness=1</pre>"));
 }
 
-TEST(OwnExperiment, CheckSaysHowToNameAParameter) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, CheckSaysHowToNameAParameter) {
     EXPECT_THAT(
         checked(folder,
                 "technique: soft_shadows\nscene: shapes/torus\n"
@@ -363,8 +353,7 @@ TEST(OwnExperiment, CheckSaysHowToNameAParameter) {
               "{bin_exponent: {method: clustered}}` in `sweep`, for the cases that have it\n");
 }
 
-TEST(OwnExperiment, NoTableIsNamedWhereNoCaseHasAResult) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, NoTableIsNamedWhereNoCaseHasAResult) {
     const std::string config =
         folder.write("mine.yaml",
                      "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: shapes/torus\n"
@@ -380,8 +369,7 @@ TEST(OwnExperiment, NoTableIsNamedWhereNoCaseHasAResult) {
                 HasSubstr("sweep/mine: no table, for no case has a result\n"));
 }
 
-TEST(OwnExperiment, AValueOfWhatIsExtendedMayBeSwept) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, AValueOfWhatIsExtendedMayBeSwept) {
     folder.write("base.yaml", "params: {number: 1}\n");
     const fs::path config =
         writeMockConfig(folder, "extends: [base.yaml]\nsweep: {number: [2, 3]}\n");
@@ -393,8 +381,7 @@ TEST(OwnExperiment, AValueOfWhatIsExtendedMayBeSwept) {
     EXPECT_EQ(table.exitCode, 0) << table.err;  // the plan has both in one document
 }
 
-TEST(OwnExperiment, CheckKnowsMetricsAndPasses) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
     const std::string head = "technique: voxelization\nscene: shapes/torus\n";
     const auto laidOut = [&](const std::string& column) {
         return checked(folder, head + "layout: {rows: scene, columns: {a: " + column + "}}\n");
@@ -415,8 +402,7 @@ TEST(OwnExperiment, CheckKnowsMetricsAndPasses) {
                           "names none; allowed: with pass: preprocess | "));
 }
 
-TEST(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {
     const std::string file = folder.write(
         "mine.yaml",
         "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: shapes/torus\n"
@@ -431,8 +417,7 @@ TEST(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {
     }
 }
 
-TEST(OwnExperiment, WhatCheckRefusesIsNotMeasured) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, WhatCheckRefusesIsNotMeasured) {
     const std::string head =
         "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: shapes/torus\n"
         "sweep: {fill: [surface, solid], resolution: [32, 64]}\n";
@@ -464,8 +449,7 @@ TEST(OwnExperiment, WhatCheckRefusesIsNotMeasured) {
     }
 }
 
-TEST(OwnExperiment, ClaimsReadTheColumnsOfATableThatNobodyLaidOut) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, ClaimsReadTheColumnsOfATableThatNobodyLaidOut) {
     const auto configOf = [&](const std::string& operand) {
         return folder.write("mine.yaml",
                             "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\n"
@@ -490,8 +474,7 @@ TEST(OwnExperiment, ClaimsReadTheColumnsOfATableThatNobodyLaidOut) {
     EXPECT_THAT(claims, Not(HasSubstr(",unmeasured,")));
 }
 
-TEST(OwnExperiment, CheckGoesOnBehindABadFile) {
-    const TemporaryFolder folder;
+TEST_F(OwnExperiment, CheckGoesOnBehindABadFile) {
     const std::string rest = "title: t\ntechnique: voxelization\nscene: shapes/torus\n";
     const std::string bad = folder.write("bad.yaml", "sweep_of: bad\nsweeep: {}\n" + rest);
     const std::string good = folder.write("good.yaml", "sweep_of: good\n" + rest);

@@ -24,30 +24,28 @@ void expectClaimsHold(const std::string& config, const std::string& dir) {
     EXPECT_THAT(result.out, Not(HasSubstr("fails")));
 }
 
-TEST(ShippedPrograms, ErrorOfPovRayFallsAsTheRootOfItsSamples) {
+using ShippedPrograms = test::RunTest;
+
+TEST_F(ShippedPrograms, ErrorOfPovRayFallsAsTheRootOfItsSamples) {
     if (!isHere("povray")) GTEST_SKIP() << "povray is not here";
-    const TemporaryFolder folder;
     expectClaimsHold("povray-samples.yaml", folder.path() / "run");
 }
 
-TEST(ShippedPrograms, PovRaysExpectationIsTheSameWithoutEdgesAlone) {
+TEST_F(ShippedPrograms, PovRaysExpectationIsTheSameWithoutEdgesAlone) {
     if (!isHere("povray")) GTEST_SKIP() << "povray is not here";
-    const TemporaryFolder folder;
     expectClaimsHold("povray-expectation.yaml", folder.path() / "run");
 }
 
-TEST(ShippedPrograms, TheReadmesExampleWorksAsTyped) {
+TEST_F(ShippedPrograms, TheReadmesExampleWorksAsTyped) {
     if (!isHere("povray")) GTEST_SKIP() << "povray is not here";
     const fs::path configs = GFXREPRO_CONFIGS;
     const std::string readme = readFile(configs.parent_path() / "README.md");
     const std::size_t section = readme.find("## Measure your own renderer");
     const std::size_t begin = readme.find("```yaml mine.yaml\n", section) + 18;
     ASSERT_LT(section, begin);
-    const TemporaryFolder folder;
     const std::string config =
         folder.write("mine.yaml", readme.substr(begin, readme.find("```", begin) - begin));
     folder.write("configs/external/hall.pov", readFile(configs / "external" / "hall.pov"));
-    const std::string dir = folder.path() / "run";
     const ProcessResult result = gfxrepro({"reproduce", config, "--out", dir});
     ASSERT_EQ(result.exitCode, 0) << result.out << result.err;
     EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 18U);
@@ -58,9 +56,8 @@ TEST(ShippedPrograms, TheReadmesExampleWorksAsTyped) {
     EXPECT_THAT(readFile(dir + "/claims.csv"), HasSubstr("exponent ≤ -0.4"));
 }
 
-TEST(ShippedPrograms, VolumeOfABallOfOpenScad) {
+TEST_F(ShippedPrograms, VolumeOfABallOfOpenScad) {
     if (!isHere("openscad")) GTEST_SKIP() << "openscad is not here";
-    const TemporaryFolder folder;
     expectClaimsHold("openscad-ball.yaml", folder.path() / "run");
 }
 

@@ -26,8 +26,9 @@ std::vector<std::string> sensitivityCommand(const std::string& config, const std
     return {"sensitivity", config, "--device", "software", "--profile", "full", "--out", out};
 }
 
-TEST(Sensitivity, FindsTheNumberAtWhichAVerdictFlips) {
-    const TemporaryFolder folder;
+using Sensitivity = test::FolderTest;
+
+TEST_F(Sensitivity, FindsTheNumberAtWhichAVerdictFlips) {
     const std::string config = writeMockConfig(folder, kClaim);
     const std::string out = folder.path() / "out";
     const std::vector<std::string> command = sensitivityCommand(config, out);
@@ -46,8 +47,7 @@ TEST(Sensitivity, FindsTheNumberAtWhichAVerdictFlips) {
     EXPECT_EQ(mockGfxrepro(command).out, run.out);
 }
 
-TEST(Sensitivity, ARangeThatNoCaseCanHaveIsRefused) {
-    const TemporaryFolder folder;
+TEST_F(Sensitivity, ARangeThatNoCaseCanHaveIsRefused) {
     const std::string config = writeMockConfig(
         folder, std::string(kClaim) + "  pause_ms: {range: [100000, 20, 30], why: left open}\n");
     const std::string out = folder.path() / "out";
@@ -59,8 +59,7 @@ TEST(Sensitivity, ARangeThatNoCaseCanHaveIsRefused) {
     EXPECT_EQ(mockGfxrepro({"check", config}).err, why);
 }
 
-TEST(Sensitivity, CasesThatFailedLeaveItIncomplete) {
-    const TemporaryFolder folder;
+TEST_F(Sensitivity, CasesThatFailedLeaveItIncomplete) {
     const std::string config = writeMockConfig(
         folder,
         "sweep: {number: [1, 2]}\n"
@@ -76,8 +75,7 @@ TEST(Sensitivity, CasesThatFailedLeaveItIncomplete) {
                                    out + "/sweep-mock\n"));
 }
 
-TEST(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
-    const TemporaryFolder folder;
+TEST_F(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
     const std::string config = writeMockConfig(folder, kClaim);
     const std::string run = folder.path() / "run", out = folder.path() / "out";
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", run}).exitCode, 0);
@@ -93,8 +91,7 @@ TEST(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
     EXPECT_FALSE(fs::exists(out + "/sweep-mock/as_configured"));
 }
 
-TEST(Sensitivity, GoesOnWhereKeptResultsEnd) {
-    const TemporaryFolder folder;
+TEST_F(Sensitivity, GoesOnWhereKeptResultsEnd) {
     const std::string keep = folder.path() / "keep";
     const auto kept = [&] { return readFile(keep + "/software/full/sweep-mock.csv"); };
     const auto run = [&](const std::string& claim, const std::string& out,
@@ -125,8 +122,7 @@ TEST(Sensitivity, GoesOnWhereKeptResultsEnd) {
     EXPECT_THAT(run(other, "c", {}).err, HasSubstr("[1/4] sweep/mock as configured\n"));
 }
 
-TEST(Sensitivity, TablesOfTimesAreNamed) {
-    const TemporaryFolder folder;
+TEST_F(Sensitivity, TablesOfTimesAreNamed) {
     const std::string keep = folder.path() / "keep";
     const std::string config =
         writeMockConfig(folder,
@@ -145,8 +141,7 @@ TEST(Sensitivity, TablesOfTimesAreNamed) {
         HasSubstr("\nNot tried, each says why: [sweep-mock](software/full/sweep-mock.md).\n"));
 }
 
-TEST(Sensitivity, TriesTimesWhereTheyAreAskedForAndKeepsThem) {
-    const TemporaryFolder folder;
+TEST_F(Sensitivity, TriesTimesWhereTheyAreAskedForAndKeepsThem) {
     const std::string keep = folder.path() / "keep";
     const std::string fast =
         "sweep: {behaviour: [ok]}\nparams: {number: 1}\nmeasure: {lane: timing, processes: 6}\n"
@@ -175,8 +170,7 @@ TEST(Sensitivity, TriesTimesWhereTheyAreAskedForAndKeepsThem) {
     EXPECT_THAT(page(), HasSubstr("| fast | fast | "));
 }
 
-TEST(Sensitivity, ReportsShowWhatIsKept) {
-    const TemporaryFolder folder;
+TEST_F(Sensitivity, ReportsShowWhatIsKept) {
     const std::string config = writeMockConfig(folder, kClaim);
     // Kept results lie beside the configs.
     folder.write("configs/scenes/readme", "");
@@ -209,8 +203,7 @@ TEST(Sensitivity, ReportsShowWhatIsKept) {
     EXPECT_THAT(claims({"--set", "number=4"}), HasSubstr("one sample,,not tried,,\n"));
 }
 
-TEST(Sensitivity, WhereNothingCouldBeKeptIsSaidOnce) {
-    const TemporaryFolder folder;
+TEST_F(Sensitivity, WhereNothingCouldBeKeptIsSaidOnce) {
     folder.write("configs/scenes/readme", "");
     const std::string config = folder.write(
         "t.yaml",

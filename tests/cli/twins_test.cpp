@@ -76,10 +76,10 @@ void expectTablesOfTheirOwn(const std::vector<std::string>& configs, const std::
     }
 }
 
-TEST(Twins, AreMeasuredOnceAndFillBothTables) {
-    const TemporaryFolder folder;
+using Twins = test::RunTest;
+
+TEST_F(Twins, AreMeasuredOnceAndFillBothTables) {
     const std::vector<std::string> configs = writeTables(folder);
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = measureTwins(configs, dir);
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_EQ(run.out, "6 of 6 finished, 2 as a twin; records: " + dir + "/records.csv\n");
@@ -108,9 +108,7 @@ TEST(Twins, AreMeasuredOnceAndFillBothTables) {
     EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr("measured as demo2026/1 number=3"));
 }
 
-TEST(Twins, NeverAmongTimesOfTablesThatHaveAPartInCommon) {
-    const TemporaryFolder folder;
-    const std::string dir = folder.path() / "run";
+TEST_F(Twins, NeverAmongTimesOfTablesThatHaveAPartInCommon) {
     const ProcessResult run =
         measureTwins(writeTables(folder, "measure: {lane: timing, processes: 1}\n"), dir);
     ASSERT_EQ(run.exitCode, 0) << run.err;
@@ -128,10 +126,8 @@ std::vector<std::string> writeTimes(const TemporaryFolder& folder, int processes
             writeTable(folder, "2", lines + "sweep: {number: [1, 2, 3]}\n")};
 }
 
-TEST(Twins, ATableOfTimesWithinAnotherTakesThemAndSaysSo) {
-    const TemporaryFolder folder;
+TEST_F(Twins, ATableOfTimesWithinAnotherTakesThemAndSaysSo) {
     const std::vector<std::string> configs = writeTimes(folder, 1);
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = measureTwins(configs, dir);
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_THAT(run.out, HasSubstr("5 of 5 finished, 2 as a twin;"));
@@ -154,9 +150,7 @@ TEST(Twins, ATableOfTimesWithinAnotherTakesThemAndSaysSo) {
     EXPECT_THAT(plan.out, HasSubstr("5 cases (2 measured as another's twin), 6 iterations,"));
 }
 
-TEST(Twins, TimesOfSeveralProcessesAreOfTheirTable) {
-    const TemporaryFolder folder;
-    const std::string dir = folder.path() / "run";
+TEST_F(Twins, TimesOfSeveralProcessesAreOfTheirTable) {
     const ProcessResult run = measureTwins(writeTimes(folder, 2), dir);
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_THAT(run.out, HasSubstr("10 of 10 finished; "));
@@ -165,9 +159,7 @@ TEST(Twins, TimesOfSeveralProcessesAreOfTheirTable) {
     EXPECT_THAT(readFile(dir + "/tables/demo2026-1.md"), Not(HasSubstr("Times are those of")));
 }
 
-TEST(Twins, ARunThatEndedBetweenTwoTablesOfTimesSaysWhoseEachIs) {
-    const TemporaryFolder folder;
-    const std::string dir = folder.path() / "run";
+TEST_F(Twins, ARunThatEndedBetweenTwoTablesOfTimesSaysWhoseEachIs) {
     ASSERT_EQ(measureTwins(writeTimes(folder, 1), dir).exitCode, 0);
     // As if the rows of number=3 had been written for the second table alone.
     const auto params = paramsOf(dir);
@@ -185,9 +177,7 @@ TEST(Twins, ARunThatEndedBetweenTwoTablesOfTimesSaysWhoseEachIs) {
                           "too; the others' were measured at another moment."));
 }
 
-TEST(Twins, ProcessesAreSharedOneByOne) {
-    const TemporaryFolder folder;
-    const std::string dir = folder.path() / "run";
+TEST_F(Twins, ProcessesAreSharedOneByOne) {
     const ProcessResult run = measureTwins(writeTables(folder, "measure: {processes: 2}\n"), dir);
     ASSERT_EQ(run.exitCode, 0) << run.err;
     EXPECT_THAT(run.out, HasSubstr("12 of 12 finished, 4 as a twin;"));
@@ -195,10 +185,8 @@ TEST(Twins, ProcessesAreSharedOneByOne) {
     EXPECT_EQ(measuredCount(dir), 8);
 }
 
-TEST(Twins, AResumedRunMeasuresWhatEitherTableLacks) {
-    const TemporaryFolder folder;
+TEST_F(Twins, AResumedRunMeasuresWhatEitherTableLacks) {
     const std::vector<std::string> configs = writeTables(folder);
-    const std::string dir = folder.path() / "run";
     ASSERT_EQ(measureTwins(configs, dir).exitCode, 0);
     const std::vector<records::Record> all = records::readRecords(dir + "/records.csv");
     const auto keep = [&](auto isKept) {
@@ -225,15 +213,13 @@ TEST(Twins, AResumedRunMeasuresWhatEitherTableLacks) {
     expectTablesOfTheirOwn(configs, dir);
 }
 
-TEST(Twins, FailTogetherAndAreTriedAgainTogether) {
-    const TemporaryFolder folder;
+TEST_F(Twins, FailTogetherAndAreTriedAgainTogether) {
     const std::string marker = folder.path() / "marker";
     const std::vector<std::string> configs = {
         writeTable(folder, "1",
                    "sweep: {behaviour: [throw, flake]}\nparams: {marker: " + marker + "}\n"),
         writeTable(folder, "2",
                    "sweep: {behaviour: [flake, throw]}\nparams: {marker: " + marker + "}\n")};
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = measureTwins(configs, dir);
     EXPECT_EQ(run.exitCode, 4) << run.err;
     EXPECT_THAT(run.out, HasSubstr("2 of 4 finished, 1 as a twin, 2 flaky, 2 failed; records: "));
@@ -248,17 +234,16 @@ TEST(Twins, FailTogetherAndAreTriedAgainTogether) {
     EXPECT_EQ(lines[2], lines[3]);
 }
 
-TEST(Twins, ShardsKeepThemTogetherAndMerge) {
-    const TemporaryFolder folder;
+TEST_F(Twins, ShardsKeepThemTogetherAndMerge) {
     const std::vector<std::string> configs = writeTables(folder);
     const std::string merged = folder.path() / "merged";
     std::vector<std::string> merge = {"merge", "--out", merged};
     int measured = 0;
     for (const char* shard : {"1/2", "2/2"}) {
-        const std::string dir = folder.path() / (std::string("shard-") + shard[0]);
-        ASSERT_EQ(measureTwins(configs, dir, {"--shard", shard}).exitCode, 0);
-        measured += measuredCount(dir);
-        merge.push_back(dir);
+        const std::string part = folder.path() / (std::string("shard-") + shard[0]);
+        ASSERT_EQ(measureTwins(configs, part, {"--shard", shard}).exitCode, 0);
+        measured += measuredCount(part);
+        merge.push_back(part);
     }
     EXPECT_EQ(measured, 4);
     const ProcessResult result = mockGfxrepro(merge);
@@ -270,10 +255,8 @@ TEST(Twins, ShardsKeepThemTogetherAndMerge) {
     expectTablesOfTheirOwn(configs, merged);
 }
 
-TEST(Twins, OnlyLeavesThemAloneAndAPlanPredictsThemOnce) {
-    const TemporaryFolder folder;
+TEST_F(Twins, OnlyLeavesThemAloneAndAPlanPredictsThemOnce) {
     const std::vector<std::string> configs = writeTables(folder);
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = measureTwins(configs, dir, {"--only", "number=3"});
     EXPECT_THAT(run.out, HasSubstr("2 of 2 finished, 1 as a twin;")) << run.err;
     const ProcessResult plan =

@@ -26,8 +26,9 @@ std::string refusal(const std::vector<std::string>& arguments, const TemporaryFo
     return result.err;
 }
 
-TEST(Usage, UnknownCommand) {
-    const TemporaryFolder folder;
+using Usage = test::FolderTest;
+
+TEST_F(Usage, UnknownCommand) {
     EXPECT_EQ(refusal({"reproduec"}, folder),
               "gfxrepro: unknown command 'reproduec'; did you mean 'reproduce'?; see 'gfxrepro "
               "--help'\n");
@@ -36,7 +37,7 @@ TEST(Usage, UnknownCommand) {
     EXPECT_EQ(refusal({}, folder), "gfxrepro: no command; see 'gfxrepro --help'\n");
 }
 
-TEST(Usage, TextsAreAsWideAsTheTerminal) {
+TEST_F(Usage, TextsAreAsWideAsTheTerminal) {
     for (const std::size_t columns : {72U, 100U}) {
         const std::string command = "stty cols " + std::to_string(columns) +
                                     "; '" GFXREPRO_PROGRAM "' describe voxelization";
@@ -53,8 +54,7 @@ TEST(Usage, TextsAreAsWideAsTheTerminal) {
     }
 }
 
-TEST(Usage, UnknownOption) {
-    const TemporaryFolder folder;
+TEST_F(Usage, UnknownOption) {
     EXPECT_EQ(refusal({"run", "--jbos", "2", "x.yaml"}, folder),
               "gfxrepro: run: unknown option '--jbos'; did you mean '--jobs'?; see 'gfxrepro help "
               "run'\n");
@@ -64,15 +64,13 @@ TEST(Usage, UnknownOption) {
               "gfxrepro: crop: unknown option '--force'; see 'gfxrepro help image crop'\n");
 }
 
-TEST(Usage, MissingConfig) {
-    const TemporaryFolder folder;
+TEST_F(Usage, MissingConfig) {
     const std::string missing = (folder.path() / "none.yaml").string();
     EXPECT_EQ(refusal({"check", missing}, folder),
               "gfxrepro: cannot read DIR/none.yaml: No such file or directory\n");
 }
 
-TEST(Usage, WhatIsNotGivenIsNamedWithAnExample) {
-    const TemporaryFolder folder;
+TEST_F(Usage, WhatIsNotGivenIsNamedWithAnExample) {
     EXPECT_EQ(refusal({"check"}, folder),
               "gfxrepro: check: CONFIG is missing: config files; for example: gfxrepro check "
               "my-scene.yaml\n");
@@ -84,8 +82,7 @@ TEST(Usage, WhatIsNotGivenIsNamedWithAnExample) {
               "merge shard-1 shard-2 --out whole\n");
 }
 
-TEST(Usage, BadKeyHasItsPlace) {
-    const TemporaryFolder folder;
+TEST_F(Usage, BadKeyHasItsPlace) {
     const std::string config = folder.write("bad.yaml",
                                             "sweep_of: bad\ntitle: Bad\ntechnique: template\n"
                                             "params: {brightnes: 1}\n");
@@ -93,8 +90,7 @@ TEST(Usage, BadKeyHasItsPlace) {
               "gfxrepro: DIR/bad.yaml:4:10: tech");
 }
 
-TEST(Usage, UnknownTechniqueAndScene) {
-    const TemporaryFolder folder;
+TEST_F(Usage, UnknownTechniqueAndScene) {
     const std::string technique =
         folder.write("technique.yaml", "sweep_of: bad\ntitle: Bad\ntechnique: templat\n");
     EXPECT_NE(refusal({"check", technique}, folder)
@@ -108,8 +104,7 @@ TEST(Usage, UnknownTechniqueAndScene) {
         std::string::npos);
 }
 
-TEST(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
-    const TemporaryFolder folder;
+TEST_F(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
     const auto errorOf = [&](const std::string& row, const std::string& reason) {
         const std::string config = folder.write(
             "t.yaml",
@@ -149,8 +144,7 @@ TEST(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
 }
 
 /// Two files that it extends have profiles of their own.
-TEST(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
-    const TemporaryFolder folder;
+TEST_F(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
     EXPECT_THAT(
         gfxrepro({"describe", "xie2017/10"}).out,
         HasSubstr("\ncolumns    intensity_mean_non_redundant, intensity_mean_conventional, "))
@@ -177,8 +171,7 @@ TEST(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
               "'xie2017/10'?; --merged is for these alone\n");
 }
 
-TEST(Usage, UnknownPaperAndKind) {
-    const TemporaryFolder folder;
+TEST_F(Usage, UnknownPaperAndKind) {
     EXPECT_EQ(refusal({"reproduce", "zju2006/2.1"}, folder),
               "gfxrepro: unknown paper or table 'zju2006/2.1'; did you mean 'zju2005/2.1'?; "
               "'gfxrepro list tables' shows all\n");
@@ -187,8 +180,7 @@ TEST(Usage, UnknownPaperAndKind) {
               "generators, runs, scenes, tables, techniques\n");
 }
 
-TEST(Usage, RunWantsConfigsOrARun) {
-    const TemporaryFolder folder;
+TEST_F(Usage, RunWantsConfigsOrARun) {
     EXPECT_EQ(refusal({"run"}, folder),
               "gfxrepro: run: give PAPER, PAPER/TABLE or config files, or --resume RUN\n");
     EXPECT_EQ(refusal({"table", folder.path()}, folder),
@@ -196,8 +188,7 @@ TEST(Usage, RunWantsConfigsOrARun) {
 }
 
 // What `reproduce` is for on a machine that has nobody's scans.
-TEST(Usage, EveryTableOfThePapersNeedsNoRealModel) {
-    const TemporaryFolder folder;
+TEST_F(Usage, EveryTableOfThePapersNeedsNoRealModel) {
     for (const char* profile : {"quick", "paper"}) {
         std::vector<std::string> arguments = {"check", "--assets", folder.path(), "--profile",
                                               profile};
@@ -214,8 +205,7 @@ TEST(Usage, EveryTableOfThePapersNeedsNoRealModel) {
 }
 
 // The rows of the thesis that compare methods stay unseen, whichever cell a calibration names.
-TEST(Usage, CalibrationsCannotReadWhatComparesMethods) {
-    const TemporaryFolder folder;
+TEST_F(Usage, CalibrationsCannotReadWhatComparesMethods) {
     const auto errorOf = [&](const std::string& target) {
         const std::string preset =
             target.starts_with("intensity") ? "soft-shadows" : "depth-sampling";
@@ -251,8 +241,7 @@ TEST(Usage, CalibrationsCannotReadWhatComparesMethods) {
     }
 }
 
-TEST(Usage, DescribeSaysWhatItCannot) {
-    const TemporaryFolder folder;
+TEST_F(Usage, DescribeSaysWhatItCannot) {
     EXPECT_EQ(refusal({"describe"}, folder),
               "gfxrepro: describe: say what; see 'gfxrepro describe --help'\n");
     EXPECT_EQ(refusal({"describe", "--json-schema", "table"}, folder),
@@ -263,7 +252,7 @@ TEST(Usage, DescribeSaysWhatItCannot) {
     EXPECT_EQ(gfxrepro({"describe", "--json-schema", "scene"}).exitCode, 0);
 }
 
-TEST(Usage, DescribeListsMetricsAndPassesOnAScreen) {
+TEST_F(Usage, DescribeListsMetricsAndPassesOnAScreen) {
     for (const char* technique : {"voxelization", "soft_shadows", "point_splatting"}) {
         const std::string text = gfxrepro({"describe", technique}).out;
         std::istringstream lines(text);
@@ -281,7 +270,7 @@ TEST(Usage, DescribeListsMetricsAndPassesOnAScreen) {
 }
 
 /// "of the mesh" asks a reader to begin the sentence with the metric's name.
-TEST(Usage, MetricsSayInWordsOfTheirOwnWhatTheyAre) {
+TEST_F(Usage, MetricsSayInWordsOfTheirOwnWhatTheyAre) {
     for (const char* technique :
          {"voxelization", "point_splatting", "shadow_mapping", "depth_sampling", "soft_shadows",
           "clustered_reflections", "reflection_reuse", "terrain_tessellation"}) {
@@ -299,7 +288,7 @@ TEST(Usage, MetricsSayInWordsOfTheirOwnWhatTheyAre) {
     }
 }
 
-TEST(Usage, DescribesForProgramsToo) {
+TEST_F(Usage, DescribesForProgramsToo) {
     const auto described = [](const char* name) {
         return nlohmann::json::parse(gfxrepro({"describe", name, "--json"}).out);
     };
@@ -319,7 +308,7 @@ TEST(Usage, DescribesForProgramsToo) {
               "gfxrepro: describe: --json is for techniques, generators, scenes and tables\n");
 }
 
-TEST(Usage, HelpAndVersionAreCommandsToo) {
+TEST_F(Usage, HelpAndVersionAreCommandsToo) {
     EXPECT_EQ(gfxrepro({"help"}).out, gfxrepro({"--help"}).out);
     EXPECT_EQ(gfxrepro({"help", "image", "diff"}).out, gfxrepro({"image", "diff", "--help"}).out);
     EXPECT_EQ(refusal({"help", "reprodcue"}, TemporaryFolder()),
@@ -330,7 +319,7 @@ TEST(Usage, HelpAndVersionAreCommandsToo) {
                 testing::MatchesRegex("gfxrepro [0-9]+\\.[0-9]+\\.[0-9]+ \\(commit [^ ]+\\)\n"));
 }
 
-TEST(Usage, TablesAndCasesAreChosenByPatterns) {
+TEST_F(Usage, TablesAndCasesAreChosenByPatterns) {
     const auto count = [](std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), "plan");
         arguments.insert(arguments.end(), {"--json", "--device", "software"});
@@ -340,7 +329,6 @@ TEST(Usage, TablesAndCasesAreChosenByPatterns) {
     };
     EXPECT_EQ(count({"zju2005/table-4.?"}),
               count({"zju2005/table-4.1", "zju2005/table-4.2", "zju2005/table-4.3"}));
-    const TemporaryFolder folder;
     const std::string config = folder.write(
         "a.yml", "sweep_of: a\ntitle: A\ntechnique: template\nsweep: {brightness: [0, 0.5, 1]}\n");
     EXPECT_EQ(count({config}), 3U);

@@ -49,11 +49,11 @@ void waitForStarts(const std::string& dir, std::size_t count) {
     FAIL() << "no unit has begun";
 }
 
-TEST(Weekend, NobodyReadsTheProgress) {
-    const TemporaryFolder folder;
+using Weekend = test::RunTest;
+
+TEST_F(Weekend, NobodyReadsTheProgress) {
     const std::string config =
         writeMockConfig(folder, "params: {pause_ms: 300}\nsweep: {number: [1, 2, 3]}\n");
-    const std::string dir = folder.path() / "run";
     EXPECT_EQ(shell(mockRun(config, dir + "1") + " 2>/dev/full").exitCode, 0);
     EXPECT_EQ(shell(mockRun(config, dir + "2") + " 0<&- 2>&-").exitCode, 0);
     EXPECT_EQ(shell("(" + mockRun(config, dir + "3") + " 2>&1; echo $? >" + dir +
@@ -72,8 +72,7 @@ TEST(Weekend, NobodyReadsTheProgress) {
     }
 }
 
-TEST(Weekend, ADriverThatDoesNotAnswer) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, ADriverThatDoesNotAnswer) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
     const auto started = [&](const std::string& limit) {
         return runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out",
@@ -87,8 +86,7 @@ TEST(Weekend, ADriverThatDoesNotAnswer) {
               "gfxrepro: GFXREPRO_START_LIMIT_S: expected a number of seconds, found 'soon'\n");
 }
 
-TEST(Weekend, DoctorAndScenesWaitForNoDriverEither) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, DoctorAndScenesWaitForNoDriverEither) {
     const std::string pipe = folder.path() / "vendor.json";  // which the loader of drivers reads
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     const std::string picture = folder.path() / "picture.png";
@@ -103,19 +101,18 @@ TEST(Weekend, DoctorAndScenesWaitForNoDriverEither) {
     }
 }
 
-TEST(Weekend, AFolderThatIsGoneOrAnothersEndsTheRun) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, AFolderThatIsGoneOrAnothersEndsTheRun) {
     const std::string config =
         writeMockConfig(folder, "params: {pause_ms: 300}\nsweep: {number: [1, 2, 3, 4]}\n");
-    const auto ended = [&](const std::string& dir, const std::function<void()>& disturb) {
+    const auto ended = [&](const std::string& into, const std::function<void()>& disturb) {
         BackgroundProgram run({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software",
-                               "--jobs", "1", "--out", dir});
-        waitForStarts(dir, 1);
+                               "--jobs", "1", "--out", into});
+        waitForStarts(into, 1);
         disturb();
         const ProcessResult result = run.wait();
         EXPECT_EQ(result.exitCode, 2) << result.out;
         EXPECT_THAT(result.err,
-                    HasSubstr("gfxrepro: " + dir + ": was removed or moved, or its lock"));
+                    HasSubstr("gfxrepro: " + into + ": was removed or moved, or its lock"));
     };
     const std::string moved = folder.path() / "moved", locked = folder.path() / "locked";
     ended(moved, [&] { fs::rename(moved, moved + "-away"); });
@@ -128,8 +125,7 @@ TEST(Weekend, AFolderThatIsGoneOrAnothersEndsTheRun) {
 }
 
 /// While the first unit runs, and while the last does.
-TEST(Weekend, RecordsAndListsOfImagesThatAreGoneAreNoticed) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, RecordsAndListsOfImagesThatAreGoneAreNoticed) {
     const std::string config =
         writeMockConfig(folder, "params: {pause_ms: 600}\nsweep: {number: [1, 2]}\n");
     const auto replaced = [](const std::string& file) { writeFileAtomic(file, readShared(file)); };
@@ -139,17 +135,17 @@ TEST(Weekend, RecordsAndListsOfImagesThatAreGoneAreNoticed) {
     using Disturbance = std::function<void(const std::string&)>;
     const auto isNoticed = [&](std::size_t start, const char* file, const Disturbance& disturb) {
         const TemporaryFolder own;
-        const std::string dir = own.path() / "run";
+        const std::string into = own.path() / "run";
         BackgroundProgram run({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software",
-                               "--jobs", "1", "--out", dir});
-        waitForStarts(dir, start);
-        disturb(dir + file);
+                               "--jobs", "1", "--out", into});
+        waitForStarts(into, start);
+        disturb(into + file);
         const ProcessResult result = run.wait();
         EXPECT_EQ(result.exitCode, 2) << file << start << result.out;
         EXPECT_EQ(result.out, "");
-        EXPECT_THAT(result.err, HasSubstr("gfxrepro: " + dir + file + ": was "));
-        EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
-        EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
+        EXPECT_THAT(result.err, HasSubstr("gfxrepro: " + into + file + ": was "));
+        EXPECT_EQ(mockGfxrepro({"run", "--resume", into}).exitCode, 0);
+        EXPECT_EQ(rowsOf(into, "number").size(), 2U);
     };
     for (const Disturbance& disturb :
          {Disturbance(replaced), Disturbance(removed), Disturbance(emptied)}) {
@@ -159,11 +155,9 @@ TEST(Weekend, RecordsAndListsOfImagesThatAreGoneAreNoticed) {
     isNoticed(1, "/images/index.csv", made);  // there is no list before the first picture
 }
 
-TEST(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
     const std::string config = writeMockConfig(
         folder, "sweep: {behaviour: [hang, ok]}\nmeasure: {lane: quality, time_limit_s: 60}\n");
-    const std::string dir = folder.path() / "run";
     const auto killedIn = [&](std::size_t start, std::vector<std::string> command) {
         command.insert(command.end(), {"--jobs", "1"});
         BackgroundProgram run(command);
@@ -188,10 +182,8 @@ TEST(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
 }
 
 /// A batch system's limit and a closed terminal, thrice in one case: none is a death of the runner.
-TEST(Weekend, AnInterruptionIsNoCrash) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, AnInterruptionIsNoCrash) {
     const std::string config = writeMockConfig(folder, "params: {pause_ms: 2000}\n");
-    const std::string dir = folder.path() / "run";
     std::vector<std::string> command = {
         GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir};
     std::size_t starts = 0;
@@ -230,12 +222,10 @@ void killTwice(const std::vector<std::string>& configs, const std::string& dir) 
 constexpr const char* kHangs =
     "sweep: {behaviour: [hang, ok]}\nmeasure: {lane: quality, time_limit_s: 20}\n";
 
-TEST(Weekend, WhatTookTheMachineDownInOneProcessIsNotTriedInTheOthers) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, WhatTookTheMachineDownInOneProcessIsNotTriedInTheOthers) {
     const std::string config = writeMockConfig(folder,
                                                "sweep: {behaviour: [hang, ok]}\nmeasure: {lane: "
                                                "quality, time_limit_s: 20, processes: 3}\n");
-    const std::string dir = folder.path() / "run";
     killTwice({config}, dir);
     const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
     EXPECT_EQ(resumed.exitCode, 4) << resumed.err;
@@ -248,8 +238,7 @@ TEST(Weekend, WhatTookTheMachineDownInOneProcessIsNotTriedInTheOthers) {
     EXPECT_EQ(log.find("\"process\":2,\"status\":\"timeout\""), std::string::npos);
 }
 
-TEST(Weekend, ATwinOfWhatTookTheMachineDownIsNotTriedEither) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, ATwinOfWhatTookTheMachineDownIsNotTriedEither) {
     std::vector<std::string> configs;
     for (const char* table : {"1", "2"}) {
         configs.push_back(folder.write(std::string("table-") + table + ".yaml",
@@ -258,7 +247,6 @@ TEST(Weekend, ATwinOfWhatTookTheMachineDownIsNotTriedEither) {
                                            "output: {width: 8, height: 8}\n" +
                                            kHangs));
     }
-    const std::string dir = folder.path() / "run";
     killTwice(configs, dir);
     const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
     EXPECT_EQ(resumed.exitCode, 4) << resumed.err;
@@ -271,11 +259,9 @@ TEST(Weekend, ATwinOfWhatTookTheMachineDownIsNotTriedEither) {
             "ok: ok", "ok: ok"));
 }
 
-TEST(Weekend, StopsWhereTheMachineIsNotToBeTrusted) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, StopsWhereTheMachineIsNotToBeTrusted) {
     const std::string config = writeMockConfig(
         folder, "params: {behaviour: device_lost}\nsweep: {number: [1, 2, 3, 4]}\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult lost =
         mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
     EXPECT_EQ(lost.exitCode, 4);
@@ -292,11 +278,9 @@ TEST(Weekend, StopsWhereTheMachineIsNotToBeTrusted) {
     EXPECT_THAT(stopped.out, HasSubstr("0 of 3 finished, 3 failed"));
 }
 
-TEST(Weekend, WhatAStopRuleCutShortWasSurvived) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, WhatAStopRuleCutShortWasSurvived) {
     const std::string config =
         writeMockConfig(folder, "params: {pause_ms: 1000}\nsweep: {behaviour: [throw, hang]}\n");
-    const std::string dir = folder.path() / "run";
     const auto stopped = [&](std::vector<std::string> command) {
         command.insert(command.end(), {"--jobs", "2", "--max-failures", "1"});
         EXPECT_THAT(mockGfxrepro(command).err, HasSubstr("stopped: 1 failed; "));
@@ -325,7 +309,7 @@ void expectNoTimeout(const std::function<void(BackgroundProgram&, pid_t)>& suspe
     EXPECT_EQ(rowsOf(dir, "number").front().status, records::Status::Ok);
 }
 
-TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
+TEST_F(Weekend, ASuspendedRunMakesNoTimeouts) {
     expectNoTimeout([](BackgroundProgram& run, pid_t worker) {
         for (const int number : {SIGSTOP, SIGCONT}) {
             run.signal(number);
@@ -335,7 +319,7 @@ TEST(Weekend, ASuspendedRunMakesNoTimeouts) {
     });
 }
 
-TEST(Weekend, ASuspendedWorkerMakesNoTimeoutsEither) {
+TEST_F(Weekend, ASuspendedWorkerMakesNoTimeoutsEither) {
     expectNoTimeout([](BackgroundProgram&, pid_t worker) {
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
         ::kill(worker, SIGSTOP);
@@ -344,12 +328,10 @@ TEST(Weekend, ASuspendedWorkerMakesNoTimeoutsEither) {
     });
 }
 
-TEST(Weekend, AWorkerThatReadsNothingHoldsNobodyUp) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, AWorkerThatReadsNothingHoldsNobodyUp) {
     const std::string config =
         writeMockConfig(folder, "params: {pause_ms: 1000, marker: " + std::string(600'000, 'x') +
                                     "}\nsweep: {number: [1, 2]}\n");
-    const std::string dir = folder.path() / "run";
     BackgroundProgram run({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--jobs",
                            "1", "--out", dir});
     waitForStarts(dir, 1);
@@ -371,8 +353,7 @@ TEST(Weekend, AWorkerThatReadsNothingHoldsNobodyUp) {
     release.join();
 }
 
-TEST(Weekend, OtherFilesAmongTheRunsStopNoRun) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, OtherFilesAmongTheRunsStopNoRun) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
     const fs::path runs = folder.path() / "runs";
     for (const char* name : {"folder", "pipe", "loop", "number"}) {
@@ -390,11 +371,9 @@ TEST(Weekend, OtherFilesAmongTheRunsStopNoRun) {
     EXPECT_EQ(plan.exitCode, 0) << plan.err;
 }
 
-TEST(Weekend, WhatFailedGoesLastWhereFailuresStopTheRun) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, WhatFailedGoesLastWhereFailuresStopTheRun) {
     const std::string config =
         writeMockConfig(folder, "sweep: {behaviour: [throw, bad_alloc, ok]}\n");
-    const std::string dir = folder.path() / "run";
     const auto stopped = [&](std::vector<std::string> command) {
         command.insert(command.end(), {"--jobs", "1", "--max-failures", "2"});
         const ProcessResult result = mockGfxrepro(command);
@@ -408,10 +387,8 @@ TEST(Weekend, WhatFailedGoesLastWhereFailuresStopTheRun) {
     EXPECT_EQ(statusLines(dir).size(), 3U);
 }
 
-TEST(Weekend, WhatKilledProcessesWereWritingIsSweptAtResume) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, WhatKilledProcessesWereWritingIsSweptAtResume) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
-    const std::string dir = folder.path() / "run";
     ASSERT_EQ(shell(mockRun(config, dir)).exitCode, 0);
     const std::vector<std::string> left = {"run/images/sweep-mock/a.exr.tmp4711",
                                            "run/manifest.json.tmp12", "run/records.csv.tmp"};
@@ -423,8 +400,7 @@ TEST(Weekend, WhatKilledProcessesWereWritingIsSweptAtResume) {
 }
 
 /// A run killed before it had a plan is not resumed, but begun again.
-TEST(Weekend, WhatARunWithoutAPlanWasWritingIsSweptWhereItBeginsAgain) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, WhatARunWithoutAPlanWasWritingIsSweptWhereItBeginsAgain) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
     const auto isKept = [&](const std::string& name) {
         folder.write(name + "/manifest.json.tmp12", "torn");
@@ -437,23 +413,21 @@ TEST(Weekend, WhatARunWithoutAPlanWasWritingIsSweptWhereItBeginsAgain) {
     EXPECT_TRUE(isKept("somebodys")) << "no run ever began in it";
 }
 
-TEST(Weekend, FilesOfOthersAreNotWrittenOver) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, FilesOfOthersAreNotWrittenOver) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
-    const std::string dir = folder.path() / "work";
+    const std::string work = folder.path() / "work";
     folder.write("work/claims.csv", "my own\n");
-    const ProcessResult result = shell(mockRun(config, dir));
+    const ProcessResult result = shell(mockRun(config, work));
     EXPECT_EQ(result.exitCode, 2);
     EXPECT_THAT(result.err,
-                EndsWith("gfxrepro: " + dir +
+                EndsWith("gfxrepro: " + work +
                          ": has a claims.csv that is of no run and would be written over; "
                          "give another folder\n"));
-    EXPECT_EQ(readFile(dir + "/claims.csv"), "my own\n");
-    EXPECT_FALSE(fs::exists(dir + "/lock"));
+    EXPECT_EQ(readFile(work + "/claims.csv"), "my own\n");
+    EXPECT_FALSE(fs::exists(work + "/lock"));
 }
 
-TEST(Weekend, TooFewDescriptorsAreSaid) {
-    const TemporaryFolder folder;
+TEST_F(Weekend, TooFewDescriptorsAreSaid) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
     const ProcessResult result =
         shell("ulimit -n 12; exec " + mockRun(config, folder.path() / "run"));

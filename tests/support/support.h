@@ -36,6 +36,12 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
+/// A test with a folder of its own.
+class FolderTest : public testing::Test {
+  protected:
+    const TemporaryFolder folder;
+};
+
 /// A file of the folder GFXREPRO_ASSETS; empty when it is not there (then GTEST_SKIP with `name`).
 std::optional<std::filesystem::path> asset(const std::string& name);
 

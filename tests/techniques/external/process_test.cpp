@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <fstream>
-#include <thread>
 
 #include "engine/core/files.h"
 #include "tests/support/support.h"
@@ -24,15 +23,15 @@ ProcessEnd runShell(const TemporaryFolder& folder, const std::string& script,
                        folder.path() / "metrics.jsonl"});
 }
 
-TEST(Process, SaysHowItEnded) {
-    const TemporaryFolder folder;
+using Process = test::FolderTest;
+
+TEST_F(Process, SaysHowItEnded) {
     EXPECT_EQ(whyEnded(runShell(folder, "true").waitStatus), "");
     EXPECT_EQ(whyEnded(runShell(folder, "exit 3").waitStatus), "exit code 3");
     EXPECT_EQ(whyEnded(runShell(folder, "kill -SEGV $$").waitStatus), "SIGSEGV");
 }
 
-TEST(Process, AnEndThatNobodyToldIsAnError) {
-    const TemporaryFolder folder;
+TEST_F(Process, AnEndThatNobodyToldIsAnError) {
     const auto before = ::signal(SIGCHLD, SIG_IGN);
     EXPECT_EQ(errorText([&] { runShell(folder, "exit 3"); }),
               "cannot wait for /bin/sh: No child processes");
@@ -40,8 +39,7 @@ TEST(Process, AnEndThatNobodyToldIsAnError) {
 }
 
 /// The kernel's count stands for the kernel.
-TEST(Process, KilledAsMemoryRanOutItSaysSo) {
-    const TemporaryFolder folder;
+TEST_F(Process, KilledAsMemoryRanOutItSaysSo) {
     const auto end = [&](const std::string& script) {
         folder.write("proc/vmstat", "nr_free_pages 1\noom_kill 4\n");
         return runProcess({{"/bin/sh", "-c", script},
@@ -57,14 +55,12 @@ TEST(Process, KilledAsMemoryRanOutItSaysSo) {
     EXPECT_FALSE(end(count).isOutOfMemory);
 }
 
-TEST(Process, RunsInItsFolderAndPrints) {
-    const TemporaryFolder folder;
+TEST_F(Process, RunsInItsFolderAndPrints) {
     const ProcessEnd end = runShell(folder, "pwd; echo $WORD >&2; cat", {{"WORD", "of mine"}});
     EXPECT_EQ(end.output, folder.path().string() + "\nof mine\n");
 }
 
-TEST(Process, ItsMetricsComeThroughDescriptorAndFile) {
-    const TemporaryFolder folder;
+TEST_F(Process, ItsMetricsComeThroughDescriptorAndFile) {
     runShell(folder,
              "eval \"echo one >&$GFXREPRO_METRICS_FD\"; echo two >>\"$GFXREPRO_METRICS_FILE\"");
     EXPECT_EQ(readFile(folder.path() / "metrics.jsonl"), "one\ntwo\n");
@@ -72,8 +68,7 @@ TEST(Process, ItsMetricsComeThroughDescriptorAndFile) {
     EXPECT_EQ(readFile(folder.path() / "metrics.jsonl"), "");
 }
 
-TEST(Process, TakesItsTimeAndMemory) {
-    const TemporaryFolder folder;
+TEST_F(Process, TakesItsTimeAndMemory) {
     const ProcessEnd idle = runShell(folder, "sleep 0.3");
     EXPECT_LT(idle.processTimeMs, 200.0);
     // Of a child of the child, too: 64 MiB in a variable of a shell.
@@ -85,8 +80,7 @@ TEST(Process, TakesItsTimeAndMemory) {
     EXPECT_LT(idle.peakBytes, 64LL << 20);
 }
 
-TEST(Process, WhatItLeavesBehindEnds) {
-    const TemporaryFolder folder;
+TEST_F(Process, WhatItLeavesBehindEnds) {
     const auto begin = std::chrono::steady_clock::now();
     // Neither waits for the pipe, nor is in the group of a shell any more.
     runShell(folder, "setsid sleep 100 & echo $! >pid; exit 0");
@@ -97,13 +91,11 @@ TEST(Process, WhatItLeavesBehindEnds) {
     EXPECT_EQ(::kill(pid, 0), -1) << pid;
 }
 
-TEST(Process, IsEndedWhenItPrintsWithoutEnd) {
-    const TemporaryFolder folder;
+TEST_F(Process, IsEndedWhenItPrintsWithoutEnd) {
     EXPECT_EQ(errorText([&] { runShell(folder, "yes"); }), "ended, as it prints more than 16 MiB");
 }
 
-TEST(Process, ThatCannotBeStarted) {
-    const TemporaryFolder folder;
+TEST_F(Process, ThatCannotBeStarted) {
     const ProcessEnd end =
         runProcess({{"/no/such/program"}, {}, folder.path(), folder.path() / "m"});
     EXPECT_EQ(whyEnded(end.waitStatus), "exit code 127");

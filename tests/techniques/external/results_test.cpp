@@ -213,16 +213,16 @@ std::filesystem::path writePng(const TemporaryFolder& folder, const std::string&
     return folder.path() / name;
 }
 
+using Pictures = test::FolderTest;
+
 /// As it is compared, and what is recorded: sRGB 0.4 in linear light.
-TEST(Pictures, APngIsComparedAsItIsStored) {
-    const TemporaryFolder folder;
+TEST_F(Pictures, APngIsComparedAsItIsStored) {
     const Picture test = readPicture(writePng(folder, "p.png", 16, 102), "p");
     EXPECT_FLOAT_EQ(test.stored.at(0, 0), 0.4F);
     EXPECT_NEAR(test.linear.at(0, 0), 0.1329, 1e-4);
 }
 
-TEST(Pictures, RefusesHalfAndWrongOnes) {
-    const TemporaryFolder folder;
+TEST_F(Pictures, RefusesHalfAndWrongOnes) {
     const auto errorOf = [&](const std::filesystem::path& file, glm::ivec2 size = {0, 0}) {
         return errorText([&] { readPicture(file, "image 'result'", size); }, folder.path());
     };
@@ -248,13 +248,12 @@ TEST(Pictures, RefusesHalfAndWrongOnes) {
               "image 'result': holds nan at pixel (3, 2)");
 }
 
-TEST(Pictures, MayBeLinks) {
-    const TemporaryFolder folder;
+TEST_F(Pictures, MayBeLinks) {
     std::filesystem::create_symlink(writePng(folder, "p.png", 16, 51), folder.path() / "link.png");
     EXPECT_EQ(readPicture(folder.path() / "link.png", "image 'result'").stored.width(), 16);
 }
 
-TEST(Pictures, OfSeveralSeedsAreTestedForOneExpectation) {
+TEST_F(Pictures, OfSeveralSeedsAreTestedForOneExpectation) {
     const Samples a = {{1.0, 2.0}, {1.1, 2.1}, {0.9, 1.9}, {1.0, 2.1}};
     const Samples b = {{1.05, 2.05}, {0.95, 2.0}, {1.0, 1.95}, {1.02, 2.02}};
     const Samples far = {{1.05, 9.05}, {0.95, 9.0}, {1.0, 8.95}, {1.02, 9.02}};
@@ -281,8 +280,7 @@ TEST(Pictures, OfSeveralSeedsAreTestedForOneExpectation) {
               "their own");
 }
 
-TEST(Pictures, RefusesATruthOfAnotherKind) {
-    const TemporaryFolder folder;
+TEST_F(Pictures, RefusesATruthOfAnotherKind) {
     const Picture exr = readPicture(writeExr(folder, "t.exr", ImageF(16, 16, 3, 0.5F)), "t");
     const Picture png = readPicture(writePng(folder, "p.png", 16, 51), "p");
     EXPECT_EQ(

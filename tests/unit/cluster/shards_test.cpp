@@ -350,11 +350,12 @@ run::RunDirectory directoryWith(const TemporaryFolder& folder, const cluster::Sh
     return directory;
 }
 
-TEST(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
+using ForeignTimes = test::FolderTest;
+
+TEST_F(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
     const run::Plan plan = makePlan();
     cluster::ShardRun shard = makeShard(plan, 1, 1, {0, 1, 4}, "GPU A");  // 5, of times, is missing
     shard.run.plan.shard.reset();
-    const TemporaryFolder folder;
     const run::RunDirectory directory = directoryWith(folder, shard);
     EXPECT_THAT(run::replaceForeignTimes(plan, directory, {}, shard.run.manifest,
                                          run::machineName(shard.run.manifest)),
@@ -375,7 +376,7 @@ TEST(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
     EXPECT_EQ(run::remainingUnits(plan, directory).size(), 4U);
 }
 
-TEST(ForeignTimes, TablesBetweenTwoRoundsAreMeasuredAgain) {
+TEST_F(ForeignTimes, TablesBetweenTwoRoundsAreMeasuredAgain) {
     run::Plan plan = makePlan();
     for (config::Case& item : plan.cases) {
         if (item.measure.lane == config::Measure::Lane::Quality) continue;
@@ -384,7 +385,6 @@ TEST(ForeignTimes, TablesBetweenTwoRoundsAreMeasuredAgain) {
         item.measure.isWithinBudget = true;
     }
     cluster::ShardRun shard = makeShard(plan, 1, 1, {0, 4, 5}, "GPU A");
-    const TemporaryFolder folder;
     const run::RunDirectory directory = directoryWith(folder, shard);
     const run::Json ended = {{"event", "rounds"}, {"table", "t/1"}, {"rounds", 1}};
     EXPECT_THAT(run::replaceForeignTimes(plan, directory, {ended}, shard.run.manifest, "another"),
@@ -393,10 +393,9 @@ TEST(ForeignTimes, TablesBetweenTwoRoundsAreMeasuredAgain) {
                 ElementsAre("t/1"));
 }
 
-TEST(ForeignTimes, FinishedTablesStay) {
+TEST_F(ForeignTimes, FinishedTablesStay) {
     const run::Plan plan = makePlan();
     cluster::ShardRun shard = makeShard(plan, 1, 1, {0, 4, 5}, "GPU A");
-    const TemporaryFolder folder;
     const run::RunDirectory directory = directoryWith(folder, shard);
     EXPECT_THAT(run::replaceForeignTimes(plan, directory, {}, shard.run.manifest, "another node"),
                 IsEmpty());

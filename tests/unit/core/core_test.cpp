@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -58,7 +57,9 @@ TEST(Text, SplitsTrimsAndJoins) {
     EXPECT_EQ(joined(gaps), ", a, , ");
 }
 
-TEST(Files, CachesLieInTheHomeOfTheUserWithoutHOME) {
+using Files = test::FolderTest;
+
+TEST_F(Files, CachesLieInTheHomeOfTheUserWithoutHOME) {
     const auto inEnvironment = [](const char* cache, const char* home) {
         const auto set = [](const char* name, const char* value) {
             return value ? ::setenv(name, value, 1) : ::unsetenv(name);
@@ -120,8 +121,7 @@ TEST(Random, UniformIsInItsRange) {
     EXPECT_LT(random.index(3), 3U);
 }
 
-TEST(Files, NothingButAFileIsReplaced) {
-    const test::TemporaryFolder folder;
+TEST_F(Files, NothingButAFileIsReplaced) {
     const auto kept = folder.write("kept", "mine");
     std::filesystem::create_symlink(kept, folder.path() / "link");
     std::filesystem::create_symlink("/nonexistent", folder.path() / "nowhere");
@@ -138,8 +138,7 @@ TEST(Files, NothingButAFileIsReplaced) {
     EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "link"));
 }
 
-TEST(Files, AtomicWriteReplacesWholeAndLeavesNothingBehind) {
-    const test::TemporaryFolder folder;
+TEST_F(Files, AtomicWriteReplacesWholeAndLeavesNothingBehind) {
     const auto path = folder.path() / "deep" / "file.txt";
     writeFileAtomic(path, "one");
     writeFileAtomic(path, "two");
@@ -147,8 +146,7 @@ TEST(Files, AtomicWriteReplacesWholeAndLeavesNothingBehind) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path.parent_path()), {}), 1);
 }
 
-TEST(Files, WhatIsWrittenInPiecesIsThereAsAWhole) {
-    const test::TemporaryFolder folder;
+TEST_F(Files, WhatIsWrittenInPiecesIsThereAsAWhole) {
     const auto path = folder.write("file.txt", "old");
     const auto count = [&] {
         return std::distance(std::filesystem::directory_iterator(folder.path()), {});
@@ -170,8 +168,7 @@ TEST(Files, WhatIsWrittenInPiecesIsThereAsAWhole) {
     EXPECT_EQ(count(), 1);
 }
 
-TEST(Files, ACopyLeavesOutWhatIsBeingWrittenAlone) {
-    const test::TemporaryFolder folder;
+TEST_F(Files, ACopyLeavesOutWhatIsBeingWrittenAlone) {
     for (const char* name :
          {"a.exr.tmp4711", "b.csv.tmp", "notes.tmpl", "c.tmp-old", "deep/d.tmp.png"}) {
         folder.write(std::string("from/") + name, "x");
@@ -191,8 +188,7 @@ TEST(Files, ACopyLeavesOutWhatIsBeingWrittenAlone) {
     EXPECT_FALSE(std::filesystem::exists(to / "large"));
 }
 
-TEST(Files, MissingFilesAndFoldersAreNamed) {
-    const test::TemporaryFolder folder;
+TEST_F(Files, MissingFilesAndFoldersAreNamed) {
     EXPECT_EQ(test::errorText([&] { readFile(folder.path() / "none"); }, folder.path()),
               "cannot read DIR/none: No such file or directory");
     EXPECT_EQ(test::errorText([&] { readFile(folder.path()); }, folder.path()),

@@ -66,8 +66,9 @@ TEST(ToSrgb8, RoundsEachFloatAsTheCurveDoes) {
     }
 }
 
-TEST(Png, KeepsEightBitsOfEveryChannelCount) {
-    const TemporaryFolder folder;
+using Png = test::FolderTest;
+
+TEST_F(Png, KeepsEightBitsOfEveryChannelCount) {
     for (int channels = 1; channels <= 4; ++channels) {
         const Image8 image = noise<std::uint8_t>(13, 7, channels);
         writePng(folder.path() / "a.png", image);
@@ -77,8 +78,7 @@ TEST(Png, KeepsEightBitsOfEveryChannelCount) {
     }
 }
 
-TEST(Png, KeepsSixteenBits) {
-    const TemporaryFolder folder;
+TEST_F(Png, KeepsSixteenBits) {
     const Image16 image = noise<std::uint16_t>(5, 9, 3);
     writePng(folder.path() / "a.png", image);
     EXPECT_EQ(readPng16(folder.path() / "a.png"), image);
@@ -86,22 +86,19 @@ TEST(Png, KeepsSixteenBits) {
               "DIR/a.png: 16 bits a channel; at most 8 are allowed");
 }
 
-TEST(Png, WidensEightBits) {
-    const TemporaryFolder folder;
+TEST_F(Png, WidensEightBits) {
     writePng(folder.path() / "a.png", Image8(1, 1, 1, 0xAB));
     EXPECT_EQ(readPng16(folder.path() / "a.png").at(0, 0), 0xABAB);
 }
 
-TEST(Png, RefusesWhatIsNoPng) {
-    const TemporaryFolder folder;
+TEST_F(Png, RefusesWhatIsNoPng) {
     const auto path = folder.write("a.png", "not a picture");
     EXPECT_EQ(errorText([&] { readPng8(path); }, folder.path()), "DIR/a.png: not a PNG file");
     EXPECT_EQ(errorText([&] { readPng8(folder.path() / "none.png"); }, folder.path()),
               "cannot read DIR/none.png: No such file or directory");
 }
 
-TEST(Png, RefusesTruncatedFiles) {
-    const TemporaryFolder folder;
+TEST_F(Png, RefusesTruncatedFiles) {
     const std::string whole = encodePng(noise<std::uint8_t>(16, 16, 3));
     for (std::size_t size = 8; size < whole.size(); size += 7) {
         const auto path = folder.write("a.png", whole.substr(0, size));
@@ -110,8 +107,7 @@ TEST(Png, RefusesTruncatedFiles) {
     }
 }
 
-TEST(Png, RefusesHeadersThatDeclareTooMuch) {
-    const TemporaryFolder folder;
+TEST_F(Png, RefusesHeadersThatDeclareTooMuch) {
     // An IHDR of 30000 x 30000 grey pixels with its right checksum, and nothing else.
     const std::string header("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\0\0\0\0",
                              29);
@@ -122,8 +118,7 @@ TEST(Png, RefusesHeadersThatDeclareTooMuch) {
               "of 41 bytes");
 }
 
-TEST(Png, EvenPicturesThatARunWritesAreRead) {
-    const TemporaryFolder folder;
+TEST_F(Png, EvenPicturesThatARunWritesAreRead) {
     const auto path = folder.path() / "black.png";
     writePng(path, Image8(8192, 8192, 1));  // 256 MiB as RGBA
     const std::uintmax_t bytes = std::filesystem::file_size(path);
@@ -149,8 +144,7 @@ TEST(Png, EvenPicturesThatARunWritesAreRead) {
               "");
 }
 
-TEST(Png, RefusesTinyFilesThatFillTheMemory) {
-    const TemporaryFolder folder;
+TEST_F(Png, RefusesTinyFilesThatFillTheMemory) {
     // 20000 x 20000 grey pixels in a file of a thousandth of their bytes, as of an even picture.
     std::string content("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x4e\x20\0\0\x4e\x20\x08\0\0\0\0", 29);
     content += std::string("\xc6\x1b\x19\xe5\0\0\0\0IDAT", 12);
@@ -161,8 +155,7 @@ TEST(Png, RefusesTinyFilesThatFillTheMemory) {
               "of 1048576 bytes");
 }
 
-TEST(Png, RefusesImagesThatPngCannotHold) {
-    const TemporaryFolder folder;
+TEST_F(Png, RefusesImagesThatPngCannotHold) {
     EXPECT_EQ(errorText([&] { writePng(folder.path() / "a.png", Image8(1, 1, 5)); }, folder.path()),
               "cannot write DIR/a.png: 5 channels; PNG has 1 to 4");
     EXPECT_EQ(errorText([&] { encodePng(Image8(1, 1, 5)); }),
@@ -182,8 +175,9 @@ ExrImage exrNoise() {
     return exr;
 }
 
-TEST(Exr, KeepsTheBitsOfFloatsAndTheAttributes) {
-    const TemporaryFolder folder;
+using Exr = test::FolderTest;
+
+TEST_F(Exr, KeepsTheBitsOfFloatsAndTheAttributes) {
     const ExrImage written = exrNoise();
     writeExr(folder.path() / "a.exr", written);
     const ExrImage read = readExr(folder.path() / "a.exr");
@@ -200,8 +194,7 @@ TEST(Exr, KeepsTheBitsOfFloatsAndTheAttributes) {
     EXPECT_EQ(read.colour().at(5, 3, 2), written.colour().at(5, 3, 2));
 }
 
-TEST(Exr, KeepsWholeNumbersAndMatrices) {
-    const TemporaryFolder folder;
+TEST_F(Exr, KeepsWholeNumbersAndMatrices) {
     ImageF ids(3, 2, 1);
     const float values[] = {0.0F, 1.0F, 65537.0F, 16777215.0F, 16777216.0F, 7.0F};
     std::copy(std::begin(values), std::end(values), ids.values().begin());
@@ -217,8 +210,7 @@ TEST(Exr, KeepsWholeNumbersAndMatrices) {
     EXPECT_EQ(read.channels[0].values, ids);
 }
 
-TEST(Exr, RefusesWhatIsNoWholeNumber) {
-    const TemporaryFolder folder;
+TEST_F(Exr, RefusesWhatIsNoWholeNumber) {
     for (const auto& [value, text] :
          {std::pair(0.5F, "0.500000"), std::pair(-1.0F, "-1.000000"),
           std::pair(16777218.0F, "16777218.000000"), std::pair(std::nanf(""), "nan")}) {
@@ -230,8 +222,7 @@ TEST(Exr, RefusesWhatIsNoWholeNumber) {
     }
 }
 
-TEST(Exr, RefusesAttributesThatDoNotEndWhereTheirTypeDoes) {
-    const TemporaryFolder folder;
+TEST_F(Exr, RefusesAttributesThatDoNotEndWhereTheirTypeDoes) {
     writeExr(folder.path() / "a.exr", exrNoise());
     const std::string good = readFile(folder.path() / "a.exr");
     const auto errorOf = [&](const std::string& attribute, const std::string& type, char size) {
@@ -250,8 +241,7 @@ TEST(Exr, RefusesAttributesThatDoNotEndWhereTheirTypeDoes) {
               "DIR/b.exr: attribute 'dataWindow' has 17 bytes, which no 'box2i' has");
 }
 
-TEST(Exr, RoundsHalvesToNearest) {
-    const TemporaryFolder folder;
+TEST_F(Exr, RoundsHalvesToNearest) {
     ImageF image(4, 1, 1);
     image.at(0, 0) = 1.0F + 0x1p-11F;      // a tie: to even, down
     image.at(1, 0) = 1.0F + 3 * 0x1p-11F;  // a tie: to even, up
@@ -269,15 +259,14 @@ TEST(Exr, RoundsHalvesToNearest) {
     EXPECT_EQ(values.at(3, 0), std::numeric_limits<float>::infinity());
 }
 
-TEST(Exr, RefusesImagesWithoutColour) {
+TEST_F(Exr, RefusesImagesWithoutColour) {
     ExrImage exr;
     exr.add(ImageF(1, 1, 1), {"id"});
     EXPECT_EQ(errorText([&] { exr.colour(); }),
               "the image has the channels 'id'; R, G, B or Y or Z are needed");
 }
 
-TEST(Exr, RefusesWhatAFileCannotHold) {
-    const TemporaryFolder folder;
+TEST_F(Exr, RefusesWhatAFileCannotHold) {
     const auto path = folder.path() / "a.exr";
     ExrImage exr;
     EXPECT_EQ(errorText([&] { writeExr(path, exr); }, folder.path()),
@@ -291,8 +280,7 @@ TEST(Exr, RefusesWhatAFileCannotHold) {
               "cannot write DIR/a.exr: channel 'R' is there twice");
 }
 
-TEST(Exr, RefusesBrokenFiles) {
-    const TemporaryFolder folder;
+TEST_F(Exr, RefusesBrokenFiles) {
     const auto path = folder.write("a.exr", "no picture");
     EXPECT_EQ(errorText([&] { readExr(path); }, folder.path()), "DIR/a.exr: not an OpenEXR file");
     writeExr(path, exrNoise());
@@ -304,8 +292,7 @@ TEST(Exr, RefusesBrokenFiles) {
     }
 }
 
-TEST(Exr, RefusesHeadersThatDeclareTooMuch) {
-    const TemporaryFolder folder;
+TEST_F(Exr, RefusesHeadersThatDeclareTooMuch) {
     writeExr(folder.path() / "a.exr", exrNoise());
     std::string content = readFile(folder.path() / "a.exr");
     const std::string key("dataWindow\0box2i\0\x10\0\0\0", 21);
@@ -320,7 +307,7 @@ TEST(Exr, RefusesHeadersThatDeclareTooMuch) {
             std::to_string(content.size()) + " bytes");
 }
 
-TEST(Exr, ReadsRealFiles) {
+TEST_F(Exr, ReadsRealFiles) {
     for (const char* name : {"BrightRings", "BrightRingsNanInf", "Garden", "PeriodicPattern",
                              "RgbRampsDiagonal", "WideColorGamut", "t01"}) {
         const auto path = test::asset(std::string("exr/") + name + ".exr");

@@ -14,8 +14,9 @@
 namespace gfxrepro::records {
 namespace {
 
-TEST(Images, AppendedAndRead) {
-    const test::TemporaryFolder folder;
+using Images = test::FolderTest;
+
+TEST_F(Images, AppendedAndRead) {
     EXPECT_TRUE(readImages(folder.path()).empty());
     const ImageEntry first{"abc", "zju2005/2.1", 0, "surface", "images/a.png", "", "a, \"b\""};
     const ImageEntry second{"abc",          "zju2005/2.1",  1,  "truth",
@@ -29,8 +30,7 @@ TEST(Images, AppendedAndRead) {
     EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(again, second));
 }
 
-TEST(Images, TornLineIsPassedOver) {
-    const test::TemporaryFolder folder;
+TEST_F(Images, TornLineIsPassedOver) {
     const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
     ImageWriter(folder.path()).append({entry});
     std::ofstream(folder.path() / "images/index.csv", std::ios::app) << "def,t,0,\"to";
@@ -39,8 +39,7 @@ TEST(Images, TornLineIsPassedOver) {
     EXPECT_EQ(readImages(folder.path()).size(), 2u);
 }
 
-TEST(Images, AListStopsBeforeWhatIsNotRead) {
-    const test::TemporaryFolder folder;
+TEST_F(Images, AListStopsBeforeWhatIsNotRead) {
     const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
     ImageWriter writer(folder.path(), 3);
     writer.append({entry});
@@ -50,8 +49,7 @@ TEST(Images, AListStopsBeforeWhatIsNotRead) {
         << "rows of before count";
 }
 
-TEST(Images, WhatIsNotAsItWasWrittenIsNamed) {
-    const test::TemporaryFolder folder;
+TEST_F(Images, WhatIsNotAsItWasWrittenIsNamed) {
     const auto written = [&](const std::string& name) {
         return sha256OfFile(folder.write(name, name));
     };
@@ -66,9 +64,8 @@ TEST(Images, WhatIsNotAsItWasWrittenIsNamed) {
                 testing::ElementsAre("images/a.png was changed", "images/a.exr is missing"));
 }
 
-TEST(Images, AListThatIsNoLongerTheWritersIsNotWrittenTo) {
+TEST_F(Images, AListThatIsNoLongerTheWritersIsNotWrittenTo) {
     const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
-    const test::TemporaryFolder folder;
     const auto index = folder.path() / "images/index.csv";
     const auto disturbed = [&](const std::function<void(const std::string& whole)>& disturb) {
         std::filesystem::remove(index);
@@ -100,9 +97,8 @@ TEST(Images, AListThatIsNoLongerTheWritersIsNotWrittenTo) {
               "is measured into its folder");
 }
 
-TEST(Images, ACutHeadIsWrittenAgain) {
+TEST_F(Images, ACutHeadIsWrittenAgain) {
     const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
-    const test::TemporaryFolder folder;
     for (const char* head : {"", "case,tab"}) {
         folder.write("images/index.csv", head);
         ImageWriter(folder.path()).append({entry});
@@ -110,8 +106,7 @@ TEST(Images, ACutHeadIsWrittenAgain) {
     }
 }
 
-TEST(Images, OtherColumnsAreAnError) {
-    const test::TemporaryFolder folder;
+TEST_F(Images, OtherColumnsAreAnError) {
     folder.write("images/index.csv", "case,table\na,b\n");
     EXPECT_EQ(
         test::errorText([&] { readImages(folder.path()); }, folder.path()),
@@ -119,8 +114,7 @@ TEST(Images, OtherColumnsAreAnError) {
         "case,table,frame,name,png,exr,title,truth_of,png_sha256,exr_sha256, found case,table");
 }
 
-TEST(Images, MalformedRowIsAnError) {
-    const test::TemporaryFolder folder;
+TEST_F(Images, MalformedRowIsAnError) {
     folder.write("images/index.csv",
                  "case,table,frame,name,png,exr,title,truth_of\na,b,x,n,p,e,t,\n");
     EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),

@@ -5,8 +5,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "engine/core/files.h"
@@ -69,8 +67,9 @@ Record sample(const std::string& caseId, double value) {
     return record;
 }
 
-TEST(Records, WriteTheDocumentedColumns) {
-    const TemporaryFolder folder;
+using Records = test::FolderTest;
+
+TEST_F(Records, WriteTheDocumentedColumns) {
     const auto path = folder.path() / "records.csv";
     RecordWriter(path).append({sample("abc", 0.1)});
     EXPECT_EQ(readFile(path),
@@ -79,8 +78,7 @@ TEST(Records, WriteTheDocumentedColumns) {
                   "rasterization,gpu_time_ms,ms,0.1,ok,,1\n");
 }
 
-TEST(Records, ReadBackAsWritten) {
-    const TemporaryFolder folder;
+TEST_F(Records, ReadBackAsWritten) {
     const auto path = folder.path() / "records.csv";
     std::vector<Record> rows;
     for (const double value : {0.0, -0.0, 1.0 / 3.0, 1e-300, 6.02214076e23, 5e-324,
@@ -103,8 +101,7 @@ TEST(Records, ReadBackAsWritten) {
     EXPECT_EQ(readRecords(path), rows);
 }
 
-TEST(Records, FailedCaseHasAnEmptyValue) {
-    const TemporaryFolder folder;
+TEST_F(Records, FailedCaseHasAnEmptyValue) {
     const auto path = folder.path() / "records.csv";
     Record row = sample("abc", std::numeric_limits<double>::quiet_NaN());
     row.status = Status::DeviceLost;
@@ -119,8 +116,7 @@ TEST(Records, FailedCaseHasAnEmptyValue) {
 
 /// Whatever the byte at which a write was cut: what is read, and what is there after reopening, are
 /// the cases before it; also behind a row's end.
-TEST(Records, CutAtAnyByteLosesOnlyTheLastCase) {
-    const TemporaryFolder folder;
+TEST_F(Records, CutAtAnyByteLosesOnlyTheLastCase) {
     const auto whole = folder.path() / "whole.csv";
     std::vector<Record> first = {sample("aaa", 1.0), sample("aaa", 2.0)};
     first[1].message = "two\nlines";
@@ -141,8 +137,7 @@ TEST(Records, CutAtAnyByteLosesOnlyTheLastCase) {
     }
 }
 
-TEST(Records, CutHeaderIsWrittenAgain) {
-    const TemporaryFolder folder;
+TEST_F(Records, CutHeaderIsWrittenAgain) {
     const std::string header = kHeader;
     for (std::size_t length = 0; length <= header.size(); ++length) {
         const auto path = folder.write("cut.csv", header.substr(0, length));
@@ -151,8 +146,7 @@ TEST(Records, CutHeaderIsWrittenAgain) {
     }
 }
 
-TEST(Records, MalformedRowsAreErrorsWithTheirLine) {
-    const TemporaryFolder folder;
+TEST_F(Records, MalformedRowsAreErrorsWithTheirLine) {
     const auto error = [&](const std::string& content) {
         const auto path = folder.write("records.csv", content);
         return errorText([&] { readRecords(path); }, folder.path());
@@ -196,8 +190,7 @@ std::string rowText(const std::string& caseId, int frame, int process, int rows)
            ",timing,p,x,ms,1,ok,," + std::to_string(rows) + "\n";
 }
 
-TEST(Records, AValueGivenTwiceIsAnError) {
-    const TemporaryFolder folder;
+TEST_F(Records, AValueGivenTwiceIsAnError) {
     const auto error = [&](const std::string& rows) {
         const auto path = folder.write("records.csv", kHeader + rows);
         return errorText([&] { readRecords(path); }, folder.path());
@@ -210,15 +203,13 @@ TEST(Records, AValueGivenTwiceIsAnError) {
 }
 
 /// As an import may have them.
-TEST(Records, TheRowsOfAUnitNeedNotStandTogether) {
-    const TemporaryFolder folder;
+TEST_F(Records, TheRowsOfAUnitNeedNotStandTogether) {
     const std::string rows = rowText("c", 0, 0, 2) + rowText("d", 0, 0, 1) + rowText("c", 1, 0, 2);
     EXPECT_EQ(readRecords(folder.write("records.csv", kHeader + rows)).size(), 3U);
 }
 
 /// What is read is what may be written, and no more is.
-TEST(Records, AWriterStopsBeforeWhatIsNotRead) {
-    const TemporaryFolder folder;
+TEST_F(Records, AWriterStopsBeforeWhatIsNotRead) {
     const auto path = folder.path() / "records.csv";
     const auto unit = [](int process) {
         std::vector<Record> rows(33, sample("abc", 1.0));
@@ -247,8 +238,7 @@ TEST(Records, AWriterStopsBeforeWhatIsNotRead) {
     EXPECT_EQ(readRecords(path).size(), 100U);
 }
 
-TEST(Records, AWholeFileTakesThePlaceOfAnother) {
-    const TemporaryFolder folder;
+TEST_F(Records, AWholeFileTakesThePlaceOfAnother) {
     const auto path = folder.path() / "records.csv";
     RecordWriter(path).append({sample("abc", 1.0)});
     writeRecords(path, {sample("def", 2.0), sample("ghi", 3.0)});
@@ -272,8 +262,7 @@ TEST(Csv, AFileIsReadAsItsText) {
     }
 }
 
-TEST(Records, AUnitThatLacksRowsIsAnErrorUnlessItIsTheLast) {
-    const TemporaryFolder folder;
+TEST_F(Records, AUnitThatLacksRowsIsAnErrorUnlessItIsTheLast) {
     const std::string whole = rowText("c", 0, 0, 2) + rowText("c", 1, 0, 2);
     const std::string cut = rowText("c", 0, 1, 3) + rowText("c", 1, 1, 3);
     EXPECT_EQ(readRecords(folder.write("records.csv", kHeader + whole + cut)).size(), 2u);
@@ -282,23 +271,21 @@ TEST(Records, AUnitThatLacksRowsIsAnErrorUnlessItIsTheLast) {
               "DIR/records.csv:3: case c, process 1 has 2 of 3 rows");
 }
 
-TEST(Records, WriterRefusesAnotherFile) {
-    const TemporaryFolder folder;
+TEST_F(Records, WriterRefusesAnotherFile) {
     const auto path = folder.write("notes.txt", "my notes\n");
     EXPECT_THAT(errorText([&] { RecordWriter writer(path); }, folder.path()),
                 testing::EndsWith("found 'my notes'"));
     EXPECT_EQ(readFile(path), "my notes\n");
 }
 
-TEST(Records, StatusNamesRoundTrip) {
+TEST_F(Records, StatusNamesRoundTrip) {
     for (int i = 0; i <= static_cast<int>(Status::Error); ++i) {
         const auto status = static_cast<Status>(i);
         EXPECT_EQ(statusFromName(statusName(status)), status);
     }
 }
 
-TEST(Records, HundredThousandRows) {
-    const TemporaryFolder folder;
+TEST_F(Records, HundredThousandRows) {
     const auto path = folder.path() / "records.csv";
     std::vector<Record> rows(100'000, sample("0123456789ab", 1.25));
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].frame = static_cast<int>(i);

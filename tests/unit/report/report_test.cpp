@@ -98,8 +98,9 @@ image::Image8 picture(std::uint8_t differing) {
     return result;
 }
 
-TEST(Report, IsOneSafeFile) {
-    const test::TemporaryFolder folder;
+using Report = test::FolderTest;
+
+TEST_F(Report, IsOneSafeFile) {
     ReportRun run = runIn(folder.path());
     image::writePng(folder.path() / "images/a.png", picture(128));
     records::ImageWriter(folder.path())
@@ -145,8 +146,7 @@ TEST(Report, IsOneSafeFile) {
     EXPECT_THAT(html, HasSubstr("; script-src 'sha256-" + base64(digest) + "'\">"));
 }
 
-TEST(Report, SaysWhyAStatementOfTheDocumentIsNotCounted) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, SaysWhyAStatementOfTheDocumentIsNotCounted) {
     ReportRun run = runIn(folder.path());
     run.claims[0].origin = config::ClaimSpec::Origin::Document;
     run.claims[0].sameAs = "zju2005/1 A";
@@ -163,8 +163,7 @@ TEST(Report, SaysWhyAStatementOfTheDocumentIsNotCounted) {
 }
 
 /// What an input was fitted to is no finding.
-TEST(Report, MarksWhatIsCalibrated) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, MarksWhatIsCalibrated) {
     ReportRun run = runIn(folder.path());
     const std::string legend = "‡ calibrated: an input of ours, at the value that its config gives";
     writeReport(folder.path() / "report.html", {&run, 1});
@@ -185,8 +184,7 @@ printed: {calibrated: [{scene: models/duck}], values: "scene,draw_ms\nmodels/duc
     EXPECT_THAT(html, HasSubstr("<p class=\"soft small\">" + legend));
 }
 
-TEST(Report, MarksTimesThatAreNotOfOneClock) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, MarksTimesThatAreNotOfOneClock) {
     ReportRun run = runIn(folder.path());
     const std::string legend = "timed while the GPU&#39;s clock moved between 0.345 and 1.98 GHz";
     writeReport(folder.path() / "report.html", {&run, 1});
@@ -202,8 +200,7 @@ TEST(Report, MarksTimesThatAreNotOfOneClock) {
 }
 
 /// A number of other parameters is no multiple of what is printed.
-TEST(Report, NoRatioAtOtherParameters) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, NoRatioAtOtherParameters) {
     ReportRun run = runIn(folder.path());
     const Node printed = run.experiments[0].paperCases[0].params;
     run.experiments[0].paperCases[0].params.set("light_grid", Node::number(16));
@@ -248,8 +245,7 @@ TEST(Report, NoRatioAtOtherParameters) {
                                 "them.</p>"));
 }
 
-TEST(Report, CellsNameTheirCases) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, CellsNameTheirCases) {
     const ReportRun run = runIn(folder.path());
     writeReport(folder.path() / "report.html", {&run, 1});
     const std::string html = readFile(folder.path() / "report.html");
@@ -258,8 +254,7 @@ TEST(Report, CellsNameTheirCases) {
     EXPECT_THAT(html, HasSubstr("<article class=\"case\" id=\"A-case:models/duck"));
 }
 
-TEST(Report, ImagesWithATruthGetAFlipMap) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, ImagesWithATruthGetAFlipMap) {
     const ReportRun run = runIn(folder.path());
     std::filesystem::create_directories(folder.path() / "images/x");
     image::writePng(folder.path() / "images/x/result.png", picture(255));
@@ -279,8 +274,7 @@ TEST(Report, ImagesWithATruthGetAFlipMap) {
     EXPECT_LT(int{map.at(7, 7, 0)}, int{map.at(0, 0, 0)});
 }
 
-TEST(Report, LargeGalleriesLieBesideThePage) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, LargeGalleriesLieBesideThePage) {
     const ReportRun run = runIn(folder.path());
     image::Image8 noise(600, 620, 3);  // a megabyte, taken 20 times
     std::uint32_t state = 1;
@@ -310,8 +304,8 @@ TEST(Report, LargeGalleriesLieBesideThePage) {
     EXPECT_NEAR(thumbnail.at(80, 80, 0), 150, 100) << "the mean light of some random values";
 }
 
-TEST(Report, EmbedsEveryPictureWhereItIsAsked) {
-    const test::TemporaryFolder folder, out;
+TEST_F(Report, EmbedsEveryPictureWhereItIsAsked) {
+    const test::TemporaryFolder out;
     const ReportRun run = runIn(folder.path());
     image::Image8 noise(600, 620, 3);
     std::uint32_t state = 1;
@@ -353,8 +347,7 @@ image::Image8 grey(std::uint8_t value) {
 }
 
 /// Two scenes by two methods, one truth a scene, two measures of each picture.
-TEST(Report, PicturesLieAsTheTable) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, PicturesLieAsTheTable) {
     ReportRun run = runIn(folder.path());
     run.experiments = {tables::experimentFrom(R"(
 sweep: {scene: [models/duck, models/hugo], method: [coarse, fine]}
@@ -402,8 +395,7 @@ layout:
 }
 
 /// What the document shows comes first; the other pictures of the cases are folded.
-TEST(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
     ReportRun run = runIn(folder.path());
     const std::string id = run.records[0].caseId;
     std::filesystem::create_directories(folder.path() / "images");
@@ -438,8 +430,7 @@ TEST(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
         std::string::npos);
 }
 
-TEST(Report, HeadsOfSeveralLevelsAndLabelsStandOnce) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, HeadsOfSeveralLevelsAndLabelsStandOnce) {
     ReportRun run = runIn(folder.path());
     run.experiments = {tables::experimentFrom(R"(
 sweep: {scene: [outdoor/bird_nest], padding: [1, 2], method: [one_layer, two_layers]}
@@ -474,8 +465,7 @@ layout:
     EXPECT_EQ(html.find(">bird nest</th>"), html.rfind(">bird nest</th>"));
 }
 
-TEST(Report, LabelsAreReadForNames) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, LabelsAreReadForNames) {
     ReportRun run = runIn(folder.path());
     run.experiments[0].labels = {
         {"scene", "model"}, {"models/duck", "rubber duck"}, {"draw_ms", "time to draw"}};
@@ -494,8 +484,7 @@ TEST(Report, LabelsAreReadForNames) {
 }
 
 /// What a chapter holds and what it does not, in words, with the pictures that show it.
-TEST(Report, FirstScreenSaysWhatReproduced) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, FirstScreenSaysWhatReproduced) {
     ReportRun run = runIn(folder.path());
     run.experiments.push_back(run.experiments[0]);
     run.experiments[1].id = "zju2005/figure-1";
@@ -551,8 +540,7 @@ TEST(Report, FirstScreenSaysWhatReproduced) {
 }
 
 /// One number of a picture on a page: the table's.
-TEST(Report, TheErrorBelowAPictureIsTheRecordedOne) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, TheErrorBelowAPictureIsTheRecordedOne) {
     ReportRun run = runIn(folder.path());
     const std::string id = records()[0].caseId;
     image::writePng(folder.path() / "images/a.png", picture(128));
@@ -569,8 +557,7 @@ TEST(Report, TheErrorBelowAPictureIsTheRecordedOne) {
                 HasSubstr("<figcaption>error: FLIP 0.1234 to truth</figcaption>"));
 }
 
-TEST(Report, WhatIsWithinTheNoiseIsGrey) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, WhatIsWithinTheNoiseIsGrey) {
     ReportRun run = runIn(folder.path());
     run.tables[0].notes = {"A is faster than B.", "C and B cannot be told apart."};
     run.tables[0].toldNotes = 1;
@@ -585,7 +572,7 @@ TEST(Report, WhatIsWithinTheNoiseIsGrey) {
     EXPECT_THAT(html, HasSubstr("a grey ratio is within the noise"));
 }
 
-TEST(Report, RunsStandSideBySide) {
+TEST_F(Report, RunsStandSideBySide) {
     const test::TemporaryFolder a, b, out;
     std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
     runs[1].experiments[0].paperCases[0].params.set("light_grid", Node::number(16));
@@ -620,7 +607,7 @@ TEST(Report, RunsStandSideBySide) {
         << "runs of one table open on its numbers";
 }
 
-TEST(Report, IdsAreUniqueAlsoWithCurvesOfSeveralRuns) {
+TEST_F(Report, IdsAreUniqueAlsoWithCurvesOfSeveralRuns) {
     const test::TemporaryFolder a, b, out;
     std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
     config::PlotSpec plot;
@@ -647,7 +634,7 @@ TEST(Report, IdsAreUniqueAlsoWithCurvesOfSeveralRuns) {
     EXPECT_THAT(html, HasSubstr("<figcaption>B: A table</figcaption>"));
 }
 
-TEST(Report, KeptVerdictsStandBesideARun) {
+TEST_F(Report, KeptVerdictsStandBesideARun) {
     const test::TemporaryFolder a, kept;
     const auto file =
         kept.write("claims.csv",
@@ -667,8 +654,7 @@ TEST(Report, KeptVerdictsStandBesideARun) {
     EXPECT_THAT(html, HasSubstr("<span class=\"soft\">rests on </span>bias (of 3 tried)</p>"));
 }
 
-TEST(Report, RefusesVerdictsThatAreNone) {
-    const test::TemporaryFolder folder;
+TEST_F(Report, RefusesVerdictsThatAreNone) {
     const auto file = folder.write("claims.csv", "claim,table,verdict\nA,t,perhaps\n");
     try {
         claims::readClaims(file);

@@ -150,8 +150,9 @@ void writePng(const fs::path& path, const std::vector<std::int16_t>& values, int
     std::fclose(file);
 }
 
-TEST(HeightRows, MapsInFilesAreThoseInMemory) {
-    const test::TemporaryFolder folder;
+using HeightRows = test::FolderTest;
+
+TEST_F(HeightRows, MapsInFilesAreThoseInMemory) {
     const std::vector<std::int16_t> all = values();
     const auto at = [&](const char* name) { return folder.path() / name; };
     writeTiledTiff(at("strips.tif"), all, 0);
@@ -187,8 +188,7 @@ TEST(HeightRows, MapsInFilesAreThoseInMemory) {
     EXPECT_EQ(whole.filledCount, 0U);
 }
 
-TEST(HeightRows, BrokenFilesLeaveNothingBehind) {
-    const test::TemporaryFolder folder;
+TEST_F(HeightRows, BrokenFilesLeaveNothingBehind) {
     const fs::path cache = folder.path() / "cache";
     const auto message = [&](const char* name) {
         return errorText([&] { loadHeightMapInFile(folder.path() / name, {}, cache, "key", 100); },
@@ -213,8 +213,7 @@ TEST(HeightRows, BrokenFilesLeaveNothingBehind) {
     EXPECT_EQ(files, 1U);
 }
 
-TEST(HeightRows, RefusesWhatCannotBeReadInPieces) {
-    const test::TemporaryFolder folder;
+TEST_F(HeightRows, RefusesWhatCannotBeReadInPieces) {
     folder.write("wide.raw", "");
     folder.write("wide.raw.yaml", "{width: 65538, height: 2, type: u16}");
     EXPECT_EQ(errorText([&] { openHeightRows(folder.path() / "wide.raw"); }, folder.path()),

@@ -4,7 +4,6 @@
 #include <tiffio.h>
 
 #include <cstdio>
-#include <string>
 #include <vector>
 
 #include "engine/core/files.h"
@@ -40,8 +39,9 @@ fs::path writeGeoTiff(const fs::path& path, const char* metadata, std::vector<do
     return path;
 }
 
-TEST(HeightUnits, ScaleAndOffsetOfAGeoTiffAreApplied) {
-    const TemporaryFolder folder;
+using HeightUnits = test::FolderTest;
+
+TEST_F(HeightUnits, ScaleAndOffsetOfAGeoTiffAreApplied) {
     const fs::path path =
         writeGeoTiff(folder.path() / "a.tif",
                      "<GDALMetadata>\n"
@@ -57,8 +57,7 @@ TEST(HeightUnits, ScaleAndOffsetOfAGeoTiffAreApplied) {
     EXPECT_FALSE(map.isSpacingOfFile);
 }
 
-TEST(HeightUnits, SpacingComesFromTheFileUnlessItIsGiven) {
-    const TemporaryFolder folder;
+TEST_F(HeightUnits, SpacingComesFromTheFileUnlessItIsGiven) {
     const fs::path path = folder.path() / "a.tif";
     const auto spacing = [&](std::vector<double> scale, std::vector<std::uint16_t> keys) {
         return loadHeightMap(writeGeoTiff(path, nullptr, std::move(scale), std::move(keys)), {})
@@ -76,8 +75,7 @@ TEST(HeightUnits, SpacingComesFromTheFileUnlessItIsGiven) {
     EXPECT_FALSE(loadHeightMap(path, {2.0F, 1.0F, {}}).isSpacingOfFile);
 }
 
-TEST(HeightUnits, SrtmTilesHaveTheSpacingOfTheirFormat) {
-    const TemporaryFolder folder;
+TEST_F(HeightUnits, SrtmTilesHaveTheSpacingOfTheirFormat) {
     const fs::path path = folder.write("N00E000.hgt", "");
     fs::resize_file(path, 2884802);
     EXPECT_NEAR(loadHeightMap(path, {}).spacingM, 92.61F, 0.01F);
@@ -100,8 +98,7 @@ void writeGrey(const fs::path& path, int bits, unsigned char row) {
     std::fclose(file);
 }
 
-TEST(HeightUnits, PngOfFewBitsHasTheNumbersThatItStores) {
-    const TemporaryFolder folder;
+TEST_F(HeightUnits, PngOfFewBitsHasTheNumbersThatItStores) {
     const fs::path path = folder.path() / "a.png";
     const auto heights = [&](int bits, unsigned char row) {
         writeGrey(path, bits, row);

@@ -33,8 +33,9 @@ std::size_t differentPoints(const std::vector<glm::vec3>& positions) {
     return different.size();
 }
 
-TEST(FarFiles, PointsKeepTheirPlaces) {
-    const TemporaryFolder folder;
+using FarFiles = test::FolderTest;
+
+TEST_F(FarFiles, PointsKeepTheirPlaces) {
     for (const char* type : {"double", "float"}) {  // text has the digits, whatever it declares
         const Scene scene = loadPly(folder.write("a.ply", points(type)));
         EXPECT_EQ(differentPoints(scene.points.positions), 400U) << type;
@@ -47,8 +48,7 @@ TEST(FarFiles, PointsKeepTheirPlaces) {
     }
 }
 
-TEST(FarFiles, FacesKeepTheirShape) {
-    const TemporaryFolder folder;
+TEST_F(FarFiles, FacesKeepTheirShape) {
     const Scene scene =
         loadObj(folder.write("a.obj",
                              "v 0 0 0\nv 500000.12 4500000.12 10\nv 500000.22 4500000.12 10\n"
@@ -57,8 +57,7 @@ TEST(FarFiles, FacesKeepTheirShape) {
     EXPECT_EQ(scene.triangleCount(), 2U);
 }
 
-TEST(FarFiles, NodesFarAwayKeepTheirDistance) {
-    const TemporaryFolder folder;
+TEST_F(FarFiles, NodesFarAwayKeepTheirDistance) {
     folder.write("square.bin", squareBytes());
     Document document = square();
     document["nodes"] = R"([{"children":[1,2],"translation":[500000,4500000,0]},
@@ -71,8 +70,7 @@ TEST(FarFiles, NodesFarAwayKeepTheirDistance) {
     EXPECT_EQ(scene.offset, glm::dvec3(500'001, 4'500'001, 0));
 }
 
-TEST(FarFiles, OthersStayAsTheyAre) {
-    const TemporaryFolder folder;
+TEST_F(FarFiles, OthersStayAsTheyAre) {
     // A knob of 1 cm among the files of a room.
     const std::string face = "\nv 20.01 0 0\nv 20 0.01 0\nf 1 2 3\n";
     EXPECT_EQ(loadObj(folder.write("a.obj", "v 20 0 0" + face)).offset, glm::dvec3(0.0));
@@ -81,8 +79,7 @@ TEST(FarFiles, OthersStayAsTheyAre) {
         << "one point";
 }
 
-TEST(FarFiles, ComeBackFromWhatIsSaved) {
-    const TemporaryFolder folder;
+TEST_F(FarFiles, ComeBackFromWhatIsSaved) {
     const Scene scene = loadPly(folder.write("a.ply", points("double")));
     savePly(folder.path() / "b.ply", scene);
     saveGlb(folder.path() / "b.glb", scene);

@@ -16,8 +16,9 @@ namespace {
 using test::errorText;
 using test::TemporaryFolder;
 
-TEST(ModelFiles, AFileWithAnEncodedNameIsPartOfTheIdentity) {
-    const TemporaryFolder folder;
+using ModelFiles = test::FolderTest;
+
+TEST_F(ModelFiles, AFileWithAnEncodedNameIsPartOfTheIdentity) {
     Document document = square();
     folder.write("two words/a+b c.bin", squareBytes());
     document["buffers"] = R"([{"byteLength":76,"uri":"two%20words/a+b%20c.bin"}])";
@@ -30,8 +31,7 @@ TEST(ModelFiles, AFileWithAnEncodedNameIsPartOfTheIdentity) {
     EXPECT_NE(loadScene(path).origin.sha256, scene.origin.sha256);
 }
 
-TEST(ModelFiles, AFileThatNobodyHashedIsAnError) {
-    const TemporaryFolder folder;
+TEST_F(ModelFiles, AFileThatNobodyHashedIsAnError) {
     folder.write("square.bin", squareBytes());
     const auto path = folder.write("a.gltf", text(square()));
     const auto other = folder.write("other.bin", "x");
@@ -44,16 +44,14 @@ TEST(ModelFiles, AFileThatNobodyHashedIsAnError) {
 }
 
 /// A walk that kept the path of each level would take the square of the depth.
-TEST(ModelFiles, DeepNestingEndsTheSearch) {
-    const TemporaryFolder folder;
+TEST_F(ModelFiles, DeepNestingEndsTheSearch) {
     std::string nested;
     for (int i = 0; i < 1'000'000; ++i) nested += "{\"extensions\":";
     EXPECT_TRUE(filesBeside(folder.write("a.gltf", nested)).empty());
     EXPECT_TRUE(filesBeside(folder.write("b.gltf", std::string(10'000'000, '['))).empty());
 }
 
-TEST(ModelFiles, AnObjFileHasThoseThatItsLoaderOpens) {
-    const TemporaryFolder folder;
+TEST_F(ModelFiles, AnObjFileHasThoseThatItsLoaderOpens) {
     folder.write("a.mtl", "newmtl a\nmap_Kd b.tga # bark\n");
     folder.write("c d.mtl", "newmtl c\n");
     folder.write("b.tga", "x");

@@ -41,8 +41,9 @@ void expectSame(const Mesh& a, const Mesh& b) {
     EXPECT_EQ(a.triangles, b.triangles);
 }
 
-TEST(SavePly, ComesBackExactly) {
-    const TemporaryFolder folder;
+using SavePly = test::FolderTest;
+
+TEST_F(SavePly, ComesBackExactly) {
     const Mesh mesh = randomMesh(1);
     savePly(folder.path() / "a.PLY", sceneOf(mesh));
     const Scene scene = loadScene(folder.path() / "a.PLY");
@@ -53,8 +54,7 @@ TEST(SavePly, ComesBackExactly) {
     EXPECT_EQ(scene.origin.sha256.size(), 64U);
 }
 
-TEST(SavePly, KeepsPoints) {
-    const TemporaryFolder folder;
+TEST_F(SavePly, KeepsPoints) {
     Scene scene;
     const Mesh mesh = randomMesh(2);
     scene.points = {mesh.positions, mesh.normals, std::vector<float>(100, 0.1F), mesh.colors};
@@ -66,8 +66,7 @@ TEST(SavePly, KeepsPoints) {
     EXPECT_EQ(points.colors, scene.points.colors);
 }
 
-TEST(SavePly, RefusesNothing) {
-    const TemporaryFolder folder;
+TEST_F(SavePly, RefusesNothing) {
     EXPECT_EQ(errorText([&] { savePly(folder.path() / "a.ply", Scene{}); }, folder.path()),
               "cannot write DIR/a.ply: the scene has no triangles and no points");
 }
@@ -98,8 +97,9 @@ Material unusualMaterial() {
     return material;
 }
 
-TEST(SaveGlb, KeepsInstancesMaterialsTexturesAndCameras) {
-    const TemporaryFolder folder;
+using SaveGlb = test::FolderTest;
+
+TEST_F(SaveGlb, KeepsInstancesMaterialsTexturesAndCameras) {
     Scene scene;
     scene.meshes = {randomMesh(3), randomMesh(4)};
     scene.meshes[1].material = 1;
@@ -142,8 +142,7 @@ TEST(SaveGlb, KeepsInstancesMaterialsTexturesAndCameras) {
     EXPECT_EQ(eye.farM, camera.farM);
 }
 
-TEST(SaveGlb, KeepsEveryMemberOfAMaterial) {
-    const TemporaryFolder folder;
+TEST_F(SaveGlb, KeepsEveryMemberOfAMaterial) {
     Scene scene = sceneOf(randomMesh(5));
     scene.textures.emplace_back(1, 1, 3, std::uint8_t{7});
     scene.textures.emplace_back(1, 1, 3, std::uint8_t{9});
@@ -188,8 +187,7 @@ Scene litAndMoving(const glm::dvec3& offset) {
     return scene;
 }
 
-TEST(SaveGlb, KeepsLightsPathsAndMotions) {
-    const TemporaryFolder folder;
+TEST_F(SaveGlb, KeepsLightsPathsAndMotions) {
     const Scene scene = litAndMoving(glm::dvec3(0.0));
     EXPECT_EQ(saveGlb(folder.path() / "a.glb", scene), Lines{});
     const Scene back = loadGltf(folder.path() / "a.glb");
@@ -222,8 +220,7 @@ TEST(SaveGlb, KeepsLightsPathsAndMotions) {
     EXPECT_EQ(a.swingCount, b.swingCount);
 }
 
-TEST(SaveGlb, KeepsLightsPathsAndMotionsFarAway) {
-    const TemporaryFolder folder;
+TEST_F(SaveGlb, KeepsLightsPathsAndMotionsFarAway) {
     const Scene scene = litAndMoving({5e6, 0, 0});
     saveGlb(folder.path() / "a.glb", scene);
     const Scene back = loadGltf(folder.path() / "a.glb");
@@ -260,8 +257,7 @@ TEST(Save, SaysWhatIsLeftOut) {
                "left out: the normals of a mesh, as others have none"}));
 }
 
-TEST(SaveGlb, KeepsPoints) {
-    const TemporaryFolder folder;
+TEST_F(SaveGlb, KeepsPoints) {
     Scene scene;
     const Mesh mesh = randomMesh(6);
     scene.points = {mesh.positions, mesh.normals, {}, mesh.colors};

@@ -61,7 +61,9 @@ std::vector<std::string> titles(const Variations& variations) {
     return all;
 }
 
-TEST(Sensitivity, VariesWhatIsBoundByTurns) {
+using Sensitivity = test::FolderTest;
+
+TEST_F(Sensitivity, VariesWhatIsBoundByTurns) {
     config::Experiment experiment;
     experiment.assumptions = {assumption("bias", "0.02", "[0, 0.04]"),
                               assumption("size", "1024", "[16, 4096]"),
@@ -94,7 +96,7 @@ TEST(Sensitivity, VariesWhatIsBoundByTurns) {
                             Pair("view", "it has no range")));
 }
 
-TEST(Sensitivity, VariesScenesBySeedAndByAlternatives) {
+TEST_F(Sensitivity, VariesScenesBySeedAndByAlternatives) {
     config::Case city = caseWith("{}"), tree = city, scan = city;
     city.scene = node("city");
     tree.scene = node("tree@2");
@@ -130,7 +132,7 @@ Outcome outcome(const std::string& name, const std::string& value, Verdict verdi
     return {variation, {claim}};
 }
 
-TEST(Sensitivity, SaysUnderWhatAClaimHolds) {
+TEST_F(Sensitivity, SaysUnderWhatAClaimHolds) {
     const Outcome base = outcome("", "", Verdict::Holds);
     EXPECT_EQ(dependence({base, outcome("bias", "0", Verdict::Holds, 1.0)}, 0),
               "holds under all 2");
@@ -153,7 +155,7 @@ Outcome failed(const std::string& name, const std::string& value) {
     return {{name, value, std::nullopt, {}}, {}, "exit code 2: bias is 5"};
 }
 
-TEST(Sensitivity, LeavesOutWhatCouldNotBeMeasured) {
+TEST_F(Sensitivity, LeavesOutWhatCouldNotBeMeasured) {
     const std::vector<Outcome> outcomes{outcome("", "", Verdict::Holds), failed("bias", "5"),
                                         outcome("kind", "b", Verdict::Holds),
                                         outcome("kind", "c", Verdict::Unmeasured)};
@@ -162,7 +164,7 @@ TEST(Sensitivity, LeavesOutWhatCouldNotBeMeasured) {
     EXPECT_EQ(dependence({outcome("", "", Verdict::NotApplicable)}, 0), "not judged as configured");
 }
 
-TEST(Sensitivity, SaysWhatAVerdictRestsOn) {
+TEST_F(Sensitivity, SaysWhatAVerdictRestsOn) {
     const Outcome base = outcome("", "", Verdict::Fails);
     EXPECT_EQ(restsOn({base}, 0), "not tried");
     EXPECT_EQ(
@@ -173,7 +175,7 @@ TEST(Sensitivity, SaysWhatAVerdictRestsOn) {
         "kind, scene_seed (of 3 tried)");
 }
 
-TEST(Sensitivity, SaysOfHowManyAssumptionsSomeWereTried) {
+TEST_F(Sensitivity, SaysOfHowManyAssumptionsSomeWereTried) {
     Variations variations;
     for (const char* name : {"", "kind", "bias", "kind"})
         variations.runs.push_back({name, "", std::nullopt, {}});
@@ -187,12 +189,11 @@ TEST(Sensitivity, SaysOfHowManyAssumptionsSomeWereTried) {
     EXPECT_EQ(restsOn(withLeft({made[0], outcome("kind", "b", Verdict::Fails)}, variations, 2), 0),
               "none (1 of 2 tried)");
     EXPECT_EQ(restsOn(withLeft({made[0]}, variations, 3), 0), "not tried");
-    const test::TemporaryFolder folder;
     const auto file = folder.write("p-1.csv", sensitivityCsv(all, "abc"));
     EXPECT_EQ(restsOn(readSensitivity(file, "abc"), 0), "kind (1 of 2 tried)");
 }
 
-TEST(Sensitivity, WritesTablesAndReadsThemAgain) {
+TEST_F(Sensitivity, WritesTablesAndReadsThemAgain) {
     config::Experiment experiment;
     experiment.id = "p/1";
     experiment.title = "T";
@@ -214,7 +215,6 @@ TEST(Sensitivity, WritesTablesAndReadsThemAgain) {
         EXPECT_NE(text.find(line), std::string::npos) << line << '\n' << text;
     }
 
-    const test::TemporaryFolder folder;
     const auto file = folder.write("p-1.csv", csv);
     const std::vector<Outcome> read = readSensitivity(file, "abc");
     ASSERT_EQ(read.size(), 3U);
@@ -241,9 +241,8 @@ run::Plan planWith(const std::string& claim, int number) {
     return plan;
 }
 
-TEST(Sensitivity, KeptResultsOfAnotherCaseOrClaimAreStale) {
+TEST_F(Sensitivity, KeptResultsOfAnotherCaseOrClaimAreStale) {
     const run::Plan plan = planWith("{says: a, bound: n, at_least: 1}", 3);
-    const test::TemporaryFolder folder;
     folder.write("software/quick/p-1.csv", sensitivityCsv({outcome("", "", Verdict::Holds),
                                                            outcome("bias", "5", Verdict::Fails)},
                                                           basisOf(plan, plan.experiments.front())));
