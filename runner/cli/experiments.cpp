@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <set>
 
 #include "engine/core/files.h"
 #include "engine/core/text.h"
@@ -140,9 +139,7 @@ std::vector<config::Experiment> loadExperiments(const run::Request& request,
                                                 const std::string& profile) {
     config::ExperimentOptions options;
     options.profile = profile;
-    for (const std::string& set : request.sets) {
-        options.sets.push_back(config::parseOverride(set));
-    }
+    for (const std::string& set : request.sets) options.sets.push_back(config::parseOverride(set));
     for (const std::string& sweep : request.sweeps) {
         options.sweeps.push_back(config::parseOverride(sweep));
     }

@@ -169,9 +169,7 @@ void printChannel(const image::ExrImage::Channel& channel) {
         high = std::max(high, value);
     }
     say("channel {:<10} {:<5}", channel.name, nameOf(channel.type));
-    if (finite > 0) {
-        say(" {:g} to {:g}, mean {:g}", low, high, sum / static_cast<double>(finite));
-    }
+    if (finite > 0) say(" {:g} to {:g}, mean {:g}", low, high, sum / static_cast<double>(finite));
     if (const std::size_t others = channel.values.values().size() - finite; others > 0) {
         say(" ({} not finite)", others);
     }

@@ -66,9 +66,7 @@ std::size_t sayFailing(const std::vector<claims::ClaimResult>& claims) {
         if (claim.verdict != claims::Verdict::Fails || ++failing > kSaidFailing) continue;
         say("  {} fails: {} ({}); measured {}, required {}\n", claim.table, wordsOf(claim),
             claim.id, claim.measured, claim.required);
-        if (const std::string why = claims::whyText(claim); !why.empty()) {
-            say("    why: {}\n", why);
-        }
+        if (const std::string why = claims::whyText(claim); !why.empty()) say("    why: {}\n", why);
     }
     if (failing > kSaidFailing) {
         say("  and {} more that fail, in the report\n", failing - kSaidFailing);
@@ -101,9 +99,7 @@ void sayVerdicts(const std::vector<claims::ClaimResult>& claims) {
         {claims::Verdict::NotApplicable, "asks for a GPU, or for another profile"},
     };
     for (const auto& [verdict, meaning] : kMeanings) {
-        if (verdicts.contains(verdict)) {
-            say("  {}: {}\n", claims::verdictName(verdict), meaning);
-        }
+        if (verdicts.contains(verdict)) say("  {}: {}\n", claims::verdictName(verdict), meaning);
     }
 }
 

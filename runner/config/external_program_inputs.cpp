@@ -176,9 +176,7 @@ const ProgramFile* absentOf(const std::vector<ProgramFile>& files) {
 std::string programKey(const std::vector<ProgramFile>& files, FileDigests& digests) {
     if (absentOf(files)) return "";
     std::string content;
-    for (const ProgramFile& file : files) {
-        content += file.name + ' ' + digests.of(file.path) + '\n';
-    }
+    for (const ProgramFile& file : files) content += file.name + ' ' + digests.of(file.path) + '\n';
     return sha256(content);
 }
 

@@ -135,9 +135,7 @@ class FileReader {
         if (!profiles) return;
         requireKeys(*profiles, "profiles", keysOf("profiles"));
         for (const auto& [name, overlay] : profiles->entries()) {
-            if (!overlay.isNull()) {
-                requireKeys(overlay, "profile '" + name + "'", sectionKeys());
-            }
+            if (!overlay.isNull()) requireKeys(overlay, "profile '" + name + "'", sectionKeys());
             result.profiles.emplace_back(name, overlay.isNull() ? Node::map({}) : overlay);
         }
     }

@@ -177,9 +177,7 @@ std::string scriptText(const run::Plan& plan, const config::Experiment& experime
 void writeScripts(const run::Plan& plan, const fs::path& target) {
     const fs::path configs = dataFolder("configs");
     for (const char* folder : {"presets", "scenes"}) {
-        if (fs::exists(configs / folder)) {
-            copyTree(configs / folder, target / "configs" / folder);
-        }
+        if (fs::exists(configs / folder)) copyTree(configs / folder, target / "configs" / folder);
     }
     for (const config::Experiment& experiment : plan.experiments) {
         const fs::path place = target / configPlace(experiment);

@@ -474,9 +474,7 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
     if (context.device.isNone() && technique::needsDevice(info, item.program)) {
         throw UnsupportedError("technique '" + item.technique + "' needs a graphics device");
     }
-    if (!item.program.isNull()) {
-        result.programs = context.programs.require(item, params.resolved());
-    }
+    if (!item.program.isNull()) result.programs = context.programs.require(item, params.resolved());
     const SceneCache::Entry* scene = nullptr;
     if (!sceneName.empty()) {
         const PhaseScope phase(context, "load", result.cost.loadS);

@@ -5,9 +5,7 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 #include <algorithm>
-#include <cmath>
 #include <deque>
-#include <functional>
 #include <iterator>
 #include <limits>
 #include <memory>

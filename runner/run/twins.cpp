@@ -67,9 +67,7 @@ std::string workKey(const Case& item) {
         {"output", {item.outputWidthPx, item.outputHeightPx}},
         {"measure",
          {measure.warmup, measure.repeats, measure.processes, measure.frames, measure.timeLimitS}}};
-    if (!item.program.isNull()) {
-        content["program"] = {item.program.toJson(), item.programKey};
-    }
+    if (!item.program.isNull()) content["program"] = {item.program.toJson(), item.programKey};
     if (!hasTimes(item)) content["params"].erase("pictures");
     spellNumbersAlike(content);
     if (measure.seeds == config::Measure::Seeds::Process) content["seeds"] = "process";

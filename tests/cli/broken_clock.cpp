@@ -6,7 +6,6 @@
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
-#include <cstdint>
 #include <cstdlib>
 #include <string_view>
 

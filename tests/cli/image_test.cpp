@@ -1,7 +1,6 @@
 // `gfxrepro image …` on files that the tests write.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <tuple>
 

@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <array>
-
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {

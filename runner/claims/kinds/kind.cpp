@@ -25,11 +25,6 @@ const std::vector<Kind>& kinds() {
     return all;
 }
 
-const Kind* kindNamed(std::string_view name) {
-    const auto found = std::ranges::find(kinds(), name, &Kind::name);
-    return found == kinds().end() ? nullptr : &*found;
-}
-
 std::vector<ClaimPart> partsOf(const ClaimSpec& claim) {
     std::vector<ClaimPart> parts = claim.kind->parts(claim);
     for (ClaimPart& part : parts) {

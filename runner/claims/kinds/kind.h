@@ -149,8 +149,6 @@ struct Kind {
 
 /// All of them, in the order in which people are told of them.
 const std::vector<Kind>& kinds();
-/// Null for a name that is none.
-const Kind* kindNamed(std::string_view name);
 std::vector<ClaimPart> partsOf(const ClaimSpec& claim);
 
 // What kinds share.

@@ -39,9 +39,7 @@ inline scene::Mesh randomTriangles(int count, float size, std::uint64_t seed) {
     scene::Mesh mesh;
     for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
         const glm::vec3 centre = vector(1.0F - size);
-        for (int corner = 0; corner < 3; ++corner) {
-            mesh.positions.push_back(centre + vector(size));
-        }
+        for (int corner = 0; corner < 3; ++corner) mesh.positions.push_back(centre + vector(size));
         mesh.triangles.push_back(glm::uvec3(3 * i) + glm::uvec3(0, 1, 2));
     }
     return mesh;

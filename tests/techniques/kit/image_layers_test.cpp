@@ -57,9 +57,7 @@ TEST(ImageLayers, DepthsOfWindowsAndPoints) {
     const std::vector<float> window{windowZ(1.0F), windowZ(2.0F), windowZ(7.5F), 1.0F};
     const image::ExrImage fromWindow = ImageLayers(view).windowDepths(window).options().layers;
     const float expected[] = {1.0F, 2.0F, 7.5F, 0.0F};
-    for (int x = 0; x < 4; ++x) {
-        EXPECT_NEAR(fromWindow.find("Z")->at(x, 0), expected[x], 1e-5F);
-    }
+    for (int x = 0; x < 4; ++x) EXPECT_NEAR(fromWindow.find("Z")->at(x, 0), expected[x], 1e-5F);
     // Along the axis, not along the ray.
     const std::vector<glm::vec4> points{
         {3.0F, 1.0F, 4.0F, 1.0F}, {0.0F, 0.0F, 3.0F, 1.0F}, {9.0F, 0.0F, -2.5F, 1.0F}, {}};

@@ -1,7 +1,6 @@
 // The images against independent answers: a replay on the CPU, Embree, and each other.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 
 #include "engine/raycast/ray_tracer.h"

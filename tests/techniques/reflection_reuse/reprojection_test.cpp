@@ -168,9 +168,7 @@ TEST_F(ReprojectionTest, DepthIsThatOfTheWholePath) {
         samples.distanceM[at(x, y)] = isMoved ? 1.0F : 4.0F;
     });
     const std::vector<glm::vec4> result = shifted(samples);
-    for (int x = 13; x < 19; ++x) {
-        expectColour(result[at(x, 5)], samples.radiance[at(x, 5)], x, 5);
-    }
+    for (int x = 13; x < 19; ++x) expectColour(result[at(x, 5)], samples.radiance[at(x, 5)], x, 5);
 }
 
 TEST_F(ReprojectionTest, ARayThatLeftTheSceneReflectsTheFarthest) {
@@ -180,9 +178,7 @@ TEST_F(ReprojectionTest, ARayThatLeftTheSceneReflectsTheFarthest) {
         samples.distanceM[at(x, y)] = x < 12 ? 0.0F : 9.0F;  // the diagonal is 10
     });
     const std::vector<glm::vec4> result = shifted(samples);
-    for (int x = 13; x < 19; ++x) {
-        expectColour(result[at(x, 5)], samples.radiance[at(x, 5)], x, 5);
-    }
+    for (int x = 13; x < 19; ++x) expectColour(result[at(x, 5)], samples.radiance[at(x, 5)], x, 5);
 }
 
 /// A patch of 4 × 4 samples around the middle, drawn apart to `scale` times its size; the other

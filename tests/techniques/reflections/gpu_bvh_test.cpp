@@ -289,9 +289,7 @@ TEST_F(GpuBvhTest, PassesThroughTrianglesWithoutArea) {
 TEST_F(GpuBvhTest, LeavesNoGapBetweenTriangles) {
     scene::MeshBuilder builder;
     for (int x = 0; x < 4; ++x) {
-        for (int z = 0; z < 4; ++z) {
-            builder.addBox(glm::vec3(x, 0, z), glm::vec3(0.5F));
-        }
+        for (int z = 0; z < 4; ++z) builder.addBox(glm::vec3(x, 0, z), glm::vec3(0.5F));
     }
     pose(scene::sceneOf(builder.take("boxes", -1)));
     std::vector<Ray> rays;

@@ -109,9 +109,7 @@ inline void addPart(scene::Scene& scene, scene::Mesh mesh, const scene::Material
 inline image::Image8 randomImage(int width, int height, std::uint64_t seed) {
     Random random(seed);
     image::Image8 image(width, height, 4);
-    for (std::uint8_t& value : image.values()) {
-        value = static_cast<std::uint8_t>(random.index(256));
-    }
+    for (std::uint8_t& value : image.values()) value = static_cast<std::uint8_t>(random.index(256));
     return image;
 }
 

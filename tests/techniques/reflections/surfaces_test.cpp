@@ -56,9 +56,7 @@ TEST(ReflectorRuleTest, TakesSmoothMaterials) {
 TEST(ReflectiveSceneTest, NumbersReflectorsInOrderOfInstances) {
     scene::Scene scene;
     const scene::Material mirror{.roughness = 0.0F};
-    for (int i = 0; i < 4; ++i) {
-        addPart(scene, squareMesh(), i == 1 ? scene::Material{} : mirror);
-    }
+    for (int i = 0; i < 4; ++i) addPart(scene, squareMesh(), i == 1 ? scene::Material{} : mirror);
     scene.instances.push_back({0, glm::mat4(1.0F)});  // the first mesh again: another reflector
     const ReflectiveScene prepared(scene);
     std::vector<int> numbers;
@@ -95,9 +93,7 @@ TEST(PlanarTest, IsOnePlaneWithOneNormal) {
 
     // Two shelves: the same normals in two planes.
     scene::MeshBuilder shelves;
-    for (const float y : {0.0F, 0.3F}) {
-        shelves.addQuad({0, y, 1}, {1, y, 1}, {1, y, 0}, {0, y, 0});
-    }
+    for (const float y : {0.0F, 0.3F}) shelves.addQuad({0, y, 1}, {1, y, 1}, {1, y, 0}, {0, y, 0});
     EXPECT_FALSE(isPlanarReflector(shelves.take("shelves", 0)));
     scene::MeshBuilder box;
     box.addBox(glm::vec3(0), glm::vec3(1));

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "scenes/shared/mesh_builder.h"
 #include "techniques/shadow_mapping/lights.h"
 #include "tests/techniques/technique_fixture.h"

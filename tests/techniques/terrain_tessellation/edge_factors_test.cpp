@@ -1,5 +1,4 @@
 // Factors of the shaders against Eq. (2) to (4) in double precision, and against each other.
-#include <algorithm>
 
 #include "tests/techniques/terrain_tessellation/terrain_fixture.h"
 

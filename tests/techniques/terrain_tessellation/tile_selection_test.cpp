@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <tuple>
 
 #include "engine/scene/height_map.h"
 #include "scenes/terrain/terrain.h"

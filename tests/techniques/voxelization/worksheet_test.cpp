@@ -1,7 +1,5 @@
 #include "techniques/voxelization/worksheet.h"
 
-#include <fstream>
-
 #include "engine/gl/pass.h"
 #include "techniques/voxelization/mesh_input.h"
 #include "techniques/voxelization/voxelization.h"

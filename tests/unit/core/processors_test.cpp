@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
-#include <thread>
-
 #include "tests/support/support.h"
 
 namespace gfxrepro::test {

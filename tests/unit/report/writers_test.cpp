@@ -46,9 +46,7 @@ tables::Recorded writtenRecords() {
     tables::RecordMaker maker;
     maker.beginCase("models/duck").add("error", {1.0, 1.0, 4.0}).add("gpu_time_ms", {8.0});
     maker.add("scene_source", {1.0}, "", "enum");
-    for (int process = 1; process < 6; ++process) {
-        maker.process(process).add("gpu_time_ms", {8.0});
-    }
+    for (int process = 1; process < 6; ++process) maker.process(process).add("gpu_time_ms", {8.0});
     maker.beginCase("<b>&|_%", R"({"light_grid": 4})")
         .add("error", {2.5})
         .add("gpu_time_ms", {1.0 / 3.0});

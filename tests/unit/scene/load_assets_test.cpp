@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <string>
 
 #include "engine/scene/load.h"
 #include "tests/support/support.h"

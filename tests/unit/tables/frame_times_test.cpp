@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <span>
 #include <vector>
 
 #include "tests/unit/tables/fixture.h"
@@ -148,9 +147,7 @@ TEST(FrameTimes, OutliersAmongRoundsAndAmongFrames) {
     RecordMaker path;
     path.beginCase("bathroom", R"({"method":"reuse"})");
     const double times[] = {88, 775, 286, 88, 72};
-    for (int frame = 0; frame < 5; ++frame) {
-        path.frame(frame).add("wall_time_ms", {times[frame]});
-    }
+    for (int frame = 0; frame < 5; ++frame) path.frame(frame).add("wall_time_ms", {times[frame]});
     EXPECT_THAT(outlierTexts(timesOf(path)),
                 ElementsAre("Outlier: frame 1 of bathroom reuse took 775 ms in process 1, 8.81 "
                             "times its fellows."));
