@@ -38,20 +38,25 @@ class Nightly : public ::testing::Test {
             writeMockConfig(folder,
                             "params: {busy_ms: 20}\n"
                             "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2}\n");
-        arguments.insert(arguments.end(), {"--rounds", "8", "--program", bundle(extraUs), config});
+        arguments.insert(arguments.end(),
+                         {"--rounds", "8", "--cases", "1", "--program", bundle(extraUs), config});
         return runProgram(arguments);
     }
-    /// A night of a bundle whose program is this script.
-    ProcessResult nightOf(const std::string& script) const {
+    /// A night of a bundle whose program is this script, of three cases.
+    ProcessResult nightOf(const std::string& script,
+                          const std::vector<std::string>& options = {"--cases", "3"}) const {
         const fs::path program = folder.write("broken/gfxrepro", "#!/bin/sh\n" + script);
         fs::permissions(program, fs::perms::owner_all);
         const fs::path config =
             writeMockConfig(folder,
-                            "params: {busy_ms: 20}\n"
+                            "sweep: {busy_ms: [18, 20, 22]}\n"
                             "measure: {lane: timing, processes: 1, repeats: 2}\n");
-        return runProgram({"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
-                           GFXREPRO_SOURCE "/scripts/nightly", "--rounds", "8", "--program",
-                           program.parent_path(), config});
+        std::vector<std::string> arguments = {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
+                                              GFXREPRO_SOURCE "/scripts/nightly"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        arguments.insert(arguments.end(),
+                         {"--rounds", "8", "--program", program.parent_path(), config});
+        return runProgram(arguments);
     }
     /// The program that later nights are compared with.
     std::string landed() const { return readFile(state + "/landed/gfxrepro"); }
@@ -91,15 +96,25 @@ TEST_F(Nightly, TheFirstNightLandsNothingThatCrashes) {
     EXPECT_EQ(landed(), readFile(state + "/fixed/gfxrepro"));
 }
 
+/// They judge two runs, and measure none themselves: silently, and with a file that tells of tests.
+constexpr const char* kBlindByTurns[] = {
+    "case \"$*\" in *--binaries*) exit 0;; esac\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n",
+    "case \"$*\" in *--binaries*) while [ $1 != --out ]; do shift; done; mkdir -p \"$2\"\n"
+    "echo '<testsuite tests=\"6\">' >\"$2/junit.xml\"; exit 0;; esac\n"
+    "exec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n"};
+
 TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
     const ProcessResult first = nightOf("exit 0\n");
     EXPECT_EQ(first.exitCode, 2) << first.out << first.err;
-    EXPECT_NE(first.err.find("/first has no record of some case\n"), std::string::npos)
+    EXPECT_NE(first.err.find("/first has no record of some case; the configs ask for 3\n"),
+              std::string::npos)
         << first.err;
     const ProcessResult blind =
         nightOf("[ $1 != compare ] || exit 0\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n");
     EXPECT_EQ(blind.exitCode, 2) << blind.out << blind.err;
-    EXPECT_NE(blind.err.find("with itself and says nothing\n"), std::string::npos) << blind.err;
+    EXPECT_NE(blind.err.find("/first with itself and says nothing\n"), std::string::npos)
+        << blind.err;
+    for (const char* compare : kBlindByTurns) EXPECT_EQ(nightOf(compare).exitCode, 2) << compare;
     EXPECT_FALSE(fs::exists(state + "/landed"));
     ASSERT_EQ(night(0).exitCode, 0);
     EXPECT_EQ(nightOf("exit 0\n").exitCode, 2);
@@ -118,6 +133,13 @@ TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustComeToTheSame) {
             << blind.err;
         EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     }
+    for (const char* compare : kBlindByTurns) {
+        const ProcessResult blind = nightOf(compare);
+        EXPECT_EQ(blind.exitCode, 2) << blind.out << blind.err;
+        EXPECT_NE(blind.err.find("/mock.yaml by turns and says nothing\n"), std::string::npos)
+            << blind.err;
+        EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
+    }
     // One that is slower is found, whatever it says itself.
     const ProcessResult slow = nightOf(
         "[ $1 != compare ] || exit 0\n"
@@ -125,6 +147,29 @@ TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustComeToTheSame) {
         mock);
     EXPECT_EQ(slow.exitCode, 1) << slow.out << slow.err;
     EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
+}
+
+TEST_F(Nightly, WhatTheConfigsAskForIsCountedByAnotherBuild) {
+    const std::string mock = "exec " GFXREPRO_MOCK_PROGRAM " \"$@\"";
+    const std::string fewer = "[ $1 != run ] || " + mock + " --only busy_ms=20\n" + mock + '\n';
+    const ProcessResult uncounted = nightOf(mock + '\n', {});
+    EXPECT_EQ(uncounted.exitCode, 2);
+    EXPECT_EQ(uncounted.err,
+              "nightly: no other build can read the configs; --cases N says how many cases they "
+              "ask for\n");
+    EXPECT_EQ(nightOf(fewer).exitCode, 2);
+    EXPECT_FALSE(fs::exists(state + "/landed"));
+    ASSERT_EQ(nightOf(mock + '\n').exitCode, 0);
+    const ProcessResult fix = nightOf(fewer, {"--fix"});
+    EXPECT_EQ(fix.exitCode, 2);
+    EXPECT_NE(fix.err.find("/first has no record of some case; the configs ask for 3\n"),
+              std::string::npos)
+        << fix.err;
+    EXPECT_EQ(nightOf(fewer).exitCode, 1) << "lost, compared with the last build";
+    EXPECT_EQ(landed().find("--only"), std::string::npos);
+    EXPECT_EQ(nightOf(mock + "\n\n", {"--fix"}).exitCode, 0);
+    EXPECT_EQ(nightOf(fewer, {"--fix", "--cases", "1"}).exitCode, 0) << "as it was said";
+    EXPECT_NE(landed().find("--only"), std::string::npos);
 }
 
 /// The step of the workflow that shows a night.
