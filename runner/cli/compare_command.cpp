@@ -141,6 +141,8 @@ class Turns {
         for (const std::size_t side : {first, 1 - first}) measured[side] = take(side, tables);
         requireSameMachine(measured[0], measured[1]);
         ++roundCount_;
+        for (const Measured& one : measured)
+            configs_.insert(one.configs.begin(), one.configs.end());
         if (comparesPictures) sides.pictures = comparePictures(measured[0], measured[1], folder_);
         sides.byProcess = measured[1].byProcess;
         regression::append(sides.before, measured[0].series);
@@ -170,7 +172,7 @@ class Turns {
         if (tables.empty()) {
             arguments.insert(arguments.end(), options_.inputs.begin() + 2, options_.inputs.end());
         }
-        for (const std::string& table : tables) arguments.push_back(newer_.configs.at(table));
+        for (const std::string& table : tables) arguments.push_back(configs_.at(table));
         runProgram(arguments);
         return readMeasured(dir);
     }
@@ -179,6 +181,7 @@ class Turns {
     fs::path folder_;
     int roundCount_ = 0;
     regression::CaseTexts failures_;
+    std::map<std::string, std::string> configs_;  // also of tables that one side has lost
     Measured newer_;
 };
 

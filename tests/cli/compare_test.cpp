@@ -95,6 +95,25 @@ TEST_F(Compare, ABuildThatCrashesIsAnAlarm) {
               std::string::npos);
 }
 
+/// To confirm it only what is lost is measured again, of which that build knows nothing.
+TEST_F(Compare, ATableThatABuildLeavesOutIsAnErrorWithAName) {
+    const std::string one = writeMockConfig(folder, "sweep: {number: [1]}\n");
+    const std::string two = folder.write("two.yaml",
+                                         "sweep_of: two\ntitle: T\ntechnique: mock\n"
+                                         "measure: {lane: quality}\n");
+    const fs::path program = folder.write(
+        "fewer",
+        "#!/bin/sh\nfor a; do shift; case $a in */two.yaml) ;; *) set -- \"$@\" \"$a\";; "
+        "esac; done\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n");
+    fs::permissions(program, fs::perms::owner_all);
+    const ProcessResult result =
+        mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software", "--out",
+                      folder.path() / "turns", GFXREPRO_MOCK_PROGRAM, program, one, two});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_NE(result.err.find("/fewer: exit code 2: gfxrepro: run: give PAPER"), std::string::npos)
+        << result.err;
+}
+
 TEST_F(Compare, ACaseThatNeitherSideMeasuredWeighsMoreThanAnAlarm) {
     const fs::path config =
         writeMockConfig(folder, "sweep: {behaviour: [ok, throw]}\nmeasure: {lane: quality}\n");
