@@ -209,30 +209,42 @@ std::string calibratedNote(const ClaimSpec& claim, const ClaimReader& reader) {
                                     : "some of what it reads is calibrated";
 }
 
-/// The labels of these rows on an axis.
-std::set<std::string> labelsOf(const tables::Table& table, const Rows& rows, std::size_t axis) {
-    std::set<std::string> labels;
-    for (const std::size_t row : rows) labels.insert(table.rows[row].labels[axis]);
-    return labels;
-}
-
-/// "1 of 4 values of scene, 2 of 3 values of resolution": what it reads here of what it reads in
-/// the profile `paper`; empty of all of it.
+/// "1 of 4 values of scene, 2 of 3 values of resolution": what of the rows that it reads in the
+/// profile `paper` it reads here, too; empty of all of them.
 std::string partOfRows(const ClaimSpec& claim, const tables::Table& table,
                        const tables::Table& paper) {
     const tables::Table all = tableFor(claim, paper);
     const Rows here = ClaimReader(claim, table).plannedRows();
     const Rows there = ClaimReader(claim, all).plannedRows();
-    if (here.empty() || here.size() >= there.size()) return "";
-    std::vector<std::string> parts;
-    for (std::size_t axis = 0; table.rowAxes == all.rowAxes && axis < all.rowAxes.size(); ++axis) {
-        const std::size_t few = labelsOf(table, here, axis).size();
-        const std::size_t many = labelsOf(all, there, axis).size();
-        if (few >= many) continue;
-        const std::string name = tables::shownName(all.rowAxes[axis], all.words);
-        parts.push_back(fmt::format("{} of {} values of {}", few, many, name));
+    if (here.empty()) return "";
+    if (table.rowAxes != all.rowAxes) {  // nobody laid it out, and one profile sweeps more
+        return here.size() < there.size() ? fmt::format("{} of {} rows", here.size(), there.size())
+                                          : "";
     }
-    return parts.empty() ? fmt::format("{} of {} rows", here.size(), there.size()) : joined(parts);
+    const std::size_t axes = all.rowAxes.size();
+    std::set<std::vector<std::string>> own;
+    std::vector<std::set<std::string>> few(axes), many(axes);
+    for (const std::size_t row : here) own.insert(table.rows[row].labels);
+    std::size_t shared = 0;
+    for (const std::size_t row : there) {
+        const std::vector<std::string>& labels = all.rows[row].labels;
+        const bool isShared = own.contains(labels);
+        shared += isShared ? 1 : 0;
+        for (std::size_t axis = 0; axis < axes; ++axis) {
+            many[axis].insert(labels[axis]);
+            if (isShared) few[axis].insert(labels[axis]);
+        }
+    }
+    if (shared == there.size()) return "";
+    std::vector<std::string> parts;
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+        if (few[axis].size() == many[axis].size()) continue;
+        const std::string name = tables::shownName(all.rowAxes[axis], all.words);
+        parts.push_back(
+            fmt::format("{} of {} values of {}", few[axis].size(), many[axis].size(), name));
+    }
+    const bool isNone = shared == 0 || parts.empty();
+    return isNone ? fmt::format("{} of {} rows", shared, there.size()) : joined(parts);
 }
 
 /// The table of the profile `paper`, without a measurement; none where its cases are not known.

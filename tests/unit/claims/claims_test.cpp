@@ -1183,9 +1183,15 @@ TEST(Claims, AClaimOnPartOfItsRowsSaysSoAndDoesNotCountAsAHold) {
               "of the documents' own claims 1 fails; of these on part of their rows, or said twice "
               "1 holds");
     for (const ClaimResult& claim : judged("s, t", "1, 2, 4")) EXPECT_EQ(claim.rows, "");
+    for (const ClaimResult& claim : judged("s, t", "1, 2, 4, 8")) EXPECT_EQ(claim.rows, "");
     for (const ClaimResult& claim : judged("s, t", "1, 2, 8, 16")) {
-        EXPECT_EQ(claim.rows, "") << "other values, and not fewer";
+        EXPECT_EQ(claim.rows, "2 of 3 values of n") << "other values are none of these";
     }
+    config::Experiment other = experiment("s, t", "8, 16, 32, 64");
+    other.paperDocument = paper.paperDocument;
+    other.paperCases = tables::planOf(paper, {});
+    const tables::Table empty = tables::buildTable(other, tables::RecordMaker().records());
+    EXPECT_EQ(evaluateClaims(other, empty, kSoftware)[0].rows, "0 of 6 rows");
 }
 
 TEST(Claims, OfSeveralScenesAVerdictNamesThoseOnWhichItDoesNotHold) {
