@@ -20,6 +20,7 @@
 #include "runner/cli/experiments.h"
 #include "runner/config/external_program.h"
 #include "runner/config/schema.h"
+#include "runner/records/csv.h"
 #include "runner/records/records.h"
 #include "runner/run/case_filter.h"
 #include "runner/run/ledger.h"
@@ -234,28 +235,73 @@ void sayAbsent(const std::string& file, const std::vector<config::Case>& cases) 
     }
 }
 
-/// About how many rows a run of the cases has, where that is much of what a run takes: what a table
-/// is made of is known when it was measured.
-void sayRows(const Context& context, const std::string& file, const config::Experiment& experiment,
-             const std::vector<config::Case>& cases) {
+/// What of the limits of a run is foreseen; what a table is made of is known when it was measured.
+struct Size {
+    double rows = 0.0, pictures = 0.0, units = 0.0;
+
+    Size& operator+=(const Size& more) {
+        rows += more.rows;
+        pictures += more.pictures;
+        units += more.units;
+        return *this;
+    }
+};
+
+Size sizeOf(const Context& context, const config::Experiment& experiment,
+            const std::vector<config::Case>& cases) {
+    using Of = config::MetricInfo::Of;
     constexpr double kOfCase = 8.0, kOfRepeat = 3.0, kOfPass = 2.0;  // scene, memory; times
-    if (cases.empty()) return;
-    const technique::TechniqueInfo& info =
-        technique::findTechnique(context.techniques, experiment.technique, {});
-    const config::Outputs outputs = technique::outputsOf(info, config::programOf(experiment));
-    const auto metrics =
-        static_cast<double>(outputs.metrics.size() - technique::commonMetrics().size());
+    const Node& program = config::programOf(experiment);
+    const config::Outputs outputs = technique::outputsOf(
+        technique::findTechnique(context.techniques, experiment.technique, {}), program);
+    const double passes = std::max(1.0, static_cast<double>(outputs.passes.size()));
+    double pictures = 0.0, truths = 0.0;
+    config::Outputs said;  // by a program: of each pass, where it has some
+    if (!program.isNull()) {
+        const config::ExternalProgram own = config::readProgram(program);
+        said = own.outputs;
+        pictures = static_cast<double>(own.pictures.size());
+        truths = static_cast<double>(
+            std::ranges::count_if(own.pictures, &config::ProgramPicture::hasTruth));
+    }
+    double metrics = 0.0;
+    for (std::size_t i = technique::commonMetrics().size(); i < outputs.metrics.size(); ++i) {
+        const config::MetricInfo& info = outputs.metrics[i];
+        const bool isOfPasses =
+            program.isNull() ? info.of == Of::Pass : said.find(info.name) != nullptr;
+        const double others = program.isNull() ? 1.0 : truths;
+        metrics += info.of == Of::Whole ? 1.0 : isOfPasses ? passes : others;
+    }
     const double ofRepeat = kOfRepeat + kOfPass * static_cast<double>(outputs.passes.size());
-    double rows = 0.0;
+    Size size;
     for (const config::Case& item : cases) {
         const double ofFrame = metrics + ofRepeat * item.measure.repeats;
-        rows += item.measure.processes * (kOfCase + ofFrame * item.measure.frames);
+        size.rows += item.measure.processes * (kOfCase + ofFrame * item.measure.frames);
+        size.pictures += pictures * item.measure.frames;
     }
-    const auto most = static_cast<double>(records::kMostRecords);
-    if (rows < 0.01 * most) return;
-    say("{}: about {:.2g} million rows of records, of at most {:.0f} million in a run{}\n", file,
-        1e-6 * rows, 1e-6 * most,
-        rows > most ? ": it will stop before its end; measure it in parts (--only, --shard)" : "");
+    size.units = static_cast<double>(run::unitCount(cases));
+    return size;
+}
+
+/// Says of what a run has much, or more than is taken. Of the files of one run the last line
+/// counts.
+void saySize(const std::string& name, const Size& size) {
+    const auto say = [&](double count, double most, const char* what) {
+        if (count < 0.01 * most) return;
+        cli::say("{}: about {:.2g} million {}, of at most {:g} million in a run{}\n", name,
+                 1e-6 * count, what, 1e-6 * most,
+                 count > most ? ": it will stop before its end; measure it in parts (--only, "
+                                "--shard)"
+                              : "");
+    };
+    say(size.rows, static_cast<double>(records::kMostRecords), "rows of records");
+    say(size.pictures, static_cast<double>(records::CsvReader::kMostRows), "pictures");
+    constexpr auto kMostUnits = static_cast<double>(run::kMostUnits);
+    if (size.units <= kMostUnits) return;
+    cli::say(
+        "{}: {:.0f} measurements (cases × processes), of at most {:.0f} in a run: `plan` and "
+        "`run` refuse it\n",
+        name, size.units, kMostUnits);
 }
 
 /// A record, another number each, of all that the cases may give: what a table shows that nobody
@@ -310,9 +356,10 @@ tables::Table tableBefore(const Context& context, const config::Experiment& expe
     return table;
 }
 
-/// Says what a file comes to, and gives its cases.
+/// Says what a file comes to, and gives its cases; adds its size.
 std::vector<config::Case> checkFile(const Context& context, const Selection& selection,
-                                    const scene::Catalog& catalog, const std::string& file) {
+                                    const scene::Catalog& catalog, const std::string& file,
+                                    Size& all) {
     const run::Request request{{file}, selection.sets, selection.sweeps, {}, selection.device};
     config::Experiment experiment = loadExperiments(request, selection.profile).front();
     std::vector<config::Case> cases = run::resolveCases(experiment, catalog, context.techniques, 1);
@@ -322,7 +369,9 @@ std::vector<config::Case> checkFile(const Context& context, const Selection& sel
     say("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, cases.size(),
         cases.size() == 1 ? "" : "s", experiment.claims.size(),
         experiment.claims.size() == 1 ? "" : "s");
-    sayRows(context, file, experiment, cases);
+    const Size size = sizeOf(context, experiment, cases);
+    saySize(file, size);
+    all += size;
     const bool isReduced =
         !selection.sets.empty() || !selection.sweeps.empty() || selection.profile != "full";
     if (isReduced) {
@@ -352,10 +401,11 @@ void requireSound(const Context& context, const scene::Catalog& catalog,
 int check(const Context& context, const Selection& selection) {
     const scene::Catalog catalog = openCatalog(context, selection.assets);
     run::Plan all;
+    Size size;
     int code = kExitOk;
     for (const std::string& file : selection.names) {
         try {
-            std::vector<config::Case> cases = checkFile(context, selection, catalog, file);
+            std::vector<config::Case> cases = checkFile(context, selection, catalog, file, size);
             if (!selection.only.empty()) std::ranges::move(cases, std::back_inserter(all.cases));
         } catch (const Error& error) {
             // What is wrong in one file says nothing of the next.
@@ -365,6 +415,7 @@ int check(const Context& context, const Selection& selection) {
             code = kExitUsage;
         }
     }
+    if (selection.names.size() > 1) saySize("all in one run", size);
     if (!selection.only.empty() && code == kExitOk) {
         const std::size_t caseCount = all.cases.size();
         run::keepOnly(all, selection.only);

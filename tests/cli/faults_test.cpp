@@ -144,6 +144,47 @@ TEST_F(Faults, CheckTellsOfARunWithVeryManyRows) {
                           "--shard)\n"));
 }
 
+/// Of each pass, of its pictures, and of all files of a run together.
+TEST_F(Faults, CheckTellsOfAPlanThatIsTooLarge) {
+    const auto program = [&](const std::string& name, const std::string& lines,
+                             const std::string& measure) {
+        return folder
+            .write(name, "sweep_of: " + name.substr(0, 1) + "\ntitle: T\nprogram:\n" +
+                             "  command: /bin/true {n} {frames}\n  frames: all\n" +
+                             "  params: {n: 1}\n" + lines + "measure: {lane: quality, " + measure +
+                             "}\n")
+            .string();
+    };
+    const auto said = [&](const std::vector<std::string>& files) {
+        std::vector<std::string> arguments = {"check"};
+        arguments.insert(arguments.end(), files.begin(), files.end());
+        const ProcessResult result = mockGfxrepro(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return result.out;
+    };
+    std::string passes = "  passes: {";
+    for (int i = 0; i < 50; ++i) passes += (i ? ", p" : "p") + std::to_string(i) + ": a pass";
+    const std::string metrics = "  metrics: {rays: ray, hits: ray}\n";
+    const std::string some = program("a.yaml", metrics, "processes: 1, frames: 100000");
+    EXPECT_EQ(said({some}).find("million"), std::string::npos);
+    // 2 × 50 values and the times of 50 passes, of each frame.
+    EXPECT_THAT(said({program("b.yaml", metrics + passes + "}\n", "processes: 1, frames: 100000")}),
+                HasSubstr("about 20 million rows of records, of at most 64 million in a run\n"));
+    EXPECT_THAT(said({program("c.yaml", "  images: {r: {file: \"r{frame}.png\"}}\n",
+                              "processes: 1, frames: 1000000")}),
+                HasSubstr("about 1 million pictures, of at most 4 million in a run\n"));
+    const std::string half = program("d.yaml", metrics, "processes: 8, frames: 1000000");
+    const std::string other = program("e.yaml", metrics, "processes: 8, frames: 1000000");
+    EXPECT_EQ(said({half}).find("it will stop"), std::string::npos);
+    EXPECT_THAT(said({half, other}),
+                HasSubstr("all in one run: about 80 million rows of records, of at most 64 million "
+                          "in a run: it will stop before its end; measure it in parts"));
+    const std::string units = program("f.yaml", "", "processes: 600000");
+    EXPECT_THAT(said({units, program("g.yaml", "", "processes: 600000")}),
+                HasSubstr("all in one run: 1200000 measurements (cases × processes), of at most "
+                          "1000000 in a run: `plan` and `run` refuse it\n"));
+}
+
 TEST_F(Faults, AMetricIsGivenOnce) {
     const std::string config = writeMockConfig(folder, "sweep: {behaviour: [twice]}\n");
     EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
