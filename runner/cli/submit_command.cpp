@@ -241,6 +241,19 @@ cluster::ShardProgress progressOf(const fs::path& folder, int unitCount) {
     return {counts.units, counts.measured(), counts.failed};
 }
 
+/// Also whether its plan is that part of the plan with the SHA-256 `shard.whole`, as a merge asks.
+cluster::ShardProgress progressOf(const fs::path& folder, int unitCount, const run::Shard& shard) {
+    cluster::ShardProgress progress = progressOf(folder, unitCount);
+    if (!run::holdsRun(folder)) return progress;
+    try {
+        const auto own = run::Plan::outlineFromJsonFile(folder / "plan.json").shard;
+        progress.isOfPlan = own && own->whole == shard.whole && own->name() == shard.name();
+    } catch (const Error&) {
+        progress.isOfPlan = false;
+    }
+    return progress;
+}
+
 std::vector<std::string> storedJobs(const Stored& stored) {
     std::vector<std::string> jobs;
     for (const std::string& job : {stored.arrayJob, stored.mergeJob}) {
@@ -265,14 +278,15 @@ int printStatus(const fs::path& out) {
     const auto queue = askForStored(*stored);
     std::vector<std::vector<std::string>> rows = {{"shard", "done", "failed", "state"}};
     const auto count = static_cast<int>(stored->unitCounts.size());
+    const std::string whole = sha256OfFile(frozenPlan(out));
     bool isComplete = true;
     for (int k = 1; k <= count; ++k) {
+        const run::Shard shard{k, count, whole};
         const cluster::ShardProgress progress =
             progressOf(out / "shards" / std::to_string(k),
-                       stored->unitCounts[static_cast<std::size_t>(k - 1)]);
+                       stored->unitCounts[static_cast<std::size_t>(k - 1)], shard);
         isComplete = isComplete && progress.isComplete();
-        rows.push_back({run::Shard{k, count, {}}.name(),
-                        fmt::format("{}/{}", progress.finished, progress.unitCount),
+        rows.push_back({shard.name(), fmt::format("{}/{}", progress.finished, progress.unitCount),
                         std::to_string(progress.failed),
                         cluster::stateOf(progress, queue, taskOf(*stored, k))});
     }
@@ -337,9 +351,17 @@ std::vector<std::string> mergeArguments(const Submission& s, const std::string& 
 
 std::vector<int> incompleteShards(const Cut& cut) {
     std::vector<int> incomplete;
-    for (int k = 1; k <= cut.submission.shardCount; ++k) {
-        const cluster::ShardProgress progress = progressOf(
-            cut.submission.shardFolder(k), cut.unitCounts[static_cast<std::size_t>(k - 1)]);
+    const Submission& s = cut.submission;
+    const fs::path plan = frozenPlan(s.out);
+    const std::string whole = fs::exists(plan) ? sha256OfFile(plan) : "";  // else a dry run
+    for (int k = 1; k <= s.shardCount; ++k) {
+        const cluster::ShardProgress progress =
+            progressOf(s.shardFolder(k), cut.unitCounts[static_cast<std::size_t>(k - 1)],
+                       {k, s.shardCount, whole});
+        if (!progress.isOfPlan) {
+            throw Error(fmt::format("{}: is {}", s.shardFolder(k).string(),
+                                    cluster::stateOf(progress, {}, "")));
+        }
         if (!progress.isComplete()) incomplete.push_back(k);
     }
     return incomplete;

@@ -454,6 +454,10 @@ TEST_F(Submit, AReplacedPlanIsNotMerged) {
         EXPECT_EQ(merge.exitCode, 2);
         EXPECT_THAT(merge.err, HasSubstr(problem));
         EXPECT_FALSE(fs::exists(folder.path() / "merged/plan.json"));
+        const ProcessResult status = mockGfxrepro({"submit", "--status", out});
+        EXPECT_EQ(status.exitCode, 4);
+        EXPECT_THAT(status.out, HasSubstr("2/2    2/2   0       no part of the submitted plan: it "
+                                          "was replaced\n"));
     };
     fs::copy_file(other + "/submitted-plan.json", file, fs::copy_options::overwrite_existing);
     expectRefused(file + ": is not the plan that " + out +
@@ -473,18 +477,18 @@ TEST_F(Submit, AReplacedPlanIsNotMerged) {
     expectRefused("/shards/2: these are no shards of one cut\n");
     fs::remove_all(out + "/shards/2");
     fs::rename(folder.path() / "kept", out + "/shards/2");
+    EXPECT_THAT(mockGfxrepro({"submit", "--status", out}).out,
+                HasSubstr("2/2    2/2   0       complete\n"));
     EXPECT_EQ(mockGfxrepro({"merge", out, "--out", folder.path() / "merged"}).exitCode, 0);
 }
 
 /// What has ended says itself what it came to; what was changed since is counted anew.
-TEST_F(Submit, TheStatusOfWhatEndedNeedsNoPlan) {
+TEST_F(Submit, TheStatusOfWhatEndedNeedsNoWholePlan) {
     const std::string out = folder.path() / "out";
     for (const std::string& line : submitPairs(folder, 4, out)) {
         ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
     }
-    for (const char* file : {"/shards/1/plan.json", "/plan.json", "/submitted-plan.json"}) {
-        writeFileAtomic(out + file, "of a thousand shards this would take long");
-    }
+    writeFileAtomic(out + "/plan.json", "of a thousand shards this would take long");
     const ProcessResult status = mockGfxrepro({"submit", "--status", out});
     EXPECT_EQ(status.exitCode, 0) << status.err;
     EXPECT_EQ(status.out,
