@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kMostNamed = 20;
 
 bool isSubmission(const fs::path& folder) {
-    return fs::exists(folder / cluster::kSubmittedPlan);
+    return fs::exists(folder / cluster::kSubmittedPlan) || fs::exists(folder / "shards");
 }
 
 cluster::ShardRun readShard(const fs::path& folder) {

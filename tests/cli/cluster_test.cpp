@@ -480,6 +480,14 @@ TEST_F(Submit, AReplacedPlanIsNotMerged) {
     EXPECT_THAT(mockGfxrepro({"submit", "--status", out}).out,
                 HasSubstr("2/2    2/2   0       complete\n"));
     EXPECT_EQ(mockGfxrepro({"merge", out, "--out", folder.path() / "merged"}).exitCode, 0);
+    // Of a submission that lost its plan, that is said.
+    fs::remove(file);
+    for (const char* described : {"", "{ broken"}) {
+        writeFileAtomic(out + "/submission.json", described);
+        const ProcessResult lost = mockGfxrepro({"merge", out});
+        EXPECT_EQ(lost.exitCode, 2);
+        EXPECT_THAT(lost.err, HasSubstr("(submitted-plan.json)"));
+    }
 }
 
 /// What has ended says itself what it came to; what was changed since is counted anew.
