@@ -32,6 +32,17 @@ double quotaOf(const fs::path& group) {
     return quotaUs / periodUs;
 }
 
+/// The count in a file of names and numbers.
+long long oomKillsIn(const fs::path& counts) {
+    std::ifstream file(counts);
+    std::string name;
+    long long value = 0;
+    while (file >> name >> value) {
+        if (name == "oom_kill") return value;
+    }
+    return 0;
+}
+
 }  // namespace
 
 int usableProcessors(const fs::path& root) {
@@ -48,12 +59,15 @@ int usableProcessors(const fs::path& root) {
     return std::max(1, static_cast<int>(std::min(processors, std::ceil(quotaOf(groups)))));
 }
 
-long long systemOomKills(const std::filesystem::path& root) {
-    std::ifstream file(root / "proc/vmstat");
-    std::string name;
-    long long value = 0;
-    while (file >> name >> value) {
-        if (name == "oom_kill") return value;
+long long systemOomKills(const fs::path& root) {
+    return oomKillsIn(root / "proc/vmstat");
+}
+
+long long groupOomKills(const fs::path& root) {
+    std::ifstream file(root / "proc/self/cgroup");
+    for (std::string line; std::getline(file, line);) {
+        if (!line.starts_with("0::/")) continue;
+        return oomKillsIn(root / "sys/fs/cgroup" / line.substr(4) / "memory.events");
     }
     return 0;
 }

@@ -13,5 +13,7 @@ int usableProcessors(const std::filesystem::path& root = "/");
 /// Processes that the kernel has killed for want of memory, of the machine's or of a control
 /// group's, since its start; 0 if it does not tell. `root` as above.
 long long systemOomKills(const std::filesystem::path& root = "/");
+/// Likewise of this process's own control group and those below it alone (version 2).
+long long groupOomKills(const std::filesystem::path& root = "/");
 
 }  // namespace gfxrepro

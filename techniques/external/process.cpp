@@ -125,6 +125,7 @@ ProcessEnd runProcess(const ProcessStart& start) {
     }
     const std::string folder = start.folder.string();
     const long long oomKillsBefore = systemOomKills(start.machineRoot);
+    const long long ownKillsBefore = groupOomKills(start.machineRoot);
     const pid_t parent = ::getpid();
     const pid_t pid = ::fork();
     if (pid == 0) {
@@ -153,8 +154,13 @@ ProcessEnd runProcess(const ProcessStart& start) {
     }
     if (ended < 0) fail("cannot wait for " + start.arguments.front());
     endLeftBehind();
-    end.isOutOfMemory = WIFSIGNALED(end.waitStatus) && WTERMSIG(end.waitStatus) == SIGKILL &&
-                        systemOomKills(start.machineRoot) > oomKillsBefore;
+    const int status = end.waitStatus;
+    const bool isKilled = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+    // A shell says of what it waited for that it was killed; others fail in their own words.
+    const bool isOfChild = WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGKILL;
+    const bool isOwn = status != 0 && groupOomKills(start.machineRoot) > ownKillsBefore;
+    end.isOutOfMemory =
+        isOwn || ((isKilled || isOfChild) && systemOomKills(start.machineRoot) > oomKillsBefore);
     readAvailable(output.get(), end.output);
     end.processTimeMs = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
     end.peakBytes = static_cast<long long>(usage.ru_maxrss) * 1024;

@@ -22,7 +22,7 @@ struct ProcessEnd {
     int waitStatus = 0;          // of waitpid
     std::string output;          // standard output and error
     double processTimeMs = 0.0;  // CPU time, user and system, of it and of all that it waited for
-    bool isOutOfMemory = false;  // killed, while the system killed for want of memory
+    bool isOutOfMemory = false;  // it failed, or what it waited for, by a kill for want of memory
     /// Resident at once, of the largest of these; no less than what this process had on its own
     /// when it started the program, a few MiB.
     long long peakBytes = 0;

@@ -51,8 +51,19 @@ TEST_F(Process, KilledAsMemoryRanOutItSaysSo) {
     const std::string count = "echo oom_kill 5 >proc/vmstat; ";
     EXPECT_TRUE(end(count + "kill -KILL $$").isOutOfMemory);
     EXPECT_FALSE(end("kill -KILL $$").isOutOfMemory);
+    EXPECT_TRUE(end(count + "exit 137").isOutOfMemory) << "a child's, as a shell tells it";
+    EXPECT_FALSE(end("exit 137").isOutOfMemory);
     EXPECT_FALSE(end(count + "kill -SEGV $$").isOutOfMemory);
+    EXPECT_FALSE(end(count + "exit 1").isOutOfMemory) << "it may be a neighbour's";
     EXPECT_FALSE(end(count).isOutOfMemory);
+    // In its own control group nobody else is killed.
+    folder.write("proc/self/cgroup", "0::/job\n");
+    const auto inGroup = [&](const std::string& script) {
+        folder.write("sys/fs/cgroup/job/memory.events", "max 3\noom_kill 1\n");
+        return end("echo oom_kill 2 >sys/fs/cgroup/job/memory.events; " + script).isOutOfMemory;
+    };
+    EXPECT_TRUE(inGroup("exit 1"));
+    EXPECT_FALSE(inGroup("exit 0")) << "it went on without";
 }
 
 TEST_F(Process, RunsInItsFolderAndPrints) {
