@@ -17,8 +17,8 @@ namespace gfxrepro::regression {
 
 namespace {
 
-/// Processes a side of which an interval can be made.
-constexpr std::size_t kFewestApart = 4;
+/// Processes of which ranks can tell at 95 %: C(n + m, n) at least 40.
+constexpr const char* kFewestApart = "4 a side are needed, 5 beside 3, or 8 beside 2";
 
 Series logarithms(const Series& values) {
     Series logs;
@@ -219,9 +219,8 @@ void judgeTimes(std::vector<TestedTime>& times, Pairing pairing, const Rules& ru
         // What has no interval, or no spread, shares in no chance.
         const std::size_t fewest = std::min(time.rounds[0], time.rounds[1]);
         if (pairing == Pairing::Apart && (time.test.attainable > level || fewest < 2)) {
-            time.difference.reason =
-                fmt::format("{} and {} processes cannot decide: {} a side are needed",
-                            time.rounds[0], time.rounds[1], kFewestApart);
+            time.difference.reason = fmt::format("{} and {} processes cannot decide: {}",
+                                                 time.rounds[0], time.rounds[1], kFewestApart);
             continue;
         }
         tested.push_back(&time);

@@ -282,7 +282,21 @@ TEST(Comparison, TellsWhyRunsMeasuredApartCannotDecide) {
               "the interval reaches into the 50 % by which a machine may drift");
     EXPECT_EQ(reason({16, 30, 60, 90}),
               "4 and 4 processes cannot decide among 36 series: 6 a side are needed");
-    EXPECT_EQ(reason({20, 20.1, 20.2}), "4 and 3 processes cannot decide: 4 a side are needed");
+    EXPECT_EQ(reason({20, 20.1, 20.2}),
+              "4 and 3 processes cannot decide: 4 a side are needed, 5 beside 3, or 8 beside 2");
+}
+
+TEST(Comparison, SaysHowManyProcessesDecideMeasuredApart) {
+    const auto decides = [](int before, int after) {
+        Series times[2];
+        for (double i = 0; i < before; ++i) times[0].push_back(10.0 + 0.1 * i);
+        for (double i = 0; i < after; ++i) times[1].push_back(40.0 + 0.1 * i);
+        const SeriesKey key = test::timeOf("m");
+        const auto told = compare({{key, times[0]}}, {{key, times[1]}}, Pairing::Apart);
+        return told.front().verdict == Verdict::Slower;
+    };
+    EXPECT_TRUE(decides(4, 4) && decides(5, 3) && decides(3, 5) && decides(8, 2) && decides(2, 8));
+    EXPECT_FALSE(decides(4, 3) || decides(7, 2) || decides(20, 1));
 }
 
 TEST(Comparison, FindsFasterAndTheSame) {
@@ -342,7 +356,7 @@ TEST(Comparison, FewRoundsCannotTell) {
             .reason;
     };
     EXPECT_EQ(reason({10}, {20}, Pairing::Apart),
-              "1 and 1 processes cannot decide: 4 a side are needed");
+              "1 and 1 processes cannot decide: 4 a side are needed, 5 beside 3, or 8 beside 2");
     EXPECT_EQ(reason({10}, {20}, Pairing::ByTurns),
               "1 rounds cannot decide among one series: 8 are needed");
     EXPECT_EQ(reason({0, 1, 1, 1, 1}, {1, 1, 1, 1, 1}, Pairing::Apart), "a time of zero or less");
