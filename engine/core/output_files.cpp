@@ -1,17 +1,22 @@
 #include "engine/core/output_files.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <limits>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/text.h"
 
 namespace gfxrepro {
 
@@ -41,6 +46,20 @@ void requireReplaceable(const fs::path& path) {
     throw WriteError("cannot write " + path.string() + ": a link, a pipe or a device, not a file");
 }
 
+/// What a process that was killed left as it wrote this folder.
+void removeAbandoned(const fs::path& folder) {
+    const std::string begin = folder.filename().string() + ".tmp";
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder.parent_path(), ignored)) {
+        const std::string name = entry.path().filename();
+        const auto writer =
+            name.starts_with(begin) ? parseInteger(name.substr(begin.size())) : std::nullopt;
+        const bool isGone = writer && *writer > 0 && *writer <= std::numeric_limits<pid_t>::max() &&
+                            ::kill(static_cast<pid_t>(*writer), 0) != 0 && errno == ESRCH;
+        if (isGone) fs::remove_all(entry.path(), ignored);
+    }
+}
+
 }  // namespace
 
 void makeFolder(const fs::path& folder) {
@@ -52,6 +71,7 @@ void makeFolder(const fs::path& folder) {
 void writeFolder(const fs::path& target, const std::function<void(const fs::path&)>& write) {
     const fs::path plain = fs::absolute(target / "").lexically_normal().parent_path();
     if (fs::exists(plain)) throw Error(target.string() + ": is there already; give another folder");
+    removeAbandoned(plain);
     fs::path temporary = plain;
     temporary += ".tmp" + std::to_string(::getpid());
     std::error_code failure;

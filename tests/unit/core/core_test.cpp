@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <pwd.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -186,6 +187,22 @@ TEST_F(Files, ACopyLeavesOutWhatIsBeingWrittenAlone) {
     EXPECT_EQ(test::errorText([&] { copyTree(large, to / "large"); }, folder.path()),
               "cannot copy DIR/large: 34359738368 bytes; more than 16 GiB are not copied");
     EXPECT_FALSE(std::filesystem::exists(to / "large"));
+}
+
+TEST_F(Files, AFolderThatAKilledProcessLeftUnfinishedGoesWithTheNextOne) {
+    const pid_t gone = ::fork();
+    if (gone == 0) ::_exit(0);
+    ::waitpid(gone, nullptr, 0);
+    const std::string left = "out.tmp" + std::to_string(gone);
+    folder.write(left + "/out/part", "");
+    const std::string others[] = {"out.tmp" + std::to_string(::getppid()), "out.tmpx", "a" + left};
+    for (const std::string& other : others) folder.write(other + "/part", "");
+    writeFolder(folder.path() / "out",
+                [](const std::filesystem::path& part) { makeFolder(part / "in"); });
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/in"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / left));
+    for (const std::string& other : others)
+        EXPECT_TRUE(std::filesystem::exists(folder.path() / other)) << other;
 }
 
 TEST_F(Files, MissingFilesAndFoldersAreNamed) {
