@@ -84,7 +84,9 @@ TEST_F(Seal, AResumedRunIsSealedAnewAndKeepsTheNote) {
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
     EXPECT_THAT(mockGfxrepro({"table", dir}).out, Not(HasSubstr("warning")));
     changeRecords();
-    EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(resumed.exitCode, 0);
+    EXPECT_THAT(resumed.err, HasSubstr(warning));
     EXPECT_THAT(mockGfxrepro({"table", dir}).out, HasSubstr(warning));
     EXPECT_EQ(manifest(dir)["notes"].size(), 1U);
 }
@@ -125,6 +127,10 @@ TEST_F(Seal, PicturesThatAreNotAsTheyWereRecordedAreNamed) {
                              " was changed, " + image.exr + " is missing";
     const std::string merged = folder.path() / "merged", artifact = folder.path() / "artifact";
     EXPECT_THAT(mockGfxrepro({"report", dir}).out, HasSubstr("warning: " + said));
+    for (const char* command : {"run", "reproduce"}) {
+        const ProcessResult resumed = mockGfxrepro({command, "--resume", dir});
+        EXPECT_THAT(resumed.out + resumed.err, HasSubstr("warning: " + said)) << command;
+    }
     EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr(image.exr + " is missing"));
     EXPECT_THAT(mockGfxrepro({"export", dir, "--out", artifact}).out, HasSubstr(said));
     EXPECT_THAT(manifest(artifact)["notes"].dump(), HasSubstr(said));
