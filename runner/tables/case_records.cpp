@@ -94,6 +94,16 @@ bool isOfSetup(const records::Record* record) {
     return record->frame == records::kSetup;
 }
 
+/// Sorts by place; of several rows of one place the last stays.
+void keepLast(std::vector<const records::Record*>& rows) {
+    std::ranges::stable_sort(rows, {}, CaseRecords::placeOf);
+    const auto kept = std::unique(rows.rbegin(), rows.rend(), [](const auto* a, const auto* b) {
+        return CaseRecords::placeOf(a) == CaseRecords::placeOf(b);
+    });
+    rows.erase(rows.begin(), kept.base());
+    rows.shrink_to_fit();
+}
+
 }  // namespace
 
 std::string canonicalText(const Node& value) {
@@ -103,11 +113,12 @@ std::string canonicalText(const Node& value) {
 std::vector<const records::Record*> CaseRecords::Attempt::values(std::string_view metric,
                                                                  std::string_view pass) const {
     std::vector<const records::Record*> values;
-    for (auto row = rows.lower_bound({metric, pass, INT_MIN, INT_MIN});
-         row != rows.end() && row->first.metric == metric && row->first.pass == pass; ++row) {
+    const Place first{metric, pass, INT_MIN, INT_MIN};
+    for (auto row = std::ranges::lower_bound(rows, first, {}, placeOf);
+         row != rows.end() && (*row)->metric == metric && (*row)->pass == pass; ++row) {
         // In the order of frames: set-up's value comes first, and goes when a frame has one.
-        if (row->first.frame != records::kSetup) std::erase_if(values, isOfSetup);
-        values.push_back(row->second);
+        if ((*row)->frame != records::kSetup) std::erase_if(values, isOfSetup);
+        values.push_back(*row);
     }
     return values;
 }
@@ -157,8 +168,11 @@ std::vector<CaseRecords> groupByCase(std::span<const config::Case> planned,
             attempt.failure = &record;
         } else {
             attempt.failure = nullptr;
-            attempt.rows[{record.metric, record.pass, record.frame, record.repeat}] = &record;
+            attempt.rows.push_back(&record);
         }
+    }
+    for (CaseRecords& one : cases) {
+        for (auto& [process, attempt] : one.processes) keepLast(attempt.rows);
     }
     for (std::size_t i = 0; i < cases.size(); ++i) {
         if (isSeeded[i]) continue;

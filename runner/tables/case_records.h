@@ -39,12 +39,16 @@ struct CaseRecords {
         auto operator<=>(const Place&) const = default;
     };
     struct Attempt {
-        std::map<Place, const records::Record*> rows;
+        std::vector<const records::Record*> rows;  // by placeOf(), one of each; millions
         /// The values of a metric and pass: of its frames, or of set-up where no frame has one.
         std::vector<const records::Record*> values(std::string_view metric,
                                                    std::string_view pass) const;
         const records::Record* failure = nullptr;  // why the case has no rows
     };
+
+    static Place placeOf(const records::Record* row) {
+        return {row->metric, row->pass, row->frame, row->repeat};
+    }
 
     std::string id;
     AxisValues axes;

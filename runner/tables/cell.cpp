@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <climits>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -214,9 +213,9 @@ std::string passesWith(const CellQuery& query, const LayoutCases& cases) {
     std::set<std::string> passes;
     for (const CaseRecords* run : casesAt(query.where, cases)) {
         for (const auto& [number, attempt] : run->processes) {
-            for (const auto& [place, record] : attempt.rows) {
-                if (place.metric == query.metric) {
-                    passes.insert(place.pass.empty() ? "none" : std::string(place.pass));
+            for (const records::Record* record : attempt.rows) {
+                if (record->metric == query.metric) {
+                    passes.insert(record->pass.empty() ? "none" : record->pass.string());
                 }
             }
         }
@@ -573,10 +572,9 @@ SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const La
     SceneSource source = SceneSource::Unknown;
     for (const CaseRecords* run : casesAt(where, cases)) {
         for (const auto& [number, attempt] : run->processes) {
-            const CaseRecords::Place first{"scene_source", "", INT_MIN, INT_MIN};
-            const auto found = attempt.rows.lower_bound(first);
-            if (found == attempt.rows.end() || found->first.metric != "scene_source") continue;
-            const double value = found->second->value;
+            const auto found = attempt.values("scene_source", "");
+            if (found.empty()) continue;
+            const double value = found.front()->value;
             const SceneSource here = value == 1.0   ? SceneSource::StandIn
                                      : value == 2.0 ? SceneSource::Generated
                                                     : SceneSource::Real;
