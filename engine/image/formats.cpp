@@ -284,21 +284,20 @@ Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name) {
     const std::array<float, 3> factors = factorsOfHdr(file);
     const std::string size = file.line();
     const std::vector<std::string> words = split(trimmed(size), ' ');
-    const auto height =
-        words.size() == 4 && words[0] == "-Y" ? parseInteger(words[1]) : std::optional<long long>();
-    const auto width =
-        words.size() == 4 && words[2] == "+X" ? parseInteger(words[3]) : std::optional<long long>();
-    if (!height || !width) {
+    const bool isUsual = words.size() == 4 && words[0] == "-Y" && words[2] == "+X";
+    const long long height = isUsual ? parseInteger(words[1]).value_or(0) : 0;
+    const long long width = isUsual ? parseInteger(words[3]).value_or(0) : 0;
+    if (height == 0 || width == 0) {
         file.fail("its size is '" + size + "'; allowed: -Y height +X width, rows from the top");
     }
-    checkDeclaredSize(*width, *height, 3 * sizeof(float), bytes.size(), name, kMaxSidePx,
+    checkDeclaredSize(width, height, 3 * sizeof(float), bytes.size(), name, kMaxSidePx,
                       ImageUse::Picture);
-    Decoded result{ImageF(static_cast<int>(*width), static_cast<int>(*height), 3), true};
-    std::vector<Rgbe> row(static_cast<std::size_t>(*width));
+    Decoded result{ImageF(static_cast<int>(width), static_cast<int>(height), 3), true};
+    std::vector<Rgbe> row(static_cast<std::size_t>(width));
     for (int y = 0; y < result.values.height(); ++y) {
         Rgbe first{};
         for (int& value : first) value = file.byte();
-        if (first[0] == 2 && first[1] == 2 && first[2] * 256 + first[3] == *width && *width >= 8) {
+        if (first[0] == 2 && first[1] == 2 && first[2] * 256 + first[3] == width && width >= 8) {
             readPlanes(file, row);
         } else {
             readPixels(file, row, first);

@@ -186,7 +186,7 @@ class UnitReader {
         const auto bytes = static_cast<double>(fs::file_size(path_, unknown));
         if (unknown) return;
         const double share = bytes / static_cast<double>(result_.endBytes);
-        const auto rows = static_cast<std::size_t>(1.05 * share * static_cast<double>(readRows));
+        const auto rows = static_cast<std::size_t>(1.25 * share * static_cast<double>(readRows));
         result_.records.reserve(std::min(rows, kMostRecords));
         lines_.reserve(std::min(rows, kMostRecords));
     }

@@ -345,7 +345,8 @@ TEST_F(OwnExperiment, CheckSaysHowToNameAParameter) {
                 "sweep: {light_size: [1, 2]}\n"),
         HasSubstr(
             "unknown parameter 'light_size'; of 'light' there are light_ratio, "
-            "light_height, light_azimuth_deg, light_elevation_deg, light_grid, light_views\n"));
+            "light_height, light_azimuth_deg, light_elevation_deg, light_view_frame, light_grid, "
+            "light_views\n"));
     EXPECT_EQ(checked(folder,
                       "technique: clustered_reflections\nscene: shapes/linked_tori\nsweep: "
                       "{method: [clustered, environment_map], bin_exponent: [0.25]}\n"),
@@ -400,6 +401,11 @@ TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
     EXPECT_THAT(laidOut("{metric: gpu_time_ms}"),
                 HasSubstr("DIR/mine.yaml:5:36: metric 'gpu_time_ms' is of a pass, and the cell "
                           "names none; allowed: with pass: preprocess | "));
+    const std::string computed =
+        "layout: {rows: scene, columns: {a: {pass: draw}, b: {of: 2 * a}}, cell: {metric: "
+        "gpu_time_ms}}\n";
+    const auto file = folder.write("of.yaml", "sweep_of: mine\ntitle: Mine\n" + head + computed);
+    EXPECT_EQ(gfxrepro({"check", file}).err, "");
 }
 
 TEST_F(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {

@@ -19,9 +19,9 @@ std::string smokeConfig() {
     return (fs::path(GFXREPRO_CONFIGS) / "smoke/template.yaml").string();
 }
 
-TEST(Run, SmokeFromConfigToReport) {
-    const TemporaryFolder folder;
-    const std::string dir = folder.path() / "run";
+using RunCommand = test::RunTest;
+
+TEST_F(RunCommand, SmokeFromConfigToReport) {
     const ProcessResult run =
         gfxrepro({"run", smokeConfig(), "--device", "software", "--jobs", "1", "--out", dir});
     ASSERT_EQ(run.exitCode, 0) << run.err;
@@ -49,8 +49,7 @@ TEST(Run, SmokeFromConfigToReport) {
 }
 
 // A user's file has its views where the catalogue's scene has them: nothing looks past the scene.
-TEST(Run, AnExportedSceneMeasuresAsTheCataloguesDoes) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, AnExportedSceneMeasuresAsTheCataloguesDoes) {
     const std::string file = folder.path() / "tree.glb";
     const ProcessResult exported = gfxrepro({"scene", "outdoor/tree", "--export", file});
     ASSERT_EQ(exported.exitCode, 0) << exported.err;
@@ -60,7 +59,6 @@ TEST(Run, AnExportedSceneMeasuresAsTheCataloguesDoes) {
         "params: {method: conventional, redundancy: visibility, view_distance: 0.55, "
         "view_spread: 0.5, output_frames: 10, availability: true}\n"
         "output: {width: 128, height: 128}\nsweep: {scene: [outdoor/tree, tree.glb]}\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = gfxrepro({"run", config, "--device", "software", "--out", dir});
     ASSERT_EQ(run.exitCode, 0) << run.err;
     for (const char* metric : {"redundant_pct", "available_mean_pct"}) {
@@ -75,8 +73,7 @@ TEST(Run, AnExportedSceneMeasuresAsTheCataloguesDoes) {
 }
 
 // Lights, camera paths and motions, too.
-TEST(Run, AnExportedRoomShowsTheCataloguesPicture) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, AnExportedRoomShowsTheCataloguesPicture) {
     const ProcessResult exported =
         gfxrepro({"scene", "indoor/living_room", "--export", folder.path() / "room.glb"});
     ASSERT_EQ(exported.exitCode, 0) << exported.err;
@@ -87,7 +84,6 @@ TEST(Run, AnExportedRoomShowsTheCataloguesPicture) {
         "params: {method: ray_traced, pictures: true, view: path_1, path_frames: 9, first_frame: "
         "3, motion: true}\n"
         "output: {width: 64, height: 48}\nsweep: {scene: [indoor/living_room, room.glb]}\n");
-    const std::string dir = folder.path() / "run";
     const ProcessResult run = gfxrepro({"run", config, "--device", "software", "--out", dir});
     ASSERT_EQ(run.exitCode, 0) << run.err;
     std::vector<fs::path> pictures;
@@ -100,12 +96,10 @@ TEST(Run, AnExportedRoomShowsTheCataloguesPicture) {
     EXPECT_THAT(diff.out, testing::ContainsRegex("flip +0(\\.0+)?\n")) << diff.out;
 }
 
-TEST(Run, TableThatIsOnlyPrinted) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, TableThatIsOnlyPrinted) {
     const std::string config = folder.write(
         "table-1.yaml",
         "table: p/1\ntitle: T\nprinted: {values: \"function,dimensions\\npanorama,2\"}\n");
-    const std::string dir = folder.path() / "run";
     EXPECT_EQ(gfxrepro({"check", config}).out, config + ": ok, p/1, 0 cases, 0 claims\n");
     const ProcessResult run = gfxrepro({"reproduce", config, "--device", "software", "--out", dir});
     ASSERT_EQ(run.exitCode, 0) << run.err;
@@ -144,8 +138,7 @@ std::string parametersOf(const std::string& config, const std::string& dir,
     return text.substr(start, text.find("\n\n", start) - start);
 }
 
-TEST(Run, TablesSayAtWhichParametersTheyWereMeasured) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, TablesSayAtWhichParametersTheyWereMeasured) {
     const std::string config = printedConfig(folder);
     const std::string whole = folder.path() / "whole";
     EXPECT_EQ(parametersOf(config, whole, {}), "Measured at the parameters of the profile paper.");
@@ -169,8 +162,7 @@ TEST(Run, TablesSayAtWhichParametersTheyWereMeasured) {
               "Measured at frames 3 (printed 500).");
 }
 
-TEST(Run, PrintedParametersHaveToBeParameters) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, PrintedParametersHaveToBeParameters) {
     const std::string config = printedConfig(folder, "  paper: {printed: {at: {pause_m: 500}}}\n");
     const ProcessResult check = mockGfxrepro({"check", config});
     EXPECT_EQ(check.exitCode, 2);
@@ -180,8 +172,7 @@ TEST(Run, PrintedParametersHaveToBeParameters) {
 }
 
 /// Of three cases alike: told at the end, once.
-TEST(Run, WhatCasesWarnOfIsTold) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, WhatCasesWarnOfIsTold) {
     const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2, 3]}\n");
     const ProcessResult run = runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device",
                                           "software", "--out", folder.path() / "run"},
@@ -193,10 +184,8 @@ TEST(Run, WhatCasesWarnOfIsTold) {
     EXPECT_EQ(run.err.find(warning, at + 1), std::string::npos) << run.err;
 }
 
-TEST(Run, SecondRunIntoOneFolderIsRefused) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, SecondRunIntoOneFolderIsRefused) {
     const std::string config = writeMockConfig(folder, "params: {pause_ms: 4000}\n");
-    const std::string dir = folder.path() / "run";
     BackgroundProgram first(
         {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
     while (!fs::exists(dir + "/plan.json")) {
@@ -226,8 +215,7 @@ void waitForFirstCase(const std::string& dir) {
     }
 }
 
-TEST(Run, KilledRunResumesToTheSameTables) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, KilledRunResumesToTheSameTables) {
     const std::string config = writeMockConfig(folder, kSixCases);
     const std::string whole = folder.path() / "whole";
     const std::string killed = folder.path() / "killed";
@@ -246,17 +234,15 @@ TEST(Run, KilledRunResumesToTheSameTables) {
     const std::string left = std::to_string(6 - finished);
     EXPECT_EQ(resumed.out,
               left + " of " + left + " finished; records: " + killed + "/records.csv\n");
-    for (const std::string& dir : {whole, killed}) {
-        EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+    for (const std::string& each : {whole, killed}) {
+        EXPECT_EQ(mockGfxrepro({"table", each}).exitCode, 0);
     }
     EXPECT_EQ(readFile(killed + "/tables/sweep-mock.csv"),
               readFile(whole + "/tables/sweep-mock.csv"));
 }
 
-TEST(Run, InterruptedRunIsResumable) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, InterruptedRunIsResumable) {
     const std::string config = writeMockConfig(folder, kSixCases);
-    const std::string dir = folder.path() / "run";
     BackgroundProgram run(
         {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
     waitForFirstCase(dir);
@@ -269,11 +255,9 @@ TEST(Run, InterruptedRunIsResumable) {
     EXPECT_EQ(rowsOf(dir, "number").size(), 6U);
 }
 
-TEST(Run, ResumeGoesOnWithWhatWasPlanned) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, ResumeGoesOnWithWhatWasPlanned) {
     const std::string config =
         writeMockConfig(folder, "params: {number: 1}\nsweep: {pause_ms: [0, 1]}\n");
-    const std::string dir = folder.path() / "run";
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
     const auto rows = records::readRecords(dir + "/records.csv");
     const auto loseACase = [&] {
@@ -300,10 +284,8 @@ TEST(Run, ResumeGoesOnWithWhatWasPlanned) {
     EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
 }
 
-TEST(Run, ResumeRefusesAPlanThatWasChanged) {
-    const TemporaryFolder folder;
+TEST_F(RunCommand, ResumeRefusesAPlanThatWasChanged) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
-    const std::string dir = folder.path() / "run";
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
     const std::string plan = readFile(dir + "/plan.json");
     const auto resumedWith = [&](const std::string& from, const std::string& to) {
