@@ -285,7 +285,8 @@ void RunRecorder::compareWithTruths() {
             throw Error(fmt::format("image '{}' and its truth: {}", name, error.what()));
         }
         for (const auto& [metric, value] : errorsOf(test, reference, *own.picture, *own.truth)) {
-            this->metric(metric, value, metric == "psnr_db" ? "dB" : "1", name);
+            const bool isDb = std::string_view(metric) == "psnr_db";
+            this->metric(metric, value, isDb ? "dB" : "1", name);
         }
     }
     compared_.clear();

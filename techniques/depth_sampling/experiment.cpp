@@ -51,7 +51,7 @@ void PixelExperiment::makeReferenceImages(gl::Profiler& profiler) {
     for (std::size_t i = 0; i < images_.size(); ++i) {
         const gl::GpuScope one(profiler, imageName(i));
         const std::size_t earlier = method_ == Method::Conventional ? 0 : i;
-        renderer_.render(scene_, images_[i], first(images_));
+        renderer_.render(scene_, images_[i], first(images_, earlier));
     }
 }
 
@@ -218,7 +218,7 @@ VisibilityExperiment::VisibilityExperiment(const scene::Scene& scene, raycast::R
     : method_(method),
       tracer_(std::move(tracer)),
       shading_(scene),
-      sequence_(tracer_, views.images, method != Method::Conventional, earlier),
+      sequence_(tracer_, views.images, method != Method::Conventional),
       conventional_(tracer_, views.conventional, false),
       frames_(tracer_, views.frames, false),
       neededBy_(tracer_, {}, false) {}
