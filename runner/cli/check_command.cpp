@@ -264,9 +264,17 @@ Size sizeOf(const Context& context, const config::Experiment& experiment,
         truths = static_cast<double>(
             std::ranges::count_if(own.pictures, &config::ProgramPicture::hasTruth));
     }
-    double metrics = 0.0;
+    const auto isError = [](const config::MetricInfo& info) {
+        return std::ranges::find(config::pictureErrors(), info.name, &config::MetricInfo::name) !=
+               config::pictureErrors().end();
+    };
+    double metrics = 0.0, errors = 0.0;
     for (std::size_t i = technique::commonMetrics().size(); i < outputs.metrics.size(); ++i) {
         const config::MetricInfo& info = outputs.metrics[i];
+        if (isError(info)) {
+            errors += program.isNull() ? 1.0 : truths;
+            continue;
+        }
         const bool isOfPasses =
             program.isNull() ? info.of == Of::Pass : said.find(info.name) != nullptr;
         const double others = program.isNull() ? 1.0 : truths;
@@ -276,7 +284,11 @@ Size sizeOf(const Context& context, const config::Experiment& experiment,
     Size size;
     for (const config::Case& item : cases) {
         const double ofFrame = metrics + ofRepeat * item.measure.repeats;
-        size.rows += item.measure.processes * (kOfCase + ofFrame * item.measure.frames);
+        // Pictures are made in the first process alone, or with each seed.
+        const bool isOfSeeds = item.measure.seeds == config::Measure::Seeds::Process;
+        const double pictured = isOfSeeds ? item.measure.processes : 1.0;
+        size.rows += item.measure.processes * (kOfCase + ofFrame * item.measure.frames) +
+                     pictured * errors * item.measure.frames;
         size.pictures += pictures * item.measure.frames;
     }
     size.units = static_cast<double>(run::unitCount(cases));

@@ -196,11 +196,11 @@ TEST_F(Sensitivity, ReportsShowWhatIsKept) {
         EXPECT_EQ(result.exitCode, 0) << result.err;
         return readFile(run + "/claims.csv");
     };
-    EXPECT_THAT(claims({}), HasSubstr("one sample,,number (of 1 tried),,\n"));
+    EXPECT_THAT(claims({}), HasSubstr("one sample,,number (of 1 tried),,,\n"));
     EXPECT_THAT(readFile(run + "/report.html"),
                 HasSubstr("<span class=\"soft\">rests on </span>number (of 1 tried)</p>"));
     // Of another case they say nothing.
-    EXPECT_THAT(claims({"--set", "number=4"}), HasSubstr("one sample,,not tried,,\n"));
+    EXPECT_THAT(claims({"--set", "number=4"}), HasSubstr("one sample,,not tried,,,\n"));
 }
 
 TEST_F(Sensitivity, WhereNothingCouldBeKeptIsSaidOnce) {
@@ -225,13 +225,13 @@ TEST_F(Sensitivity, WhereNothingCouldBeKeptIsSaidOnce) {
         return (text.find(line) != text.npos) + (text.find(line) != text.rfind(line) ? 1 : 0);
     };
     EXPECT_EQ(timesSaid(out({"reproduce", config, "--device", "software", "--out", run})), 1);
-    EXPECT_THAT(readFile(run + "/claims.csv"), HasSubstr(",not known,,\n"));
+    EXPECT_THAT(readFile(run + "/claims.csv"), HasSubstr(",not known,,,\n"));
     EXPECT_EQ(timesSaid(out({"claims", run, "--config", config})), 1);
     fs::create_directories(kept);
     EXPECT_EQ(timesSaid(out({"claims", run})), 0);
-    EXPECT_THAT(readFile(run + "/claims.csv"), HasSubstr(",not tried,,\n"));
+    EXPECT_THAT(readFile(run + "/claims.csv"), HasSubstr(",not tried,,,\n"));
     EXPECT_EQ(timesSaid(out({"claims", run, "--config", config})), 0);
-    EXPECT_THAT(readFile(run + "/judged-afterwards/claims.csv"), HasSubstr(",not tried,,\n"));
+    EXPECT_THAT(readFile(run + "/judged-afterwards/claims.csv"), HasSubstr(",not tried,,,\n"));
 }
 
 TEST(Budget, TablesThatDoNotFitAreLeftOutAndNamed) {

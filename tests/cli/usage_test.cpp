@@ -209,11 +209,12 @@ TEST_F(Usage, CalibrationsCannotReadWhatComparesMethods) {
     const auto errorOf = [&](const std::string& target) {
         const std::string preset =
             target.starts_with("intensity") ? "soft-shadows" : "depth-sampling";
-        const std::string config =
-            folder.write("c.yaml", "sweep_of: c\ntitle: T\nextends: [presets/" + preset +
-                                       "-calibration.yaml]\n"
-                                       "scene: outdoor/bird_nest\nlayout: {rows: scene}\nfit:\n  " +
-                                       target + "\n");
+        const std::string config = folder.write(
+            "c.yaml", "sweep_of: c\ntitle: T\nextends: [presets/" + preset +
+                          "-calibration.yaml]\n"
+                          "scene: outdoor/bird_nest\nlayout: {rows: " +
+                          (preset == "depth-sampling" ? "[scene, resolution]" : "scene") +
+                          "}\nfit:\n  " + target + "\n");
         return refusal({"check", config}, folder);
     };
     const std::string scene = "scene: outdoor/bird_nest}, column: ";
