@@ -289,7 +289,7 @@ Size sizeOf(const Context& context, const config::Experiment& experiment,
         const double pictured = isOfSeeds ? item.measure.processes : 1.0;
         size.rows += item.measure.processes * (kOfCase + ofFrame * item.measure.frames) +
                      pictured * errors * item.measure.frames;
-        size.pictures += pictures * item.measure.frames;
+        size.pictures += pictured * (pictures + truths) * item.measure.frames;
     }
     size.units = static_cast<double>(run::unitCount(cases));
     return size;
