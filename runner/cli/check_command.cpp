@@ -249,6 +249,7 @@ struct Size {
 
 Size sizeOf(const Context& context, const config::Experiment& experiment,
             const std::vector<config::Case>& cases) {
+    if (cases.empty()) return {};  // of a table that is printed as given
     using Of = config::MetricInfo::Of;
     constexpr double kOfCase = 8.0, kOfRepeat = 3.0, kOfPass = 2.0;  // scene, memory; times
     const Node& program = config::programOf(experiment);
