@@ -22,7 +22,7 @@ duration() { # SECONDS
 # how_far BEGAN DONE ALL: the time since BEGAN, and by the pace until now what is left.
 how_far() {
     local elapsed=$((SECONDS - $1)) left=''
-    if (($2 > 0 && elapsed >= 5)); then
+    if (($2 > 0 && $2 < $3 && elapsed >= 5)); then
         left=$((elapsed * ($3 - $2) / $2))
         ((left < 100)) || left=$(((left + 30) / 60 * 60))
         left=", about $(duration $left) left"

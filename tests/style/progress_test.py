@@ -5,6 +5,7 @@ In a small project of its own, with packages that are only pretended."""
 import os
 import pathlib
 import pty
+import re
 import shutil
 import subprocess
 import sys
@@ -43,6 +44,16 @@ case "$*" in
     [ -z "$BROKEN" ] || { echo "E: Unable to fetch some archives" >&2; exit 100; }
     ;;
 esac
+"""
+# Six steps, of which the two that compile take all the time.
+CMAKE = """#!/bin/sh
+[ "$1" = --build ] || { mkdir -p build/release; exit; }
+case "$*" in *" -n") wait=true ;; *) wait=sleep ;; esac
+for i in 1 2 3 4; do echo "[$i/6] Copying $i"; done
+$wait 5.5
+echo "[5/6] Building CXX object first.o"
+$wait 1.2
+echo "[6/6] Building CXX object second.o"
 """
 
 
@@ -125,6 +136,12 @@ def check_build(folder):
     expect(code == 1 and "\r\033[Kbuild release: configuring\r\033[K" in said and "first.cpp:1:22: error:" in said, repr(said))
     unknown = run(script, "release", "fines", cwd=folder)
     expect(unknown.returncode == 1 and unknown.stderr.startswith("ninja: error: unknown target 'fines', did you mean 'fine'?\n"), unknown)
+    tools = folder / "unequal"
+    tools.mkdir()
+    (tools / "cmake").write_text(CMAKE)
+    (tools / "cmake").chmod(0o755)
+    said, code = on_a_terminal(script, cwd=folder, PATH=f"{tools}:{os.environ['PATH']}")
+    expect(code == 0 and not re.search("4 of 6, [^\r]* left", said) and re.search("5 of 6, (\\d+) s, about \\1 s left", said), repr(said))
     missing = run(script, "needy", cwd=folder)
     expect(missing.returncode == 1 and missing.stderr.startswith("CMake Error at CMakeLists.txt:6 (find_package):\n")
            and "compiler" not in missing.stdout, missing)
