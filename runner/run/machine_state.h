@@ -14,7 +14,6 @@
 
 #include "engine/gl/nvml.h"
 #include "runner/run/machine_reading.h"
-#include "runner/run/machine_state.h"
 #include "runner/run/protocol.h"
 #include "runner/run/run_directory.h"
 #include "runner/run/scheduler.h"

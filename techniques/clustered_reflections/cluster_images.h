@@ -7,7 +7,6 @@
 #include "engine/gl/objects.h"
 #include "engine/gl/pass.h"
 #include "techniques/clustered_reflections/cluster_cameras.h"
-#include "techniques/clustered_reflections/cluster_images.h"
 #include "techniques/clustered_reflections/clustering.h"
 #include "techniques/reflections/gpu_objects.h"
 

@@ -9,7 +9,6 @@
 #include "engine/gl/objects.h"
 #include "engine/gl/profiler.h"
 #include "engine/gl/program.h"
-#include "techniques/clustered_reflections/clustering.h"
 #include "techniques/reflections/gbuffer.h"
 
 namespace gfxrepro::clustered_reflections {

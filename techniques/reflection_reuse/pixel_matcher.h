@@ -8,7 +8,6 @@
 
 #include "engine/gl/objects.h"
 #include "engine/gl/program.h"
-#include "techniques/reflection_reuse/pixel_matcher.h"
 #include "techniques/reflections/gbuffer.h"
 #include "techniques/reflections/reflection_tracer.h"
 

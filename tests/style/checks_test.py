@@ -119,6 +119,8 @@ for includes in ('#include <map>\n#include "engine/core/a.h"\n',
            "engine/core/a.cpp: includes are in another order than the own header, <…>, ours")
 expect("check_style", {"engine/core/a.h": "#pragma once\n", "engine/core/a.cpp": '#include <map>\n'},
        "engine/core/a.cpp: includes are in another order than the own header, <…>, ours")
+expect("check_style", {"engine/core/a.h": '#pragma once\n#include "engine/core/a.h"\n'},
+       "engine/core/a.h: includes are in another order than the own header, <…>, ours")
 for kind in ("int twice(int n) {\n", "template <class T>\nvoid twice(T n) {\n", "struct twice {\n", "constexpr int twice = 1;\n"):
     expect("check_style", {"engine/core/a.cpp": "namespace {\nint twice(long n) {\n}  // namespace\n",
                            "engine/core/b.cpp": "namespace {\n" + kind + "    twice(1);\n}  // namespace\n"},
