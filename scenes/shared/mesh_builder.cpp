@@ -1,5 +1,6 @@
 #include "scenes/shared/mesh_builder.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>

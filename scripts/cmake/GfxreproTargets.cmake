@@ -31,7 +31,7 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(GFXREPRO_TEST_OPTIONS -O0 -Wno-subobject-linkage)
 
 # gfxrepro_precompiled(TARGET COLD): where sources compile one by one, what most of them include is compiled once, in the two
-# ways that modules are optimized. Preset `clang` compiles without, and so tells of a header that a source forgets.
+# ways that modules are optimized. `check_style` and preset `clang`, which compiles without, tell of a header that a source forgets.
 function(gfxrepro_precompiled target cold)
     if(CMAKE_UNITY_BUILD OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         return()

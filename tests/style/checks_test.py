@@ -121,6 +121,14 @@ expect("check_style", {"engine/core/a.h": "#pragma once\n", "engine/core/a.cpp":
        "engine/core/a.cpp: includes are in another order than the own header, <…>, ours")
 expect("check_style", {"engine/core/a.h": '#pragma once\n#include "engine/core/a.h"\n'},
        "engine/core/a.h: includes are in another order than the own header, <…>, ours")
+for text, wanted in (("std::vector<int> a;", "std::vector, but neither it nor what it includes of ours includes vector"),
+                     ("// a\nglm::ivec2 a;", "glm::ivec2, but neither it nor what it includes of ours includes glm/"),
+                     ("#include <string_view>\nstd::string a;", "std::string, but neither it nor")):
+    expect("check_style", {"engine/core/a.cpp": text + "\n", "engine/core/b.h": "#include <vector>\n"}, f"engine/core/a.cpp: {wanted}")
+code, output = run("check_style", {"engine/README.md": "", "engine/core/README.md": "", "engine/core/b.h": "#pragma once\n#include <glm/vec2.hpp>\n",
+    "engine/core/c.h": '#pragma once\n#include "engine/core/b.h"\n', "engine/core/a.cpp": '#include "engine/core/c.h"\nglm::vec2 a; // std::map\n'})
+if code != 0:
+    sys.exit(f"check_style found something in good includes:\n{output}")
 for kind in ("int twice(int n) {\n", "template <class T>\nvoid twice(T n) {\n", "struct twice {\n", "constexpr int twice = 1;\n"):
     expect("check_style", {"engine/core/a.cpp": "namespace {\nint twice(long n) {\n}  // namespace\n",
                            "engine/core/b.cpp": "namespace {\n" + kind + "    twice(1);\n}  // namespace\n"},
@@ -148,7 +156,8 @@ for drawn in ("glm::vec2 a(random.uniform(), random.uniform());", "f(g(random_.i
               "f({g(random.index(2), random.index(3))});", "f([&] { g(random.uniform(0, 1), -random.uniform()); });"):
     expect("check_style", {"engine/core/a.cpp": "int a;\n" + drawn + "\n"},
            "engine/core/a.cpp:2: two arguments draw: compilers differ in their order; braces have one\n")
-DRAWS = """const glm::vec2 a{random.uniform(0, 1), random.uniform()};
+DRAWS = """#include <glm/vec2.hpp>
+const glm::vec2 a{random.uniform(0, 1), random.uniform()};
 f({random.uniform(), random.index(3)}, 1);
 // f(random.uniform(), random.uniform());
 for (int i = random.index(2); i < 9; i += random.index(3))
