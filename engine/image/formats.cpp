@@ -44,6 +44,7 @@ class Bytes {
     std::string line() {
         std::string text;
         for (int c = byte(); c != '\n'; c = byte()) text += static_cast<char>(c);
+        if (text.ends_with('\r')) text.pop_back();
         return text;
     }
     /// Between blanks, behind comments of '#'; one blank behind it is taken, too.
@@ -57,6 +58,7 @@ class Bytes {
                        std::string_view::npos) {
                 text += static_cast<char>(c);
             } else if (!text.empty()) {
+                isReturn_ = c == '\r';
                 return text;
             }
         }
@@ -69,6 +71,11 @@ class Bytes {
         }
         return static_cast<int>(*value);
     }
+    /// All that is behind the last word, whose blank may be the two characters of a line's end.
+    std::span<const std::byte> raster(std::size_t count) {
+        if (isReturn_ && rest_.size() > count && rest_[0] == std::byte{'\n'}) take(1);
+        return take(count);
+    }
     void checkSize(int width, int height, std::size_t pixelBytes) const {
         checkDeclaredSize(width, height, pixelBytes, size_, name_, kMaxSidePx, ImageUse::Picture);
     }
@@ -77,6 +84,7 @@ class Bytes {
     std::span<const std::byte> rest_;
     std::size_t size_;
     const std::string& name_;
+    bool isReturn_ = false;  // the blank behind the last word
 };
 
 float unitOf(std::byte value) {
@@ -138,6 +146,68 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
     return image;
 }
 
+namespace {
+
+/// What a JPEG file says of how it is to be turned, Exif's Orientation: 1 … 8, 1 where it says
+/// nothing.
+int orientationOf(std::span<const std::byte> bytes) {
+    using Part = std::span<const std::byte>;
+    const auto number = [](Part part, std::size_t at, std::size_t count, bool isLittle) {
+        std::size_t value = 0;
+        for (std::size_t i = 0; i < count && at + i < part.size(); ++i) {
+            const auto digit = std::to_integer<std::size_t>(part[at + i]);
+            value = isLittle ? value | digit << 8 * i : value << 8 | digit;
+        }
+        return value;
+    };
+    constexpr std::string_view kExif("Exif\0\0", 6);
+    for (std::size_t at = 2; at + 4 <= bytes.size() && bytes[at] == std::byte{0xFF};) {
+        const auto marker = std::to_integer<int>(bytes[at + 1]);
+        if (marker == 0xDA) return 1;  // the scan begins
+        const std::size_t length = number(bytes, at + 2, 2, false);
+        const Part segment = bytes.subspan(at + 4).first(
+            std::min(bytes.size() - at - 4, std::max<std::size_t>(length, 2) - 2));
+        at += 2 + length;
+        const bool isExif = marker == 0xE1 && segment.size() > kExif.size() + 8 &&
+                            std::memcmp(segment.data(), kExif.data(), kExif.size()) == 0;
+        if (!isExif) continue;
+        const Part tags = segment.subspan(kExif.size());
+        const bool isLittle = tags[0] == std::byte{'I'};
+        const std::size_t first = number(tags, 4, 4, isLittle);
+        const std::size_t count = number(tags, first, 2, isLittle);
+        for (std::size_t i = 0; i < count && first + 2 + 12 * (i + 1) <= tags.size(); ++i) {
+            const std::size_t entry = first + 2 + 12 * i;
+            if (number(tags, entry, 2, isLittle) != 0x0112) continue;
+            const std::size_t value = number(tags, entry + 8, 2, isLittle);
+            return value >= 1 && value <= 8 ? static_cast<int>(value) : 1;
+        }
+    }
+    return 1;
+}
+
+/// As it is to be seen.
+ImageF turned(const ImageF& image, int orientation) {
+    if (orientation == 1) return image;
+    const bool isTransposed = orientation >= 5;
+    const bool isMirrored = orientation == 2 || orientation == 3 || orientation >= 7;
+    const bool isUpsideDown =
+        orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
+    ImageF result(isTransposed ? image.height() : image.width(),
+                  isTransposed ? image.width() : image.height(), image.channels());
+    for (int y = 0; y < result.height(); ++y) {
+        for (int x = 0; x < result.width(); ++x) {
+            const int u = isTransposed ? y : x, v = isTransposed ? x : y;
+            for (int c = 0; c < image.channels(); ++c) {
+                result.at(x, y, c) = image.at(isMirrored ? image.width() - 1 - u : u,
+                                              isUpsideDown ? image.height() - 1 - v : v, c);
+            }
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
 Decoded decodeJpeg(std::span<const std::byte> bytes, const std::string& name) {
     std::span<const std::byte> end = bytes;  // stb fills up what is not there
     while (!end.empty() && end.back() == std::byte{0}) end = end.first(end.size() - 1);
@@ -148,6 +218,7 @@ Decoded decodeJpeg(std::span<const std::byte> bytes, const std::string& name) {
     Decoded result{ImageF(image.width(), image.height(), image.channels())};
     std::ranges::transform(image.values(), result.values.values().begin(),
                            [](std::uint8_t value) { return static_cast<float>(value) / 255.0F; });
+    result.values = turned(result.values, orientationOf(bytes));
     return result;
 }
 
@@ -163,7 +234,7 @@ Decoded floatsOfPfm(Bytes& file, int channels) {
     file.checkSize(width, height, static_cast<std::size_t>(channels) * sizeof(float));
     Decoded result{ImageF(width, height, channels), true};
     const auto values = result.values.values();
-    std::memcpy(values.data(), file.take(values.size_bytes()).data(), values.size_bytes());
+    std::memcpy(values.data(), file.raster(values.size_bytes()).data(), values.size_bytes());
     if ((*scale > 0.0) != (std::endian::native == std::endian::big)) {
         for (float& value : values) {
             value = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
@@ -190,7 +261,7 @@ Decoded decodeNetpbm(std::span<const std::byte> bytes, const std::string& name) 
     const int channels = kind == "P6" ? 3 : 1;
     file.checkSize(width, height, static_cast<std::size_t>(channels) * sizeof(float));
     Decoded result{ImageF(width, height, channels), false, most < 256 ? 8 : 16};
-    const auto raster = file.take(result.values.values().size() * valueBytes);
+    const auto raster = file.raster(result.values.values().size() * valueBytes);
     for (std::size_t i = 0; i < result.values.values().size(); ++i) {
         int value = std::to_integer<int>(raster[i * valueBytes]);
         if (valueBytes == 2) value = 256 * value + std::to_integer<int>(raster[2 * i + 1]);

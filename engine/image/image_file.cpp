@@ -26,8 +26,8 @@ using namespace std::string_view_literals;
 constexpr Format kFormats[] = {
     {"exr", "v/1\x01", ".exr"},
     {"png", "\x89PNG", ".png"},
-    {"pfm", "PF\n", ".pfm"},
-    {"pfm", "Pf\n", ".pfm"},
+    {"pfm", "PF", ".pfm"},
+    {"pfm", "Pf", ".pfm"},
     {"hdr", "#?", ".hdr"},
     {"pnm", "P5", ".pgm.ppm.pnm"},
     {"pnm", "P6", ".pgm.ppm.pnm"},

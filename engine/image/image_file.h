@@ -23,7 +23,8 @@ std::string_view formatOf(const std::filesystem::path& path);
 
 /// What a file shows, of 1 to 4 channels: grey, grey and alpha, RGB, RGB and alpha. Of an EXR file
 /// it is what lies in its display window. EXR, PFM, HDR and TIFF of floats are linear; PNG, PNM,
-/// TGA, JPEG and other TIFF are sRGB. Colour profiles and gamma of a file are not read.
+/// TGA, JPEG and other TIFF are sRGB. Colour profiles and gamma of a file are not read; a JPEG
+/// file is turned as its Exif says.
 struct Picture {
     ImageF stored;  // sRGB in [0, 1], not multiplied by alpha; of a linear file as `linear`
     ImageF linear;  // light of Rec. 709's primaries, multiplied by alpha

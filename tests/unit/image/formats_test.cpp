@@ -4,6 +4,7 @@
 #include <stb/stb_image_write.h>
 #include <tiffio.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -81,6 +82,11 @@ TEST_F(Formats, PortableAnymapsAreSrgb) {
     EXPECT_EQ(deep.bits, 16);
     EXPECT_EQ(deep.stored.at(0, 0, 0), 1.0F);
     EXPECT_EQ(deep.stored.at(0, 0, 1), 0.5F);
+    // Lines that end in two characters, before a picture that begins with the second.
+    folder_.write("d.ppm", "P6\r\n11 5\r\n255\r\n" + bytesOf(values(3)));
+    expectValues("d.ppm", 3);
+    const Picture one = readPicture(folder_.write("e.pgm", "P5 1 1 255\r\n"));
+    EXPECT_EQ(std::lround(255.0F * one.stored.at(0, 0)), '\n');
     EXPECT_EQ(errorOf("c.ppm", "P6 2 1 255\nabcde"), "DIR/c.ppm: the file ends early");
     EXPECT_EQ(errorOf("c.ppm", "P3 1 1 255\n1 2 3\n"),
               "DIR/c.ppm: a file of kind P3; P5, P6, Pf and PF are read");
@@ -103,6 +109,9 @@ TEST_F(Formats, PortableFloatMapsAreLinear) {
     EXPECT_TRUE(picture.isLinear);
     EXPECT_EQ(picture.linear.at(0, 1, 0), 1.5F);  // the last row comes first
     EXPECT_EQ(picture.stored.at(1, 0, 2), 3.0F);
+    const Picture windows =
+        readPicture(folder_.write("w.pfm", "PF\r\n2 2\r\n-1.0\r\n" + bytesOf(rows)));
+    EXPECT_EQ(windows.linear, picture.linear);
     std::string swapped = bytesOf(std::vector<float>{1.5F, 2.5F});
     for (std::size_t i = 0; i < swapped.size(); i += 4) std::reverse(&swapped[i], &swapped[i] + 4);
     EXPECT_EQ(readPicture(folder_.write("b.pfm", "Pf\n2 1\n1\n" + swapped)).linear.at(1, 0), 2.5F);
@@ -181,6 +190,54 @@ TEST_F(Formats, JpegIsSrgb) {
               "DIR/b.jpg: the file ends early");
     // By what it is, not by its name.
     EXPECT_EQ(readPicture(folder_.write("c.png", whole)).stored, picture.stored);
+}
+
+/// A picture whose corner from the left and the top is dark, the one beside it (by a column) grey,
+/// after turning; stored as the Orientation says.
+TEST_F(Formats, JpegIsTurnedAsItsExifSays) {
+    constexpr int kSide = 8;  // a block, which the compression keeps apart
+    const auto storedAs = [&](int orientation, bool isLittle) {
+        const bool isTransposed = orientation >= 5;
+        const int width = isTransposed ? 2 * kSide : 3 * kSide;
+        const int height = isTransposed ? 3 * kSide : 2 * kSide;
+        std::vector<std::uint8_t> even(static_cast<std::size_t>(width * height), 250);
+        const auto fill = [&](int column, int row, std::uint8_t value) {  // of 3 × 2 as it is seen
+            const auto isIn = [&](std::initializer_list<int> all) {
+                return std::ranges::find(all, orientation) != all.end();
+            };
+            const bool isFromRight = isIn({2, 3, 6, 7}), isFromBottom = isIn({3, 4, 7, 8});
+            int u = isFromRight ? 2 - column : column, v = isFromBottom ? 1 - row : row;
+            if (isTransposed) std::swap(u, v);
+            for (int y = 0; y < kSide; ++y) {
+                for (int x = 0; x < kSide; ++x) {
+                    even[static_cast<std::size_t>((v * kSide + y) * width + u * kSide + x)] = value;
+                }
+            }
+        };
+        fill(0, 0, 5);
+        fill(1, 0, 128);
+        stbi_write_jpg(path("turned.jpg").c_str(), width, height, 1, even.data(), 100);
+        const std::string plain = readFile(path("turned.jpg"));
+        const char value = static_cast<char>(orientation);
+        std::string exif(
+            "\xff\xe1\0\x22"
+            "Exif\0\0",
+            10);
+        exif += isLittle ? std::string("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0", 18) +
+                               value + std::string(7, '\0')
+                         : std::string("MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0", 19) +
+                               value + std::string(6, '\0');
+        return readPicture(folder_.write("exif.jpg", plain.substr(0, 2) + exif + plain.substr(2)))
+            .stored;
+    };
+    for (int orientation = 1; orientation <= 8; ++orientation) {
+        const ImageF seen = storedAs(orientation, orientation % 2 == 0);
+        ASSERT_EQ(seen.width(), 3 * kSide) << orientation;
+        ASSERT_EQ(seen.height(), 2 * kSide) << orientation;
+        EXPECT_LT(seen.at(4, 4, 0), 0.1F) << orientation;
+        EXPECT_NEAR(seen.at(12, 4, 0), 0.5F, 0.05F) << orientation;
+        EXPECT_GT(seen.at(20, 12, 0), 0.9F) << orientation;
+    }
 }
 
 /// How a TIFF file is laid out; what is not said is as in most.
