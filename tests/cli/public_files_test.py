@@ -10,15 +10,22 @@ import subprocess
 import sys
 
 MODELS = {".glb", ".gltf", ".hgt", ".obj", ".off", ".ply", ".stl", ".tif", ".tiff"}
-PICTURES = {".exr", ".png"}
+PICTURES = {".exr", ".hdr", ".jpeg", ".jpg", ".pfm", ".pgm", ".png", ".pnm", ".ppm", ".tga", ".tif", ".tiff"}
 OUTCOMES = ("read", "warned", "refused", "crashed", "hung")
 LIMIT_S = 60
 REFUSED = 2  # the exit code of what is wrong with a file
 
 
 def outcome(program, path):
-    """One of OUTCOMES, and the line that tells why."""
-    command = [program, "scene", path] if path.suffix.lower() in MODELS else [program, "image", "info", path]
+    """One of OUTCOMES, and the line that tells why; of what may be a height map or a picture the better."""
+    kind = path.suffix.lower()
+    found = [outcome_of([program, "scene", path])] if kind in MODELS else []
+    if kind in PICTURES and (not found or found[0][0] == "refused"):
+        found.append(outcome_of([program, "image", "info", path]))
+    return found[-1]
+
+
+def outcome_of(command):
     try:
         done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=LIMIT_S)
     except subprocess.TimeoutExpired:
