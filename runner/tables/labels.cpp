@@ -42,11 +42,15 @@ bool isWordCharacter(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '-';
 }
 
-/// "outdoor/bird_nest", "draw_ms": words joined by _, perhaps in a folder.
+/// "outdoor/bird_nest", "draw_ms": words joined by _, perhaps in a folder. With capitals it is a
+/// word of others, which stays as they write it.
 bool isName(std::string_view name) {
     if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) return false;
     if (std::ranges::count(name, '/') > 1 || name.back() == '/') return false;
-    return std::ranges::all_of(name, [](char c) { return isWordCharacter(c) || c == '/'; });
+    return std::ranges::all_of(name, [](char c) {
+        const bool isCapital = std::isupper(static_cast<unsigned char>(c)) != 0;
+        return !isCapital && (isWordCharacter(c) || c == '/');
+    });
 }
 
 /// "model.glb" of "/home/me/model.glb"; empty of what is no path from the root.
@@ -205,7 +209,8 @@ std::vector<std::map<std::string, std::string>> shownLabels(
 
 std::string valueInWords(const std::string& value, const Words& words) {
     if (words.contains(value)) return words.at(value);
-    return value.find_first_of("/.") == value.npos ? withBlanks(value) : value;
+    const bool isWords = isName(value) && value.find_first_of("/.") == value.npos;
+    return isWords ? withBlanks(value) : value;
 }
 
 std::string inWords(std::string_view required, const Table& table) {

@@ -88,6 +88,9 @@ TEST(Labels, AValueInASentenceKeepsItsFolder) {
     EXPECT_EQ(valueInWords("path_1"), "path 1");
     EXPECT_EQ(valueInWords("outdoor/bird_nest"), "outdoor/bird_nest");
     EXPECT_EQ(valueInWords("my_model.glb"), "my_model.glb");
+    EXPECT_EQ(valueInWords("MULTI_JITTER"), "MULTI_JITTER") << "as another program writes it";
+    EXPECT_EQ(shownName("MULTI_JITTER"), "MULTI_JITTER");
+    EXPECT_EQ(shownValue("pattern", "MULTI_JITTER"), "MULTI_JITTER");
     EXPECT_EQ(valueInWords("low_pass", {{"low_pass", "the low-pass filter"}}),
               "the low-pass filter");
 }
