@@ -265,14 +265,10 @@ Size sizeOf(const Context& context, const config::Experiment& experiment,
         truths = static_cast<double>(
             std::ranges::count_if(own.pictures, &config::ProgramPicture::hasTruth));
     }
-    const auto isError = [](const config::MetricInfo& info) {
-        return std::ranges::find(config::pictureErrors(), info.name, &config::MetricInfo::name) !=
-               config::pictureErrors().end();
-    };
     double metrics = 0.0, errors = 0.0;
     for (std::size_t i = technique::commonMetrics().size(); i < outputs.metrics.size(); ++i) {
         const config::MetricInfo& info = outputs.metrics[i];
-        if (isError(info)) {
+        if (config::isPictureError(info.name)) {
             errors += program.isNull() ? 1.0 : truths;
             continue;
         }
@@ -341,7 +337,12 @@ std::vector<records::Record> foreseen(std::span<config::Case> cases,
         for (const config::MetricInfo& metric : outputs.metrics) {
             if (metric.of != Of::Pass) add(metric, "");
             if (metric.of == Of::Whole) continue;
-            for (const config::PassInfo& pass : outputs.passes) add(metric, pass.name);
+            // Of passes there are times, of pictures all else that is of passes alone.
+            const bool isOfPictures = metric.of == Of::Pass && !config::isTimeMetric(metric.name);
+            for (const config::PassInfo& pass : outputs.passes) {
+                const bool isPicture = std::ranges::count(outputs.withTruth, pass.name) > 0;
+                if (isOfPictures == isPicture) add(metric, pass.name);
+            }
         }
     }
     return all;

@@ -74,6 +74,11 @@ std::span<const MetricInfo> pictureErrors() {
     return errors;
 }
 
+bool isPictureError(std::string_view metric) {
+    const auto errors = pictureErrors();
+    return std::ranges::find(errors, metric, &MetricInfo::name) != errors.end();
+}
+
 std::string_view betterText(Better better) {
     switch (better) {
         case Better::Lower:

@@ -59,6 +59,7 @@ struct Outputs {
 /// What is recorded of each picture that has a truth; its name is the pass. Of several truths the
 /// first counts, which the report shows, too.
 std::span<const MetricInfo> pictureErrors();
+bool isPictureError(std::string_view metric);
 
 /// Ends the name of what a share is of.
 inline constexpr std::string_view kShareOf = "_of";

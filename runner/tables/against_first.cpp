@@ -99,9 +99,8 @@ struct RivalWords {
     const char *less, *more, *what;
 
     static RivalWords of(const std::string& metric) {
-        const auto errors = config::pictureErrors();
         if (config::isTimeMetric(metric)) return {"faster", "slower", "time"};
-        if (std::ranges::find(errors, metric, &config::MetricInfo::name) != errors.end()) {
+        if (config::isPictureError(metric)) {
             return {"nearer to its truth", "farther from its truth", "error"};
         }
         return {"lower", "higher", "value"};

@@ -29,6 +29,7 @@ struct Series {
     double most = -least;
     bool isWhole = true;
     std::set<std::string> cases = {};
+    bool isOfOnlyPicture = false;  // which its label need not say
 
     bool isOfMebibytes() const { return unit == "byte" && most >= kMebibyte; }
     std::string label() const {
@@ -36,7 +37,7 @@ struct Series {
         if (metric == "gpu_time_ms" || metric == "cpu_time_ms") return pass + "_ms";
         std::string name = metric;
         if (isOfMebibytes() && name.ends_with("_bytes")) name.replace(name.size() - 5, 5, "mib");
-        return pass.empty() ? name : name + '_' + pass;
+        return pass.empty() || isOfOnlyPicture ? name : name + '_' + pass;
     }
     std::string shown(double value) const {
         return isOfMebibytes() ? fmt::format("{:.4g}", value / kMebibyte)
@@ -60,11 +61,20 @@ std::vector<Series> seriesOf(const std::string& table,
         series.isWhole &= record.value == std::round(record.value);
         series.cases.insert(record.caseId);
     }
+    std::set<std::string> pictures;  // that have errors
+    for (const Series& series : all) {
+        if (config::isPictureError(series.metric)) pictures.insert(series.pass);
+    }
+    for (Series& series : all) {
+        series.isOfOnlyPicture = pictures.size() == 1 && series.pass == *pictures.begin() &&
+                                 std::ranges::count(all, series.metric, &Series::metric) == 1;
+    }
     return all;
 }
 
-/// In the order of declaration, without details.
-std::vector<Series> declared(std::vector<Series> all, const config::Outputs& outputs) {
+/// In the order of declaration, without details; the times that a program says of itself first.
+std::vector<Series> declared(std::vector<Series> all, const config::Experiment& experiment) {
+    const config::Outputs& outputs = experiment.outputs;
     std::erase_if(all, [&](const Series& series) {
         if (series.metric == "scene_source") return true;  // a row's mark
         if (outputs.metrics.empty()) return false;
@@ -75,8 +85,10 @@ std::vector<Series> declared(std::vector<Series> all, const config::Outputs& out
         const auto at =
             std::ranges::find(outputs.metrics, series.metric, &config::MetricInfo::name);
         const bool isPass = series.metric == "gpu_time_ms" || series.metric == "cpu_time_ms";
-        const int group = series.metric == "wall_time_ms" ? 0 : isPass ? 1 : 2;
-        return std::tuple(group, group < 2 ? outputs.metrics.begin() : at, series.order);
+        const bool isItsOwn = config::goesByClock(experiment) && series.metric.ends_with("_ms");
+        const int group = series.metric == "wall_time_ms" ? 1 : isPass ? 2 : isItsOwn ? 0 : 3;
+        const bool isByTheRunner = group == 1 || group == 2;
+        return std::tuple(group, isByTheRunner ? outputs.metrics.begin() : at, series.order);
     };
     std::ranges::stable_sort(all, {}, rank);
     return all;
@@ -195,7 +207,7 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
         hasError |= isError;
         return isError;
     };
-    for (const Series& series : declared(all, experiment.outputs)) {
+    for (const Series& series : declared(all, experiment)) {
         if (axes.contains(series.metric)) continue;  // its axis says it
         const bool isTime = config::isTimeMetric(series.metric);
         const bool isConstant = series.least == series.most && !isTime && measured.size() > 1 &&
@@ -259,15 +271,16 @@ std::vector<config::PlotSpec> defaultPlots(const Table& table) {
         }
     }
     constexpr std::size_t kMostCurves = 6;
-    std::vector<std::string> times, others;
+    std::vector<std::string> times, others, errors;  // the last of a picture
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
         const TableColumn& column = table.columns[i];
         if (measuredCount(table, i) < 2) continue;
-        const bool isTime = table.rows.front().cells[i].isTime && column.label.ends_with("_ms");
+        const Cell& cell = table.rows.front().cells[i];
+        if (config::isPictureError(cell.metric)) errors.push_back(column.label);
+        const bool isTime = cell.isTime && column.label.ends_with("_ms");
         const std::size_t most = plot.by ? 1 : kMostCurves;
         if (isTime && times.size() < most) times.push_back(column.label);
-        if (!table.rows.front().cells[i].isTime && column.better != config::Better::Neither &&
-            others.empty()) {
+        if (!cell.isTime && column.better != config::Better::Neither && others.empty()) {
             others.push_back(column.label);
         }
     }
@@ -286,6 +299,14 @@ std::vector<config::PlotSpec> defaultPlots(const Table& table) {
         }
         plots.push_back(plot);
     }
+    if (errors.empty() || times.empty()) return plots;
+    plot.x = times[0];
+    plot.y = {errors[0]};
+    plot.isLogX = isWide(table, {plot.x});
+    plot.isLogY = isWide(table, plot.y);
+    plot.title = fmt::format("{} over {}", quantityOf(errors[0], table.words).text(),
+                             quantityOf(plot.x, table.words).words);
+    plots.push_back(plot);
     return plots;
 }
 

@@ -22,9 +22,10 @@ struct DefaultLayout {
 };
 
 /// For an experiment of one's own without a `layout`: a row a point of its sweep; columns are the
-/// times of a frame and its passes, then the metrics in the order in which the technique declares
-/// them (Experiment::outputs), without details. Of plans that do not know what was declared: all,
-/// as recorded. A MiB and more is shown in MiB.
+/// times that a program says of itself, those of a frame and its passes, then the metrics in the
+/// order in which the technique declares them (Experiment::outputs), without details. Of plans that
+/// do not know what was declared: all, as recorded. A MiB and more is shown in MiB. A metric is
+/// called METRIC_PASS; where one picture alone has errors, they are called by the metric.
 DefaultLayout defaultLayout(const config::Experiment& experiment,
                             std::span<const config::Case> planned,
                             const std::vector<records::Record>& records);

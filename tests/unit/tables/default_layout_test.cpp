@@ -151,6 +151,61 @@ TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
                 testing::Not(Contains(testing::HasSubstr("÷"))));
 }
 
+/// A program that says a time of its own, and whose pictures have errors.
+config::Experiment programWith(const std::string& images) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.write(
+        "s.yaml",
+        "sweep_of: s\ntitle: Mine\nprogram:\n  command: t {samples}\n  params: {samples: 4}\n"
+        "  metrics: {render_ms: ms, rays: ray}\n  images: {" +
+            images + "}\nsweep: {samples: [4, 16]}\n");
+    config::Experiment experiment = config::loadExperiment(file, {}, folder.path());
+    experiment.outputs = {{{"wall_time_ms", "ms", "a frame", Better::Lower},
+                           {"rays", "ray", "traced"},
+                           {"render_ms", "ms", "without its start", Better::Lower}}};
+    for (const config::MetricInfo& error : config::pictureErrors()) {
+        experiment.outputs.metrics.push_back(error);
+    }
+    return experiment;
+}
+
+Recorded recordedOfPictures(std::initializer_list<const char*> pictures) {
+    RecordMaker maker;
+    for (const int samples : {4, 16}) {
+        maker.beginCase("", "{\"samples\": " + std::to_string(samples) + "}").lane("timing");
+        maker.add("wall_time_ms", {100.0 + samples}).add("render_ms", {2.0 * samples});
+        maker.add("rays", {3.0 * samples}, "", "ray");
+        for (const char* picture : pictures) {
+            for (const char* error : {"mse", "rmse"}) {
+                maker.add(error, {1.0 / samples}, picture, "1");
+            }
+        }
+    }
+    Recorded records = maker.records();
+    for (records::Record& record : records) record.table = "sweep/s";
+    for (config::Case& item : records.cases) item.experiment = "sweep/s";
+    return records;
+}
+
+TEST(DefaultLayout, ErrorsOfTheOnlyPictureNeedNotSayOfWhich) {
+    EXPECT_THAT(labelsOf(buildTable(programWith("a: a.png"), recordedOfPictures({"a"}))),
+                ElementsAre("render_ms", "frame_ms", "rays", "mse", "rmse"));
+    EXPECT_THAT(
+        labelsOf(buildTable(programWith("a: a.png, b: b.png"), recordedOfPictures({"a", "b"}))),
+        ElementsAre("render_ms", "frame_ms", "rays", "mse_a", "mse_b", "rmse_a", "rmse_b"));
+}
+
+TEST(DefaultPlots, OfAPicturesErrorAreAlsoOverTheTimeThatLeads) {
+    const auto plots = defaultPlots(buildTable(programWith("a: a.png"), recordedOfPictures({"a"})));
+    ASSERT_EQ(plots.size(), 3U);
+    EXPECT_THAT(plots[0].y, ElementsAre("render_ms", "frame_ms"));
+    EXPECT_THAT(plots[1].y, ElementsAre("mse"));
+    EXPECT_EQ(plots[1].x, "samples");
+    EXPECT_EQ(plots[2].x, "render_ms");
+    EXPECT_THAT(plots[2].y, ElementsAre("mse"));
+    EXPECT_EQ(plots[2].title, "mse over render");
+}
+
 TEST(DefaultLayout, OfOneCaseNothingIsFolded) {
     const Table table = buildTable(sweepOf("{resolution: [32]}"), recordedAt({32}));
     EXPECT_THAT(table.constants, IsEmpty());
