@@ -193,12 +193,14 @@ std::vector<glm::vec3> vertexNormals(const Mesh& mesh) {
     return normals;
 }
 
-Camera framingCamera(const Box& box, float aspect) {
+Camera framingCamera(const Box& box, float aspect, glm::vec3 towardsEye) {
     Camera camera;
     camera.name = "framing";
+    // Straight from above or below, north is at the top.
+    if (towardsEye.x == 0.0F && towardsEye.z == 0.0F) camera.up = {0.0F, 0.0F, -1.0F};
     const glm::vec3 centre = box.isEmpty() ? glm::vec3(0.0F) : box.centre();
     const glm::vec3 half = 0.5F * box.size();
-    const glm::vec3 back = glm::normalize(glm::vec3(0.6F, 0.35F, 1.0F));
+    const glm::vec3 back = glm::normalize(towardsEye);
     const glm::vec3 right = glm::normalize(glm::cross(camera.up, back));
     const glm::vec3 above = glm::cross(back, right);
     const float slopeY = std::tan(0.5F * camera.verticalFovRad);
@@ -209,11 +211,11 @@ Camera framingCamera(const Box& box, float aspect) {
     float reach = 0.0F;  // half the box's depth along the view
     for (int corner = 0; corner < 8; ++corner) {
         const glm::vec3 offset = Box{-half, half}.corner(corner);
-        const float towardsEye = glm::dot(offset, back);
+        const float ahead = glm::dot(offset, back);
         const float side = std::max(std::abs(glm::dot(offset, right)) / slopeX,
                                     std::abs(glm::dot(offset, above)) / slopeY);
-        distance = std::max(distance, towardsEye + side);
-        reach = std::max(reach, towardsEye);
+        distance = std::max(distance, ahead + side);
+        reach = std::max(reach, ahead);
     }
     constexpr float kMargin = 1.05F;  // a little air around the silhouette
     distance = distance > 0.0F ? distance * kMargin : 1.0F;

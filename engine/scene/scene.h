@@ -198,9 +198,9 @@ Scene sceneOf(Mesh mesh);
 /// Area-weighted vertex normals (unit; zero for vertices without area).
 std::vector<glm::vec3> vertexNormals(const Mesh& mesh);
 
-/// A three-quarter view from (0.6, 0.35, 1) that holds the whole box at this aspect ratio (width /
-/// height).
-Camera framingCamera(const Box& box, float aspect);
+/// A view, three-quarter unless `towardsEye` (not zero) says where from, that holds the whole box
+/// at this aspect ratio (width / height).
+Camera framingCamera(const Box& box, float aspect, glm::vec3 towardsEye = {0.6F, 0.35F, 1.0F});
 
 /// Two views of a height map: "overview" from the south-east above it, "flight" low over its middle
 /// northwards. Their reach covers the whole map.

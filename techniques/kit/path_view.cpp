@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <optional>
+
 #include "engine/core/error.h"
+#include "engine/core/text.h"
 #include "engine/scene/animation.h"
 
 namespace gfxrepro::kit {
@@ -25,6 +29,18 @@ std::string namesOf(const std::vector<Named>& all) {
     return names.empty() ? "none" : names;
 }
 
+/// Of "AZIMUTH ELEVATION" in degrees.
+std::optional<glm::vec3> directionOf(const std::string& view) {
+    const std::size_t blank = view.find(' ');
+    if (blank == std::string::npos) return std::nullopt;
+    const auto azimuth = parseDouble(view.substr(0, blank));
+    const auto elevation = parseDouble(trimmed(view.substr(blank + 1)));
+    if (!azimuth || !elevation || std::abs(*elevation) > 90.0) return std::nullopt;
+    if (std::abs(*elevation) == 90.0) return glm::vec3(0.0F, *elevation, 0.0F);
+    const double east = glm::radians(*azimuth), up = glm::radians(*elevation);
+    return glm::vec3(std::sin(east) * std::cos(up), std::sin(up), std::cos(east) * std::cos(up));
+}
+
 }  // namespace
 
 double frameTime(int frame, int frameCount) {
@@ -40,8 +56,13 @@ scene::Camera cameraAtTime(const scene::Scene& scene, const std::string& view, d
     }
     if (const scene::CameraPath* path = find(scene.paths, view)) return cameraAt(*path, time);
     if (const scene::Camera* camera = find(scene.cameras, view)) return *camera;
-    throw Error(fmt::format("the scene has no path or camera '{}'; paths: {}; cameras: {}", view,
-                            namesOf(scene.paths), namesOf(scene.cameras)));
+    if (const auto direction = directionOf(view)) {
+        return scene::framingCamera(scene.bounds(), aspect, *direction);
+    }
+    throw Error(
+        fmt::format("the scene has no path or camera '{}'; paths: {}; cameras: {}; or "
+                    "'AZIMUTH ELEVATION' in degrees",
+                    view, namesOf(scene.paths), namesOf(scene.cameras)));
 }
 
 scene::Camera cameraFor(const scene::Scene& scene, const std::string& view, int frame,

@@ -12,7 +12,8 @@ namespace gfxrepro::kit {
 double frameTime(int frame, int frameCount);
 
 /// The camera at a time of 0 … 1. `view` names a path of the scene or, where none is called so, a
-/// camera; empty: the first path, else the first camera, else one that frames the scene at `aspect`
+/// camera; "30 17" frames the scene from an azimuth of 30°, from +z towards +x, and an elevation of
+/// 17°; empty: the first path, else the first camera, else one that frames the scene at `aspect`
 /// (width / height). Throws Error for a name that the scene does not have.
 scene::Camera cameraAtTime(const scene::Scene& scene, const std::string& view, double time,
                            float aspect);

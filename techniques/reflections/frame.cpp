@@ -34,8 +34,9 @@ ReflectiveScene prepared(const scene::Scene& given, const FrameSettings& setting
 }  // namespace
 
 void FrameSettings::readView(Params& params) {
-    view = params.getText(
-        "view", "", {"a path or camera of the scene; none: its first path, else its first camera"});
+    view = params.getText("view", "",
+                          {"a path or camera of the scene, or where from to frame it, \"AZIMUTH "
+                           "ELEVATION\" in degrees; none: its first path, else its first camera"});
 }
 
 void FrameSettings::readMotionAndSupersampling(Params& params, int defaultSupersampling) {

@@ -135,9 +135,9 @@ ShadowMappingParams::ShadowMappingParams(Params& params) {
         {"how many times the caster's change of depth from texel to texel is added to the bias",
          "1", 0.0, 100.0});
     readLights(params, *this);
-    view = params.getText(
-        "view", "",
-        {"a path of the scene, seen from its middle, or a camera; none: its first camera"});
+    view = params.getText("view", "",
+                          {"a path of the scene, seen from its middle, a camera, or where from to "
+                           "frame it, \"AZIMUTH ELEVATION\" in degrees; none: its first camera"});
     isStatic = params.getBool("static", false, {"the maps are drawn once and used again"});
     measuresErrors = params.getBool("errors", false, {"compares with shadow rays"});
     comparesMethods =

@@ -104,9 +104,9 @@ SoftShadowsParams::SoftShadowsParams(Params& params)
       simplificationError(
           number(params, "simplification_error", 0.001,
                  {"bound on how far simplification moves the surface", "diagonals", 0.0, 1.0})),
-      view(params.getText(
-          "view", "",
-          {"a path of the scene, seen from its middle, or a camera; none: its first camera"})),
+      view(params.getText("view", "",
+                          {"a path of the scene, seen from its middle, a camera, or where from to "
+                           "frame it, \"AZIMUTH ELEVATION\" in degrees; none: its first camera"})),
       light(readLight(params)),
       lightGrid(params.getInt("light_grid", 8,
                               {"light samples along each edge; the thesis has 16", "1", 1, 64})),

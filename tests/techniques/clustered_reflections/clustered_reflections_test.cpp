@@ -168,8 +168,10 @@ TEST_F(ClusteredReflectionsTest, RefusesScenesWithoutReflectorsAndUnknownViews) 
               "scene 'room' has no reflectors: no material's roughness is at most 0.4; "
               "'reflector_roughness: 1' takes them all");
     const scene::Scene room = roomWithMirror();
-    EXPECT_EQ(message("{view: path_1}", &room),
-              "the scene has no path or camera 'path_1'; paths: none; cameras: 'front', 'ceiling'");
+    EXPECT_EQ(
+        message("{view: path_1}", &room),
+        "the scene has no path or camera 'path_1'; paths: none; cameras: 'front', 'ceiling'; or "
+        "'AZIMUTH ELEVATION' in degrees");
 }
 
 TEST_F(ClusteredReflectionsTest, EveryMethodRecordsSharesMemoryAndErrors) {

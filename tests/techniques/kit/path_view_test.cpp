@@ -1,5 +1,9 @@
 #include "techniques/kit/path_view.h"
 
+#include <gmock/gmock.h>
+
+#include <cmath>
+
 #include "scenes/shared/mesh_builder.h"
 #include "tests/support/support.h"
 
@@ -62,12 +66,32 @@ TEST(PathView, AStillTakesTheFirstCameraOrTheOneThatIsNamed) {
               scene::framingCamera(scene.bounds(), 1.5F).position);
 }
 
+TEST(PathView, FramesTheSceneFromAnyDirection) {
+    const auto seenFrom = [](const char* view) {
+        const scene::Camera camera = stillCamera(boxWithViews(), view, 1.5F);
+        EXPECT_EQ(camera.target, glm::vec3(0.0F)) << view;
+        return glm::normalize(camera.position - camera.target);
+    };
+    const auto isAlong = [&](const char* view, glm::vec3 direction) {
+        return glm::distance(seenFrom(view), direction) < 1e-5F;
+    };
+    EXPECT_TRUE(isAlong("0 0", {0, 0, 1}));
+    EXPECT_TRUE(isAlong("90 0", {1, 0, 0}));
+    EXPECT_TRUE(isAlong("180 45", {0, std::sqrt(0.5F), -std::sqrt(0.5F)}));
+    EXPECT_TRUE(isAlong("-90 -30", {-std::sqrt(0.75F), -0.5F, 0}));
+    EXPECT_TRUE(isAlong("10 90", {0, 1, 0}));
+    EXPECT_EQ(stillCamera(box(), "0 -90", 1.0F).up, glm::vec3(0, 0, -1));
+    EXPECT_THAT(test::errorText([] { stillCamera(box(), "0 91", 1.0F); }),
+                testing::StartsWith("the scene has no path or camera '0 91'"));
+}
+
 TEST(PathView, NamesWhatThereIsWhenANameIsUnknown) {
     EXPECT_EQ(test::errorText([] { cameraFor(boxWithViews(), "back", 0, 1, 1.0F); }),
               "the scene has no path or camera 'back'; paths: 'round', 'through'; cameras: "
-              "'front', 'side', 'round'");
+              "'front', 'side', 'round'; or 'AZIMUTH ELEVATION' in degrees");
     EXPECT_EQ(test::errorText([] { cameraFor(box(), "back", 0, 1, 1.0F); }),
-              "the scene has no path or camera 'back'; paths: none; cameras: none");
+              "the scene has no path or camera 'back'; paths: none; cameras: none; or 'AZIMUTH "
+              "ELEVATION' in degrees");
 }
 
 }  // namespace
