@@ -61,7 +61,7 @@ std::span<const config::MetricInfo> commonMetrics() {
 
 namespace {
 
-/// Declares the errors of its pictures, but what a technique declares of the same name.
+/// Declares the errors of its pictures, once.
 config::Outputs withPictureErrors(config::Outputs outputs) {
     for (const std::string& picture : outputs.withTruth) {
         if (outputs.hasPass(picture)) continue;

@@ -321,12 +321,15 @@ config::Outputs outputs() {
             {"points", "point", "points of the model"},
             {"drawn_points", "point", "points drawn in a frame"},
             {"drawn_pct", "%", "points drawn in a frame, as a share of the model's"},
-            {"psnr_db", "dB",
-             "peak signal-to-noise ratio to the truth that the pass names, over the model's "
-             "pixels; 100 for equal pictures",
+            {"display_psnr_db", "dB",
+             "peak signal-to-noise ratio as displayed, in sRGB of 8 bits, to the truth that the "
+             "pass "
+             "names, over the model's pixels; 100 for equal pictures",
              Better::Higher},
-            {"ssim", "1", "structural similarity to the truth that the pass names", Better::Higher},
-            {"flip_mean", "1",
+            {"display_ssim", "1",
+             "structural similarity as displayed, to the truth that the pass names",
+             Better::Higher},
+            {"display_flip", "1",
              "mean FLIP error to the truth that the pass names, over the model's pixels",
              Better::Lower},
             {"mode_pct", "%",

@@ -92,12 +92,12 @@ image::ImageF recordDifference(technique::Recorder& recorder, const image::Image
     // Equal images would have no number.
     constexpr double kMostDb = 100.0;
     const image::ImageF a = shown(truth), b = shown(picture);
-    recorder.metric("psnr_db",
+    recorder.metric("display_psnr_db",
                     std::min(metrics::peakSignalToNoiseDb(model.of(a), model.of(b)), kMostDb), "dB",
                     truthName);
-    recorder.metric("ssim", metrics::structuralSimilarity(a, b), "1", truthName);
+    recorder.metric("display_ssim", metrics::structuralSimilarity(a, b), "1", truthName);
     image::ImageF flip = metrics::flipMap(truth, picture);
-    recorder.metric("flip_mean", metrics::meanOfFlip(model.of(flip)), "1", truthName);
+    recorder.metric("display_flip", metrics::meanOfFlip(model.of(flip)), "1", truthName);
     return flip;
 }
 

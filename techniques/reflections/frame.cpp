@@ -136,8 +136,8 @@ glm::dvec3 Frame::recordErrors(technique::Recorder& recorder, const HostGBuffer&
     recorder.metric("channel_error", meanOf(errors), "level");
     recorder.metric("channel_error_image", meanOf(kit::channelErrors(picture, known, nullptr)),
                     "level");
-    recorder.metric("flip_mean", metrics::flip(known, picture), "1");
-    recorder.metric("psnr_db", kit::shownPsnrDb(picture, known), "dB");
+    recorder.metric("display_flip", metrics::flip(known, picture), "1");
+    recorder.metric("display_psnr_db", kit::shownPsnrDb(picture, known), "dB");
     return errors;
 }
 
@@ -190,8 +190,13 @@ config::Outputs withFrameOutputs(config::Outputs own) {
          "pixels",
          Better::Lower},
         {"channel_error_image", "level", "channel_error over all pixels", Better::Lower, kIsDetail},
-        {"psnr_db", "dB", "peak signal-to-noise ratio of the whole picture", Better::Higher},
-        {"flip_mean", "1", "mean FLIP error of the whole picture", Better::Lower},
+        {"display_psnr_db", "dB",
+         "peak signal-to-noise ratio of the whole picture as displayed, in sRGB of 8 bits; 120 of "
+         "equal ones",
+         Better::Higher},
+        {"display_flip", "1",
+         "mean FLIP error of the whole picture as displayed, without values beyond 1",
+         Better::Lower},
         {"reflective_pct", "%", "share of all samples that reflect"},
         {"memory_bytes", "byte", "memory on the device", Better::Lower},
     };

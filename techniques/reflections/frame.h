@@ -118,8 +118,8 @@ struct Frame {
     image::ImageF pictureOf(const GBuffer& gbuffer, std::span<const TracedSample> samples);
     /// Of the frame at hand; `host` is what `gbuffer` holds.
     TracedPicture traced(const GBuffer& gbuffer, const HostGBuffer& host);
-    /// Records channel_error, channel_error_image, flip_mean and psnr_db. Gives the errors of the
-    /// channels over reflective pixels.
+    /// Records channel_error, channel_error_image, display_flip and display_psnr_db. Gives the
+    /// errors of the channels over reflective pixels.
     glm::dvec3 recordErrors(technique::Recorder& recorder, const HostGBuffer& gbuffer,
                             const image::ImageF& picture, const image::ImageF& truth) const;
     /// "result", with what it shows for its EXR file; `truth` may be empty.

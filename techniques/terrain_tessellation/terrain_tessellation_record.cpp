@@ -281,8 +281,8 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
     const image::ImageF& truthPicture = known.picture;
     const glm::dvec3 channels = kit::channelErrors(picture, truthPicture, nullptr);
     recorder.metric("channel_error", (channels.x + channels.y + channels.z) / 3.0, "level");
-    recorder.metric("psnr_db", kit::shownPsnrDb(picture, truthPicture), "dB");
-    recorder.metric("flip_mean", metrics::flip(truthPicture, picture), "1");
+    recorder.metric("display_psnr_db", kit::shownPsnrDb(picture, truthPicture), "dB");
+    recorder.metric("display_flip", metrics::flip(truthPicture, picture), "1");
     if (!params_.showsPictures) return;
     recorder.image("truth", truthPicture,
                    kit::ImageLayers(truth.depths.view, params_.supersampling)

@@ -197,16 +197,17 @@ TEST_F(Faults, APerfectPictureIsInfinitelyGood) {
         writeMockConfig(folder,
                         "sweep: {behaviour: [infinite]}\n"
                         "layout:\n  rows: behaviour\n  columns:\n"
-                        "    psnr: {metric: psnr_db, format: \"{median:.1f} dB\"}\n"
+                        "    psnr: {metric: fidelity_db, format: \"{median:.1f} dB\"}\n"
                         "claims:\n  C: {says: it is good, bound: psnr, at_least: 40}\n");
     const ProcessResult run =
         mockGfxrepro({"reproduce", config, "--device", "software", "--out", dir});
     EXPECT_EQ(run.exitCode, 0) << run.out << run.err;
-    const auto recorded = rowsOf(dir, "psnr_db");  // its own, and what is taken of its picture
-    ASSERT_EQ(recorded.size(), 2U);
-    EXPECT_EQ(recorded[0].value, HUGE_VAL);
-    EXPECT_EQ(recorded[1].pass, "flat");
-    EXPECT_NEAR(recorded[1].value, 12.04, 0.01);
+    ASSERT_EQ(rowsOf(dir, "fidelity_db").size(), 1U);
+    EXPECT_EQ(rowsOf(dir, "fidelity_db")[0].value, HUGE_VAL);
+    const auto ofPicture = rowsOf(dir, "psnr_db");
+    ASSERT_EQ(ofPicture.size(), 1U);
+    EXPECT_EQ(ofPicture[0].pass, "flat");
+    EXPECT_NEAR(ofPicture[0].value, 12.04, 0.01);
     EXPECT_NE(readFile(dir + "/tables/sweep-mock.md").find("| infinite | ∞ dB |"),
               std::string::npos)
         << readFile(dir + "/tables/sweep-mock.md");

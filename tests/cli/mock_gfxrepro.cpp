@@ -156,7 +156,7 @@ class Mock : public technique::Technique {
         const bool isNan = behaviour_ == Behaviour::NotANumber;
         recorder.metric("number", isNan ? std::nan("") : number_, "1");
         if (behaviour_ == Behaviour::Twice) recorder.metric("number", number_, "1");
-        if (behaviour_ == Behaviour::Infinite) recorder.metric("psnr_db", HUGE_VAL, "dB");
+        if (behaviour_ == Behaviour::Infinite) recorder.metric("fidelity_db", HUGE_VAL, "dB");
         // A build that draws something else, for tests that compare two.
         const char* shade = std::getenv("GFXREPRO_MOCK_SHADE");
         if (shade && std::string_view(shade) == "none") return;
@@ -211,7 +211,7 @@ std::unique_ptr<technique::Technique> create(Params& params) {
 }
 
 config::Outputs outputs() {
-    return {{{"number", "1", "as asked for"}, {"psnr_db", "dB", "of a perfect picture"}},
+    return {{{"number", "1", "as asked for"}, {"fidelity_db", "dB", "of a perfect picture"}},
             {},
             false,
             {"flat"}};

@@ -36,11 +36,13 @@ class MetricRecorder final : public technique::Recorder {
     }
     std::filesystem::path artifact(std::string_view name) override { return folder / name; }
 
-    /// Every metric, unit, pass and picture with a truth is one that the technique declares.
+    /// Every metric, unit, pass and picture with a truth is one that the technique declares, and no
+    /// metric is called as what the runner takes of pictures.
     void expectDeclared(const config::Outputs& outputs) const {
         for (const Given& one : given) {
             const config::MetricInfo* info = outputs.find(one.metric);
             ASSERT_NE(info, nullptr) << one.metric;
+            EXPECT_FALSE(config::isPictureError(one.metric)) << one.metric;
             if (info->name == one.metric) EXPECT_EQ(info->unit, one.unit) << one.metric;
             if (!one.pass.empty()) EXPECT_TRUE(outputs.hasPass(one.pass)) << one.pass;
         }

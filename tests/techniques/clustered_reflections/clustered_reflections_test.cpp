@@ -191,8 +191,8 @@ TEST_F(ClusteredReflectionsTest, EveryMethodRecordsSharesMemoryAndErrors) {
         EXPECT_EQ(metrics.at("frame_buffer_bytes"),
                   48 * 40 * (4 * (24 + 12) + 8) + (isClustered ? 2048 * 2048 * 8 + 4 : 0));
         EXPECT_TRUE(metrics.contains("channel_error"));
-        EXPECT_TRUE(metrics.contains("flip_mean"));
-        EXPECT_TRUE(metrics.contains("psnr_db"));
+        EXPECT_TRUE(metrics.contains("display_flip"));
+        EXPECT_TRUE(metrics.contains("display_psnr_db"));
         EXPECT_EQ(metrics.contains("clusters"), isClustered);
         EXPECT_EQ(metrics.contains("occlusion_error_pct"), isClustered);
         EXPECT_EQ(passes_.front(), isClustered ? "first_pass_and_clustering" : "first_pass");
@@ -204,8 +204,8 @@ TEST_F(ClusteredReflectionsTest, EmbreeAgreesWithItself) {
     const Metrics metrics = run("{method: embree}", roomWithMirrors());
     EXPECT_EQ(metrics.at("channel_error"), 0.0);
     EXPECT_EQ(metrics.at("channel_error_image"), 0.0);
-    EXPECT_EQ(metrics.at("flip_mean"), 0.0);
-    EXPECT_EQ(metrics.at("psnr_db"), 120.0);
+    EXPECT_EQ(metrics.at("display_flip"), 0.0);
+    EXPECT_EQ(metrics.at("display_psnr_db"), 120.0);
 }
 
 TEST_F(ClusteredReflectionsTest, RayTracingOnTheDeviceAgreesWithEmbree) {
@@ -237,7 +237,7 @@ TEST_F(ClusteredReflectionsTest, ClustersAreNearerToTheTruthThanAnEnvironmentMap
     for (const scene::Scene& scene : {roomWithMirror(), roomWithMirrors()}) {
         const Metrics clustered = run("{}", scene);
         const Metrics environment = run("{method: environment_map}", scene);
-        for (const char* error : {"channel_error", "channel_error_image", "flip_mean"}) {
+        for (const char* error : {"channel_error", "channel_error_image", "display_flip"}) {
             EXPECT_LT(2.0 * clustered.at(error), environment.at(error)) << error;
         }
     }
@@ -305,8 +305,8 @@ TEST_F(ClusteredReflectionsTest, ClustersAndTheirOcclusionErrorsNeedNoDepthImage
         for (const auto& [name, value] : none) EXPECT_EQ(value, drawn.at(name)) << name;
         EXPECT_GT(none.at("clusters"), 1.0);
         EXPECT_GT(none.at("occlusion_error_pct"), 0.0);
-        for (const char* ofPictures : {"channel_error", "flip_mean", "psnr_db", "environment_pct",
-                                       "drawn_triangles", "texels_per_sample"}) {
+        for (const char* ofPictures : {"channel_error", "display_flip", "display_psnr_db",
+                                       "environment_pct", "drawn_triangles", "texels_per_sample"}) {
             EXPECT_FALSE(none.contains(ofPictures)) << ofPictures;
         }
     }
@@ -337,9 +337,10 @@ TEST_F(ClusteredReflectionsTest, ViewsWithoutReflectorsHaveNoErrors) {
                               scene.name));
         EXPECT_EQ(metrics.at("reflective_pct"), 0.0);
         EXPECT_EQ(metrics.at("visible_reflectors"), 0.0);
-        for (const char* error : {"planar_pct", "channel_error", "channel_error_image", "flip_mean",
-                                  "psnr_db", "environment_pct", "occlusion_error_pct", "clusters",
-                                  "drawn_triangles", "drawn_left_out"}) {
+        for (const char* error :
+             {"planar_pct", "channel_error", "channel_error_image", "display_flip",
+              "display_psnr_db", "environment_pct", "occlusion_error_pct", "clusters",
+              "drawn_triangles", "drawn_left_out"}) {
             EXPECT_FALSE(metrics.contains(error)) << error;
         }
     }

@@ -134,8 +134,8 @@ TEST_F(PointSplattingTest, EveryMethodRunsAndRecords) {
                         metrics.at("mode_pct/low_pass") + metrics.at("mode_pct/sprite"),
                     100.0, 1e-9);
         EXPECT_LT(metrics.at("bytes_per_point"), 8.1);
-        EXPECT_GT(metrics.at("psnr_db/supersampled"), 10.0);
-        EXPECT_GT(metrics.at("psnr_db/filtered"), 10.0);
+        EXPECT_GT(metrics.at("display_psnr_db/supersampled"), 10.0);
+        EXPECT_GT(metrics.at("display_psnr_db/filtered"), 10.0);
         // Of a sphere seen from some radii away, a little less than a half faces the eye.
         EXPECT_GT(metrics.at("facing_pct"), 25.0);
         EXPECT_LT(metrics.at("facing_pct"), 50.0);
@@ -204,9 +204,9 @@ TEST_F(PointSplattingTest, CompressionAndModesHardlyShow) {
         recorded("{cache: false, errors: true, compression_errors: true}", &scene);
     // A position is off by at most 1/4096 of a patch and a normal by 0.8°, which shading shows as
     // half a level of 255 on the average; 35 dB would be five levels.
-    EXPECT_GT(recorder.metrics.at("psnr_db/uncompressed"), 40.0);
+    EXPECT_GT(recorder.metrics.at("display_psnr_db/uncompressed"), 40.0);
     // Filters alone are wrong by what they leave out, up to c_min and a c_max-th of the area.
-    EXPECT_GE(recorder.metrics.at("psnr_db/full_ewa"), 30.0);
+    EXPECT_GE(recorder.metrics.at("display_psnr_db/full_ewa"), 30.0);
     EXPECT_LT(recorder.metrics.at("compression_error_of_bound/position"), 1.1);
     EXPECT_LT(recorder.metrics.at("compression_error_of_bound/normal"), 1.01);
     EXPECT_GT(recorder.metrics.at("compression_error_of_bound/position"), 0.9);
@@ -254,7 +254,8 @@ TEST_F(PointSplattingTest, FullEwaIsNearestToItsOwnFilter) {
             "{method: full_ewa, level: all, cache: false, errors: true, distance: 2, cutoff: 3}",
             &scene)
             .metrics;
-    EXPECT_GT(metrics.at("psnr_db/filtered"), metrics.at("psnr_db/supersampled") + 3.0);
+    EXPECT_GT(metrics.at("display_psnr_db/filtered"),
+              metrics.at("display_psnr_db/supersampled") + 3.0);
 }
 
 TEST_F(PointSplattingTest, MorePointsArriveAndShowMore) {
@@ -266,9 +267,9 @@ TEST_F(PointSplattingTest, MorePointsArriveAndShowMore) {
         EXPECT_GT(recorder.metrics.at("arrived_bytes"), formerBytes);
         EXPECT_LE(recorder.metrics.at("arrived_bytes"),
                   static_cast<double>(share) * 160000.0 + 8.0 * recorder.metrics.at("patches"));
-        EXPECT_GE(recorder.metrics.at("psnr_db/supersampled"), formerPsnr);
+        EXPECT_GE(recorder.metrics.at("display_psnr_db/supersampled"), formerPsnr);
         formerBytes = recorder.metrics.at("arrived_bytes");
-        formerPsnr = recorder.metrics.at("psnr_db/supersampled");
+        formerPsnr = recorder.metrics.at("display_psnr_db/supersampled");
     }
 }
 

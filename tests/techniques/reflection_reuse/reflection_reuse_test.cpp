@@ -233,8 +233,8 @@ TEST_F(ReflectionReuseTest, EveryMethodAndTracerRecordsSharesMemoryAndErrors) {
             EXPECT_GT(metrics.at("reflective_pct"), 20.0);
             // G-buffer and target have 36 bytes a sample, the output 8 a pixel.
             EXPECT_GE(metrics.at("memory_bytes"), 64 * 48 * (36 + 8));
-            EXPECT_TRUE(metrics.contains("flip_mean"));
-            EXPECT_TRUE(metrics.contains("psnr_db"));
+            EXPECT_TRUE(metrics.contains("display_flip"));
+            EXPECT_TRUE(metrics.contains("display_psnr_db"));
             EXPECT_LT(metrics.at("channel_error"), 40.0);
             EXPECT_EQ(metrics.contains("recomputed_pct"), !isTraced);
             EXPECT_EQ(metrics.contains("undetected_pct"), !isTraced);
@@ -446,7 +446,7 @@ TEST_F(ReflectionReuseTest, ViewsWithoutReflectorsRecordNothingReflected) {
             // Claims on what there is not are left unmeasured.
             for (const char* none :
                  {"saved_pct", "recomputed_pct", "unmatched_pct", "unshifted_pct", "undetected_pct",
-                  "channel_error", "channel_error_image", "flip_mean", "psnr_db"}) {
+                  "channel_error", "channel_error_image", "display_flip", "display_psnr_db"}) {
                 EXPECT_FALSE(frame.metrics.contains(none)) << none;
             }
         }

@@ -78,7 +78,7 @@ TEST_F(TerrainTessellationTest, TheUniformGridHasNoErrorsButThoseOfDepths) {
         terrain({129, 129}));
     EXPECT_EQ(m.at("drawn_triangles"), 2.0 * 128 * 128);
     EXPECT_EQ(m.at("crack_pixels/background"), 0.0);
-    EXPECT_EQ(m.at("flip_mean"), 0.0);
+    EXPECT_EQ(m.at("display_flip"), 0.0);
     EXPECT_EQ(m.at("channel_error"), 0.0);
     EXPECT_EQ(passes_, (std::vector<std::string>{"tile_walk", "load_tiles", "draw"}));
 }
