@@ -11,6 +11,7 @@
 
 #include "engine/core/text.h"
 #include "runner/claims/claim_reader.h"
+#include "runner/claims/kinds/operands.h"
 #include "runner/config/schema.h"
 #include "runner/tables/labels.h"
 
@@ -392,6 +393,15 @@ bool isOfGpu(const std::optional<ClaimSpec::TimeKind>& kind, const tables::Table
 
 std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {
     const tables::Table own = tableFor(claim, table);
+    for (const auto& [axis, wanted] : claim.at) {
+        if (!claim.across || axis != kColumnAxis) continue;
+        std::vector<std::string> labels;
+        for (const tables::TableColumn& column : table.columns) labels.push_back(column.label);
+        for (const Node& column : wanted) {
+            if (std::ranges::find(labels, column.text()) != labels.end()) continue;
+            return noColumn(column.text(), labels);
+        }
+    }
     try {
         return ClaimReader(claim, own).readsAny() ? "" : "no row that it reads";
     } catch (const AbsentColumnError& error) {

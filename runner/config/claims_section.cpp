@@ -122,6 +122,8 @@ class ClaimParser {
         requireKeys(node_, what_, allowed);
         readCommon();
         if (const Node* at = node_.find("at")) readAt(*at);
+        const bool isItsOwn = contains(claim_.kind->section.keyNames(), "of");
+        if (const Node* of = node_.find("of"); of && !isItsOwn) readOf(*of);
         claim_.keys = node_;
         claim_.kind->read(
             {node_, *node_.find(name), names_.rowAxes, names_.rowValues, names_.columns,
@@ -177,14 +179,25 @@ class ClaimParser {
     }
 
     void readAt(const Node& at) {
-        const bool isOfColumns = at.isMap() && at.find(kColumnAxis);
-        if (isOfColumns && std::ranges::count(names_.rowAxes, kColumnAxis) == 0) {
-            throw Error(at.keyLocation(kColumnAxis),
-                        fmt::format("{0}: at: '{1}' is of a claim across a row axis: add "
-                                    "'across: AXIS' ({2})",
-                                    what_, kColumnAxis, joined(names_.rowAxes, " | ")));
+        if (at.isMap() && at.find(kColumnAxis)) {
+            throw Error(
+                at.keyLocation(kColumnAxis),
+                what_ + ": at: 'column' is no axis of the rows; columns are chosen by 'of'");
         }
-        claim_.at = readRowFilter(at, what_ + ": at", names_);
+        TableNames rows = names_;
+        std::erase(rows.rowAxes, kColumnAxis);
+        claim_.at = readRowFilter(at, what_ + ": at", rows);
+    }
+
+    void readOf(const Node& of) {
+        if (!claim_.across) {
+            throw Error(node_.keyLocation("of"),
+                        fmt::format("{}: 'of' is of a claim that compares rows; allowed: with "
+                                    "[AXIS=VALUE, …] or across: {}",
+                                    what_, joined(names_.rowAxes, " | ")));
+        }
+        claim_.at.emplace_back(kColumnAxis,
+                               readFilterValues(of, what_ + ": of", kColumnAxis, names_));
     }
 
     /// From here on the axis and the columns have changed places.
@@ -257,9 +270,10 @@ SchemaSection common() {
         {{"says", "line", "required", "the claim in the paper's sense", text()},
          {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
          {"across", "row axis", "none",
-          "a, b are its values instead of columns: so rows are compared, column by column; `at` "
-          "may name the columns as `column`",
-          text()},
+          "a, b are its values instead of columns: so rows are compared, column by column", text()},
+         {"of", "column | [columns]", "all columns",
+          "of a claim that compares rows, but independent: the columns that are read",
+          oneOrMore(text())},
          choiceKey("profile", kProfiles, "all", "the only profile it is judged in"),
          choiceKey(
              "origin", kOrigins, "document, in a sweep ours",

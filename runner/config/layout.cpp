@@ -285,20 +285,26 @@ TableNames tableNames(const Layout& layout, const Vocabulary& vocabulary) {
     return names;
 }
 
+Node::Sequence readFilterValues(const Node& value, const std::string& what, const std::string& axis,
+                                const TableNames& names) {
+    const Node::Sequence wanted = value.isSequence() ? value.items() : Node::Sequence{value};
+    const auto known = names.rowValues.find(axis);
+    if (known == names.rowValues.end()) return wanted;
+    for (const Node& item : wanted) {
+        if (matchesAny(item, Node::sequence(known->second))) continue;
+        Names texts;
+        for (const Node& one : known->second) texts.push_back(one.toFlowText());
+        throwNotAllowed(item, what, joined(texts, " | "));
+    }
+    return wanted;
+}
+
 RowFilter readRowFilter(const Node& at, const std::string& what, const TableNames& names) {
     requireKeys(at, what, names.rowAxes);
     RowFilter filter;
     for (const auto& [axis, value] : at.entries()) {
-        const Node::Sequence wanted = value.isSequence() ? value.items() : Node::Sequence{value};
-        const auto known = names.rowValues.find(axis);
-        for (const Node& item : wanted) {
-            if (known == names.rowValues.end()) break;
-            if (matchesAny(item, Node::sequence(known->second))) continue;
-            Names texts;
-            for (const Node& one : known->second) texts.push_back(one.toFlowText());
-            throwNotAllowed(item, fmt::format("{}.{}", what, axis), joined(texts, " | "));
-        }
-        filter.emplace_back(axis, wanted);
+        filter.emplace_back(axis,
+                            readFilterValues(value, fmt::format("{}.{}", what, axis), axis, names));
     }
     return filter;
 }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <optional>
+#include <set>
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
@@ -230,9 +232,31 @@ Node withSceneFileKeys(const Node& map) {
     return result;
 }
 
-void resolveScenes(Node& document) {
+/// `all` of a sweep as the values that the program's parameter lists.
+void resolveAll(Node& document) {
+    Node* sweep = document.find("sweep");
+    const Node* program = document.find("program");
+    const Node* params = program && program->isMap() ? program->find("params") : nullptr;
+    if (!sweep || !sweep->isMap() || !params || !params->isMap()) return;
+    for (auto& [axis, value] : sweep->entries()) {
+        if (!value.isScalar() || value.text() != "all") continue;
+        const Node* listed = params->find(axis);
+        if (listed && listed->isMap()) listed = listed->find("choices");
+        if (listed && listed->isSequence()) {
+            value = Node::sequence(listed->items(), value.location());
+        }
+    }
+}
+
+void resolveNames(Node& document) {
     setProgramFolder(document);
-    if (Node* scene = document.find("scene")) *scene = withSceneFile(*scene);
+    resolveAll(document);
+    if (Node* scene = document.find("scene")) {
+        if (scene->isSequence() || (scene->isScalar() && contains(scene->text(), '*'))) {
+            throwNotAllowed(*scene, "scene", "one; several stand below 'sweep'");
+        }
+        *scene = withSceneFile(*scene);
+    }
     if (Node* params = document.find("params")) *params = withSceneFiles(*params, true);
     if (Node* params = document.find("params_by_scene")) *params = withSceneFileKeys(*params);
     if (Node* sweep = document.find("sweep"))
@@ -355,6 +379,46 @@ fs::path configNamed(const Node& name, const fs::path& file, const fs::path& con
                 what + ": no file '" + name.text() + "' in " + configsFolder.string());
 }
 
+/// The one swept axis that has all of the values; empty where none has, or several have.
+std::string axisWith(const Names& values, Node document) {
+    resolveNames(document);
+    const Node* sweep = document.find("sweep");
+    std::map<std::string, std::set<std::string>> found;  // those of the values that an axis has
+    for (const AxisPoint& point : expandSweep(sweep ? *sweep : Node())) {
+        for (const auto& [axis, value] : point) {
+            const bool isWanted = value.isScalar() && contains(values, value.text());
+            if (isWanted) found[axis].insert(value.text());
+        }
+    }
+    std::erase_if(found, [&](const auto& one) { return one.second.size() < values.size(); });
+    return found.size() == 1 ? found.begin()->first : "";
+}
+
+/// `order: [sobol, jittered]` of claims as [pattern=sobol, pattern=jittered], by the sweep of the
+/// whole file: a profile may leave out what the words are of.
+void nameAxes(const Node& whole, Node& document) {
+    Node* claims = document.find("claims");
+    if (!claims || !claims->isMap()) return;
+    const auto isWord = [](const Node& item) {
+        return item.isScalar() && !item.tryDouble() && item.text().find('=') == std::string::npos;
+    };
+    for (auto& [id, claim] : claims->entries()) {
+        Node* order = claim.isMap() ? claim.find("order") : nullptr;
+        if (!order || !order->isSequence()) continue;
+        Names words;
+        for (const Node& item : order->items()) {
+            if (isWord(item)) words.push_back(item.text());
+        }
+        const std::string axis = words.empty() ? "" : axisWith(words, whole);
+        if (axis.empty()) continue;
+        Node::Sequence items = order->items();
+        for (Node& item : items) {
+            if (isWord(item)) item = Node::scalar(axis + '=' + item.text(), item.location(), true);
+        }
+        *order = Node::sequence(std::move(items), order->location());
+    }
+}
+
 /// Who gives a program need not say what measures it.
 void addTechnique(Node& document) {
     const Node* program = document.find("program");
@@ -402,10 +466,10 @@ Override parseOverride(const std::string& text) {
 
 Node wholeDocument(const fs::path& file, const fs::path& configsFolder) {
     auto [document, overlays] = FileReader(configsFolder).read(file);
-    resolveScenes(document);
+    resolveNames(document);
     Node profiles = Node::map({});
     for (auto& [name, overlay] : overlays) {
-        resolveScenes(overlay);
+        resolveNames(overlay);
         const Node* earlier = profiles.find(name);
         profiles.set(name, earlier ? overlayOf(*earlier, overlay) : overlay);
     }
@@ -435,15 +499,18 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
     }
     document.set("profiles", Node::sequence(std::move(declared)));
     addTechnique(document);
+    const Node whole = document;
+    nameAxes(whole, document);
+    for (auto& [name, overlay] : overlays) nameAxes(whole, overlay);
 
     // The file as it stands must be right whatever is chosen: only there are all names known.
     Node asItStands = document;
-    resolveScenes(asItStands);
+    resolveNames(asItStands);
     Experiment experiment = readWhole(asItStands, file, true, configsFolder);
 
     if (experiment.isPublished()) {
         experiment.paperDocument = withProfile(document, overlays, "paper");
-        resolveScenes(experiment.paperDocument);
+        resolveNames(experiment.paperDocument);
     }
     bool isChanged = !options.sets.empty() || !options.sweeps.empty();
     for (const auto& [name, overlay] : overlays) isChanged |= name == profile;
@@ -451,7 +518,7 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
     document = withProfile(document, overlays, profile);
     applySweeps(options.sweeps, document);
     applySets(options.sets, document);
-    resolveScenes(document);
+    resolveNames(document);
     Experiment changed = readWhole(document, file, false, configsFolder);
     changed.paperDocument = std::move(experiment.paperDocument);
     return changed;

@@ -64,6 +64,9 @@ std::vector<ClaimSpec> readClaims(const Node& node, const TableNames& names, boo
 
 std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names);
 
+/// One or several of the values that the axis is known to have.
+Node::Sequence readFilterValues(const Node& value, const std::string& what, const std::string& axis,
+                                const TableNames& names);
 /// `at` of a claim or a plot, or the like; `what` begins the messages.
 RowFilter readRowFilter(const Node& at, const std::string& what, const TableNames& names);
 

@@ -73,7 +73,7 @@ Node::Sequence valuesOfLog2(const Node& ends) {
     return values;
 }
 
-/// The values of one axis: a list, {range: …} or {log2: …}.
+/// The values of one axis: a list, {range: …} or {log2: …}; `all` is a list when the file is read.
 Node::Sequence valuesOfAxis(const std::string& axis, const Node& node) {
     const std::string what = "axis '" + axis + "'";
     Node::Sequence values;
@@ -85,7 +85,8 @@ Node::Sequence valuesOfAxis(const std::string& axis, const Node& node) {
         values = valuesOfLog2(*node.find("log2"));
     } else {
         throwNotAllowed(node, what,
-                        "a list, {range: [first, last, step]} or {log2: [first, last]}");
+                        "a list, {range: [first, last, step]}, {log2: [first, last]}, or all, of "
+                        "a program's parameter that lists its values");
     }
     if (values.empty()) throw Error(node.location(), what + " has no values");
     return values;
@@ -346,12 +347,15 @@ std::vector<AxisPoint> expandSweep(const Node& sweep) {
 std::vector<SchemaSection> sweepKeys() {
     using namespace types;
     const Json axisType = anyOf({listOf(anything(), 1), refTo("axis")});
+    const Json paramType = anyOf({listOf(anything(), 1), refTo("axis"), {{"const", "all"}}});
+    const Json scenesType = anyOf({text(), listOf(anything(), 1), refTo("axis")});
     return {
         {"sweep",
          "sweep.",
          "Any other key is a parameter of the technique, or as `scene.NAME` one of the generated "
          "scenes: it is an axis too. A condition's value may be a list: any of these.",
-         {{"scene", "values", "none", "scenes", axisType},
+         {{"scene", "values", "none", "scenes; \"models/*.ply\" is all files of such a name",
+           scenesType},
           {"output.width", "values", "none", "widths of the image", axisType},
           {"output.height", "values", "none", "heights of the image", axisType},
           {"zip", "[{axis: values}]", "[]", "each block: axes that go together",
@@ -363,10 +367,11 @@ std::vector<SchemaSection> sweepKeys() {
           {"when", "{axis: {other: value}}", "{}",
            "the axis applies only there: elsewhere tables show no value of it", mapOf(pairs())}},
          true,
-         axisType},
+         paramType},
         {"axis",
          "values.",
-         "Values are a list, or a map with one of these keys.",
+         "Values are a list, or a map with one of these keys; `all` is what a program's parameter "
+         "lists.",
          {{"range",
            "[first, last, step]",
            "none",

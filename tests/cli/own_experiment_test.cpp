@@ -465,7 +465,7 @@ TEST_F(OwnExperiment, ClaimsReadTheColumnsOfATableThatNobodyLaidOut) {
                                 operand +
                                 ", over: resolution, direction: increasing}\n"
                                 "  solid: {says: a solid has more, order: "
-                                "[fill=surface, fill=solid], at: {column: voxels}}\n");
+                                "[fill=surface, fill=solid], of: voxels}\n");
     };
     const ProcessResult bad = gfxrepro({"check", configOf("voxel")});
     EXPECT_EQ(bad.exitCode, 2);

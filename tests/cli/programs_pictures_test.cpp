@@ -108,5 +108,63 @@ TEST_F(PicturesOfPrograms, OtherFormatsAreReadAsTheirKind) {
                                        ".exr, .png, .pfm, "));
 }
 
+/// A path tracer as far as a config can tell: noise that falls with the root of the samples, less
+/// of it by one of two patterns.
+constexpr const char* kTracer = R"(#!/bin/sh
+# tracer.sh SAMPLES PATTERN SEED WIDTH FILE
+{ printf 'P5\n%d %d\n255\n' "$4" "$4"
+  LC_ALL=C awk -v samples="$1" -v pattern="$2" -v seed="$3" -v width="$4" 'BEGIN {
+    srand(seed)
+    scale = (pattern == "SOBOL" ? 400 : 200) / sqrt(samples)
+    for (i = 0; i < width * width; ++i) printf "%c", int(128.5 + scale * (rand() - 0.5))
+  }'; } >"$5"
+echo '{"metric": "render_ms", "value": '"$1.$3"', "unit": "ms"}' >>"$GFXREPRO_METRICS_FILE"
+)";
+
+/// The whole file of a comparison: what nobody says comes without being asked for.
+TEST_F(PicturesOfPrograms, TwoPatternsAreComparedByAFewLines) {
+    const auto script = folder.write("tracer.sh", kTracer);
+    std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+    const std::string config = folder.write(
+        "mine.yaml",
+        "sweep_of: patterns\ntitle: Two sampling patterns\n"
+        "program:\n"
+        "  command: \"{here}/tracer.sh {samples} {pattern} {seed} {width} {out}/picture.pgm\"\n"
+        "  params: {samples: 16, pattern: [SOBOL, PROGRESSIVE_MULTI_JITTER]}\n"
+        "  metrics: {render_ms: ms}\n"
+        "  images: {picture: {file: picture.pgm, truth: {samples: 100000, seed: 99}}}\n"
+        "output: {width: 16, height: 16}\n"
+        "sweep: {pattern: all, samples: {log2: [16, 64]}}\n"
+        "claims:\n"
+        "  slope: {says: the error falls, trend: rmse, over: samples, at_most: -0.4}\n"
+        "  better: {says: jittered samples have the lower error, order: "
+        "[PROGRESSIVE_MULTI_JITTER, SOBOL], of: rmse, at: {samples: 64}}\n"
+        "  faster: {says: more samples take longer, order: [samples=16, samples=64], "
+        "of: render_ms}\n");
+    const ProcessResult bad =
+        gfxrepro({"check", folder.write("bad.yaml", [&] {
+                      std::string text = readFile(config);
+                      return text.replace(text.find("of: rmse,"), 8, "of: rmsee");
+                  }())});
+    EXPECT_EQ(bad.exitCode, 2);
+    EXPECT_THAT(bad.err, HasSubstr(":12:3: claim 'better': 'rmsee' is no column; did you mean "
+                                   "'rmse'? (columns: render_ms, "));
+    EXPECT_THAT(bad.err, testing::Not(HasSubstr("render_ms_picture")));
+    const ProcessResult check = gfxrepro({"check", config});
+    EXPECT_EQ(check.exitCode, 0) << check.err;
+    const ProcessResult run = gfxrepro({"reproduce", config, "--out", dir});
+    ASSERT_EQ(run.exitCode, 0) << run.out << run.err;
+    EXPECT_THAT(readFile(dir + "/tables/sweep-patterns.csv"),
+                testing::StartsWith("pattern,samples,render_ms_measured"));
+    const std::string claims = readFile(dir + "/claims.csv");
+    for (const char* id : {"slope", "better", "faster"}) {
+        EXPECT_THAT(claims, testing::ContainsRegex(std::string("\n") + id + ",[^\n]*,holds,"));
+    }
+    const std::string page = readFile(dir + "/report.html");
+    EXPECT_THAT(page, HasSubstr("PROGRESSIVE_MULTI_JITTER is nearer to its truth than SOBOL in "
+                                "all 3 rows"));
+    EXPECT_THAT(page, HasSubstr("mse over render"));
+}
+
 }  // namespace
 }  // namespace gfxrepro::test

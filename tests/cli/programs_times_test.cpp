@@ -71,7 +71,7 @@ TEST_F(Timed, AProgramThatWaitsIsJudgedByTheClock) {
         "  slope: {says: it falls with the number, trend: ms, over: number, "
         "at_least: -1.2, at_most: -0.6}\n"
         "  slower: {says: two take longer than four, kind: algorithmic, across: number, "
-        "ratio: \"'2' / '4'\", at_least: 1.3, at: {column: ms}}\n"
+        "ratio: \"'2' / '4'\", at_least: 1.3, of: ms}\n"
         "  absolute: {says: it takes a tenth of a second, kind: absolute, bound: ms, at_least: "
         "100, at: {number: 1}}\n");
     EXPECT_EQ(result.exitCode, 0) << result.out << result.err;

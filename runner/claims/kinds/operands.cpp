@@ -23,10 +23,14 @@ bool isNumber(const std::string& text) {
     return parseDouble(text).has_value();
 }
 
+}  // namespace
+
 std::string noColumn(const std::string& name, Labels labels) {
     return fmt::format("'{}' is no column{} (columns: {})", name,
                        isNumber(name) ? "" : suggestion(name, labels), joined(labels));
 }
+
+namespace {
 
 /// The column in quotes at the head of `rest`; those without an end are of all of it.
 OperandPiece quoted(std::string_view rest, Labels labels) {

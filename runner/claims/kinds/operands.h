@@ -41,6 +41,9 @@ struct RowReference {
     /// Row axes with values; none where it cannot be read.
     std::vector<std::pair<std::string, std::string>> at;
 };
+/// "'tme' is no column; did you mean 'time'? (columns: time, size)".
+std::string noColumn(const std::string& name, std::span<const std::string> labels);
+
 /// Those of an expression, in its order. They point into it.
 std::vector<RowReference> rowReferences(std::string_view expression,
                                         std::span<const std::string> labels);

@@ -16,7 +16,8 @@ namespace {
 std::pair<std::string, std::string> valueIn(const Node& item, const std::string& what) {
     const std::string& text = lineOf(item, what);
     const std::size_t equals = text.find('=');
-    if (equals == 0 || equals >= text.size() - 1) throwNotAllowed(item, what, "AXIS=VALUE");
+    if (equals == 0 || equals >= text.size() - 1)
+        throwNotAllowed(item, what, "AXIS=VALUE, or words that one swept axis alone has");
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
@@ -108,11 +109,11 @@ std::vector<ClaimPart> orderParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind order() {
-    const Json pair = {{"type", "string"}, {"pattern", "^[^=]+=.+$"}};
-    Kind kind{sectionOf({"order", "a < b < c | [AXIS=VALUE, …]", "",
+    Kind kind{sectionOf({"order", "a < b < c | [AXIS=VALUE, …] | [values]", "",
                          "in this order: of columns, or of the rows with these values of an axis, "
-                         "column by column, which implies `across`",
-                         types::anyOf({types::text(), types::listOf(pair, 2)})},
+                         "column by column, which implies `across`; words that one swept axis "
+                         "alone has need no AXIS=",
+                         types::anyOf({types::text(), types::listOf(types::text(), 2)})},
                         {}),
               readOrder, orderParts};
     kind.axisOf = axisOf;

@@ -360,7 +360,7 @@ TEST(Claims, ABoundFromPrintReadsWhatIsPrinted) {
     EXPECT_EQ(errorOf("ratio: b / a, at_most: 4"), "no error") << "one that is printed will do";
     EXPECT_EQ(errorOf("bound: b, at_most: 4"), readsNone);
     EXPECT_EQ(errorOf("bound: a, at_most: 4, at: {scene: t}"), readsNone) << "what is lost";
-    EXPECT_EQ(errorOf("across: scene, ratio: s / t, at_most: 4, at: {column: a}"), "no error");
+    EXPECT_EQ(errorOf("across: scene, ratio: s / t, at_most: 4, of: a"), "no error");
 }
 
 TEST(Claims, WhatIsPrintedMeetsABoundFromPrint) {
@@ -378,8 +378,7 @@ TEST(Claims, WhatIsPrintedMeetsABoundFromPrint) {
     EXPECT_EQ(errorOf("bound: a, at_most: 16"), "no error");
     EXPECT_EQ(errorOf("bound: a, at_most: 8"), isNotMet + "16") << "of a row that is not measured";
     EXPECT_EQ(errorOf("bound: a, at_most: 8", "ours"), "no error") << "ours may better it";
-    EXPECT_EQ(errorOf("across: number, ratio: 2 / 1, at_most: 1.5, at: {column: a}"),
-              isNotMet + "2");
+    EXPECT_EQ(errorOf("across: number, ratio: 2 / 1, at_most: 1.5, of: a"), isNotMet + "2");
     EXPECT_EQ(errorOf("trend: t, over: number, at_least: 0.75, at_most: 3, kind: algorithmic"),
               "no error")
         << "a printed time is a number, and lies evenly between these";
@@ -896,7 +895,7 @@ TEST(Claims, WhatWasJudgedByCpuTimeIsShown) {
     };
     EXPECT_THAT(columnsOf("trend: ms, over: n, at_most: 2"),
                 testing::ElementsAre("ms", "cpu_ms", "fps"));
-    EXPECT_THAT(columnsOf("order: [n=8, n=1], at: {column: fps}, kind: algorithmic"),
+    EXPECT_THAT(columnsOf("order: [n=8, n=1], of: fps, kind: algorithmic"),
                 testing::ElementsAre("ms", "fps", "cpu_fps"));
     EXPECT_THAT(columnsOf("bound: ms, at_most: 9, kind: absolute"),
                 testing::ElementsAre("ms", "fps"));
@@ -1029,15 +1028,14 @@ TEST(Claims, AcrossComparesRows) {
     EXPECT_EQ(result.verdict, Verdict::Fails);
     EXPECT_EQ(result.measured, "smallest gap -50 %");
     EXPECT_EQ(result.reason, "worst at t, b; one sample; holds on 1 of 2 scenes, not on t");
-    EXPECT_EQ(judge("order: [method=old, method=new], at: {column: a}").verdict, Verdict::Holds);
+    EXPECT_EQ(judge("order: [method=old, method=new], of: a").verdict, Verdict::Holds);
     EXPECT_EQ(judge("order: [method=old, method=new], at: {scene: s}").verdict, Verdict::Holds);
     EXPECT_EQ(judge("order: [method=old, method=new], at: {scene: s}").required, "old < new");
-    result = judge("across: method, ratio: new / old, at_least: 20, at: {scene: t, column: a}");
+    result = judge("across: method, ratio: new / old, at_least: 20, of: a, at: {scene: t}");
     EXPECT_EQ(result.verdict, Verdict::Holds);
     EXPECT_EQ(result.measured, "20");
     // The printed numbers have moved along.
-    EXPECT_EQ(judge("across: method, exact: new, equals: printed, at: {column: a}").verdict,
-              Verdict::Holds);
+    EXPECT_EQ(judge("across: method, exact: new, equals: printed, of: a").verdict, Verdict::Holds);
     result = judge("across: method, exact: new, equals: printed");
     EXPECT_EQ(result.measured, "largest difference 1");
 }

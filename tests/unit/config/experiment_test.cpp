@@ -466,5 +466,29 @@ TEST_F(ExperimentTest, SweptOutputSizes) {
               "DIR/zju/a.yaml:4:9: axis 'output.size'; allowed: output.width, output.height");
 }
 
+TEST_F(ExperimentTest, SeveralScenesAreSwept) {
+    EXPECT_EQ(errorWith("scene: [a.ply, b.ply]\n"),
+              "DIR/zju/a.yaml:4:8: scene is [a.ply, b.ply]; allowed: one; several stand below "
+              "'sweep'");
+    EXPECT_EQ(errorWith("scene: \"*.ply\"\n"),
+              "DIR/zju/a.yaml:4:8: scene is *.ply; allowed: one; several stand below 'sweep'");
+}
+
+TEST_F(ExperimentTest, AllIsWhatAProgramsParameterLists) {
+    const std::string text =
+        "sweep_of: s\ntitle: t\nprogram:\n  command: t {pattern} {n} {tone}\n"
+        "  params: {pattern: [sobol, jittered], n: 4, tone: {default: b, choices: [a, b]}}\n";
+    const Experiment experiment = load(text + "sweep: {pattern: all, tone: all}\n");
+    std::vector<std::string> points;
+    for (const AxisPoint& point : expandSweep(experiment.sweep)) {
+        points.push_back(point[0].value.text() + ' ' + point[1].value.text());
+    }
+    EXPECT_THAT(points, ElementsAre("sobol a", "sobol b", "jittered a", "jittered b"));
+    EXPECT_EQ(
+        loadError(text + "sweep: {n: all}\n"),
+        "DIR/zju/a.yaml:6:12: axis 'n' is all; allowed: a list, {range: [first, last, step]}, "
+        "{log2: [first, last]}, or all, of a program's parameter that lists its values");
+}
+
 }  // namespace
 }  // namespace gfxrepro::config

@@ -281,7 +281,7 @@ TEST_F(ExperimentTest, BadClaims) {
               head + "32: claim 'C' is of two types, 'order' and 'bound'");
     EXPECT_EQ(claimError("{says: s, order: aa < bb, at_least: 1}"),
               head +
-                  "32: claim 'C': unknown key 'at_least'; allowed: says, at, across, "
+                  "32: claim 'C': unknown key 'at_least'; allowed: says, at, across, of, "
                   "profile, origin, same_as, bound_from, kind, because, order");
     EXPECT_EQ(
         claimError("{says: s, order: aa}"),
@@ -484,18 +484,30 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
             claim);
     };
     const std::string head = "DIR/zju/a.yaml:7:";
-    EXPECT_EQ(error("order: [e=p, e=q], at: {scene: s, column: [aa, bb]}}"), "no error");
-    EXPECT_EQ(error("across: e, order: p / q < q, at: {scene: s, column: aa}}"), "no error");
+    EXPECT_EQ(error("order: [e=p, e=q], of: [aa, bb], at: {scene: s}}"), "no error");
+    EXPECT_EQ(error("across: e, order: p / q < q, of: aa, at: {scene: s}}"), "no error");
     EXPECT_EQ(error("across: e, trend: p / q, over: scene, at_least: 1, at_most: 2}"), "no error");
     EXPECT_EQ(error("across: f, order: p / q < q}"),
               head + "24: claim 'C': across is f; allowed: e | scene");
     EXPECT_EQ(error("across: e, order: aa < bb}"),
               head + "34: claim 'C': 'aa' is no column (columns: p, q)");
     EXPECT_EQ(error("order: [e=p, e=q], at: {e: p}}"),
-              head + "40: claim 'C': at: unknown key 'e'; allowed: scene, column");
-    EXPECT_EQ(error("order: [e=p, e=q], at: {column: p}}"),
-              head + "48: claim 'C': at.column is p; allowed: aa | bb");
-    EXPECT_EQ(error("order: [p, q]}"), head + "24: claim 'C': order is p; allowed: AXIS=VALUE");
+              head + "40: claim 'C': at: unknown key 'e'; allowed: scene");
+    const std::string columns =
+        "claim 'C': at: 'column' is no axis of the rows; columns are chosen "
+        "by 'of'";
+    EXPECT_EQ(error("order: [e=p, e=q], at: {column: aa}}"), head + "40: " + columns);
+    const std::string named = "allowed: AXIS=VALUE, or words that one swept axis alone has";
+    EXPECT_EQ(error("order: [p, q]}"), head + "24: claim 'C': order is p; " + named);
+    EXPECT_EQ(error("order: [t, s, 1]}"), head + "30: claim 'C': order is 1; " + named);
+    EXPECT_EQ(error("order: [s, s]}"), head + "24: claim 'C': order is s; " + named);
+    EXPECT_EQ(error("order: [t, s], of: aa, at: {e: p}}"), "no error");
+    EXPECT_EQ(error("order: [t, s], of: [aa, bb]}"), "no error");
+    EXPECT_EQ(error("order: [t, s], of: p}"), head + "35: claim 'C': of is p; allowed: aa | bb");
+    EXPECT_EQ(error("order: aa < bb, of: aa}"),
+              head +
+                  "32: claim 'C': 'of' is of a claim that compares rows; allowed: with "
+                  "[AXIS=VALUE, …] or across: e | scene");
     EXPECT_EQ(error("order: [e=p, scene=s]}"),
               head + "29: claim 'C': order: 'e' and 'scene' are two axes; allowed: values of one");
     EXPECT_EQ(error("order: [e=p, e=rrr]}"),
@@ -516,10 +528,28 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
     EXPECT_EQ(
         error("ratio: \"max(p, q) / aa\", at_most: 1}"),
         head + "23: claim 'C': 'p'" + hint + "'p' is a value of row axis 'e': add 'across: e'");
-    EXPECT_EQ(error("order: aa < bb, at: {column: aa}}"),
-              head +
-                  "37: claim 'C': at: 'column' is of a claim across a row axis: add 'across: "
-                  "AXIS' (e | scene)");
+    EXPECT_EQ(error("order: aa < bb, at: {column: aa}}"), head + "37: " + columns);
+}
+
+TEST_F(ExperimentTest, ValuesThatOneAxisAloneHasSayWhichItIs) {
+    const std::string text =
+        "sweep_of: s\ntitle: t\ntechnique: x\n"
+        "sweep: {method: [plain, fast, both], filter: [plain, both], size: [1, 2]}\nclaims:\n"
+        "  C: {says: s, order: [fast, plain], of: wall}\n"
+        "profiles: {quick: {sweep: {method: [both]}}}\n";
+    for (const char* profile : {"full", "quick"}) {  // without the two the claim stays what it is
+        const ClaimSpec claim = load(text, {profile, {}, {}}).claims.at(0);
+        EXPECT_EQ(claim.across, "method") << profile;
+        EXPECT_THAT(claim.operands, ElementsAre("fast", "plain"));
+        ASSERT_EQ(claim.at.size(), 1U);
+        EXPECT_EQ(claim.at[0].first, "column");
+        EXPECT_EQ(claim.at[0].second.at(0).text(), "wall");
+    }
+    std::string several = text;
+    several.replace(several.find("[fast, plain], of"), 13, "[both, plain]");
+    EXPECT_EQ(loadError(several),
+              "DIR/zju/a.yaml:6:24: claim 'C': order is both; allowed: AXIS=VALUE, or words that "
+              "one swept axis alone has");
 }
 
 TEST_F(ExperimentTest, OneRowHasNoTrend) {

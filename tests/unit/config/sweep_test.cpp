@@ -71,11 +71,12 @@ TEST(Sweep, ExcludeAndWhen) {
 TEST(Sweep, BadAxes) {
     EXPECT_EQ(sweepError("[1]"), "a.yaml:1:1: sweep is [1]; allowed: a map, axis: values");
     EXPECT_EQ(sweepError("m: slices"),
-              "a.yaml:1:4: axis 'm' is slices; allowed: a list, {range: [first, last, step]} or "
-              "{log2: [first, last]}");
+              "a.yaml:1:4: axis 'm' is slices; allowed: a list, {range: [first, last, step]}, "
+              "{log2: [first, last]}, or all, of a program's parameter that lists its values");
     EXPECT_EQ(sweepError("m: {rnage: [1, 2]}"),
               "a.yaml:1:4: axis 'm' is {rnage: [1, 2]}; allowed: a list, {range: [first, last, "
-              "step]} or {log2: [first, last]}");
+              "step]}, {log2: [first, last]}, or all, of a program's parameter that lists its "
+              "values");
     EXPECT_EQ(sweepError("m: []"), "a.yaml:1:4: axis 'm' has no values");
     EXPECT_EQ(sweepError("m: [1, 2, 1.0]"), "a.yaml:1:11: axis 'm' has the value 1.0 twice");
     EXPECT_EQ(sweepError("m: {range: [1, 4, 0]}"),
