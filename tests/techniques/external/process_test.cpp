@@ -57,13 +57,21 @@ TEST_F(Process, KilledAsMemoryRanOutItSaysSo) {
     EXPECT_FALSE(end(count + "exit 1").isOutOfMemory) << "it may be a neighbour's";
     EXPECT_FALSE(end(count).isOutOfMemory);
     // In its own control group nobody else is killed.
-    folder.write("proc/self/cgroup", "0::/job\n");
-    const auto inGroup = [&](const std::string& script) {
-        folder.write("sys/fs/cgroup/job/memory.events", "max 3\noom_kill 1\n");
-        return end("echo oom_kill 2 >sys/fs/cgroup/job/memory.events; " + script).isOutOfMemory;
-    };
-    EXPECT_TRUE(inGroup("exit 1"));
-    EXPECT_FALSE(inGroup("exit 0")) << "it went on without";
+    const std::string v1 = "7:blkio:/\n4:memory:/job\n0::/\n";
+    for (const auto& [groups, file] : {std::pair{"0::/job\n", "job/memory.events"},
+                                       {v1.c_str(), "memory/job/memory.oom_control"},
+                                       {v1.c_str(), "memory/memory.oom_control"}}) {  // a container
+        SCOPED_TRACE(file);
+        folder.write("proc/self/cgroup", groups);
+        const std::string counts = std::string("sys/fs/cgroup/") + file;
+        const auto inGroup = [&](const std::string& script) {
+            folder.write(counts, "under_oom 0\noom_kill 1\n");
+            return end("echo oom_kill 2 >" + counts + "; " + script).isOutOfMemory;
+        };
+        EXPECT_TRUE(inGroup("exit 1"));
+        EXPECT_FALSE(inGroup("exit 0")) << "it went on without";
+        std::filesystem::remove_all(folder.path() / "sys");
+    }
 }
 
 TEST_F(Process, RunsInItsFolderAndPrints) {

@@ -42,6 +42,15 @@ TEST_F(UsableProcessors, TheSmallestQuotaOfItsGroupAndThoseAbove) {
     EXPECT_EQ(count(), 1);
 }
 
+TEST_F(UsableProcessors, AlsoOfGroupsOfVersion1) {
+    folder.write("proc/self/cgroup", "5:cpuset:/\n2:cpu,cpuacct:/jobs/12\n0::/\n");
+    folder.write("sys/fs/cgroup/cpu/jobs/12/cpu.cfs_period_us", "100000\n");
+    folder.write("sys/fs/cgroup/cpu/jobs/12/cpu.cfs_quota_us", "-1\n");
+    EXPECT_EQ(count(), all);
+    folder.write("sys/fs/cgroup/cpu/jobs/12/cpu.cfs_quota_us", "50000\n");
+    EXPECT_EQ(count(), 1);
+}
+
 TEST_F(UsableProcessors, OnlyThoseOfItsMask) {
     cpu_set_t before;
     ASSERT_EQ(::sched_getaffinity(0, sizeof(before), &before), 0);
