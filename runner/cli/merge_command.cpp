@@ -31,21 +31,22 @@ cluster::ShardRun readShard(const fs::path& folder) {
 
 /// Those of the folders that hold a run; the others are said. A submission stands for its shards,
 /// of which some may not be begun.
-std::vector<cluster::ShardRun> readShards(const std::vector<std::string>& folders) {
-    std::vector<cluster::ShardRun> shards;
-    for (const fs::path folder : folders) {
-        if (isSubmission(folder)) {
-            for (const fs::path& shard : cluster::shardFolders(folder)) {
-                if (run::holdsRun(shard)) shards.push_back(readShard(shard));
+std::vector<fs::path> foldersOfRuns(const std::vector<std::string>& given) {
+    std::vector<fs::path> folders;
+    for (const fs::path folder : given) {
+        const bool isOfShards = isSubmission(folder);
+        for (const fs::path& shard :
+             isOfShards ? cluster::shardFolders(folder) : std::vector<fs::path>{folder}) {
+            if (run::holdsRun(shard)) {
+                folders.push_back(shard);
+            } else if (!isOfShards) {
+                tell("{}: {}\n", folder.string(),
+                     fs::exists(folder) ? "holds no run" : "there is no such folder");
             }
-        } else if (run::holdsRun(folder)) {
-            shards.push_back(readShard(folder));
-        } else {
-            tell("{}: holds no run\n", folder.string());
         }
     }
-    if (shards.empty()) throw Error("merge: none of the folders holds a run");
-    return shards;
+    if (folders.empty()) throw Error("merge: none of the folders holds a run");
+    return folders;
 }
 
 /// A merge may be made again, unless something was measured into it since.
@@ -74,13 +75,15 @@ void printMissing(const std::vector<cluster::ShardRun>& shards,
 }  // namespace
 
 int merge(const Context& context, std::string out, const std::vector<std::string>& shards) {
+    const std::vector<fs::path> folders = foldersOfRuns(shards);
     if (out.empty() && shards.size() == 1 && isSubmission(shards.front())) out = shards.front();
     if (out.empty()) {
         throw UsageError(
             "merge: --out is missing: folder of the whole run; for example: gfxrepro merge "
             "shard-1 shard-2 --out whole");
     }
-    const std::vector<cluster::ShardRun> runs = readShards(shards);
+    std::vector<cluster::ShardRun> runs;
+    for (const fs::path& folder : folders) runs.push_back(readShard(folder));
     const run::StoredRun merged =
         cluster::mergeRuns(cluster::wholePlan(runs), runs, context.commandLine);
     {

@@ -162,7 +162,7 @@ TEST_F(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
     ASSERT_EQ(measure(config, s1, {"--shard", "1/2"}).exitCode, 0);
     const ProcessResult partial = mockGfxrepro({"merge", "--out", merged, s1, s2});
     EXPECT_EQ(partial.exitCode, 4);
-    EXPECT_EQ(partial.err, s2 + ": holds no run\n");
+    EXPECT_EQ(partial.err, s2 + ": there is no such folder\n");
     EXPECT_THAT(partial.out, HasSubstr("missing: shard 2/2\nmissing: sweep/mock number=2\n"
                                        "missing: sweep/mock number=4\nmerged 1 shard into " +
                                        merged + ": 2 of 4 measured, 0 failed, 2 missing\n"));
@@ -197,6 +197,16 @@ TEST_F(Shards, MergeRefusesOtherPlansAndNoRuns) {
     const ProcessResult none = mockGfxrepro({"merge", "--out", folder.path() / "m", folder.path()});
     EXPECT_EQ(none.exitCode, 2);
     EXPECT_THAT(none.err, HasSubstr("gfxrepro: merge: none of the folders holds a run\n"));
+    for (const auto& [name, why] :
+         {std::pair{"none", "there is no such folder"}, {"data", "holds no run"}}) {
+        folder.write("data/file", "");
+        const std::string given = folder.path() / name;
+        EXPECT_EQ(mockGfxrepro({"merge", given}).err,
+                  given + ": " + why + "\ngfxrepro: merge: none of the folders holds a run\n");
+    }
+    EXPECT_EQ(mockGfxrepro({"merge", s1, s2}).err,
+              "gfxrepro: merge: --out is missing: folder of the whole run; for example: gfxrepro "
+              "merge shard-1 shard-2 --out whole\n");
 }
 
 TEST_F(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {

@@ -77,9 +77,6 @@ TEST_F(Usage, WhatIsNotGivenIsNamedWithAnExample) {
     EXPECT_EQ(refusal({"plan"}, folder),
               "gfxrepro: plan: TABLE is missing: PAPER, PAPER/TABLE or config files; for example: "
               "gfxrepro plan my-scene.yaml --profile quick\n");
-    EXPECT_EQ(refusal({"merge", "a", "b"}, folder),
-              "gfxrepro: merge: --out is missing: folder of the whole run; for example: gfxrepro "
-              "merge shard-1 shard-2 --out whole\n");
 }
 
 TEST_F(Usage, BadKeyHasItsPlace) {
