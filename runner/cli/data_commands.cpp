@@ -87,7 +87,7 @@ int exportRun(const Context& context, const ExportOptions& options) {
                                    ? options.runDir + (options.isTidy ? "-tidy" : "-artifact")
                                    : options.out;
     run::StoredRun run = run::readRun(options.runDir);
-    run::noteChangedImages(run, options.runDir);
+    run::noteChangedImages(run.manifest, options.runDir);
     if (options.isTidy) {
         outcome::writeTidy(options.runDir, run, target);
     } else {

@@ -25,7 +25,7 @@ bool isSubmission(const fs::path& folder) {
 
 cluster::ShardRun readShard(const fs::path& folder) {
     cluster::ShardRun shard{folder, run::readOutlined(folder)};
-    run::noteChangedImages(shard.run, folder);
+    run::noteChangedImages(shard.run.manifest, folder);
     return shard;
 }
 

@@ -294,7 +294,7 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs,
 int report(const std::vector<std::string>& runDirs, const std::string& out, bool embeds) {
     if (runDirs.size() == 1 && out.empty()) {
         run::StoredRun run = run::readRun(runDirs.front());
-        run::noteChangedImages(run, runDirs.front());
+        run::noteChangedImages(run.manifest, runDirs.front());
         outcome::writeResults(
             runDirs.front(), run,
             {.tables = false, .claims = false, .embeds = embeds, .progress = sayPictures});
@@ -310,7 +310,7 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
             continue;
         }
         run::StoredRun run = run::readRun(dir);
-        run::noteChangedImages(run, dir);
+        run::noteChangedImages(run.manifest, dir);
         runs.push_back(outcome::reportRun(dir, run, outcome::resultsOf(run)));
         if (completenessCode(run) != kExitOk) code = kExitIncomplete;
     }

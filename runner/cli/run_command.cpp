@@ -470,14 +470,6 @@ void putFailedLast(const std::vector<run::Json>& journal, std::vector<run::Unit>
     });
 }
 
-/// Of a run that had ended: nothing is measured, and there is time to look.
-void noteChangedImages(Prepared& run) {
-    run::StoredRun ended;
-    ended.manifest = std::move(run.manifest);
-    run::noteChangedImages(ended, run.directory.path());
-    run.manifest = std::move(ended.manifest);
-}
-
 /// Runs what is left; with `results`, makes tables, claims and report from it.
 int execute(const Context& context, const RunOptions& options, const run::Request& request,
             bool results) {
@@ -494,7 +486,7 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
         run.scheduler.preparedInPairs = run::preparedInPairs(run.plan, context.techniques);
     }
     std::vector<run::Unit> units = run::remainingUnits(run.plan, run.directory);
-    if (!isNew && units.empty()) noteChangedImages(run);
+    if (!isNew) run::noteChangedImages(run.manifest, run.directory.path(), units);
     if (options.failuresAtMost > 0) putFailedLast(run.journal, units);
     run::Rounds rounds = run::roundsOf(run.plan, run.directory, run.journal);
     std::map<std::string, run::MachineState> states = run::machineStatesIn(run.journal);

@@ -145,10 +145,12 @@ std::vector<ImageEntry> readImages(const fs::path& runDir) {
     return images;
 }
 
-std::vector<std::string> changedImages(const fs::path& runDir) {
+std::vector<std::string> changedImages(const fs::path& runDir,
+                                       const std::set<std::string>& others) {
     std::set<std::string> seen;
     std::vector<std::string> changed;
     for (const ImageEntry& image : readImages(runDir)) {
+        if (others.contains(image.caseId)) continue;
         for (const auto& [file, sha256] :
              {std::pair(image.png, image.pngSha256), std::pair(image.exr, image.exrSha256)}) {
             if (file.empty() || !seen.insert(file).second) continue;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -59,9 +60,10 @@ class ImageWriter {
 /// line is passed over; other malformed rows are an Error with file and line.
 std::vector<ImageEntry> readImages(const std::filesystem::path& runDir);
 
-/// The files of a run's images that are not as they were written: "images/a/b.png was changed",
-/// "… is missing"; each once.
-std::vector<std::string> changedImages(const std::filesystem::path& runDir);
+/// The files of a run's images that are not as they were written, but for those of `others`, by id:
+/// "images/a/b.png was changed", "… is missing"; each once.
+std::vector<std::string> changedImages(const std::filesystem::path& runDir,
+                                       const std::set<std::string>& others = {});
 
 /// Of images/index.csv; a larger one is neither written nor read.
 inline constexpr std::uintmax_t kMostIndexBytes = std::uintmax_t{4} << 30;

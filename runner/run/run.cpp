@@ -173,13 +173,15 @@ StoredRun readOutlined(const fs::path& runDir) {
     return readWith(Plan::outlineFromJsonFile, runDir);
 }
 
-void noteChangedImages(StoredRun& run, const fs::path& runDir) {
+void noteChangedImages(Json& manifest, const fs::path& runDir, const std::vector<Unit>& again) {
     constexpr std::size_t kNamed = 3;
-    std::vector<std::string> changed = records::changedImages(runDir);
+    std::set<std::string> others;
+    for (const Unit& unit : again) others.insert(unit.item->id);
+    std::vector<std::string> changed = records::changedImages(runDir, others);
     if (changed.empty()) return;
     const std::size_t count = changed.size();
     changed.resize(std::min(count, kNamed));
-    addNote(run.manifest,
+    addNote(manifest,
             fmt::format("pictures are not as they were recorded: {}{}", joined(changed, ", "),
                         count > kNamed ? fmt::format(", and {} others", count - kNamed) : ""));
 }

@@ -43,9 +43,10 @@ struct StoredRun {
 /// Throws Error when the folder is no run. The manifest notes what was changed since its end
 /// (noteChanges), and that several machines measured (noteMachines).
 StoredRun readRun(const std::filesystem::path& runDir);
-/// Adds to the manifest's notes which pictures are missing or are not as they were written: each is
-/// read, which takes time.
-void noteChangedImages(StoredRun& run, const std::filesystem::path& runDir);
+/// Adds to the manifest's notes which pictures are missing or are not as they were written, but for
+/// those of the cases that are measured `again`: each is read, which takes time.
+void noteChangedImages(Json& manifest, const std::filesystem::path& runDir,
+                       const std::vector<Unit>& again = {});
 
 /// For a merge: a shard's plan is an outline (Plan::outlineFromJsonFile).
 StoredRun readOutlined(const std::filesystem::path& runDir);

@@ -138,6 +138,27 @@ TEST_F(Seal, PicturesThatAreNotAsTheyWereRecordedAreNamed) {
     EXPECT_THAT(manifest(merged)["notes"].dump(), HasSubstr(dir + ": " + said));
 }
 
+/// Of what is measured again the old pictures are nothing to be told of.
+TEST_F(Seal, ARunThatGoesOnNamesTheKeptPicturesThatAreNotAsTheyWere) {
+    const std::string file = writeMockConfig(folder, "sweep: {number: [3, 4]}\n");
+    ASSERT_EQ(mockGfxrepro({"run", file, "--device", "software", "--out", dir}).exitCode, 0);
+    const std::vector<records::ImageEntry> images = records::readImages(dir);
+    const records::ImageEntry& kept = images.front();
+    ASSERT_NE(kept.caseId, images.back().caseId);
+    for (const records::ImageEntry* image : {&kept, &images.back()}) {
+        writeFileAtomic(dir + '/' + image->png, readFile(dir + '/' + image->png) + "x");
+    }
+    std::vector<records::Record> rows = records::readRecords(dir + "/records.csv");
+    std::erase_if(rows, [&](const auto& row) { return row.caseId != kept.caseId; });
+    fs::remove(dir + "/records.csv");
+    records::RecordWriter(dir + "/records.csv").append(rows);
+    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
+    EXPECT_THAT(resumed.out, HasSubstr("1 of 1 finished"));
+    EXPECT_THAT(resumed.err, HasSubstr("warning: pictures are not as they were recorded: " +
+                                       kept.png + " was changed\n"));
+    EXPECT_THAT(mockGfxrepro({"report", dir}).out, HasSubstr(kept.png + " was changed\n"));
+}
+
 TEST_F(Seal, AnotherConfigJudgesApartAndSaysSo) {
     run();
     const std::string before = readFile(dir + "/claims.csv");
