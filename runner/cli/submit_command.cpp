@@ -234,22 +234,40 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     return cut;
 }
 
-cluster::ShardProgress progressOf(const fs::path& folder, int unitCount) {
+/// The shards of one plan with their folders, as far as they are looked at.
+struct Parts {
+    std::string whole;  // the plan's SHA-256
+    std::map<int, fs::path> folders = {};
+
+    /// Why the shard that a folder holds is none of them, or none that is not there already.
+    std::string whyNot(const std::optional<run::Shard>& shard, const fs::path& folder) {
+        if (!shard || shard->whole != whole) {
+            return "no part of the submitted plan: it was replaced";
+        }
+        const auto [first, isNew] = folders.try_emplace(shard->index, folder);
+        if (isNew) return "";
+        return fmt::format("the shard {} once more: {} holds it, too", shard->name(),
+                           first->second.string());
+    }
+};
+
+/// What a folder holds, whichever of the `parts` it is, as for a merge; of the merged run, which is
+/// none, `parts` is null.
+cluster::ShardProgress progressOf(const fs::path& folder, int unitCount, Parts* parts) {
     cluster::ShardProgress progress{unitCount, 0, 0};
     if (!run::holdsRun(folder)) return progress;
-    const run::Completeness counts = run::readCompleteness(folder);
-    return {counts.units, counts.measured(), counts.failed};
-}
-
-/// Also whether its plan is that part of the plan with the SHA-256 `shard.whole`, as a merge asks.
-cluster::ShardProgress progressOf(const fs::path& folder, int unitCount, const run::Shard& shard) {
-    cluster::ShardProgress progress = progressOf(folder, unitCount);
-    if (!run::holdsRun(folder)) return progress;
     try {
-        const auto own = run::Plan::outlineFromJsonFile(folder / "plan.json").shard;
-        progress.isOfPlan = own && own->whole == shard.whole && own->name() == shard.name();
-    } catch (const Error&) {
-        progress.isOfPlan = false;
+        std::optional<run::Plan> plan;
+        if (parts) {
+            plan = run::Plan::outlineFromJsonFile(folder / "plan.json");
+            progress.problem = parts->whyNot(plan->shard, folder);
+        }
+        const run::Completeness counts = run::readCompleteness(folder, plan ? &*plan : nullptr);
+        progress.unitCount = counts.units;
+        progress.finished = counts.measured();
+        progress.failed = counts.failed;
+    } catch (const Error& error) {
+        progress.problem = error.what();
     }
     return progress;
 }
@@ -278,28 +296,28 @@ int printStatus(const fs::path& out) {
     const auto queue = askForStored(*stored);
     std::vector<std::vector<std::string>> rows = {{"shard", "done", "failed", "state"}};
     const auto count = static_cast<int>(stored->unitCounts.size());
-    const std::string whole = sha256OfFile(frozenPlan(out));
+    Parts parts{sha256OfFile(frozenPlan(out))};
     bool isComplete = true;
     for (int k = 1; k <= count; ++k) {
-        const run::Shard shard{k, count, whole};
         const cluster::ShardProgress progress =
             progressOf(out / "shards" / std::to_string(k),
-                       stored->unitCounts[static_cast<std::size_t>(k - 1)], shard);
+                       stored->unitCounts[static_cast<std::size_t>(k - 1)], &parts);
         isComplete = isComplete && progress.isComplete();
-        rows.push_back({shard.name(), fmt::format("{}/{}", progress.finished, progress.unitCount),
+        rows.push_back({run::Shard{k, count}.name(),
+                        fmt::format("{}/{}", progress.finished, progress.unitCount),
                         std::to_string(progress.failed),
                         cluster::stateOf(progress, queue, taskOf(*stored, k))});
     }
     const bool isMerged = fs::exists(out / "plan.json");
     cluster::ShardProgress merged{isMerged ? 0 : 1, 0, 0};
-    if (isMerged) merged = progressOf(out, 0);
+    if (isMerged) merged = progressOf(out, 0, nullptr);
     rows.push_back({"merge",
                     isMerged ? fmt::format("{}/{}", merged.finished, merged.unitCount) : "",
                     isMerged ? std::to_string(merged.failed) : "",
                     cluster::stateOf(merged, queue, stored->mergeJob)});
     fmt::print("{}", alignedColumns(rows));
-    return isComplete && isMerged && merged.finished == merged.unitCount ? kExitOk
-                                                                         : kExitIncomplete;
+    const bool isWhole = isMerged && merged.isComplete() && merged.failed == 0;
+    return isComplete && isWhole ? kExitOk : kExitIncomplete;
 }
 
 /// Plan and cut are there once; a shard gets its own cases with the hash of the whole, so that its
@@ -353,14 +371,12 @@ std::vector<int> incompleteShards(const Cut& cut) {
     std::vector<int> incomplete;
     const Submission& s = cut.submission;
     const fs::path plan = frozenPlan(s.out);
-    const std::string whole = fs::exists(plan) ? sha256OfFile(plan) : "";  // else a dry run
+    Parts parts{fs::exists(plan) ? sha256OfFile(plan) : ""};  // else a dry run
     for (int k = 1; k <= s.shardCount; ++k) {
         const cluster::ShardProgress progress =
-            progressOf(s.shardFolder(k), cut.unitCounts[static_cast<std::size_t>(k - 1)],
-                       {k, s.shardCount, whole});
-        if (!progress.isOfPlan) {
-            throw Error(fmt::format("{}: is {}", s.shardFolder(k).string(),
-                                    cluster::stateOf(progress, {}, "")));
+            progressOf(s.shardFolder(k), cut.unitCounts[static_cast<std::size_t>(k - 1)], &parts);
+        if (!progress.problem.empty()) {
+            throw Error(fmt::format("{}: {}", s.shardFolder(k).string(), progress.problem));
         }
         if (!progress.isComplete()) incomplete.push_back(k);
     }
@@ -375,7 +391,7 @@ void requireNotQueued(const Stored& before, const fs::path& out, const std::vect
     if (!before.arrayJob.empty()) {
         for (const int k : shards) tasks[taskOf(before, k)] = fmt::format("shard {}", k);
     }
-    const bool isMerged = fs::exists(out / "plan.json") && progressOf(out, 0).isComplete();
+    const bool isMerged = fs::exists(out / "plan.json") && progressOf(out, 0, nullptr).isComplete();
     if (!before.mergeJob.empty() && !isMerged) tasks[before.mergeJob] = "the merge";
     if (tasks.empty()) return;
     const auto queue = askForStored(before);

@@ -180,7 +180,7 @@ run::Json mergedManifest(const std::vector<ShardRun>& shards, const std::string&
     }
     manifest["timing_machines"] = timingMachines(shards);
     run::breakSeal(manifest);
-    manifest.erase("notes");
+    for (const char* own : {"shard", "notes"}) manifest.erase(own);
     manifest["invocations"] = run::Json::array();
     manifest["merged"] = run::Json::array();
     run::beginInvocation(manifest, commandLine);

@@ -151,7 +151,7 @@ bool isUnderWay(const std::map<std::string, std::string>& queue, const std::stri
 std::string stateOf(const ShardProgress& progress,
                     const std::optional<std::map<std::string, std::string>>& queue,
                     const std::string& task) {
-    if (!progress.isOfPlan) return "no part of the submitted plan: it was replaced";
+    if (!progress.problem.empty()) return progress.problem;
     if (progress.isComplete()) return "complete";
     if (task.empty()) return "not complete";
     if (!queue) return "unknown: the queue does not answer";

@@ -60,8 +60,8 @@ struct ShardProgress {
     int unitCount = 0;
     int finished = 0;  // `ok` or `flaky`
     int failed = 0;
-    bool isOfPlan = true;  // its part of the submitted plan, and no other
-    bool isComplete() const { return isOfPlan && unitCount == finished + failed; }
+    std::string problem = {};  // for which a merge refuses it
+    bool isComplete() const { return problem.empty() && unitCount == finished + failed; }
 };
 
 /// Whether the queue has a task that is not at its end.

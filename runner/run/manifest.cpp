@@ -58,20 +58,35 @@ std::string programBuild() {
 
 Json newManifest(const Plan& plan, const gl::DeviceInfo& device) {
     std::ifstream cpuinfo("/proc/cpuinfo");
-    return {{"schema", kManifestSchema},
-            {"commit", programCommit()},
-            {"build", programBuild()},
-            {"build_id", plan.buildId},
-            {"plan", plan.hash},
-            {"profile", plan.profile},
-            {"started", utcTime()},
-            {"cpu", cpuName(cpuinfo)},
-            {"cores", ::sysconf(_SC_NPROCESSORS_ONLN)},
-            {"memory_bytes", memoryBytes()},
-            {"device_class", plan.deviceClass},
-            {"gl", toJson(device)},
-            {"scenes", Json::object()},
-            {"invocations", Json::array()}};
+    Json manifest = {{"schema", kManifestSchema},
+                     {"commit", programCommit()},
+                     {"build", programBuild()},
+                     {"build_id", plan.buildId},
+                     {"plan", plan.hash},
+                     {"profile", plan.profile},
+                     {"started", utcTime()},
+                     {"cpu", cpuName(cpuinfo)},
+                     {"cores", ::sysconf(_SC_NPROCESSORS_ONLN)},
+                     {"memory_bytes", memoryBytes()},
+                     {"device_class", plan.deviceClass},
+                     {"gl", toJson(device)},
+                     {"scenes", Json::object()},
+                     {"invocations", Json::array()}};
+    if (plan.shard) manifest["shard"] = plan.shard->name();
+    return manifest;
+}
+
+void requireOfPlan(const Json& manifest, const Plan& plan, const std::filesystem::path& file) {
+    const std::string shard = plan.shard ? plan.shard->name() : "";
+    const std::string hash = manifest.value("plan", plan.hash),
+                      own = manifest.value("shard", shard);
+    if (hash == plan.hash && own == shard) return;
+    const auto named = [](const std::string& text, const std::string& part) {
+        return fmt::format("the plan {}{}{}", text.substr(0, 12), part.empty() ? "" : ", shard ",
+                           part);
+    };
+    throw Error({file.string(), 0, 0}, fmt::format("is of {}, and the plan.json beside it is {}",
+                                                   named(hash, own), named(plan.hash, shard)));
 }
 
 void beginInvocation(Json& manifest, const std::string& commandLine) {

@@ -16,6 +16,9 @@ namespace gfxrepro::run {
 /// Commit, build, machine, device and profile; no invocation and no scene yet.
 Json newManifest(const Plan& plan, const gl::DeviceInfo& device);
 
+/// Throws Error for the manifest of another plan, or of another shard of it: `file`.
+void requireOfPlan(const Json& manifest, const Plan& plan, const std::filesystem::path& file);
+
 /// An invocation is one start of the program on the run; a resumed run has several.
 void beginInvocation(Json& manifest, const std::string& commandLine);
 /// Adds end, wall time, phase totals and the runner's own share to the last invocation: the wall

@@ -154,6 +154,7 @@ StoredRun readWith(Plan (*readPlan)(const fs::path&), const fs::path& runDir) {
     StoredRun run;
     run.plan = readPlan(runDir / "plan.json");
     run.manifest = readManifest(runDir / "manifest.json");
+    requireOfPlan(run.manifest, run.plan, runDir / "manifest.json");
     noteChanges(run.manifest, runDir);
     noteMachines(run.manifest);
     if (fs::exists(runDir / "records.csv")) {
@@ -209,10 +210,11 @@ void noteCompleteness(Json& manifest, const Completeness& counts) {
         {"planned", counts.units}, {"missing", counts.missing}, {"failed", counts.failed}};
 }
 
-Completeness readCompleteness(const fs::path& runDir) {
+Completeness readCompleteness(const fs::path& runDir, const Plan* outline) {
     requirePlainFiles(runDir);
     requireModestFiles(runDir);
     const Json manifest = readManifest(runDir / "manifest.json");
+    if (outline) requireOfPlan(manifest, *outline, runDir / "manifest.json");
     if (!manifest.contains("units") || !areRecordsSealed(manifest, runDir)) {
         return completeness(readRun(runDir));
     }

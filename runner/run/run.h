@@ -71,8 +71,9 @@ Completeness completeness(const StoredRun& run);
 /// Keeps the sums in the manifest, until breakSeal(): what many shards came to is read from there.
 void noteCompleteness(Json& manifest, const Completeness& counts);
 /// … without `failures`: from the manifest where the run ended and its records are as they were
-/// then, else from the whole run. Throws Error.
-Completeness readCompleteness(const std::filesystem::path& runDir);
+/// then, else from the whole run. Throws Error, also where its plan was read, if only its outline,
+/// and the manifest is of another.
+Completeness readCompleteness(const std::filesystem::path& runDir, const Plan* outline = nullptr);
 
 /// How every case of the run's plan, or of its shard, ended: by its worst process.
 std::vector<records::CaseEnd> caseResults(const StoredRun& run);

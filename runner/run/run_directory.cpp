@@ -32,6 +32,7 @@ namespace {
 
 constexpr JsonMember kManifest[] = {{"/commit", JsonKind::Line},
                                     {"/plan", JsonKind::Line, false},
+                                    {"/shard", JsonKind::Line, false},
                                     {"/profile", JsonKind::Line},
                                     {"/started", JsonKind::Line, false},
                                     {"/device_class", JsonKind::Line},

@@ -459,21 +459,22 @@ TEST_F(Submit, AReplacedPlanIsNotMerged) {
     }
     const std::string file = out + "/submitted-plan.json", plan = readFile(file);
     submitPairs(folder, 6, other);
-    const auto expectRefused = [&](const std::string& problem) {
+    const std::string replaced = "no part of the submitted plan: it was replaced";
+    const auto expectRefused = [&](const std::string& problem, const std::string& state) {
         const ProcessResult merge = mockGfxrepro({"merge", out, "--out", folder.path() / "merged"});
         EXPECT_EQ(merge.exitCode, 2);
         EXPECT_THAT(merge.err, HasSubstr(problem));
         EXPECT_FALSE(fs::exists(folder.path() / "merged/plan.json"));
         const ProcessResult status = mockGfxrepro({"submit", "--status", out});
         EXPECT_EQ(status.exitCode, 4);
-        EXPECT_THAT(status.out, HasSubstr("2/2    2/2   0       no part of the submitted plan: it "
-                                          "was replaced\n"));
+        EXPECT_THAT(status.out, HasSubstr("2/2    2/2   0       " + state + '\n'));
     };
     fs::copy_file(other + "/submitted-plan.json", file, fs::copy_options::overwrite_existing);
-    expectRefused(file + ": is not the plan that " + out +
-                  "/shards/1 is a shard of: it was changed\n");
+    expectRefused(
+        file + ": is not the plan that " + out + "/shards/1 is a shard of: it was changed\n",
+        replaced);
     writeFileAtomic(file, plan + ' ');
-    expectRefused(": it was changed\n");
+    expectRefused(": it was changed\n", replaced);
     // So it is with a shard of another submission, and one that is there twice.
     writeFileAtomic(file, plan);
     fs::rename(out + "/shards/2", folder.path() / "kept");
@@ -481,10 +482,11 @@ TEST_F(Submit, AReplacedPlanIsNotMerged) {
         ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
     }
     fs::copy(other + "/shards/2", out + "/shards/2", fs::copy_options::recursive);
-    expectRefused("/shards/2 are shards of different plans (");
+    expectRefused("/shards/2 are shards of different plans (", replaced);
     fs::remove_all(out + "/shards/2");
     fs::copy(out + "/shards/1", out + "/shards/2", fs::copy_options::recursive);
-    expectRefused("/shards/2: these are no shards of one cut\n");
+    expectRefused("/shards/2: these are no shards of one cut\n",
+                  "the shard 1/2 once more: " + out + "/shards/1 holds it, too");
     fs::remove_all(out + "/shards/2");
     fs::rename(folder.path() / "kept", out + "/shards/2");
     EXPECT_THAT(mockGfxrepro({"submit", "--status", out}).out,
@@ -498,6 +500,36 @@ TEST_F(Submit, AReplacedPlanIsNotMerged) {
         EXPECT_EQ(lost.exitCode, 2);
         EXPECT_THAT(lost.err, HasSubstr("(submitted-plan.json)"));
     }
+}
+
+/// Each folder holds what it holds, and a status refuses what a merge refuses.
+TEST_F(Submit, ShardsInEachOthersFoldersAreMergedAndTheOutputsOfAnotherAreNot) {
+    const std::string out = folder.path() / "out", apart = folder.path() / "apart";
+    for (const std::string& line : submitPairs(folder, 4, out)) {
+        ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
+    }
+    const auto exchange = [&](const std::string& file) {
+        fs::rename(out + "/shards/1" + file, apart);
+        fs::rename(out + "/shards/2" + file, out + "/shards/1" + file);
+        fs::rename(apart, out + "/shards/2" + file);
+    };
+    const auto status = [&] { return mockGfxrepro({"submit", "--status", out}); };
+    const auto merge = [&] { return mockGfxrepro({"merge", out}); };
+    exchange("");
+    EXPECT_EQ(merge().exitCode, 0);
+    EXPECT_EQ(status().exitCode, 0) << status().out;
+    exchange("/records.csv");
+    EXPECT_THAT(merge().err, HasSubstr(" is not in the plan\n"));
+    EXPECT_THAT(status().out,
+                ContainsRegex("1/2 .* is not in the plan\n2/2 .* is not in the plan\n"));
+    EXPECT_EQ(status().exitCode, 4);
+    exchange("/manifest.json");
+    const std::string problem =
+        "/manifest.json: is of the plan [0-9a-f]+, shard 1/2, and the "
+        "plan.json beside it is the plan [0-9a-f]+, shard 2/2\n";
+    EXPECT_THAT(merge().err, ContainsRegex(problem));
+    EXPECT_THAT(status().out, ContainsRegex("1/2 .*" + problem + "2/2 "));
+    EXPECT_EQ(status().exitCode, 4);
 }
 
 /// What has ended says itself what it came to; what was changed since is counted anew.
