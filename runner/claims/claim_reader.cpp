@@ -178,6 +178,16 @@ std::string ClaimReader::sceneOf(const Rows& rows) const {
     return tables::shownValue("scene", scene, table_.words);
 }
 
+Rows ClaimReader::unfitOf(const Rows& rows) const {
+    using Origin = ClaimSpec::Origin;
+    const bool isOfText = claim_.origin == Origin::Document || claim_.origin == Origin::Derived ||
+                          claim_.origin == Origin::Existence;
+    Rows unfit;
+    std::ranges::copy_if(rows, std::back_inserter(unfit),
+                         [&](std::size_t row) { return isOfText && table_.rows[row].isUnfit; });
+    return unfit;
+}
+
 bool isCalibrated(const tables::Cell& cell) {
     return cell.isPlanned && cell.isCalibrated;
 }

@@ -54,6 +54,10 @@ class ClaimReader {
     /// row axis `scene`.
     std::string sceneOf(const Rows& rows) const;
 
+    /// Those of `rows` whose scene could not be fitted to what is printed, where the claim is of
+    /// the document or read off it.
+    Rows unfitOf(const Rows& rows) const;
+
     /// Whether the table has a row for it.
     bool readsAny() const { return !rows().empty(); }
     /// Whether it reads a time that was measured.

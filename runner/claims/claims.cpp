@@ -108,16 +108,51 @@ std::string holdsOn(const SceneVerdicts& scenes) {
                        joined(others));
 }
 
+/// "not judged on city (fails there), which could not be fitted"; empty without such.
+std::string unfitNote(const SceneVerdicts& unfit) {
+    std::vector<std::string> names;
+    for (const auto& [scene, verdict] : unfit) {
+        const bool isVerb = verdict == Verdict::Holds || verdict == Verdict::Fails;
+        names.push_back(
+            verdict == Verdict::NotApplicable
+                ? scene
+                : fmt::format("{} ({}{} there)", scene, isVerb ? "" : "is ", verdictName(verdict)));
+    }
+    return names.empty() ? ""
+                         : fmt::format(
+                               "not judged on {}, which could not be fitted to what is "
+                               "printed",
+                               joined(names));
+}
+
+/// What scenes came to: those that the claim is judged on, and those that could not be fitted.
+struct ByScene {
+    SceneVerdicts judged, unfit;
+};
+
 Outcome judgePart(const ClaimPart& part, ClaimReader& reader, const std::vector<Rows>& groups,
-                  const std::optional<TimeRule>& times, SceneVerdicts& scenes) {
+                  const std::optional<TimeRule>& times, ByScene& scenes) {
     std::optional<Outcome> worst;
-    for (const Rows& rows : groups) {
+    for (const Rows& all : groups) {
+        const Rows unfit = reader.unfitOf(all);
+        Rows rows = all;
+        if (unfit.size() < all.size())
+            std::erase_if(rows, [&](std::size_t row) {
+                return std::ranges::find(unfit, row) != unfit.end();
+            });
         const ClaimReader::Reading reading = reader.read(part, rows);
         if (reading.rows.empty() && reading.problem.empty()) continue;
         const std::string name = reader.groupName(rows);
         const bool isNamed = groups.size() > 1 && !name.empty();
         Outcome outcome = judgeGroup(part, reading, name, isNamed, times);
-        addToScene(scenes, reader.sceneOf(rows), outcome.judgement.verdict);
+        if (!unfit.empty()) {
+            const bool isAll = unfit.size() == all.size();
+            const std::string scene = reader.sceneOf(unfit);
+            addToScene(scenes.unfit, scene.empty() ? "its scenes" : scene,
+                       isAll ? outcome.judgement.verdict : Verdict::NotApplicable);
+            if (isAll) continue;
+        }
+        addToScene(scenes.judged, reader.sceneOf(rows), outcome.judgement.verdict);
         if (!worst || isWorse(outcome, *worst)) worst = std::move(outcome);
     }
     if (worst) return *worst;
@@ -281,7 +316,7 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
     const std::vector<Rows> groups = reader.groups();
     std::vector<std::string> measured;
     std::optional<Outcome> worst;
-    SceneVerdicts scenes;
+    ByScene scenes;
     for (const ClaimPart& part : partsOf(claim)) {
         Outcome outcome = judgePart(part, reader, groups, times, scenes);
         if (!outcome.judgement.measured.empty()) measured.push_back(outcome.judgement.measured);
@@ -294,11 +329,17 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
     result.measured = joined(measured, "; ");
     result.verdict = worst->judgement.verdict;
     result.reason = worst->reason;
-    result.holdsOn = holdsOn(scenes);
+    result.holdsOn = holdsOn(scenes.judged);
     if (!result.holdsOn.empty()) result.reason += "; holds on " + result.holdsOn;
+    const std::string unfit = unfitNote(scenes.unfit);
+    if (!unfit.empty() && scenes.judged.empty()) {
+        result.verdict = Verdict::NotApplicable;
+        result.reason = unfit;
+        return result;
+    }
     const std::string part = result.rows.empty() ? "" : fmt::format("on {}", result.rows);
     for (const std::string& note :
-         {clock, balanceNote(result, context), calibratedNote(claim, reader), part}) {
+         {unfit, clock, balanceNote(result, context), calibratedNote(claim, reader), part}) {
         if (!note.empty()) result.reason += (result.reason.empty() ? "" : "; ") + note;
     }
     return result;

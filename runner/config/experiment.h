@@ -95,6 +95,8 @@ struct Printed {
     /// What the paper measured at where the profile `paper` departs from it: a parameter,
     /// `output.width`, `output.height`, `measure.frames` or `scene`, with the printed value.
     Node::Map at;
+    /// Scenes of ours that could not be fitted to what is printed: they judge nothing of the paper.
+    std::vector<std::string> unfit;
     SourceLocation location;
 };
 

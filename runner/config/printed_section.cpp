@@ -115,6 +115,12 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
         if (!compared->isSequence()) throwNotAllowed(*compared, "printed: compared", "[methods]");
         for (const Node& method : compared->items()) lineOf(method, "printed: compared");
     }
+    if (const Node* unfit = node.find("unfit")) {
+        if (!unfit->isSequence()) throwNotAllowed(*unfit, "printed: unfit", "[scenes]");
+        for (const Node& scene : unfit->items()) {
+            printed.unfit.push_back(lineOf(scene, "printed: unfit"));
+        }
+    }
     if (const Node* calibrated = node.find("calibrated")) {
         if (!names) {
             throw Error(node.keyLocation("calibrated"),
@@ -391,6 +397,11 @@ std::vector<SchemaSection> printedKeys() {
            "cells for which an input of ours was fitted, so that they come out: marked in "
            "every form of the table. Each value may be a list; what is left out is any",
            listOf(pairs())},
+          {"unfit", "[scene]", "[]",
+           "scenes of ours that could not be fitted to what the paper prints of its own: they "
+           "judge "
+           "none of its claims",
+           listOf(text())},
           {"at", "{parameter: value}", "{}",
            "what the paper measured at, where the profile paper departs from it: a parameter, "
            "scene, output.width, output.height, measure.frames",

@@ -33,11 +33,11 @@ const Cell* cellOf(const TableRow& row, const Table& table, const std::string& c
 std::string unitOf(const Fit& fit, const Table& table) {
     const auto at = table.findColumn(fit.targets.front().column);
     const std::string unit = at ? table.columns[*at].unit : "";
-    return unit == "%" ? "in log-odds" : unit;
+    return unit == "%" ? "in log-odds" : "in logarithms";
 }
 
 std::string rmsText(double rms, const std::string& unit) {
-    return fmt::format("{:.2f}{}{}", rms, unit.empty() ? "" : " ", unit);
+    return fmt::format("{:.2f} {}", rms, unit);
 }
 
 std::vector<std::string> edgesOf(const Fit& fit, const Table& table) {
@@ -77,8 +77,10 @@ Fit fitOf(const config::Experiment& experiment, const Table& table) {
             const double measured = cell->values.front().value;
             row.residuals.push_back(measured - target.printed);
             const bool isShare = table.columns[*table.findColumn(target.column)].unit == "%";
-            const double off =
-                isShare ? logOdds(measured) - logOdds(target.printed) : row.residuals.back();
+            const auto scaled = [&](double value) {
+                return isShare ? logOdds(value) : std::log(std::max(value, 0.0));
+            };
+            const double off = scaled(measured) - scaled(target.printed);
             squares += off * off;
         }
         if (row.residuals.size() < fit.targets.size()) {

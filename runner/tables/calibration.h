@@ -15,7 +15,7 @@ namespace gfxrepro::tables {
 struct FitRow {
     std::size_t row = 0;            // of the table
     std::vector<double> residuals;  // measured − printed, beside the targets; in the cells' unit
-    double rms = 0.0;               // root mean square of them, of shares in log-odds
+    double rms = 0.0;               // root mean square, of shares in log-odds, else in logarithms
 };
 
 struct Fit {
@@ -38,6 +38,9 @@ std::vector<std::string> fitNotes(const Fit& fit, const Table& table);
 /// one of 2 and one of 1, as they are by what is missing. All and nothing count as a hundredth of a
 /// percent from it, which is as fine as shares are printed.
 double logOdds(double pct);
+/// A fit whose root mean square is greater has failed: what is missing, or what is wrong, is off by
+/// more than a quarter. It holds for log-odds and for logarithms.
+inline constexpr double kFitBound = 0.25;
 
 /// The best row, a line a target: row axes, column, table, printed, measured, residual (in the
 /// column's unit), rms with its unit, edges.

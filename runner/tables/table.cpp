@@ -51,6 +51,23 @@ void buildCells(const config::Layout& layout, const LayoutCases& cases,
     }
 }
 
+/// Rows of a scene that could not be fitted; all of them where the table is of no other.
+void markUnfit(const config::Experiment& experiment, std::span<const config::Case> planned,
+               Table& table) {
+    const auto isUnfit = [&](const std::string& scene) {
+        return std::ranges::find(experiment.printed.unfit, scene) != experiment.printed.unfit.end();
+    };
+    const auto axis = std::ranges::find(table.rowAxes, "scene") - table.rowAxes.begin();
+    const bool isOfUnfit =
+        !planned.empty() && std::ranges::all_of(planned, [&](const config::Case& item) {
+            return !item.scene.isNull() && isUnfit(item.scene.text());
+        });
+    for (TableRow& row : table.rows) {
+        const bool hasScene = axis < std::ssize(table.rowAxes);
+        row.isUnfit = hasScene ? isUnfit(row.labels[static_cast<std::size_t>(axis)]) : isOfUnfit;
+    }
+}
+
 /// Of each case that has swept values these in words.
 CaseNames namesOf(const LayoutCases& cases, const Words& words) {
     CaseNames names;
@@ -194,6 +211,7 @@ Table transposed(const Table& table, std::size_t rowAxis) {
                 result.rows.push_back({std::move(labels), row.source,
                                        std::vector<Cell>(result.columns.size(), unplanned)});
             }
+            result.rows[place->second].isUnfit |= row.isUnfit;
             result.rows[place->second].cells[columns.at(row.labels[rowAxis])] = row.cells[i];
         }
     }
@@ -246,6 +264,7 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
                 config::isCalibrated(experiment, row.labels, table.columns[i].label);
         }
     }
+    if (!experiment.printed.unfit.empty()) markUnfit(experiment, planned, table);
     if (given.hasDefaultLayout()) describeColumns(given, layout, table);
     addTimes(experiment, records, cases, table);
     table.notes.insert(table.notes.end(), notes.begin(), notes.end());

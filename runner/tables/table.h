@@ -25,6 +25,8 @@ struct TableRow {
     std::vector<std::string> labels;  // the value of each row axis, beside Table::rowAxes
     SceneSource source = SceneSource::Unknown;
     std::vector<Cell> cells;  // beside Table::columns
+    /// Of a scene that could not be fitted to what is printed (`printed.unfit`).
+    bool isUnfit = false;
 };
 
 struct TableColumn {

@@ -1193,7 +1193,8 @@ TEST(Claims, AClaimOnPartOfItsRowsSaysSoAndDoesNotCountAsAHold) {
 }
 
 TEST(Claims, OfSeveralScenesAVerdictNamesThoseOnWhichItDoesNotHold) {
-    const auto judged = [](const std::string& claim, double a, double b, double c) {
+    const auto judged = [](const std::string& claim, double a, double b, double c,
+                           const std::string& unfit = "[]") {
         tables::RecordMaker maker;
         for (const auto& [scene, value] :
              {std::pair("outdoor/nest", a), {"city", b}, {"tree", c}}) {
@@ -1204,7 +1205,7 @@ TEST(Claims, OfSeveralScenesAVerdictNamesThoseOnWhichItDoesNotHold) {
         return judgeOne(
             "sweep: {scene: [outdoor/nest, city, tree], n: [1, 2]}\nlayout: {rows: [scene, "
             "n], columns: {a: {metric: a}}}\nclaims:\n  X: {says: s, " +
-                claim + "}\n",
+                claim + "}\nprinted: {unfit: " + unfit + "}\n",
             maker.records());
     };
     const std::string bound = "bound: a, at_most: 4";
@@ -1218,6 +1219,23 @@ TEST(Claims, OfSeveralScenesAVerdictNamesThoseOnWhichItDoesNotHold) {
     EXPECT_EQ(judged("trend: a, over: n, at_least: 0.9, at_most: 1.1", 1, 1, -1).holdsOn,
               "2 of 3 scenes, not on tree");
     EXPECT_EQ(judged("order: [scene=city, scene=tree]", 1, 2, 1).holdsOn, "") << "between scenes";
+
+    // A scene that could not be fitted judges nothing of a document, and it is told what it is
+    // there.
+    const std::string ofText = bound + ", origin: derived";
+    const ClaimResult others = judged(ofText, 1, 1, 3, "[tree]");
+    EXPECT_EQ(others.verdict, Verdict::Holds);
+    EXPECT_EQ(others.holdsOn, "");
+    EXPECT_EQ(
+        others.reason,
+        "worst at nest, n 2; one sample; not judged on tree (fails there), which could not be "
+        "fitted to what is printed");
+    EXPECT_EQ(judged(ofText, 3, 1, 1, "[tree]").holdsOn, "1 of 2 scenes, not on nest");
+    const ClaimResult none = judged(ofText + ", at: {scene: tree}", 1, 1, 3, "[tree]");
+    EXPECT_EQ(none.verdict, Verdict::NotApplicable);
+    EXPECT_EQ(none.reason,
+              "not judged on tree (fails there), which could not be fitted to what is printed");
+    EXPECT_EQ(judged(bound + ", origin: ours", 1, 1, 3, "[tree]").verdict, Verdict::Fails);
 }
 
 TEST(Claims, OneTruthCountsOnce) {

@@ -1,5 +1,6 @@
 #include "runner/tables/calibration.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -47,19 +48,21 @@ TEST(Fit, TakesTheRowWithTheLeastSquares) {
     EXPECT_EQ(fit.unmeasured, 1U);
     EXPECT_EQ(fit.rows[0].row, 1U);
     EXPECT_THAT(fit.rows[0].residuals, ElementsAre(3.0, -4.0));
-    EXPECT_DOUBLE_EQ(fit.rows[0].rms, std::sqrt(12.5));
-    EXPECT_EQ(fit.rows[1].row, 3U);
+    EXPECT_NEAR(fit.rows[0].rms,
+                std::hypot(std::log(73.0 / 70), std::log(46.0 / 50)) / std::sqrt(2.0), 1e-12)
+        << "numbers that are no shares are held against each other by their ratio";
+    EXPECT_EQ(fit.rows[1].row, 0U);
     EXPECT_THAT(
         fitNotes(fit, table),
         ElementsAre("rows of the fit that are not measured: 1",
                     "Fitted to 2 printed cells, none of which compares methods: spread=2. Root "
-                    "mean square of the residuals 3.54 ms; printed → measured: a of "
+                    "mean square of the residuals 0.07 in logarithms; printed → measured: a of "
                     "p/1 70 → 73.00 (+3.00), b of p/2 50 → 46.00 (-4.00)",
-                    "Second best of 3 rows: spread=4, 7.00 ms"));
+                    "Second best of 3 rows: spread=1, 0.11 in logarithms"));
+    const std::string rms = fmt::format("{}", fit.rows[0].rms);
     EXPECT_EQ(fitCsv(fit, table),
-              "spread,column,table,printed,measured,residual,rms,unit,edges\n"
-              "2,a,p/1,70,73,3,3.5355339059327378,ms,\n"
-              "2,b,p/2,50,46,-4,3.5355339059327378,ms,\n");
+              "spread,column,table,printed,measured,residual,rms,unit,edges\n2,a,p/1,70,73,3," +
+                  rms + ",in logarithms,\n2,b,p/2,50,46,-4," + rms + ",in logarithms,\n");
 }
 
 TEST(Fit, HoldsSharesAgainstEachOtherByLogOdds) {
