@@ -42,7 +42,7 @@ class Nightly : public ::testing::Test {
                          {"--rounds", "8", "--cases", "1", "--program", bundle(extraUs), config});
         return runProgram(arguments);
     }
-    /// A night of a bundle whose program is this script, of three cases.
+    /// A night of a bundle whose program is this script, of three cases and those of `second`.
     ProcessResult nightOf(const std::string& script,
                           const std::vector<std::string>& options = {"--cases", "3"}) const {
         const fs::path program = folder.write("broken/gfxrepro", "#!/bin/sh\n" + script);
@@ -56,6 +56,7 @@ class Nightly : public ::testing::Test {
         arguments.insert(arguments.end(), options.begin(), options.end());
         arguments.insert(arguments.end(),
                          {"--rounds", "8", "--program", program.parent_path(), config});
+        if (!second.empty()) arguments.push_back(second);
         return runProgram(arguments);
     }
     /// The program that later nights are compared with.
@@ -77,6 +78,7 @@ class Nightly : public ::testing::Test {
     std::string state = folder.path() / "state";
     std::string shade = "0.5";
     bool isCrashing = false;
+    std::string second;
 };
 
 TEST_F(Nightly, TheFirstNightIsWhatLaterOnesAreComparedWith) {
@@ -96,12 +98,19 @@ TEST_F(Nightly, TheFirstNightLandsNothingThatCrashes) {
     EXPECT_EQ(landed(), readFile(state + "/fixed/gfxrepro"));
 }
 
-/// They judge two runs, and measure none themselves: silently, and with a file that tells of tests.
-constexpr const char* kBlindByTurns[] = {
-    "case \"$*\" in *--binaries*) exit 0;; esac\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n",
+const std::string kMock = GFXREPRO_MOCK_PROGRAM " \"$@\"";
+
+/// Programs that measure, and find everything well: of two runs or by turns, silently, with a file
+/// that tells of tests, or with all that they found in it.
+const std::string kBlind[] = {
+    "[ $1 != compare ] || exit 0\nexec " + kMock + '\n',
+    "[ $1 != compare ] || { " + kMock + "; exit 0; }\nexec " + kMock + '\n',
+    "case \"$*\" in *--binaries*) exit 0;; esac\nexec " + kMock + '\n',
     "case \"$*\" in *--binaries*) while [ $1 != --out ]; do shift; done; mkdir -p \"$2\"\n"
-    "echo '<testsuite tests=\"6\">' >\"$2/junit.xml\"; exit 0;; esac\n"
-    "exec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n"};
+    "echo '<testsuite name=\"\" tests=\"6\" failures=\"1\">' >\"$2/junit.xml\"; exit 1;; "
+    "esac\nexec " +
+        kMock + '\n',
+    "case \"$*\" in *--binaries*) " + kMock + "; exit 0;; esac\nexec " + kMock + '\n'};
 
 TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
     const ProcessResult first = nightOf("exit 0\n");
@@ -109,57 +118,66 @@ TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
     EXPECT_NE(first.err.find("/first has no record of some case; the configs ask for 3\n"),
               std::string::npos)
         << first.err;
-    const ProcessResult blind =
-        nightOf("[ $1 != compare ] || exit 0\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n");
-    EXPECT_EQ(blind.exitCode, 2) << blind.out << blind.err;
-    EXPECT_NE(blind.err.find("/first with itself and says nothing\n"), std::string::npos)
-        << blind.err;
-    for (const char* compare : kBlindByTurns) EXPECT_EQ(nightOf(compare).exitCode, 2) << compare;
+    for (const std::string& blind : kBlind) {
+        const ProcessResult result = nightOf(blind);
+        EXPECT_EQ(result.exitCode, 2) << blind << result.out << result.err;
+    }
     EXPECT_FALSE(fs::exists(state + "/landed"));
     ASSERT_EQ(night(0).exitCode, 0);
     EXPECT_EQ(nightOf("exit 0\n").exitCode, 2);
     EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
 }
 
-TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustComeToTheSame) {
+TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustFindWhatItFinds) {
     ASSERT_EQ(night(0).exitCode, 0);
-    const std::string mock = "exec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n";
-    // It measures, and finds everything well: silently, and with a file.
-    for (const std::string compare :
-         {"exit 0", "mkdir -p \"$3\"; echo '<testsuite tests=\"0\">' >\"$3/junit.xml\"; exit 0"}) {
-        const ProcessResult blind = nightOf("[ $1 != compare ] || { " + compare + "; }\n" + mock);
-        EXPECT_EQ(blind.exitCode, 2) << blind.out << blind.err;
-        EXPECT_NE(blind.err.find(" (code, tests), tonight's 0 0\n"), std::string::npos)
-            << blind.err;
+    for (const std::string& script : {kBlind[1], kBlind[4]}) {
+        const ProcessResult blind = nightOf(script);
+        EXPECT_EQ(blind.exitCode, 2) << script << blind.out << blind.err;
+        EXPECT_NE(blind.err.find("(code, tests, failures)"), std::string::npos) << blind.err;
         EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     }
-    for (const char* compare : kBlindByTurns) {
-        const ProcessResult blind = nightOf(compare);
-        EXPECT_EQ(blind.exitCode, 2) << blind.out << blind.err;
-        EXPECT_NE(blind.err.find("/mock.yaml by turns and says nothing\n"), std::string::npos)
-            << blind.err;
-        EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
-    }
-    // One that is slower is found, whatever it says itself.
-    const ProcessResult slow = nightOf(
-        "[ $1 != compare ] || exit 0\n"
-        "export GFXREPRO_MOCK_EXTRA_MS=15\n" +
-        mock);
-    EXPECT_EQ(slow.exitCode, 1) << slow.out << slow.err;
+    // Nor where it is slower on purpose; one that is slower is found, whatever it says itself.
+    const std::string slow = "export GFXREPRO_MOCK_EXTRA_MS=15\n" + kBlind[1];
+    EXPECT_EQ(nightOf(slow, {"--accept", "it is right"}).exitCode, 2);
+    EXPECT_FALSE(fs::exists(state + "/accepted.csv"));
+    EXPECT_EQ(nightOf(slow).exitCode, 1);
     EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
+    // A judge that landed before, and ends with 0 whatever it found.
+    folder.write("state/landed/gfxrepro", "#!/bin/sh\n" + kBlind[1]);
+    const ProcessResult judged = nightOf(slow);
+    EXPECT_EQ(judged.exitCode, 2) << judged.out;
+    EXPECT_NE(judged.err.find("nightly: the comparison ends with 0, and tells of "),
+              std::string::npos)
+        << judged.err;
+    EXPECT_EQ(nightOf("exec " + kMock + '\n').exitCode, 2) << "nor lands what is no slower";
+    EXPECT_EQ(landed(), "#!/bin/sh\n" + kBlind[1]);
+}
+
+TEST_F(Nightly, AJudgeOfTheFirstConfigAloneIsNone) {
+    second = folder.write("second.yaml",
+                          "sweep_of: second\ntitle: t\ntechnique: mock\nsweep: {busy_ms: [5]}\n"
+                          "measure: {lane: timing, processes: 1, repeats: 2}\n");
+    const std::string half =
+        "case \"$*\" in *--binaries*second.yaml*) exit 0;; esac\nexec " + kMock + '\n';
+    EXPECT_EQ(nightOf(half, {"--cases", "4"}).exitCode, 2);
+    EXPECT_FALSE(fs::exists(state + "/landed"));
+    ASSERT_EQ(nightOf("exec " + kMock + '\n', {"--cases", "4"}).exitCode, 0);
+    EXPECT_EQ(nightOf(half, {}).exitCode, 2);
+    EXPECT_EQ(landed(), "#!/bin/sh\nexec " + kMock + '\n');
 }
 
 TEST_F(Nightly, WhatTheConfigsAskForIsCountedByAnotherBuild) {
-    const std::string mock = "exec " GFXREPRO_MOCK_PROGRAM " \"$@\"";
+    const std::string mock = "exec " + kMock;
     const std::string fewer = "[ $1 != run ] || " + mock + " --only busy_ms=20\n" + mock + '\n';
-    const ProcessResult uncounted = nightOf(mock + '\n', {});
-    EXPECT_EQ(uncounted.exitCode, 2);
-    EXPECT_EQ(uncounted.err,
-              "nightly: no other build can read the configs; --cases N says how many cases they "
-              "ask for\n");
     EXPECT_EQ(nightOf(fewer).exitCode, 2);
+    EXPECT_EQ(nightOf(fewer, {}).exitCode, 2);
     EXPECT_FALSE(fs::exists(state + "/landed"));
-    ASSERT_EQ(nightOf(mock + '\n').exitCode, 0);
+    const ProcessResult first = nightOf(mock + '\n', {});
+    ASSERT_EQ(first.exitCode, 0);
+    EXPECT_EQ(first.err.find("nightly: no other build has counted the cases of the configs: "
+                             "tonight's says 3; --cases N says it otherwise\n"),
+              0U)
+        << first.err;
     const ProcessResult fix = nightOf(fewer, {"--fix"});
     EXPECT_EQ(fix.exitCode, 2);
     EXPECT_NE(fix.err.find("/first has no record of some case; the configs ask for 3\n"),
