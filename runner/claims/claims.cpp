@@ -245,37 +245,77 @@ std::string calibratedNote(const ClaimSpec& claim, const ClaimReader& reader) {
                                     : "some of what it reads is calibrated";
 }
 
-/// "1 of 4 values of scene, 2 of 3 values of resolution": what of the rows that it reads in the
-/// profile `paper` it reads here, too; empty of all of them.
-std::string partOfRows(const ClaimSpec& claim, const tables::Table& table,
-                       const tables::Table& paper) {
-    const tables::Table all = tableFor(claim, paper);
-    const Rows here = ClaimReader(claim, table).plannedRows();
-    const Rows there = ClaimReader(claim, all).plannedRows();
-    if (here.empty()) return "";
-    if (table.rowAxes != all.rowAxes) {  // nobody laid it out, and one profile sweeps more
-        return here.size() < there.size() ? fmt::format("{} of {} rows", here.size(), there.size())
-                                          : "";
+/// What the run and the profile `paper` lay out of their cases, without a measurement.
+struct Laid {
+    config::Experiment paper;
+    tables::Table here, there;  // each with the row axes of both
+};
+
+/// An axis that is not swept has its one value in all rows.
+void addRowAxes(const std::vector<config::LayoutAxis>& from, config::Layout& layout) {
+    for (const config::LayoutAxis& axis : from) {
+        const auto isIn = [&](const std::vector<config::LayoutAxis>& axes) {
+            return std::ranges::find(axes, axis.name, &config::LayoutAxis::name) != axes.end();
+        };
+        const bool isKnown = isIn(layout.rows) || isIn(layout.columns);
+        if (axis.isSweepAxis() && !isKnown) layout.rows.push_back(axis);
     }
-    const std::size_t axes = all.rowAxes.size();
-    std::set<std::vector<std::string>> own;
-    std::vector<std::set<std::string>> few(axes), many(axes);
-    for (const std::size_t row : here) own.insert(table.rows[row].labels);
+}
+
+/// None where the cases of one of them are not known.
+std::optional<Laid> layOut(config::Experiment own, std::span<const config::Case> planned) {
+    if (own.claims.empty() || own.paperCases.empty() || planned.empty()) return std::nullopt;
+    config::Experiment paper = config::experimentFromDocument(own.paperDocument, own.file);
+    const std::vector<config::LayoutAxis> rows = own.layout.rows;
+    addRowAxes(paper.layout.rows, own.layout);
+    addRowAxes(rows, paper.layout);
+    tables::Table here = tables::buildTable(own, planned, {});
+    tables::Table there = tables::buildTable(paper, own.paperCases, {});
+    return Laid{std::move(paper), std::move(here), std::move(there)};
+}
+
+/// The rows that the claim reads of its table, each by its labels on the axes of these names.
+std::vector<std::vector<std::string>> readOf(const ClaimSpec& claim, const tables::Table& table,
+                                             const std::vector<std::string>& axes) {
+    std::vector<std::vector<std::string>> read;
+    for (const std::size_t row : ClaimReader(claim, table).plannedRows()) {
+        std::vector<std::string>& labels = read.emplace_back();
+        for (const std::string& axis : axes) {
+            const auto place = std::ranges::find(table.rowAxes, axis) - table.rowAxes.begin();
+            labels.push_back(table.rows[row].labels[static_cast<std::size_t>(place)]);
+        }
+    }
+    return read;
+}
+
+/// "1 of 4 values of scene, 2 of 3 values of resolution": what of the rows that it reads in the
+/// profile `paper`, as it stands there, it reads here, too; empty of all of them.
+std::string partOfRows(const ClaimSpec& claim, const Laid& laid) {
+    const auto inPaper = std::ranges::find(laid.paper.claims, claim.id, &ClaimSpec::id);
+    const ClaimSpec& asked = inPaper == laid.paper.claims.end() ? claim : *inPaper;
+    const tables::Table own = tableFor(claim, laid.here), all = tableFor(asked, laid.there);
+    std::vector<std::string> axes = all.rowAxes;
+    std::erase_if(axes, [&](const std::string& axis) {
+        return std::ranges::find(own.rowAxes, axis) == own.rowAxes.end();
+    });
+    const auto read = readOf(claim, own, axes), there = readOf(asked, all, axes);
+    if (read.empty()) return "";
+    const std::set<std::vector<std::string>> here(read.begin(), read.end());
+    std::vector<std::set<std::string>> few(axes.size()), many(axes.size());
     std::size_t shared = 0;
-    for (const std::size_t row : there) {
-        const std::vector<std::string>& labels = all.rows[row].labels;
-        const bool isShared = own.contains(labels);
+    for (const std::vector<std::string>& labels : there) {
+        const bool isShared = here.contains(labels);
         shared += isShared ? 1 : 0;
-        for (std::size_t axis = 0; axis < axes; ++axis) {
+        for (std::size_t axis = 0; axis < axes.size(); ++axis) {
             many[axis].insert(labels[axis]);
             if (isShared) few[axis].insert(labels[axis]);
         }
     }
     if (shared == there.size()) return "";
     std::vector<std::string> parts;
-    for (std::size_t axis = 0; axis < axes; ++axis) {
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
         if (few[axis].size() == many[axis].size()) continue;
-        const std::string name = tables::shownName(all.rowAxes[axis], all.words);
+        const std::string name = tables::shownName(axes[axis], all.words);
         parts.push_back(
             fmt::format("{} of {} values of {}", few[axis].size(), many[axis].size(), name));
     }
@@ -283,18 +323,10 @@ std::string partOfRows(const ClaimSpec& claim, const tables::Table& table,
     return isNone ? fmt::format("{} of {} rows", shared, there.size()) : joined(parts);
 }
 
-/// The table of the profile `paper`, without a measurement; none where its cases are not known.
-std::optional<tables::Table> paperTable(const config::Experiment& experiment) {
-    if (experiment.paperCases.empty() || experiment.paperDocument.isNull()) return std::nullopt;
-    return tables::buildTable(
-        config::experimentFromDocument(experiment.paperDocument, experiment.file),
-        experiment.paperCases, {});
-}
-
 ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
-                          const std::optional<tables::Table>& paper, const ReportContext& context) {
+                          const std::string& rows, const ReportContext& context) {
     ClaimResult result = unjudged(claim, table, context);
-    if (paper) result.rows = partOfRows(claim, table, *paper);
+    result.rows = rows;
     if (result.verdict == Verdict::NotApplicable) return result;
     ClaimReader reader(claim, table);
     result.timeKind = reader.timeKind();
@@ -347,11 +379,10 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
 
 /// The same of a table that may lack what the claim reads.
 ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const tables::Table& table,
-                                const std::optional<tables::Table>& paper,
-                                const ReportContext& context) {
+                                const std::optional<Laid>& laid, const ReportContext& context) {
     const tables::Table own = tableFor(claim, table);
     try {
-        return evaluateClaim(claim, own, paper, context);
+        return evaluateClaim(claim, own, laid ? partOfRows(claim, *laid) : "", context);
     } catch (const AbsentColumnError& error) {
         ClaimResult result = unjudged(claim, own, context);
         result.reason = "not among what was measured: " + error.text();
@@ -415,11 +446,12 @@ std::string whyText(const ClaimResult& claim) {
 }
 
 std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
-                                        const tables::Table& table, const ReportContext& context) {
+                                        const tables::Table& table, const ReportContext& context,
+                                        std::span<const config::Case> planned) {
     std::vector<ClaimResult> results;
-    const auto paper = experiment.claims.empty() ? std::nullopt : paperTable(experiment);
+    const std::optional<Laid> laid = layOut(experiment, planned);
     for (const ClaimSpec& claim : experiment.claims) {
-        results.push_back(evaluateWhatIsThere(claim, table, paper, context));
+        results.push_back(evaluateWhatIsThere(claim, table, laid, context));
         results.back().restsOn = restsOn(results.back(), context);
         const SourceLocation file{experiment.file.string(), 0, 0};  // of a plan: JSON has no lines
         results.back().where = claim.location.file == file.file ? claim.location : file;
@@ -517,11 +549,12 @@ std::string originSummaryLine(const std::vector<ClaimResult>& results) {
 
 std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& experiments,
                                         const std::vector<tables::Table>& tables,
-                                        const ReportContext& context) {
+                                        const ReportContext& context,
+                                        std::span<const config::Case> planned) {
     GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
     std::vector<ClaimResult> results;
     for (std::size_t i = 0; i < experiments.size(); ++i) {
-        for (ClaimResult& result : evaluateClaims(experiments[i], tables[i], context)) {
+        for (ClaimResult& result : evaluateClaims(experiments[i], tables[i], context, planned)) {
             results.push_back(std::move(result));
         }
     }

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -127,15 +128,18 @@ std::string whyText(const ClaimResult& claim);
 /// what goes by the clock (config::goesByClock). Groups of
 /// rows are judged apart; the worst verdict counts. What reads a column that
 /// the table does not have is unmeasured. Throws Error with the claim's place for an operand that
-/// is no expression, or an axis that the table has not.
+/// is no expression, or an axis that the table has not. On which part of its rows a claim is judged
+/// is known of the cases that were `planned` for the table.
 std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
-                                        const tables::Table& table, const ReportContext& context);
+                                        const tables::Table& table, const ReportContext& context,
+                                        std::span<const config::Case> planned = {});
 
 /// The claims of all experiments, in order; `tables` lies beside `experiments`. Throws Error as the
 /// single-experiment form.
 std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& experiments,
                                         const std::vector<tables::Table>& tables,
-                                        const ReportContext& context);
+                                        const ReportContext& context,
+                                        std::span<const config::Case> planned = {});
 
 /// Whether a GPU alone judges times of that kind: those of a program's own, as such, any machine.
 bool isOfGpu(const std::optional<ClaimSpec::TimeKind>& kind, const tables::Table& table);

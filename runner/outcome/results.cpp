@@ -316,7 +316,8 @@ Results resultsOf(const run::StoredRun& run, const Experiments& experiments) {
         tables::markMovedClocks(clocks, table);
         table.timesOf = run::takenTimesNote(run.manifest, table.id);
     }
-    results.claims = claims::evaluateClaims(experiments, results.tables, results.context);
+    results.claims =
+        claims::evaluateClaims(experiments, results.tables, results.context, run.plan.cases);
     for (tables::Table& table : results.tables) {
         std::vector<std::string> labels;
         for (const claims::ClaimResult& claim : results.claims) {

@@ -1167,7 +1167,8 @@ TEST(Claims, AClaimOnPartOfItsRowsSaysSoAndDoesNotCountAsAHold) {
         config::Experiment own = experiment(scenes, sizes);
         own.paperDocument = paper.paperDocument;
         own.paperCases = tables::planOf(paper, {});
-        return evaluateClaims(own, tables::buildTable(own, maker.records()), kSoftware);
+        return evaluateClaims(own, tables::buildTable(own, maker.records()), kSoftware,
+                              tables::planOf(own, maker.records()));
     };
     const auto part = judged("s", "1, 2");
     EXPECT_EQ(part[0].rows, "1 of 2 values of scene, 2 of 3 values of n");
@@ -1185,11 +1186,51 @@ TEST(Claims, AClaimOnPartOfItsRowsSaysSoAndDoesNotCountAsAHold) {
     for (const ClaimResult& claim : judged("s, t", "1, 2, 8, 16")) {
         EXPECT_EQ(claim.rows, "2 of 3 values of n") << "other values are none of these";
     }
-    config::Experiment other = experiment("s, t", "8, 16, 32, 64");
-    other.paperDocument = paper.paperDocument;
-    other.paperCases = tables::planOf(paper, {});
-    const tables::Table empty = tables::buildTable(other, tables::RecordMaker().records());
-    EXPECT_EQ(evaluateClaims(other, empty, kSoftware)[0].rows, "0 of 6 rows");
+    maker = tables::RecordMaker();
+    EXPECT_EQ(judged("s, t", "8, 16, 32, 64")[0].rows, "0 of 6 rows");
+}
+
+TEST(Claims, ThePartOfTheRowsIsThatOfThePaperWhateverAProfileLaysOut) {
+    const auto part = [](const std::string& own, const std::string& paper) {
+        const std::string whole =
+            "params: {k: 2}\nsweep: {n: [1, 2, 4]}\nlayout: {rows: n, columns: {a: {metric: a}}}\n"
+            "claims: {B: {says: s, bound: a, at_most: 1}}\n";
+        config::Experiment here = tables::experimentFrom(own.empty() ? whole : own);
+        const config::Experiment all = tables::experimentFrom(paper.empty() ? whole : paper);
+        here.paperDocument = all.paperDocument;
+        here.paperCases = tables::planOf(all, {});
+        const auto planned = tables::planOf(here, {});
+        return evaluateClaims(here, tables::buildTable(here, planned, {}), kSoftware, planned)[0]
+            .rows;
+    };
+    EXPECT_EQ(part("", ""), "");
+    const auto at = [](const std::string& values) {
+        return "params: {k: 2}\nsweep: {n: [1, 2, 4]}\nlayout: {rows: n, columns: {a: {metric: "
+               "a}}}\n"
+               "claims: {B: {says: s, bound: a, at_most: 1, at: {n: [" +
+               values + "]}}}\n";
+    };
+    EXPECT_EQ(part(at("1, 2"), ""), "2 of 3 values of n") << "it reads fewer of the same";
+    EXPECT_EQ(part("", at("1, 2")), "");
+    EXPECT_EQ(part(at("1, 4"), at("1, 2")), "1 of 2 values of n");
+    // An axis that one of them sweeps and the other has at a value.
+    const auto one = [](const std::string& value) {
+        return "params: {k: 2, n: " + value +
+               "}\nlayout: {columns: {a: {metric: a}}}\n"
+               "claims: {B: {says: s, bound: a, at_most: 1}}\n";
+    };
+    EXPECT_EQ(part(one("2"), ""), "1 of 3 values of n");
+    EXPECT_EQ(part(one("8"), ""), "0 of 3 rows");
+    EXPECT_EQ(part("", one("2")), "");
+    EXPECT_EQ(part("", one("8")), "0 of 1 rows");
+    const auto both = [](const std::string& k) {
+        return "sweep: {n: [1, 2, 4], k: [" + k +
+               "]}\nlayout: {rows: [n, k], columns: {a: {metric: a}}}\n"
+               "claims: {B: {says: s, bound: a, at_most: 1}}\n";
+    };
+    EXPECT_EQ(part(both("2, 3"), ""), "");
+    EXPECT_EQ(part(both("3, 4"), ""), "0 of 3 rows");
+    EXPECT_EQ(part("", both("2, 3")), "1 of 2 values of k");
 }
 
 TEST(Claims, OfSeveralScenesAVerdictNamesThoseOnWhichItDoesNotHold) {
