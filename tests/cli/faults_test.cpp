@@ -138,7 +138,7 @@ TEST_F(Faults, CheckTellsOfARunWithVeryManyRows) {
     const std::string many = "measure: {lane: quality, frames: 500, processes: ";
     EXPECT_EQ(rows(many + "10}\n").find("million"), std::string::npos);
     EXPECT_THAT(rows(many + "1000}\n"),
-                HasSubstr("about 3 million rows of records, of at most 64 million in a run\n"));
+                HasSubstr("about 3.5 million rows of records, of at most 64 million in a run\n"));
     EXPECT_THAT(rows(many + "100000}\n"),
                 HasSubstr("in a run: it will stop before its end; measure it in parts (--only, "
                           "--shard)\n"));
