@@ -58,7 +58,7 @@ void requireKnownAt(const config::Printed& printed, const Case& item,
         given.set(name, value, value.location());
         Params params(given, "printed.at");
         if (!item.offered.isNull()) params.offer(item.offered);
-        info.create(params);
+        technique::makeTechnique(info, item.program, params);
     }
 }
 
