@@ -14,6 +14,7 @@
 #include "engine/core/text.h"
 #include "runner/records/images.h"
 #include "runner/run/manifest.h"
+#include "runner/run/plan_json.h"
 #include "runner/run/twins.h"
 
 namespace gfxrepro::cluster {
@@ -95,9 +96,10 @@ run::Plan shardPlan(const run::Plan& whole, const run::Shard& shard, std::span<c
         const config::Case& item = whole.cases[i];
         plan.cases.push_back(item);
         experiments.insert(item.experiment);
-        if (item.scene.isNull()) continue;
-        const auto scene = whole.sceneKeys.find(item.scene.text());
-        if (scene != whole.sceneKeys.end()) plan.sceneKeys.insert(*scene);
+        for (const auto& [name, reference] : run::scenesOf(item)) {
+            const auto scene = whole.sceneKeys.find(reference.text());
+            if (scene != whole.sceneKeys.end()) plan.sceneKeys.insert(*scene);
+        }
     }
     std::ranges::copy_if(whole.experiments, std::back_inserter(plan.experiments),
                          [&](const auto& one) { return experiments.contains(one.id); });

@@ -77,9 +77,9 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
         units += unitCount(cases);
         requireUnitCount(units, {experiment.file.string(), 0, 0});
         for (Case& item : cases) {
-            if (!item.scene.isNull()) {
-                std::string& known = plan.sceneKeys[item.scene.text()];
-                if (known.empty()) known = catalog.contentKey(item.scene);
+            for (const auto& [name, reference] : scenesOf(item)) {
+                std::string& known = plan.sceneKeys[reference.text()];
+                if (known.empty()) known = catalog.contentKey(reference);
             }
             item.programKey = programKeyOf(item, digests);
             item.id = caseId(item, toJson(item), plan);

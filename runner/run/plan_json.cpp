@@ -11,6 +11,7 @@
 #include "engine/core/hash.h"
 #include "engine/core/json_shape.h"
 #include "engine/core/output_files.h"
+#include "engine/scene/scene_reference.h"
 
 namespace gfxrepro::run {
 
@@ -258,11 +259,23 @@ std::uint64_t seedFrom(const Json& text) {
 
 }  // namespace
 
+std::map<std::string, Node> scenesOf(const Case& item) {
+    std::map<std::string, Node> scenes;
+    if (!item.scene.isNull()) scenes.emplace("scene", item.scene);
+    for (const auto& [name, value] : item.params.entries()) {
+        if (name == "scene" || !scene::isSceneKey(name) || !value.isScalar()) continue;
+        if (!value.text().empty()) scenes.emplace(name, value);
+    }
+    return scenes;
+}
+
 std::string caseId(const Case& item, Json written, const Plan& plan) {
-    const auto scene =
-        item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
     written["id"] = "";
-    written["scene"] = scene == plan.sceneKeys.end() ? "" : scene->second;
+    written["scene"] = "";
+    for (const auto& [name, reference] : scenesOf(item)) {
+        const auto scene = plan.sceneKeys.find(reference.text());
+        if (scene != plan.sceneKeys.end()) written[name] = scene->second;
+    }
     if (written.contains("program")) written["program"].erase(config::placeholder::kHere);
     written["device_class"] = plan.deviceClass;
     written["build"] = plan.buildId;

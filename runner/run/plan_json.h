@@ -1,6 +1,7 @@
 // plan.json, and what identifies a plan and its cases.
 #pragma once
 
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -13,6 +14,10 @@ nlohmann::ordered_json toJson(const Case& item);
 /// Throws Error(where, …) for what is missing or of another kind; `prefix` stands before its place.
 Case caseFromJson(const nlohmann::ordered_json& json, const SourceLocation& where,
                   const std::string& prefix);
+
+/// References to the scenes that a case loads: `scene`, and its parameters that are references
+/// (scene::isSceneKey), by their names; none that is empty.
+std::map<std::string, Node> scenesOf(const Case& item);
 
 /// The first 12 digits of the hash of everything that the case's results depend on: `written` is
 /// the case as plan.json has it, whatever its id.

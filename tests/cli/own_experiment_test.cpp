@@ -281,6 +281,26 @@ TEST_F(OwnExperiment, CheckLooksForASecondModelBesideTheFile) {
     EXPECT_EQ(gfxrepro({"check", config}).exitCode, 0);
 }
 
+TEST_F(OwnExperiment, ARunDoesNotGoOnWithAnotherSecondModel) {
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n";
+    folder.write("second.obj", triangle);
+    const std::string config =
+        folder.write("mine.yaml",
+                     "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\nscene: shapes/torus\n"
+                     "params: {csg: union, scene_b: second.obj, resolution: 32}\n"
+                     "measure: {lane: quality}\n");
+    const std::string dir = (folder.path() / "run").string();
+    const ProcessResult run = gfxrepro({"run", config, "--device", "software", "--out", dir});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    folder.write("second.obj", "v 0 0 0.5\n" + triangle);
+    const ProcessResult other = gfxrepro({"run", "--resume", dir});
+    EXPECT_NE(other.exitCode, 0);
+    EXPECT_THAT(other.err, HasSubstr("second.obj' changed"));
+    folder.write("second.obj", triangle);
+    const ProcessResult same = gfxrepro({"run", "--resume", dir});
+    EXPECT_EQ(same.exitCode, 0) << same.err;
+}
+
 TEST_F(OwnExperiment, CheckAsksTheTechniqueWhetherItTakesTheScene) {
     folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\np 1 2 3\n");
     folder.write("rough.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");

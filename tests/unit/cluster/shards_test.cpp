@@ -146,7 +146,9 @@ TEST(Shards, APlanOfAShardHasItsOwnAlone) {
         plan.experiments.emplace_back().id = name;
         Case item = makeCase(name, "a", 1);
         item.scene = Node::scalar(std::string("models/of-") + name);
+        item.params.set("scene_b", Node::scalar(std::string("models/b-of-") + name));
         plan.sceneKeys[item.scene.text()] = "key";
+        plan.sceneKeys["models/b-of-" + std::string(name)] = "key";
         plan.cases.push_back(item);
     }
     plan.hash = "of the whole";
@@ -155,10 +157,30 @@ TEST(Shards, APlanOfAShardHasItsOwnAlone) {
     EXPECT_EQ(part.cases[0].id, plan.cases[1].id);
     ASSERT_EQ(part.experiments.size(), 1U);
     EXPECT_EQ(part.experiments[0].id, "q/2");
-    EXPECT_EQ(part.sceneKeys.size(), 1U);
+    EXPECT_EQ(part.sceneKeys.size(), 2U);
     EXPECT_TRUE(part.sceneKeys.contains("models/of-q/2"));
+    EXPECT_TRUE(part.sceneKeys.contains("models/b-of-q/2"));
     EXPECT_EQ(part.hash, plan.hash);
     EXPECT_EQ(part.shard->name(), "2/2");
+}
+
+/// A case is another one where any of its scenes is; parameters that name none say nothing.
+TEST(Plans, EveryModelOfACaseIsInItsId) {
+    run::Plan plan;
+    Case item = makeCase("q/1", "a", 1);
+    item.scene = Node::scalar("a.obj");
+    plan.sceneKeys = {{"a.obj", "a"}, {"b.obj", "b"}};
+    const auto id = [&] { return run::caseId(item, run::toJson(item), plan); };
+    item.params.set("scene_b", Node::scalar(""));
+    const std::string ofOne = id();
+    plan.sceneKeys["b.obj"] = "another";
+    EXPECT_EQ(id(), ofOne);
+    item.params.set("scene_b", Node::scalar("b.obj"));
+    const std::string ofTwo = id();
+    plan.sceneKeys["b.obj"] = "b";
+    EXPECT_NE(id(), ofTwo);
+    plan.sceneKeys["a.obj"] = "another";
+    EXPECT_NE(id(), ofTwo);
 }
 
 using cluster::mergeRuns;
