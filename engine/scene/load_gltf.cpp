@@ -173,10 +173,11 @@ class SceneBuilder {
         }
         std::vector<std::uint32_t> used;
         if (primitive.mode == TINYGLTF_MODE_POINTS) {
-            used.resize(count);
-            std::iota(used.begin(), used.end(), 0U);
+            used = checkedIndices(primitive, count, where);
+            std::ranges::sort(used);
+            used.erase(std::unique(used.begin(), used.end()), used.end());
         } else {
-            mesh.triangles = checkedTriangles(primitive, count, where);
+            mesh.triangles = trianglesOf(checkedIndices(primitive, count, where), primitive.mode);
             used = usedVertices_.renumber(mesh.triangles, count);
         }
         std::vector<bool>& isUsed = usedPositions_[positions];
@@ -228,8 +229,9 @@ class SceneBuilder {
         return part.of(accessors_.values<T>(found->second, isColour), name);
     }
 
-    std::vector<glm::uvec3> checkedTriangles(const tinygltf::Primitive& primitive,
-                                             std::size_t vertexCount, const std::string& where) {
+    /// Of the vertices in their order; all of them where the file does not number any.
+    std::vector<std::uint32_t> checkedIndices(const tinygltf::Primitive& primitive,
+                                              std::size_t vertexCount, const std::string& where) {
         std::vector<std::uint32_t> indices;
         if (primitive.indices >= 0) {
             indices = accessors_.indices(primitive.indices);
@@ -243,7 +245,7 @@ class SceneBuilder {
                                  vertexCount));
             }
         }
-        return trianglesOf(indices, primitive.mode);
+        return indices;
     }
 
     // ---- nodes

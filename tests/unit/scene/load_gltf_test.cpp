@@ -99,6 +99,28 @@ TEST_F(LoadGltf, ReadsPointsAndRefusesLinesAlone) {
               "DIR/a.gltf: no triangles or points in the scene");
 }
 
+TEST_F(LoadGltf, ReadsThosePointsThatIndicesName) {
+    Document document = square();
+    document["meshes"] =
+        R"([{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":2},"indices":1,"mode":0}]}])";
+    document["accessors"] =
+        R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
+            {"bufferView":1,"byteOffset":2,"componentType":5123,"count":3,"type":"SCALAR"},
+            {"bufferView":2,"componentType":5121,"count":4,"type":"VEC4","normalized":true}])";
+    const PointCloud points = load(document).points;  // 1 2 0, without the corner (0, 1)
+    EXPECT_EQ(points.positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
+    ASSERT_EQ(points.colors.size(), 3U);
+    EXPECT_EQ(points.colors[0], glm::vec3(1, 0, 0.2F));
+    document["accessors"].replace(document["accessors"].find("\"byteOffset\":2"), 14,
+                                  "\"byteOffset\":6");
+    EXPECT_EQ(load(document).points.positions,  // 0 2 3
+              (std::vector<glm::vec3>{{0, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+    document["accessors"].replace(document["accessors"].find("\"byteOffset\":6"), 14,
+                                  "\"byteOffset\":4");
+    EXPECT_EQ(load(document).points.positions,  // 2 0 2: each point once
+              (std::vector<glm::vec3>{{0, 0, 0}, {1, 1, 0}}));
+}
+
 TEST_F(LoadGltf, KeepsNormalsOfPointsInAFlattenedNode) {
     Document document = square();
     document["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0,"NORMAL":0},"mode":0}]}])";
