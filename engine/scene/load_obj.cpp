@@ -63,6 +63,7 @@ struct ObjContent {
     std::vector<std::string> libraries;  // what stands behind "mtllib"
     bool hasTriples = false;             // some corner has a texcoord or a normal
     std::size_t linesOfLines = 0;
+    std::vector<std::string> warnings;
 };
 
 class ObjParser {
@@ -78,7 +79,7 @@ class ObjParser {
             leftOut_.add("vertex colours, as not every vertex has one");
             content_.colors.clear();
         }
-        makeLinear(content_.colors);
+        makeLinear(content_.colors, content_.warnings);
         std::erase_if(content_.groups, [](const Group& group) { return group.corners.empty(); });
         dropAttributesThatAreNotThere();
         leftOut_.add("the line 'l'", content_.linesOfLines);
@@ -417,6 +418,7 @@ Scene sceneOf(ObjContent content, const std::filesystem::path& path, LeftOut& le
         throw Error(file + ": more than 2147483647 vertices");
     }
     Scene scene;
+    scene.warnings = std::move(content.warnings);
     if (content.groups.empty()) {
         if (content.linesOfLines > 0) throw Error(file + ": lines, but no faces or points");
         scene.points.positions = std::move(content.positions);

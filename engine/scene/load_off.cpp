@@ -27,7 +27,8 @@ class OffParser {
         parseHeader();
         for (std::uint64_t i = 0; i < vertexCount_; ++i) parseVertex();
         for (std::uint64_t i = 0; i < faceCount_; ++i) parseFace();
-        makeLinear(mesh_.colors);
+        std::vector<std::string> warnings;
+        makeLinear(mesh_.colors, warnings);
         LeftOut leftOut;
         leftOut.add(kOverlap, filler_.overlappingCount());
         leftOut.add("a face of fewer than 3 corners", thinFaces_);
@@ -43,6 +44,7 @@ class OffParser {
             leftOut.add("a vertex that no face uses", dropUnusedVertices(mesh_));
             scene = sceneOf(std::move(mesh_));
         }
+        scene.warnings = std::move(warnings);
         leftOut.tell(scene.warnings);
         return scene;
     }

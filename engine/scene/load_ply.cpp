@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -225,15 +226,12 @@ PropertySlot slotOf(const Property& property) {
     return kNoSlot;
 }
 
-/// Integers as parts of their maximum.
-float colourOf(Type type, double value) {
-    return visitType(type, [value](auto sample) {
+/// What a colour of a type is a part of: of integers the largest; none of floats.
+std::optional<double> maximumOf(Type type) {
+    return visitType(type, [](auto sample) -> std::optional<double> {
         using T = decltype(sample);
-        if constexpr (std::is_integral_v<T>) {
-            return static_cast<float>(value / std::numeric_limits<T>::max());
-        } else {
-            return static_cast<float>(value);
-        }
+        if constexpr (std::is_integral_v<T>) return double{std::numeric_limits<T>::max()};
+        return std::nullopt;
     });
 }
 
@@ -249,6 +247,7 @@ struct Vertices {
     std::vector<glm::vec3> colors;
     std::vector<glm::vec2> texcoords;
     std::vector<float> radii;
+    std::vector<std::string> warnings;
 };
 
 template <class Reader>
@@ -280,7 +279,9 @@ class VertexParser {
         for (const Property& property : element.properties) {
             slots_.push_back(slotOf(property));
             has_[slots_.back()] = true;
-            if (isColour(slots_.back())) areBytes_ &= property.type == Type::UInt8;
+            if (!isColour(slots_.back())) continue;
+            areBytes_ &= property.type == Type::UInt8;
+            colourTypes_[slots_.back() - kRed] = property.type;
         }
         for (std::size_t i = 0; i < slots_.size(); ++i) {
             const Property& property = element.properties[i];
@@ -290,8 +291,8 @@ class VertexParser {
         if (!hasAll({kX, kY, kZ})) {
             throw Error({file, element.line, 0}, "element 'vertex' lacks x, y or z");
         }
-        for (std::size_t byte = 0; byte < linearBytes_.size(); ++byte) {
-            linearBytes_[byte] = linearFromSrgb(colourOf(Type::UInt8, static_cast<double>(byte)));
+        for (int byte = 0; byte < 256; ++byte) {
+            linearBytes_[byte] = linearFromSrgb(static_cast<float>(byte / 255.0));
         }
     }
 
@@ -315,11 +316,32 @@ class VertexParser {
             if (texcoords) vertices.texcoords.push_back({row_[kU], row_[kV]});
             if (radii) vertices.radii.push_back(row_[kRadius]);
         }
-        if (!areBytes_ && !hasLinearColours) makeLinear(vertices.colors);
+        if (!areBytes_) takePartsOfWhole(vertices);
+        if (!areBytes_ && !hasLinearColours) makeLinear(vertices.colors, vertices.warnings);
         return vertices;
     }
 
   private:
+    /// Integers of more bytes may hold bytes, and those of 4 bytes numbers of 2.
+    void takePartsOfWhole(Vertices& vertices) const {
+        double largest = 0.0, taken = 0.0;
+        for (int c = 0; c < 3; ++c) {
+            if (!maximumOf(colourTypes_[c])) continue;
+            for (const glm::vec3& v : vertices.colors) largest = std::max(largest, double{v[c]});
+        }
+        for (int c = 0; c < 3; ++c) {
+            const std::optional<double> maximum = maximumOf(colourTypes_[c]);
+            if (!maximum) continue;
+            const double stored = largest <= 255.0 ? 255.0 : 65535.0;
+            const double whole = largest <= stored ? std::min(*maximum, stored) : *maximum;
+            if (whole < *maximum) taken = whole;
+            for (glm::vec3& v : vertices.colors) v[c] = static_cast<float>(double{v[c]} / whole);
+        }
+        if (taken == 0.0 || largest == 0.0) return;
+        vertices.warnings.push_back(fmt::format(
+            "vertex colours, integers up to {:g}, are taken as parts of {:g}", largest, taken));
+    }
+
     bool hasAll(std::initializer_list<PropertySlot> slots) const {
         return std::all_of(slots.begin(), slots.end(),
                            [this](PropertySlot slot) { return has_[slot]; });
@@ -354,17 +376,14 @@ class VertexParser {
         const double number = reader_.number(property.type);
         const bool isPosition = slot <= kZ;
         if (isColour(slot) && areBytes_) return linearBytes_[static_cast<std::size_t>(number)];
-        const auto value = isPosition       ? static_cast<float>(number - offset_[slot])
-                           : isColour(slot) ? colourOf(property.type, number)
-                                            : static_cast<float>(number);
+        const auto value = static_cast<float>(isPosition ? number - offset_[slot] : number);
         // Scanners write normals that are not numbers; unitNormal() takes those.
         const bool isNormal = slot == kNx || slot == kNy || slot == kNz;
         if (!std::isfinite(value) && !isNormal) {
             reader_.fail(property.name + " is " + std::to_string(number) +
                          "; finite numbers in the range of float are allowed");
         }
-        const bool isLength = isPosition || slot == kRadius;
-        if (isLength && std::abs(number) > double{kMaxCoordinate}) {
+        if ((isPosition || slot == kRadius) && std::abs(number) > double{kMaxCoordinate}) {
             reader_.fail(fmt::format("{} is {:g}; {:g} to {:g} are allowed", property.name, number,
                                      -kMaxCoordinate, kMaxCoordinate));
         }
@@ -374,7 +393,8 @@ class VertexParser {
     Reader& reader_;
     const Element& element_;
     glm::dvec3 offset_;
-    bool areBytes_ = true;  // all colours
+    bool areBytes_ = true;               // all colours
+    std::array<Type, 3> colourTypes_{};  // of red, green and blue
     std::vector<PropertySlot> slots_;
     std::array<bool, kNoSlot + 1> has_{};
     std::array<float, kSlotCount> row_{};
@@ -538,22 +558,24 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file,
         throw Error({file, vertexElement->line, 0}, "element 'vertex' lacks x, y or z");
     }
     fillPolygons(faces, vertices.positions, leftOut);
+    Scene scene;
     if (faces.triangles.empty()) {
         leftOut.add("the texture coordinates of a point", vertices.texcoords.size());
-        Scene scene;
         scene.points = {std::move(vertices.positions), std::move(vertices.normals),
                         std::move(vertices.radii), std::move(vertices.colors)};
-        return scene;
+    } else {
+        leftOut.add("the radius of a vertex with faces", vertices.radii.size());
+        Mesh mesh;
+        mesh.triangles = std::move(faces.triangles);
+        mesh.positions = std::move(vertices.positions);
+        mesh.normals = std::move(vertices.normals);
+        mesh.texcoords = std::move(vertices.texcoords);
+        mesh.colors = std::move(vertices.colors);
+        leftOut.add("a vertex that no face uses", dropUnusedVertices(mesh));
+        scene = sceneOf(std::move(mesh));
     }
-    leftOut.add("the radius of a vertex with faces", vertices.radii.size());
-    Mesh mesh;
-    mesh.triangles = std::move(faces.triangles);
-    mesh.positions = std::move(vertices.positions);
-    mesh.normals = std::move(vertices.normals);
-    mesh.texcoords = std::move(vertices.texcoords);
-    mesh.colors = std::move(vertices.colors);
-    leftOut.add("a vertex that no face uses", dropUnusedVertices(mesh));
-    return sceneOf(std::move(mesh));
+    scene.warnings = std::move(vertices.warnings);
+    return scene;
 }
 
 }  // namespace

@@ -61,12 +61,21 @@ inline float linearFromSrgb(float srgb) {
     return srgb <= 0.04045F ? srgb / 12.92F : std::pow((srgb + 0.055F) / 1.055F, 2.4F);
 }
 
-/// Vertex colours of OBJ and PLY are what a display shows (sRGB), as parts of 1, or, where any is
-/// larger, of 255: makes them linear.
-inline void makeLinear(std::vector<glm::vec3>& colors) {
+/// Vertex colours of OBJ, OFF and PLY are what a display shows (sRGB), as parts of 1, or, where any
+/// is above 2, of 255: makes them linear. Warns where the numbers do not tell which of the two.
+inline void makeLinear(std::vector<glm::vec3>& colors, std::vector<std::string>& warnings) {
     float largest = 0.0F;
-    for (const glm::vec3& c : colors) largest = std::max({largest, c.r, c.g, c.b});
-    const float whole = largest > 1.0F ? 255.0F : 1.0F;
+    bool areInteger = true;
+    for (const glm::vec3& c : colors) {
+        largest = std::max({largest, c.r, c.g, c.b});
+        areInteger = areInteger && c == glm::floor(c);
+    }
+    const float whole = largest > 2.0F ? 255.0F : 1.0F;  // some round to a little above 1
+    const bool areBytes = areInteger && largest > 2.0F && largest <= 255.0F;
+    if (largest > 1.0F && !areBytes) {
+        warnings.push_back(
+            fmt::format("vertex colours up to {:g} are taken as parts of {:g}", largest, whole));
+    }
     for (glm::vec3& color : colors) {
         for (int c = 0; c < 3; ++c) color[c] = linearFromSrgb(color[c] / whole);
     }

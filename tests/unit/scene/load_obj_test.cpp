@@ -97,6 +97,16 @@ TEST_F(LoadObj, TakesColoursAsADisplayShowsThem) {
     EXPECT_NEAR(red("128 0 0"), 0.2159F, 1e-4F);
     EXPECT_EQ(red("255 0 0"), 1.0F);
     EXPECT_EQ(red("1 0 0"), 1.0F);
+    EXPECT_NEAR(red("1.001 0.2 0"), 1.00228F, 1e-4F);  // one value that was rounded up
+    EXPECT_NEAR(red("0.501961 1.001 0"), 0.2159F, 1e-4F);
+    const auto warnings = [&](const std::string& colour) {
+        return load("v 0 0 0 " + colour + "\nv 1 0 0 0 0 0\nv 1 1 0 0 0 0\nf 1 2 3\n").warnings;
+    };
+    using Lines = std::vector<std::string>;
+    EXPECT_EQ(warnings("1 0.5 0"), Lines{});
+    EXPECT_EQ(warnings("255 128 0"), Lines{});
+    EXPECT_EQ(warnings("1.001 0 0"), Lines{"vertex colours up to 1.001 are taken as parts of 1"});
+    EXPECT_EQ(warnings("127.5 0 0"), Lines{"vertex colours up to 127.5 are taken as parts of 255"});
 }
 
 TEST_F(LoadObj, ReadsNamesWithNumberSignsAndByteOrderMarks) {

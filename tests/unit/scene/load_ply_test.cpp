@@ -117,6 +117,7 @@ TEST_F(LoadPly, ReadsColoursByTheirTypeAndTexcoords) {
 }
 
 TEST_F(LoadPly, TakesColoursAsADisplayShowsThem) {
+    std::vector<std::string> warnings;
     const auto red = [&](const std::string& type, const std::string& names,
                          const std::string& value) {
         std::string content = kAscii;
@@ -129,7 +130,9 @@ TEST_F(LoadPly, TakesColoursAsADisplayShowsThem) {
             const std::string line(place, 5);
             content = replaced(content, "\n" + line + '\n', "\n" + line + ' ' + value + " 0 0\n");
         }
-        return load(content).meshes.at(0).colors.at(0).r;
+        const Scene scene = load(content);
+        warnings = scene.warnings;
+        return scene.meshes.at(0).colors.at(0).r;
     };
     EXPECT_NEAR(red("uchar", "", "128"), 0.2159F, 1e-4F);
     EXPECT_NEAR(red("float", "", "128"), 0.2159F, 1e-4F);
@@ -137,6 +140,19 @@ TEST_F(LoadPly, TakesColoursAsADisplayShowsThem) {
     EXPECT_NEAR(red("ushort", "", "32896"), 0.2159F, 1e-4F);
     EXPECT_NEAR(red("uchar", "diffuse_", "128"), 0.2159F, 1e-4F);
     EXPECT_NEAR(red("uchar", "r", "128"), 0.2159F, 1e-4F);
+    EXPECT_EQ(warnings, std::vector<std::string>{});
+    EXPECT_NEAR(red("float", "", "1.001"), 1.00228F, 1e-4F);
+    // Integers of more bytes that hold one, or two.
+    for (const char* type : {"int", "uint", "ushort", "short"}) {
+        EXPECT_NEAR(red(type, "", "128"), 0.2159F, 1e-4F) << type;
+        EXPECT_EQ(warnings, std::vector<std::string>{
+                                "vertex colours, integers up to 128, are taken as parts of 255"});
+    }
+    EXPECT_NEAR(red("int", "", "32896"), 0.2159F, 1e-4F);
+    EXPECT_NEAR(red("uint", "", "2155905152"), 0.2159F, 1e-4F);
+    EXPECT_EQ(warnings, std::vector<std::string>{});
+    EXPECT_NEAR(red("ushort", "", "65535"), 1.0F, 1e-6F);
+    EXPECT_EQ(warnings, std::vector<std::string>{});
 }
 
 TEST_F(LoadPly, DropsVerticesThatNoFaceUses) {
