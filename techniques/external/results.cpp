@@ -223,49 +223,107 @@ bool isLetter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
+constexpr char kThinBlank = '\1';
+
+/// What typesetters write, as programs do: minus, apostrophe, and the blanks that part digits.
+std::string plain(std::string_view text) {
+    constexpr std::pair<std::string_view, char> kMarks[] = {
+        {"\u2212", '-'},        {"\u2019", '\''},       {"\u00A0", kThinBlank},
+        {"\u2007", kThinBlank}, {"\u2009", kThinBlank}, {"\u202F", kThinBlank}};
+    std::string result;
+    while (!text.empty()) {
+        const auto mark = std::ranges::find_if(
+            kMarks, [&](const auto& each) { return text.starts_with(each.first); });
+        result += mark == std::end(kMarks) ? text[0] : mark->second;
+        text.remove_prefix(mark == std::end(kMarks) ? 1 : mark->first.size());
+    }
+    return result;
+}
+
+/// As far as a number can be: what is looked at on either side of one.
+constexpr std::size_t kBytesBeside = 64;
+
+/// The bytes of a power of ten behind a number: "×10^3", " x 10**3", "·10³".
+std::size_t powerOfTenBytes(std::string_view behind) {
+    static const std::regex kPower(
+        "^ ?(?:[xX*]|\u00D7|\u00B7|\u22C5) ?10(?:\\^|\\*\\*|\u00B9|\u00B2|\u00B3|\u2070|"
+        "\u2074|\u2075|\u2076|\u2077|\u2078|\u2079|\u207A|\u207B)[-+0-9]*");
+    std::cmatch match;
+    behind = behind.substr(0, kBytesBeside);
+    const bool isPower =
+        std::regex_search(behind.data(), behind.data() + behind.size(), match, kPower);
+    return isPower ? static_cast<std::size_t>(match.length()) : 0;
+}
+
 /// Whether the number goes on before or behind the group. A comma that the pattern names and
 /// matches is a separator.
 bool isPartOfNumber(const Found& found, std::string_view regex) {
-    const auto at = [&](std::size_t i) { return i < found.line.size() ? found.line[i] : '\0'; };
+    const std::size_t from = found.begin - std::min(found.begin, kBytesBeside);
+    const std::string left = plain(found.line.substr(from, found.begin - from));
+    const std::string right = plain(found.line.substr(found.end, kBytesBeside));
     const auto before = [&](std::size_t i) {
-        return i <= found.begin ? at(found.begin - i) : '\0';
+        return i <= left.size() ? left[left.size() - i] : '\0';
     };
-    const auto behind = [&](std::size_t i) { return at(found.end + i - 1); };
+    const auto behind = [&](std::size_t i) { return i <= right.size() ? right[i - 1] : '\0'; };
     const bool namesComma = regex.find(',') != regex.npos;
     const auto groups = [&](char c, bool isMatched) {  // digits: 1,234 and 1'234 and 1_234
         return c == '\'' || c == '_' || (c == ',' && !(namesComma && isMatched));
     };
     const auto isSign = [](char c) { return c == '-' || c == '+'; };
-    const auto isExponent = [](char c) { return c == 'e' || c == 'E'; };
+    const auto isExponent = [](char c) { return c == 'e' || c == 'E' || c == 'd' || c == 'D'; };
     const auto isOfNumber = [](char c) { return isDigit(c) || c == '.'; };
+    // Of names such as conv2d5 the letter is no exponent.
+    const auto exponentBefore = [&](std::size_t i) {
+        if (!isExponent(before(i)) || !isOfNumber(before(i + 1))) return false;
+        if (before(i) == 'e' || before(i) == 'E') return true;
+        while (isOfNumber(before(++i))) {
+        }
+        return !isLetter(before(i)) && before(i) != '_';
+    };
     const char last = before(1), next = behind(1);
+    const std::size_t digits =
+        std::min(found.number().find_first_not_of("0123456789"), found.number().size());
     const bool goesBefore = isDigit(last) ||
                             (last == '.' && before(2) != '.' && !isLetter(before(2))) ||
                             (groups(last, found.matchBegin < found.begin) && isDigit(before(2))) ||
+                            (last == kThinBlank && isDigit(before(2)) && digits == 3) ||
                             (last == '-' && !isOfNumber(before(2)) && !isLetter(before(2)) &&
                              before(2) != '-' && before(2) != ')') ||
-                            (isExponent(last) && isOfNumber(before(2))) ||
-                            (isSign(last) && isExponent(before(2)) && isOfNumber(before(3)));
+                            exponentBefore(1) || (isSign(last) && exponentBefore(2));
     const auto exponentAt = [&](std::size_t i) {
         return isExponent(behind(i)) &&
                (isDigit(behind(i + 1)) || (isSign(behind(i + 1)) && isDigit(behind(i + 2))));
     };
-    return goesBefore || isDigit(next) || exponentAt(1) ||
+    const bool isGroupBehind = next == kThinBlank && isDigit(behind(2)) && isDigit(behind(3)) &&
+                               isDigit(behind(4)) && !isDigit(behind(5));
+    std::size_t word = left.size();
+    while (word > 0 && (isLetter(left[word - 1]) || isOfNumber(left[word - 1]))) --word;
+    const bool isHexadecimal = left.compare(word, 2, "0x") == 0 || left.compare(word, 2, "0X") == 0;
+    return goesBefore || isHexadecimal || isDigit(next) || exponentAt(1) || isGroupBehind ||
            (next == '.' && (isDigit(behind(2)) || exponentAt(2))) ||
            (groups(next, found.matchEnd > found.end) && isDigit(behind(2))) ||
-           (found.number() == "0" && (next == 'x' || next == 'X'));
+           (found.number() == "0" && (next == 'x' || next == 'X')) ||
+           powerOfTenBytes(found.line.substr(found.end)) > 0;
 }
 
 /// The word that the group is a part of.
 std::string_view wordAround(const Found& found) {
     const auto isOfWord = [](char c) {
-        return isDigit(c) || isLetter(c) ||
+        return isDigit(c) || isLetter(c) || static_cast<unsigned char>(c) >= 0x80 ||
                std::string_view(".,'_+-").find(c) != std::string_view::npos;
     };
     std::size_t begin = found.begin, end = found.end;
     while (begin > 0 && isOfWord(found.line[begin - 1])) --begin;
     while (end < found.line.size() && isOfWord(found.line[end])) ++end;
+    end = std::max(end, found.end + powerOfTenBytes(found.line.substr(found.end)));
     return found.line.substr(begin, end - begin);
+}
+
+/// Also with Fortran's exponent, 1.5D+03, and a typesetter's minus.
+std::optional<double> numberFrom(std::string_view text) {
+    std::string number = plain(text);
+    if (const std::size_t at = number.find_first_of("dD"); at != number.npos) number[at] = 'e';
+    return parseDouble(number);
 }
 
 }  // namespace
@@ -279,7 +337,7 @@ std::optional<double> numberIn(std::string_view output, const config::ProgramPat
         if (const std::optional<Found> found = search.lastIn(line)) last = found;
     }
     if (!last) return std::nullopt;
-    const std::optional<double> number = parseDouble(last->number());
+    const std::optional<double> number = numberFrom(last->number());
     if (!number) {
         throw Error(fmt::format("metric '{}': its pattern finds '{}'; allowed: a number",
                                 pattern.metric, shown(last->number())));
