@@ -95,17 +95,24 @@ void PolygonFiller::clipEars() {
     triangles_.clear();
     std::uint32_t corner = 0;
     std::uint32_t left = count;
+    const auto clip = [&](std::uint32_t ear) {
+        const std::uint32_t before = previous_[ear];
+        const std::uint32_t after = next_[ear];
+        triangles_.emplace_back(before, ear, after);
+        next_[before] = after;
+        previous_[after] = before;
+        corner = before;
+        --left;
+    };
+    // Where a corner is written twice, the border would turn at neither of the two.
+    for (std::uint32_t i = 0; i < count && left > 3; ++i) {
+        if (points_[i] == points_[previous_[i]]) clip(i);
+    }
     std::uint32_t testsLeft = 16 * count;  // usual polygons take two or three a corner
     bool mayTouch = false;
     for (std::uint32_t failures = 0; left > 3 && testsLeft > 0; --testsLeft) {
         if (isEar(corner, mayTouch)) {
-            const std::uint32_t before = previous_[corner];
-            const std::uint32_t after = next_[corner];
-            triangles_.emplace_back(before, corner, after);
-            next_[before] = after;
-            previous_[after] = before;
-            corner = before;
-            --left;
+            clip(corner);
             failures = 0;
             continue;
         }

@@ -48,6 +48,14 @@ void expectArea(const Corners& corners, double area) {
 TEST(PolygonFiller, FillsConcavePolygons) {
     expectArea({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}, 3.0);
     expectArea({{2, 0, 0}, {1, 0.5F, 0}, {0, 0, 0}, {1, 2, 0}}, 1.5);
+    // Its inner corner, and then each corner, several times.
+    expectArea({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}, 3.0);
+    Corners often;
+    for (const glm::vec3& corner :
+         Corners{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}) {
+        often.insert(often.end(), 3, corner);
+    }
+    expectArea(often, 3.0);
     // Corners on a straight edge.
     expectArea({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}}, 3.0);
 }
