@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "engine/scene/scene.h"
@@ -94,16 +95,48 @@ inline glm::vec3 unitNormal(const glm::vec3& normal) {
     return isFinite(unit) ? unit : glm::vec3(0.0F);
 }
 
+/// The middle of the box in round numbers, along each axis on which it lies farther from 0 than 64
+/// of its diagonals: a float there tells less than a hundred thousandth of one.
+inline glm::dvec3 distantMiddle(const Box& box) {
+    constexpr double kDiagonals = 64.0;
+    glm::dvec3 middle(0.0);
+    const double diagonal = box.isEmpty() ? 0.0 : glm::length(glm::dvec3(box.size()));
+    if (diagonal == 0.0) return middle;
+    const double unit = std::pow(10.0, std::floor(std::log10(diagonal)));
+    for (int axis = 0; axis < 3; ++axis) {
+        const double at = 0.5 * (double{box.min[axis]} + double{box.max[axis]});
+        if (std::abs(at) > kDiagonals * diagonal) middle[axis] = std::round(at / unit) * unit;
+    }
+    return middle;
+}
+
+/// The places that vertices and points have, each counted once in a mesh.
+inline std::size_t differentPlaces(const Scene& scene) {
+    const auto count = [](std::vector<glm::vec3> places) {
+        std::ranges::sort(places, [](const glm::vec3& a, const glm::vec3& b) {
+            return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+        });
+        return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
+    };
+    std::size_t sum = count(scene.points.positions);
+    for (const Mesh& mesh : scene.meshes) sum += count(mesh.positions);
+    return sum;
+}
+
 /// A scene whose coordinates floats can hold. `load(offset)` reads a file and subtracts the offset
-/// from all coordinates in double; where the box lies far from the origin without one, it reads
-/// again with one, which Scene::offset keeps and a warning tells.
+/// from all coordinates in double; where the box lies far from the origin without one, or floats
+/// make one place of several, it reads again with one, which Scene::offset keeps and a warning
+/// tells.
 template <class Load>
 Scene loadedNearOrigin(Load&& load) {
     Scene scene = load(glm::dvec3(0.0));
-    const glm::dvec3 offset = offsetOf(scene.bounds());
+    glm::dvec3 offset = offsetOf(scene.bounds());
+    const bool isFar = offset != glm::dvec3(0.0);
+    if (!isFar) offset = distantMiddle(scene.bounds());
     if (offset == glm::dvec3(0.0)) return scene;
     Scene moved = load(offset);
     if (moved.bounds().size() == glm::vec3(0.0F)) return scene;  // one point is as good anywhere
+    if (!isFar && differentPlaces(moved) <= differentPlaces(scene)) return scene;
     moved.offset = offset;
     moved.warnings.push_back(
         fmt::format("its coordinates lie far from the origin: ({}, {}, {}) is subtracted from them",

@@ -79,6 +79,29 @@ TEST_F(FarFiles, OthersStayAsTheyAre) {
         << "one point";
 }
 
+TEST_F(FarFiles, PointsThatFloatsWouldJoinKeepTheirPlaces) {
+    const auto metre = [&](const char* type, int count) {  // of 4000 m along x
+        std::string content = fmt::format("ply\nformat ascii 1.0\nelement vertex {}\n", count + 1);
+        for (const char* axis : {"x", "y", "z"}) {
+            content += fmt::format("property {} {}\n", type, axis);
+        }
+        content += "end_header\n";
+        for (int i = 0; i <= count; ++i)
+            content += fmt::format("{:.4f} 0 0\n", 4000 + 1.0 * i / count);
+        return loadPly(folder.write("a.ply", content));
+    };
+    for (const char* type : {"double", "float"}) {
+        const Scene scene = metre(type, 10'000);  // a float's step there: 0.24 mm
+        EXPECT_EQ(differentPoints(scene.points.positions), 10'001U) << type;
+        EXPECT_NEAR(scene.offset.x + double{scene.points.positions[1].x}, 4000.0001, 1e-7);
+        EXPECT_EQ(scene.warnings.size(), 1U);
+        const Scene coarse = metre(type, 8);
+        EXPECT_EQ(coarse.offset, glm::dvec3(0.0)) << type;
+        EXPECT_EQ(coarse.points.positions[1], glm::vec3(4000.125F, 0, 0));
+        EXPECT_TRUE(coarse.warnings.empty());
+    }
+}
+
 TEST_F(FarFiles, ComeBackFromWhatIsSaved) {
     const Scene scene = loadPly(folder.write("a.ply", points("double")));
     savePly(folder.path() / "b.ply", scene);
