@@ -25,6 +25,7 @@
 #include "engine/image/formats.h"
 #include "engine/image/image.h"
 #include "engine/image/png_io.h"
+#include "engine/scene/geo_tiff.h"
 #include "engine/scene/height_map.h"
 #include "engine/scene/model_files.h"
 
@@ -42,8 +43,6 @@ void checkHeightMapSize(std::int64_t width, std::int64_t height, const std::stri
 namespace {
 
 constexpr float kSrtmVoid = -32768.0F;
-/// Along a meridian, whose length is 40,007,863 m (WGS 84).
-constexpr double kMetresPerDegree = 40'007'863.0 / 360.0;
 
 class PngHeightRows : public HeightRows {
   public:
@@ -212,7 +211,8 @@ std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
 }
 
 constexpr std::uint32_t kGdalNoData = 42113, kGdalMetadata = 42112;
-constexpr std::uint32_t kGeoPixelScale = 33550, kGeoKeys = 34735;
+constexpr std::uint32_t kGeoPixelScale = 33550, kGeoTransform = 34264;
+constexpr std::uint32_t kGeoKeys = 34735, kGeoKeyDoubles = 34736;
 /// Tiles of 1,024² of floats across the widest map.
 constexpr std::size_t kMostTileRowBytes = std::size_t{260} << 20;
 
@@ -337,34 +337,17 @@ class TiffRows : public HeightRows {
         return end != text.c_str() ? std::optional(value) : std::nullopt;
     }
 
-    /// Scale and offset of GDAL, and the distance of samples, where a GeoTIFF says them.
     void findUnits() {
-        const std::string metadata = textOf(kGdalMetadata);
-        const auto item = [&](const char* role) -> std::optional<float> {
-            const std::size_t at = metadata.find(fmt::format("role=\"{}\"", role));
-            const std::size_t begin = at == metadata.npos ? at : metadata.find('>', at);
-            return begin == metadata.npos ? std::nullopt : numberIn(metadata.substr(begin + 1));
-        };
-        scale = item("scale").value_or(1.0F);
-        offset = item("offset").value_or(0.0F);
-        if (!std::isfinite(scale) || !std::isfinite(offset)) {
-            throw Error(fmt::format("{}: scale {} and offset {}; finite numbers are allowed", name_,
-                                    scale, offset));
-        }
         // Values of another type than GeoTIFF's would be read beyond their end.
-        const auto steps = valuesOf<double>(kGeoPixelScale, TIFF_DOUBLE);
-        if (steps.size() < 2) return;
-        double unitM = 1.0;
-        const auto keys = valuesOf<std::uint16_t>(kGeoKeys, TIFF_SHORT);
-        for (std::size_t i = 4; i + 3 < keys.size(); i += 4) {  // key, where, count, value
-            constexpr std::uint16_t kModelType = 1024, kGeographic = 2, kLinearUnit = 3076;
-            if (keys[i] == kModelType && keys[i + 3] == kGeographic) unitM = kMetresPerDegree;
-            if (keys[i] == kLinearUnit && keys[i + 3] == 9002) unitM = 0.3048;           // foot
-            if (keys[i] == kLinearUnit && keys[i + 3] == 9003) unitM = 1200.0 / 3937.0;  // US foot
-        }
-        // Along the meridian: degrees of longitude are shorter.
-        const auto spacing = static_cast<float>(steps[1] * unitM);
-        if (spacing > 0.0F && std::isfinite(spacing)) spacingM = spacing;
+        const GeoUnits units =
+            unitsOf({textOf(kGdalMetadata), valuesOf<double>(kGeoPixelScale, TIFF_DOUBLE),
+                     valuesOf<double>(kGeoTransform, TIFF_DOUBLE),
+                     valuesOf<std::uint16_t>(kGeoKeys, TIFF_SHORT),
+                     valuesOf<double>(kGeoKeyDoubles, TIFF_DOUBLE)},
+                    name_);
+        scale = units.scale;
+        offset = units.offset;
+        spacingM = units.spacingM;
     }
 
     /// Of a tag that libtiff itself does not know; empty where there is none.

@@ -18,20 +18,30 @@ using test::TemporaryFolder;
 
 /// 2 x 2 values 0, 10, 20, 30 with tags of GDAL and GeoTIFF.
 fs::path writeGeoTiff(const fs::path& path, const char* metadata, std::vector<double> scale,
-                      std::vector<std::uint16_t> keys) {
+                      std::vector<std::uint16_t> keys, std::vector<double> transform = {},
+                      std::vector<double> keyDoubles = {}) {
     TIFF* tiff = TIFFOpen(path.c_str(), "w");
     static const TIFFFieldInfo kInfo[] = {
         {33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("PixelScale")},
+        {34264, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("Transform")},
         {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("Keys")},
+        {34736, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("KeyDoubles")},
         {42112, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("Metadata")}};
-    TIFFMergeFieldInfo(tiff, kInfo, 3);
+    TIFFMergeFieldInfo(tiff, kInfo, 5);
     for (const int tag : {TIFFTAG_IMAGEWIDTH, TIFFTAG_IMAGELENGTH}) TIFFSetField(tiff, tag, 2);
     TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
     TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_INT);
     TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
     TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
     if (metadata != nullptr) TIFFSetField(tiff, 42112, metadata);
-    if (!scale.empty()) TIFFSetField(tiff, 33550, static_cast<int>(scale.size()), scale.data());
+    const auto setDoubles = [&](int tag, const std::vector<double>& values) {
+        if (values.empty()) return;
+        TIFFSetField(tiff, static_cast<std::uint32_t>(tag), static_cast<int>(values.size()),
+                     values.data());
+    };
+    setDoubles(33550, scale);
+    setDoubles(34264, transform);
+    setDoubles(34736, keyDoubles);
     if (!keys.empty()) TIFFSetField(tiff, 34735, static_cast<int>(keys.size()), keys.data());
     std::int16_t rows[2][2] = {{0, 10}, {20, 30}};
     for (std::uint32_t y = 0; y < 2; ++y) TIFFWriteScanline(tiff, rows[y], y, 0);
@@ -73,6 +83,87 @@ TEST_F(HeightUnits, SpacingComesFromTheFileUnlessItIsGiven) {
     EXPECT_TRUE(loadHeightMap(path, {}).isSpacingOfFile);
     EXPECT_EQ(loadHeightMap(path, {2.0F, 1.0F, {}}).spacingM, 2.0F);
     EXPECT_FALSE(loadHeightMap(path, {2.0F, 1.0F, {}}).isSpacingOfFile);
+}
+
+TEST_F(HeightUnits, SpacingOfATransformAndOfOtherUnitsIsConverted) {
+    const fs::path path = folder.path() / "a.tif";
+    // Samples 10 m apart, turned by 3-4-5: 6 east and 8 south a column, 8 west and 6 south a row.
+    const std::vector<double> turned{6, -8, 0, 5e5, -8, -6, 0, 4e6, 0, 0, 0, 0, 0, 0, 0, 1};
+    writeGeoTiff(path, nullptr, {}, {1, 1, 0, 1, 1024, 0, 1, 1}, turned);
+    EXPECT_FLOAT_EQ(loadHeightMap(path, {}).spacingM, 10.0F);
+    const auto spacing = [&](std::vector<std::uint16_t> keys, std::vector<double> doubles = {}) {
+        writeGeoTiff(path, nullptr, {0.5, 0.5, 0}, std::move(keys), {}, std::move(doubles));
+        return loadHeightMap(path, {}).spacingM;
+    };
+    EXPECT_FLOAT_EQ(spacing({1, 1, 0, 1, 3076, 0, 1, 9036}), 500.0F);
+    EXPECT_FLOAT_EQ(spacing({1, 1, 0, 1, 3076, 0, 1, 9003}), 600.0F / 3937.0F);
+    EXPECT_FLOAT_EQ(spacing({1, 1, 0, 2, 3076, 0, 1, 32767, 3077, 34736, 1, 1}, {7, 0.25}), 0.125F);
+    EXPECT_EQ(test::errorText(
+                  [&] {
+                      spacing({1, 1, 0, 1, 3076, 0, 1, 9014});
+                  },
+                  folder.path()),
+              "DIR/a.tif: the linear unit is 9014; allowed: 9001 (metre), 9002 (foot), 9003 (US "
+              "survey foot), 9036 (kilometre)");
+    EXPECT_EQ(test::errorText(
+                  [&] {
+                      spacing({1, 1, 0, 2, 1024, 0, 1, 2, 2054, 0, 1, 9101});
+                  },
+                  folder.path()),
+              "DIR/a.tif: the angular unit is 9101; allowed: 9102 (degree)");
+}
+
+TEST_F(HeightUnits, SamplesThatStandOnNoSquaresAreRefused) {
+    const fs::path path = folder.path() / "a.tif";
+    const auto error = [&](std::vector<double> scale, std::vector<double> transform) {
+        writeGeoTiff(path, nullptr, std::move(scale), {}, std::move(transform));
+        return test::errorText([&] { loadHeightMap(path, {}); }, folder.path());
+    };
+    EXPECT_EQ(error({30, 10, 0}, {}),
+              "DIR/a.tif: its samples stand 30 apart along x and 10 along y; allowed: the same, on "
+              "squares");
+    EXPECT_EQ(error({}, {30, 0, 0, 0, 0, -10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}),
+              "DIR/a.tif: its samples stand 30 apart along x and 10 along y; allowed: the same, on "
+              "squares");
+    EXPECT_EQ(error({}, {10, 6, 0, 0, 0, -8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}),
+              "DIR/a.tif: its samples stand 10 apart along x and 10 along y, askew; allowed: the "
+              "same, on squares");
+    EXPECT_EQ(error({30.001, 30, 0}, {}), "no error") << "rounded";
+}
+
+TEST_F(HeightUnits, HeightsInFeetBecomeMetres) {
+    const fs::path path = folder.path() / "a.tif";
+    const auto highest = [&](const char* metadata, std::vector<std::uint16_t> keys) {
+        writeGeoTiff(path, metadata, {}, std::move(keys));
+        return loadHeightMap(path, {}).heightM(1, 1);  // 30 is stored
+    };
+    EXPECT_FLOAT_EQ(highest(nullptr, {1, 1, 0, 1, 4099, 0, 1, 9002}), 9.144F);
+    EXPECT_FLOAT_EQ(highest(nullptr, {1, 1, 0, 1, 4099, 0, 1, 9001}), 30.0F);
+    EXPECT_FLOAT_EQ(highest("<GDALMetadata>\n"
+                            "  <Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">ft</Item>\n"
+                            "  <Item name=\"OFFSET\" sample=\"0\" role=\"offset\">100</Item>\n"
+                            "  <Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.5</Item>\n"
+                            "</GDALMetadata>",
+                            {}),
+                    35.052F);  // 115 ft
+    const auto unit = [&](const std::string& name) {
+        const std::string metadata =
+            "<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" "
+            "role=\"unittype\">" +
+            name + "</Item></GDALMetadata>";
+        return highest(metadata.c_str(), {});
+    };
+    EXPECT_FLOAT_EQ(unit("metre"), 30.0F);
+    EXPECT_FLOAT_EQ(unit("US survey foot"), 36000.0F / 3937.0F);
+    EXPECT_EQ(test::errorText([&] { unit("fathom"); }, folder.path()),
+              "DIR/a.tif: its heights are in 'fathom'; allowed: m, ft, us-ft");
+    EXPECT_EQ(test::errorText(
+                  [&] {
+                      highest(nullptr, {1, 1, 0, 1, 4099, 0, 1, 9014});
+                  },
+                  folder.path()),
+              "DIR/a.tif: the vertical unit is 9014; allowed: 9001 (metre), 9002 (foot), 9003 (US "
+              "survey foot), 9036 (kilometre)");
 }
 
 TEST_F(HeightUnits, SrtmTilesHaveTheSpacingOfTheirFormat) {

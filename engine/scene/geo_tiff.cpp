@@ -1,0 +1,149 @@
+// Keys and codes of OGC GeoTIFF 1.1; the items of GDAL's metadata.
+#include "engine/scene/geo_tiff.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+
+#include "engine/core/error.h"
+#include "engine/core/text.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+constexpr std::uint16_t kModelType = 1024, kGeographic = 2;
+constexpr std::uint16_t kAngularUnit = 2054, kDegree = 9102, kDegreeOfSupplier = 9122;
+constexpr std::uint16_t kLinearUnit = 3076, kLinearUnitSize = 3077, kVerticalUnit = 4099;
+constexpr std::uint16_t kUserDefined = 32767, kDoubleParams = 34736;
+
+struct LengthUnit {
+    std::uint16_t code;  // of EPSG
+    double metres;
+};
+constexpr LengthUnit kLengthUnits[] = {
+    {9001, 1.0}, {9002, 0.3048}, {9003, 1200.0 / 3937.0}, {9036, 1000.0}};
+
+/// Of a key, count times: key, tag that holds its values (0: it is the value), count, value.
+class Keys {
+  public:
+    Keys(const GeoTags& tags, const std::string& file) : tags_(tags), file_(file) {}
+
+    std::optional<std::uint16_t> find(std::uint16_t key, std::uint16_t tag = 0) const {
+        const std::vector<std::uint16_t>& keys = tags_.keys;
+        for (std::size_t i = 4; i + 3 < keys.size(); i += 4) {
+            if (keys[i] == key && keys[i + 1] == tag) return keys[i + 3];
+        }
+        return std::nullopt;
+    }
+
+    /// Metres where the file does not say its unit.
+    double metresOf(std::uint16_t key) const {
+        const std::uint16_t code = find(key).value_or(0);
+        if (code == 0) return 1.0;
+        for (const LengthUnit& unit : kLengthUnits) {
+            if (unit.code == code) return unit.metres;
+        }
+        if (key == kLinearUnit && code == kUserDefined) {
+            const auto at = find(kLinearUnitSize, kDoubleParams);
+            const double size = at && *at < tags_.keyDoubles.size() ? tags_.keyDoubles[*at] : 0.0;
+            if (size > 0.0 && std::isfinite(size)) return size;
+        }
+        throw Error(
+            fmt::format("{}: the {} unit is {}; allowed: 9001 (metre), 9002 (foot), 9003 "
+                        "(US survey foot), 9036 (kilometre)",
+                        file_, key == kLinearUnit ? "linear" : "vertical", code));
+    }
+
+    /// Along a meridian: degrees of longitude are shorter.
+    double metresOfDegrees() const {
+        const std::uint16_t code = find(kAngularUnit).value_or(0);
+        const bool isDegree = code == 0 || code == kDegree || code == kDegreeOfSupplier;
+        if (isDegree) return kMetresPerDegree;
+        throw Error(fmt::format("{}: the angular unit is {}; allowed: 9102 (degree)", file_, code));
+    }
+
+  private:
+    const GeoTags& tags_;
+    const std::string& file_;
+};
+
+std::optional<float> floatIn(const std::string& text) {
+    char* end = nullptr;
+    const float value = std::strtof(text.c_str(), &end);
+    return end != text.c_str() ? std::optional(value) : std::nullopt;
+}
+
+/// The text of the item with this role; empty where there is none.
+std::string itemOf(const std::string& metadata, std::string_view role) {
+    const std::size_t at = metadata.find(fmt::format("role=\"{}\"", role));
+    const std::size_t begin = at == metadata.npos ? at : metadata.find('>', at);
+    if (begin == metadata.npos) return "";
+    return std::string(trimmed(metadata.substr(begin + 1, metadata.find('<', begin) - begin - 1)));
+}
+
+/// Metres of the unit of heights.
+double heightUnitM(const GeoTags& tags, const Keys& keys, const std::string& file) {
+    const std::string unit = itemOf(tags.metadata, "unittype");
+    if (unit.empty()) return keys.metresOf(kVerticalUnit);
+    for (const std::string_view metre : {"m", "metre", "metres", "meter", "meters"}) {
+        if (unit == metre) return 1.0;
+    }
+    for (const std::string_view foot : {"ft", "foot", "feet"}) {
+        if (unit == foot) return 0.3048;
+    }
+    for (const std::string_view foot : {"us-ft", "ftUS", "US survey foot"}) {
+        if (unit == foot) return 1200.0 / 3937.0;
+    }
+    throw Error(fmt::format("{}: its heights are in '{}'; allowed: m, ft, us-ft", file, unit));
+}
+
+/// How far samples stand apart, in units of the model; none where the file does not say it.
+std::optional<double> stepOf(const GeoTags& tags, bool isGeographic, const std::string& file) {
+    double x = 0.0, y = 0.0, skew = 0.0;
+    if (tags.pixelScale.size() >= 2) {
+        x = std::abs(tags.pixelScale[0]);
+        y = std::abs(tags.pixelScale[1]);
+    } else if (tags.transform.size() >= 6) {
+        const std::vector<double>& m = tags.transform;
+        x = std::hypot(m[0], m[4]);
+        y = std::hypot(m[1], m[5]);
+        skew = std::abs(m[0] * m[1] + m[4] * m[5]);
+    }
+    if (!(y > 0.0) || !std::isfinite(y)) return std::nullopt;
+    constexpr double kRounding = 1e-3;
+    if (!isGeographic && (std::abs(x - y) > kRounding * y || skew > kRounding * y * y)) {
+        throw Error(
+            fmt::format("{}: its samples stand {:g} apart along x and {:g} along y{}; "
+                        "allowed: the same, on squares",
+                        file, x, y, skew > kRounding * y * y ? ", askew" : ""));
+    }
+    return y;
+}
+
+}  // namespace
+
+GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
+    const Keys keys(tags, file);
+    GeoUnits units;
+    units.scale = floatIn(itemOf(tags.metadata, "scale")).value_or(1.0F);
+    units.offset = floatIn(itemOf(tags.metadata, "offset")).value_or(0.0F);
+    if (!std::isfinite(units.scale) || !std::isfinite(units.offset)) {
+        throw Error(fmt::format("{}: scale {} and offset {}; finite numbers are allowed", file,
+                                units.scale, units.offset));
+    }
+    const double heightM = heightUnitM(tags, keys, file);
+    units.scale = static_cast<float>(units.scale * heightM);
+    units.offset = static_cast<float>(units.offset * heightM);
+    const bool isGeographic = keys.find(kModelType) == kGeographic;
+    if (const std::optional<double> step = stepOf(tags, isGeographic, file)) {
+        const double unitM = isGeographic ? keys.metresOfDegrees() : keys.metresOf(kLinearUnit);
+        const auto spacing = static_cast<float>(*step * unitM);
+        if (spacing > 0.0F && std::isfinite(spacing)) units.spacingM = spacing;
+    }
+    return units;
+}
+
+}  // namespace gfxrepro::scene
