@@ -48,6 +48,42 @@ std::string textureName(std::string_view rest) {
     return std::string(rest);
 }
 
+/// Says which options before a texture's name are not those that hold without them.
+void leaveOptions(std::string_view rest, LeftOut& leftOut) {
+    struct Option {
+        std::string_view name;
+        std::string_view values[3];
+    };
+    constexpr Option kWithout[] = {{"-s", {"1", "1", "1"}}, {"-o", {"0", "0", "0"}},
+                                   {"-t", {"0", "0", "0"}}, {"-mm", {"0", "1", ""}},
+                                   {"-clamp", {"off"}},     {"-cc", {"off"}},
+                                   {"-blendu", {"on"}},     {"-blendv", {"on"}}};
+    const std::size_t end = rest.find_last_of(" \t");
+    if (!rest.starts_with('-') || end == rest.npos) return;
+    LineReader words(rest.substr(0, end), "");
+    words.nextLine();
+    const Option* option = nullptr;
+    std::size_t place = 0;
+    std::string_view name;
+    bool isSaid = false;
+    for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
+        const bool isNumber = parsedNumber<float>(word).has_value();
+        if (word.starts_with('-') && !isNumber) {
+            name = word;
+            option = std::ranges::find(kWithout, name, &Option::name);
+            place = 0;
+            isSaid = false;
+        }
+        const bool isKnown = option != nullptr && option != std::end(kWithout);
+        if (isKnown && word.data() == name.data()) continue;
+        const std::string_view usual = isKnown && place < 3 ? option->values[place++] : "";
+        const bool isUsual =
+            word == usual || (isNumber && parsedNumber<float>(word) == parsedNumber<float>(usual));
+        if (!isUsual && !isSaid) leftOut.add(fmt::format("{} of map_Kd", inQuotes(name)));
+        isSaid = isSaid || !isUsual;
+    }
+}
+
 std::string_view withoutQuotes(std::string_view name) {
     const bool isQuoted = name.size() >= 2 && name.front() == '"' && name.back() == '"';
     return isQuoted ? name.substr(1, name.size() - 2) : name;
@@ -86,6 +122,7 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
         } else if (key == "Tr") {
             material.baseColor.a = 1.0F - lines.number();
         } else if (key == "map_Kd") {
+            leaveOptions(lines.name(), leftOut);
             current->colourFile = textureName(lines.name());
         } else if (!key.empty() && key != "Ka" && key != "map_Ka" && key != "illum") {
             // No light here is ambient, and each term of `illum` follows from the others.

@@ -98,10 +98,12 @@ class ObjParser {
             // OBJ counts v from the bottom, glTF from the top.
             const bool hasV = !lines_.name().empty() && !lines_.name().starts_with('#');
             content_.texcoords.emplace_back(u, 1.0F - (hasV ? texcoord(lines_.anyNumber()) : 0.0F));
+            if (hasV) leaveRest("vt", 0.0F);  // of an image the depth is 0
         } else if (key == "vn") {
             const float x = lines_.anyNumber();
             const float y = lines_.anyNumber();
             content_.normals.push_back(unitNormal({x, y, lines_.anyNumber()}));
+            leaveRest("vn");
         } else if (key == "f" || key == "fo") {
             parseFace();
         } else if (key == "usemtl") {
@@ -128,6 +130,19 @@ class ObjParser {
         const auto green = red ? lines_.optionalNumber() : std::nullopt;
         const auto blue = green ? lines_.optionalNumber() : std::nullopt;
         if (blue) content_.colors.emplace_back(*red, *green, *blue);
+        if (blue) leaveRest("v");
+        if (!blue && (green || red.value_or(1.0F) != 1.0F)) leaveNumbers("v");  // a weight of 1
+    }
+
+    /// Says that the line has more, unless it is this number alone, which changes nothing.
+    void leaveRest(const char* key, std::optional<float> harmless = std::nullopt) {
+        std::string_view word = lines_.word();
+        if (harmless && parsedNumber<float>(word) == harmless) word = lines_.word();
+        if (!word.empty()) leaveNumbers(key);
+    }
+
+    void leaveNumbers(const char* key) {
+        leftOut_.add(fmt::format("further numbers of the line '{}'", key));
     }
 
     float coordinate(int axis) {

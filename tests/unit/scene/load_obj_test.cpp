@@ -197,6 +197,30 @@ TEST_F(LoadObj, ReadsColoursContinuationsAndComments) {
     EXPECT_EQ(mesh.triangles.size(), 1U);
 }
 
+TEST_F(LoadObj, SaysWhichNumbersAndOptionsItLeavesOut) {
+    using Lines = std::vector<std::string>;
+    EXPECT_EQ(load("v 0 0 0 2\nv 1 0 0 1\nv 1 1 0\nvt 0 0 0\nvt 1 0 0.5\nvt 1 1 0 7\nvn 0 0 1 4\n"
+                   "f 1/1/1 2/2/1 3/3/1\n")
+                  .warnings,
+              (Lines{"left out: further numbers of the line 'v'",
+                     "left out: further numbers of the line 'vn'",
+                     "left out: further numbers of the line 'vt' (2 times)"}));
+    EXPECT_EQ(load("v 0 0 0 1 0 0 1\nv 1 0 0 1 0 0 1\nv 1 1 0 1 0 0 1\nf 1 2 3\n").warnings,
+              Lines{"left out: further numbers of the line 'v' (3 times)"});
+    image::writePng(folder_.path() / "a.png", image::Image8(2, 1, 1, 128));
+    const auto warnings = [&](const std::string& options) {
+        folder_.write("a.mtl", "newmtl a\nmap_Kd " + options + "a.png\n");
+        const Scene scene = load("mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\n");
+        EXPECT_EQ(scene.materials.at(0).baseColorTexture, 0) << options;
+        return scene.warnings;
+    };
+    EXPECT_EQ(warnings("-s 1 1 1 -o 0 0 -mm 0 1.0 -clamp off -blendu on "), Lines{});
+    EXPECT_EQ(warnings("-s 2 2 1 -o -0.5 0 0 -mm 0.1 1 -clamp on -texres 512 "),
+              (Lines{"left out: '-clamp' of map_Kd", "left out: '-mm' of map_Kd",
+                     "left out: '-o' of map_Kd", "left out: '-s' of map_Kd",
+                     "left out: '-texres' of map_Kd"}));
+}
+
 TEST_F(LoadObj, SplitsByMaterial) {
     image::writePng(folder_.path() / "wood grain.png", image::Image8(2, 1, 1, 128));
     folder_.write("a.mtl",
