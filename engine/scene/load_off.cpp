@@ -27,6 +27,8 @@ class OffParser {
         parseHeader();
         for (std::uint64_t i = 0; i < vertexCount_; ++i) parseVertex();
         for (std::uint64_t i = 0; i < faceCount_; ++i) parseFace();
+        std::size_t linesBehind = 0;
+        while (lines_.nextLine()) linesBehind += !lines_.word().empty();
         std::vector<std::string> warnings;
         makeLinear(mesh_.colors, warnings);
         LeftOut leftOut;
@@ -35,6 +37,7 @@ class OffParser {
         leftOut.add("a number behind a vertex", extraNumbers_);
         leftOut.add("the alpha of a vertex's colour", alphas_);
         leftOut.add("the colour of a face", faceColours_);
+        leftOut.add("a line behind the last face", linesBehind);
         Scene scene;
         if (mesh_.triangles.empty()) {
             leftOut.add("the texture coordinates of a point", mesh_.texcoords.size());

@@ -29,7 +29,9 @@ namespace {
 using ply::Element;
 using ply::Header;
 using ply::Property;
+using ply::PropertySlot;
 using ply::Type;
+using enum ply::PropertySlot;
 
 /// Calls `visit` with a value of the C++ type that `type` stands for.
 template <class Visit>
@@ -77,6 +79,18 @@ class AsciiReader {
     Row row;
 
     std::size_t restBytes() const { return rest_.size() + 1; }  // the last row may lack its newline
+
+    /// Lines with anything in them that have not been read.
+    std::size_t unread() const {
+        bool isFilled = false;
+        std::size_t lines = 0;
+        for (const char c : rest_) {
+            if (c == '\n') isFilled = false;
+            lines += !isFilled && !isBlank(c);
+            isFilled = isFilled || !isBlank(c);
+        }
+        return lines;
+    }
     static std::size_t minimumBytes(Type) { return 2; }
 
     [[noreturn]] void fail(const std::string& message) const {
@@ -142,6 +156,7 @@ class BinaryReader {
     Row row;
 
     std::size_t restBytes() const { return text_.size() - at_; }
+    std::size_t unread() const { return restBytes(); }
     static std::size_t minimumBytes(Type type) { return ply::sizeBytes(type); }
 
     [[noreturn]] void fail(const std::string& message) const {
@@ -173,58 +188,6 @@ class BinaryReader {
     std::size_t at_;
     bool isSwapped_;
 };
-
-/// What a vertex row may hold for us.
-enum PropertySlot {
-    kX,
-    kY,
-    kZ,
-    kNx,
-    kNy,
-    kNz,
-    kRed,
-    kGreen,
-    kBlue,
-    kU,
-    kV,
-    kRadius,
-    kSlotCount,
-    kNoSlot
-};
-
-PropertySlot slotOf(const Property& property) {
-    struct Named {
-        std::string_view name;
-        PropertySlot slot;
-    };
-    constexpr std::array<Named, 22> kNamed{{{"x", kX},
-                                            {"y", kY},
-                                            {"z", kZ},
-                                            {"nx", kNx},
-                                            {"ny", kNy},
-                                            {"nz", kNz},
-                                            {"red", kRed},
-                                            {"green", kGreen},
-                                            {"blue", kBlue},
-                                            {"diffuse_red", kRed},
-                                            {"diffuse_green", kGreen},
-                                            {"diffuse_blue", kBlue},
-                                            {"r", kRed},
-                                            {"g", kGreen},
-                                            {"b", kBlue},
-                                            {"u", kU},
-                                            {"v", kV},
-                                            {"s", kU},
-                                            {"t", kV},
-                                            {"texture_u", kU},
-                                            {"texture_v", kV},
-                                            {"radius", kRadius}}};
-    if (property.isList()) return kNoSlot;
-    for (const Named& each : kNamed) {
-        if (property.name == each.name) return each.slot;
-    }
-    return kNoSlot;
-}
 
 /// What a colour of a type is a part of: of integers the largest; none of floats.
 std::optional<double> maximumOf(Type type) {
@@ -554,6 +517,8 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file,
             skipElement(reader, element);
         }
     }
+    leftOut.add(Reader::kIsAscii ? "a line behind the last row" : "a byte behind the last row",
+                reader.unread());
     if (vertices.positions.empty()) {
         throw Error({file, vertexElement->line, 0}, "element 'vertex' lacks x, y or z");
     }

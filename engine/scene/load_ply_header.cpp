@@ -177,6 +177,40 @@ std::string_view nameOf(Type type) {
     return kTypes[static_cast<std::size_t>(type)].name;
 }
 
+PropertySlot slotOf(const Property& property) {
+    struct Named {
+        std::string_view name;
+        PropertySlot slot;
+    };
+    constexpr std::array<Named, 22> kNamed{{{"x", kX},
+                                            {"y", kY},
+                                            {"z", kZ},
+                                            {"nx", kNx},
+                                            {"ny", kNy},
+                                            {"nz", kNz},
+                                            {"red", kRed},
+                                            {"green", kGreen},
+                                            {"blue", kBlue},
+                                            {"diffuse_red", kRed},
+                                            {"diffuse_green", kGreen},
+                                            {"diffuse_blue", kBlue},
+                                            {"r", kRed},
+                                            {"g", kGreen},
+                                            {"b", kBlue},
+                                            {"u", kU},
+                                            {"v", kV},
+                                            {"s", kU},
+                                            {"t", kV},
+                                            {"texture_u", kU},
+                                            {"texture_v", kV},
+                                            {"radius", kRadius}}};
+    if (property.isList()) return kNoSlot;
+    for (const Named& each : kNamed) {
+        if (property.name == each.name) return each.slot;
+    }
+    return kNoSlot;
+}
+
 std::size_t Element::minimumRowBytes(bool isAscii) const {
     if (isAscii) return 2 * properties.size();  // a digit and a separator each
     std::size_t bytes = 0;

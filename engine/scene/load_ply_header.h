@@ -35,6 +35,27 @@ struct Element {
     std::size_t minimumRowBytes(bool isAscii) const;
 };
 
+/// What a vertex row may hold for us.
+enum PropertySlot {
+    kX,
+    kY,
+    kZ,
+    kNx,
+    kNy,
+    kNz,
+    kRed,
+    kGreen,
+    kBlue,
+    kU,
+    kV,
+    kRadius,
+    kSlotCount,
+    kNoSlot
+};
+
+/// By its name.
+PropertySlot slotOf(const Property& property);
+
 enum class Format { Ascii, LittleEndian, BigEndian };
 
 /// Of files of ours, whose colours of floats are linear; others hold what a display shows.

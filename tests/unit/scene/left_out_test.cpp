@@ -93,6 +93,32 @@ TEST(LeftOut, OfPly) {
                "left out: the radius of a vertex with faces (3 times)"}));
 }
 
+/// A header that counts too few rows, or a file that is two.
+TEST(LeftOut, OfWhatStandsBehindTheLastRow) {
+    const TemporaryFolder folder;
+    const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    const auto ofOff = [&](const std::string& behind) {
+        return loadOff(folder.write("a.off", off + behind)).warnings;
+    };
+    EXPECT_EQ(ofOff("\n# the end\n"), Lines{});
+    EXPECT_EQ(ofOff("3 0 2 1\n\n3 1 2 0"),
+              Lines{"left out: a line behind the last face (2 times)"});
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+        "property float z\nend_header\n";
+    const auto ofPly = [&](const std::string& text) {
+        return loadPly(folder.write("a.ply", text)).warnings;
+    };
+    EXPECT_EQ(ofPly(head + "0 0 0\n1 0 0\n \r\n"), Lines{});
+    EXPECT_EQ(ofPly(head + "0 0 0\n1 0 0\n2 0 0\n\n3 0 0"),
+              Lines{"left out: a line behind the last row (2 times)"});
+    std::string binary = head;
+    binary.replace(binary.find("ascii"), 5, "binary_little_endian");
+    EXPECT_EQ(ofPly(binary + std::string(24, '\0')), Lines{});
+    EXPECT_EQ(ofPly(binary + std::string(26, '\0')),
+              Lines{"left out: a byte behind the last row (2 times)"});
+}
+
 /// Every key of glTF 2.0, and some extensions.
 TEST(LeftOut, OfGltf) {
     const TemporaryFolder folder;
