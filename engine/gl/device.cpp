@@ -85,16 +85,22 @@ std::string mesaVersionIn(const std::string& version) {
 
 /// From stamps that the device takes in a row. Steps between answers of
 /// glGetInteger64v(GL_TIMESTAMP) would be how long the question takes: a microsecond and more on a
-/// GPU.
+/// GPU. A clock of less than half the speed of the processor's is none, either.
 DeviceTimer measureTimer() {
     DeviceTimer timer;
     glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &timer.bits);
     if (timer.bits <= 0) return {0};
+    using Clock = std::chrono::steady_clock;
     constexpr std::chrono::milliseconds kCoarsest(50);  // a clock that steps more rarely is none
+    constexpr std::chrono::milliseconds kWatched(5);
     std::array<GLuint, 256> stamps = {};
     glCreateQueries(GL_TIMESTAMP, static_cast<GLsizei>(stamps.size()), stamps.data());
-    const auto begin = std::chrono::steady_clock::now();
+    const Clock::time_point begin = Clock::now();
+    std::optional<GLuint64> first;  // of the first row its last stamp, which came before this:
+    GLuint64 newest = 0;            // and that of the newest row, which came after this
+    Clock::time_point firstRead, newestAsked;
     do {
+        newestAsked = Clock::now();
         for (const GLuint stamp : stamps) glQueryCounter(stamp, GL_TIMESTAMP);
         std::optional<GLuint64> last;
         for (const GLuint stamp : stamps) {
@@ -106,9 +112,20 @@ DeviceTimer measureTimer() {
             timer.repeats |= last == now;
             last = now;
         }
-    } while (timer.stepNs == 0.0 && std::chrono::steady_clock::now() - begin < kCoarsest);
+        newest = last.value_or(0);
+        if (!first) {
+            first = newest;
+            firstRead = Clock::now();
+        }
+    } while (newestAsked - firstRead < kWatched ||
+             (timer.stepNs == 0.0 && Clock::now() - begin < kCoarsest));
     glDeleteQueries(static_cast<GLsizei>(stamps.size()), stamps.data());
-    return timer.stepNs > 0.0 ? timer : DeviceTimer{0};
+    const std::chrono::duration<double, std::nano> least = newestAsked - firstRead;
+    const std::chrono::duration<double, std::nano> most = Clock::now() - begin;
+    const bool mayWrap = most.count() > std::ldexp(0.5, timer.bits);
+    const auto told = static_cast<double>(nsBetween(*first, newest, timer.bits));
+    const bool isSlow = !mayWrap && told < 0.5 * least.count();
+    return timer.stepNs > 0.0 && !isSlow ? timer : DeviceTimer{0};
 }
 
 std::set<std::string, std::less<>> readExtensions() {
