@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/error.h"
 
@@ -52,6 +53,10 @@ void Profiler::endGpu(std::size_t entry) {
     if (isSoftwareDevice_) glFinish();  // the pass's work, but not the second stamp's
     entries_[entry].processTimeMs += processTimeMs();
     entries_[entry].end = stamp(isSoftwareDevice_);
+    // Around both stamps, where they are taken by now.
+    const std::chrono::duration<double, std::milli> around =
+        std::chrono::steady_clock::now() - entries_[entry].begun;
+    if (isSoftwareDevice_) entries_[entry].cpuTimeMs = around.count();
 }
 
 /// A driver's clock may be wrong: it is held against the processor's, from the scope's begin to
@@ -65,12 +70,16 @@ double Profiler::gpuTimeMs(const Entry& entry) const {
     // Quartzes differ by less than 1 %, and both stamps are rounded to steps of the clock.
     const bool isAhead = timeMs > 1.01 * passed.count() + 2e-6 * timer_.stepNs;
     const bool standsStill = begin == end && (begin == 0 || !timer_.repeats);
-    if (!isAhead && !standsStill) return timeMs;
+    // Of a pass that may be longer than its clock's round nobody knows how many rounds it took.
+    const double mostMs = isSoftwareDevice_ ? entry.cpuTimeMs : passed.count();
+    const bool wraps = mostMs * 1e6 >= std::ldexp(1.0, timer_.bits);
+    if (!isAhead && !standsStill && !wraps) return timeMs;
     throw Error(
         fmt::format("pass '{}': the device's clock {}: {} to {} ns in at most {:.3g} ms of "
                     "the processor's clock; its GPU times cannot be used",
                     entry.pass,
-                    standsStill                        ? "stands still"
+                    wraps                              ? "wraps"
+                    : standsStill                      ? "stands still"
                     : timer_.bits >= 64 && end < begin ? "runs backwards"
                                                        : "runs ahead",
                     begin, end, passed.count()));

@@ -1,6 +1,7 @@
 // To be preloaded into the program (LD_PRELOAD): the device's time stamps are those of a driver
-// whose clock is BROKEN_CLOCK: "none" (0 bits), "zero", "slow", "wraps" (24 bits: every 17 ms), or,
-// once something is drawn, "back", "still" and "ahead".
+// whose clock is BROKEN_CLOCK: "none" (0 bits), "zero", "slow", "short" (16 bits: a round of 66
+// us), or, once something is drawn, "back", "still", "ahead" and "wraps" (32 bits, whose round ends
+// between any two stamps that are read as a pair).
 #include <dlfcn.h>
 
 #define GL_GLEXT_PROTOTYPES
@@ -37,7 +38,8 @@ __attribute__((visibility("default"))) void APIENTRY glGetQueryiv(GLenum target,
     real<decltype(&glGetQueryiv)>("glGetQueryiv")(target, name, value);
     if (target != GL_TIMESTAMP || name != GL_QUERY_COUNTER_BITS) return;
     if (is("none")) *value = 0;
-    if (is("wraps")) *value = 24;
+    if (is("wraps")) *value = 32;
+    if (is("short")) *value = 16;
 }
 
 __attribute__((visibility("default"))) void APIENTRY glGetQueryObjectui64v(GLuint query,
@@ -49,7 +51,14 @@ __attribute__((visibility("default"))) void APIENTRY glGetQueryObjectui64v(GLuin
     static const GLuint64 first = *value;
     if (is("zero") || is("none")) *value = 0;
     if (is("slow")) *value = first + (*value - first) / 1000;
-    if (is("wraps")) *value &= (GLuint64{1} << 24) - 1;
+    if (is("short")) *value &= 0xFFFF;
+    if (is("wraps")) {
+        static GLuint64 end = 0;
+        static bool isSecond = false;
+        if (hasDrawn && !isSecond) end = *value + 1000;
+        isSecond = hasDrawn && !isSecond;
+        *value = (*value - end) & 0xFFFFFFFF;
+    }
     if (is("back") && hasDrawn) *value = GLuint64{1'000'000'000'000'000} - *value;
     if (is("still") && hasDrawn) *value = first;
     if (is("ahead") && hasDrawn) *value *= 1000;

@@ -51,8 +51,10 @@ TEST_F(BrokenClock, OneThatHardlyMovesGivesNoTimesOfTheDevice) {
 }
 
 TEST_F(BrokenClock, OneThatBreaksEndsTheCase) {
-    const std::map<std::string, std::string> words = {
-        {"back", "runs backwards"}, {"still", "stands still"}, {"ahead", "runs ahead"}};
+    const std::map<std::string, std::string> words = {{"back", "runs backwards"},
+                                                      {"still", "stands still"},
+                                                      {"ahead", "runs ahead"},
+                                                      {"short", "wraps"}};
     for (const auto& [clock, what] : words) {
         const ProcessResult run = measured(clock);
         EXPECT_EQ(run.exitCode, 4) << clock << run.err;
