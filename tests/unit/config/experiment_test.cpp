@@ -471,7 +471,7 @@ TEST_F(ExperimentTest, SeveralScenesAreSwept) {
               "DIR/zju/a.yaml:4:8: scene is [a.ply, b.ply]; allowed: one; several stand below "
               "'sweep'");
     EXPECT_EQ(errorWith("scene: \"*.ply\"\n"),
-              "DIR/zju/a.yaml:4:8: scene is *.ply; allowed: one; several stand below 'sweep'");
+              "DIR/zju/a.yaml:4:8: scene is \"*.ply\"; allowed: one; several stand below 'sweep'");
 }
 
 TEST_F(ExperimentTest, AllIsWhatAProgramsParameterLists) {

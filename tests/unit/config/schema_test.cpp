@@ -181,7 +181,7 @@ TEST_F(ExperimentTest, ReaderAndSchemaRefuseTheSame) {
              claim + "{says: s, crossover: [aa], over: scene, at_least: 1, at_most: 2}",
              claim + "{says: s, independent: aa, of: scene, at_most: 25}",
              claim + "{says: s, exact: aa, equals: about}",
-             claim + "{says: s, order: [aa, bb]}",
+             claim + "{says: s, order: {aa: bb}}",
              claim + "{says: s, order: [scene=s]}",
              claim + "{says: s, order: aa < bb, origin: mine}",
              claim + "{says: s, order: aa < bb, profile: fast}",
