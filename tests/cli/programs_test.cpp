@@ -419,10 +419,17 @@ TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
     EXPECT_EQ(check("sweep: {number: [1, 2]}\n"), "mine.yaml: ok, sweep/mine, 2 cases, 0 claims\n");
     EXPECT_EQ(check("sweep: {number: [1, 200]}\n"),
               "mine.yaml:11:21: technique 'external': number is 200; allowed: 0 … 100\n");
-    EXPECT_EQ(check("printed: {at: {number: 3}}\n"),
-              "mine.yaml: ok, sweep/mine, 1 case, 0 claims\n");
-    EXPECT_THAT(check("printed: {at: {number: 200}}\n"),
-                HasSubstr("printed.at: number is 200; allowed: 0 … 100"));
+    // Of a document's table the program is asked what it was printed at.
+    std::string table = kProgram;
+    table.replace(table.find("sweep_of: mine"), 14, "table: doc/1");
+    const auto printedAt = [&](const std::string& value) {
+        const ProcessResult result =
+            gfxrepro({"check", folder.write("mine.yaml",
+                                            table + "printed: {at: {number: " + value + "}}\n")});
+        return result.exitCode == 0 ? result.out : result.err;
+    };
+    EXPECT_THAT(printedAt("3"), HasSubstr("mine.yaml: ok, doc/1, 1 case"));
+    EXPECT_THAT(printedAt("200"), HasSubstr("printed.at: number is 200; allowed: 0 … 100"));
     const std::string image = "  images: {result: {file: result.png, truth: ";
     EXPECT_EQ(check(image + "\"{here}/gone.png\"}}\n"),
               "mine.yaml:11:46: program: image 'result': truth: there is no file " +

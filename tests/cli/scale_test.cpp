@@ -28,7 +28,7 @@ std::string writeRun(const TemporaryFolder& folder, int count) {
     const std::string config = writeMockConfig(
         folder, "params: {behaviour: throw}\nsweep: {number: {range: [1, " + std::to_string(count) +
                     "]}}\nlayout:\n  rows: number\n  columns: {n: {metric: number}, t: {metric: "
-                    "display_psnr_db}}\n");
+                    "fidelity_db}}\n");
     EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--quiet",
                             "--max-failures", "1", "--out", dir})
                   .exitCode,
@@ -42,7 +42,7 @@ std::string writeRun(const TemporaryFolder& folder, int count) {
         row.technique = row.table;
         row.lane = "quality";
         row.unit = "1";
-        for (const char* metric : {"number", "display_psnr_db"}) {
+        for (const char* metric : {"number", "fidelity_db"}) {
             row.metric = metric;
             row.value = item["params"]["number"].get<double>();
             rows.push_back(row);
