@@ -101,7 +101,8 @@ std::vector<ClaimPart> orderParts(const ClaimSpec& claim) {
     part.requirement.low = 0.0;
     part.requirement.isLowExcluded = true;
     part.requirement.isPercent = true;
-    part.requirement.text = joined(claim.operands, " < ");
+    part.requirement.text =
+        (claim.across ? *claim.across + ": " : std::string()) + joined(claim.operands, " < ");
     part.onTimes = neighbourGaps(part.requirement);
     return {part};
 }

@@ -1030,7 +1030,8 @@ TEST(Claims, AcrossComparesRows) {
     EXPECT_EQ(result.reason, "worst at t, b; one sample; holds on 1 of 2 scenes, not on t");
     EXPECT_EQ(judge("order: [method=old, method=new], of: a").verdict, Verdict::Holds);
     EXPECT_EQ(judge("order: [method=old, method=new], at: {scene: s}").verdict, Verdict::Holds);
-    EXPECT_EQ(judge("order: [method=old, method=new], at: {scene: s}").required, "old < new");
+    EXPECT_EQ(judge("order: [method=old, method=new], at: {scene: s}").required,
+              "method: old < new");
     result = judge("across: method, ratio: new / old, at_least: 20, of: a, at: {scene: t}");
     EXPECT_EQ(result.verdict, Verdict::Holds);
     EXPECT_EQ(result.measured, "20");
