@@ -9,13 +9,9 @@ uniform usampler2D surfaces;
 uniform sampler2D normals;
 uniform usampler2D wanted;
 // (cos, sin) of border k = 1 … n − 1 between n theta bins, for n = 2, 3, … one after the other.
-layout(std430) restrict readonly buffer ThetaBorders {
-    vec2 thetaBorders[];
-};
+layout(std430) restrict readonly buffer ThetaBorders { vec2 thetaBorders[]; };
 // cos · |cos| of the borders between n phi bins, in the same order.
-layout(std430) restrict readonly buffer PhiBorders {
-    float phiBorders[];
-};
+layout(std430) restrict readonly buffer PhiBorders { float phiBorders[]; };
 
 layout(location = 0) out uint binPlusOne;
 

@@ -5,15 +5,9 @@
 #endif
 #include "clustered_reflections/cluster_camera.glsl"
 
-layout(std430) readonly buffer Cameras {
-    ClusterCamera cameras[];
-};
-layout(std430) readonly buffer Counts {
-    uint clusterCount;
-};
-layout(std430) ATLAS_ACCESS buffer Places {
-    ivec4 places[];  // x, y, width, height; width 0: no image
-};
+layout(std430) readonly buffer Cameras { ClusterCamera cameras[]; };
+layout(std430) readonly buffer Counts { uint clusterCount; };
+layout(std430) ATLAS_ACCESS buffer Places { ivec4 places[]; };  // x, y, width (0: none), height
 layout(std430) ATLAS_ACCESS buffer Order {
     float atlasScale;  // by which all images were scaled to fit
     uint instanceCount, instancesLeftOut, trianglesDrawn;

@@ -6,9 +6,7 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430) restrict writeonly buffer Cameras {
-    ClusterCamera cameras[];
-};
+layout(std430) restrict writeonly buffer Cameras { ClusterCamera cameras[]; };
 
 uniform vec3 eyeWorld;
 uniform vec3 eyeForward;

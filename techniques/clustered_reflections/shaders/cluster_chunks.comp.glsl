@@ -7,9 +7,7 @@
 layout(local_size_x = GROUP_SIZE) in;
 
 layout(std430) restrict readonly buffer Counts { uint counts[]; };
-layout(std430) restrict writeonly buffer Arguments {
-    uint arguments[];  // of two glDispatchComputeIndirect
-};
+layout(std430) restrict writeonly buffer Arguments { uint arguments[]; };  // of two dispatches
 
 uint chunksOf(uint cluster) {
     return (ranges[cluster].y + uint(CHUNK_LENGTH) - 1u) / uint(CHUNK_LENGTH);

@@ -10,9 +10,7 @@
 #include "clustered_reflections/cluster_camera.glsl"
 
 #if ATLAS
-layout(std430) readonly buffer Cameras {
-    ClusterCamera cameras[];
-};
+layout(std430) readonly buffer Cameras { ClusterCamera cameras[]; };
 flat in uint clusterOfPoint;
 #else
 uniform ClusterCamera camera;

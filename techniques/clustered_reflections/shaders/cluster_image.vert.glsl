@@ -27,12 +27,8 @@ out SurfacePoint {
 } point;
 
 #if ATLAS
-layout(std430) readonly buffer Cameras {
-    ClusterCamera cameras[];
-};
-layout(std430) readonly buffer Places {
-    ivec4 places[];
-};
+layout(std430) readonly buffer Cameras { ClusterCamera cameras[]; };
+layout(std430) readonly buffer Places { ivec4 places[]; };
 uniform vec2 atlasSizePx;
 flat out uint clusterOfPoint;
 #else

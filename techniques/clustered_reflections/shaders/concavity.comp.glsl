@@ -11,15 +11,9 @@ layout(local_size_x = kThreads) in;
 // Enough for a sign.
 const uint kMostSamples = 1024u;
 
-layout(std430) buffer Cameras {
-    ClusterCamera cameras[];
-};
-layout(std430) readonly buffer Samples {
-    uint samples[];  // x | y << 16
-};
-layout(std430) readonly buffer Ranges {
-    uvec4 ranges[];  // first sample, sample count, reflector, flags
-};
+layout(std430) buffer Cameras { ClusterCamera cameras[]; };
+layout(std430) readonly buffer Samples { uint samples[]; };  // x | y << 16
+layout(std430) readonly buffer Ranges { uvec4 ranges[]; };  // first sample, count, reflector, flags
 
 shared float sums[kThreads];
 

@@ -11,15 +11,11 @@ layout(local_size_x = 64) in;
 struct DrawCommand {
     uint count, instanceCount, firstIndex, baseVertex, baseInstance;
 };
-layout(std430) buffer Commands {
-    DrawCommand commands[];
-};
+layout(std430) buffer Commands { DrawCommand commands[]; };
 layout(std430) readonly buffer Pieces {
     uvec2 pieces[];  // of an object: first command, number of commands
 };
-layout(std430) writeonly buffer Instances {
-    uint instances[];  // cluster << 20 | object
-};
+layout(std430) writeonly buffer Instances { uint instances[]; };  // cluster << 20 | object
 
 shared uint seenCount, firstInstance;
 

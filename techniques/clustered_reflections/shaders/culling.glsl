@@ -1,7 +1,5 @@
 // What a cluster's image leaves out: what lies outside of a plane, and the other side of its reflector.
-layout(std430) readonly buffer Families {
-    uint families[];  // reflectorFamilies() of cluster_images.h
-};
+layout(std430) readonly buffer Families { uint families[]; };  // by reflectorFamilies()
 
 // Whether the box reaches to the inner side of a plane. False where a camera is not finite.
 bool reaches(vec4 plane, vec3 centre, vec3 halfSize) {

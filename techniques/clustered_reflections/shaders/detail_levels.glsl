@@ -13,6 +13,4 @@ struct DetailChunk {
     uint firstTriangle, triangleCount, object, padding;
 };
 
-layout(std430) readonly buffer Chunks {
-    DetailChunk chunks[];
-};
+layout(std430) readonly buffer Chunks { DetailChunk chunks[]; };

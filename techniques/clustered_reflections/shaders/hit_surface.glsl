@@ -3,9 +3,7 @@
 #include "reflections/surface_at.glsl"
 #include "clustered_reflections/triangle_corners.glsl"
 
-layout(std430) readonly buffer Triangles {
-    uvec4 triangles[];  // vertices, object
-};
+layout(std430) readonly buffer Triangles { uvec4 triangles[]; };  // vertices, object
 
 // How far outside of a triangle, in its barycentric coordinates, a ray meets its plane.
 struct Meeting {

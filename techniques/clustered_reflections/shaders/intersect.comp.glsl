@@ -4,9 +4,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430) readonly buffer Samples {
-    uint samples[];  // x | y << 16
-};
+layout(std430) readonly buffer Samples { uint samples[]; };  // x | y << 16
 uniform uint cluster, firstSample, sampleCount;
 
 layout(rgba16f) uniform writeonly image2D radiance;

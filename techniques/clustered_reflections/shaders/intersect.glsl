@@ -8,9 +8,7 @@
 #include "clustered_reflections/cluster_camera.glsl"
 #include "clustered_reflections/march.glsl"
 
-layout(std430) readonly buffer Cameras {
-    ClusterCamera cameras[];
-};
+layout(std430) readonly buffer Cameras { ClusterCamera cameras[]; };
 layout(std430) readonly buffer Places {
     ivec4 places[];  // x, y, width, height of the images; width 0: none
 };

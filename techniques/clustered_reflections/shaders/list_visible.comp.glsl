@@ -11,19 +11,11 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430) readonly buffer Parts {
-    DetailPart parts[];
-};
-layout(std430) readonly buffer Levels {
-    DetailLevel levels[];
-};
-layout(std430) readonly buffer ChunkBoxes {
-    vec4 chunkBoxes[];  // centre, half size
-};
+layout(std430) readonly buffer Parts { DetailPart parts[]; };
+layout(std430) readonly buffer Levels { DetailLevel levels[]; };
+layout(std430) readonly buffer ChunkBoxes { vec4 chunkBoxes[]; };  // centre, half size
 #include "clustered_reflections/triangle_corners.glsl"
-layout(std430) writeonly buffer Visible {
-    uvec2 visible[];  // triangle | own << 31, cluster
-};
+layout(std430) writeonly buffer Visible { uvec2 visible[]; };  // triangle | own << 31, cluster
 layout(std430) writeonly buffer VisibleCorners {
     float visibleCorners[];  // clip x, y, w over the near distance, of three corners
 };

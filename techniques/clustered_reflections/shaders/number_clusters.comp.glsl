@@ -12,9 +12,7 @@ layout(std430) restrict coherent buffer Pieces { uint pieces[]; };
 // In: the reflector of each bin. Out: its cluster.
 layout(std430) restrict buffer Bins { uint bins[]; };
 layout(std430) restrict coherent buffer Ranges { uvec4 ranges[]; };
-layout(std430) restrict buffer Counts {
-    uint clusterCount, sampleCount, visibleCount;
-};
+layout(std430) restrict buffer Counts { uint clusterCount, sampleCount, visibleCount; };
 
 uniform uint leastSamples;  // of a cluster; 1: none joins another
 

@@ -6,18 +6,10 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430) readonly buffer Triangles {
-    uvec4 triangles[];  // vertices, object
-};
-layout(std430) readonly buffer Positions {
-    float positions[];
-};
-layout(std430) writeonly buffer Corners {
-    float corners[];  // nine a triangle
-};
-layout(std430) writeonly buffer ChunkBoxes {
-    vec4 chunkBoxes[];  // centre, half size
-};
+layout(std430) readonly buffer Triangles { uvec4 triangles[]; };  // vertices, object
+layout(std430) readonly buffer Positions { float positions[]; };
+layout(std430) writeonly buffer Corners { float corners[]; };  // nine a triangle
+layout(std430) writeonly buffer ChunkBoxes { vec4 chunkBoxes[]; };  // centre, half size
 
 uniform uint firstChunk;
 

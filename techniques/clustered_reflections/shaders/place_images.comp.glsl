@@ -9,9 +9,7 @@
 const uint kThreads = 256u;
 layout(local_size_x = kThreads) in;
 
-layout(std430) readonly buffer Ranges {
-    uvec4 ranges[];  // first sample, sample count, reflector, flags
-};
+layout(std430) readonly buffer Ranges { uvec4 ranges[]; };  // first sample, count, reflector, flags
 
 uniform ivec2 atlasSizePx;
 uniform float texelsPerSample;  // at most; 0: as many as the cameras say

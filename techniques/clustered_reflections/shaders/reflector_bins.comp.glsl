@@ -8,13 +8,9 @@ layout(local_size_x = GROUP_SIZE) in;
 
 layout(std430) restrict readonly buffer Areas { uint areas[]; };
 // The least scale for k + 2 bins, over the gain: theta's, then phi's (see BinTables).
-layout(std430) restrict readonly buffer Thresholds {
-    float leastScale[];
-};
+layout(std430) restrict readonly buffer Thresholds { float leastScale[]; };
 layout(std430) restrict writeonly buffer Bins { uint reflectorOfBin[]; };
-layout(std430) restrict writeonly buffer Counts {
-    uint clusterCount, sampleCount, visibleCount;
-};
+layout(std430) restrict writeonly buffer Counts { uint clusterCount, sampleCount, visibleCount; };
 
 uniform int reflectorCount;
 uniform int maxThetaBins;

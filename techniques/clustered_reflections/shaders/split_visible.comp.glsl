@@ -7,9 +7,7 @@ layout(local_size_x = DRAWS) in;
 struct DrawCommand {
     uint count, instanceCount, first, baseInstance;
 };
-layout(std430) writeonly buffer Commands {
-    DrawCommand commands[];
-};
+layout(std430) writeonly buffer Commands { DrawCommand commands[]; };
 
 void main() {
     uint first = gl_LocalInvocationID.x * TRIANGLES_PER_DRAW;

@@ -1,8 +1,6 @@
 // Triangles of all levels of detail in the world, as place_chunks.comp.glsl puts them there.
 
-layout(std430) readonly buffer Corners {
-    float corners[];  // nine a triangle
-};
+layout(std430) readonly buffer Corners { float corners[]; };  // nine a triangle
 
 vec3 cornerOf(uint triangle, uint corner) {
     uint at = 9u * triangle + 3u * corner;

@@ -6,15 +6,9 @@
 
 layout(location = 0) in vec3 corner;  // x, y, w
 
-layout(std430) readonly buffer Visible {
-    uvec2 visible[];  // triangle | own << 31, cluster
-};
-layout(std430) readonly buffer Places {
-    ivec4 places[];
-};
-layout(std430) readonly buffer Cameras {
-    ClusterCamera cameras[];
-};
+layout(std430) readonly buffer Visible { uvec2 visible[]; };  // triangle | own << 31, cluster
+layout(std430) readonly buffer Places { ivec4 places[]; };
+layout(std430) readonly buffer Cameras { ClusterCamera cameras[]; };
 uniform vec2 atlasSizePx;
 
 flat out uint triangleOfPoint;

@@ -11,18 +11,14 @@ uniform sampler2D samples;
 uniform bool holdsOffsets;  // `samples` does; else a = 1 is valid
 uniform bool onlyPoints;
 
-layout(std430) restrict writeonly buffer Triangles {
-    uint triangles[];
-};
+layout(std430) restrict writeonly buffer Triangles { uint triangles[]; };
 layout(std430) restrict writeonly buffer Points { uint points[]; };
 struct Command {
     uint count, instanceCount, firstIndex;
     int baseVertex;
     uint baseInstance;
 };
-layout(std430) restrict buffer Commands {
-    Command triangleDraw, pointDraw;
-};
+layout(std430) restrict buffer Commands { Command triangleDraw, pointDraw; };
 
 bool isValid(ivec2 pixel) {
     vec4 texel = texelFetch(samples, pixel, 0);

@@ -1,12 +1,8 @@
 // Closest hits by the BVH that GpuBvh builds and binds.
 #include "reflections/bvh_layout.glsl"
 
-layout(std430) restrict readonly buffer BvhNodes {
-    BvhNode bvhNodes[];
-};
-layout(std430) restrict readonly buffer BvhTriangles {
-    BvhTriangle bvhTriangles[];
-};
+layout(std430) restrict readonly buffer BvhNodes { BvhNode bvhNodes[]; };
+layout(std430) restrict readonly buffer BvhTriangles { BvhTriangle bvhTriangles[]; };
 
 struct RayHit {
     float t;           // in lengths of the direction

@@ -5,9 +5,7 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430) restrict writeonly buffer Pairs {
-    uvec2 pairs[];  // code, triangle
-};
+layout(std430) restrict writeonly buffer Pairs { uvec2 pairs[]; };  // code, triangle
 
 uniform uint triangleCount;
 uniform vec3 boundsMin;

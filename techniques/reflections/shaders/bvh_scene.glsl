@@ -1,13 +1,9 @@
 // The scene's triangles as the passes that build a BVH read them, in the objects' present poses.
 #include "reflections/objects.glsl"
 
-layout(std430) restrict readonly buffer Positions {
-    float positions[];
-};
+layout(std430) restrict readonly buffer Positions { float positions[]; };
 layout(std430) restrict readonly buffer Indices { uint indices[]; };
-layout(std430) restrict readonly buffer ObjectOfTriangle {
-    uint objectOfTriangle[];
-};
+layout(std430) restrict readonly buffer ObjectOfTriangle { uint objectOfTriangle[]; };
 
 void worldCorners(uint triangle, out vec3 a, out vec3 b, out vec3 c) {
     uint object = objectOfTriangle[triangle];

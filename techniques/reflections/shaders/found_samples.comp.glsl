@@ -7,9 +7,7 @@ struct FoundSample {
     float distanceM;
     float radiance[3];
 };
-layout(std430) restrict readonly buffer Samples {
-    FoundSample samples[];
-};
+layout(std430) restrict readonly buffer Samples { FoundSample samples[]; };
 layout(rgba16f) uniform restrict writeonly image2D radianceImage;
 layout(r32f) uniform restrict writeonly image2D distanceImage;
 

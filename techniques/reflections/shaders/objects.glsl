@@ -15,6 +15,4 @@ struct Object {
     vec4 reflection;   // factors of metalness and roughness, least s, largest roughness
 };
 
-layout(std430) readonly buffer Objects {
-    Object objects[];
-};
+layout(std430) readonly buffer Objects { Object objects[]; };

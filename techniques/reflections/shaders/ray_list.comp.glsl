@@ -7,9 +7,7 @@
 layout(local_size_x = LIST_GROUP_SIZE) in;
 
 uniform usampler2D wanted;
-layout(std430) restrict writeonly buffer Samples {
-    uint samples[];  // x | y << 16
-};
+layout(std430) restrict writeonly buffer Samples { uint samples[]; };  // x | y << 16
 layout(std430) restrict buffer Arguments {
     uint groups[3];
     uint sampleCount;

@@ -6,9 +6,7 @@
 layout(local_size_x = GROUP_SIZE) in;
 
 layout(std430) restrict readonly buffer Pairs { uvec2 pairs[]; };
-layout(std430) restrict writeonly buffer SortedPairs {
-    uvec2 sortedPairs[];
-};
+layout(std430) restrict writeonly buffer SortedPairs { uvec2 sortedPairs[]; };
 layout(std430) restrict readonly buffer Counts { uint counts[]; };
 
 uniform uint pairCount;

@@ -2,9 +2,7 @@
 #include "reflections/shading.glsl"
 
 layout(std430) restrict readonly buffer Normals { float normals[]; };
-layout(std430) restrict readonly buffer Texcoords {
-    float texcoords[];
-};
+layout(std430) restrict readonly buffer Texcoords { float texcoords[]; };
 layout(std430) restrict readonly buffer Colors { float colors[]; };
 
 vec2 texcoordOf(uint vertex) {

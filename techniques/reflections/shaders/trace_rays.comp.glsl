@@ -10,9 +10,7 @@
 layout(local_size_x = TRACE_GROUP_SIZE) in;
 
 layout(std430) restrict readonly buffer Indices { uint indices[]; };
-layout(std430) restrict readonly buffer ObjectOfTriangle {
-    uint objectOfTriangle[];
-};
+layout(std430) restrict readonly buffer ObjectOfTriangle { uint objectOfTriangle[]; };
 layout(std430) restrict readonly buffer Samples { uint samples[]; };
 layout(std430) restrict readonly buffer Arguments {
     uint groups[3];

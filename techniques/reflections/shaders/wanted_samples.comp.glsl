@@ -11,12 +11,8 @@ struct ListedSample {
     float normal[2];   // octahedral
     float diffuse[3];  // kept
 };
-layout(std430) restrict readonly buffer Places {
-    uint places[];  // x + width · y
-};
-layout(std430) restrict writeonly buffer Samples {
-    ListedSample samples[];
-};
+layout(std430) restrict readonly buffer Places { uint places[]; };  // x + width · y
+layout(std430) restrict writeonly buffer Samples { ListedSample samples[]; };
 
 uniform uint count;
 
