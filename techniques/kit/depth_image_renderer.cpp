@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/gpu_scene/gpu_mesh.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::kit {
 namespace {
@@ -76,9 +77,6 @@ glm::mat4 viewFromPixels(const View& view) {
 
 void clear(const DepthImage& target, DepthFormat format, bool isShaded) {
     constexpr GLuint kNoTriangle[4] = {};
-    glDisable(GL_SCISSOR_TEST);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDepthMask(GL_TRUE);
     if (isShaded) target.framebuffer.clearColour(kShadingTarget, glm::vec4(0.0F));
     target.framebuffer.clearColour(kDepthTarget, glm::vec4(0.0F));
     glClearNamedFramebufferuiv(target.framebuffer.id(), GL_COLOR, kTriangleIdTarget, kNoTriangle);
@@ -148,16 +146,10 @@ void DepthImageRenderer::render(const DrawableScene& scene, DepthImage& target,
     }
     pass.setIfActive("viewFromPixels", viewFromPixels(view));
 
+    setNearestWins(isReversed(format_) ? GL_GREATER : GL_LESS);
     clear(target, format_, isShaded);
     target.framebuffer.bind();
-    glDisable(GL_BLEND);
-    glEnable(GL_DEPTH_TEST);
-    if (isReversed(format_)) {
-        glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-        glDepthFunc(GL_GREATER);
-    } else {
-        glDepthFunc(GL_LESS);
-    }
+    if (isReversed(format_)) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     const GLboolean writesShading = isShaded ? GL_TRUE : GL_FALSE;
     glColorMaski(kShadingTarget, writesShading, writesShading, writesShading, writesShading);
     scene.draw(pass, earlierImages(pass, view, earlier, redundancy));

@@ -1,4 +1,4 @@
-// Draws that are flushed now and then, and the size of dispatches.
+// Draws that are flushed now and then, what they test, and the size of dispatches.
 #pragma once
 
 #include <algorithm>
@@ -60,6 +60,18 @@ inline const void* indexOffset(std::uint32_t first) {
 inline void drawTriangles(std::uint32_t first, std::uint32_t count) {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
                    indexOffset(first));
+}
+
+/// For draws of which the nearest fragment stays: all channels and depths are written; no culling,
+/// blending or scissors.
+inline void setNearestWins(GLenum nearer = GL_LESS) {
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(nearer);
+    glDepthMask(GL_TRUE);
 }
 
 /// Work groups of `groupSize` that `count` invocations take.

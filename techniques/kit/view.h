@@ -20,6 +20,7 @@ struct View {
     float farM = 0.0F;
 
     glm::mat4 clipFromWorld() const { return clipFromView * viewFromWorld; }
+    bool operator==(const View&) const = default;
 };
 
 /// Planes a·x + b·y + c·z + d ≥ 0 of what the view holds, in world space, of unit normals: −w ≤ x,

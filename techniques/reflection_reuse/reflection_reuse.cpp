@@ -214,26 +214,6 @@ config::Outputs outputs() {
     });
 }
 
-/// Chapter 5 walks through rooms at rest: its ray tracer's frames (Table 22) take less time than
-/// chapter 4 needs for the BVH of one frame (Sec. 4.7.2), so that it cannot have built one a frame.
-class RestingTracer final : public reflections::ReflectionTracer {
-  public:
-    explicit RestingTracer(std::unique_ptr<reflections::ReflectionTracer> tracer)
-        : tracer_(std::move(tracer)) {}
-    void update(const reflections::GpuObjects& objects, gl::Profiler& profiler) override {
-        if (watch_.hasChanged(objects.poses())) tracer_->update(objects, profiler);
-    }
-    void trace(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
-               reflections::ReflectionTarget& target, gl::Profiler& profiler) override {
-        tracer_->trace(gbuffer, wanted, target, profiler);
-    }
-    std::size_t sizeBytes() const override { return tracer_->sizeBytes(); }
-
-  private:
-    std::unique_ptr<reflections::ReflectionTracer> tracer_;
-    reflections::PoseWatch watch_;
-};
-
 std::vector<glm::vec2> readOffsets(const Offsets& offsets) {
     return offsets.offset.read<glm::vec2>(GL_RG, GL_FLOAT, 1);
 }
@@ -318,7 +298,7 @@ class ReflectionReuse final : public technique::Technique {
         const gl::ShaderLibrary& shaders = context.shaders;
         shared_ = context.shared;
         frame_.emplace(context, params_);
-        tracer_ = std::make_unique<RestingTracer>(makeTracer(shaders));
+        tracer_ = makeTracer(shaders);
         place({0, 1, context.profiler});
         if (params_.method == Method::RayTraced) {
             fullTracing_.emplace(FullTracing{reflections::GBufferRenderer(shaders, frame_->scene),
@@ -347,7 +327,10 @@ class ReflectionReuse final : public technique::Technique {
     void render(technique::FrameContext& context) override {
         gl::Profiler& profiler = context.profiler;
         place(context);
-        tracer_->update(frame_->objects, profiler);
+        // Chapter 5 walks through rooms at rest: its ray tracer's frames (Table 22) take less time
+        // than chapter 4 needs for the BVH of one frame (Sec. 4.7.2), so that it cannot have built
+        // one a frame.
+        if (traced_.hasChanged(frame_->objects.poses())) tracer_->update(frame_->objects, profiler);
         if (renderer_) {
             // Warm-ups and repetitions must not move the choice of key frames on.
             if (context.frame == frameIndex_) renderer_->undo();
@@ -573,6 +556,7 @@ class ReflectionReuse final : public technique::Technique {
     ReuseParams params_;
     std::optional<reflections::Frame> frame_;
     std::unique_ptr<reflections::ReflectionTracer> tracer_;
+    reflections::PoseWatch traced_;           // poses that tracer_ knows
     std::optional<ReuseRenderer> renderer_;   // of `reuse` and `direct`
     std::optional<FullTracing> fullTracing_;  // of `ray_traced`
     technique::SharedResults* shared_ = nullptr;

@@ -130,16 +130,6 @@ gl::Resources carried(const ReflectionDepthImage& key, const gl::Texture& radian
             {"keySurface", key.gbuffer.surface}};
 }
 
-void setDrawState() {
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);  // reflections in a hollow turn over
-    glDisable(GL_SCISSOR_TEST);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glDepthMask(GL_TRUE);
-}
-
 }  // namespace
 
 ShiftedImage::ShiftedImage(glm::ivec2 sizePx)
@@ -174,7 +164,7 @@ void Reprojection::setKeyFrame(const ReflectionDepthImage& key) {
 }
 
 void Reprojection::drawGrid(const gl::Program& program, float pointBias) {
-    setDrawState();
+    kit::setNearestWins();  // no culling: reflections in a hollow turn over
     program.set("isPoints", 0);
     program.set("pointBias", 0.0F);
     cells_.drawTriangles();
@@ -207,9 +197,11 @@ gl::Resources Reprojection::newViewOf(const gl::Program& program, const Reflecti
     return gbuffer.resourcesFor(program);
 }
 
-gl::Framebuffer Reprojection::newView(const gl::Texture& radiance,
-                                      const gl::Texture& wanted) const {
-    gl::Framebuffer framebuffer(std::array<const gl::Texture*, 2>{&radiance, &wanted},
+gl::Framebuffer Reprojection::newView(const reflections::GBuffer& gbuffer,
+                                      reflections::ReflectionTarget& target, gl::Texture& wanted) {
+    wantAll(gbuffer, wanted);
+    target.distance.clearToZero();
+    gl::Framebuffer framebuffer(std::array<const gl::Texture*, 2>{&target.radiance, &wanted},
                                 &depthBuffer_);
     framebuffer.clearDepth(1.0F);
     framebuffer.bind();
@@ -230,9 +222,7 @@ void Reprojection::warp(const ReflectionDepthImage& key, const gl::Texture& radi
                         const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
                         gl::Texture& wanted) {
     cells_.list(radiance, CellList::Validity::Alpha, settings_.forward == Forward::Splats);
-    wantAll(gbuffer, wanted);
-    target.distance.clearToZero();
-    const gl::Framebuffer framebuffer = newView(target.radiance, wanted);
+    const gl::Framebuffer framebuffer = newView(gbuffer, target, wanted);
     warp_.use(carried(key, radiance).with(newViewOf(warp_, key, gbuffer)));
     // z/w = a + b/w: what is kPointBias farther on the same ray has b / (1 + kPointBias).
     const float b = gbuffer.view.clipFromView[3].z;
@@ -243,9 +233,7 @@ void Reprojection::project(const ReflectionDepthImage& key, const Offsets& offse
                            const gl::Texture* doubtful, const reflections::GBuffer& gbuffer,
                            reflections::ReflectionTarget& target, gl::Texture& wanted) {
     cells_.list(offsets.offset, CellList::Validity::Offset, settings_.forward == Forward::Splats);
-    wantAll(gbuffer, wanted);
-    target.distance.clearToZero();
-    const gl::Framebuffer framebuffer = newView(target.radiance, wanted);
+    const gl::Framebuffer framebuffer = newView(gbuffer, target, wanted);
     project_.use(carried(key, key.reflection.radiance)
                      .with(paths(project_, key, offsets, doubtful))
                      .with(newViewOf(project_, key, gbuffer)));

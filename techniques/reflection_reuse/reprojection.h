@@ -129,8 +129,9 @@ class Reprojection {
                         const Offsets& offsets, const gl::Texture* doubtful) const;
     gl::Resources newViewOf(const gl::Program& program, const ReflectionDepthImage& key,
                             const reflections::GBuffer& gbuffer) const;
-    /// Cleared and bound.
-    gl::Framebuffer newView(const gl::Texture& radiance, const gl::Texture& wanted) const;
+    /// Cleared, all of it wanted, and bound.
+    gl::Framebuffer newView(const reflections::GBuffer& gbuffer,
+                            reflections::ReflectionTarget& target, gl::Texture& wanted);
 
     ReprojectionSettings settings_;
     CellList cells_;

@@ -121,7 +121,11 @@ void ReuseRenderer::render(const kit::View& view, gl::Profiler& profiler,
     GFXREPRO_ASSERT(view.sizePx == gbuffer_.view.sizePx);
     // First what every frame needs: the device draws it while the count of the frame before, by
     // which this one is a key frame or not, is waited for.
-    drawDiffuse(view, profiler);
+    {
+        const gl::GpuScope scope(profiler, "diffuse");
+        gbuffer_.view = view;
+        gbufferRenderer_.render(objects_, gbuffer_);
+    }
     isKeyFrame_ = isKeyFrameNext();
     hadOffsets_ = hasOffsets_;
     if (isKeyFrame_) {
@@ -145,12 +149,6 @@ bool ReuseRenderer::isKeyFrameNext() const {
     if (isKeyFrame_) return false;
     const double share = double{settings_.keyFrameThreshold};
     return recomputedSamples() > share * reprojection_.reflectiveSamples();
-}
-
-void ReuseRenderer::drawDiffuse(const kit::View& view, gl::Profiler& profiler) {
-    const gl::GpuScope scope(profiler, "diffuse");
-    gbuffer_.view = view;
-    gbufferRenderer_.render(objects_, gbuffer_);
 }
 
 void ReuseRenderer::renderKeyFrame(gl::Profiler& profiler) {

@@ -109,7 +109,6 @@ class ReuseRenderer {
   private:
     std::uint32_t recomputedSamples() const;
     bool isKeyFrameNext() const;
-    void drawDiffuse(const kit::View& view, gl::Profiler& profiler);
     void renderKeyFrame(gl::Profiler& profiler);
     void renderReused(gl::Profiler& profiler, gl::Profiler* recomputeTimes);
     void match(gl::Profiler& profiler);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "techniques/kit/draws.h"
+
 namespace gfxrepro::reflections {
 
 namespace {
@@ -24,9 +26,6 @@ gl::Defines gbufferDefines(const ReflectiveScene& scene) {
 
 void clear(const GBuffer& target) {
     constexpr GLuint kNoSurface[4] = {};
-    glDisable(GL_SCISSOR_TEST);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDepthMask(GL_TRUE);
     target.framebuffer.clearColour(kDiffuseTarget, glm::vec4(keptColour(kBackground), 0.0F));
     target.framebuffer.clearColour(kNormalTarget, glm::vec4(0.0F));
     target.framebuffer.clearColour(kDepthTarget, glm::vec4(0.0F));
@@ -117,12 +116,9 @@ GBufferRenderer::GBufferRenderer(const gl::ShaderLibrary& shaders, const Reflect
             gbufferDefines(scene)) {}
 
 void GBufferRenderer::render(const GpuObjects& objects, GBuffer& target) const {
+    kit::setNearestWins();
     clear(target);
     target.framebuffer.bind();
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
     pass_.set("clipFromWorld", target.view.clipFromWorld());
     pass_.set("eyeWorld", target.view.eyeWorld);
     pass_.use(objects.resources());

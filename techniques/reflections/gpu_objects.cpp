@@ -29,18 +29,9 @@ struct ObjectRecord {
     glm::ivec4 layers;
     glm::vec4 reflection;
 };
-static_assert(offsetof(ObjectRecord, normalFromMesh) == 64);
-static_assert(offsetof(ObjectRecord, baseColor) == 128);
-static_assert(offsetof(ObjectRecord, emissive) == 144);
-static_assert(offsetof(ObjectRecord, boundsCentre) == 160);
-static_assert(offsetof(ObjectRecord, boundsHalfSize) == 176);
-static_assert(offsetof(ObjectRecord, firstTriangle) == 192);
-static_assert(offsetof(ObjectRecord, triangleCount) == 196);
-static_assert(offsetof(ObjectRecord, textureLayer) == 200);
-static_assert(offsetof(ObjectRecord, surface) == 204);
-static_assert(offsetof(ObjectRecord, layers) == 208);
-static_assert(offsetof(ObjectRecord, reflection) == 224);
-static_assert(sizeof(ObjectRecord) == 240);
+static_assert(offsetof(ObjectRecord, baseColor) == 128 &&
+              offsetof(ObjectRecord, firstTriangle) == 192 &&
+              offsetof(ObjectRecord, layers) == 208 && sizeof(ObjectRecord) == 240);
 
 /// Lights of shaders/shading.glsl, std140.
 struct LightRecord {

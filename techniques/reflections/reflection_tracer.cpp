@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::reflections {
 
@@ -144,13 +145,7 @@ void EnvironmentMap::render(const GpuObjects& objects) {
     // Everything lies before the far plane; what is nearer than a thousandth of it is cut off.
     const float farM = std::max(1.001F * reachOf(objects.boundsWorld(), centreWorld_), 1e-3F);
     const glm::mat4 clipFromView = glm::perspective(glm::radians(90.0F), 1.0F, 1e-3F * farM, farM);
-    glDisable(GL_SCISSOR_TEST);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDepthMask(GL_TRUE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
+    kit::setNearestWins();
     pass_.set("eyeWorld", centreWorld_);
     pass_.use(objects.resources());
     for (int i = 0; i < 6; ++i) {
