@@ -25,15 +25,8 @@ bool isSeen(uint object, uint cluster) {
     bool isOwn = reflector == cameras[cluster].reflector;
     if (areBackToBack(reflector, cameras[cluster].reflector)) return false;
     if (isOwn && (cameras[cluster].flags & kShowsOwn) == 0u) return false;
-    mat4 rows = transpose(cameras[cluster].clipFromWorld);
-    vec3 centre = objects[object].boundsCentre.xyz;
-    vec3 halfSize = objects[object].boundsHalfSize.xyz;
-    return reaches(rows[3] + rows[0], centre, halfSize) &&
-           reaches(rows[3] - rows[0], centre, halfSize) &&
-           reaches(rows[3] + rows[1], centre, halfSize) &&
-           reaches(rows[3] - rows[1], centre, halfSize) &&
-           reaches(rows[3] + rows[2], centre, halfSize) &&
-           reaches(rows[3] - rows[2], centre, halfSize);
+    return isInFrustum(transpose(cameras[cluster].clipFromWorld), objects[object].boundsCentre.xyz,
+                       objects[object].boundsHalfSize.xyz);
 }
 
 void main() {

@@ -6,6 +6,15 @@ bool reaches(vec4 plane, vec3 centre, vec3 halfSize) {
     return dot(plane.xyz, centre) + plane.w + dot(abs(plane.xyz), halfSize) >= 0.0;
 }
 
+// Rows of the matrix to clip space: −w ≤ x, y, z ≤ w.
+bool isInFrustum(mat4 rows, vec3 centre, vec3 halfSize) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!reaches(rows[3] + rows[axis], centre, halfSize)) return false;
+        if (!reaches(rows[3] - rows[axis], centre, halfSize)) return false;
+    }
+    return true;
+}
+
 // As cluster_images.h has it; reflectors beyond the list are none of the scene's.
 bool areBackToBack(uint a, uint b) {
     if (a >= uint(families.length()) || b >= uint(families.length())) return false;

@@ -54,23 +54,14 @@ uint countBefore(bool value, out uint total) {
     return before;
 }
 
-struct Frustum {
-    vec4 x, y, z, w;  // rows of the cluster's matrix
-};
-
-bool isInFrustum(Frustum f, vec3 centre, vec3 halfSize) {
-    return reaches(f.w + f.x, centre, halfSize) && reaches(f.w - f.x, centre, halfSize) &&
-           reaches(f.w + f.y, centre, halfSize) && reaches(f.w - f.y, centre, halfSize) &&
-           reaches(f.w + f.z, centre, halfSize) && reaches(f.w - f.z, centre, halfSize);
-}
-
 // The part's coarsest level whose error is small in texels, where the part is nearest.
-uint levelOf(DetailPart part, Frustum f, float nearM, vec3 centre, vec3 halfSize, mat3 axes,
+uint levelOf(DetailPart part, mat4 rows, float nearM, vec3 centre, vec3 halfSize, mat3 axes,
              vec2 sizePx) {
     // Row x is scale · axis − shift · n: of a point at distance w, a metre aside is scale / w.
-    vec3 n = f.w.xyz;
-    vec2 scale = vec2(length(f.x.xyz - dot(f.x.xyz, n) * n), length(f.y.xyz - dot(f.y.xyz, n) * n));
-    float nearest = max(dot(n, centre) + f.w.w - dot(abs(n), halfSize), nearM);
+    vec3 n = rows[3].xyz;
+    vec3 x = rows[0].xyz, y = rows[1].xyz;
+    vec2 scale = vec2(length(x - dot(x, n) * n), length(y - dot(y, n) * n));
+    float nearest = max(dot(n, centre) + rows[3].w - dot(abs(n), halfSize), nearM);
     float texelsPerMetre = 0.5 * max(scale.x * sizePx.x, scale.y * sizePx.y) / nearest;
     float metresPerMesh = max(length(axes[0]), max(length(axes[1]), length(axes[2])));
     float most = levelErrorPx / max(texelsPerMetre * metresPerMesh, 1e-30);
@@ -81,8 +72,9 @@ uint levelOf(DetailPart part, Frustum f, float nearM, vec3 centre, vec3 halfSize
     return level;
 }
 
-vec3 clipped(Frustum f, float perNear, vec3 p) {
-    return vec3(dot(f.x, vec4(p, 1.0)), dot(f.y, vec4(p, 1.0)), dot(f.w, vec4(p, 1.0))) * perNear;
+vec3 clipped(mat4 rows, float perNear, vec3 p) {
+    vec4 at = vec4(p, 1.0);
+    return vec3(dot(rows[0], at), dot(rows[1], at), dot(rows[3], at)) * perNear;
 }
 
 float cross2(vec2 a, vec2 b) {
@@ -127,7 +119,7 @@ bool mayShow(vec3 a, vec3 b, vec3 c, vec2 sizePx) {
     return false;
 }
 
-void listTriangles(uint chunkAndOwn, uint cluster, Frustum f, float perNear, vec2 sizePx,
+void listTriangles(uint chunkAndOwn, uint cluster, mat4 rows, float perNear, vec2 sizePx,
                    vec3 eyeWorld) {
     uint self = gl_LocalInvocationID.x;
     uint chunk = chunkAndOwn & ~(kOwnTriangle | kMirrored);
@@ -137,9 +129,9 @@ void listTriangles(uint chunkAndOwn, uint cluster, Frustum f, float perNear, vec
     if (self < chunks[chunk].triangleCount) {
         vec3 worldA = cornerOf(triangle, 0u), worldB = cornerOf(triangle, 1u);
         vec3 worldC = cornerOf(triangle, 2u);
-        a = clipped(f, perNear, worldA);
-        b = clipped(f, perNear, worldB);
-        c = clipped(f, perNear, worldC);
+        a = clipped(rows, perNear, worldA);
+        b = clipped(rows, perNear, worldB);
+        c = clipped(rows, perNear, worldC);
         isShown = mayShow(a, b, c, sizePx);
         // The own reflector where it faces the camera, as cluster_image.frag.glsl has it.
         bool showsBack = (cameras[cluster].flags & kShowsOwnBack) != 0u;
@@ -169,7 +161,6 @@ void main() {
     vec2 sizePx = vec2(places[cluster].zw);
     if (sizePx.x == 0.0) return;  // no image, the whole workgroup
     mat4 rows = transpose(cameras[cluster].clipFromWorld);
-    Frustum f = Frustum(rows[0], rows[1], rows[2], rows[3]);
     float nearM = cameras[cluster].eyeWorld.w;
     bool showsOwn = (cameras[cluster].flags & kShowsOwn) != 0u;
     uint reflector = cameras[cluster].reflector;
@@ -188,9 +179,9 @@ void main() {
             bool isOwn = ofPart == reflector;
             if (isOwn) own = kOwnTriangle | (determinant(axes) < 0.0 ? kMirrored : 0u);
             bool isLeftOut = areBackToBack(ofPart, reflector) || (isOwn && !showsOwn);
-            if (!isLeftOut && isInFrustum(f, centre, halfSize)) {
+            if (!isLeftOut && isInFrustum(rows, centre, halfSize)) {
                 DetailLevel level =
-                    levels[levelOf(part, f, nearM, centre, halfSize, axes, sizePx)];
+                    levels[levelOf(part, rows, nearM, centre, halfSize, axes, sizePx)];
                 seen = uvec2(level.firstChunk, level.chunkCount);
             }
         }
@@ -211,7 +202,7 @@ void main() {
                 }
                 chunk = firsts[k] + slot - starts[k];
                 isSeen =
-                    isInFrustum(f, chunkBoxes[2u * chunk].xyz, chunkBoxes[2u * chunk + 1u].xyz);
+                    isInFrustum(rows, chunkBoxes[2u * chunk].xyz, chunkBoxes[2u * chunk + 1u].xyz);
                 chunk |= ownParts[k];
             }
             uint seenTotal;
@@ -219,7 +210,7 @@ void main() {
             if (isSeen) seenChunks[before] = chunk;
             barrier();
             for (uint i = 0u; i < seenTotal; ++i) {
-                listTriangles(seenChunks[i], cluster, f, 1.0 / nearM, sizePx,
+                listTriangles(seenChunks[i], cluster, rows, 1.0 / nearM, sizePx,
                               cameras[cluster].eyeWorld.xyz);
             }
             barrier();
