@@ -21,12 +21,8 @@ class BeamTest : public ReflectionsTest {
         addPart(source, std::move(mesh), {.metallic = 1.0F, .roughness = 0.0F},
                 glm::rotate(glm::mat4(1.0F), tiltRad, {0, 1, 0}));
         const ReflectiveScene scene(source);
-        scene::Camera camera;
-        camera.position = {0, 0, 4};
-        camera.target = {0, 0, 0};
-        camera.nearM = 0.1F;
-        camera.farM = 10.0F;
-        GBuffer gbuffer(kit::viewOf(camera, kSize));
+        GBuffer gbuffer(kit::viewOf(
+            {.position = {0, 0, 4}, .target = {0, 0, 0}, .nearM = 0.1F, .farM = 10.0F}, kSize));
         GBufferRenderer(shaders, scene).render(GpuObjects(scene), gbuffer);
         return gbuffer;
     }
@@ -38,39 +34,22 @@ class BeamTest : public ReflectionsTest {
 };
 
 TEST_F(BeamTest, IsTheSameOnTheDevice) {
-    const gl::Pass read = compute(R"(#version 450 core
-#include "reflections/beam.glsl"
-layout(local_size_x = 1) in;
-layout(std430) writeonly buffer Results { vec4 results[]; };
-void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x + gl_GlobalInvocationID.x;
+    const gl::Pass read = compute("beam", "", R"(
     vec3 beam = beamOf(pixel);
-    results[i] = vec4(beamArea(beam, 0.0), beamArea(beam, 0.5), beamArea(beam, 3.0), 0.0);
-}
-)");
+    results[i] = vec4(beamArea(beam, 0.0), beamArea(beam, 0.5), beamArea(beam, 3.0), 0.0);)");
     const GBuffer gbuffer = mirrorSeen(ballMesh(), 0.4F);
     const HostGBuffer host = readGBuffer(gbuffer);
-    const gl::Buffer buffer(host.depthM.size() * sizeof(glm::vec4));
-    read.dispatch({kSize.x, kSize.y, 1},
-                  gl::Resources{{"Results", buffer}}.with(gbuffer.resourcesFor(read)));
-    const auto results = buffer.read<glm::vec4>(host.depthM.size());
-    int reflective = 0;
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) {
-            const std::size_t i = host.indexOf({x, y});
-            if (!host.isReflective(i)) continue;
-            ++reflective;
-            const glm::vec3 beam = host.beam({x, y});
-            int at = 0;
-            for (const float distanceM : {0.0F, 0.5F, 3.0F}) {
-                const float expected = beamArea(beam, distanceM);
-                // Differences of directions to neighbours: a hundredth of them, to 2^-24.
-                ASSERT_NEAR(results[i][at++], expected, 1e-3F * expected + 1e-6F)
-                    << x << " " << y << " " << distanceM;
-            }
+    const auto results = computed(read, kSize, 1, gbuffer.resourcesFor(read));
+    const int reflective = forEachReflective(host, [&](glm::ivec2 pixel, std::size_t i) {
+        const glm::vec3 beam = host.beam(pixel);
+        int at = 0;
+        for (const float distanceM : {0.0F, 0.5F, 3.0F}) {
+            const float expected = beamArea(beam, distanceM);
+            // Differences of directions to neighbours: a hundredth of them, to 2^-24.
+            ASSERT_NEAR(results[i][at++], expected, 1e-3F * expected + 1e-6F)
+                << pixel.x << " " << pixel.y << " " << distanceM;
         }
-    }
+    });
     EXPECT_GT(reflective, 600);
 }
 

@@ -17,18 +17,10 @@ scene::Box roomBox() {
     return {glm::vec3(-2.0F, 0.0F, -1.5F), glm::vec3(2.5F, 2.2F, 3.0F)};
 }
 
-std::vector<scene::Material> sixColours() {
-    return {matt({0.9F, 0.1F, 0.1F}), matt({0.1F, 0.8F, 0.1F}), matt({0.2F, 0.2F, 0.9F}),
-            matt({0.8F, 0.8F, 0.1F}), matt({0.7F, 0.1F, 0.8F}), matt({0.1F, 0.7F, 0.8F})};
-}
-
 /// Six coloured walls, a light, and a mirror for a floor.
 scene::Scene mirrorFloorRoom() {
-    scene::Scene scene;
-    scene.name = "mirror floor";
-    std::vector<scene::Material> materials = sixColours();
-    materials[2] = mirror();
-    addRoom(scene, roomBox(), materials);
+    scene::Scene scene = mattRoom(roomBox());
+    scene.materials[2] = mirror();
     scene.lights = {{glm::vec3(0.5F, 1.5F, 0.2F), glm::vec3(0.8F, 0.7F, 0.6F), 1.5F}};
     return scene;
 }
@@ -37,29 +29,19 @@ scene::Camera aboveFloor() {
     return camera({0.2F, 1.6F, 2.2F}, {0.1F, 0.0F, 0.4F});
 }
 
-/// A sphere of radius 0.4 with the normals of the true one.
-scene::Mesh sphere(const glm::vec3& centre) {
-    constexpr unsigned kRings = 96, kSectors = 192;
-    scene::Mesh mesh;
-    for (unsigned ring = 0; ring <= kRings; ++ring) {
-        const float polar = std::numbers::pi_v<float> * static_cast<float>(ring) / kRings;
-        for (unsigned sector = 0; sector <= kSectors; ++sector) {
-            const float azimuth = 2.0F * std::numbers::pi_v<float> * static_cast<float>(sector) /
-                                  static_cast<float>(kSectors);
-            const glm::vec3 normal(std::sin(polar) * std::cos(azimuth), std::cos(polar),
-                                   std::sin(polar) * std::sin(azimuth));
-            mesh.positions.push_back(centre + 0.4F * normal);
-            mesh.normals.push_back(normal);
-        }
-    }
-    for (unsigned ring = 0; ring < kRings; ++ring) {
-        for (unsigned sector = 0; sector < kSectors; ++sector) {
-            const unsigned a = ring * (kSectors + 1) + sector, b = a + kSectors + 1;
-            mesh.triangles.push_back({a, a + 1, b});
-            mesh.triangles.push_back({a + 1, b + 1, b});
-        }
-    }
-    return mesh;
+/// Walls that glow in one colour, and a black floor that reflects.
+scene::Scene glowingRoom(const glm::vec3& colour, float glossiness) {
+    std::vector<scene::Material> materials(6, glowing(colour));
+    materials[2] = mirror(glossiness);
+    materials[2].baseColor = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
+    scene::Scene scene;
+    addRoom(scene, roomBox(), materials);
+    return scene;
+}
+
+std::vector<glm::mat4> posesOf(const EmbreeTrace& traced) {
+    const std::span<const glm::mat4> poses = traced.prepared.objects.poses();
+    return {poses.begin(), poses.end()};
 }
 
 /// What a wall shows at a hit, worked out from its material.
@@ -119,7 +101,7 @@ TEST_F(EmbreeTracerTest, MirrorSphereShowsTheRoom) {
     scene::Scene source = mirrorFloorRoom();
     source.materials[2] = matt({0.2F, 0.2F, 0.9F});
     const glm::vec3 centre(0.2F, 1.0F, 0.3F);
-    addPart(source, sphere(centre), mirror());
+    addPart(source, dome(centre, 0.4F, glm::pi<float>(), 192, 96), mirror());
     const EmbreeTrace traced = trace(source, camera({0.4F, 1.3F, 1.9F}, centre), kSizePx);
 
     int count = 0;
@@ -175,20 +157,12 @@ TEST_F(EmbreeTracerTest, AttributesOfMirroredInstancesStayWithTheirVertices) {
 
 TEST_F(EmbreeTracerTest, GlossyMeanOfOneColourIsThatColour) {
     const glm::vec3 colour(0.3F, 0.4F, 0.5F);
-    scene::Scene source;
-    source.name = "one colour";
-    std::vector<scene::Material> materials(6, glowing(colour));
-    // The floor glows alike: its diffuse colour stands in for what has faded.
-    materials[2] = mirror(0.3F);
-    materials[2].baseColor = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
-    materials[2].emissive = colour;
-    addRoom(source, roomBox(), materials);
+    scene::Scene source = glowingRoom(colour, 0.3F);
+    source.materials[2].emissive = colour;  // the diffuse colour stands in for what has faded
     const EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
-    int count = 0;
-    forEachReflective(traced.gbuffer, [&](glm::ivec2, std::size_t index) {
+    const int count = forEachReflective(traced.gbuffer, [&](glm::ivec2, std::size_t index) {
         // The G-buffer keeps ten bits of a colour's root.
         EXPECT_LT(largestDifference(traced.samples[index].radiance, colour), 2e-3F);
-        ++count;
     });
     EXPECT_GT(count, 800);
 }
@@ -196,14 +170,8 @@ TEST_F(EmbreeTracerTest, GlossyMeanOfOneColourIsThatColour) {
 /// Black floor, glowing walls: what is left of the glow is the mean weight of the lobe's rays.
 TEST_F(EmbreeTracerTest, GlossyRaysFadeTowardsTheFarPlane) {
     const glm::vec3 colour(0.8F, 0.6F, 0.4F);
-    scene::Scene source;
-    source.name = "glow";
-    std::vector<scene::Material> materials(6, glowing(colour));
-    materials[2] = mirror(0.2F);
-    materials[2].baseColor = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
-    addRoom(source, roomBox(), materials);
     const LobeSettings lobe{12, 0.5F, 4.0F};
-    const EmbreeTrace traced = trace(source, aboveFloor(), kSizePx, lobe);
+    const EmbreeTrace traced = trace(glowingRoom(colour, 0.2F), aboveFloor(), kSizePx, lobe);
 
     const float glossiness = 51.0F / 255.0F;
     const double farPlane = double{glm::length(roomBox().size())} * std::pow(0.8, 4.0);
@@ -234,8 +202,7 @@ TEST_F(EmbreeTracerTest, MovedObjectsAreMetWhereTheyAre) {
     EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
     const EnvironmentMap::Host environment = traced.prepared.map.read();
 
-    std::vector<glm::mat4> poses(traced.prepared.objects.poses().begin(),
-                                 traced.prepared.objects.poses().end());
+    std::vector<glm::mat4> poses = posesOf(traced);
     poses[3] = glm::translate(poses[3], glm::vec3(0.0F, 1.0F, 0.0F));
     traced.prepared.objects.setPoses(poses);
     traced.tracer.update(traced.prepared.objects, profiler);
@@ -280,8 +247,7 @@ TEST_F(EmbreeTracerTest, MissesTakeTheMapAsItWasDrawnLast) {
     addPart(source, block({glm::vec3(-0.2F, 0.1F, -2.9F), glm::vec3(0.2F, 2.0F, -2.5F)}),
             glowing({1.0F, 0.5F, 0.0F}));
     EmbreeTrace traced = trace(source, camera({0, 1.5F, 2.5F}, {0, 0, 0}), kSizePx);
-    std::vector<glm::mat4> poses(traced.prepared.objects.poses().begin(),
-                                 traced.prepared.objects.poses().end());
+    std::vector<glm::mat4> poses = posesOf(traced);
     poses[1] = glm::translate(poses[1], glm::vec3(1.0F, 0.0F, 0.0F));
     traced.prepared.objects.setPoses(poses);
     traced.prepared.map.render(traced.prepared.objects);
@@ -316,40 +282,9 @@ TEST_F(EmbreeTracerTest, MirrorRaysEndWhereTheyDoWithRadiance) {
     EXPECT_EQ(readSurfaces(traced.prepared.gbuffer), traced.gbuffer.surface);
 }
 
-TEST_F(EmbreeTracerTest, WritesWantedSamplesOnly) {
-    const scene::Scene source = mirrorFloorRoom();
-    EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
-    std::vector<std::uint8_t> wantedSamples(traced.samples.size());
-    for (std::size_t i = 0; i < traced.samples.size(); ++i) wantedSamples[i] = i % 3 == 0 ? 1 : 0;
-    gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSizePx);
-    wanted.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wantedSamples.data());
-    ReflectionTarget target(kSizePx);
-    traced.tracer.trace(traced.prepared.gbuffer, &wanted, target, profiler);
-
-    const std::vector<float> radiance = target.radiance.read<float>(GL_RGBA, GL_FLOAT, 4);
-    const std::vector<float> distances = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
-    for (std::size_t i = 0; i < traced.samples.size(); ++i) {
-        if (wantedSamples[i] == 0 || !traced.gbuffer.isReflective(i)) continue;
-        EXPECT_EQ(distances[i], traced.samples[i].distanceM);
-        const glm::vec3 written(radiance[4 * i], radiance[4 * i + 1], radiance[4 * i + 2]);
-        EXPECT_LT(largestDifference(written, traced.samples[i].radiance),
-                  1.0F / 2048.0F);  // half floats
-        EXPECT_EQ(radiance[4 * i + 3], 1.0F);
-    }
-    std::vector<std::string> passes;
-    for (const gl::PassTime& time : profiler.collect()) {
-        EXPECT_EQ(time.clock, gl::PassTime::Clock::Cpu);
-        passes.push_back(time.pass);
-    }
-    EXPECT_EQ(passes, (std::vector<std::string>{"bvh_build", "transfer", "intersection"}));
-}
-
 TEST_F(EmbreeTracerTest, TransfersGoWithTheWantedSamples) {
-    scene::Scene source;
-    source.name = "glow";
-    std::vector<scene::Material> materials(6, glowing({0.8F, 0.6F, 0.4F}));
-    materials[2] = mirror(0.2F);  // glossy, so that the diffuse colour counts
-    addRoom(source, roomBox(), materials);
+    scene::Scene source = glowingRoom({0.8F, 0.6F, 0.4F}, 0.2F);
+    source.materials[2] = mirror(0.2F);  // glossy, so that the diffuse colour counts
     EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
     const std::size_t mask = traced.gbuffer.surface.size();
     constexpr glm::vec4 kLeftThere(5.0F);
@@ -362,8 +297,7 @@ TEST_F(EmbreeTracerTest, TransfersGoWithTheWantedSamples) {
             ++selected;
             count += traced.gbuffer.isReflective(i) ? 1 : 0;
         }
-        gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSizePx);
-        wanted.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wantedSamples.data());
+        const gl::Texture wanted = maskTexture(wantedSamples, kSizePx);
         ReflectionTarget target(kSizePx);
         // That no more is uploaded, either: who does not read the rest back cannot write it again.
         const std::vector<glm::vec4> before(wantedSamples.size(), kLeftThere);
@@ -388,8 +322,7 @@ TEST_F(EmbreeTracerTest, TransfersGoWithTheWantedSamples) {
             }
         }
     }
-    gl::Texture none = gl::Texture::make2D(GL_R8UI, kSizePx);
-    none.clearToZero();
+    const gl::Texture none = maskTexture(std::vector<std::uint8_t>(mask), kSizePx);
     ReflectionTarget target(kSizePx);
     bytesReadBack() = 0;
     traced.tracer.trace(traced.prepared.gbuffer, &none, target, profiler);

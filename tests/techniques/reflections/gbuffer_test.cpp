@@ -30,7 +30,7 @@ scene::Scene floorWithBalls() {
     return scene;
 }
 
-std::vector<glm::mat4> posesOf(const scene::Scene& scene) {
+std::vector<glm::mat4> ballPoses(const scene::Scene& scene) {
     const auto ball = [](const glm::vec3& at, float angle, const glm::vec3& size) {
         return glm::rotate(glm::translate(glm::mat4(1.0F), at), angle,
                            glm::normalize(glm::vec3(1, 2, 3))) *
@@ -41,18 +41,15 @@ std::vector<glm::mat4> posesOf(const scene::Scene& scene) {
 }
 
 kit::View viewOfScene() {
-    scene::Camera camera;
-    camera.position = {0.5F, 2.5F, 5.0F};
-    camera.target = {0, 0.5F, 0};
-    camera.nearM = 0.5F;
-    camera.farM = 20.0F;
-    return kit::viewOf(camera, kBufferSize);
+    return kit::viewOf(
+        {.position = {0.5F, 2.5F, 5.0F}, .target = {0, 0.5F, 0}, .nearM = 0.5F, .farM = 20.0F},
+        kBufferSize);
 }
 
 class GBufferTest : public ReflectionsTest {
   protected:
     GBufferTest() {
-        objects.setPoses(posesOf(scene));
+        objects.setPoses(ballPoses(scene));
         posed = prepared.scene();
         for (std::size_t i = 0; i < posed.instances.size(); ++i) {
             posed.instances[i].worldFromMesh = objects.poses()[i];
@@ -139,27 +136,16 @@ TEST_F(GBufferTest, SeesWhatRaysMeet) {
 }
 
 TEST_F(GBufferTest, IsReadTheSameOnTheDevice) {
-    const gl::Pass read = compute(R"(#version 450 core
-#include "reflections/gbuffer.glsl"
-layout(local_size_x = 1) in;
-layout(std430) writeonly buffer Results { vec4 results[]; };
-void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x + gl_GlobalInvocationID.x;
+    const gl::Pass read = compute("gbuffer", "", R"(
     uint surface = texelFetch(gbufferSurface, pixel, 0).r;
     vec3 position = gbufferPosition(pixel);
     vec3 normal = gbufferUnitNormal(pixel);
     results[4 * i] = vec4(position, reflectorOf(surface));
     results[4 * i + 1] = vec4(normal, reflectivityOf(surface));
     results[4 * i + 2] = vec4(gbufferMirrorDirection(position, normal), glossinessOf(surface));
-    results[4 * i + 3] = vec4(gbufferDiffuseAt(pixel), 1.0);
-}
-)");
+    results[4 * i + 3] = vec4(gbufferDiffuseAt(pixel), 1.0);)");
     const HostGBuffer host = readGBuffer(gbuffer);
-    const gl::Buffer buffer(4 * host.depthM.size() * sizeof(glm::vec4));
-    read.dispatch({kBufferSize.x, kBufferSize.y, 1},
-                  gl::Resources{{"Results", buffer}}.with(gbuffer.resourcesFor(read)));
-    const auto results = buffer.read<glm::vec4>(4 * host.depthM.size());
+    const auto results = computed(read, kBufferSize, 4, gbuffer.resourcesFor(read));
     for (int y = 0; y < kBufferSize.y; ++y) {
         for (int x = 0; x < kBufferSize.x; ++x) {
             const std::size_t i = host.indexOf({x, y});
@@ -184,31 +170,27 @@ TEST_F(GBufferTest, KeepsDarkColours) {
     }
     const ReflectiveScene scene(dark);
     GpuObjects darkObjects(scene);
-    darkObjects.setPoses(posesOf(dark));
+    darkObjects.setPoses(ballPoses(dark));
     GBufferRenderer(shaders, scene).render(darkObjects, gbuffer);
     const HostGBuffer host = readGBuffer(gbuffer);
     const raycast::RayTracer rays(posed);
     double sum = 0.0, most = 0.0;
     int count = 0;
-    for (int y = 0; y < kBufferSize.y; ++y) {
-        for (int x = 0; x < kBufferSize.x; ++x) {
-            const std::size_t i = host.indexOf({x, y});
-            const glm::vec3 direction = rayThrough(host.view, glm::vec2(x, y) + 0.5F);
-            const auto hit = rays.closestHit(host.view.eyeWorld, direction);
-            if (!hit || host.reflector(i) == 0) continue;  // the balls have no texture
-            if (glm::distance(host.positionWorld({x, y}), hit->position) > 1e-3F) continue;
-            const glm::vec3 colour =
-                shadeDiffuse(scene.lights(), hit->position, host.normalWorld[i],
-                             scene.albedoAt(hit->flattenedTriangle, hit->barycentric), {});
-            for (int c = 0; c < 3; ++c) {
-                const double off =
-                    255.0 * std::abs(image::srgbOf(host.diffuse[i][c]) - image::srgbOf(colour[c]));
-                sum += off;
-                most = std::max(most, off);
-                ++count;
-            }
+    forEachReflective(host, [&](glm::ivec2 pixel, std::size_t i) {  // the balls have no texture
+        const glm::vec3 direction = rayThrough(host.view, glm::vec2(pixel) + 0.5F);
+        const auto hit = rays.closestHit(host.view.eyeWorld, direction);
+        if (!hit || glm::distance(host.positionWorld(pixel), hit->position) > 1e-3F) return;
+        const glm::vec3 colour =
+            shadeDiffuse(scene.lights(), hit->position, host.normalWorld[i],
+                         scene.albedoAt(hit->flattenedTriangle, hit->barycentric), {});
+        for (int c = 0; c < 3; ++c) {
+            const double off =
+                255.0 * std::abs(image::srgbOf(host.diffuse[i][c]) - image::srgbOf(colour[c]));
+            sum += off;
+            most = std::max(most, off);
+            ++count;
         }
-    }
+    });
     EXPECT_GT(count, 1800);
     // Steps of 0.36 levels; llvmpipe rounds down.
     EXPECT_LE(most, 0.4);
@@ -220,13 +202,7 @@ scene::Scene halvedSquare(scene::Material material, const glm::u8vec3& left,
                           const glm::u8vec3& right) {
     scene::Scene scene;
     addPart(scene, squareMesh(), material);
-    image::Image8 image(512, 512, 3);
-    for (int y = 0; y < 512; ++y) {
-        for (int x = 0; x < 512; ++x) {
-            for (int c = 0; c < 3; ++c) image.at(x, y, c) = (x < 256 ? left : right)[c];
-        }
-    }
-    scene.textures = {std::move(image)};
+    scene.textures = {imageOf([&](int x, int) { return x < 256 ? left : right; })};
     return scene;
 }
 
@@ -236,10 +212,8 @@ struct Halves {
     std::size_t left, right;
 
     Halves(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene, float side = 1.0F) {
-        scene::Camera camera;
-        camera.position = {0, 0, 5.0F * side};
-        camera.target = {0, 0, 0};
-        GBuffer gbuffer(kit::viewOf(camera, kBufferSize));
+        GBuffer gbuffer(
+            kit::viewOf({.position = {0, 0, 5.0F * side}, .target = {0, 0, 0}}, kBufferSize));
         GBufferRenderer(shaders, scene).render(GpuObjects(scene), gbuffer);
         host = readGBuffer(gbuffer);
         left = host.indexOf({kBufferSize.x / 2 - static_cast<int>(9 * side), kBufferSize.y / 2});
@@ -293,7 +267,7 @@ TEST_F(GBufferTest, TintsEmissionByItsTexture) {
 }
 
 TEST_F(GBufferTest, ClearsWhatWasThere) {
-    std::vector<glm::mat4> away = posesOf(scene);
+    std::vector<glm::mat4> away = ballPoses(scene);
     for (glm::mat4& pose : away) pose = glm::translate(glm::mat4(1.0F), {0, 0, 50}) * pose;
     objects.setPoses(away);
     GBufferRenderer(shaders, prepared).render(objects, gbuffer);

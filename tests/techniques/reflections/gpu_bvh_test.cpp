@@ -5,12 +5,9 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "engine/core/files.h"
-#include "engine/core/random.h"
 #include "engine/raycast/ray_tracer.h"
 #include "engine/scene/load.h"
-#include "scenes/shared/mesh_builder.h"
-#include "tests/gl/gl_fixture.h"
+#include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {
 namespace {
@@ -44,10 +41,6 @@ void main() {
 }
 )";
 
-glm::vec3 randomInCube(Random& random) {
-    return {random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F)};
-}
-
 /// What differs from Embree, in rays.
 struct Differences {
     std::size_t hits = 0;  // of Embree
@@ -58,19 +51,19 @@ struct Differences {
     std::size_t barycentrics = 0;   // of the same triangle, by more than 1e-3
 };
 
-class GpuBvhTest : public test::GlTest {
+class GpuBvhTest : public ReflectionsTest {
   protected:
     void pose(const scene::Scene& scene) {
         reflective_.emplace(scene);
         objects_.emplace(*reflective_);
-        bvh_.emplace(shaders_, *objects_);
+        bvh_.emplace(shaders, *objects_);
         posed_ = reflective_->scene();
-        bvh_->build(profiler_);
+        bvh_->build(profiler);
     }
     void move(std::span<const glm::mat4> poses) {
         objects_->setPoses(poses);
         for (std::size_t i = 0; i < poses.size(); ++i) posed_.instances[i].worldFromMesh = poses[i];
-        bvh_->build(profiler_);
+        bvh_->build(profiler);
     }
 
     std::vector<DeviceHit> trace(const std::vector<Ray>& rays) {
@@ -141,9 +134,9 @@ class GpuBvhTest : public test::GlTest {
         const scene::Box box = posed_.bounds();
         std::vector<Ray> rays;
         for (std::size_t i = 0; i < count; ++i) {
-            const glm::vec3 place = randomInCube(random_);
+            const glm::vec3 place = randomIn(random_, -1.0F, 1.0F);
             rays.push_back({box.centre() + 0.75F * place * (box.size() + 0.1F), tMin,
-                            glm::normalize(randomInCube(random_)), tMax});
+                            glm::normalize(randomIn(random_, -1.0F, 1.0F)), tMax});
         }
         return rays;
     }
@@ -198,8 +191,6 @@ class GpuBvhTest : public test::GlTest {
         EXPECT_LE(deepest, 62U) << "the stack of bvh.glsl holds 64";
     }
 
-    gl::ShaderLibrary shaders_{dataFolder("shaders")};
-    gl::Profiler profiler_{true};
     Random random_{11};
     std::optional<ReflectiveScene> reflective_;
     std::optional<GpuObjects> objects_;
@@ -212,9 +203,9 @@ scene::Mesh soup(std::size_t count, float size, unsigned seed) {
     Random random(seed);
     scene::Mesh mesh;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const glm::vec3 centre = randomInCube(random);
+        const glm::vec3 centre = randomIn(random, -1.0F, 1.0F);
         for (int corner = 0; corner < 3; ++corner) {
-            mesh.positions.push_back(centre + size * randomInCube(random));
+            mesh.positions.push_back(centre + size * randomIn(random, -1.0F, 1.0F));
         }
         mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
     }

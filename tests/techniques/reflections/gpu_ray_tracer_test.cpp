@@ -5,40 +5,12 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "engine/core/files.h"
 #include "engine/scene/animation.h"
-#include "scenes/shared/mesh_builder.h"
-#include "techniques/reflections/embree_tracer.h"
-#include "tests/gl/gl_fixture.h"
 #include "tests/techniques/reflections/gl_calls.h"
+#include "tests/techniques/reflections/traced_scenes.h"
 
 namespace gfxrepro::reflections {
 namespace {
-
-/// A mirror ball of `steps` × 2·steps quads with smooth normals.
-void addBall(scene::MeshBuilder& builder, const glm::vec3& centre, float radius, int steps) {
-    std::vector<glm::vec3> positions, normals;
-    std::vector<glm::uvec3> triangles;
-    const int around = 2 * steps;
-    for (int j = 0; j <= steps; ++j) {
-        for (int i = 0; i <= around; ++i) {
-            const float phi = 3.14159265F * static_cast<float>(j) / static_cast<float>(steps);
-            const float theta = 3.14159265F * static_cast<float>(i) / static_cast<float>(steps);
-            normals.emplace_back(std::sin(phi) * std::cos(theta), std::cos(phi),
-                                 std::sin(phi) * std::sin(theta));
-            positions.push_back(centre + radius * normals.back());
-        }
-    }
-    for (int j = 0; j < steps; ++j) {
-        for (int i = 0; i < around; ++i) {
-            const auto a = static_cast<unsigned>(j * (around + 1) + i);
-            const auto b = a + static_cast<unsigned>(around) + 1;
-            triangles.emplace_back(a, a + 1, b);
-            triangles.emplace_back(a + 1, b + 1, b);
-        }
-    }
-    builder.addIndexed(positions, normals, triangles);
-}
 
 /// A mirror floor and a mirror ball among coloured boxes; the boxes move.
 scene::Scene mirrors() {
@@ -59,75 +31,66 @@ scene::Scene mirrors() {
     builder.setColor(glm::vec3(1.0F));
     builder.addBox({0, -0.1F, 0}, {4, 0.1F, 4});
     scene.meshes.push_back(builder.take("floor", 1));
-    addBall(builder, {0, 0.9F, 0}, 0.8F, 24);
-    scene.meshes.push_back(builder.take("ball", 2));
+    scene.meshes.push_back(dome({0, 0.9F, 0}, 0.8F, glm::pi<float>(), 48, 24));
+    scene.meshes.back().material = 2;
     scene.instances = {{.mesh = 0}, {.mesh = 1}, {.mesh = 2}};
     scene.motions = {{.instance = 0, .axis = {0, 1, 0}, .turnRad = 3.0F, .swing = {0, 0.5F, 0}}};
-    scene::Camera camera;
-    camera.name = "front";
-    camera.position = {1.0F, 2.5F, 6.0F};
-    camera.target = {0, 0.6F, 0};
-    camera.verticalFovRad = 0.8F;
-    scene.cameras = {camera};
     return scene;
 }
 
 /// Of the samples that reflect.
 struct Comparison {
-    std::uint32_t samples = 0, mismatches = 0;
+    int samples = 0, mismatches = 0;
     double radianceError = 0.0;  // mean absolute
 };
 
-class GpuRayTracerTest : public test::GlTest {
+class GpuRayTracerTest : public ReflectionsTest {
   protected:
-    static constexpr glm::ivec2 kSizePx{129, 95};  // no multiple of a group's
+    Prepared prepared(const scene::Scene& source, std::optional<float> glossiness = {}) const {
+        return {shaders,
+                source,
+                {.position = {1.0F, 2.5F, 6.0F}, .target = {0, 0.6F, 0}, .verticalFovRad = 0.8F},
+                {129, 95},  // no multiple of a group's
+                glossiness};
+    }
 
     /// Both tracers over the scene in its pose at `time`.
-    Comparison compared(const scene::Scene& from, const LobeSettings& lobe, float glossiness,
-                        double time = 0.0) {
-        ReflectiveScene scene(from);
-        if (glossiness >= 0.0F) scene.setGlossiness(glossiness);
-        GpuObjects objects(scene);
-        EnvironmentMap map(shaders_, scene);
-        map.render(objects);
-        objects.setPoses(scene::posesAt(scene.scene(), time));
-        GBuffer gbuffer(kit::viewOf(from.cameras.front(), kSizePx));
-        GBufferRenderer(shaders_, scene).render(objects, gbuffer);
-        ReflectionTarget target(kSizePx);
-        GpuRayTracer tracer(shaders_, objects, map, lobe, scene.diagonalM());
-        tracer.update(objects, profiler_);
-        tracer.trace(gbuffer, nullptr, target, profiler_);
-        EmbreeTracer embree(shaders_, scene, map, lobe);
-        embree.update(objects, profiler_);
-        const HostGBuffer host = readGBuffer(gbuffer);
+    Comparison compared(const scene::Scene& from, const LobeSettings& lobe,
+                        std::optional<float> glossiness, double time = 0.0) {
+        Prepared frame = prepared(from, glossiness);
+        const float diagonalM = frame.scene.diagonalM();
+        frame.objects.setPoses(scene::posesAt(frame.scene.scene(), time));
+        frame.renderer.render(frame.objects, frame.gbuffer);
+        ReflectionTarget target(frame.gbuffer.view.sizePx);
+        GpuRayTracer tracer(shaders, frame.objects, frame.map, lobe, diagonalM);
+        tracer.update(frame.objects, profiler);
+        tracer.trace(frame.gbuffer, nullptr, target, profiler);
+        EmbreeTracer embree(shaders, frame.scene, frame.map, lobe);
+        embree.update(frame.objects, profiler);
+        const HostGBuffer host = readGBuffer(frame.gbuffer);
         const std::vector<TracedSample> truth = embree.trace(host);
 
         const auto distances = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
         const auto radiances = target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
         // Rays start off their surface; hits nearer than that apart are told apart by rounding.
-        const float roundingM = 0.1F * EmbreeTracer::kStart * scene.diagonalM();
+        const float roundingM = 0.1F * EmbreeTracer::kStart * diagonalM;
         Comparison result;
-        for (std::size_t i = 0; i < truth.size(); ++i) {
-            if (!host.isReflective(i)) continue;
-            ++result.samples;
+        result.samples = forEachReflective(host, [&](glm::ivec2, std::size_t i) {
             const float a = truth[i].distanceM, b = distances[i];
             const bool isMatch =
                 (a > 0.0F) == (b > 0.0F) && std::abs(a - b) <= 1e-4F * std::max(a, b) + roundingM;
             result.mismatches += isMatch ? 0 : 1;
             const glm::vec3 error = glm::abs(glm::vec3(radiances[i]) - truth[i].radiance);
             result.radianceError += static_cast<double>(error.x + error.y + error.z) / 3.0;
-        }
-        result.radianceError /= std::max(result.samples, 1U);
+        });
+        result.radianceError /= std::max(result.samples, 1);
         return result;
     }
     static void expectEmbrees(const Comparison& result) {
-        EXPECT_GT(result.samples, 3000U);
+        EXPECT_GT(result.samples, 3000);
         EXPECT_LE(result.mismatches, result.samples / 2000);  // grazes of edges
         EXPECT_LT(result.radianceError, 5e-4);
     }
-
-    gl::ShaderLibrary shaders_{dataFolder("shaders")};
-    gl::Profiler profiler_{true};
 };
 
 TEST_F(GpuRayTracerTest, MeetsWhatEmbreeMeetsInMirrors) {
@@ -135,8 +98,8 @@ TEST_F(GpuRayTracerTest, MeetsWhatEmbreeMeetsInMirrors) {
 }
 
 TEST_F(GpuRayTracerTest, ShadesLobesAsEmbreeDoes) {
-    for (const float glossiness : {-1.0F, 0.1F, 1.0F}) {
-        SCOPED_TRACE(glossiness);
+    for (const std::optional<float> glossiness : {std::optional<float>(), {0.1F}, {1.0F}}) {
+        SCOPED_TRACE(glossiness.value_or(-1.0F));
         expectEmbrees(compared(mirrors(), {}, glossiness));
     }
     expectEmbrees(compared(mirrors(), {.rays = 5}, 0.3F));
@@ -146,17 +109,10 @@ TEST_F(GpuRayTracerTest, ShadesLobesAsEmbreeDoes) {
 scene::Scene texturedMirrors() {
     scene::Scene scene = mirrors();
     const auto image = [](const auto& texel) {
-        image::Image8 result(512, 512, 3);
-        for (int y = 0; y < 512; ++y) {
-            for (int x = 0; x < 512; ++x) {
-                const glm::vec3 value =
-                    texel(6.2831853F * glm::vec2(x, y) / 128.0F);  // smooth: samplers round weights
-                for (int c = 0; c < 3; ++c) {
-                    result.at(x, y, c) = static_cast<std::uint8_t>(127.5F + 127.0F * value[c]);
-                }
-            }
-        }
-        return result;
+        return imageOf([&](int x, int y) {
+            // Smooth: samplers round weights.
+            return glm::u8vec3(127.5F + 127.0F * texel(6.2831853F * glm::vec2(x, y) / 128.0F));
+        });
     };
     scene.textures = {
         image([](glm::vec2 p) {
@@ -181,11 +137,11 @@ scene::Scene texturedMirrors() {
 }
 
 TEST_F(GpuRayTracerTest, ShadesTexturedMaterialsAsEmbreeDoes) {
-    for (const float glossiness : {-1.0F, 0.0F}) {
-        SCOPED_TRACE(glossiness);
+    for (const std::optional<float> glossiness : {std::optional<float>(), {0.0F}}) {
+        SCOPED_TRACE(glossiness.value_or(-1.0F));
         const Comparison result = compared(texturedMirrors(), {}, glossiness);
         // The floor reflects where its texels are smooth: less than half of what it is.
-        EXPECT_GT(result.samples, 1000U);
+        EXPECT_GT(result.samples, 1000);
         EXPECT_LT(result.samples, compared(mirrors(), {}, 0.0F).samples);
         EXPECT_LE(result.mismatches, result.samples / 1000);
         // Samplers weigh texels in 256ths.
@@ -197,60 +153,17 @@ TEST_F(GpuRayTracerTest, FollowsMovedObjects) {
     expectEmbrees(compared(mirrors(), {}, 0.0F, 0.7));
 }
 
-// A sample that is not wanted keeps what the target had.
-TEST_F(GpuRayTracerTest, TracesOnlyWhatIsWanted) {
-    const ReflectiveScene scene(mirrors());
-    GpuObjects objects(scene);
-    EnvironmentMap map(shaders_, scene);
-    map.render(objects);
-    const glm::ivec2 size(65, 47);  // no multiple of a group's
-    GBuffer gbuffer(kit::viewOf(scene.scene().cameras.front(), size));
-    GBufferRenderer(shaders_, scene).render(objects, gbuffer);
-    GpuRayTracer tracer(shaders_, objects, map, {}, scene.diagonalM());
-    ReflectionTarget all(size), some(size);
-    some.radiance.clearToZero();
-    gl::Texture wanted = gl::Texture::make2D(GL_R8UI, size);
-    std::vector<std::uint8_t> mask(static_cast<std::size_t>(size.x * size.y));
-    for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = i % 3 == 0 ? 1 : 0;
-    wanted.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, mask.data());
-    tracer.update(objects, profiler_);
-    tracer.trace(gbuffer, nullptr, all, profiler_);
-    tracer.trace(gbuffer, &wanted, some, profiler_);
-
-    const auto host = readGBuffer(gbuffer);
-    const auto allRadiance = all.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
-    const auto someRadiance = some.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
-    std::uint32_t traced = 0;
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-        const bool isTraced = host.isReflective(i) && mask[i] != 0;
-        traced += isTraced;
-        ASSERT_EQ(someRadiance[i], isTraced ? allRadiance[i] : glm::vec4(0.0F)) << i;
-    }
-    EXPECT_GT(traced, 100U);
-
-    wanted.clearToZero();
-    some.radiance.clearToZero();
-    tracer.trace(gbuffer, &wanted, some, profiler_);
-    for (const glm::vec4& radiance : some.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1)) {
-        ASSERT_EQ(radiance, glm::vec4(0.0F));
-    }
-}
-
 // What the device may still be reading, of the last frame, is not written to by the host: that
 // would wait for it.
 TEST_F(GpuRayTracerTest, TheHostNeitherWritesNorWaitsWhileItTraces) {
-    const ReflectiveScene scene(mirrors());
-    GpuObjects objects(scene);
-    EnvironmentMap map(shaders_, scene);
-    GBuffer gbuffer(kit::viewOf(scene.scene().cameras.front(), kSizePx));
-    GBufferRenderer(shaders_, scene).render(objects, gbuffer);
-    GpuRayTracer tracer(shaders_, objects, map, {}, scene.diagonalM());
-    tracer.update(objects, profiler_);
-    ReflectionTarget target(kSizePx);
+    const Prepared frame = prepared(mirrors());
+    GpuRayTracer tracer(shaders, frame.objects, frame.map, {}, frame.scene.diagonalM());
+    tracer.update(frame.objects, profiler);
+    ReflectionTarget target(frame.gbuffer.view.sizePx);
     gl::Profiler untimed(false);
-    tracer.trace(gbuffer, nullptr, target, untimed);
+    tracer.trace(frame.gbuffer, nullptr, target, untimed);
     glCalls().clear();
-    tracer.trace(gbuffer, nullptr, target, untimed);
+    tracer.trace(frame.gbuffer, nullptr, target, untimed);
     EXPECT_GT(std::ranges::count(glCalls(), GlCall::Barrier), 0);
     EXPECT_EQ(std::ranges::count(glCalls(), GlCall::Write), 0);
     EXPECT_EQ(std::ranges::count(glCalls(), GlCall::Wait), 0);

@@ -9,24 +9,6 @@
 namespace gfxrepro::reflections {
 namespace {
 
-constexpr const char* kLobeShader = R"(#version 450 core
-#include "reflections/lobe.glsl"
-layout(local_size_x = 1) in;
-struct Input { vec4 directionAndGlossiness; vec4 indexAndDistance; };
-layout(std430) readonly buffer Inputs { Input inputs[]; };
-layout(std430) writeonly buffer Results { vec4 results[]; };
-void main() {
-    Input ray = inputs[gl_GlobalInvocationID.x];
-    float glossiness = ray.directionAndGlossiness.w;
-    int count = raysOf(glossiness);
-    results[2 * gl_GlobalInvocationID.x] =
-        vec4(lobeDirection(ray.directionAndGlossiness.xyz, glossiness,
-                           int(ray.indexAndDistance.x) % count, count), count);
-    results[2 * gl_GlobalInvocationID.x + 1] =
-        vec4(farPlane(glossiness), fadeOf(glossiness, ray.indexAndDistance.y), 0.0, 0.0);
-}
-)";
-
 struct Input {
     glm::vec4 directionAndGlossiness, indexAndDistance;
 };
@@ -43,13 +25,14 @@ TEST_F(ReflectionsTest, SpreadsRaysAsTheHostDoes) {
             {{direction, glossiness},
              {static_cast<float>(random.index(49)), random.uniform(0.0F, 5.0F), 0, 0}});
     }
-    const gl::Pass pass = compute(kLobeShader);
-    const gl::Buffer inputBuffer = gl::Buffer::of(inputs);
-    const gl::Buffer resultBuffer(2 * inputs.size() * sizeof(glm::vec4));
+    const gl::Pass pass = compute("lobe", "vec4 directionAndGlossiness, indexAndDistance;", R"(
+    vec4 mirror = inputs[i].directionAndGlossiness, place = inputs[i].indexAndDistance;
+    int count = raysOf(mirror.w);
+    results[2 * i] = vec4(lobeDirection(mirror.xyz, mirror.w, int(place.x) % count, count), count);
+    results[2 * i + 1] = vec4(farPlane(mirror.w), fadeOf(mirror.w, place.y), 0.0, 0.0);)");
     for (const LobeSettings& lobe : {LobeSettings{}, LobeSettings{16, 0.3F, 2.0F}}) {
         setLobe(pass, lobe, kDiagonalM);
-        pass.dispatch({inputs.size(), 1, 1}, {{"Inputs", inputBuffer}, {"Results", resultBuffer}});
-        const auto results = resultBuffer.read<glm::vec4>(2 * inputs.size());
+        const auto results = computed(pass, inputs, 2);
         int faded = 0;
         for (std::size_t i = 0; i < inputs.size(); ++i) {
             const float glossiness = inputs[i].directionAndGlossiness.w;
@@ -130,21 +113,11 @@ TEST_F(ReflectionsTest, KeepsDirectionsInTwoNumbers) {
             directions.push_back(unit);
         }
     }
-    const gl::Pass pass = compute(R"(#version 450 core
-#include "reflections/octahedral.glsl"
-layout(local_size_x = 1) in;
-layout(std430) readonly buffer Inputs { vec4 inputs[]; };
-layout(std430) writeonly buffer Results { vec4 results[]; };
-void main() {
-    vec2 e = octahedralFromUnit(inputs[gl_GlobalInvocationID.x].xyz);
+    const gl::Pass pass = compute("octahedral", "vec4 unit;", R"(
+    vec2 e = octahedralFromUnit(inputs[i].unit.xyz);
     float outside = max(max(abs(e.x), abs(e.y)) - 1.0, 0.0);
-    results[gl_GlobalInvocationID.x] = vec4(unitFromOctahedral(e), outside);
-}
-)");
-    const gl::Buffer inputBuffer = gl::Buffer::of(directions);
-    const gl::Buffer resultBuffer(directions.size() * sizeof(glm::vec4));
-    pass.dispatch({directions.size(), 1, 1}, {{"Inputs", inputBuffer}, {"Results", resultBuffer}});
-    const auto results = resultBuffer.read<glm::vec4>(directions.size());
+    results[i] = vec4(unitFromOctahedral(e), outside);)");
+    const auto results = computed(pass, directions, 1);
     for (std::size_t i = 0; i < directions.size(); ++i) {
         EXPECT_LE(glm::distance(results[i], directions[i]), 1e-6F) << i;
     }

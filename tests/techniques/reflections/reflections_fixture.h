@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <glm/gtc/constants.hpp>
 #include <string>
+#include <vector>
 
 #include "engine/core/files.h"
 #include "engine/core/random.h"
+#include "engine/gl/profiler.h"
 #include "scenes/shared/mesh_builder.h"
 #include "techniques/reflections/gbuffer.h"
 #include "techniques/reflections/gpu_objects.h"
@@ -70,29 +72,24 @@ inline scene::Mesh dome(const glm::vec3& centre, float radius, float polarRad, u
     return mesh;
 }
 
-/// A ball with smooth normals and colours, radius 1.
+/// A ball of radius 1 whose colours are its normals'.
 inline scene::Mesh ballMesh() {
-    constexpr int kRings = 24, kSectors = 32;
-    scene::Mesh mesh;
-    for (int ring = 0; ring <= kRings; ++ring) {
-        for (int sector = 0; sector <= kSectors; ++sector) {
-            const float theta = glm::radians(180.0F) * static_cast<float>(ring) / kRings;
-            const float phi = glm::radians(360.0F) * static_cast<float>(sector) / kSectors;
-            const glm::vec3 n(std::sin(theta) * std::cos(phi), std::cos(theta),
-                              std::sin(theta) * std::sin(phi));
-            mesh.positions.push_back(n);
-            mesh.normals.push_back(n);
-            mesh.colors.push_back(0.5F + 0.5F * n);
-        }
-    }
-    for (unsigned ring = 0; ring < kRings; ++ring) {
-        for (unsigned sector = 0; sector < kSectors; ++sector) {
-            const unsigned a = ring * (kSectors + 1) + sector;
-            const unsigned b = a + kSectors + 1;
-            if (ring > 0) mesh.triangles.emplace_back(a, a + 1, b);
-            if (ring < kRings - 1) mesh.triangles.emplace_back(a + 1, b + 1, b);
-        }
-    }
+    scene::Mesh mesh = dome(glm::vec3(0.0F), 1.0F, glm::pi<float>(), 32, 24);
+    for (const glm::vec3& normal : mesh.normals) mesh.colors.push_back(0.5F + 0.5F * normal);
+    return mesh;
+}
+
+/// Both in one mesh; either both have normals or none.
+inline scene::Mesh joined(scene::Mesh first, const scene::Mesh& second) {
+    const auto count = static_cast<unsigned>(first.positions.size());
+    first.positions.insert(first.positions.end(), second.positions.begin(), second.positions.end());
+    first.normals.insert(first.normals.end(), second.normals.begin(), second.normals.end());
+    for (const glm::uvec3& t : second.triangles) first.triangles.push_back(t + count);
+    return first;
+}
+
+inline scene::Mesh moved(scene::Mesh mesh, const glm::vec3& by) {
+    for (glm::vec3& position : mesh.positions) position += by;
     return mesh;
 }
 
@@ -113,19 +110,84 @@ inline image::Image8 randomImage(int width, int height, std::uint64_t seed) {
     return image;
 }
 
+/// 512 × 512 texels of 3 channels, color(x, y) each.
+template <class Color>
+image::Image8 imageOf(const Color& color) {
+    image::Image8 image(512, 512, 3);
+    for (int y = 0; y < 512; ++y) {
+        for (int x = 0; x < 512; ++x) {
+            const glm::u8vec3 texel(color(x, y));
+            for (int c = 0; c < 3; ++c) image.at(x, y, c) = texel[c];
+        }
+    }
+    return image;
+}
+
+/// A byte a sample.
+inline gl::Texture maskTexture(const std::vector<std::uint8_t>& values, glm::ivec2 sizePx) {
+    gl::Texture mask = gl::Texture::make2D(GL_R8UI, sizePx);
+    mask.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, values.data());
+    return mask;
+}
+
+/// Calls action(pixel, index) for the reflective samples; returns how many there are.
+template <class Action>
+int forEachReflective(const HostGBuffer& gbuffer, Action&& action) {
+    int count = 0;
+    for (int y = 0; y < gbuffer.view.sizePx.y; ++y) {
+        for (int x = 0; x < gbuffer.view.sizePx.x; ++x) {
+            const std::size_t index = gbuffer.indexOf({x, y});
+            if (!gbuffer.isReflective(index)) continue;
+            action(glm::ivec2(x, y), index);
+            ++count;
+        }
+    }
+    return count;
+}
+
 class ReflectionsTest : public test::GlTest {
   protected:
-    /// A compute shader that includes "reflections/…".
-    gl::Pass compute(const std::string& text, const gl::Defines& defines = {}) const {
+    /// A compute shader that includes reflections/INCLUDE.glsl. Its invocations are at `pixel` and,
+    /// row by row, `i`; `body` reads inputs[i], if members are given, and writes vec4s results[].
+    gl::Pass compute(const std::string& include, const std::string& members,
+                     const std::string& body, const gl::Defines& defines = {}) const {
         // The library takes one folder: the shader goes next to copies of what it includes.
         for (const auto& entry :
              std::filesystem::directory_iterator(shaders.folder() / "reflections")) {
             folder.write("reflections/" + entry.path().filename().string(), readFile(entry.path()));
         }
+        std::string text = "#version 450 core\n#include \"reflections/" + include + ".glsl\"\n";
+        if (!members.empty()) {
+            text += "struct Input { " + members +
+                    " };\nlayout(std430) readonly buffer Inputs { Input inputs[]; };";
+        }
+        text += R"(
+layout(local_size_x = 1) in;
+layout(std430) writeonly buffer Results { vec4 results[]; };
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    uint i = gl_GlobalInvocationID.y * gl_NumWorkGroups.x + gl_GlobalInvocationID.x;)" +
+                body + "\n}\n";
         return pass({{"test.comp.glsl", text}}, defines);
+    }
+    /// `perInput` results of each input.
+    template <class Input>
+    static std::vector<glm::vec4> computed(const gl::Pass& pass, const std::vector<Input>& inputs,
+                                           std::size_t perInput, const gl::Resources& more = {}) {
+        const gl::Buffer in = gl::Buffer::of(inputs);
+        return computed(pass, {inputs.size(), 1}, perInput, more.with({{"Inputs", in}}));
+    }
+    /// The same of each invocation of a grid.
+    static std::vector<glm::vec4> computed(const gl::Pass& pass, glm::uvec2 size,
+                                           std::size_t perInput, const gl::Resources& resources) {
+        const std::size_t count = perInput * size.x * size.y;
+        const gl::Buffer results(count * sizeof(glm::vec4));
+        pass.dispatch({size, 1}, gl::Resources{{"Results", results}}.with(resources));
+        return results.read<glm::vec4>(count);
     }
 
     gl::ShaderLibrary shaders{dataFolder("shaders")};
+    gl::Profiler profiler{true};
 };
 
 }  // namespace gfxrepro::reflections

@@ -36,22 +36,14 @@ struct Traced {
 
 class ScreenSpaceTracerTest : public TracerTest {
   protected:
-    Traced traced(const Prepared& prepared, const LobeSettings& lobe,
-                  const gl::Texture* wanted = nullptr) {
+    Traced traced(const Prepared& prepared, const LobeSettings& lobe) {
         ScreenSpaceTracer tracer(shaders, prepared.map, lobe, prepared.scene.diagonalM(),
                                  kThicknessM);
         tracer.update(prepared.objects, profiler);
         ReflectionTarget target(prepared.gbuffer.view.sizePx);
-        target.radiance.clearToZero();
-        target.distance.clearToZero();
-        tracer.trace(prepared.gbuffer, wanted, target, profiler);
-        Traced result;
-        const std::vector<float> values = target.radiance.read<float>(GL_RGB, GL_FLOAT, 3);
-        for (std::size_t i = 0; i < values.size(); i += 3) {
-            result.radiance.emplace_back(values[i], values[i + 1], values[i + 2]);
-        }
-        result.distanceM = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
-        return result;
+        tracer.trace(prepared.gbuffer, nullptr, target, profiler);
+        return {target.radiance.read<glm::vec3>(GL_RGB, GL_FLOAT, 1),
+                target.distance.read<float>(GL_RED, GL_FLOAT, 1)};
     }
 };
 
@@ -193,30 +185,6 @@ TEST_F(ScreenSpaceTracerTest, GlossyMeansAgreeWithRays) {
     });
     EXPECT_GT(count, 50);
     EXPECT_GE(agreeing, 0.95 * count);
-}
-
-TEST_F(ScreenSpaceTracerTest, WritesWantedSamplesOnly) {
-    const Prepared prepared(shaders, pillarsOnMirror(), beforePillars(), kScreenSizePx);
-    const Traced all = traced(prepared, {});
-    profiler.collect();
-    std::vector<std::uint8_t> wantedSamples(all.distanceM.size());
-    for (std::size_t i = 0; i < wantedSamples.size(); ++i) wantedSamples[i] = i % 3 == 0 ? 1 : 0;
-    gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kScreenSizePx);
-    wanted.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wantedSamples.data());
-    const Traced some = traced(prepared, {}, &wanted);
-    const HostGBuffer gbuffer = readGBuffer(prepared.gbuffer);
-    int written = 0;
-    forEachReflective(gbuffer, [&](glm::ivec2, std::size_t index) {
-        const bool isWanted = wantedSamples[index] != 0;
-        EXPECT_EQ(some.radiance[index], isWanted ? all.radiance[index] : glm::vec3(0.0F));
-        EXPECT_EQ(some.distanceM[index], isWanted ? all.distanceM[index] : 0.0F);
-        written += isWanted ? 1 : 0;
-    });
-    EXPECT_GT(written, 500);
-    const std::vector<gl::PassTime> passes = profiler.collect();
-    ASSERT_EQ(passes.size(), 1U);
-    EXPECT_EQ(passes[0].pass, "intersection");
-    EXPECT_EQ(passes[0].clock, gl::PassTime::Clock::Gpu);
 }
 
 }  // namespace

@@ -9,23 +9,6 @@
 namespace gfxrepro::reflections {
 namespace {
 
-constexpr const char* kShader = R"(#version 450 core
-#include "reflections/shading.glsl"
-layout(local_size_x = 1) in;
-struct Input { vec4 position; vec4 normal; vec4 color; vec4 texcoordAndObject; };
-layout(std430) readonly buffer Inputs { Input inputs[]; };
-layout(std430) writeonly buffer Results { vec4 results[]; };
-void main() {
-    Input point = inputs[gl_GlobalInvocationID.x];
-    Object object = objects[int(point.texcoordAndObject.z)];
-    vec3 albedo = albedoOf(object, point.texcoordAndObject.xy, point.texcoordAndObject.w,
-                           point.color.rgb);
-    results[2 * gl_GlobalInvocationID.x] = vec4(albedo, 0.0);
-    results[2 * gl_GlobalInvocationID.x + 1] = vec4(
-        shadeDiffuse(point.position.xyz, point.normal.xyz, albedo, object.emissive.rgb), 0.0);
-}
-)";
-
 struct ShadedPoint {
     glm::vec4 position, normal, color, texcoordAndObject;
 };
@@ -81,13 +64,16 @@ TEST_F(ReflectionsTest, ShadesAsTheHostDoes) {
         colours.push_back(shadeDiffuse(scene.lights(), position, normal, albedos.back(),
                                        scene.objects()[object].emissive));
     }
-    const gl::Pass shade = compute(kShader, surfaceDefines(scene));
-    const gl::Buffer inputBuffer = gl::Buffer::of(inputs);
-    const gl::Buffer resultBuffer(2 * inputs.size() * sizeof(glm::vec4));
-    shade.dispatch({inputs.size(), 1, 1},
-                   gl::Resources{{"Inputs", inputBuffer}, {"Results", resultBuffer}}.with(
-                       objects.resources()));
-    const auto results = resultBuffer.read<glm::vec4>(2 * inputs.size());
+    const gl::Pass shade =
+        compute("shading", "vec4 position, normal, color, texcoordAndObject;", R"(
+    vec4 place = inputs[i].texcoordAndObject;
+    Object object = objects[int(place.z)];
+    vec3 albedo = albedoOf(object, place.xy, place.w, inputs[i].color.rgb);
+    results[2 * i] = vec4(albedo, 0.0);
+    results[2 * i + 1] = vec4(shadeDiffuse(inputs[i].position.xyz, inputs[i].normal.xyz, albedo,
+                                           object.emissive.rgb), 0.0);)",
+                surfaceDefines(scene));
+    const auto results = computed(shade, inputs, 2, objects.resources());
 
     int withinRange = 0;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -124,24 +110,15 @@ TEST_F(ReflectionsTest, PutsObjectsWhereTheyAre) {
         EXPECT_NEAR(box.max[axis], glm::vec3(5, 3, 2)[axis], 1e-5F);
     }
 
-    const gl::Pass read = compute(R"(#version 450 core
-#include "reflections/objects.glsl"
-layout(local_size_x = 1) in;
-layout(std430) writeonly buffer Results { vec4 results[]; };
-void main() {
-    uint i = gl_GlobalInvocationID.x;
+    const gl::Pass read = compute("objects", "", R"(
     results[4 * i] = vec4(normalize(mat3(objects[i].normalFromMesh) * vec3(0, 0, 1)),
                           objects[i].baseColor.w);
     results[4 * i + 1] = objects[i].worldFromMesh * vec4(1, 1, 0, 1);
     results[4 * i + 2] = vec4(objects[i].boundsHalfSize.xyz, float(objects[i].textureLayer));
     results[4 * i + 3] = vec4(objects[i].firstTriangle, objects[i].triangleCount,
-                              objects[i].surface & 0xFFFFu, objects[i].surface >> 16);
-}
-)",
+                              objects[i].surface & 0xFFFFu, objects[i].surface >> 16);)",
                                   objectDefines());
-    const gl::Buffer results(12 * sizeof(glm::vec4));
-    read.dispatch({3, 1, 1}, gl::Resources{{"Results", results}}.with(objects.resources()));
-    const auto values = results.read<glm::vec4>(12);
+    const auto values = computed(read, {3, 1}, 4, objects.resources());
     const auto expectNear = [&](std::size_t i, const glm::vec4& expected) {
         for (int c = 0; c < 4; ++c) EXPECT_NEAR(values[i][c], expected[c], 1e-5F) << i << " " << c;
     };

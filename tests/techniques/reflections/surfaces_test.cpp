@@ -264,14 +264,7 @@ TEST(ReflectiveSceneTest, PassesOnWhatTheLoaderLeftOut) {
 
 /// A texture whose left half has one roughness and metalness, and whose right half another.
 image::Image8 halves(const glm::u8vec2& left, const glm::u8vec2& right) {
-    image::Image8 image(512, 512, 3);
-    for (int y = 0; y < 512; ++y) {
-        for (int x = 0; x < 512; ++x) {
-            image.at(x, y, 1) = (x < 256 ? left : right).x;
-            image.at(x, y, 2) = (x < 256 ? left : right).y;
-        }
-    }
-    return image;
+    return imageOf([&](int x, int) { return glm::u8vec3(0, x < 256 ? left : right); });
 }
 
 TEST(ReflectorRuleTest, LooksAtTheTexelsOfTextures) {
@@ -314,13 +307,7 @@ TEST(ReflectorRuleTest, LooksAtTexelsOfTrianglesOnly) {
 scene::Scene bentSquare(const glm::u8vec3& normal, float scale = 1.0F) {
     scene::Scene scene =
         sceneOf(squareMesh(), {.roughness = 0.0F, .normalTexture = 0, .normalScale = scale});
-    image::Image8 image(512, 512, 3);
-    for (int y = 0; y < 512; ++y) {
-        for (int x = 0; x < 512; ++x) {
-            for (int c = 0; c < 3; ++c) image.at(x, y, c) = normal[c];
-        }
-    }
-    scene.textures = {std::move(image)};
+    scene.textures = {imageOf([&](int, int) { return normal; })};
     return scene;
 }
 

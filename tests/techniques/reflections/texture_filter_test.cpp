@@ -46,12 +46,8 @@ TEST(TextureFilterTest, FootprintsAreAsWideAsWhatABeamCoversIsLong) {
 
 TEST(TextureFilterTest, AveragesTexturesOverTheFootprint) {
     // Black and white columns, a texel wide.
-    image::Image8 columns(512, 512, 3);
-    for (int y = 0; y < 512; ++y) {
-        for (int x = 1; x < 512; x += 2) {
-            for (int channel = 0; channel < 3; ++channel) columns.at(x, y, channel) = 255;
-        }
-    }
+    const image::Image8 columns =
+        imageOf([](int x, int) { return glm::u8vec3(x % 2 == 1 ? 255 : 0); });
     scene::Scene scene = texturedSquare(columns);
     scene.materials[0].baseColor = glm::vec4(1.0F);
     const ReflectiveScene prepared(scene);

@@ -12,12 +12,6 @@
 
 namespace gfxrepro::reflections {
 
-/// A wall of a room: the rectangle at centre ± u ± v, and its colour.
-struct Wall {
-    glm::vec3 centre, u, v;
-    scene::Material material;
-};
-
 inline scene::Material matt(const glm::vec3& colour) {
     scene::Material material;
     material.baseColor = glm::vec4(colour, 1.0F);
@@ -54,6 +48,18 @@ inline void addRoom(scene::Scene& scene, const scene::Box& box,
         v[(axis + 2) % 3] = half[(axis + 2) % 3];
         addPart(scene, rectangle(centre, u, v), materials[static_cast<std::size_t>(side)]);
     }
+}
+
+constexpr glm::vec3 kWallColours[6] = {{0.9F, 0.2F, 0.2F}, {0.2F, 0.8F, 0.3F}, {0.6F, 0.5F, 0.4F},
+                                       {0.8F, 0.8F, 0.8F}, {0.3F, 0.4F, 0.9F}, {0.9F, 0.8F, 0.3F}};
+/// Walls of these colours.
+inline scene::Scene mattRoom(const scene::Box& box) {
+    scene::Scene scene;
+    scene.name = "room";
+    std::vector<scene::Material> materials;
+    for (const glm::vec3& colour : kWallColours) materials.push_back(matt(colour));
+    addRoom(scene, box, materials);
+    return scene;
 }
 
 /// A closed box, one object.
@@ -106,7 +112,7 @@ inline scene::Camera camera(const glm::vec3& position, const glm::vec3& target) 
     return result;
 }
 
-/// A scene ready to be traced, drawn from one view.
+/// A scene ready to be traced, drawn from one view; `glossiness` is that of all reflectors.
 struct Prepared {
     ReflectiveScene scene;
     GpuObjects objects;
@@ -115,8 +121,12 @@ struct Prepared {
     GBuffer gbuffer;
 
     Prepared(const gl::ShaderLibrary& shaders, const scene::Scene& source,
-             const scene::Camera& from, glm::ivec2 sizePx)
-        : scene(source),
+             const scene::Camera& from, glm::ivec2 sizePx, std::optional<float> glossiness = {})
+        : scene([&] {
+              ReflectiveScene result(source);
+              if (glossiness) result.setGlossiness(*glossiness);
+              return result;
+          }()),
           objects(scene),
           map(shaders, scene),
           renderer(shaders, scene),
@@ -146,34 +156,20 @@ struct EmbreeTrace {
 
 class TracerTest : public ReflectionsTest {
   protected:
-    gl::Profiler profiler{true};
-
     EmbreeTrace trace(const scene::Scene& source, const scene::Camera& from, glm::ivec2 sizePx,
                       const LobeSettings& lobe = {}) {
         return {shaders, source, from, sizePx, lobe, profiler};
     }
 };
 
-/// Calls action(pixel, index) for the reflective samples.
-template <class Action>
-void forEachReflective(const HostGBuffer& gbuffer, Action&& action) {
-    for (int y = 0; y < gbuffer.view.sizePx.y; ++y) {
-        for (int x = 0; x < gbuffer.view.sizePx.x; ++x) {
-            const std::size_t index = gbuffer.indexOf({x, y});
-            if (gbuffer.isReflective(index)) action(glm::ivec2(x, y), index);
-        }
-    }
-}
-
 /// Of the samples that reflect; the maximum is 1.
 template <class Expected>
 double psnrDb(const HostGBuffer& gbuffer, const std::vector<glm::vec3>& radiance,
               const Expected& expected) {
-    double sum = 0.0, count = 0.0;
-    forEachReflective(gbuffer, [&](glm::ivec2, std::size_t i) {
+    double sum = 0.0;
+    const int count = forEachReflective(gbuffer, [&](glm::ivec2, std::size_t i) {
         const glm::vec3 error = radiance[i] - expected(i);
         sum += double{glm::dot(error, error)} / 3.0;
-        count += 1.0;
     });
     return -10.0 * std::log10(sum / count);
 }
