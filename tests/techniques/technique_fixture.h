@@ -2,7 +2,10 @@
 // record.
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/core/files.h"
@@ -17,58 +20,88 @@ inline Params paramsOf(const technique::TechniqueInfo& technique, const std::str
     return Params(parseYaml(yaml, "case.yaml"), "technique '" + std::string(technique.name) + "'");
 }
 
+/// What a technique says against parameters; "": nothing. A case is YAML and what comes behind
+/// "case.yaml:1:".
+inline void expectRefused(const technique::TechniqueInfo& technique,
+                          std::initializer_list<std::pair<const char*, std::string_view>> cases) {
+    for (const auto& [yaml, expected] : cases) {
+        const std::string message = errorText([&] {
+            Params params = paramsOf(technique, yaml);
+            technique.create(params);
+        });
+        EXPECT_EQ(message, expected.empty() ? "no error" : "case.yaml:1:" + std::string(expected))
+            << yaml;
+    }
+}
+
 /// Derive from it with the technique and the size of its output.
 class TechniqueTest : public GlTest {
   protected:
     TechniqueTest(const technique::TechniqueInfo& technique, const glm::ivec2& outputSizePx)
         : technique_(technique), outputSizePx_(outputSizePx) {}
 
-    /// Frame `frame` of `frameCount`, rendered twice: a repetition overwrites what the first has
-    /// left. passes_ then names the second's passes.
-    MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene, int frame = 0,
-                            int frameCount = 1) {
-        Params params = paramsOf(technique_, yaml);
-        const auto technique = technique_.create(params);
+    /// What is recorded of some of `frameCount` frames, each rendered `repeats` times: a repetition
+    /// overwrites what the one before has left. passes_ then names the last one's passes.
+    std::vector<MetricRecorder> recordedFrames(const std::string& yaml, const scene::Scene* scene,
+                                               const std::vector<int>& frames, int frameCount,
+                                               int repeats, const technique::TechniqueInfo& info) {
+        Params params = paramsOf(info, yaml);
+        const auto technique = info.create(params);
         NoScenes scenes;
         technique::SetupContext context{device,        shaders_, scenes,   scene,
                                         outputSizePx_, 1,        profiler_};
         context.shared = shared_;
-        if (shared_) shared_->beginCase("", params.resolved());
+        if (shared_) shared_->beginCase(std::to_string(frameCount), params.resolved());
         technique::setUp(*technique, context);
         EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
-        technique::FrameContext frameContext{frame, frameCount, profiler_};
-        technique->render(frameContext);
-        profiler_.collect();
-        technique->render(frameContext);
-        passes_.clear();
-        for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
-        MetricRecorder recorder;
-        technique->record(recorder);
-        technique->recordOnce(recorder);
-        const config::Outputs outputs = technique::outputsOf(technique_);
-        recorder.expectDeclared(outputs);
-        for (const std::string& pass : passes_) EXPECT_TRUE(outputs.hasPass(pass)) << pass;
-        EXPECT_TRUE(profiler_.collect().empty()) << "what is recorded is not timed by pass";
-        return recorder;
+        const config::Outputs outputs = technique::outputsOf(info);
+        std::vector<MetricRecorder> recorders(frames.size());
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            technique::FrameContext frameContext{frames[i], frameCount, profiler_};
+            for (int repeat = 0; repeat < repeats; ++repeat) {
+                technique->render(frameContext);
+                passes_.clear();
+                for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
+            }
+            technique->record(recorders[i]);
+            technique->recordOnce(recorders[i]);
+            recorders[i].expectDeclared(outputs);
+            for (const std::string& pass : passes_) EXPECT_TRUE(outputs.hasPass(pass)) << pass;
+            EXPECT_TRUE(profiler_.collect().empty()) << "what is recorded is not timed by pass";
+        }
+        return recorders;
+    }
+    /// Frame `frame` of `frameCount`, rendered twice.
+    MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene, int frame = 0,
+                            int frameCount = 1) {
+        return recordedFrames(yaml, scene, {frame}, frameCount, 2, technique_).front();
     }
 
-    /// Cases that follow one another in a worker record what each does alone, but for times.
-    void expectSharedAsAlone(const std::vector<std::string>& yamls, const scene::Scene& scene) {
+    /// Cases of all of `frameCount` frames that follow one another in a worker record what each
+    /// does alone, but for times.
+    void expectSharedAsAlone(const std::vector<std::string>& yamls, const scene::Scene& scene,
+                             int frameCount = 1) {
         technique::SharedResults shared;
+        std::vector<int> frames;
+        for (int frame = 0; frame < frameCount; ++frame) frames.push_back(frame);
         for (const std::string& yaml : yamls) {
             SCOPED_TRACE(yaml);
-            const MetricRecorder alone = recorded(yaml, &scene);
-            shared_ = &shared;
-            const MetricRecorder shares = recorded(yaml, &scene);
+            const auto recordedOf = [&](technique::SharedResults* results) {
+                shared_ = results;
+                return recordedFrames(yaml, &scene, frames, frameCount, 2, technique_);
+            };
+            const auto allAlone = recordedOf(nullptr), allShare = recordedOf(&shared);
             shared_ = nullptr;
-            ASSERT_EQ(shares.given.size(), alone.given.size());
-            for (std::size_t i = 0; i < alone.given.size(); ++i) {
-                const auto& [metric, unit, pass] = alone.given[i];
-                if (unit.ends_with("ms") || unit.ends_with("/s")) continue;
-                const std::string key = metric + (pass.empty() ? "" : "/") + pass;
-                EXPECT_EQ(shares.metrics.at(key), alone.metrics.at(key)) << key;
+            for (std::size_t frame = 0; frame < frames.size(); ++frame) {
+                const MetricRecorder &alone = allAlone[frame], &shares = allShare[frame];
+                ASSERT_EQ(shares.given.size(), alone.given.size());
+                for (const auto& [metric, unit, pass] : alone.given) {
+                    if (unit.ends_with("ms") || unit.ends_with("/s")) continue;
+                    const std::string key = metric + (pass.empty() ? "" : "/") + pass;
+                    EXPECT_EQ(shares.metrics.at(key), alone.metrics.at(key)) << key;
+                }
+                EXPECT_EQ(shares.images, alone.images);
             }
-            EXPECT_EQ(shares.images, alone.images);
         }
         shared.beginCase("", {});
         sharedBytes_ = shared.otherBytes();

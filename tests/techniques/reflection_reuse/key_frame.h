@@ -13,23 +13,18 @@ using reflections::addPart;
 using reflections::dome;
 
 struct KeyFrame {
-    reflections::ReflectiveScene scene;
-    reflections::GpuObjects objects;
-    reflections::EnvironmentMap map;
     ReflectionDepthImage image;
     HostReflectionDepthImage host;
 
     KeyFrame(const gl::ShaderLibrary& shaders, const scene::Scene& source,
              const scene::Camera& camera, glm::ivec2 sizePx)
-        : scene(source),
-          objects(scene),
-          map(shaders, scene),
-          image(kit::viewOf(camera, sizePx), scene.diagonalM()) {
-        map.render(objects);
-        reflections::GBufferRenderer(shaders, scene).render(objects, image.gbuffer);
+        : image(kit::viewOf(camera, sizePx), 0.0F) {
+        const reflections::Prepared prepared(shaders, source, camera, sizePx);
+        image.diagonalM = prepared.scene.diagonalM();
+        prepared.renderer.render(prepared.objects, image.gbuffer);
         gl::Profiler profiler(true);
-        reflections::EmbreeTracer tracer(shaders, scene, map, {});
-        tracer.update(objects, profiler);
+        reflections::EmbreeTracer tracer(shaders, prepared.scene, prepared.map, {});
+        tracer.update(prepared.objects, profiler);
         tracer.trace(image.gbuffer, nullptr, image.reflection, profiler);
         host = readReflectionDepthImage(image);
     }
@@ -53,16 +48,8 @@ struct HostOffsets {
 
 const scene::Box kRoom{glm::vec3(-2.0F, 0.0F, -2.0F), glm::vec3(2.0F, 2.5F, 2.0F)};
 
-/// Walls of six colours; the floor too is matt.
 inline scene::Scene mattRoom() {
-    scene::Scene scene;
-    scene.name = "room";
-    using reflections::matt;
-    reflections::addRoom(
-        scene, kRoom,
-        {matt({0.9F, 0.2F, 0.2F}), matt({0.2F, 0.8F, 0.3F}), matt({0.6F, 0.5F, 0.4F}),
-         matt({0.8F, 0.8F, 0.8F}), matt({0.3F, 0.4F, 0.9F}), matt({0.9F, 0.8F, 0.3F})});
-    return scene;
+    return reflections::mattRoom(kRoom);
 }
 
 inline scene::Scene roomWithMirrorFloor() {
@@ -109,7 +96,7 @@ inline scene::Scene roomWithAll() {
     return scene;
 }
 
-class KeyFrameTest : public test::GlTest {
+class KeyFrameTest : public reflections::ReflectionsTest {
   protected:
     KeyFrame keyFrame(const scene::Scene& source, const scene::Camera& camera,
                       glm::ivec2 sizePx) const {
@@ -121,8 +108,6 @@ class KeyFrameTest : public test::GlTest {
         PixelMatcher(shaders, settings).match(key.image, eyeWorld, previous, offsets);
         return offsets;
     }
-
-    gl::ShaderLibrary shaders{dataFolder("shaders")};
 };
 
 }  // namespace gfxrepro::reflection_reuse

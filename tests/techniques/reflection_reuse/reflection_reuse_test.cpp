@@ -6,20 +6,14 @@
 
 #include <algorithm>
 
-#include "engine/core/files.h"
 #include "techniques/clustered_reflections/clustered_reflections.h"
-#include "tests/gl/gl_fixture.h"
 #include "tests/techniques/clustered_reflections/room.h"
-#include "tests/techniques/technique_recorder.h"
+#include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::reflection_reuse {
 namespace {
 
 using test::errorText;
-
-Params paramsOf(const std::string& yaml) {
-    return Params(parseYaml(yaml, "case.yaml"), "technique 'reflection_reuse'");
-}
 
 scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
     return {.position = position, .target = target, .verticalFovRad = 0.9F};
@@ -47,7 +41,7 @@ constexpr const char* kPrinted = ", matching: first_order, resampling: twice";
 
 TEST(ReuseParamsTest, MatchesLieBetweenPixelsAndAreResampledOnceByDefault) {
     const auto settingsOf = [](const std::string& yaml) {
-        Params params = paramsOf(yaml);
+        Params params = test::paramsOf(kReflectionReuse, yaml);
         return ReuseParams(params).reuse;
     };
     EXPECT_EQ(settingsOf("{}").matching.matching, Matching::SecondOrder);
@@ -57,36 +51,17 @@ TEST(ReuseParamsTest, MatchesLieBetweenPixelsAndAreResampledOnceByDefault) {
     EXPECT_EQ(printed.reprojection.resampling, Resampling::Twice);
 }
 
-class ReflectionReuseTest : public test::GlTest {
+class ReflectionReuseTest : public test::TechniqueTest {
   protected:
+    ReflectionReuseTest() : TechniqueTest(kReflectionReuse, {64, 48}) {}
+
     /// What is recorded of frames 0 … frameCount − 1, each rendered `repeats` times.
     std::vector<test::MetricRecorder> recorded(
         const std::string& yaml, const scene::Scene* scene, int frameCount, int repeats = 1,
         const technique::TechniqueInfo& info = kReflectionReuse) {
-        Params params = paramsOf(yaml);
-        const auto technique = info.create(params);
-        test::NoScenes scenes;
-        technique::SetupContext context{device, shaders_, scenes, scene, {64, 48}, 1, profiler_};
-        context.shared = shared_;
-        if (shared_) shared_->beginCase(std::to_string(frameCount), params.resolved());
-        technique::setUp(*technique, context);
-        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
-        std::vector<test::MetricRecorder> frames(static_cast<std::size_t>(frameCount));
-        const config::Outputs outputs = technique::outputsOf(info);
-        for (int frame = 0; frame < frameCount; ++frame) {
-            technique::FrameContext frameContext{frame, frameCount, profiler_};
-            for (int repeat = 0; repeat < repeats; ++repeat) {
-                technique->render(frameContext);
-                passes_.clear();
-                for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
-            }
-            technique->record(frames[static_cast<std::size_t>(frame)]);
-            technique->recordOnce(frames[static_cast<std::size_t>(frame)]);
-            frames[static_cast<std::size_t>(frame)].expectDeclared(outputs);
-            for (const std::string& pass : passes_) EXPECT_TRUE(outputs.hasPass(pass)) << pass;
-            EXPECT_TRUE(profiler_.collect().empty()) << "recording is not timed by pass";
-        }
-        return frames;
+        std::vector<int> frames;
+        for (int frame = 0; frame < frameCount; ++frame) frames.push_back(frame);
+        return recordedFrames(yaml, scene, frames, frameCount, repeats, info);
     }
     /// Of the frames that have it; NaN where none has.
     static double meanOf(const std::vector<test::MetricRecorder>& frames, const char* metric) {
@@ -108,92 +83,68 @@ class ReflectionReuseTest : public test::GlTest {
         return kinds;
     }
 
-    technique::SharedResults* shared_ = nullptr;
-    gl::ShaderLibrary shaders_{dataFolder("shaders")};
-    gl::Profiler profiler_{true};
-    std::vector<std::string> passes_;  // of the last frame
     scene::Scene room_ = roomWithPaths();
 };
 
 TEST_F(ReflectionReuseTest, TheTruthsOfAPathAreTracedOnce) {
-    technique::SharedResults shared;
-    const auto expectAsAlone = [&](const std::string& yaml) {
-        SCOPED_TRACE(yaml);
-        const auto alone = recorded(yaml, &room_, 3);
-        shared_ = &shared;
-        const auto shares = recorded(yaml, &room_, 3);
-        shared_ = nullptr;
-        for (std::size_t frame = 0; frame < alone.size(); ++frame) {
-            EXPECT_EQ(shares[frame].metrics, alone[frame].metrics) << frame;
-            EXPECT_EQ(shares[frame].images, alone[frame].images) << frame;
+    const auto expectAsAlone = [&](const std::vector<std::string>& given) {
+        std::vector<std::string> yamls;
+        for (const std::string& one : given) {
+            yamls.push_back("{pictures: true, view: walk, " + one + "}");
         }
-    };
-    const auto bytes = [&] {
-        shared.beginCase("", {});
-        return shared.otherBytes();
+        expectSharedAsAlone(yamls, room_, 3);
     };
     constexpr std::size_t kFrame = 64 * 48 * 3 * sizeof(float);
-    const std::string common = "{pictures: true, view: walk, ";
-    expectAsAlone(common + "path_frames: 6, method: ray_traced}");
-    EXPECT_EQ(bytes(), 3 * kFrame);
+    expectAsAlone({"path_frames: 6, method: ray_traced"});
+    EXPECT_EQ(sharedBytes_, 3 * kFrame);
     // Each of what they are traced regardless of.
-    for (const char* regardless : {"method: reuse", "method: direct", "matching: first_order",
-                                   "resampling: twice", "forward: splats"}) {
-        expectAsAlone(common + "path_frames: 6, " + regardless + "}");
-    }
-    EXPECT_EQ(bytes(), 3 * kFrame);
+    expectAsAlone({"path_frames: 6, method: ray_traced", "path_frames: 6, method: reuse",
+                   "path_frames: 6, method: direct", "path_frames: 6, matching: first_order",
+                   "path_frames: 6, resampling: twice", "path_frames: 6, forward: splats"});
+    EXPECT_EQ(sharedBytes_, 3 * kFrame);
     // What decides them. The first frame is a key frame, which is not judged.
-    for (const char* other :
-         {"path_frames: 6, first_frame: 1", "path_frames: 6, blend: reflectivity",
-          "path_frames: 6, glossiness: 0.2", "path_frames: 6, supersampling: 2",
-          "path_frames: 9"}) {
-        expectAsAlone(common + other + "}");
-    }
-    EXPECT_EQ(bytes(), (3 + 5 * 2) * kFrame);
+    expectAsAlone({"path_frames: 6, first_frame: 1", "path_frames: 6, blend: reflectivity",
+                   "path_frames: 6, glossiness: 0.2", "path_frames: 6, supersampling: 2",
+                   "path_frames: 9"});
+    EXPECT_EQ(sharedBytes_, 5 * 2 * kFrame);
 }
 
 TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
-    const auto message = [](const std::string& yaml) {
-        return errorText([&] {
-            Params params = paramsOf(yaml);
-            kReflectionReuse.create(params);
+    test::expectRefused(
+        kReflectionReuse,
+        {
+            {"{}", ""},
+            {"{method: direct, forward: splats, threshold: 1}", ""},
+            {"{threshold: 1.5}",
+             "13: technique 'reflection_reuse': threshold is 1.5; allowed: 0 … 1"},
+            {"{method: ray_traced, threshold: 0.3}",
+             "33: 'threshold' needs 'method: reuse' or 'method: direct'"},
+            {"{method: ray_traced, seam_px: 1}",
+             "31: 'seam_px' needs 'method: reuse' or 'method: direct'"},
+            {"{method: ray_traced, recompute_fit: true}",
+             "37: 'recompute_fit' needs 'method: reuse' or 'method: direct'"},
+            {"{method: direct, matching: second_order}", "28: 'matching' needs 'method: reuse'"},
+            {"{method: direct, widest_ring: 2}", "31: 'widest_ring' needs 'method: reuse'"},
+            {"{method: direct, resampling: once}", "30: 'resampling' needs 'method: reuse'"},
+            {"{resampling: thrice}",
+             "14: technique 'reflection_reuse': resampling is 'thrice'; allowed: twice | once"},
+            {"{glossiness: -0.5}",
+             "14: technique 'reflection_reuse': glossiness is -0.5; allowed: -1, 0 … 1"},
+            {"{method: direct, exhaustive_samples: 9}",
+             "38: 'exhaustive_samples' needs 'method: reuse'"},
+            {"{path_frames: 50, first_frame: 50}",
+             "32: 'first_frame' is 50; the path has frames 0 … 49 ('path_frames')"},
+            {"{path_frames: 0}",
+             "15: technique 'reflection_reuse': path_frames is 0; allowed: 1 … 1000000 frames"},
+            {"{tracer: optix}",
+             "10: technique 'reflection_reuse': tracer is 'optix'; allowed: compute | embree | "
+             "clustered"},
         });
-    };
-    EXPECT_EQ(message("{}"), "no error");
-    EXPECT_EQ(message("{method: direct, forward: splats, threshold: 1}"), "no error");
-    EXPECT_EQ(message("{threshold: 1.5}"),
-              "case.yaml:1:13: technique 'reflection_reuse': threshold is 1.5; allowed: 0 … 1");
-    EXPECT_EQ(message("{method: ray_traced, threshold: 0.3}"),
-              "case.yaml:1:33: 'threshold' needs 'method: reuse' or 'method: direct'");
-    EXPECT_EQ(message("{method: ray_traced, seam_px: 1}"),
-              "case.yaml:1:31: 'seam_px' needs 'method: reuse' or 'method: direct'");
-    EXPECT_EQ(message("{method: ray_traced, recompute_fit: true}"),
-              "case.yaml:1:37: 'recompute_fit' needs 'method: reuse' or 'method: direct'");
-    EXPECT_EQ(message("{method: direct, matching: second_order}"),
-              "case.yaml:1:28: 'matching' needs 'method: reuse'");
-    EXPECT_EQ(message("{method: direct, widest_ring: 2}"),
-              "case.yaml:1:31: 'widest_ring' needs 'method: reuse'");
-    EXPECT_EQ(message("{method: direct, resampling: once}"),
-              "case.yaml:1:30: 'resampling' needs 'method: reuse'");
-    EXPECT_EQ(
-        message("{resampling: thrice}"),
-        "case.yaml:1:14: technique 'reflection_reuse': resampling is 'thrice'; allowed: twice "
-        "| once");
-    EXPECT_EQ(message("{glossiness: -0.5}"),
-              "case.yaml:1:14: technique 'reflection_reuse': glossiness is -0.5; allowed: -1, 0 … "
-              "1");
-    EXPECT_EQ(message("{method: direct, exhaustive_samples: 9}"),
-              "case.yaml:1:38: 'exhaustive_samples' needs 'method: reuse'");
-    EXPECT_EQ(message("{path_frames: 50, first_frame: 50}"),
-              "case.yaml:1:32: 'first_frame' is 50; the path has frames 0 … 49 ('path_frames')");
-    EXPECT_EQ(
-        message("{path_frames: 0}"),
-        "case.yaml:1:15: technique 'reflection_reuse': path_frames is 0; allowed: 1 … 1000000 "
-        "frames");
-    EXPECT_EQ(message("{tracer: optix}"),
-              "case.yaml:1:10: technique 'reflection_reuse': tracer is 'optix'; allowed: compute "
-              "| embree | clustered");
-    EXPECT_EQ(message("{clusters: 5}").substr(0, 14), "case.yaml:1:2:");
+    EXPECT_EQ(errorText([] {
+                  Params params = test::paramsOf(kReflectionReuse, "{clusters: 5}");
+                  kReflectionReuse.create(params);
+              }).substr(0, 14),
+              "case.yaml:1:2:");
 }
 
 TEST_F(ReflectionReuseTest, RefusesScenesWithoutReflectorsUnknownViewsAndFramesBehindThePath) {

@@ -44,12 +44,26 @@ struct Samples {
     }
 };
 
+kit::View view(const glm::vec3& eyeWorld = glm::vec3(0.0F)) {
+    return kit::viewOf(reflections::camera(eyeWorld, eyeWorld - glm::vec3(0, 0, 1)), kSize);
+}
+/// The eye `pixels` whole pixels of a wall at 2 m to the right: from (x·d, y·d, d) to the world.
+kit::View viewToTheRight(float pixels) {
+    return view(glm::vec3(kit::worldFromPixels(view()) * glm::vec4(pixels * 2.0F, 0, 0, 0)));
+}
+
+/// What the eye sees now; at first what a key frame's samples are of.
+struct Seen {
+    std::vector<std::uint32_t> surface;
+    std::vector<float> depthM;
+    kit::View from;
+
+    explicit Seen(const Samples& samples, const kit::View& fromView = view())
+        : surface(samples.surface), depthM(samples.depthM), from(fromView) {}
+};
+
 class ReprojectionTest : public reflections::ReflectionsTest {
   protected:
-    static kit::View view(const glm::vec3& eyeWorld = glm::vec3(0.0F)) {
-        return kit::viewOf(reflections::camera(eyeWorld, eyeWorld - glm::vec3(0, 0, 1)), kSize);
-    }
-
     void upload(const Samples& samples) {
         key.emplace(view(), 10.0F);
         offsets.emplace(kSize);
@@ -71,7 +85,7 @@ class ReprojectionTest : public reflections::ReflectionsTest {
         return result.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
     }
 
-    struct Warped {
+    struct Moved {
         std::vector<glm::vec4> radiance;
         std::vector<std::uint8_t> wanted;
         std::uint32_t reflectiveSamples = 0;
@@ -79,43 +93,36 @@ class ReprojectionTest : public reflections::ReflectionsTest {
             return static_cast<std::size_t>(std::count(wanted.begin(), wanted.end(), 1));
         }
     };
-    /// The key frame's own colours, to a view where each sample is of `surface` at `depthM`.
-    Warped warped(const Samples& samples, const kit::View& to,
-                  const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
-                  const ReprojectionSettings& settings = {}) {
-        return moved(samples, to, surface, depthM, settings,
-                     [&](Reprojection& reprojection, auto&... images) {
-                         reprojection.warp(*key, key->reflection.radiance, images...);
-                     });
+    /// The key frame's own colours, to what is seen.
+    Moved warped(const Samples& samples, const Seen& seen,
+                 const ReprojectionSettings& settings = {}) {
+        return moved(samples, seen, settings, [&](Reprojection& reprojection, auto&... images) {
+            reprojection.warp(*key, key->reflection.radiance, images...);
+        });
     }
-
-    /// The key frame's own colours by the offsets, to `to` at once.
-    Warped projected(const Samples& samples, const kit::View& to,
-                     const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
-                     const ReprojectionSettings& settings = {},
-                     const gl::Texture* doubtful = nullptr) {
-        return moved(samples, to, surface, depthM, settings,
-                     [&](Reprojection& reprojection, auto&... images) {
-                         reprojection.project(*key, *offsets, doubtful, images...);
-                     });
+    Moved warped(const Samples& samples) { return warped(samples, Seen(samples)); }
+    /// The same by the offsets, at once.
+    Moved projected(const Samples& samples, const Seen& seen,
+                    const ReprojectionSettings& settings = {},
+                    const gl::Texture* doubtful = nullptr) {
+        return moved(samples, seen, settings, [&](Reprojection& reprojection, auto&... images) {
+            reprojection.project(*key, *offsets, doubtful, images...);
+        });
     }
-
     template <class Move>
-    Warped moved(const Samples& samples, const kit::View& to,
-                 const std::vector<std::uint32_t>& surface, const std::vector<float>& depthM,
-                 const ReprojectionSettings& settings, Move&& move) {
+    Moved moved(const Samples& samples, const Seen& seen, const ReprojectionSettings& settings,
+                Move&& move) {
         upload(samples);
-        reflections::GBuffer gbuffer(to);
-        gbuffer.surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, surface.data());
-        gbuffer.depth.upload(GL_RED, GL_FLOAT, depthM.data());
+        reflections::GBuffer gbuffer(seen.from);
+        gbuffer.surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, seen.surface.data());
+        gbuffer.depth.upload(GL_RED, GL_FLOAT, seen.depthM.data());
         Reprojection reprojection(shaders, settings, kSize);
         reflections::ReflectionTarget target(kSize);
         gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSize);
         reprojection.setKeyFrame(*key);
         move(reprojection, gbuffer, target, wanted);
         return {target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
-                wanted.read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1),
-                reprojection.reflectiveSamples()};
+                reflections::readMask(wanted), reprojection.reflectiveSamples()};
     }
 
     static void expectColour(const glm::vec4& found, const glm::vec4& expected, int x, int y) {
@@ -141,44 +148,37 @@ TEST_F(ReprojectionTest, AConstantOffsetMovesTheImage) {
     }
 }
 
+/// A reflection that moves by eight pixels onto another one: of both the one with the shorter path
+/// from the eye wins, shifted and at once.
 TEST_F(ReprojectionTest, TheNearestReflectionWins) {
-    for (const bool isMovedOneNearer : {true, false}) {
+    const struct {
+        float movedDepthM, movedDistanceM, otherDepthM, otherDistanceM;
+        bool movedOneWins;
+    } cases[] = {{2.0F, 0.5F, 2.0F, 6.0F, true},
+                 {2.0F, 6.0F, 2.0F, 0.5F, false},
+                 // The one that is nearer to its mirror is farther from the eye.
+                 {8.0F, 1.0F, 2.0F, 4.0F, false},
+                 // A ray that left the scene reflects the farthest: the diagonal is 10.
+                 {2.0F, 0.0F, 2.0F, 9.0F, false}};
+    for (const auto& one : cases) {
         Samples samples;
         forEachPixel([&](int x, int y) {
-            if (x < 12) samples.offset[at(x, y)] = {8, 0};
-            samples.distanceM[at(x, y)] = (x < 12) == isMovedOneNearer ? 0.5F : 6.0F;
+            const bool isMoved = x < 12;
+            samples.offset[at(x, y)] = {isMoved ? 8 : 0, 0};
+            samples.depthM[at(x, y)] = isMoved ? one.movedDepthM : one.otherDepthM;
+            samples.distanceM[at(x, y)] = isMoved ? one.movedDistanceM : one.otherDistanceM;
         });
-        const std::vector<glm::vec4> result = shifted(samples);
-        for (int y = 0; y < kSize.y; ++y) {
-            for (int x = 13; x < 19; ++x) {  // both are there
-                const int from = isMovedOneNearer ? x - 8 : x;
-                expectColour(result[at(x, y)], samples.radiance[at(from, y)], x, y);
+        const std::vector<glm::vec4> inTwoSteps = shifted(samples);
+        const std::vector<glm::vec4> atOnce = projected(samples, Seen(samples)).radiance;
+        for (const auto* result : {&inTwoSteps, &atOnce}) {
+            for (int y = 0; y < kSize.y; ++y) {
+                for (int x = 13; x < 19; ++x) {  // both are there
+                    const int from = one.movedOneWins ? x - 8 : x;
+                    expectColour((*result)[at(x, y)], samples.radiance[at(from, y)], x, y);
+                }
             }
         }
     }
-}
-
-TEST_F(ReprojectionTest, DepthIsThatOfTheWholePath) {
-    // The reflection that is nearer to its mirror is farther from the eye.
-    Samples samples;
-    forEachPixel([&](int x, int y) {
-        const bool isMoved = x < 12;
-        samples.offset[at(x, y)] = {isMoved ? 8 : 0, 0};
-        samples.depthM[at(x, y)] = isMoved ? 8.0F : 2.0F;
-        samples.distanceM[at(x, y)] = isMoved ? 1.0F : 4.0F;
-    });
-    const std::vector<glm::vec4> result = shifted(samples);
-    for (int x = 13; x < 19; ++x) expectColour(result[at(x, 5)], samples.radiance[at(x, 5)], x, 5);
-}
-
-TEST_F(ReprojectionTest, ARayThatLeftTheSceneReflectsTheFarthest) {
-    Samples samples;
-    forEachPixel([&](int x, int y) {
-        if (x < 12) samples.offset[at(x, y)] = {8, 0};
-        samples.distanceM[at(x, y)] = x < 12 ? 0.0F : 9.0F;  // the diagonal is 10
-    });
-    const std::vector<glm::vec4> result = shifted(samples);
-    for (int x = 13; x < 19; ++x) expectColour(result[at(x, 5)], samples.radiance[at(x, 5)], x, 5);
 }
 
 /// A patch of 4 × 4 samples around the middle, drawn apart to `scale` times its size; the other
@@ -205,14 +205,20 @@ TEST_F(ReprojectionTest, TrianglesMayGrowSixteenfold) {
     EXPECT_GE(validCount(shifted(samples, {.maxGrowth = 17.0F})), 12 * 12);
 }
 
-TEST_F(ReprojectionTest, TrianglesThatGrowTooMuchHideWhatIsFarther) {
+/// A patch that grows too much, and around it what stays where it is, farther.
+Samples grownPatch() {
     Samples samples;
     drawApart(samples, 4.1F);
     forEachPixel([&](int x, int y) {
         if (x >= 11 && x < 17 && y >= 9 && y < 15) return;
-        samples.offset[at(x, y)] = {0, 0};  // surroundings where they were, farther
+        samples.offset[at(x, y)] = {0, 0};
         samples.distanceM[at(x, y)] = 5.0F;
     });
+    return samples;
+}
+
+TEST_F(ReprojectionTest, TrianglesThatGrowTooMuchHideWhatIsFarther) {
+    Samples samples = grownPatch();
     const std::vector<glm::vec4> result = shifted(samples);
     // Inside of the patch, which reaches from x = 13.5 − 1.5 · 4.1 to the right; without it the
     // surroundings show, up to x = 10.
@@ -284,8 +290,7 @@ TEST_F(ReprojectionTest, DoubtfulSamplesAreInvalidWhereTheyGo) {
         samples.offset[at(x, y)] = {2, 0};
         if (x == 9) doubts[at(x, y)] = 1;
     });
-    gl::Texture doubtful = gl::Texture::make2D(GL_R8UI, kSize);
-    doubtful.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, doubts.data());
+    const gl::Texture doubtful = reflections::maskTexture(doubts, kSize);
     const std::vector<glm::vec4> result = shifted(samples, {}, &doubtful);
     for (int x = 2; x < kSize.x; ++x) EXPECT_EQ(result[at(x, 9)].a, x == 11 ? 0.0F : 1.0F) << x;
 }
@@ -298,7 +303,7 @@ TEST_F(ReprojectionTest, TheSameViewReusesEverySample) {
         samples.surface[at(x, y)] = x < 9 ? 1U : static_cast<std::uint32_t>(random.index(4));
         samples.depthM[at(x, y)] = x < 9 ? 3.0F : random.uniform(1.0F, 9.0F);
     });
-    const Warped result = warped(samples, view(), samples.surface, samples.depthM);
+    const Moved result = warped(samples);
     EXPECT_EQ(result.wantedCount(), 0U);
     std::uint32_t reflective = 0;
     forEachPixel([&](int x, int y) {
@@ -310,11 +315,8 @@ TEST_F(ReprojectionTest, TheSameViewReusesEverySample) {
 }
 
 TEST_F(ReprojectionTest, AWallMovesWithTheEye) {
-    // 4 pixels to the right at 2 m: from (x·d, y·d, d) to the world.
     const Samples samples;
-    const glm::mat4 worldFromPixels = kit::worldFromPixels(view());
-    const glm::vec3 step(worldFromPixels * glm::vec4(4.0F * 2.0F, 0, 0, 0));
-    const Warped result = warped(samples, view(step), samples.surface, samples.depthM);
+    const Moved result = warped(samples, Seen(samples, viewToTheRight(4.0F)));
     forEachPixel([&](int x, int y) {
         ASSERT_EQ(result.wanted[at(x, y)], x + 4 < kSize.x ? 0 : 1) << x << " " << y;
         if (x + 4 < kSize.x) {
@@ -325,15 +327,14 @@ TEST_F(ReprojectionTest, AWallMovesWithTheEye) {
 
 TEST_F(ReprojectionTest, OtherDepthsAndReflectorsAreWanted) {
     const Samples samples;
-    std::vector<float> depthM(samples.depthM.size(), 2.0F * 1.02F);
-    EXPECT_EQ(warped(samples, view(), samples.surface, depthM).wantedCount(), depthM.size());
-    EXPECT_EQ(
-        warped(samples, view(), samples.surface, depthM, {.depthTolerance = 0.03F}).wantedCount(),
-        0U);
-    std::vector<std::uint32_t> surface = samples.surface;
-    surface[at(5, 5)] = 2;
-    surface[at(6, 5)] = 0;  // nothing to want
-    const Warped result = warped(samples, view(), surface, samples.depthM);
+    Seen seen(samples);
+    seen.depthM.assign(seen.depthM.size(), 2.0F * 1.02F);
+    EXPECT_EQ(warped(samples, seen).wantedCount(), seen.depthM.size());
+    EXPECT_EQ(warped(samples, seen, {.depthTolerance = 0.03F}).wantedCount(), 0U);
+    seen = Seen(samples);
+    seen.surface[at(5, 5)] = 2;
+    seen.surface[at(6, 5)] = 0;  // nothing to want
+    const Moved result = warped(samples, seen);
     EXPECT_EQ(result.wantedCount(), 1U);
     EXPECT_EQ(result.wanted[at(5, 5)], 1);
 }
@@ -342,7 +343,7 @@ TEST_F(ReprojectionTest, InvalidSamplesAreWanted) {
     Samples samples;
     samples.radiance[at(9, 7)].a = 0.0F;
     samples.radiance[at(20, 3)].a = 0.0F;
-    const Warped result = warped(samples, view(), samples.surface, samples.depthM);
+    const Moved result = warped(samples);
     EXPECT_EQ(result.wantedCount(), 2U);
     EXPECT_EQ(result.wanted[at(9, 7)], 1);
     EXPECT_EQ(result.wanted[at(20, 3)], 1);
@@ -351,11 +352,10 @@ TEST_F(ReprojectionTest, InvalidSamplesAreWanted) {
 TEST_F(ReprojectionTest, WarpingKeepsTheRuleOfGrowthToo) {
     // Four pixels' width of the wall, from 2 m to 0.4 m: 25 times the area.
     const Samples samples;
-    const std::vector<float> depthM(samples.depthM.size(), 0.4F);
-    const kit::View near = view({0, 0, -1.6F});
-    EXPECT_EQ(warped(samples, near, samples.surface, depthM).wantedCount(), depthM.size());
-    EXPECT_EQ(warped(samples, near, samples.surface, depthM, {.maxGrowth = 26.0F}).wantedCount(),
-              0U);
+    Seen seen(samples, view({0, 0, -1.6F}));
+    seen.depthM.assign(seen.depthM.size(), 0.4F);
+    EXPECT_EQ(warped(samples, seen).wantedCount(), seen.depthM.size());
+    EXPECT_EQ(warped(samples, seen, {.maxGrowth = 26.0F}).wantedCount(), 0U);
 }
 
 TEST_F(ReprojectionTest, SplitDrawsCoverTheSame) {
@@ -413,16 +413,10 @@ TEST_F(ReprojectionTest, AListIsDrawnByOneCommandWhereTheDeviceNeedsNoMore) {
     }
 }
 
-/// The eye one whole pixel of a wall at 2 m to the right, `pixels` times.
-glm::vec3 stepOf(const kit::View& view, float pixels) {
-    return glm::vec3(kit::worldFromPixels(view) * glm::vec4(pixels * 2.0F, 0, 0, 0));
-}
-
 TEST_F(ReprojectionTest, AtOnceOffsetsAndTheEyesMotionAddUp) {
     Samples samples;
     for (glm::vec2& offset : samples.offset) offset = {3, -2};
-    const Warped result =
-        projected(samples, view(stepOf(view(), 4.0F)), samples.surface, samples.depthM);
+    const Moved result = projected(samples, Seen(samples, viewToTheRight(4.0F)));
     forEachPixel([&](int x, int y) {
         const int fromX = x - 3 + 4, fromY = y + 2;
         const bool isReused = isInside(fromX, fromY);
@@ -439,8 +433,7 @@ TEST_F(ReprojectionTest, AtOnceFractionsOfAPixelAreResampledOnce) {
     // steps either half mixes neighbours.
     Samples samples;
     for (glm::vec2& offset : samples.offset) offset = {0.5F, 0.0F};
-    const kit::View to = view(stepOf(view(), 0.5F));
-    const Warped result = projected(samples, to, samples.surface, samples.depthM);
+    const Moved result = projected(samples, Seen(samples, viewToTheRight(0.5F)));
     for (int y = 1; y + 1 < kSize.y; ++y) {
         for (int x = 1; x + 1 < kSize.x; ++x) {
             ASSERT_EQ(result.wanted[at(x, y)], 0) << x << " " << y;
@@ -460,8 +453,8 @@ TEST_F(ReprojectionTest, AtOnceASlopesDepthLiesBetweenItsSamples) {
         samples.depthM[at(x, y)] = 1.0F / (0.9F - 0.02F * static_cast<float>(x));
         samples.offset[at(x, y)] = {2.5F, 1.5F};
     });
-    const Warped result = projected(samples, view(), samples.surface, samples.depthM,
-                                    {.silhouette = 0.1F, .depthTolerance = 0.0005F});
+    const Moved result =
+        projected(samples, Seen(samples), {.silhouette = 0.1F, .depthTolerance = 0.0005F});
     for (int y = 3; y + 1 < kSize.y; ++y) {
         for (int x = 4; x + 1 < kSize.x; ++x) {
             ASSERT_EQ(result.wanted[at(x, y)], 0) << x << " " << y;
@@ -469,35 +462,10 @@ TEST_F(ReprojectionTest, AtOnceASlopesDepthLiesBetweenItsSamples) {
     }
 }
 
-TEST_F(ReprojectionTest, AtOnceTheNearestReflectionWins) {
-    for (const bool isMovedOneNearer : {true, false}) {
-        Samples samples;
-        forEachPixel([&](int x, int y) {
-            if (x < 12) samples.offset[at(x, y)] = {8, 0};
-            samples.distanceM[at(x, y)] = (x < 12) == isMovedOneNearer ? 0.5F : 6.0F;
-        });
-        const Warped result = projected(samples, view(), samples.surface, samples.depthM);
-        for (int y = 0; y < kSize.y; ++y) {
-            for (int x = 13; x < 19; ++x) {
-                const int from = isMovedOneNearer ? x - 8 : x;
-                expectColour(result.radiance[at(x, y)], samples.radiance[at(from, y)], x, y);
-            }
-        }
-    }
-}
-
 TEST_F(ReprojectionTest, AtOnceGrownTrianglesAreWantedAndHideWhatIsFarther) {
-    Samples samples;
-    drawApart(samples, 4.1F);
-    forEachPixel([&](int x, int y) {
-        if (x >= 11 && x < 17 && y >= 9 && y < 15) return;
-        samples.offset[at(x, y)] = {0, 0};
-        samples.distanceM[at(x, y)] = 5.0F;
-    });
-    EXPECT_EQ(projected(samples, view(), samples.surface, samples.depthM).wanted[at(9, 12)], 1);
-    EXPECT_EQ(projected(samples, view(), samples.surface, samples.depthM, {.maxGrowth = 17.0F})
-                  .wanted[at(9, 12)],
-              0);
+    const Samples samples = grownPatch();
+    EXPECT_EQ(projected(samples, Seen(samples)).wanted[at(9, 12)], 1);
+    EXPECT_EQ(projected(samples, Seen(samples), {.maxGrowth = 17.0F}).wanted[at(9, 12)], 0);
 }
 
 TEST_F(ReprojectionTest, AtOnceWhatIsDoubtfulUnmatchedHiddenOrAnothersIsWanted) {
@@ -505,14 +473,12 @@ TEST_F(ReprojectionTest, AtOnceWhatIsDoubtfulUnmatchedHiddenOrAnothersIsWanted) 
     std::vector<std::uint8_t> doubts(at(0, kSize.y), 0);
     doubts[at(4, 4)] = 1;
     samples.offset[at(9, 7)] = glm::vec2(kInvalidOffset);
-    gl::Texture doubtful = gl::Texture::make2D(GL_R8UI, kSize);
-    doubtful.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, doubts.data());
-    std::vector<std::uint32_t> surface = samples.surface;
-    std::vector<float> depthM = samples.depthM;
-    surface[at(20, 3)] = 2;
-    surface[at(21, 3)] = 0;  // nothing to want
-    depthM[at(15, 12)] = 1.5F;
-    const Warped result = projected(samples, view(), surface, depthM, {}, &doubtful);
+    const gl::Texture doubtful = reflections::maskTexture(doubts, kSize);
+    Seen seen(samples);
+    seen.surface[at(20, 3)] = 2;
+    seen.surface[at(21, 3)] = 0;  // nothing to want
+    seen.depthM[at(15, 12)] = 1.5F;
+    const Moved result = projected(samples, seen, {}, &doubtful);
     EXPECT_EQ(result.wantedCount(), 4U);
     EXPECT_EQ(result.wanted[at(4, 4)], 1);
     EXPECT_EQ(result.wanted[at(9, 7)], 1);
