@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/gl/device.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -57,20 +58,15 @@ ClusterImages::ClusterImages(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx
 
 void ClusterImages::beginDrawing(glm::ivec2 sizePx) const {
     framebuffer_.bind();
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDepthMask(GL_TRUE);
+    // Window z is near distance / z: 1 at the near plane, 0 at infinity.
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    kit::setNearestWins(GL_GREATER);
     glEnable(GL_SCISSOR_TEST);
     glScissor(0, 0, sizePx.x, sizePx.y);
     // Depth 0 says that nothing is there, so that triangles need not be cleared.
     if (content_ == TexelContent::Colours) framebuffer_.clearColour(0, glm::vec4(0.0F));
     framebuffer_.clearDepth(0.0F);
     glDisable(GL_SCISSOR_TEST);
-    // Window z is near distance / z: 1 at the near plane, 0 at infinity.
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
     glEnable(GL_CLIP_DISTANCE0);  // the far plane
 }
 
@@ -118,17 +114,6 @@ glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settin
     }
     const glm::ivec2 sizePx(glm::ceil(glm::vec2(camera.sizePx) * scale));
     return glm::clamp(sizePx, glm::ivec2(1), glm::ivec2(settings.maxSizePx));
-}
-
-std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene& scene) {
-    std::vector<std::uint32_t> families(static_cast<std::size_t>(scene.reflectorCount()) + 1, 0);
-    for (const reflections::Object& object : scene.objects()) {
-        if (object.reflector == 0) continue;
-        const std::uint32_t bend = object.isPlanar ? 0U : object.isConcave ? 2U : 1U;
-        families[static_cast<std::size_t>(object.reflector)] =
-            static_cast<std::uint32_t>(object.wholeReflector) << 2 | bend;
-    }
-    return families;
 }
 
 // ---- OneByOnePainter ----
@@ -228,27 +213,38 @@ constexpr int kPlaceStepPx = 8;
 
 }  // namespace
 
-ImagePlaces::ImagePlaces(const gl::ShaderLibrary& shaders)
-    : places_(kMaxClusters * sizeof(glm::ivec4)),
-      order_(sizeof(AtlasState) + kMaxClusters * sizeof(std::uint32_t)) {
+SideBySidePainter::SideBySidePainter(const gl::ShaderLibrary& shaders,
+                                     const reflections::ReflectiveScene& scene,
+                                     const CameraSettings& settings)
+    : order_(sizeof(AtlasState) + kMaxClusters * sizeof(std::uint32_t)),
+      settings_(settings),
+      places_(kMaxClusters * sizeof(glm::ivec4)),
+      families_(gl::Buffer::of(reflectorFamilies(scene))) {
     gl::Defines defines = imageDefines();
     defines["PLACE_STEP_PX"] = kPlaceStepPx;
-    pass_ = gl::Pass(shaders, {"clustered_reflections/place_images.comp.glsl"}, defines);
+    place_ = gl::Pass(shaders, {"clustered_reflections/place_images.comp.glsl"}, defines);
 }
 
-void ImagePlaces::place(const gl::Buffer& cameras, const Clusters& clusters,
-                        const CameraSettings& settings, glm::ivec2 atlasSizePx) const {
-    pass_.set("atlasSizePx", atlasSizePx);
-    pass_.set("depthImageScale", settings.depthImageScale);
-    pass_.set("texelsPerSample", settings.texelsPerSample);
-    pass_.set("maxSizePx", std::min(settings.maxSizePx, atlasSizePx.x));
-    pass_.dispatch({1, 1, 1},
-                   gl::Resources{{"Ranges", clusters.ranges}}.with(resources(cameras, clusters)));
+void SideBySidePainter::place(const gl::Buffer& cameras, const Clusters& clusters,
+                              glm::ivec2 atlasSizePx) const {
+    place_.set("atlasSizePx", atlasSizePx);
+    place_.set("depthImageScale", settings_.depthImageScale);
+    place_.set("texelsPerSample", settings_.texelsPerSample);
+    place_.set("maxSizePx", std::min(settings_.maxSizePx, atlasSizePx.x));
+    place_.dispatch({1, 1, 1},
+                    gl::Resources{{"Ranges", clusters.ranges}}.with(placed(cameras, clusters)));
 }
 
-gl::Resources ImagePlaces::resources(const gl::Buffer& cameras, const Clusters& clusters) const {
-    return {
-        {"Cameras", cameras}, {"Counts", clusters.counts}, {"Places", places_}, {"Order", order_}};
+gl::Resources SideBySidePainter::placed(const gl::Buffer& cameras, const Clusters& clusters) const {
+    return {{"Cameras", cameras},
+            {"Counts", clusters.counts},
+            {"Places", places_},
+            {"Order", order_},
+            {"Families", families_}};
+}
+
+std::size_t SideBySidePainter::sizeBytes() const {
+    return places_.sizeBytes() + order_.sizeBytes() + families_.sizeBytes();
 }
 
 namespace {
@@ -271,7 +267,7 @@ struct ElementsCommand {
 AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
                            const reflections::ReflectiveScene& scene,
                            const reflections::GpuObjects& objects, const CameraSettings& settings)
-    : settings_(settings), families_(gl::Buffer::of(reflectorFamilies(scene))), places_(shaders) {
+    : SideBySidePainter(shaders, scene, settings) {
     GFXREPRO_ASSERT(objects.objectCount() < kMostObjects);
     gl::Defines defines = shadedImageDefines(scene);
     defines["ATLAS"] = 1;
@@ -302,25 +298,28 @@ AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
 
 void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
                         const Clusters& clusters, ClusterImages& target) {
-    places_.place(cameras, clusters, settings_, target.sizePx());
-    cull_.dispatch({objects.objectCount(), 1, 1}, gl::Resources{{"Commands", commands_},
-                                                                {"Pieces", pieces_},
-                                                                {"Instances", instances_},
-                                                                {"Families", families_}}
-                                                      .with(objects.resources())
-                                                      .with(places_.resources(cameras, clusters)));
+    place(cameras, clusters, target.sizePx());
+    cull_.dispatch(
+        {objects.objectCount(), 1, 1},
+        gl::Resources{{"Commands", commands_}, {"Pieces", pieces_}, {"Instances", instances_}}
+            .with(objects.resources())
+            .with(placed(cameras, clusters)));
 
     instances_.awaitPasses(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
-    const gl::Resources drawn = resources(cameras).with(objects.resources());
-    drawInPlaces(target, draw_, drawn, vertexArray_, commands_, [&] {
+    drawInPlaces(target, draw_, resources(objects, cameras), vertexArray_, commands_, [&] {
         glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, commandCount_,
                                     sizeof(ElementsCommand));
     });
 }
 
+gl::Resources AtlasPainter::resources(const reflections::GpuObjects& objects,
+                                      const gl::Buffer& cameras) const {
+    return gl::Resources{{"Cameras", cameras}, {"Places", places()}}.with(objects.resources());
+}
+
 std::size_t AtlasPainter::sizeBytes() const {
-    return places_.sizeBytes() + commands_.sizeBytes() + instances_.sizeBytes() +
-           pieces_.sizeBytes() + families_.sizeBytes();
+    return SideBySidePainter::sizeBytes() + commands_.sizeBytes() + instances_.sizeBytes() +
+           pieces_.sizeBytes();
 }
 
 }  // namespace gfxrepro::clustered_reflections

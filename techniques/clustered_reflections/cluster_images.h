@@ -69,9 +69,6 @@ class ClusterImages {
 glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settings,
                        std::uint32_t samples);
 
-/// By reflector id: the object that it is a part of << 2 | 0 planar, 1 convex, 2 concave.
-std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene& scene);
-
 /// Whether two parts of one object bend to different sides, as in- and outside of a bowl do: they
 /// lie back to back, and what leaves the one does not meet the other.
 /// shaders/cull_objects.comp.glsl has the same.
@@ -79,7 +76,8 @@ std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene&
 /// Departure [xie2017] Algorithm 6, step 3.b: images of the one leave out the other, which lies as
 /// near behind them as a wall is thin, and curved surfaces rise before a near plane.
 constexpr bool areBackToBack(std::uint32_t family, std::uint32_t other) {
-    return family >> 2 == other >> 2 && family != other && (family & 3U) + (other & 3U) == 3U;
+    return wholeOf(family) == wholeOf(other) && family != other &&
+           (family & 3U) + (other & 3U) == 3U;
 }
 
 /// The thesis's way: a cluster's image at the texture's origin, objects culled on the CPU.
@@ -130,51 +128,52 @@ void drawInPlaces(ClusterImages& target, const gl::Pass& pass, const gl::Resourc
     target.endDrawing(target.sizePx());
 }
 
-class ImagePlaces {
+/// The images of all clusters side by side in one texture, drawn without a read-back. Where not all
+/// fit, all are scaled down by the same factor.
+class SideBySidePainter {
   public:
-    explicit ImagePlaces(const gl::ShaderLibrary& shaders);
-    /// Places the images of all clusters in a texture of `atlasSizePx`; leaves the counts
-    /// 0.
-    void place(const gl::Buffer& cameras, const Clusters& clusters, const CameraSettings& settings,
-               glm::ivec2 atlasSizePx) const;
-    /// For passes that include atlas.glsl.
-    gl::Resources resources(const gl::Buffer& cameras, const Clusters& clusters) const;
+    virtual ~SideBySidePainter() = default;
+    virtual void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
+                      const Clusters& clusters, ClusterImages& target) = 0;
+    /// For the intersection.
+    virtual gl::Resources resources(const reflections::GpuObjects& objects,
+                                    const gl::Buffer& cameras) const = 0;
+    virtual std::size_t sizeBytes() const;
+
     /// ivec4 a cluster: x, y, width, height; width 0: no image.
     const gl::Buffer& places() const { return places_; }
-    /// AtlasState, then the clusters in the order in which they are placed.
-    const gl::Buffer& order() const { return order_; }
-    /// Waits for the device.
+    /// Of the last draw(); waits for the device.
     AtlasState state() const { return order_.read<AtlasState>(1).front(); }
-    std::size_t sizeBytes() const { return places_.sizeBytes() + order_.sizeBytes(); }
+
+  protected:
+    SideBySidePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
+                      const CameraSettings& settings);
+    /// Places the images in a texture of `atlasSizePx`; leaves the counts 0.
+    void place(const gl::Buffer& cameras, const Clusters& clusters, glm::ivec2 atlasSizePx) const;
+    /// For passes that include atlas.glsl and culling.glsl.
+    gl::Resources placed(const gl::Buffer& cameras, const Clusters& clusters) const;
+
+    gl::Buffer order_;  // AtlasState, then the clusters in the order in which they are placed
 
   private:
-    gl::Pass pass_;
-    gl::Buffer places_, order_;
+    CameraSettings settings_;
+    gl::Buffer places_, families_;
+    gl::Pass place_;
 };
 
-/// Images are packed side by side, objects culled for each cluster and both drawn by one multi-draw
-/// indirect, an instance for each cluster that sees an object, without a read-back. Where not all
-/// fit, all are scaled down by the same factor.
-class AtlasPainter {
+/// Objects are culled for each cluster and drawn by one multi-draw indirect, an instance for each
+/// cluster that sees an object.
+class AtlasPainter final : public SideBySidePainter {
   public:
     AtlasPainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
                  const reflections::GpuObjects& objects, const CameraSettings& settings);
     void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
-              const Clusters& clusters, ClusterImages& target);
-    /// For the intersection.
-    gl::Resources resources(const gl::Buffer& cameras) const {
-        return {{"Cameras", cameras}, {"Places", places()}};
-    }
-    const gl::Buffer& places() const { return places_.places(); }
-    std::size_t sizeBytes() const;
-
-    /// Of the last draw(); waits for the device.
-    AtlasState state() const { return places_.state(); }
+              const Clusters& clusters, ClusterImages& target) override;
+    gl::Resources resources(const reflections::GpuObjects& objects,
+                            const gl::Buffer& cameras) const override;
+    std::size_t sizeBytes() const override;
 
   private:
-    CameraSettings settings_;
-    gl::Buffer families_;
-    ImagePlaces places_;
     gl::Pass cull_, draw_;
     gl::Buffer commands_, instances_, pieces_;
     gl::VertexArray vertexArray_;

@@ -252,32 +252,21 @@ glm::vec3 colorOf(std::uint16_t number) {
     return strength * glm::mix(glm::vec3(1.0F), pure, 0.8F);
 }
 
-/// [xie2017] Fig. 22 and 23: a colour a number (a reflector or cluster), 0 is grey; of the
-/// samples, averaged to output pixels.
-image::ImageF numbersPicture(const HostGBuffer& gbuffer, const std::vector<std::uint16_t>& numbers,
-                             int supersampling) {
+/// [xie2017] Fig. 22 and 23: a colour a number (of a sample's reflector or cluster), 0 is grey;
+/// averaged to output pixels.
+template <class NumberOf>
+image::ImageF numbersPicture(const HostGBuffer& gbuffer, int supersampling,
+                             const NumberOf& numberOf) {
     return reflections::averagedPicture(gbuffer, supersampling, [&](std::size_t i) {
-        return numbers[i] == 0 ? reflections::dimmed(gbuffer, i) : colorOf(numbers[i]);
+        const auto number = static_cast<std::uint16_t>(numberOf(i));
+        return number == 0 ? reflections::dimmed(gbuffer, i) : colorOf(number);
     });
-}
-
-std::vector<std::uint16_t> reflectorNumbers(const HostGBuffer& gbuffer) {
-    std::vector<std::uint16_t> numbers(gbuffer.surface.size());
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        numbers[i] = static_cast<std::uint16_t>(gbuffer.reflector(i));
-    }
-    return numbers;
 }
 
 /// Of values that are not 0.
 template <class T>
 std::size_t countOf(const std::vector<T>& values) {
     return values.size() - static_cast<std::size_t>(std::ranges::count(values, T{0}));
-}
-
-bool isSameView(const kit::View& a, const kit::View& b) {
-    return a.eyeWorld == b.eyeWorld && a.viewFromWorld == b.viewFromWorld &&
-           a.clipFromView == b.clipFromView && a.sizePx == b.sizePx;
 }
 
 class ClusteredReflections final : public technique::Technique {
@@ -339,10 +328,10 @@ class ClusteredReflections final : public technique::Technique {
             frame_->recordResult(
                 recorder, gbuffer, picture,
                 params_.measuresErrors ? truthOf(gbuffer).picture : image::ImageF());
-            recorder.image(
-                "reflectors",
-                numbersPicture(gbuffer, reflectorNumbers(gbuffer), params_.supersampling),
-                seenFrom(gbuffer.view));
+            recorder.image("reflectors",
+                           numbersPicture(gbuffer, params_.supersampling,
+                                          [&](std::size_t i) { return gbuffer.reflector(i); }),
+                           seenFrom(gbuffer.view));
             frame_->recordReflection(recorder, *gbuffer_, *target_);
         }
         if (hasErrors && params_.drawsReflections()) recordErrors(recorder, gbuffer, picture);
@@ -416,7 +405,7 @@ class ClusteredReflections final : public technique::Technique {
     /// Traced once for frames that are the same, however their reflections are made.
     const Truth& truthOf(const HostGBuffer& gbuffer) {
         const bool hasMoved = frame_->updateTruth();
-        if (truth_ && !hasMoved && isSameView(truth_->view, gbuffer.view)) return *truth_;
+        if (truth_ && !hasMoved && truth_->view == gbuffer.view) return *truth_;
         const char* what = params_.drawsReflections() ? "reflections" : "mirror rays";
         truth_ = technique::sharedResult<Truth>(
             shared_, fmt::format("{}, frame {}", what, frameIndex_),
@@ -428,14 +417,13 @@ class ClusteredReflections final : public technique::Technique {
     void recordShares(technique::Recorder& recorder,
                       const std::vector<std::uint32_t>& surfaces) const {
         const reflections::ReflectiveScene& scene = frame_->scene;
-        const std::vector<std::uint8_t> isPlanar = planarReflectors(scene);
-        const std::vector<std::uint32_t> wholes = wholeReflectors(scene);
+        const std::vector<std::uint32_t> families = reflectorFamilies(scene);
         std::uint64_t diffuseTriangles = 0, reflectiveTriangles = 0;
         for (const reflections::Object& object : scene.objects()) {
             (object.reflector == 0 ? diffuseTriangles : reflectiveTriangles) +=
                 object.triangleCount;
         }
-        std::vector<std::size_t> samples(isPlanar.size());
+        std::vector<std::size_t> samples(families.size());
         for (const std::uint32_t surface : surfaces) {
             ++samples[static_cast<std::size_t>(reflections::reflectorOf(surface))];
         }
@@ -444,9 +432,9 @@ class ClusteredReflections final : public technique::Technique {
         std::size_t visibleParts = 0;
         for (std::size_t reflector = 1; reflector < samples.size(); ++reflector) {
             reflective += samples[reflector];
-            planar += isPlanar[reflector] != 0 ? samples[reflector] : 0;
+            planar += isPlanar(families[reflector]) ? samples[reflector] : 0;
             if (samples[reflector] == 0) continue;
-            visible.insert(wholes[reflector]);
+            visible.insert(wholeOf(families[reflector]));
             ++visibleParts;
         }
         recorder.metric("reflective_pct", kit::percent(reflective, surfaces.size()), "%");
@@ -521,7 +509,9 @@ class ClusteredReflections final : public technique::Technique {
         if (params_.measuresErrors && hasReflections_)
             recordOcclusion(recorder, gbuffer, picture, clusterOfSample);
         if (!params_.showsPictures) return;
-        recorder.image("clusters", numbersPicture(gbuffer, clusterOfSample, params_.supersampling),
+        recorder.image("clusters",
+                       numbersPicture(gbuffer, params_.supersampling,
+                                      [&](std::size_t i) { return clusterOfSample[i]; }),
                        seenFrom(gbuffer.view));
         frame_->recordMarks(recorder, "environment", gbuffer, picture,
                             clusteredTracer_->environmentSamples());

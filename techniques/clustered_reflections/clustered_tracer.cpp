@@ -57,9 +57,10 @@ ClusteredTracer::ClusteredTracer(const gl::ShaderLibrary& shaders,
         defines);
     intersectOne_ = gl::Pass(shaders, {"clustered_reflections/intersect.comp.glsl"}, defines);
     if (settings.drawing == ImageDrawing::Atlas) {
-        atlas_.emplace(shaders, scene, objects, settings_.camera);
+        sideBySide_ = std::make_unique<AtlasPainter>(shaders, scene, objects, settings_.camera);
     } else if (settings.drawing == ImageDrawing::Visible) {
-        visible_.emplace(shaders, scene, objects, settings_.camera, settings.levelErrorPx);
+        sideBySide_ = std::make_unique<VisiblePainter>(shaders, scene, objects, settings_.camera,
+                                                       settings.levelErrorPx);
     } else {
         if (settings.drawing == ImageDrawing::OneByOne) oneByOne_.emplace(shaders, scene);
         places_ = gl::Buffer(kMaxClusters * sizeof(glm::ivec4));
@@ -102,12 +103,9 @@ void ClusteredTracer::drawAtlas(const reflections::GBuffer& gbuffer,
     const gl::Buffer& cameraTable = clusterCameras_.cameras();
     {
         const gl::GpuScope scope(profiler, "depth_images");
-        if (atlas_) atlas_->draw(*objects_, cameraTable, builder_.clusters(), images_);
-        if (visible_) visible_->draw(*objects_, cameraTable, builder_.clusters(), images_);
+        sideBySide_->draw(*objects_, cameraTable, builder_.clusters(), images_);
     }
     const gl::GpuScope scope(profiler, "intersection");
-    const gl::Resources drawn =
-        visible_ ? visible_->resources(*objects_, cameraTable) : atlas_->resources(cameraTable);
     const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 3>{
         &target.radiance, &target.distance, &environmentSamples_});
     framebuffer.bind();
@@ -116,7 +114,7 @@ void ClusteredTracer::drawAtlas(const reflections::GBuffer& gbuffer,
                           .with(gbuffer.resourcesFor(intersectAll_))
                           .with(map_.resources())
                           .with(images_.resources())
-                          .with(drawn));
+                          .with(sideBySide_->resources(*objects_, cameraTable)));
     wholeImage_.draw();
 }
 
@@ -180,7 +178,7 @@ void ClusteredTracer::intersectCluster(std::uint32_t cluster, const glm::uvec4& 
 std::size_t ClusteredTracer::sizeBytes() const {
     return builder_.sizeBytes() + clusterCameras_.sizeBytes() + images_.sizeBytes() +
            environmentSamples_.sizeBytes() + places_.sizeBytes() +
-           (atlas_ ? atlas_->sizeBytes() : 0) + (visible_ ? visible_->sizeBytes() : 0);
+           (sideBySide_ ? sideBySide_->sizeBytes() : 0);
 }
 
 int ClusteredTracer::clusterCount() const {
@@ -196,10 +194,9 @@ ClusteredTracer::Drawn ClusteredTracer::drawn() const {
     Drawn drawn;
     std::vector<glm::ivec4> sizes = sizes_;
     drawn.triangles = trianglesDrawn_;
-    if (atlas_ || visible_) {
-        const AtlasState state = atlas_ ? atlas_->state() : visible_->state();
-        const gl::Buffer& places = atlas_ ? atlas_->places() : visible_->places();
-        sizes = places.read<glm::ivec4>(static_cast<std::size_t>(clusterCount()));
+    if (sideBySide_) {
+        const AtlasState state = sideBySide_->state();
+        sizes = sideBySide_->places().read<glm::ivec4>(static_cast<std::size_t>(clusterCount()));
         drawn.triangles = state.triangles;
         drawn.leftOut = state.leftOut;
     }

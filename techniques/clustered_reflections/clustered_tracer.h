@@ -1,6 +1,7 @@
 // Steps 2 and 3 of [xie2017] Algorithm 6, as a tracer of reflections.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -105,8 +106,7 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     gl::Pass intersectAll_, intersectOne_;
     gl::Texture environmentSamples_;  // R8UI: 1 where a mirror ray took the environment map
     kit::WholeImage wholeImage_;
-    std::optional<AtlasPainter> atlas_;
-    std::optional<VisiblePainter> visible_;
+    std::unique_ptr<SideBySidePainter> sideBySide_;
     std::optional<OneByOnePainter> oneByOne_;
     // One by one:
     gl::Buffer places_;

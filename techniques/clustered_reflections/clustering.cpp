@@ -13,6 +13,7 @@
 #include "engine/core/error.h"
 #include "engine/gl/pass.h"
 #include "techniques/kit/draws.h"
+#include "techniques/kit/whole_image.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -202,19 +203,18 @@ std::vector<std::vector<Sample>> samplesOfReflectors(const reflections::HostGBuf
 /// On the host: the G-buffer is read back, the clusters are uploaded. The thesis judged
 /// clusterings from the top down too slow; this is here to measure what they would gain.
 void buildKdClusters(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
-                     const std::vector<std::uint8_t>& isPlanar,
-                     const std::vector<std::uint32_t>& wholes, const BinSettings& bins,
+                     const std::vector<std::uint32_t>& families, const BinSettings& bins,
                      Clusters& clusters) {
     const reflections::HostGBuffer host = readGBuffer(gbuffer);
     std::vector<std::uint8_t> mask;
     if (wanted != nullptr) mask = reflections::readMask(*wanted);
-    auto ofReflectors = samplesOfReflectors(host, mask, isPlanar.size());
+    auto ofReflectors = samplesOfReflectors(host, mask, families.size());
 
     std::uint32_t total = 0;
     std::set<std::uint32_t> visibleWholes;
     for (std::size_t r = 1; r < ofReflectors.size(); ++r) {
         total += static_cast<std::uint32_t>(ofReflectors[r].size());
-        if (!ofReflectors[r].empty()) visibleWholes.insert(wholes[r]);
+        if (!ofReflectors[r].empty()) visibleWholes.insert(wholeOf(families[r]));
     }
     const auto visible = static_cast<std::uint32_t>(visibleWholes.size());
     const BinTables tables(bins);
@@ -227,10 +227,10 @@ void buildKdClusters(const reflections::GBuffer& gbuffer, const gl::Texture* wan
         if (samples.empty()) continue;
         const auto area = static_cast<std::uint32_t>(samples.size());
         const glm::ivec2 grid = tables.binsOf(area, total, visible);
-        const int budget = isPlanar[r] != 0 ? 1 : (grid.x * grid.y + 1) / 2;
+        const int budget = isPlanar(families[r]) ? 1 : (grid.x * grid.y + 1) / 2;
         normalizePositions(samples);
         for (const Cell& cell : split(samples, static_cast<std::size_t>(budget))) {
-            ranges.emplace_back(sorted.size(), cell.count, r, isPlanar[r]);
+            ranges.emplace_back(sorted.size(), cell.count, r, isPlanar(families[r]) ? 1 : 0);
             for (std::size_t i = cell.first; i < cell.first + cell.count; ++i) {
                 const std::uint32_t pixel = samples[i].pixel;
                 clusterOfSample[pixel] = static_cast<std::uint16_t>(ranges.size());
@@ -245,10 +245,6 @@ void buildKdClusters(const reflections::GBuffer& gbuffer, const gl::Texture* wan
     clusters.ranges.write(std::span<const glm::uvec4>(ranges));
     clusters.counts.write(std::span<const std::uint32_t>(counts));
 }
-
-}  // namespace
-
-namespace {
 
 constexpr int kGroupSize = 64;
 constexpr int kScanGroupSize = 256;
@@ -278,8 +274,7 @@ gl::Pass wholeImage(const gl::ShaderLibrary& shaders, const char* name) {
 }
 
 gl::Framebuffer framebufferOf(const gl::Texture& target) {
-    const gl::Texture* const colours[] = {&target};
-    return gl::Framebuffer(colours);
+    return gl::Framebuffer(std::array<const gl::Texture*, 1>{&target});
 }
 
 }  // namespace
@@ -289,176 +284,135 @@ std::size_t Clusters::sizeBytes() const {
            counts.sizeBytes();
 }
 
-std::vector<std::uint8_t> planarReflectors(const reflections::ReflectiveScene& scene) {
-    std::vector<std::uint8_t> isPlanar(static_cast<std::size_t>(scene.reflectorCount()) + 1, 0);
+std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene& scene) {
+    std::vector<std::uint32_t> families(static_cast<std::size_t>(scene.reflectorCount()) + 1, 0);
     for (const reflections::Object& object : scene.objects()) {
-        if (object.reflector > 0 && object.isPlanar) {
-            isPlanar[static_cast<std::size_t>(object.reflector)] = 1;
-        }
+        if (object.reflector == 0) continue;
+        const std::uint32_t bend = object.isPlanar ? 0U : object.isConcave ? 2U : 1U;
+        families[static_cast<std::size_t>(object.reflector)] =
+            static_cast<std::uint32_t>(object.wholeReflector) << 2 | bend;
     }
-    return isPlanar;
+    return families;
 }
 
-std::vector<std::uint32_t> wholeReflectors(const reflections::ReflectiveScene& scene) {
-    std::vector<std::uint32_t> wholes(static_cast<std::size_t>(scene.reflectorCount()) + 1, 0);
-    for (const reflections::Object& object : scene.objects()) {
-        wholes[static_cast<std::size_t>(object.reflector)] =
-            static_cast<std::uint32_t>(object.wholeReflector);
-    }
-    return wholes;
-}
-
-/// Programs and scratch of the clustering by normals.
+/// Passes and scratch of the clustering by normals.
 struct ClusterBuilder::NormalBinPasses {
     NormalBinPasses(const gl::ShaderLibrary& shaders, const BinSettings& settings,
-                    const BinTables& tables, const std::vector<std::uint8_t>& isPlanar,
-                    const std::vector<std::uint32_t>& wholes, const Clusters& clusters);
-    void build(const reflections::GBuffer& gbuffer, const gl::Texture* wanted,
-               const Clusters& clusters);
-    void findBins(const reflections::GBuffer& gbuffer, const gl::Texture& wanted,
-                  const Clusters& clusters);
-    void sortSamples(const Clusters& clusters);
-    std::size_t sizeBytes() const;
+                    const std::vector<std::uint32_t>& families, const Clusters& clusters)
+        : tables(settings),
+          sizePx(clusters.clusterOfSample.size()),
+          leastSamples(static_cast<std::uint32_t>(settings.leastSamples)),
+          areas(compute(shaders, "reflector_areas", kGroupSize)),
+          bins(compute(shaders, "reflector_bins", kScanGroupSize)),
+          assign(wholeImage(shaders, "assign_bins")),
+          count(compute(shaders, "count_bins", kGroupSize)),
+          scan(compute(shaders, "scan_bins", kScanGroupSize)),
+          number(compute(shaders, "number_clusters", kScanGroupSize)),
+          sort(compute(shaders, "sort_samples", kGroupSize)),
+          label(wholeImage(shaders, "label_clusters")),
+          areaOfReflector(families.size() * sizeof(std::uint32_t)),
+          leastScale(gl::Buffer::of(tables.leastScale)),
+          thetaBorders(gl::Buffer::of(tables.thetaBorders)),
+          phiBorders(gl::Buffer::of(tables.phiBorders)),
+          binOfSample(gl::Texture::make2D(GL_R16UI, sizePx)),
+          binTarget(framebufferOf(binOfSample)),
+          clusterTarget(framebufferOf(clusters.clusterOfSample)) {
+        std::vector<glm::uvec4> records;
+        for (const std::uint32_t family : families) {
+            records.emplace_back(0, 0, 0, (isPlanar(family) ? 1U : 0U) | wholeOf(family) << 1);
+        }
+        reflectors = gl::Buffer::of(records);
+    }
 
-    glm::ivec2 sizePx, maxBins;
-    int reflectorCount;
+    /// Areas, bins of each reflector, bin of each sample.
+    void findBins(const reflections::GBuffer& gbuffer, const gl::Texture& wanted,
+                  const Clusters& clusters) {
+        areaOfReflector.clear();
+        areas.dispatch(
+            {kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kStripLength), 1},
+            {{"surfaces", gbuffer.surface}, {"wanted", wanted}, {"Areas", areaOfReflector}});
+
+        bins.set("reflectorCount",
+                 static_cast<int>(areaOfReflector.sizeBytes() / sizeof(std::uint32_t)) - 1);
+        bins.set("maxThetaBins", tables.maxBins.x);
+        bins.set("maxPhiBins", tables.maxBins.y);
+        bins.set("pixelCount", sizePx.x * sizePx.y);
+        bins.dispatch({1, 1, 1}, {{"Areas", areaOfReflector},
+                                  {"Thresholds", leastScale},
+                                  {"Reflectors", reflectors},
+                                  {"SortLayout", layout},
+                                  {"Bins", binRecords},
+                                  {"Counts", clusters.counts}});
+
+        assign.use({{"surfaces", gbuffer.surface},
+                    {"normals", gbuffer.normal},
+                    {"wanted", wanted},
+                    {"Reflectors", reflectors},
+                    {"SortLayout", layout},
+                    {"ThetaBorders", thetaBorders},
+                    {"PhiBorders", phiBorders}});
+        binTarget.bind();
+        image.draw();
+    }
+
+    void sortSamples(const Clusters& clusters) {
+        const gl::Resources sorted{{"Reflectors", reflectors},
+                                   {"SortLayout", layout},
+                                   {"Matrix", matrix},
+                                   {"Pieces", pieces},
+                                   {"binOfSample", binOfSample}};
+        const glm::uvec3 blocks(kit::groupsFor(kMaxBlocks, kGroupSize), 1, 1);
+        matrix.clear();
+        count.dispatch(blocks, gl::Resources{}.with(sorted));
+        scan.dispatch({kit::groupsFor(kMatrixEntries, kPieceLength), 1, 1},
+                      gl::Resources{}.with(sorted));
+        number.set("leastSamples", leastSamples);
+        number.dispatch({1, 1, 1}, gl::Resources{{"Bins", binRecords},
+                                                 {"Ranges", clusters.ranges},
+                                                 {"Counts", clusters.counts}}
+                                       .with(sorted));
+        sort.dispatch(blocks, gl::Resources{{"Samples", clusters.samples}}.with(sorted));
+
+        label.use({{"binOfSample", binOfSample}, {"Bins", binRecords}});
+        clusterTarget.bind();
+        image.draw();
+    }
+
+    std::size_t sizeBytes() const {
+        std::size_t sum = binOfSample.sizeBytes();
+        for (const gl::Buffer* buffer :
+             {&areaOfReflector, &reflectors, &layout, &binRecords, &matrix, &pieces, &leastScale,
+              &thetaBorders, &phiBorders}) {
+            sum += buffer->sizeBytes();
+        }
+        return sum;
+    }
+
+    BinTables tables;
+    glm::ivec2 sizePx;
     std::uint32_t leastSamples;
     gl::Pass areas, bins, assign, count, scan, number, sort, label;
-    gl::Buffer areaOfReflector, reflectors, layout, binRecords, matrix, pieces;
+    gl::Buffer areaOfReflector, reflectors;
+    gl::Buffer layout{3 * sizeof(std::uint32_t)}, binRecords{kMaxClusters * sizeof(std::uint32_t)};
+    gl::Buffer matrix{kMatrixEntries * sizeof(std::uint32_t)};
+    gl::Buffer pieces{kScanGroupSize * sizeof(std::uint32_t)};
     gl::Buffer leastScale, thetaBorders, phiBorders;
     gl::Texture binOfSample;  // R16UI: 1 + bin; 0: not reflective
     gl::Framebuffer binTarget, clusterTarget;
-    gl::VertexArray noAttributes;
+    kit::WholeImage image;
 };
-
-ClusterBuilder::NormalBinPasses::NormalBinPasses(const gl::ShaderLibrary& shaders,
-                                                 const BinSettings& settings,
-                                                 const BinTables& tables,
-                                                 const std::vector<std::uint8_t>& isPlanar,
-                                                 const std::vector<std::uint32_t>& wholes,
-                                                 const Clusters& clusters)
-    : sizePx(clusters.clusterOfSample.size()),
-      maxBins(tables.maxBins),
-      reflectorCount(static_cast<int>(isPlanar.size()) - 1),
-      leastSamples(static_cast<std::uint32_t>(settings.leastSamples)),
-      areas(compute(shaders, "reflector_areas", kGroupSize)),
-      bins(compute(shaders, "reflector_bins", kScanGroupSize)),
-      assign(wholeImage(shaders, "assign_bins")),
-      count(compute(shaders, "count_bins", kGroupSize)),
-      scan(compute(shaders, "scan_bins", kScanGroupSize)),
-      number(compute(shaders, "number_clusters", kScanGroupSize)),
-      sort(compute(shaders, "sort_samples", kGroupSize)),
-      label(wholeImage(shaders, "label_clusters")),
-      areaOfReflector(isPlanar.size() * sizeof(std::uint32_t)),
-      layout(3 * sizeof(std::uint32_t)),
-      binRecords(kMaxClusters * sizeof(std::uint32_t)),
-      matrix(kMatrixEntries * sizeof(std::uint32_t)),
-      pieces(kScanGroupSize * sizeof(std::uint32_t)),
-      leastScale(gl::Buffer::of(tables.leastScale)),
-      thetaBorders(gl::Buffer::of(tables.thetaBorders)),
-      phiBorders(gl::Buffer::of(tables.phiBorders)),
-      binOfSample(gl::Texture::make2D(GL_R16UI, sizePx)),
-      binTarget(framebufferOf(binOfSample)),
-      clusterTarget(framebufferOf(clusters.clusterOfSample)) {
-    std::vector<glm::uvec4> records;
-    for (std::size_t r = 0; r < isPlanar.size(); ++r) {
-        records.emplace_back(0, 0, 0, isPlanar[r] | wholes[r] << 1);
-    }
-    reflectors = gl::Buffer::of(records);
-}
-
-/// Areas, bins of each reflector, bin of each sample.
-void ClusterBuilder::NormalBinPasses::findBins(const reflections::GBuffer& gbuffer,
-                                               const gl::Texture& wanted,
-                                               const Clusters& clusters) {
-    areaOfReflector.clear();
-    areas.dispatch(
-        {kit::groupsFor(sizePx.x, kGroupSize), kit::groupsFor(sizePx.y, kStripLength), 1},
-        {{"surfaces", gbuffer.surface}, {"wanted", wanted}, {"Areas", areaOfReflector}});
-
-    bins.set("reflectorCount", reflectorCount);
-    bins.set("maxThetaBins", maxBins.x);
-    bins.set("maxPhiBins", maxBins.y);
-    bins.set("pixelCount", sizePx.x * sizePx.y);
-    bins.dispatch({1, 1, 1}, {{"Areas", areaOfReflector},
-                              {"Thresholds", leastScale},
-                              {"Reflectors", reflectors},
-                              {"SortLayout", layout},
-                              {"Bins", binRecords},
-                              {"Counts", clusters.counts}});
-
-    assign.use({{"surfaces", gbuffer.surface},
-                {"normals", gbuffer.normal},
-                {"wanted", wanted},
-                {"Reflectors", reflectors},
-                {"SortLayout", layout},
-                {"ThetaBorders", thetaBorders},
-                {"PhiBorders", phiBorders}});
-    binTarget.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-}
-
-void ClusterBuilder::NormalBinPasses::sortSamples(const Clusters& clusters) {
-    matrix.clear();
-    count.dispatch({kit::groupsFor(kMaxBlocks, kGroupSize), 1, 1}, {{"Reflectors", reflectors},
-                                                                    {"SortLayout", layout},
-                                                                    {"binOfSample", binOfSample},
-                                                                    {"Matrix", matrix}});
-    scan.dispatch({kit::groupsFor(kMatrixEntries, kPieceLength), 1, 1},
-                  {{"Matrix", matrix}, {"Pieces", pieces}});
-    number.set("leastSamples", leastSamples);
-    number.dispatch({1, 1, 1}, {{"Reflectors", reflectors},
-                                {"SortLayout", layout},
-                                {"Matrix", matrix},
-                                {"Pieces", pieces},
-                                {"Bins", binRecords},
-                                {"Ranges", clusters.ranges},
-                                {"Counts", clusters.counts}});
-    sort.dispatch({kit::groupsFor(kMaxBlocks, kGroupSize), 1, 1}, {{"Reflectors", reflectors},
-                                                                   {"SortLayout", layout},
-                                                                   {"binOfSample", binOfSample},
-                                                                   {"Matrix", matrix},
-                                                                   {"Pieces", pieces},
-                                                                   {"Samples", clusters.samples}});
-
-    label.use({{"binOfSample", binOfSample}, {"Bins", binRecords}});
-    clusterTarget.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-}
-
-void ClusterBuilder::NormalBinPasses::build(const reflections::GBuffer& gbuffer,
-                                            const gl::Texture* wanted, const Clusters& clusters) {
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_SCISSOR_TEST);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    noAttributes.bind();
-    // Without a mask the surfaces stand in: they are not 0 where something reflects.
-    findBins(gbuffer, wanted != nullptr ? *wanted : gbuffer.surface, clusters);
-    sortSamples(clusters);
-}
-
-std::size_t ClusterBuilder::NormalBinPasses::sizeBytes() const {
-    return areaOfReflector.sizeBytes() + reflectors.sizeBytes() + layout.sizeBytes() +
-           binRecords.sizeBytes() + matrix.sizeBytes() + pieces.sizeBytes() +
-           leastScale.sizeBytes() + thetaBorders.sizeBytes() + phiBorders.sizeBytes() +
-           binOfSample.sizeBytes();
-}
 
 ClusterBuilder::ClusterBuilder(const gl::ShaderLibrary& shaders,
                                const reflections::ReflectiveScene& scene, Clustering clustering,
                                const BinSettings& bins, glm::ivec2 sizePx)
-    : clustering_(clustering),
-      bins_(bins),
-      isPlanar_(planarReflectors(scene)),
-      wholes_(wholeReflectors(scene)) {
+    : clustering_(clustering), bins_(bins), families_(reflectorFamilies(scene)) {
     GFXREPRO_ASSERT(sizePx.x > 0 && sizePx.y > 0 && sizePx.x < 1 << 16 && sizePx.y < 1 << 16);
     std::vector<int> curvedParts(static_cast<std::size_t>(scene.wholeReflectorCount()) + 1, 0);
     int curved = 0;
-    for (std::size_t r = 1; r < isPlanar_.size(); ++r) {
-        curvedParts[wholes_[r]] += isPlanar_[r] == 0 ? 1 : 0;
-        curved += isPlanar_[r] == 0 ? 1 : 0;
+    for (const std::uint32_t family : families_) {
+        if (isPlanar(family)) continue;
+        ++curvedParts[wholeOf(family)];
+        ++curved;
     }
     const int planar = scene.reflectorCount() - curved;
     const long long most = BinTables(bins).mostBins(std::move(curvedParts)) + planar;
@@ -474,8 +428,7 @@ ClusterBuilder::ClusterBuilder(const gl::ShaderLibrary& shaders,
     clusters_.ranges = gl::Buffer(kMaxClusters * sizeof(glm::uvec4));
     clusters_.counts = gl::Buffer(3 * sizeof(std::uint32_t));
     if (clustering == Clustering::NormalBins) {
-        passes_ = std::make_unique<NormalBinPasses>(shaders, bins, BinTables(bins), isPlanar_,
-                                                    wholes_, clusters_);
+        passes_ = std::make_unique<NormalBinPasses>(shaders, bins, families_, clusters_);
     }
 }
 
@@ -487,9 +440,11 @@ void ClusterBuilder::build(const reflections::GBuffer& gbuffer, const gl::Textur
     GFXREPRO_ASSERT(wanted == nullptr || glm::ivec2(wanted->size()) == sizePx);
     clusters_.ranges.clear();
     if (clustering_ == Clustering::NormalBins) {
-        passes_->build(gbuffer, wanted, clusters_);
+        // Without a mask the surfaces stand in: they are not 0 where something reflects.
+        passes_->findBins(gbuffer, wanted != nullptr ? *wanted : gbuffer.surface, clusters_);
+        passes_->sortSamples(clusters_);
     } else {
-        buildKdClusters(gbuffer, wanted, isPlanar_, wholes_, bins_, clusters_);
+        buildKdClusters(gbuffer, wanted, families_, bins_, clusters_);
     }
 }
 

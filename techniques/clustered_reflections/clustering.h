@@ -70,15 +70,18 @@ class ClusterBuilder {
     Clustering clustering_;
     BinSettings bins_;
     Clusters clusters_;
-    std::vector<std::uint8_t> isPlanar_;  // by reflector
-    std::vector<std::uint32_t> wholes_;   // by reflector
+    std::vector<std::uint32_t> families_;
     std::unique_ptr<NormalBinPasses> passes_;
 };
 
-/// By reflector id (0 is none): 1 where its object is planar.
-std::vector<std::uint8_t> planarReflectors(const reflections::ReflectiveScene& scene);
-/// By reflector id: the number of the object that it is a part of.
-std::vector<std::uint32_t> wholeReflectors(const reflections::ReflectiveScene& scene);
+/// By reflector id (0: none): the object that it is a part of << 2 | 0 planar, 1 convex, 2 concave.
+std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene& scene);
+constexpr bool isPlanar(std::uint32_t family) {
+    return (family & 3U) == 0;
+}
+constexpr std::uint32_t wholeOf(std::uint32_t family) {
+    return family >> 2;
+}
 
 struct BinTables {
     explicit BinTables(const BinSettings& settings);

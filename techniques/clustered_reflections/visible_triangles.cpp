@@ -226,12 +226,10 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
                                const reflections::ReflectiveScene& scene,
                                const reflections::GpuObjects& objects,
                                const CameraSettings& settings, float levelErrorPx)
-    : settings_(settings),
+    : SideBySidePainter(shaders, scene, settings),
       levelErrorPx_(levelErrorPx),
       draws_(kMostVisible / std::min(kMostVisible, objects.mostTrianglesPerDraw())),
       levels_(detailLevels(scene, levelErrorPx > 0.0F)),
-      places_(shaders),
-      families_(gl::Buffer::of(reflectorFamilies(scene))),
       parts_(gl::Buffer::of(levels_.parts)),
       levelRecords_(gl::Buffer::of(levels_.levels)),
       chunks_(gl::Buffer::of(levels_.chunks)),
@@ -253,12 +251,12 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
                       "clustered_reflections/visible_triangle.frag.glsl"},
                      visibleDefines(draws_));
     vertexArray_.setAttribute(0, visibleCorners_, 3);
-    place(objects);
+    placeChunks(objects);
 }
 
 /// Corners and boxes in the world; once all are there, of the objects that move. What a frame does
 /// must not depend on the one before, or times of its repeats would tell of different work.
-void VisiblePainter::place(const reflections::GpuObjects& objects) {
+void VisiblePainter::placeChunks(const reflections::GpuObjects& objects) {
     const bool isFirst = hasMoved_.empty();
     hasMoved_.resize(objects.objectCount(), 0);
     placeChunks_.use(gl::Resources{
@@ -290,15 +288,14 @@ gl::Resources VisiblePainter::resources(const reflections::GpuObjects& objects,
 
 void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
                           const Clusters& clusters, ClusterImages& target) {
-    place(objects);
-    places_.place(cameras, clusters, settings_, target.sizePx());
+    placeChunks(objects);
+    place(cameras, clusters, target.sizePx());
 
-    const gl::Resources placed = places_.resources(cameras, clusters);
+    const gl::Resources inPlaces = placed(cameras, clusters);
     list_.set("partCount", static_cast<std::uint32_t>(levels_.parts.size()));
     list_.set("levelErrorPx", levelErrorPx_);
-    list_.dispatchIndirect(places_.order(), offsetof(AtlasState, groups),
-                           gl::Resources{{"Families", families_},
-                                         {"Parts", parts_},
+    list_.dispatchIndirect(order_, offsetof(AtlasState, groups),
+                           gl::Resources{{"Parts", parts_},
                                          {"Levels", levelRecords_},
                                          {"Chunks", chunks_},
                                          {"ChunkBoxes", chunkBoxes_},
@@ -306,8 +303,8 @@ void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buff
                                          {"Visible", visible_},
                                          {"VisibleCorners", visibleCorners_}}
                                .with(objects.resources())
-                               .with(placed));
-    split_.dispatch({1, 1, 1}, gl::Resources{{"Commands", commands_}}.with(placed));
+                               .with(inPlaces));
+    split_.dispatch({1, 1, 1}, gl::Resources{{"Commands", commands_}}.with(inPlaces));
 
     visibleCorners_.awaitPasses(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
     const gl::Resources drawn{{"Visible", visible_}, {"Cameras", cameras}, {"Places", places()}};
@@ -318,10 +315,9 @@ void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buff
 }
 
 std::size_t VisiblePainter::sizeBytes() const {
-    std::size_t sum = places_.sizeBytes();
-    for (const gl::Buffer* buffer :
-         {&families_, &parts_, &levelRecords_, &chunks_, &chunkBoxes_, &triangles_, &cornersWorld_,
-          &commands_, &visible_, &visibleCorners_}) {
+    std::size_t sum = SideBySidePainter::sizeBytes();
+    for (const gl::Buffer* buffer : {&parts_, &levelRecords_, &chunks_, &chunkBoxes_, &triangles_,
+                                     &cornersWorld_, &commands_, &visible_, &visibleCorners_}) {
         sum += buffer->sizeBytes();
     }
     return sum;

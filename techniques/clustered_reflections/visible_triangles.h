@@ -53,37 +53,29 @@ DetailLevels detailLevels(const reflections::ReflectiveScene& scene, bool isSimp
 /// the frustum; of those, triangles whose box holds the middle of a texel. Surfaces are seen from
 /// both sides, as meshes need not wind, so that nothing is culled for its direction but the back of
 /// the own reflector, as in cluster_image.frag.glsl.
-class VisiblePainter {
+class VisiblePainter final : public SideBySidePainter {
   public:
     VisiblePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
                    const reflections::GpuObjects& objects, const CameraSettings& settings,
                    float levelErrorPx);
     void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
-              const Clusters& clusters, ClusterImages& target);
-    std::size_t sizeBytes() const;
-
-    /// Of the last draw(); waits for the device.
-    AtlasState state() const { return places_.state(); }
-    const gl::Buffer& places() const { return places_.places(); }
-    /// For the intersection.
+              const Clusters& clusters, ClusterImages& target) override;
     gl::Resources resources(const reflections::GpuObjects& objects,
-                            const gl::Buffer& cameras) const;
+                            const gl::Buffer& cameras) const override;
+    std::size_t sizeBytes() const override;
 
   private:
-    void place(const reflections::GpuObjects& objects);
+    void placeChunks(const reflections::GpuObjects& objects);
 
-    CameraSettings settings_;
     float levelErrorPx_;
     std::uint32_t draws_;  // of what is listed
     DetailLevels levels_;
-    ImagePlaces places_;
     gl::Pass placeChunks_, list_, split_, draw_;
-    gl::Buffer families_, parts_, levelRecords_, chunks_, chunkBoxes_;
+    gl::Buffer parts_, levelRecords_, chunks_, chunkBoxes_;
     gl::Buffer triangles_, cornersWorld_;  // by triangle of all levels
     gl::Buffer commands_, visible_, visibleCorners_;
     gl::VertexArray vertexArray_;
-    std::vector<glm::mat4>
-        restPoses_;  // that of setup: objects that never leave it are placed once
+    std::vector<glm::mat4> restPoses_;    // objects that never leave them are placed once
     std::vector<std::uint8_t> hasMoved_;  // since then, by object
 };
 

@@ -12,6 +12,7 @@ namespace {
 const glm::mat4 kIdentity(1.0F);
 
 struct Case {
+    CameraSettings settings;
     reflections::HostGBuffer host;
     std::vector<std::vector<glm::ivec2>> samples;
     std::vector<glm::uvec4> ranges;
@@ -25,29 +26,28 @@ class ClusterCamerasTest : public ClusterTest {
                const std::vector<std::uint8_t>* wanted = nullptr) {
         const reflections::GBuffer gbuffer = render(scene, view);
         ClusterBuilder builder(shaders, scene, Clustering::NormalBins, bins, view.sizePx);
-        gl::Texture mask = gl::Texture::make2D(GL_R8UI, view.sizePx);
-        if (wanted != nullptr) mask.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wanted->data());
+        gl::Texture mask;
+        if (wanted != nullptr) mask = reflections::maskTexture(*wanted, view.sizePx);
         builder.build(gbuffer, wanted != nullptr ? &mask : nullptr);
         ClusterCameras cameras(shaders, settings);
         for (int i = 0; i < 2; ++i) cameras.build(gbuffer, builder.clusters());
-        Case result;
-        result.host = readGBuffer(gbuffer);
+        Case result{settings, readGBuffer(gbuffer), {}, {}, {}};
         result.samples = samplesOf(builder.clusters());
         result.ranges = builder.clusters().ranges.read<glm::uvec4>(result.samples.size());
         result.cameras = cameras.cameras().read<ClusterCamera>(result.samples.size());
-        expectAsOnHost(result, settings);
+        expectAsOnHost(result);
         return result;
     }
 
     /// Against double precision. 2e-5 of lengths of some metres: positions and normals are floats;
     /// 1e-3 of f and of image coordinates: ends of rays, up to maxSlope · 10 m away from where they
     /// begin, hang on the last digits of normals.
-    static void expectAsOnHost(const Case& c, const CameraSettings& settings) {
+    static void expectAsOnHost(const Case& c) {
         for (std::size_t i = 0; i < c.samples.size(); ++i) {
             SCOPED_TRACE(i);
             const ClusterCamera device = c.cameras[i];
             const ClusterCamera host =
-                cameraOnHost(c.host, c.samples[i], (c.ranges[i].w & 1U) != 0, settings);
+                cameraOnHost(c.host, c.samples[i], (c.ranges[i].w & 1U) != 0, c.settings);
             EXPECT_EQ(device.reflector, host.reflector);
             EXPECT_EQ(device.flags, host.flags);
             const float scale = 1.0F + glm::length(glm::vec3(host.eyeWorld));
@@ -80,7 +80,7 @@ class ClusterCamerasTest : public ClusterTest {
     /// Every start and end point (where the ray meets the far plane, for those within the greatest
     /// slope) lies in the image; planes have all theirs in it. Returns how many rays were too
     /// steep.
-    static int expectRaysInImages(const Case& c, const CameraSettings& settings) {
+    static int expectRaysInImages(const Case& c) {
         int tooSteep = 0;
         for (std::size_t i = 0; i < c.samples.size(); ++i) {
             const ClusterCamera& camera = c.cameras[i];
@@ -99,7 +99,7 @@ class ClusterCamerasTest : public ClusterTest {
                 const double approach = glm::dot(n, direction);
                 const double lateral = glm::length(direction - approach * n);
                 const bool isPlanar = (camera.flags & kPlanarCluster) != 0;
-                if (!isPlanar && approach * double{settings.maxSlope} < lateral) {
+                if (!isPlanar && approach * double{c.settings.maxSlope} < lateral) {
                     ++tooSteep;
                     continue;
                 }
@@ -112,6 +112,13 @@ class ClusterCamerasTest : public ClusterTest {
     }
 };
 
+/// Of a sample in the image of the only cluster.
+glm::vec2 imagePx(const Case& c, glm::ivec2 pixel) {
+    const ClusterCamera& camera = c.cameras[0];
+    const glm::vec4 clip = camera.clipFromWorld * glm::vec4(c.host.positionWorld(pixel), 1.0F);
+    return (0.5F + 0.5F * glm::vec2(clip) / clip.w) * glm::vec2(camera.sizePx);
+}
+
 /// Mirrored in the plane through `point`.
 glm::dvec3 mirrored(const glm::dvec3& eye, const glm::dvec3& point, const glm::dvec3& normal) {
     return eye - 2.0 * glm::dot(eye - point, normal) * normal;
@@ -121,9 +128,8 @@ TEST_F(ClusterCamerasTest, PlanarMirrorHasTheMirroredEye) {
     const glm::vec3 eye(0.7F, 0.4F, 3.0F);
     for (const float turn : {0.0F, 0.5F, 1.2F}) {
         const glm::mat4 pose = glm::rotate(kIdentity, turn, {0.3F, 1.0F, 0.1F});
-        const reflections::ReflectiveScene scene = MirrorScene().add(squareMesh(), pose).get();
-        const CameraSettings settings{.diagonalM = 10.0F};
-        const Case c = build(scene, viewFrom(eye, {0, 0, 0}, {256, 192}), settings);
+        const Case c = build(MirrorScene().add(squareMesh(), pose).get(),
+                             viewFrom(eye, {0, 0, 0}, {256, 192}), {.diagonalM = 10.0F});
         ASSERT_EQ(c.cameras.size(), 1U);
         const ClusterCamera& camera = c.cameras[0];
         glm::dvec3 normal = glm::normalize(glm::dvec3(pose * glm::vec4(0, 0, 1, 0)));
@@ -133,16 +139,12 @@ TEST_F(ClusterCamerasTest, PlanarMirrorHasTheMirroredEye) {
         EXPECT_EQ(camera.flags, kPlanarCluster);
         EXPECT_EQ(camera.reflector, 1U);
         EXPECT_NEAR(camera.planeNormal.w - camera.eyeWorld.w, 10.0, 1e-5);
-        EXPECT_EQ(expectRaysInImages(c, settings), 0);
+        EXPECT_EQ(expectRaysInImages(c), 0);
         // The image just holds the mirror: samples reach to half a texel from all four borders.
         glm::vec2 least(1e9F), most(-1e9F);
         for (const glm::ivec2 pixel : c.samples[0]) {
-            const glm::vec4 clip =
-                camera.clipFromWorld * glm::vec4(c.host.positionWorld(pixel), 1.0F);
-            const glm::vec2 px =
-                (0.5F + 0.5F * glm::vec2(clip) / clip.w) * glm::vec2(camera.sizePx);
-            least = glm::min(least, px);
-            most = glm::max(most, px);
+            least = glm::min(least, imagePx(c, pixel));
+            most = glm::max(most, imagePx(c, pixel));
         }
         const glm::vec2 size(camera.sizePx);
         EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(least - 0.5F), glm::vec2(0.05F))));
@@ -151,27 +153,23 @@ TEST_F(ClusterCamerasTest, PlanarMirrorHasTheMirroredEye) {
 }
 
 TEST_F(ClusterCamerasTest, FacingMirrorIsSampledAsTheScreenIs) {
-    const reflections::ReflectiveScene scene = MirrorScene().add(squareMesh(), kIdentity).get();
-    const Case c = build(scene, viewFrom({0, 0, 4}, {0, 0, 0}, {320, 240}), {.diagonalM = 5.0F});
+    const Case c = build(MirrorScene().add(squareMesh()).get(),
+                         viewFrom({0, 0, 4}, {0, 0, 0}, {320, 240}), {.diagonalM = 5.0F});
     ASSERT_EQ(c.cameras.size(), 1U);
     const glm::ivec2 first = c.samples[0].front(), last = c.samples[0].back();
     EXPECT_EQ(c.cameras[0].sizePx, last - first + 1);
     // Texel by texel, left and right exchanged, as a mirror shows it.
     for (const glm::ivec2 pixel : c.samples[0]) {
-        const glm::vec4 clip =
-            c.cameras[0].clipFromWorld * glm::vec4(c.host.positionWorld(pixel), 1.0F);
-        const glm::vec2 px =
-            (0.5F + 0.5F * glm::vec2(clip) / clip.w) * glm::vec2(c.cameras[0].sizePx);
+        const glm::vec2 px = imagePx(c, pixel);
         EXPECT_NEAR(px.x, static_cast<float>(last.x - pixel.x) + 0.5F, 0.02F);
         EXPECT_NEAR(px.y, static_cast<float>(pixel.y - first.y) + 0.5F, 0.02F);
     }
 }
 
 TEST_F(ClusterCamerasTest, ConvexClustersMoveTheEyeTowardsThem) {
-    const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kIdentity).get();
     const glm::vec3 eye(1.0F, 0.8F, 3.5F);
-    const CameraSettings settings{.diagonalM = 10.0F};
-    const Case c = build(scene, viewFrom(eye, {0, 0, 0}, {300, 300}), settings);
+    const Case c = build(MirrorScene().add(ball()).get(), viewFrom(eye, {0, 0, 0}, {300, 300}),
+                         {.diagonalM = 10.0F});
     int within = 0;
     for (const ClusterCamera& camera : c.cameras) {
         const glm::dvec3 centre(camera.centreWorld);
@@ -187,35 +185,25 @@ TEST_F(ClusterCamerasTest, ConvexClustersMoveTheEyeTowardsThem) {
     }
     EXPECT_GT(within, 5);
     EXPECT_GT(c.cameras.size(), 25U);
-    EXPECT_GT(expectRaysInImages(c, settings), 0);  // at the silhouette they are
+    EXPECT_GT(expectRaysInImages(c), 0);  // at the silhouette they are
 }
 
 TEST_F(ClusterCamerasTest, OneClusterOfAWholeBallHasACameraBehindAllSamples) {
-    const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kIdentity).get();
-    const BinSettings one{.maxThetaBins = 1, .maxPhiBins = 1};
-    for (const bool isNearAtFarthest : {false, true}) {
-        for (const float distance : {1.2F, 4.0F}) {
-            const CameraSettings settings{.diagonalM = 10.0F,
-                                          .isNearAtFarthestSample = isNearAtFarthest};
-            const Case c = build(scene, viewFrom({0, 0, distance}, {0, 0, 0}, {128, 128}, 1.2F),
-                                 settings, one);
-            ASSERT_EQ(c.cameras.size(), 1U);
-            const ClusterCamera& camera = c.cameras[0];
-            EXPECT_GT(camera.eyeWorld.w, 0.0F);
-            const glm::vec3 n(camera.planeNormal);
-            float nearest = 1e9F;
-            for (const glm::ivec2 pixel : c.samples[0]) {
-                const glm::vec3 p = c.host.positionWorld(pixel);
-                nearest = std::min(nearest, glm::dot(p - glm::vec3(camera.eyeWorld), n));
-            }
-            EXPECT_GT(nearest, 0.0F);
-            if (isNearAtFarthest) {
-                EXPECT_NEAR(camera.eyeWorld.w, nearest, 1e-5F);
-            } else {
-                EXPECT_GT(camera.eyeWorld.w, nearest);
-            }
-            expectRaysInImages(c, settings);
+    const reflections::ReflectiveScene scene = MirrorScene().add(ball()).get();
+    for (const float distance : {1.2F, 4.0F}) {
+        const Case c = build(scene, viewFrom({0, 0, distance}, {0, 0, 0}, {128, 128}, 1.2F),
+                             {.diagonalM = 10.0F}, kOneBin);
+        ASSERT_EQ(c.cameras.size(), 1U);
+        const ClusterCamera& camera = c.cameras[0];
+        EXPECT_GT(camera.eyeWorld.w, 0.0F);
+        float nearest = 1e9F;
+        for (const glm::ivec2 pixel : c.samples[0]) {
+            const glm::vec3 fromEye = c.host.positionWorld(pixel) - glm::vec3(camera.eyeWorld);
+            nearest = std::min(nearest, glm::dot(fromEye, glm::vec3(camera.planeNormal)));
         }
+        EXPECT_GT(nearest, 0.0F);
+        EXPECT_GT(camera.eyeWorld.w, nearest);
+        expectRaysInImages(c);
     }
 }
 
@@ -223,27 +211,24 @@ TEST_F(ClusterCamerasTest, ConcaveClustersMoveTheEyeAway) {
     // A bowl of radius 4, seen from near its surface: rays part from each other less than a
     // plane's.
     const glm::mat4 pose = glm::scale(kIdentity, glm::vec3(-4.0F));
-    const reflections::ReflectiveScene scene = MirrorScene().add(cap(0.5F), pose).get();
-    const CameraSettings settings{.diagonalM = 1.0F};
-    const Case c = build(scene, viewFrom({0, 0, -2.8F}, {0, 0, -4}, {200, 200}), settings,
-                         {.maxThetaBins = 1, .maxPhiBins = 1});
+    const Case c =
+        build(MirrorScene().add(cap(0.5F), pose).get(),
+              viewFrom({0, 0, -2.8F}, {0, 0, -4}, {200, 200}), {.diagonalM = 1.0F}, kOneBin);
     ASSERT_EQ(c.cameras.size(), 1U);
     EXPECT_GT(c.cameras[0].centreWorld.w, 1.2F);
     EXPECT_LE(c.cameras[0].centreWorld.w, 16.0F);
     EXPECT_LT(c.cameras[0].eyeWorld.z, -4.0F - 1.2F);
-    EXPECT_EQ(expectRaysInImages(c, settings), 0);
+    EXPECT_EQ(expectRaysInImages(c), 0);
 }
 
 TEST_F(ClusterCamerasTest, EyeInsideABallSeesItsInside) {
-    const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kIdentity).get();
-    const BinSettings one{.maxThetaBins = 1, .maxPhiBins = 1};
-    const CameraSettings settings{.diagonalM = 3.0F};
-    for (const BinSettings& bins : {BinSettings{}, one}) {
-        const Case c =
-            build(scene, viewFrom({0.3F, 0.1F, 0.2F}, {0, 0, -1}, {128, 96}, 2.4F), settings, bins);
+    for (const BinSettings& bins : {BinSettings{}, kOneBin}) {
+        const Case c = build(MirrorScene().add(ball()).get(),
+                             viewFrom({0.3F, 0.1F, 0.2F}, {0, 0, -1}, {128, 96}, 2.4F),
+                             {.diagonalM = 3.0F}, bins);
         ASSERT_FALSE(c.cameras.empty());
         for (const ClusterCamera& camera : c.cameras) EXPECT_GT(camera.eyeWorld.w, 0.0F);
-        expectRaysInImages(c, settings);
+        expectRaysInImages(c);
     }
 }
 
@@ -265,49 +250,46 @@ TEST_F(ClusterCamerasTest, EyeBehindTheFittingPlaneIsFlagged) {
     scene::Mesh walls;
     addWall(walls, 1.0F);
     addWall(walls, -1.0F);
-    const reflections::ReflectiveScene scene = MirrorScene().add(walls, kIdentity).get();
-    const CameraSettings settings{.diagonalM = 3.0F};
-    const Case c = build(scene, viewFrom({0, 0, 0}, {0, 0, -1}, {128, 64}, 1.6F), settings,
-                         {.maxThetaBins = 1, .maxPhiBins = 1});
+    const Case c =
+        build(MirrorScene().add(walls).get(), viewFrom({0, 0, 0}, {0, 0, -1}, {128, 64}, 1.6F),
+              {.diagonalM = 3.0F}, kOneBin);
     ASSERT_EQ(c.cameras.size(), 1U);
     EXPECT_LT(c.cameras[0].planeNormal.z, -0.99F);
     EXPECT_NE(c.cameras[0].flags & kEyeBehind, 0U);
     EXPECT_GT(c.cameras[0].eyeWorld.w, 0.0F);
-    expectRaysInImages(c, settings);
+    expectRaysInImages(c);
 }
 
 TEST_F(ClusterCamerasTest, EdgeOnMirrorKeepsAThinImage) {
     // The least height is 1 mm.
     for (const float height : {5e-3F, 5e-4F}) {
         const glm::mat4 pose = glm::rotate(kIdentity, -1.5707964F, {1, 0, 0});
-        const reflections::ReflectiveScene scene = MirrorScene().add(squareMesh(), pose).get();
-        const CameraSettings settings{.diagonalM = 10.0F};
-        const kit::View view = viewFrom({0, height, 1.5F}, {0, 0, 0}, {16, 256}, 3.0F * height);
-        const Case c = build(scene, view, settings);
+        const Case c = build(MirrorScene().add(squareMesh(), pose).get(),
+                             viewFrom({0, height, 1.5F}, {0, 0, 0}, {16, 256}, 3.0F * height),
+                             {.diagonalM = 10.0F});
         ASSERT_EQ(c.cameras.size(), 1U);
         const std::uint32_t behind = height < 1e-3F ? kEyeBehind : 0U;
         EXPECT_EQ(c.cameras[0].flags, kPlanarCluster | behind);
         EXPECT_NEAR(c.cameras[0].eyeWorld.w, std::max(height, 1e-3F), 1e-5F);
         if (behind == 0) {
-            EXPECT_EQ(expectRaysInImages(c, settings), 0);
+            EXPECT_EQ(expectRaysInImages(c), 0);
         }
     }
 }
 
 TEST_F(ClusterCamerasTest, ClustersOfOneSampleHaveAnImageOfOneTexelAtLeast) {
-    const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kIdentity).get();
     std::vector<std::uint8_t> wanted(64 * 64, 0);
     wanted[32 * 64 + 30] = 1;
-    const CameraSettings settings{.diagonalM = 10.0F};
-    const Case c = build(scene, viewFrom({0, 0, 4}, {0, 0, 0}, {64, 64}), settings, {}, &wanted);
+    const Case c = build(MirrorScene().add(ball()).get(), viewFrom({0, 0, 4}, {0, 0, 0}, {64, 64}),
+                         {.diagonalM = 10.0F}, {}, &wanted);
     ASSERT_EQ(c.cameras.size(), 1U);
     EXPECT_EQ(c.cameras[0].centreWorld.w, 1.0F);
     EXPECT_EQ(c.cameras[0].sizePx, glm::ivec2(1));
-    EXPECT_EQ(expectRaysInImages(c, settings), 0);
+    EXPECT_EQ(expectRaysInImages(c), 0);
 }
 
 TEST_F(ClusterCamerasTest, LobesWidenTheImageAndPullTheFarPlaneIn) {
-    reflections::ReflectiveScene scene = MirrorScene().add(squareMesh(), kIdentity).get();
+    reflections::ReflectiveScene scene = MirrorScene().add(squareMesh()).get();
     const kit::View view = viewFrom({0, 0, 4}, {0, 0, 0}, {160, 120});
     const CameraSettings settings{.diagonalM = 10.0F};
     const Case mirror = build(scene, view, settings);
@@ -342,13 +324,13 @@ TEST_F(ClusterCamerasTest, LobesWidenTheImageAndPullTheFarPlaneIn) {
 }
 
 TEST_F(ClusterCamerasTest, NoClustersNeedNoCameras) {
-    const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kIdentity, false).get();
-    const Case c = build(scene, viewFrom({0, 0, 4}, {0, 0, 0}, {64, 64}), {.diagonalM = 10.0F});
+    const Case c = build(MirrorScene().add(ball(), kIdentity, false).get(),
+                         viewFrom({0, 0, 4}, {0, 0, 0}, {64, 64}), {.diagonalM = 10.0F});
     EXPECT_TRUE(c.cameras.empty());
 }
 
 TEST_F(ClusterCamerasTest, TwoRunsGiveTheSameBits) {
-    const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kIdentity).get();
+    const reflections::ReflectiveScene scene = MirrorScene().add(ball()).get();
     const kit::View view = viewFrom({1, 0.8F, 3.5F}, {0, 0, 0}, {200, 200});
     const Case a = build(scene, view, {.diagonalM = 10.0F});
     const Case b = build(scene, view, {.diagonalM = 10.0F});

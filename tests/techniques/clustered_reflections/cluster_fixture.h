@@ -30,13 +30,9 @@ using reflections::squareMesh;
 /// Instances of mirrors; `roughness` is their glossiness.
 class MirrorScene {
   public:
-    MirrorScene() {
-        scene::Material mirror;
-        mirror.metallic = 1.0F;
-        mirror.roughness = 0.0F;
-        scene_.materials = {mirror, scene::Material{}};
-    }
-    MirrorScene& add(scene::Mesh mesh, const glm::mat4& worldFromMesh, bool isMirror = true) {
+    MirrorScene() { scene_.materials = {{.metallic = 1.0F, .roughness = 0.0F}, scene::Material{}}; }
+    MirrorScene& add(scene::Mesh mesh, const glm::mat4& worldFromMesh = glm::mat4(1.0F),
+                     bool isMirror = true) {
         mesh.material = isMirror ? 0 : 1;
         scene_.instances.push_back({static_cast<int>(scene_.meshes.size()), worldFromMesh});
         scene_.meshes.push_back(std::move(mesh));
@@ -52,20 +48,20 @@ class MirrorScene {
 
 inline kit::View viewFrom(const glm::vec3& eye, const glm::vec3& target, glm::ivec2 sizePx,
                           float verticalFovRad = 0.7F) {
-    scene::Camera camera;
-    camera.position = eye;
-    camera.target = target;
-    camera.nearM = 0.01F;
-    camera.farM = 50.0F;
-    camera.verticalFovRad = verticalFovRad;
-    if (std::abs(glm::normalize(target - eye).y) > 0.99F) camera.up = {0.0F, 0.0F, -1.0F};
-    return kit::viewOf(camera, sizePx);
+    const bool isSteep = std::abs(glm::normalize(target - eye).y) > 0.99F;
+    return kit::viewOf({.position = eye,
+                        .target = target,
+                        .up = isSteep ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0),
+                        .verticalFovRad = verticalFovRad,
+                        .farM = 50.0F},
+                       sizePx);
 }
 
-class ClusterTest : public test::GlTest {
-  protected:
-    gl::ShaderLibrary shaders{dataFolder("shaders")};
+/// Of a reflector, a cluster.
+inline const BinSettings kOneBin{.maxThetaBins = 1, .maxPhiBins = 1};
 
+class ClusterTest : public reflections::ReflectionsTest {
+  protected:
     reflections::GBuffer render(const reflections::ReflectiveScene& scene,
                                 const kit::View& view) const {
         reflections::GpuObjects objects(scene);
@@ -82,6 +78,31 @@ class ClusterTest : public test::GlTest {
     static glm::uvec3 countsOf(const Clusters& clusters) {
         const auto counts = clusters.counts.read<std::uint32_t>(3);
         return {counts[0], counts[1], counts[2]};
+    }
+
+    /// Clusters read back, of the second of two builds: what the first leaves behind must not
+    /// matter.
+    struct Built {
+        std::vector<std::vector<glm::ivec2>> samples;
+        std::vector<glm::uvec4> ranges;
+        glm::uvec3 counts;
+        std::vector<std::uint16_t> clusterOfSample;
+    };
+    Built build(const reflections::ReflectiveScene& scene, const reflections::GBuffer& gbuffer,
+                const BinSettings& bins = {}, Clustering clustering = Clustering::NormalBins,
+                const std::vector<std::uint8_t>* wanted = nullptr) const {
+        const glm::ivec2 sizePx = gbuffer.view.sizePx;
+        ClusterBuilder builder(shaders, scene, clustering, bins, sizePx);
+        gl::Texture mask;
+        if (wanted != nullptr) mask = reflections::maskTexture(*wanted, sizePx);
+        for (int i = 0; i < 2; ++i) builder.build(gbuffer, wanted != nullptr ? &mask : nullptr);
+        const Clusters& clusters = builder.clusters();
+        Built built{samplesOf(clusters, bins.leastSamples > 1),
+                    {},
+                    countsOf(clusters),
+                    readClusters(clusters)};
+        built.ranges = clusters.ranges.read<glm::uvec4>(built.samples.size());
+        return built;
     }
 
     /// The samples of each cluster, and what must hold of them: every labelled sample once, cluster

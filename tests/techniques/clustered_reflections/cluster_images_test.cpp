@@ -14,6 +14,8 @@ namespace {
 using reflections::GpuObjects;
 using reflections::ReflectiveScene;
 
+constexpr std::uint32_t kNoReflector = 9999;  // of a scene
+
 class ClusterImagesTest : public TracerTest {
   protected:
     /// A camera that looks along `towards`, its frustum off its centre.
@@ -25,22 +27,57 @@ class ClusterImagesTest : public TracerTest {
         camera.eyeWorld = glm::vec4(eye, 0.25F);
         camera.planeNormal = glm::vec4(glm::normalize(towards), 6.0F);
         camera.sizePx = sizePx;
-        camera.reflector = 9999;  // none of the scene's
+        camera.reflector = kNoReflector;
         return camera;
     }
-    static gl::Buffer cameraBuffer(std::vector<ClusterCamera> cameras) {
-        cameras.resize(kMaxClusters);
-        return gl::Buffer::of(cameras);
-    }
     static constexpr std::uint32_t kSamples = 50;  // of each cluster
-    /// As the painters read them: counts, and ranges of kSamples.
-    static Clusters clustersOf(std::size_t count) {
+    /// As the painters read them: cameras, counts, and ranges of kSamples.
+    struct OnDevice {
+        gl::Buffer cameras;
         Clusters clusters;
-        clusters.counts =
-            gl::Buffer::of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(count), 0, 0});
-        clusters.ranges =
-            gl::Buffer::of(std::vector<glm::uvec4>(kMaxClusters, {0, kSamples, 0, 0}));
-        return clusters;
+
+        explicit OnDevice(std::vector<ClusterCamera> all) {
+            const auto count = static_cast<std::uint32_t>(all.size());
+            all.resize(kMaxClusters);
+            cameras = gl::Buffer::of(all);
+            clusters.counts = gl::Buffer::of(std::vector<std::uint32_t>{count, 0, 0});
+            clusters.ranges =
+                gl::Buffer::of(std::vector<glm::uvec4>(kMaxClusters, {0, kSamples, 0, 0}));
+        }
+    };
+    static void draw(SideBySidePainter& painter, const GpuObjects& objects,
+                     const OnDevice& clusters, ClusterImages& images) {
+        painter.draw(objects, clusters.cameras, clusters.clusters, images);
+    }
+    static std::vector<float> depthsOf(const ClusterImages& images) {
+        return images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+    }
+    /// Of objects behind the six walls, those that a cluster's image shows.
+    static std::vector<std::uint32_t> furnitureSeen(const ReflectiveScene& scene,
+                                                    std::uint32_t reflector,
+                                                    std::uint32_t flags = 0) {
+        ClusterCamera camera = cameraLooking({0.0F, -0.5F, 1.5F}, {0.0F, 0.0F, -1.0F}, {20, 20});
+        camera.reflector = reflector;
+        camera.flags = flags;
+        std::vector<std::uint32_t> seen =
+            OneByOnePainter(shaders(), scene).objectsSeen(GpuObjects(scene), camera);
+        std::erase_if(seen, [](std::uint32_t object) { return object < 6; });
+        return seen;
+    }
+    using Objects = std::vector<std::uint32_t>;
+    /// What texels of images of triangles show.
+    struct ShownTexels {
+        std::vector<float> depths;
+        std::vector<std::uint32_t> triangles;
+        AtlasState state;
+    };
+    static ShownTexels drawVisible(VisiblePainter& painter, const GpuObjects& objects,
+                                   const OnDevice& clusters) {
+        ClusterImages images(shaders(), glm::ivec2(512), false, TexelContent::Triangles);
+        draw(painter, objects, clusters, images);
+        return {depthsOf(images),
+                images.colour().read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1),
+                painter.state()};
     }
     static std::vector<ClusterCamera> randomCameras(Random& random, int count, std::uint32_t most) {
         std::vector<ClusterCamera> cameras;
@@ -98,18 +135,9 @@ TEST_F(ClusterImagesTest, TheOwnReflectorIsSeenByConcaveClustersOnly) {
     rooms::add(room, rooms::bowl({0.0F, -0.4F, 0.0F}, 0.5F), glm::vec3(1.0F),
                rooms::Surface::Mirror);
     const ReflectiveScene scene(room);
-    const GpuObjects objects(scene);
-    const OneByOnePainter painter(shaders(), scene);
-    ClusterCamera camera = cameraLooking({0.0F, -0.5F, 1.5F}, {0.0F, 0.0F, -1.0F}, {20, 20});
-    const auto sees = [&] {
-        const std::vector<std::uint32_t> seen = painter.objectsSeen(objects, camera);
-        return std::find(seen.begin(), seen.end(), 6U) != seen.end();
-    };
-    EXPECT_TRUE(sees());
-    camera.reflector = 1;
-    EXPECT_FALSE(sees());
-    camera.flags = kShowsOwn;
-    EXPECT_TRUE(sees());
+    EXPECT_EQ(furnitureSeen(scene, kNoReflector), Objects{6});
+    EXPECT_EQ(furnitureSeen(scene, 1), Objects{});
+    EXPECT_EQ(furnitureSeen(scene, 1, kShowsOwn), Objects{6});
 }
 
 TEST_F(ClusterImagesTest, WhatLiesBackToBackIsLeftOut) {
@@ -118,55 +146,27 @@ TEST_F(ClusterImagesTest, WhatLiesBackToBackIsLeftOut) {
     scene::Mesh inside = voxelization::shapes::sphere({0.0F, -0.4F, 0.0F}, 0.45F, 4);
     hollow.normals = scene::vertexNormals(hollow);
     inside.normals = scene::vertexNormals(inside);
-    const auto count = static_cast<unsigned>(hollow.positions.size());
-    hollow.positions.insert(hollow.positions.end(), inside.positions.begin(),
-                            inside.positions.end());
-    for (const glm::vec3& normal : inside.normals) hollow.normals.push_back(-normal);
-    for (const glm::uvec3& t : inside.triangles) hollow.triangles.push_back(t + count);
+    for (glm::vec3& normal : inside.normals) normal = -normal;
     scene::Scene room = rooms::room();
-    rooms::add(room, hollow, glm::vec3(1.0F), rooms::Surface::Mirror);
+    rooms::add(room, reflections::joined(hollow, inside), glm::vec3(1.0F), rooms::Surface::Mirror);
     const ReflectiveScene scene(room, {.splitsParts = true});
     ASSERT_EQ(scene.reflectorCount(), 2);
     EXPECT_EQ(reflectorFamilies(scene), (std::vector<std::uint32_t>{0, 4 | 1, 4 | 2}));
-    const GpuObjects objects(scene);
-    const OneByOnePainter painter(shaders(), scene);
-    ClusterCamera camera = cameraLooking({0.0F, -0.5F, 1.5F}, {0.0F, 0.0F, -1.0F}, {20, 20});
-    const auto seen = [&](std::uint32_t reflector, std::uint32_t flags) {
-        camera.reflector = reflector;
-        camera.flags = flags;
-        std::vector<std::uint32_t> parts;
-        for (const std::uint32_t i : painter.objectsSeen(objects, camera)) {
-            if (i >= 6) parts.push_back(i);
-        }
-        return parts;
-    };
-    EXPECT_EQ(seen(9999, 0), (std::vector<std::uint32_t>{6, 7}));
+    EXPECT_EQ(furnitureSeen(scene, kNoReflector), (Objects{6, 7}));
     for (const std::uint32_t reflector : {1U, 2U}) {
-        EXPECT_TRUE(seen(reflector, 0).empty());
-        EXPECT_EQ(seen(reflector, kShowsOwn), (std::vector<std::uint32_t>{5 + reflector}));
+        EXPECT_EQ(furnitureSeen(scene, reflector), Objects{});
+        EXPECT_EQ(furnitureSeen(scene, reflector, kShowsOwn), Objects{5 + reflector});
     }
 }
 
 TEST_F(ClusterImagesTest, PartsOfOneObjectThatDoNotTouchSeeEachOther) {
     scene::Scene room = rooms::room();
     rooms::add(room, rooms::potAndKnob(), glm::vec3(1.0F), rooms::Surface::Mirror);
-    // Of what comes behind the six walls.
-    const auto seen = [&](const ReflectiveScene& scene, std::uint32_t reflector) {
-        ClusterCamera camera = cameraLooking({0.0F, 0.0F, 1.5F}, {0.0F, 0.0F, -1.0F}, {20, 20});
-        camera.reflector = reflector;
-        std::vector<std::uint32_t> parts;
-        const GpuObjects objects(scene);
-        for (const std::uint32_t i :
-             OneByOnePainter(shaders(), scene).objectsSeen(objects, camera)) {
-            if (i >= 6) parts.push_back(i);
-        }
-        return parts;
-    };
     const ReflectiveScene split(room, {.splitsParts = true});
     ASSERT_EQ(split.reflectorCount(), 2);
-    EXPECT_EQ(seen(split, 1), std::vector<std::uint32_t>{7});
-    EXPECT_EQ(seen(split, 2), std::vector<std::uint32_t>{6});
-    EXPECT_TRUE(seen(ReflectiveScene(room), 1).empty());
+    EXPECT_EQ(furnitureSeen(split, 1), Objects{7});
+    EXPECT_EQ(furnitureSeen(split, 2), Objects{6});
+    EXPECT_EQ(furnitureSeen(ReflectiveScene(room), 1), Objects{});
 }
 
 TEST_F(ClusterImagesTest, PlacesLieInTheAtlasAndApart) {
@@ -184,7 +184,7 @@ TEST_F(ClusterImagesTest, PlacesLieInTheAtlasAndApart) {
     for (const auto& one : cases) {
         std::vector<ClusterCamera> cameras = randomCameras(random, one.count, one.mostPx);
         if (one.count > 10) cameras[3].flags = kNoRoom;
-        painter.draw(objects, cameraBuffer(cameras), clustersOf(cameras.size()), images);
+        draw(painter, objects, OnDevice(cameras), images);
         const AtlasState state = painter.state();
         EXPECT_EQ(state.scale == 1.0F, one.fits) << one.count;
         const auto places = painter.places().read<glm::ivec4>(cameras.size());
@@ -221,14 +221,13 @@ TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
     const GpuObjects objects(scene);
     Random random(3);
     const std::vector<ClusterCamera> cameras = randomCameras(random, 30, 80);
-    const gl::Buffer buffer = cameraBuffer(cameras);
     ClusterImages atlas(shaders(), glm::ivec2(512), true), alone(shaders(), glm::ivec2(512), true);
     AtlasPainter painter(shaders(), scene, objects, {});
-    painter.draw(objects, buffer, clustersOf(cameras.size()), atlas);
+    draw(painter, objects, OnDevice(cameras), atlas);
     ASSERT_EQ(painter.state().scale, 1.0F);
     EXPECT_EQ(painter.state().leftOut, 0U);
     const auto places = painter.places().read<glm::ivec4>(cameras.size());
-    const auto depths = atlas.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+    const std::vector<float> depths = depthsOf(atlas);
     const auto colours = atlas.colour().read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
 
     OneByOnePainter one(shaders(), scene);
@@ -237,7 +236,7 @@ TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
     for (std::uint32_t i = 0; i < cameras.size(); ++i) {
         const glm::ivec4 place = places[i];
         one.draw(objects, cameras[i], {place.z, place.w}, alone);
-        const auto depth = alone.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+        const std::vector<float> depth = depthsOf(alone);
         const auto colour = alone.colour().read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
         const glm::ivec2 last = glm::ivec2(place.z, place.w) - 1;
         for (int y = 0; y < place.w; ++y) {
@@ -280,7 +279,7 @@ TEST_F(ClusterImagesTest, DepthsAreNearOverTheDistanceAlongTheAxis) {
     ClusterImages images(shaders(), glm::ivec2(64), false);
     OneByOnePainter painter(shaders(), scene);
     painter.draw(objects, camera, camera.sizePx, images);
-    const auto depths = images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+    const std::vector<float> depths = depthsOf(images);
     const glm::dmat4 worldFromClip = glm::inverse(glm::dmat4(camera.clipFromWorld));
     for (int y = 0; y < 30; ++y) {
         for (int x = 0; x < 40; ++x) {
@@ -288,8 +287,8 @@ TEST_F(ClusterImagesTest, DepthsAreNearOverTheDistanceAlongTheAxis) {
             const glm::dvec4 world = worldFromClip * clip;
             const glm::vec3 eye(camera.eyeWorld);
             const glm::vec3 direction = glm::normalize(glm::vec3(world / world.w) - eye);
-            const rooms::WallHit hit = rooms::wallHit(eye, direction);
-            const float z = glm::dot(hit.point - eye, glm::vec3(camera.planeNormal));
+            const glm::vec3 hit(reflections::wallHit(rooms::kWalls, eye, direction).position);
+            const float z = glm::dot(hit - eye, glm::vec3(camera.planeNormal));
             EXPECT_NEAR(depths[static_cast<std::size_t>(y * 64 + x)], 0.25F / z, 1e-4F / z)
                 << x << ' ' << y;
         }
@@ -304,14 +303,12 @@ TEST_F(ClusterImagesTest, WhatLiesBeyondTheFarPlaneIsNotDrawn) {
     OneByOnePainter painter(shaders(), scene);
     const auto drawnTexels = [&] {
         painter.draw(objects, camera, camera.sizePx, images);
-        const auto depths = images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+        const std::vector<float> depths = depthsOf(images);
         int drawn = 0;
-        for (int y = 0; y < 30; ++y) {
-            for (int x = 0; x < 40; ++x) {
-                const float depth = depths[static_cast<std::size_t>(y * 64 + x)];
-                drawn += depth > 0.0F ? 1 : 0;
-                if (depth > 0.0F) EXPECT_LE(0.25F / depth, camera.planeNormal.w + 1e-3F);
-            }
+        for (int pixel = 0; pixel < 40 * 30; ++pixel) {
+            const float depth = depths[static_cast<std::size_t>(pixel / 40 * 64 + pixel % 40)];
+            drawn += depth > 0.0F ? 1 : 0;
+            if (depth > 0.0F) EXPECT_LE(0.25F / depth, camera.planeNormal.w + 1e-3F);
         }
         return drawn;
     };
@@ -328,15 +325,16 @@ TEST_F(ClusterImagesTest, NorInTheAtlasNorInImagesOfTriangles) {
     const GpuObjects objects(scene);
     ClusterCamera camera = cameraLooking({0.1F, 0.2F, 0.3F}, {0.6F, 0.0F, -0.8F}, {40, 30});
     camera.planeNormal.w = 2.6F;
-    const gl::Buffer cameras = cameraBuffer({camera});
-    const Clusters clusters = clustersOf(1);
+    const OnDevice clusters({camera});
     ClusterImages whole(shaders(), glm::ivec2(64), false);
-    AtlasPainter(shaders(), scene, objects, {}).draw(objects, cameras, clusters, whole);
     ClusterImages triangles(shaders(), glm::ivec2(64), false, TexelContent::Triangles);
-    VisiblePainter(shaders(), scene, objects, {}, 0.0F).draw(objects, cameras, clusters, triangles);
+    AtlasPainter atlas(shaders(), scene, objects, {});
+    VisiblePainter visible(shaders(), scene, objects, {}, 0.0F);
+    draw(atlas, objects, clusters, whole);
+    draw(visible, objects, clusters, triangles);
     for (const ClusterImages* images : {&whole, &triangles}) {
         int drawn = 0;
-        for (const float depth : images->depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1)) {
+        for (const float depth : depthsOf(*images)) {
             if (depth <= 0.0F) continue;
             ++drawn;
             EXPECT_LE(0.25F / depth, camera.planeNormal.w + 1e-3F);
@@ -346,38 +344,20 @@ TEST_F(ClusterImagesTest, NorInTheAtlasNorInImagesOfTriangles) {
     }
 }
 
-/// What a texel of images of triangles shows: its depth and its object.
-struct ShownTexels {
-    std::vector<float> depths;
-    std::vector<std::uint32_t> triangles;
-    AtlasState state;
-};
-
-ShownTexels drawVisible(VisiblePainter& painter, const GpuObjects& objects,
-                        const gl::Buffer& cameras, const Clusters& clusters,
-                        const gl::ShaderLibrary& shaders) {
-    ClusterImages images(shaders, glm::ivec2(512), false, TexelContent::Triangles);
-    painter.draw(objects, cameras, clusters, images);
-    return {images.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1),
-            images.colour().read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1),
-            painter.state()};
-}
-
 TEST_F(ClusterImagesTest, TrianglesThatMayBeSeenShowWhatAllTrianglesShow) {
     const ReflectiveScene scene = furnishedRoom();
     const GpuObjects objects(scene);
     Random random(4);
     const std::vector<ClusterCamera> cameras = randomCameras(random, 30, 60);
-    const gl::Buffer buffer = cameraBuffer(cameras);
-    const Clusters clusters = clustersOf(cameras.size());
+    const OnDevice clusters(cameras);
     ClusterImages whole(shaders(), glm::ivec2(512), false);
     AtlasPainter atlas(shaders(), scene, objects, {});
-    atlas.draw(objects, buffer, clusters, whole);
+    draw(atlas, objects, clusters, whole);
     ASSERT_EQ(atlas.state().scale, 1.0F);
-    const auto depths = whole.depth().read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
+    const std::vector<float> depths = depthsOf(whole);
 
     VisiblePainter painter(shaders(), scene, objects, {}, 0.0F);
-    const ShownTexels shown = drawVisible(painter, objects, buffer, clusters, shaders());
+    const ShownTexels shown = drawVisible(painter, objects, clusters);
     EXPECT_EQ(shown.state.leftOut, 0U);
     EXPECT_GT(shown.state.triangles, 0U);
     EXPECT_LT(shown.state.triangles, atlas.state().triangles / 3);
@@ -400,7 +380,7 @@ TEST_F(ClusterImagesTest, TrianglesThatMayBeSeenShowWhatAllTrianglesShow) {
     EXPECT_LT(different, texels / 500);
 
     // The same again: no order of what runs at once is seen.
-    const ShownTexels again = drawVisible(painter, objects, buffer, clusters, shaders());
+    const ShownTexels again = drawVisible(painter, objects, clusters);
     EXPECT_EQ(again.state.triangles, shown.state.triangles);
     for (std::size_t i = 0; i < shown.depths.size(); ++i) {
         ASSERT_EQ(again.depths[i], shown.depths[i]);
@@ -413,12 +393,11 @@ TEST_F(ClusterImagesTest, SimplifiedObjectsAreDrawnOfFewerTrianglesAboutWhereThe
     const GpuObjects objects(scene);
     Random random(5);
     const std::vector<ClusterCamera> cameras = randomCameras(random, 30, 40);
-    const gl::Buffer buffer = cameraBuffer(cameras);
-    const Clusters clusters = clustersOf(cameras.size());
+    const OnDevice clusters(cameras);
     VisiblePainter whole(shaders(), scene, objects, {}, 0.0F);
     VisiblePainter simplified(shaders(), scene, objects, {}, 1.0F);
-    const ShownTexels expected = drawVisible(whole, objects, buffer, clusters, shaders());
-    const ShownTexels shown = drawVisible(simplified, objects, buffer, clusters, shaders());
+    const ShownTexels expected = drawVisible(whole, objects, clusters);
+    const ShownTexels shown = drawVisible(simplified, objects, clusters);
     EXPECT_LT(shown.state.triangles, expected.state.triangles);
     std::size_t texels = 0, different = 0;
     for (std::size_t i = 0; i < expected.depths.size(); ++i) {
@@ -439,7 +418,7 @@ TEST_F(ClusterImagesTest, ImagesHaveNoMoreTexelsThanTheirSamplesAskFor) {
     settings.texelsPerSample = 8.0F;
     AtlasPainter painter(shaders(), scene, objects, settings);
     ClusterImages images(shaders(), glm::ivec2(512), false);
-    painter.draw(objects, cameraBuffer(cameras), clustersOf(cameras.size()), images);
+    draw(painter, objects, OnDevice(cameras), images);
     const auto places = painter.places().read<glm::ivec4>(cameras.size());
     int smaller = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {

@@ -17,8 +17,7 @@ class ClusteredTracerTest : public TracerTest {
   protected:
     /// A room whose wall at −z is a mirror.
     static scene::Scene mirrorRoom() {
-        scene::Scene scene = rooms::room(false);
-        rooms::addFurniture(scene);
+        scene::Scene scene = furnishedRoomBefore();
         rooms::add(scene, mirrorWall(), glm::vec3(0.9F), Surface::Mirror);
         return scene;
     }
@@ -45,45 +44,52 @@ class ClusteredTracerTest : public TracerTest {
                    Surface::Mirror);
         return scene;
     }
+    /// The truth of a planar mirror in the wall at −z: what lies behind it, drawn as if it were
+    /// there.
+    static reflections::HostGBuffer seenBehind(const scene::Scene& scene, int sizePx = 128) {
+        const ReflectiveScene mirrored(rooms::mirroredInZ(scene, -2.0F));
+        reflections::GBuffer truth(kit::viewOf(frontCamera(), glm::ivec2(sizePx)));
+        reflections::GBufferRenderer(shaders(), mirrored)
+            .render(reflections::GpuObjects(mirrored), truth);
+        return readGBuffer(truth);
+    }
+    static scene::Scene furnishedRoomBefore() {
+        scene::Scene scene = rooms::room(false);
+        rooms::addFurniture(scene);
+        return scene;
+    }
+    /// A colour that nothing has but the reflector in question.
+    static bool isMagenta(const glm::vec3& c, float least) {
+        return c.y < 0.02F && c.x > least && c.z > least;
+    }
+    static constexpr OwnReflector kOwnReflectors[] = {
+        OwnReflector::LeftOut, OwnReflector::ConcaveDiffuse, OwnReflector::WholeScene};
     static constexpr ImageDrawing kDrawings[] = {ImageDrawing::OneByOne, ImageDrawing::Atlas,
                                                  ImageDrawing::Visible};
 };
 
 TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
     const ReflectiveScene scene(mirrorRoom());
-    // The truth: what lies behind the mirror, drawn as if it were there.
-    scene::Scene behind = rooms::room(false);
-    rooms::addFurniture(behind);
-    const ReflectiveScene mirrored(rooms::mirroredInZ(behind, -2.0F));
-    const reflections::GpuObjects objects(mirrored);
-    reflections::GBuffer truth(kit::viewOf(frontCamera(), glm::ivec2(128)));
-    reflections::GBufferRenderer(shaders(), mirrored).render(objects, truth);
-    const reflections::HostGBuffer expected = readGBuffer(truth);
-
+    const reflections::HostGBuffer expected = seenBehind(furnishedRoomBefore());
     for (const ImageDrawing drawing : kDrawings) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
-        settings.camera.depthImageScale = 2.0F;
-        const Traced traced = trace(scene, frontCamera(), settings);
-        EXPECT_GT(traced.reflectiveCount(), 3000U);
+        const Traced traced =
+            trace(scene, frontCamera(), {.camera = {.depthImageScale = 2.0F}, .drawing = drawing});
+        EXPECT_GT(traced.reflectiveCount(), 3000);
         EXPECT_EQ(traced.cameras.size(), 1U);
         EXPECT_GE(psnrDb(traced, [&](std::size_t i) { return expected.diffuse[i]; }), 40.0);
         // As it is shown, with the resolution of Sec. 4.4 and the mean of 2 × 2 samples a pixel.
-        settings.camera.depthImageScale = 1.0F;
-        const Traced plain = trace(scene, frontCamera(), settings);
+        const Traced plain = trace(scene, frontCamera(), {.drawing = drawing});
         EXPECT_GE(shownPsnrDb(plain, expected.diffuse), 38.0);
         // C8: no occlusion error, nothing takes the environment map.
         EXPECT_EQ(std::count(traced.environment.begin(), traced.environment.end(), 1), 0);
-        std::size_t silhouettes = 0;
-        for (std::size_t i = 0; i < traced.distanceM.size(); ++i) {
-            if (!traced.gbuffer.isReflective(i)) continue;
-            const glm::ivec2 pixel(static_cast<int>(i % 128), static_cast<int>(i / 128));
+        int silhouettes = 0;
+        traced.forEachReflective([&](glm::ivec2 pixel, std::size_t i) {
             const float seen =
                 glm::distance(expected.positionWorld(pixel), expected.view.eyeWorld) -
                 glm::distance(traced.gbuffer.positionWorld(pixel), expected.view.eyeWorld);
             // Silhouettes in a texel of the depth image may belong to either side.
             if (std::abs(traced.distanceM[i] - seen) > 0.02F) ++silhouettes;
-        }
+        });
         EXPECT_LT(silhouettes, traced.reflectiveCount() / 50);
     }
 }
@@ -94,26 +100,19 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsDarkColours) {
     for (scene::Material& material : dark.materials) {
         material.baseColor = glm::vec4(0.01F * glm::vec3(material.baseColor), 1.0F);
     }
-    const ReflectiveScene mirrored(rooms::mirroredInZ(dark, -2.0F));
-    reflections::GBuffer truth(kit::viewOf(frontCamera(), glm::ivec2(128)));
-    reflections::GBufferRenderer(shaders(), mirrored)
-        .render(reflections::GpuObjects(mirrored), truth);
-    const reflections::HostGBuffer expected = readGBuffer(truth);
+    const reflections::HostGBuffer expected = seenBehind(dark);
     rooms::add(dark, mirrorWall(), glm::vec3(0.9F), Surface::Mirror);
     const ReflectiveScene scene(dark);
     for (const ImageDrawing drawing : kDrawings) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
-        const Traced traced = trace(scene, frontCamera(), settings);
+        const Traced traced = trace(scene, frontCamera(), {.drawing = drawing});
         double sum = 0.0;
-        for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
-            if (!traced.gbuffer.isReflective(i)) continue;
+        const int count = traced.forEachReflective([&](glm::ivec2, std::size_t i) {
             for (int c = 0; c < 3; ++c) {
                 sum += 255.0 * std::abs(image::srgbOf(traced.radiance[i][c]) -
                                         image::srgbOf(expected.diffuse[i][c]));
             }
-        }
-        EXPECT_LE(sum / (3.0 * static_cast<double>(traced.reflectiveCount())), 0.2);
+        });
+        EXPECT_LE(sum / (3.0 * count), 0.2);
     }
 }
 
@@ -121,16 +120,11 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsDarkColours) {
 /// samples are apart.
 void addPattern(scene::Scene& scene) {
     Random random(5);
-    image::Image8 pattern(512, 512, 3);
-    for (int y = 0; y < 512; ++y) {
-        for (int x = 0; x < 512; ++x) {
-            const std::uint32_t tile = (x / 64 + y / 64) % 2 == 0 ? 120 : 60;
-            for (int c = 0; c < 3; ++c) {
-                pattern.at(x, y, c) = static_cast<std::uint8_t>(tile + random.index(136));
-            }
-        }
-    }
-    scene.textures = {std::move(pattern)};
+    scene.textures = {reflections::imageOf([&](int x, int y) {
+        const std::uint32_t tile = (x / 64 + y / 64) % 2 == 0 ? 120 : 60;
+        return glm::u8vec3{tile + random.index(136), tile + random.index(136),
+                           tile + random.index(136)};
+    })};
     for (scene::Mesh mesh :
          {rooms::rectangle({0.0F, 0.0F, 1.99F}, {-2.0F, 0.0F, 0.0F}, {0.0F, 1.5F, 0.0F}),
           rooms::rectangle({0.0F, -1.49F, 0.0F}, {2.0F, 0.0F, 0.0F}, {0.0F, 0.0F, -2.0F})}) {
@@ -143,17 +137,9 @@ void addPattern(scene::Scene& scene) {
 TEST_F(ClusteredTracerTest, APlanarMirrorIsShownAsRaysShowItAtThePrintedSize) {
     constexpr int kSizePx = 1024;  // samples, 2 × 2 of which make a pixel
     const ReflectiveScene scene(mirrorRoom());
-    scene::Scene behind = rooms::room(false);
-    rooms::addFurniture(behind);
-    const ReflectiveScene mirrored(rooms::mirroredInZ(behind, -2.0F));
-    reflections::GBuffer truth(kit::viewOf(frontCamera(), glm::ivec2(kSizePx)));
-    reflections::GBufferRenderer(shaders(), mirrored)
-        .render(reflections::GpuObjects(mirrored), truth);
-    const reflections::HostGBuffer expected = readGBuffer(truth);
+    const reflections::HostGBuffer expected = seenBehind(furnishedRoomBefore(), kSizePx);
     for (const ImageDrawing drawing : {ImageDrawing::OneByOne, ImageDrawing::Visible}) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
-        const Traced traced = trace(scene, frontCamera(), settings, kSizePx);
+        const Traced traced = trace(scene, frontCamera(), {.drawing = drawing}, kSizePx);
         EXPECT_GE(shownPsnrDb(traced, expected.diffuse), 45.0);
     }
 }
@@ -161,18 +147,12 @@ TEST_F(ClusteredTracerTest, APlanarMirrorIsShownAsRaysShowItAtThePrintedSize) {
 TEST_F(ClusteredTracerTest, APlanarMirrorShowsTexturesAsTheyAreSeen) {
     scene::Scene source = rooms::room(false);
     addPattern(source);
-    const reflections::ReflectiveScene mirrored(rooms::mirroredInZ(source, -2.0F));
-    reflections::GBuffer truth(kit::viewOf(frontCamera(), glm::ivec2(128)));
-    reflections::GBufferRenderer(shaders(), mirrored)
-        .render(reflections::GpuObjects(mirrored), truth);
-    const reflections::HostGBuffer expected = readGBuffer(truth);
+    const reflections::HostGBuffer expected = seenBehind(source);
     rooms::add(source, mirrorWall(), glm::vec3(0.9F), Surface::Mirror);
 
     const auto shownPsnr = [&](reflections::TextureFilter filter, ImageDrawing drawing) {
         const ReflectiveScene scene(source, {}, filter);
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
-        return shownPsnrDb(trace(scene, frontCamera(), settings), expected.diffuse);
+        return shownPsnrDb(trace(scene, frontCamera(), {.drawing = drawing}), expected.diffuse);
     };
     for (const ImageDrawing drawing : kDrawings) {
         const double filtered = shownPsnr(reflections::TextureFilter::Footprint, drawing);
@@ -185,85 +165,72 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTexturesAsTheyAreSeen) {
 }
 
 TEST_F(ClusteredTracerTest, ASphereShowsTheRoomThatItsRaysMeet) {
-    constexpr int kSizePx = 256;
     const ReflectiveScene scene(sphereRoom());
     for (const ImageDrawing drawing : kDrawings) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
-        const Traced traced = trace(scene, frontCamera(), settings, kSizePx);
+        const Traced traced = trace(scene, frontCamera(), {.drawing = drawing}, 256);
         EXPECT_GT(traced.cameras.size(), 20U);
-        std::size_t wrong = 0, wrongDistance = 0, environment = 0;
-        for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
-            if (!traced.gbuffer.isReflective(i)) continue;
+        int wrong = 0, wrongDistance = 0, environment = 0;
+        const int count = traced.forEachReflective([&](glm::ivec2 pixel, std::size_t i) {
             if (traced.environment[i] != 0) {
                 ++environment;
-                continue;
+                return;
             }
-            const glm::ivec2 pixel(static_cast<int>(i % kSizePx), static_cast<int>(i / kSizePx));
             const glm::vec3 from = traced.gbuffer.positionWorld(pixel);
-            const rooms::WallHit hit = rooms::wallHit(from, traced.gbuffer.mirrorDirection(pixel));
-            const glm::vec3 expected = reflections::shadeDiffuse(
-                scene.lights(), hit.point, hit.normal, hit.colour, glm::vec3(0.0F));
-            const glm::vec3 error = glm::abs(traced.radiance[i] - expected);
-            wrong += std::max({error.x, error.y, error.z}) > 0.02F;
-            const float distanceM = glm::distance(from, hit.point);
-            wrongDistance += std::abs(traced.distanceM[i] - distanceM) > 0.05F * distanceM;
-        }
+            const reflections::WallHit hit =
+                reflections::wallHit(rooms::kWalls, from, traced.gbuffer.mirrorDirection(pixel));
+            const glm::vec3 expected =
+                reflections::shadeDiffuse(scene.lights(), glm::vec3(hit.position), hit.normal,
+                                          reflections::kWallColours[hit.side], glm::vec3(0.0F));
+            wrong += reflections::largestDifference(traced.radiance[i], expected) > 0.02F;
+            wrongDistance += std::abs(traced.distanceM[i] - hit.distanceM) > 0.05 * hit.distanceM;
+        });
         // Edges between walls are as sharp as the clusters' images, some dozen texels wide; rays
         // that graze the sphere leave their image at its side.
-        EXPECT_LT(wrong, traced.reflectiveCount() * 6 / 100);
-        EXPECT_LT(wrongDistance, traced.reflectiveCount() / 100);
-        EXPECT_LT(environment, traced.reflectiveCount() * 6 / 100);
+        EXPECT_LT(wrong, count * 6 / 100);
+        EXPECT_LT(wrongDistance, count / 100);
+        EXPECT_LT(environment, count * 6 / 100);
     }
 }
 
 TEST_F(ClusteredTracerTest, TheAtlasGivesTheReflectionsOfImagesOneByOne) {
     const ReflectiveScene scene(fullRoom());
-    ClusteredSettings settings = settingsFor(scene);
-    for (const OwnReflector own :
-         {OwnReflector::LeftOut, OwnReflector::ConcaveDiffuse, OwnReflector::WholeScene}) {
-        settings.ownReflector = own;
-        settings.drawing = ImageDrawing::OneByOne;
-        const Traced one = trace(scene, frontCamera(), settings, 256);
-        settings.drawing = ImageDrawing::Atlas;
-        const Traced atlas = trace(scene, frontCamera(), settings, 256);
+    for (const OwnReflector own : kOwnReflectors) {
+        const auto traced = [&](ImageDrawing drawing) {
+            return trace(scene, frontCamera(), {.drawing = drawing, .ownReflector = own}, 256);
+        };
+        const Traced one = traced(ImageDrawing::OneByOne), atlas = traced(ImageDrawing::Atlas);
         ASSERT_EQ(atlas.drawn.texels, one.drawn.texels);  // the atlas scaled nothing down
         ASSERT_EQ(atlas.cameras.size(), one.cameras.size());
-        std::size_t different = 0;
-        for (std::size_t i = 0; i < one.radiance.size(); ++i) {
-            if (!one.gbuffer.isReflective(i)) continue;
-            const glm::vec3 error = glm::abs(one.radiance[i] - atlas.radiance[i]);
-            different += std::max({error.x, error.y, error.z}) > 1.5F / 1023.0F;
-        }
+        int different = 0;
+        const int count = one.forEachReflective([&](glm::ivec2, std::size_t i) {
+            different +=
+                reflections::largestDifference(one.radiance[i], atlas.radiance[i]) > 1.5F / 1023.0F;
+        });
         // Rasterizers round positions to 1/256 of a pixel, the same place in the texture or not: an
         // outline through the middle of a texel may fall to either side.
-        EXPECT_LE(different, one.reflectiveCount() / 500);
+        EXPECT_LE(different, count / 500);
     }
 }
 
 TEST_F(ClusteredTracerTest, TheHierarchicalMarchGivesTheLinearReflections) {
     const ReflectiveScene scene(fullRoom());
     for (const ImageDrawing drawing : kDrawings) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
-        const Traced linear = trace(scene, frontCamera(), settings);
-        settings.march = March::Hierarchical;
-        const Traced hierarchical = trace(scene, frontCamera(), settings);
-        for (std::size_t i = 0; i < linear.radiance.size(); ++i) {
-            if (!linear.gbuffer.isReflective(i)) continue;
+        const Traced linear = trace(scene, frontCamera(), {.drawing = drawing});
+        const Traced hierarchical =
+            trace(scene, frontCamera(), {.drawing = drawing, .march = March::Hierarchical});
+        linear.forEachReflective([&](glm::ivec2, std::size_t i) {
             EXPECT_EQ(linear.radiance[i], hierarchical.radiance[i]) << i;
             EXPECT_EQ(linear.distanceM[i], hierarchical.distanceM[i]) << i;
-        }
+        });
     }
 }
 
 TEST_F(ClusteredTracerTest, ImagesThatDoNotFitInTheAtlasAreScaledDown) {
     const ReflectiveScene scene(fullRoom());
-    ClusteredSettings settings = settingsFor(scene);
-    settings.drawing = ImageDrawing::Atlas;
-    const Traced plain = trace(scene, frontCamera(), settings);
-    settings.camera.depthImageScale = 16.0F;
-    const Traced scaled = trace(scene, frontCamera(), settings);
+    const Traced plain = trace(scene, frontCamera(), {.drawing = ImageDrawing::Atlas});
+    const Traced scaled =
+        trace(scene, frontCamera(),
+              {.camera = {.depthImageScale = 16.0F}, .drawing = ImageDrawing::Atlas});
     EXPECT_GT(scaled.drawn.texels, plain.drawn.texels);
     EXPECT_LT(scaled.drawn.texels, 200 * plain.drawn.texels);  // of 16 * 16 times
     EXPECT_TRUE(scaled.isFinite());
@@ -273,11 +240,10 @@ TEST_F(ClusteredTracerTest, ImagesThatDoNotFitInTheAtlasAreScaledDown) {
 TEST_F(ClusteredTracerTest, NothingIsReflectedWithoutReflectorsInView) {
     const ReflectiveScene scene(fullRoom());
     for (const ImageDrawing drawing : kDrawings) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
         const Traced traced =
-            trace(scene, reflections::camera({0.0F, 0.0F, 1.5F}, {0.0F, 0.0F, 5.0F}), settings);
-        EXPECT_EQ(traced.reflectiveCount(), 0U);
+            trace(scene, reflections::camera({0.0F, 0.0F, 1.5F}, {0.0F, 0.0F, 5.0F}),
+                  {.drawing = drawing});
+        EXPECT_EQ(traced.reflectiveCount(), 0);
         EXPECT_TRUE(traced.cameras.empty());
     }
 }
@@ -303,11 +269,11 @@ TEST_F(ClusteredTracerTest, DegenerateClustersAreFinite) {
         const ReflectiveScene scene(one.scene);
         for (const ImageDrawing drawing : kDrawings) {
             for (const March march : {March::Linear, March::Hierarchical}) {
-                ClusteredSettings settings = settingsFor(scene);
-                settings.drawing = drawing;
-                settings.march = march;
-                settings.ownReflector = OwnReflector::WholeScene;
-                EXPECT_TRUE(trace(scene, one.camera, settings, one.sizePx).isFinite()) << one.name;
+                const Traced traced = trace(
+                    scene, one.camera,
+                    {.drawing = drawing, .march = march, .ownReflector = OwnReflector::WholeScene},
+                    one.sizePx);
+                EXPECT_TRUE(traced.isFinite()) << one.name;
             }
         }
     }
@@ -322,34 +288,28 @@ TEST_F(ClusteredTracerTest, ABowlSeesItselfOnlyWhereAskedTo) {
     const ReflectiveScene scene(bowlRoom);
     const scene::Camera camera = reflections::camera({0.3F, 1.2F, 1.2F}, {0.0F, -0.6F, 0.0F});
     for (const ImageDrawing drawing : kDrawings) {
-        for (const OwnReflector ownReflector :
-             {OwnReflector::LeftOut, OwnReflector::ConcaveDiffuse, OwnReflector::WholeScene}) {
-            ClusteredSettings settings = settingsFor(scene);
-            settings.drawing = drawing;
-            settings.ownReflector = ownReflector;
-            const Traced traced = trace(scene, camera, settings);
-            std::size_t marched = 0, own = 0, seen = 0, wrong = 0;
-            for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
-                if (!traced.gbuffer.isReflective(i) || traced.environment[i] != 0) continue;
-                const glm::ivec2 pixel(static_cast<int>(i % 128), static_cast<int>(i / 128));
+        for (const OwnReflector ownReflector : kOwnReflectors) {
+            const Traced traced =
+                trace(scene, camera, {.drawing = drawing, .ownReflector = ownReflector});
+            int marched = 0, own = 0, seen = 0, wrong = 0;
+            traced.forEachReflective([&](glm::ivec2 pixel, std::size_t i) {
+                if (traced.environment[i] != 0) return;
                 const glm::vec3 from = traced.gbuffer.positionWorld(pixel) - kCentre;
                 const glm::vec3 direction = traced.gbuffer.mirrorDirection(pixel);
                 // Where the ray meets the sphere again: on the bowl or above its rim.
                 const glm::vec3 again = from - 2.0F * glm::dot(from, direction) * direction;
                 const bool isOwn = again.y < -kRadius * std::cos(0.45F * glm::pi<float>());
-                const glm::vec3& c = traced.radiance[i];
-                const bool isMagenta = c.y < 0.02F && c.x > 0.2F && c.z > 0.2F;
                 ++marched;
                 own += isOwn;
-                seen += isMagenta;
-                wrong += isOwn != isMagenta;
-            }
+                seen += isMagenta(traced.radiance[i], 0.2F);
+                wrong += isOwn != isMagenta(traced.radiance[i], 0.2F);
+            });
             EXPECT_GT(own, marched / 5);
             EXPECT_LT(own, marched * 4 / 5);
             if (ownReflector != OwnReflector::LeftOut) {
                 EXPECT_LT(wrong, marched / 10);
             } else {
-                EXPECT_EQ(seen, 0U);
+                EXPECT_EQ(seen, 0);
             }
         }
     }
@@ -382,18 +342,15 @@ TEST_F(ClusteredTracerTest, InAndOutsideOfATubeShareNoClusterAsPartsOfIt) {
     // Of the samples, those whose cluster is taken to bend to the other side.
     const auto wrongShare = [&](bool splitsParts) {
         const ReflectiveScene scene(tubeRoom, {.splitsParts = splitsParts});
-        const Traced traced = trace(scene, camera, settingsFor(scene));
-        int inside = 0, all = 0, wrong = 0;
-        for (std::size_t i = 0; i < traced.clusterOfSample.size(); ++i) {
-            if (traced.clusterOfSample[i] == 0) continue;
+        const Traced traced = trace(scene, camera, {});
+        int inside = 0, wrong = 0;
+        const int all = traced.forEachReflective([&](glm::ivec2 pixel, std::size_t i) {
             const ClusterCamera& cluster = traced.cameras[traced.clusterOfSample[i] - 1U];
-            const glm::ivec2 pixel(static_cast<int>(i % 128), static_cast<int>(i / 128));
             const glm::vec3 position = traced.gbuffer.positionWorld(pixel);
             const bool isInside = glm::length(glm::vec2(position.x, position.z)) < 0.78F;
-            ++all;
             inside += isInside;
             wrong += isInside != ((cluster.flags & kShowsOwn) != 0);
-        }
+        });
         EXPECT_GT(inside, all / 5);
         EXPECT_LT(inside, all * 4 / 5);
         return static_cast<double>(wrong) / all;
@@ -413,22 +370,16 @@ TEST_F(ClusteredTracerTest, PartsOfOneObjectThatDoNotTouchReflectEachOther) {
         return along > 0.0F && glm::distance(from + along * to, ball.centre) < ball.radius;
     };
     for (const ImageDrawing drawing : kDrawings) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
-        const Traced traced = trace(scene, camera, settings);
+        const Traced traced = trace(scene, camera, {.drawing = drawing});
         double reflecting = 0.0, right = 0.0;  // the other one
-        for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
-            if (!traced.gbuffer.isReflective(i)) continue;
-            const glm::ivec2 pixel(static_cast<int>(i % 128), static_cast<int>(i / 128));
+        traced.forEachReflective([&](glm::ivec2 pixel, std::size_t i) {
             const glm::vec3 from = traced.gbuffer.positionWorld(pixel);
             const bool isOnKnob = glm::distance(from, rooms::kKnob.centre) < 0.25F;
             const bool isOther = meets(isOnKnob ? rooms::kPot : rooms::kKnob, from,
                                        traced.gbuffer.mirrorDirection(pixel));
-            const glm::vec3& c = traced.radiance[i];
-            const bool isMagenta = c.y < 0.02F && c.x > 0.1F && c.z > 0.1F;
             reflecting += isOther;
-            right += isOther && isMagenta;
-        }
+            right += isOther && isMagenta(traced.radiance[i], 0.1F);
+        });
         EXPECT_GT(reflecting, 150.0);
         EXPECT_GT(right, 0.6 * reflecting);  // its outline is a large part of so small a thing
     }
@@ -443,18 +394,14 @@ TEST_F(ClusteredTracerTest, ABallHidesWhatItsRaysMeetWhereItsBackIsDrawn) {
     const scene::Camera camera = reflections::camera({0.3F, 0.2F, 1.4F}, {0.0F, -0.4F, 0.0F});
     for (const ImageDrawing drawing : kDrawings) {
         const auto seenShare = [&](bool showsOwnBack) {
-            ClusteredSettings settings = settingsFor(scene);
-            settings.drawing = drawing;
-            settings.ownReflector = OwnReflector::WholeScene;
-            settings.showsOwnBack = showsOwnBack;
-            const Traced traced = trace(scene, camera, settings);
-            double marched = 0.0, seen = 0.0;
-            for (std::size_t i = 0; i < traced.radiance.size(); ++i) {
-                if (!traced.gbuffer.isReflective(i)) continue;
-                const glm::vec3& c = traced.radiance[i];
-                marched += 1.0;
-                seen += c.y < 0.02F && c.x > 0.2F && c.z > 0.2F ? 1.0 : 0.0;
-            }
+            const Traced traced = trace(scene, camera,
+                                        {.drawing = drawing,
+                                         .ownReflector = OwnReflector::WholeScene,
+                                         .showsOwnBack = showsOwnBack});
+            double seen = 0.0;
+            const int marched = traced.forEachReflective([&](glm::ivec2, std::size_t i) {
+                seen += isMagenta(traced.radiance[i], 0.2F) ? 1.0 : 0.0;
+            });
             return seen / marched;
         };
         EXPECT_LT(seenShare(false), 0.06) << "at the edge";
@@ -465,24 +412,19 @@ TEST_F(ClusteredTracerTest, ABallHidesWhatItsRaysMeetWhereItsBackIsDrawn) {
 TEST_F(ClusteredTracerTest, GlossyReflectionsFadeToTheDiffuseColour) {
     ReflectiveScene scene(sphereRoom());
     scene.setGlossiness(0.9F);  // the far plane is at 1e-4 diagonals: no room
-    ClusteredSettings settings = settingsFor(scene);
     for (const ImageDrawing drawing : kDrawings) {
-        settings.drawing = drawing;
-        const Traced rough = trace(scene, frontCamera(), settings, 64);
-        for (std::size_t i = 0; i < rough.radiance.size(); ++i) {
-            if (!rough.gbuffer.isReflective(i)) continue;
+        const Traced rough = trace(scene, frontCamera(), {.drawing = drawing}, 64);
+        rough.forEachReflective([&](glm::ivec2, std::size_t i) {
             EXPECT_LT(glm::distance(rough.radiance[i], rough.gbuffer.diffuse[i]), 2e-3F) << i;
-        }
+        });
     }
 }
 
 TEST_F(ClusteredTracerTest, PassesAreNamedAsTable14) {
     const ReflectiveScene scene(sphereRoom());
     for (const ImageDrawing drawing : kDrawings) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
         std::vector<std::string> names;
-        for (const gl::PassTime& pass : trace(scene, frontCamera(), settings).passes) {
+        for (const gl::PassTime& pass : trace(scene, frontCamera(), {.drawing = drawing}).passes) {
             names.push_back(pass.pass);
         }
         EXPECT_EQ(names, (std::vector<std::string>{"first_pass_and_clustering", "cluster_cameras",
@@ -493,21 +435,17 @@ TEST_F(ClusteredTracerTest, PassesAreNamedAsTable14) {
 TEST_F(ClusteredTracerTest, TheHostWaitsForCamerasOneByOneAndElseForNothing) {
     const ReflectiveScene scene(fullRoom());
     for (const ImageDrawing drawing : kDrawings) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
         // How many clusters there are, their cameras, their samples.
-        EXPECT_EQ(std::ranges::count(trace(scene, frontCamera(), settings).calls,
-                                     reflections::GlCall::Wait),
+        const Traced traced = trace(scene, frontCamera(), {.drawing = drawing});
+        EXPECT_EQ(std::ranges::count(traced.calls, reflections::GlCall::Wait),
                   drawing == ImageDrawing::OneByOne ? 3 : 0);
     }
 }
 
 TEST_F(ClusteredTracerTest, OneByOneClustersShareBarriersAndSetUp) {
     const ReflectiveScene scene(fullRoom());
-    ClusteredSettings settings = settingsFor(scene);
     const auto traced = [&](float gain) {
-        settings.bins.gain = gain;
-        return trace(scene, frontCamera(), settings);
+        return trace(scene, frontCamera(), {.bins = {.gain = gain}});
     };
     const Traced few = traced(1e-6F), many = traced(1.0F);
     const auto more = static_cast<std::ptrdiff_t>(many.cameras.size() - few.cameras.size());
@@ -525,12 +463,9 @@ TEST_F(ClusteredTracerTest, OneByOneClustersShareBarriersAndSetUp) {
 TEST_F(ClusteredTracerTest, AFrameChangesNoTextureParameter) {
     const ReflectiveScene scene(fullRoom());
     for (const ImageDrawing drawing : kDrawings) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = drawing;
-        settings.march = March::Hierarchical;
-        EXPECT_EQ(std::ranges::count(trace(scene, frontCamera(), settings).calls,
-                                     reflections::GlCall::Parameter),
-                  0);
+        const Traced traced =
+            trace(scene, frontCamera(), {.drawing = drawing, .march = March::Hierarchical});
+        EXPECT_EQ(std::ranges::count(traced.calls, reflections::GlCall::Parameter), 0);
     }
 }
 
@@ -538,10 +473,9 @@ TEST_F(ClusteredTracerTest, AFrameChangesNoTextureParameter) {
 TEST_F(ClusteredTracerTest, AFrameHoldsNoMoreThanPrinted) {
     const ReflectiveScene scene(fullRoom());
     for (const March march : {March::Linear, March::Hierarchical}) {
-        ClusteredSettings settings = settingsFor(scene);
-        settings.drawing = ImageDrawing::Atlas;
-        settings.march = march;
-        EXPECT_LE(trace(scene, frontCamera(), settings, 1024).sizeBytes, 87'000'000U);
+        const Traced traced =
+            trace(scene, frontCamera(), {.drawing = ImageDrawing::Atlas, .march = march}, 1024);
+        EXPECT_LE(traced.sizeBytes, 87'000'000U);
     }
 }
 

@@ -21,12 +21,7 @@ glm::vec2 octahedral(const glm::vec3& v) {
 
 /// Three curved reflectors and a planar one; their shapes do not matter.
 reflections::ReflectiveScene fourReflectors() {
-    return MirrorScene()
-        .add(ball(), kAtRest)
-        .add(ball(), kAtRest)
-        .add(squareMesh(), kAtRest)
-        .add(ball(), kAtRest)
-        .get();
+    return MirrorScene().add(ball()).add(ball()).add(squareMesh()).add(ball()).get();
 }
 
 class ClusteringTest : public ClusterTest {
@@ -34,28 +29,16 @@ class ClusteringTest : public ClusterTest {
     void expectAsOnHost(const reflections::ReflectiveScene& scene,
                         const reflections::GBuffer& gbuffer, const BinSettings& bins,
                         const std::vector<std::uint8_t>* wanted = nullptr) {
-        const glm::ivec2 sizePx = gbuffer.view.sizePx;
-        ClusterBuilder builder(shaders, scene, Clustering::NormalBins, bins, sizePx);
-        gl::Texture mask;
-        if (wanted != nullptr) {
-            mask = gl::Texture::make2D(GL_R8UI, sizePx);
-            mask.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, wanted->data());
-        }
-        // Twice: what a build leaves behind must not matter to the next.
-        for (int i = 0; i < 2; ++i) builder.build(gbuffer, wanted != nullptr ? &mask : nullptr);
+        const Built built = build(scene, gbuffer, bins, Clustering::NormalBins, wanted);
         const HostClusters host = clusterOnHost(readGBuffer(gbuffer), scene, bins, wanted);
-
-        const Clusters& clusters = builder.clusters();
-        EXPECT_EQ(readClusters(clusters), host.clusterOfSample);
-        const auto samples = samplesOf(clusters, bins.leastSamples > 1);
-        EXPECT_EQ(static_cast<int>(samples.size()), host.clusterCount);
-        EXPECT_EQ(static_cast<int>(countsOf(clusters).z), host.visibleReflectors);
-        const auto ranges = clusters.ranges.read<glm::uvec4>(samples.size());
-        const std::vector<std::uint8_t> isPlanar = planarReflectors(scene);
-        for (std::size_t c = 0; c < samples.size(); ++c) {
+        EXPECT_EQ(built.clusterOfSample, host.clusterOfSample);
+        EXPECT_EQ(static_cast<int>(built.samples.size()), host.clusterCount);
+        EXPECT_EQ(static_cast<int>(built.counts.z), host.visibleReflectors);
+        const std::vector<std::uint32_t> families = reflectorFamilies(scene);
+        for (std::size_t c = 0; c < built.samples.size(); ++c) {
             const auto reflector = static_cast<std::size_t>(host.reflectorOfCluster[c]);
-            EXPECT_EQ(ranges[c].z, reflector);
-            EXPECT_EQ(ranges[c].w, isPlanar[reflector]);
+            EXPECT_EQ(built.ranges[c].z, reflector);
+            EXPECT_EQ(built.ranges[c].w == 1, isPlanar(families[reflector]));
         }
     }
 
@@ -71,8 +54,7 @@ class ClusteringTest : public ClusterTest {
                 surface = static_cast<std::uint32_t>(random.uniform(0.0F, 4.999F)) | 0xFF0000U;
                 if ((surface & 0xFFFFU) == 0) surface = 0;
             }
-            glm::vec3 normal{random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
-                             random.uniform(-1.0F, 1.0F)};
+            glm::vec3 normal = reflections::randomIn(random, -1.0F, 1.0F);
             if (i % 5 == 0) normal = glm::round(normal);
             if (normal == glm::vec3(0.0F)) normal.y = 1.0F;
             normals.push_back(octahedral(normal));
@@ -91,13 +73,14 @@ TEST_F(ClusteringTest, RandomNormalsAreClusteredAsOnTheHost) {
     const reflections::ReflectiveScene scene = fourReflectors();
     for (const glm::ivec2 sizePx : {glm::ivec2(97, 61), glm::ivec2(256, 300), glm::ivec2(1, 1)}) {
         const reflections::GBuffer gbuffer = randomGBuffer(sizePx, 3);
-        expectAsOnHost(scene, gbuffer, {});
-        expectAsOnHost(scene, gbuffer, {.exponent = 0.0F});
-        expectAsOnHost(scene, gbuffer, {.maxThetaBins = 1, .maxPhiBins = 1});
-        // Many of the normals lie on these borders exactly.
-        expectAsOnHost(scene, gbuffer, {.maxThetaBins = 8, .maxPhiBins = 4, .exponent = 0.0F});
-        expectAsOnHost(scene, gbuffer, {.maxThetaBins = 64, .maxPhiBins = 16, .exponent = 0.01F});
-        expectAsOnHost(scene, gbuffer, {.maxThetaBins = 1, .maxPhiBins = 30, .exponent = 1.0F});
+        for (const BinSettings& bins :
+             {BinSettings{}, BinSettings{.exponent = 0.0F}, kOneBin,
+              // Many of the normals lie on these borders exactly.
+              BinSettings{.maxThetaBins = 8, .maxPhiBins = 4, .exponent = 0.0F},
+              BinSettings{.maxThetaBins = 64, .maxPhiBins = 16, .exponent = 0.01F},
+              BinSettings{.maxThetaBins = 1, .maxPhiBins = 30, .exponent = 1.0F}}) {
+            expectAsOnHost(scene, gbuffer, bins);
+        }
     }
 }
 
@@ -108,9 +91,7 @@ TEST_F(ClusteringTest, SmallClustersJoinTheirReflectorsOthers) {
     const int apart = clusterOnHost(readGBuffer(gbuffer), scene, bins).clusterCount;
     bins.leastSamples = 20;
     expectAsOnHost(scene, gbuffer, bins);
-    ClusterBuilder builder(shaders, scene, Clustering::NormalBins, bins, {97, 61});
-    builder.build(gbuffer, nullptr);
-    const auto samples = samplesOf(builder.clusters(), true);
+    const auto samples = build(scene, gbuffer, bins).samples;
     EXPECT_LT(static_cast<int>(samples.size()), apart * 2 / 3);
     for (const auto& ofCluster : samples) EXPECT_GE(ofCluster.size(), 20U);
     // Reflectors stay apart, whatever they have.
@@ -124,7 +105,7 @@ TEST_F(ClusteringTest, RenderedBallAndPlaneAreClusteredAsOnTheHost) {
         glm::rotate(glm::translate(kAtRest, {0, -1, 0}), -1.5707964F, {1, 0, 0});
     const reflections::ReflectiveScene scene =
         MirrorScene()
-            .add(ball(), kAtRest)
+            .add(ball())
             .add(squareMesh(), glm::scale(floor, glm::vec3(3.0F)))
             .add(squareMesh(), glm::translate(kAtRest, {0, 0, -4}), false)
             .get();
@@ -133,11 +114,8 @@ TEST_F(ClusteringTest, RenderedBallAndPlaneAreClusteredAsOnTheHost) {
     expectAsOnHost(scene, gbuffer, {});
     expectAsOnHost(scene, gbuffer, {.exponent = 1.0F, .gain = 3.0F});
 
-    ClusterBuilder builder(shaders, scene, Clustering::NormalBins, {}, {400, 300});
-    builder.build(gbuffer, nullptr);
-    const auto samples = samplesOf(builder.clusters());
-    const auto ranges = builder.clusters().ranges.read<glm::uvec4>(samples.size());
-    EXPECT_GT(samples.size(), 20U);
+    const std::vector<glm::uvec4> ranges = build(scene, gbuffer).ranges;
+    EXPECT_GT(ranges.size(), 20U);
     EXPECT_EQ(ranges.back().z, 2U);  // the floor's only cluster is the last
     EXPECT_EQ(ranges[ranges.size() - 2].z, 1U);
     EXPECT_GT(ranges.back().y, 20000U);
@@ -163,33 +141,28 @@ TEST_F(ClusteringTest, NothingReflectiveGivesNoClusters) {
     reflections::GBuffer gbuffer = randomGBuffer({64, 48}, 1);
     gbuffer.surface.clearToZero();
     expectAsOnHost(scene, gbuffer, {});
-    ClusterBuilder builder(shaders, scene, Clustering::KdTree, {}, {64, 48});
-    builder.build(gbuffer, nullptr);
-    EXPECT_EQ(countsOf(builder.clusters()), glm::uvec3(0));
+    EXPECT_EQ(build(scene, gbuffer, {}, Clustering::KdTree).counts, glm::uvec3(0));
     const reflections::ReflectiveScene diffuse = MirrorScene().add(ball(), kAtRest, false).get();
     expectAsOnHost(diffuse, gbuffer, {});
 }
 
 TEST_F(ClusteringTest, LoneBallHasAllBinsThatFaceTheEye) {
-    const reflections::ReflectiveScene scene = MirrorScene().add(ball(), kAtRest).get();
+    const reflections::ReflectiveScene scene = MirrorScene().add(ball()).get();
     const reflections::GBuffer gbuffer =
         render(scene, viewFrom({0, 0, 8}, {0, 0, 0}, {512, 512}, 0.3F));
-    ClusterBuilder builder(shaders, scene, Clustering::NormalBins, {}, {512, 512});
-    builder.build(gbuffer, nullptr);
     // Which (theta, phi) cells of 13 × 8 does the cap that faces the eye touch? By its normals.
     std::vector<bool> isTouched(13 * 8, false);
     const reflections::HostGBuffer host = readGBuffer(gbuffer);
-    for (std::size_t i = 0; i < host.surface.size(); ++i) {
-        if (!host.isReflective(i)) continue;
+    const int reflective = reflections::forEachReflective(host, [&](glm::ivec2, std::size_t i) {
         const glm::dvec3 n(host.normalWorld[i]);
         double theta = std::atan2(n.z, n.x) / (2.0 * std::numbers::pi);
         if (theta < 0.0) theta += 1.0;
         const double phi = std::acos(n.y) / std::numbers::pi;
         isTouched[static_cast<std::size_t>(phi * 8) * 13 + static_cast<std::size_t>(theta * 13)] =
             true;
-    }
+    });
     const auto touched = std::count(isTouched.begin(), isTouched.end(), true);
-    EXPECT_EQ(countsOf(builder.clusters()), glm::uvec3(touched, countsOf(builder.clusters()).y, 1));
+    EXPECT_EQ(build(scene, gbuffer).counts, glm::uvec3(touched, reflective, 1));
     RecordProperty("clusters", static_cast<int>(touched));
 }
 
@@ -246,19 +219,15 @@ TEST(BinTables, ManyReflectorsHaveFewerBinsThanEachAlone) {
 
 TEST_F(ClusteringTest, PartsShareTheirObjectsCount) {
     // Two balls, each of two parts that do not touch, and as many whole ones.
-    scene::Mesh pair = ball();
-    const auto count = static_cast<unsigned>(pair.positions.size());
-    const scene::Mesh one = ball();
-    for (const glm::vec3& p : one.positions) pair.positions.push_back(p + glm::vec3(3, 0, 0));
-    pair.normals.insert(pair.normals.end(), one.normals.begin(), one.normals.end());
-    for (const glm::uvec3& t : one.triangles) pair.triangles.push_back(t + count);
+    const scene::Mesh pair = reflections::joined(ball(), reflections::moved(ball(), {3, 0, 0}));
     const reflections::ReflectiveScene split =
         MirrorScene()
-            .add(pair, kAtRest)
+            .add(pair)
             .add(pair, glm::translate(glm::mat4(1.0F), {0, 2.5F, 0}))
             .get({.splitsParts = true});
     ASSERT_EQ(split.reflectorCount(), 4);
-    EXPECT_EQ(wholeReflectors(split), (std::vector<std::uint32_t>{0, 1, 1, 2, 2}));
+    EXPECT_EQ(reflectorFamilies(split),  // convex parts of two objects
+              (std::vector<std::uint32_t>{0, 4 | 1, 4 | 1, 8 | 1, 8 | 1}));
     const reflections::GBuffer gbuffer =
         render(split, viewFrom({1.5F, 1, 12}, {1.5F, 1, 0}, {64, 64}));
     expectAsOnHost(split, gbuffer, {});
@@ -268,21 +237,21 @@ TEST_F(ClusteringTest, PartsShareTheirObjectsCount) {
 TEST(BinTables, ThetaRunsFromXTowardsZAndPhiFromY) {
     const BinTables tables({.maxThetaBins = 16, .maxPhiBins = 16});
     const glm::ivec2 grid(8, 4);
-    EXPECT_EQ(binOnHost(tables, octahedral({1, 0.1F, 0.1F}), grid), glm::ivec2(0, 1));
-    EXPECT_EQ(binOnHost(tables, octahedral({0.1F, 0.1F, 1}), grid), glm::ivec2(1, 1));
-    EXPECT_EQ(binOnHost(tables, octahedral({-0.1F, -0.1F, 1}), grid), glm::ivec2(2, 2));
-    EXPECT_EQ(binOnHost(tables, octahedral({-1, 0.1F, -0.1F}), grid), glm::ivec2(4, 1));
-    EXPECT_EQ(binOnHost(tables, octahedral({1, 0.1F, -0.1F}), grid), glm::ivec2(7, 1));
-    EXPECT_EQ(binOnHost(tables, octahedral({0, 1, 0}), grid), glm::ivec2(0, 0));
-    EXPECT_EQ(binOnHost(tables, octahedral({0, -1, 0}), grid), glm::ivec2(0, 3));
-    // On borders: the bin that begins there.
-    EXPECT_EQ(binOnHost(tables, octahedral({1, 0, 1}), grid), glm::ivec2(1, 2));
-    EXPECT_EQ(binOnHost(tables, octahedral({1, 1, 0}), grid), glm::ivec2(0, 1));
+    const struct {
+        glm::vec3 normal;
+        glm::ivec2 bin;
+    } cases[] = {{{1, 0.1F, 0.1F}, {0, 1}},   {{0.1F, 0.1F, 1}, {1, 1}},
+                 {{-0.1F, -0.1F, 1}, {2, 2}}, {{-1, 0.1F, -0.1F}, {4, 1}},
+                 {{1, 0.1F, -0.1F}, {7, 1}},  {{0, 1, 0}, {0, 0}},
+                 {{0, -1, 0}, {0, 3}},  // on borders: the bin that begins there
+                 {{1, 0, 1}, {1, 2}},         {{1, 1, 0}, {0, 1}}};
+    for (const auto& one : cases) {
+        EXPECT_EQ(binOnHost(tables, octahedral(one.normal), grid), one.bin);
+    }
 
     Random random(4);
     for (int i = 0; i < 20000; ++i) {
-        const glm::vec3 n{random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F),
-                          random.uniform(-1.0F, 1.0F)};
+        const glm::vec3 n = reflections::randomIn(random, -1.0F, 1.0F);
         const glm::ivec2 bins(1 + i % 16, 1 + i / 16 % 16);
         const glm::dvec3 d = glm::normalize(glm::dvec3(n));
         double theta = std::atan2(d.z, d.x) / (2.0 * std::numbers::pi);
@@ -307,28 +276,16 @@ TEST_F(ClusteringTest, TooManyBinsAreRefused) {
 
 TEST_F(ClusteringTest, KdClustersAreAsManyAndSplitByPlaceToo) {
     // Two halves of one reflector, apart, with the same normals: bins cannot tell them apart.
-    scene::Mesh pair = cap(0.6F);
-    scene::Mesh other = pair;
-    for (glm::vec3& p : pair.positions) p.x -= 2.0F;
-    for (glm::vec3& p : other.positions) p.x += 2.0F;
-    const auto offset = static_cast<unsigned>(pair.positions.size());
-    pair.positions.insert(pair.positions.end(), other.positions.begin(), other.positions.end());
-    pair.normals.insert(pair.normals.end(), other.normals.begin(), other.normals.end());
-    for (const glm::uvec3& t : other.triangles) pair.triangles.push_back(t + offset);
+    const scene::Mesh pair = reflections::joined(reflections::moved(cap(0.6F), {-2, 0, 0}),
+                                                 reflections::moved(cap(0.6F), {2, 0, 0}));
     const reflections::ReflectiveScene scene =
-        MirrorScene()
-            .add(pair, kAtRest)
-            .add(squareMesh(), glm::translate(kAtRest, {0, 2.5F, 0}))
-            .get();
+        MirrorScene().add(pair).add(squareMesh(), glm::translate(kAtRest, {0, 2.5F, 0})).get();
     const reflections::GBuffer gbuffer =
         render(scene, viewFrom({0, 0.5F, 9}, {0, 0.5F, 0}, {300, 300}));
     const reflections::HostGBuffer host = readGBuffer(gbuffer);
 
     const BinSettings bins{.maxThetaBins = 4, .maxPhiBins = 4, .exponent = 0.0F};
-    ClusterBuilder builder(shaders, scene, Clustering::KdTree, bins, {300, 300});
-    builder.build(gbuffer, nullptr);
-    const auto samples = samplesOf(builder.clusters());
-    const auto ranges = builder.clusters().ranges.read<glm::uvec4>(samples.size());
+    const auto [samples, ranges, counts, labels] = build(scene, gbuffer, bins, Clustering::KdTree);
     ASSERT_EQ(samples.size(), 9U);  // half of 4 × 4, and the square
     EXPECT_EQ(ranges.back(), glm::uvec4(ranges.back().x, ranges.back().y, 2, 1));
     for (std::size_t c = 0; c + 1 < samples.size(); ++c) {
@@ -338,9 +295,8 @@ TEST_F(ClusteringTest, KdClustersAreAsManyAndSplitByPlaceToo) {
             EXPECT_EQ(host.positionWorld(pixel).x < 0.0F, isLeft);
         }
     }
-    std::size_t reflective = 0;
-    for (std::size_t i = 0; i < host.surface.size(); ++i) reflective += host.isReflective(i);
-    EXPECT_EQ(countsOf(builder.clusters()), glm::uvec3(9, reflective, 2));
+    const int reflective = reflections::forEachReflective(host, [](glm::ivec2, std::size_t) {});
+    EXPECT_EQ(counts, glm::uvec3(9, reflective, 2));
 }
 
 }  // namespace

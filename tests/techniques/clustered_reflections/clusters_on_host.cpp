@@ -51,22 +51,21 @@ HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
                            const reflections::ReflectiveScene& scene, const BinSettings& bins,
                            const std::vector<std::uint8_t>* wanted) {
     const BinTables tables(bins);
-    const std::vector<std::uint8_t> isPlanar = planarReflectors(scene);
+    const std::vector<std::uint32_t> families = reflectorFamilies(scene);
     const std::size_t pixels = gbuffer.surface.size();
     const auto reflectorAt = [&](std::size_t i) {
         const bool isWanted = wanted == nullptr || (*wanted)[i] != 0;
         return isWanted ? static_cast<std::size_t>(gbuffer.reflector(i)) : 0;
     };
-    std::vector<std::uint32_t> areas(isPlanar.size(), 0);
+    std::vector<std::uint32_t> areas(families.size(), 0);
     for (std::size_t i = 0; i < pixels; ++i) ++areas[reflectorAt(i)];
 
     HostClusters result;
-    const std::vector<std::uint32_t> wholes = wholeReflectors(scene);
     std::set<std::uint32_t> visible;
     std::uint32_t total = 0;
     for (std::size_t r = 1; r < areas.size(); ++r) {
         total += areas[r];
-        if (areas[r] > 0) visible.insert(wholes[r]);
+        if (areas[r] > 0) visible.insert(wholeOf(families[r]));
     }
     result.visibleReflectors = static_cast<int>(visible.size());
     std::vector<glm::ivec2> grids(areas.size(), glm::ivec2(1));
@@ -75,7 +74,7 @@ HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
         firstBins[r] = static_cast<int>(reflectorOfBin.size());
         if (areas[r] == 0) continue;
         const auto visibleCount = static_cast<std::uint32_t>(visible.size());
-        if (isPlanar[r] == 0) grids[r] = tables.binsOf(areas[r], total, visibleCount);
+        if (!isPlanar(families[r])) grids[r] = tables.binsOf(areas[r], total, visibleCount);
         const auto count = static_cast<std::size_t>(grids[r].x * grids[r].y);
         reflectorOfBin.insert(reflectorOfBin.end(), count, static_cast<int>(r));
     }
@@ -146,11 +145,14 @@ struct Frame {
     }
 };
 
-class HostCamera {
-  public:
-    HostCamera(const reflections::HostGBuffer& gbuffer, const std::vector<glm::ivec2>& samples,
-               bool isPlanar, const CameraSettings& settings)
-        : gbuffer_(gbuffer), samples_(samples), isPlanar_(isPlanar), settings_(settings) {}
+struct HostCamera {
+    const reflections::HostGBuffer& gbuffer;
+    const std::vector<glm::ivec2>& samples;
+    bool isPlanar;
+    const CameraSettings& settings;
+    Frame frame = {};
+    double shift = 1.0;
+    std::uint32_t flags = 0;
 
     ClusterCamera make() {
         fitPlane();
@@ -158,182 +160,163 @@ class HostCamera {
         return imagePlane();
     }
 
-  private:
     dvec3 position(glm::ivec2 pixel) const {
-        const double d = gbuffer_.depthM[gbuffer_.indexOf(pixel)];
+        const double d = gbuffer.depthM[gbuffer.indexOf(pixel)];
         const dvec2 at = (dvec2(pixel) + 0.5) * d;
-        return {glm::dmat4(gbuffer_.worldFromPixels) * glm::dvec4(at, d, 1.0)};
+        return {glm::dmat4(gbuffer.worldFromPixels) * glm::dvec4(at, d, 1.0)};
     }
     dvec3 normal(glm::ivec2 pixel) const {
-        const dvec3 n(gbuffer_.normalWorld[gbuffer_.indexOf(pixel)]);
-        return glm::normalize(n);
+        return glm::normalize(dvec3(gbuffer.normalWorld[gbuffer.indexOf(pixel)]));
     }
     dvec3 eyeAxis(int row) const {
-        const glm::mat4& m = gbuffer_.view.viewFromWorld;
+        const glm::mat4& m = gbuffer.view.viewFromWorld;
         return {m[0][row], m[1][row], m[2][row]};
     }
-    dvec3 eye() const { return dvec3(gbuffer_.view.eyeWorld); }
+    dvec3 eye() const { return dvec3(gbuffer.view.eyeWorld); }
 
-    void fitPlane();
-    void setAxes();
-    void shiftEye();
-    void addEnds(PlaneBox& box, glm::ivec2 pixel);
-    dvec3 endPoint(const dvec3& start, const dvec3& direction);
-    double pixelDistance() const;
-    ClusterCamera imagePlane();
-
-    const reflections::HostGBuffer& gbuffer_;
-    const std::vector<glm::ivec2>& samples_;
-    bool isPlanar_;
-    const CameraSettings& settings_;
-    Frame frame_;
-    double f_ = 1.0;
-    std::uint32_t flags_ = 0;
-};
-
-void HostCamera::setAxes() {
-    const dvec3 right = eyeAxis(0), up = eyeAxis(1), n = frame_.normal;
-    if (std::abs(glm::dot(n, up)) <= std::abs(glm::dot(n, right))) {
-        frame_.axisY = glm::normalize(up - n * glm::dot(n, up));
-        frame_.axisX = glm::cross(n, frame_.axisY);
-    } else {
-        frame_.axisX = glm::normalize(n * glm::dot(n, right) - right);
-        frame_.axisY = glm::cross(frame_.axisX, n);
-    }
-}
-
-void HostCamera::fitPlane() {
-    dvec3 positions(0.0), normals(0.0);
-    float glossiness = 1.0F;
-    for (const glm::ivec2 pixel : samples_) {
-        positions += position(pixel);
-        normals += normal(pixel);
-        glossiness = std::min(glossiness, gbuffer_.glossiness(gbuffer_.indexOf(pixel)));
-    }
-    const auto count = static_cast<double>(samples_.size());
-    const double diagonal = settings_.diagonalM;
-    frame_.centre = positions / count;
-    const dvec3 toEye = eye() - frame_.centre;
-    frame_.normal = glm::normalize(glm::length(normals) < 1e-3 * count ? toEye : normals);
-    setAxes();
-    frame_.glossiness = double{glossiness};
-    frame_.farDistance =
-        diagonal * std::pow(1.0 - frame_.glossiness, double{settings_.lobe.farExponent});
-
-    const double leastHeight = double{kLeastHeight} * diagonal;
-    frame_.eye = frame_.of(toEye);
-    if (isPlanar_) flags_ |= kPlanarCluster;
-    if (frame_.farDistance < double{kLeastRoom} * diagonal) flags_ |= kNoRoom;
-    if (frame_.eye.z < leastHeight) flags_ |= kEyeBehind;
-    frame_.eye.z = -std::max(frame_.eye.z, leastHeight);
-}
-
-dvec3 HostCamera::endPoint(const dvec3& start, const dvec3& direction) {
-    const dvec2 lateral(direction);
-    const double steepest = std::max(glm::length(lateral) / double{settings_.maxSlope}, 1e-6);
-    if (direction.z < steepest) flags_ |= kRaysTurned;
-    const double way = std::max(frame_.farDistance - start.z, 0.0);
-    return {dvec2(start) + lateral / std::max(direction.z, steepest) * way, start.z + way};
-}
-
-void HostCamera::addEnds(PlaneBox& box, glm::ivec2 pixel) {
-    const dvec3 p = position(pixel), start = frame_.of(p - frame_.centre);
-    const dvec3 axis = frame_.of(glm::normalize(glm::reflect(p - eye(), normal(pixel))));
-    if (frame_.glossiness <= 0.0) {
-        box.add(frame_.projected(endPoint(start, axis)));
-        return;
-    }
-    constexpr double kPi = std::numbers::pi;
-    const double halfAngle = frame_.glossiness * double{settings_.lobe.maxHalfAngleRad};
-    const double width = std::tan(halfAngle) / std::cos(kPi / 8.0);
-    const dvec3 other = std::abs(axis.x) < 0.5 ? dvec3(1.0, 0.0, 0.0) : dvec3(0.0, 1.0, 0.0);
-    const dvec3 tangent = glm::normalize(glm::cross(axis, other));
-    const dvec3 bitangent = glm::cross(axis, tangent);
-    for (int k = 0; k < 8; ++k) {
-        const double angle = kPi / 4.0 * k;
-        const dvec3 rim = std::cos(angle) * tangent + std::sin(angle) * bitangent;
-        box.add(frame_.projected(endPoint(start, axis + width * rim)));
-    }
-}
-
-void HostCamera::shiftEye() {
-    PlaneBox starts, ends;
-    for (const glm::ivec2 pixel : samples_) {
-        const dvec3 start = frame_.of(position(pixel) - frame_.centre);
-        starts.add(frame_.projected(start));
-        if (!isPlanar_ || frame_.glossiness > 0.0) addEnds(ends, pixel);
-        frame_.farthestBehind = std::min(frame_.farthestBehind, start.z);
-    }
-    if (isPlanar_) return;
-    const double near = starts.diagonal(), far = ends.diagonal();
-    f_ = near > 0.0 && far > 0.0 ? std::min(near / far, double{kMaxShift}) : 1.0;
-    if ((flags_ & kRaysTurned) != 0) f_ = std::min(f_, 1.0);
-    const double leastHeight = double{kLeastHeight} * double{settings_.diagonalM};
-    f_ = std::max(f_, std::max(-1.5 * frame_.farthestBehind, leastHeight) / -frame_.eye.z);
-    frame_.eye *= f_;
-}
-
-double HostCamera::pixelDistance() const {
-    std::set<std::pair<int, int>> inCluster;
-    for (const glm::ivec2 pixel : samples_) inCluster.emplace(pixel.x, pixel.y);
-    const auto at = [&](glm::ivec2 pixel) {
-        return frame_.projected(frame_.of(position(pixel) - frame_.centre));
-    };
-    double sum = 0.0;
-    int pairs = 0;
-    for (const glm::ivec2 pixel : samples_) {
-        for (const glm::ivec2 next : {pixel + glm::ivec2(1, 0), pixel + glm::ivec2(0, 1)}) {
-            if (!inCluster.contains({next.x, next.y})) continue;
-            sum += glm::distance(at(pixel), at(next));
-            ++pairs;
+    void setAxes() {
+        const dvec3 right = eyeAxis(0), up = eyeAxis(1), n = frame.normal;
+        if (std::abs(glm::dot(n, up)) <= std::abs(glm::dot(n, right))) {
+            frame.axisY = glm::normalize(up - n * glm::dot(n, up));
+            frame.axisX = glm::cross(n, frame.axisY);
+        } else {
+            frame.axisX = glm::normalize(n * glm::dot(n, right) - right);
+            frame.axisY = glm::cross(frame.axisX, n);
         }
     }
-    const double pitch = glm::length(dvec3(gbuffer_.worldFromPixels[0]));
-    const double facing = pitch * glm::dot(frame_.centre - eye(), -eyeAxis(2));
-    return pairs > 0 ? std::max(sum / pairs, 1e-3 * facing) : facing;
-}
 
-ClusterCamera HostCamera::imagePlane() {
-    PlaneBox box;
-    for (const glm::ivec2 pixel : samples_) {
-        box.add(frame_.projected(frame_.of(position(pixel) - frame_.centre)));
-        if (!isPlanar_ || frame_.glossiness > 0.0) addEnds(box, pixel);
+    void fitPlane() {
+        dvec3 positions(0.0), normals(0.0);
+        float glossiness = 1.0F;
+        for (const glm::ivec2 pixel : samples) {
+            positions += position(pixel);
+            normals += normal(pixel);
+            glossiness = std::min(glossiness, gbuffer.glossiness(gbuffer.indexOf(pixel)));
+        }
+        const auto count = static_cast<double>(samples.size());
+        const double diagonal = settings.diagonalM;
+        frame.centre = positions / count;
+        const dvec3 toEye = eye() - frame.centre;
+        frame.normal = glm::normalize(glm::length(normals) < 1e-3 * count ? toEye : normals);
+        setAxes();
+        frame.glossiness = double{glossiness};
+        frame.farDistance =
+            diagonal * std::pow(1.0 - frame.glossiness, double{settings.lobe.farExponent});
+
+        const double leastHeight = double{kLeastHeight} * diagonal;
+        frame.eye = frame.of(toEye);
+        if (isPlanar) flags |= kPlanarCluster;
+        if (frame.farDistance < double{kLeastRoom} * diagonal) flags |= kNoRoom;
+        if (frame.eye.z < leastHeight) flags |= kEyeBehind;
+        frame.eye.z = -std::max(frame.eye.z, leastHeight);
     }
-    const double p = pixelDistance();
-    box.add(box.min - 0.5 * p);
-    box.add(box.max + 0.5 * p);
 
-    const dvec3 eyeC = frame_.centre + frame_.axisX * frame_.eye.x + frame_.axisY * frame_.eye.y +
-                       frame_.normal * frame_.eye.z;
-    const double plane = -frame_.eye.z;
-    const double near = plane + (settings_.isNearAtFarthestSample ? frame_.farthestBehind : 0.0);
-    const double farDistance = plane + frame_.farDistance;
-    const double far = std::max(farDistance, 1.0001 * near);
-    // Off-centre frustum: the box lies at `plane` before the eye.
-    const dvec2 lower = box.min - dvec2(frame_.eye), upper = box.max - dvec2(frame_.eye);
-    glm::dmat4 clipFromCamera(0.0);  // of x, y and the distance along n_c
-    clipFromCamera[0].x = 2.0 * plane / (upper.x - lower.x);
-    clipFromCamera[1].y = 2.0 * plane / (upper.y - lower.y);
-    clipFromCamera[2] = {-(lower.x + upper.x) / (upper.x - lower.x),
-                         -(lower.y + upper.y) / (upper.y - lower.y), (far + near) / (far - near),
-                         1.0};
-    clipFromCamera[3].z = -2.0 * far * near / (far - near);
-    const glm::dmat3 axes = glm::transpose(glm::dmat3(frame_.axisX, frame_.axisY, frame_.normal));
-    glm::dmat4 cameraFromWorld(axes);
-    cameraFromWorld[3] = {-(axes * eyeC), 1.0};
+    dvec3 endPoint(const dvec3& start, const dvec3& direction) {
+        const dvec2 lateral(direction);
+        const double steepest = std::max(glm::length(lateral) / double{settings.maxSlope}, 1e-6);
+        if (direction.z < steepest) flags |= kRaysTurned;
+        const double way = std::max(frame.farDistance - start.z, 0.0);
+        return {dvec2(start) + lateral / std::max(direction.z, steepest) * way, start.z + way};
+    }
 
-    ClusterCamera camera;
-    camera.clipFromWorld = glm::mat4(clipFromCamera * cameraFromWorld);
-    camera.eyeWorld = {glm::vec3(eyeC), near};
-    camera.planeNormal = {glm::vec3(frame_.normal), farDistance};
-    camera.centreWorld = {glm::vec3(frame_.centre), f_};
-    const dvec2 size = glm::ceil((box.max - box.min) / p - 1e-3);
-    camera.sizePx = glm::ivec2(glm::clamp(size, 1.0, double{kMaxCameraSizePx}));
-    camera.reflector =
-        static_cast<std::uint32_t>(gbuffer_.reflector(gbuffer_.indexOf(samples_.front())));
-    camera.flags = flags_;
-    return camera;
-}
+    void addEnds(PlaneBox& box, glm::ivec2 pixel) {
+        const dvec3 p = position(pixel), start = frame.of(p - frame.centre);
+        const dvec3 axis = frame.of(glm::normalize(glm::reflect(p - eye(), normal(pixel))));
+        if (frame.glossiness <= 0.0) {
+            box.add(frame.projected(endPoint(start, axis)));
+            return;
+        }
+        constexpr double kPi = std::numbers::pi;
+        const double halfAngle = frame.glossiness * double{settings.lobe.maxHalfAngleRad};
+        const double width = std::tan(halfAngle) / std::cos(kPi / 8.0);
+        const dvec3 other = std::abs(axis.x) < 0.5 ? dvec3(1.0, 0.0, 0.0) : dvec3(0.0, 1.0, 0.0);
+        const dvec3 tangent = glm::normalize(glm::cross(axis, other));
+        const dvec3 bitangent = glm::cross(axis, tangent);
+        for (int k = 0; k < 8; ++k) {
+            const double angle = kPi / 4.0 * k;
+            const dvec3 rim = std::cos(angle) * tangent + std::sin(angle) * bitangent;
+            box.add(frame.projected(endPoint(start, axis + width * rim)));
+        }
+    }
+
+    void shiftEye() {
+        PlaneBox starts, ends;
+        for (const glm::ivec2 pixel : samples) {
+            const dvec3 start = frame.of(position(pixel) - frame.centre);
+            starts.add(frame.projected(start));
+            if (!isPlanar || frame.glossiness > 0.0) addEnds(ends, pixel);
+            frame.farthestBehind = std::min(frame.farthestBehind, start.z);
+        }
+        if (isPlanar) return;
+        const double near = starts.diagonal(), far = ends.diagonal();
+        shift = near > 0.0 && far > 0.0 ? std::min(near / far, double{kMaxShift}) : 1.0;
+        if ((flags & kRaysTurned) != 0) shift = std::min(shift, 1.0);
+        const double leastHeight = double{kLeastHeight} * double{settings.diagonalM};
+        shift = std::max(shift, std::max(-1.5 * frame.farthestBehind, leastHeight) / -frame.eye.z);
+        frame.eye *= shift;
+    }
+
+    double pixelDistance() const {
+        std::set<std::pair<int, int>> inCluster;
+        for (const glm::ivec2 pixel : samples) inCluster.emplace(pixel.x, pixel.y);
+        const auto at = [&](glm::ivec2 pixel) {
+            return frame.projected(frame.of(position(pixel) - frame.centre));
+        };
+        double sum = 0.0;
+        int pairs = 0;
+        for (const glm::ivec2 pixel : samples) {
+            for (const glm::ivec2 next : {pixel + glm::ivec2(1, 0), pixel + glm::ivec2(0, 1)}) {
+                if (!inCluster.contains({next.x, next.y})) continue;
+                sum += glm::distance(at(pixel), at(next));
+                ++pairs;
+            }
+        }
+        const double pitch = glm::length(dvec3(gbuffer.worldFromPixels[0]));
+        const double facing = pitch * glm::dot(frame.centre - eye(), -eyeAxis(2));
+        return pairs > 0 ? std::max(sum / pairs, 1e-3 * facing) : facing;
+    }
+
+    ClusterCamera imagePlane() {
+        PlaneBox box;
+        for (const glm::ivec2 pixel : samples) {
+            box.add(frame.projected(frame.of(position(pixel) - frame.centre)));
+            if (!isPlanar || frame.glossiness > 0.0) addEnds(box, pixel);
+        }
+        const double p = pixelDistance();
+        box.add(box.min - 0.5 * p);
+        box.add(box.max + 0.5 * p);
+
+        const dvec3 eyeC = frame.centre + frame.axisX * frame.eye.x + frame.axisY * frame.eye.y +
+                           frame.normal * frame.eye.z;
+        const double plane = -frame.eye.z;
+        const double farDistance = plane + frame.farDistance;
+        const double far = std::max(farDistance, 1.0001 * plane);
+        // Off-centre frustum: the box lies at `plane` before the eye.
+        const dvec2 lower = box.min - dvec2(frame.eye), upper = box.max - dvec2(frame.eye);
+        glm::dmat4 clipFromCamera(0.0);  // of x, y and the distance along n_c
+        clipFromCamera[0].x = 2.0 * plane / (upper.x - lower.x);
+        clipFromCamera[1].y = 2.0 * plane / (upper.y - lower.y);
+        clipFromCamera[2] = {-(lower.x + upper.x) / (upper.x - lower.x),
+                             -(lower.y + upper.y) / (upper.y - lower.y),
+                             (far + plane) / (far - plane), 1.0};
+        clipFromCamera[3].z = -2.0 * far * plane / (far - plane);
+        const glm::dmat3 axes = glm::transpose(glm::dmat3(frame.axisX, frame.axisY, frame.normal));
+        glm::dmat4 cameraFromWorld(axes);
+        cameraFromWorld[3] = {-(axes * eyeC), 1.0};
+
+        ClusterCamera camera;
+        camera.clipFromWorld = glm::mat4(clipFromCamera * cameraFromWorld);
+        camera.eyeWorld = {glm::vec3(eyeC), plane};
+        camera.planeNormal = {glm::vec3(frame.normal), farDistance};
+        camera.centreWorld = {glm::vec3(frame.centre), shift};
+        const dvec2 size = glm::ceil((box.max - box.min) / p - 1e-3);
+        camera.sizePx = glm::ivec2(glm::clamp(size, 1.0, double{kMaxCameraSizePx}));
+        camera.reflector =
+            static_cast<std::uint32_t>(gbuffer.reflector(gbuffer.indexOf(samples.front())));
+        camera.flags = flags;
+        return camera;
+    }
+};
 
 }  // namespace
 
@@ -341,7 +324,7 @@ ClusterCamera cameraOnHost(const reflections::HostGBuffer& gbuffer,
                            const std::vector<glm::ivec2>& samples, bool isPlanar,
                            const CameraSettings& settings) {
     GFXREPRO_ASSERT(!samples.empty());
-    return HostCamera(gbuffer, samples, isPlanar, settings).make();
+    return HostCamera{gbuffer, samples, isPlanar, settings}.make();
 }
 
 }  // namespace gfxrepro::clustered_reflections

@@ -43,6 +43,17 @@ std::size_t trianglesOf(const DetailLevels& levels, const DetailLevel& level) {
     return count;
 }
 
+/// Calls action(triangle, chunk) for all of a level.
+template <class Action>
+void forEachTriangle(const DetailLevels& levels, const DetailLevel& level, const Action& action) {
+    for (std::uint32_t c = 0; c < level.chunkCount; ++c) {
+        const DetailChunk& chunk = levels.chunks[level.firstChunk + c];
+        for (std::uint32_t t = 0; t < chunk.triangleCount; ++t) {
+            action(levels.triangles[chunk.firstTriangle + t], chunk);
+        }
+    }
+}
+
 std::array<std::uint32_t, 3> sorted(const glm::uvec3& triangle) {
     std::array<std::uint32_t, 3> corners{triangle.x, triangle.y, triangle.z};
     std::sort(corners.begin(), corners.end());
@@ -51,9 +62,9 @@ std::array<std::uint32_t, 3> sorted(const glm::uvec3& triangle) {
 
 TEST(DetailLevelsTest, TheFinestLevelsHoldEveryTriangleOnce) {
     const ReflectiveScene scene = MirrorScene()
-                                      .add(ball(), glm::mat4(1.0F))
-                                      .add(squareMesh(), glm::mat4(1.0F))
-                                      .add(scene::Mesh{}, glm::mat4(1.0F))
+                                      .add(ball())
+                                      .add(squareMesh())
+                                      .add(scene::Mesh{})
                                       .add(cap(1.0F, 10), glm::mat4(1.0F), false)
                                       .get();
     for (const bool isSimplified : {false, true}) {
@@ -66,16 +77,12 @@ TEST(DetailLevelsTest, TheFinestLevelsHoldEveryTriangleOnce) {
             const DetailLevel& finest = levels.levels[part.firstLevel];
             EXPECT_EQ(finest.errorMesh, 0.0F);
             EXPECT_EQ(part.levelCount > 1, isSimplified && trianglesOf(levels, finest) > 2);
-            for (std::uint32_t c = 0; c < finest.chunkCount; ++c) {
-                const DetailChunk& chunk = levels.chunks[finest.firstChunk + c];
+            forEachTriangle(levels, finest, [&](const glm::uvec4& triangle, const auto& chunk) {
                 EXPECT_LE(chunk.triangleCount, kChunkTriangles);
                 EXPECT_EQ(chunk.object, part.object);
-                for (std::uint32_t t = 0; t < chunk.triangleCount; ++t) {
-                    const glm::uvec4 triangle = levels.triangles[chunk.firstTriangle + t];
-                    EXPECT_EQ(triangle.w, part.object);
-                    found.push_back(sorted(glm::uvec3(triangle)));
-                }
-            }
+                EXPECT_EQ(triangle.w, part.object);
+                found.push_back(sorted(glm::uvec3(triangle)));
+            });
         }
         std::sort(expected.begin(), expected.end());
         std::sort(found.begin(), found.end());
@@ -87,7 +94,7 @@ TEST(DetailLevelsTest, TheFinestLevelsHoldEveryTriangleOnce) {
 }
 
 TEST(DetailLevelsTest, CoarserLevelsHaveFewerTrianglesNoFartherThanTheySay) {
-    const ReflectiveScene scene = MirrorScene().add(ball(), glm::mat4(1.0F)).get();
+    const ReflectiveScene scene = MirrorScene().add(ball()).get();
     const DetailLevels levels = detailLevels(scene, true);
     for (const DetailPart& part : levels.parts) {
         ASSERT_GE(part.levelCount, 4U);
@@ -97,15 +104,11 @@ TEST(DetailLevelsTest, CoarserLevelsHaveFewerTrianglesNoFartherThanTheySay) {
             EXPECT_LT(trianglesOf(levels, level), trianglesOf(levels, finer));
             EXPECT_GE(level.errorMesh, finer.errorMesh);
             float farthest = 0.0F;  // of the triangles' middles from the ball
-            for (std::uint32_t c = 0; c < level.chunkCount; ++c) {
-                const DetailChunk& chunk = levels.chunks[level.firstChunk + c];
-                for (std::uint32_t t = 0; t < chunk.triangleCount; ++t) {
-                    const glm::uvec4 triangle = levels.triangles[chunk.firstTriangle + t];
-                    const auto& p = scene.geometry().positions;
-                    const glm::vec3 middle = (p[triangle.x] + p[triangle.y] + p[triangle.z]) / 3.0F;
-                    farthest = std::max(farthest, std::abs(1.0F - glm::length(middle)));
-                }
-            }
+            forEachTriangle(levels, level, [&](const glm::uvec4& triangle, const auto&) {
+                const auto& p = scene.geometry().positions;
+                const glm::vec3 middle = (p[triangle.x] + p[triangle.y] + p[triangle.z]) / 3.0F;
+                farthest = std::max(farthest, std::abs(1.0F - glm::length(middle)));
+            });
             // The error is a mean over a corner's triangles (quadrics), so that single ones may be
             // farther.
             EXPECT_LT(farthest, 4.0F * level.errorMesh + 2e-3F) << i;
@@ -119,7 +122,7 @@ TEST(DetailLevelsTest, ColoursAreKeptAsShapeIs) {
         return glm::distance(at, glm::vec2(0.5F)) < 0.25F ? 0.1F : 0.9F;
     };
     const auto errorOfTenth = [](const scene::Mesh& mesh) {
-        const ReflectiveScene scene = MirrorScene().add(mesh, glm::mat4(1.0F)).get();
+        const ReflectiveScene scene = MirrorScene().add(mesh).get();
         const DetailLevels levels = detailLevels(scene, true);
         const DetailPart& part = levels.parts.front();
         for (std::uint32_t i = 1; i < part.levelCount; ++i) {

@@ -213,52 +213,41 @@ Image randomImage(Random& random, glm::ivec2 sizePx) {
 std::vector<Ray> randomRays(const Image& image, Random& random, int count) {
     const float farM = image.nearM + 10.0F;
     const glm::vec2 size(image.sizePx);
-    const glm::vec3 eye = glm::vec3(
-        glm::inverse(glm::dmat4(image.clipFromWorld)) * glm::dvec4(0.0, 0.0, -1.0, 0.0) /
-        (glm::inverse(glm::dmat4(image.clipFromWorld)) * glm::dvec4(0.0, 0.0, -1.0, 0.0)).w);
+    const glm::vec4 atEye = image.worldFromClip * glm::vec4(0.0F, 0.0F, -1.0F, 0.0F);
+    const glm::vec3 eye(atEye / atEye.w);
     const auto place = [&](float margin) {
         return glm::vec2{random.uniform(-margin, size.x + margin),
                          random.uniform(-margin, size.y + margin)};
     };
     const auto depth = [&] { return random.uniform(image.nearM, farM); };
-    std::vector<Ray> rays;
-    for (int i = 0; i < count; ++i) {
-        const glm::vec2 p = place(0.0F);
+    const auto ray = [&](int kind) -> Ray {
+        const glm::vec2 p = place(0.0F), middle = size * 0.5F;
         const glm::vec3 begin = image.at(p, image.nearM * 1.0001F);
-        switch (i % 8) {
+        switch (kind) {
             case 0:
-                rays.push_back({begin, image.at(place(0.0F), farM)});
-                break;
+                return {begin, image.at(place(0.0F), farM)};
             case 1: {
                 const glm::vec2 from = place(80.0F);
-                rays.push_back({image.at(from, depth()), image.at(place(80.0F), farM)});
-                break;
+                return {image.at(from, depth()), image.at(place(80.0F), farM)};
             }
             case 2:
-                rays.push_back({image.at(p, farM), eye});
-                break;  // to the eye
+                return {image.at(p, farM), eye};  // to the eye
             case 3:
-                rays.push_back({2.0F * eye - image.at(p, depth()), image.at(place(0.0F), farM)});
-                break;
-            case 4: {  // along the axis
-                const glm::vec3 axis =
-                    image.at(size * 0.5F, 2.0F * farM) - image.at(size * 0.5F, farM);
-                rays.push_back({begin, begin + axis});
-                break;
-            }
+                return {2.0F * eye - image.at(p, depth()), image.at(place(0.0F), farM)};
+            case 4:  // along the axis
+                return {begin, begin + image.at(middle, 2.0F * farM) - image.at(middle, farM)};
             case 5:
-                rays.push_back({begin, image.at(p, farM)});
-                break;  // to a point
-            case 6: {   // at one depth
+                return {begin, image.at(p, farM)};  // to a point
+            case 6: {                               // at one depth
                 const float z = depth();
-                rays.push_back({image.at(p, z), image.at(place(20.0F), z)});
-                break;
+                return {image.at(p, z), image.at(place(20.0F), z)};
             }
             default:
-                rays.push_back({begin, begin});
-                break;
+                return {begin, begin};
         }
-    }
+    };
+    std::vector<Ray> rays;
+    for (int i = 0; i < count; ++i) rays.push_back(ray(i % 8));
     return rays;
 }
 

@@ -29,27 +29,15 @@ scene::Mesh bowl(const glm::vec3& centre, float radius) {
 }
 
 scene::Mesh potAndKnob() {
-    scene::Mesh pot = shapes::sphere(kPot.centre, kPot.radius, 5);
-    const scene::Mesh knob = shapes::sphere(kKnob.centre, kKnob.radius, 5);
-    const auto count = static_cast<unsigned>(pot.positions.size());
-    pot.positions.insert(pot.positions.end(), knob.positions.begin(), knob.positions.end());
-    for (const glm::uvec3& t : knob.triangles) pot.triangles.push_back(t + count);
-    pot.normals = scene::vertexNormals(pot);
-    return pot;
+    scene::Mesh mesh = reflections::joined(shapes::sphere(kPot.centre, kPot.radius, 5),
+                                           shapes::sphere(kKnob.centre, kKnob.radius, 5));
+    mesh.normals = scene::vertexNormals(mesh);
+    return mesh;
 }
 
 scene::Scene room(bool hasWallAtMinusZ) {
-    scene::Scene scene;
-    scene.name = "room";
-    for (int wall = 0; wall < 6; ++wall) {
-        const int axis = wall / 2;
-        if (wall == 4 && !hasWallAtMinusZ) continue;
-        glm::vec3 centre(0.0F), u(0.0F), v(0.0F);
-        centre[axis] = (wall % 2 == 0 ? -1.0F : 1.0F) * kHalfSize[axis];
-        u[(axis + 1) % 3] = kHalfSize[(axis + 1) % 3];
-        v[(axis + 2) % 3] = (wall % 2 == 0 ? 1.0F : -1.0F) * kHalfSize[(axis + 2) % 3];
-        add(scene, rectangle(centre, u, v), kWallColours[wall]);
-    }
+    scene::Scene scene = reflections::mattRoom(kWalls);
+    if (!hasWallAtMinusZ) scene.instances.erase(scene.instances.begin() + 4);
     scene.lights.push_back({{0.3F, 1.2F, 0.4F}, glm::vec3(0.5F), 1.5F});
     scene.lights.push_back({{-1.0F, 0.5F, -0.5F}, {0.3F, 0.2F, 0.1F}, 1.0F});
     return scene;
@@ -73,12 +61,6 @@ scene::Scene mirroredInZ(const scene::Scene& scene, float plane) {
         light.position.z = 2.0F * plane - light.position.z;
     }
     return mirrored;
-}
-
-WallHit wallHit(const glm::vec3& origin, const glm::vec3& direction) {
-    const reflections::WallHit hit =
-        reflections::wallHit({-kHalfSize, kHalfSize}, origin, direction);
-    return {glm::vec3(hit.position), hit.normal, kWallColours[hit.side]};
 }
 
 }  // namespace gfxrepro::clustered_reflections::rooms

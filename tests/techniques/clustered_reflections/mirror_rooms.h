@@ -5,10 +5,7 @@
 
 namespace gfxrepro::clustered_reflections::rooms {
 
-constexpr glm::vec3 kHalfSize(2.0F, 1.5F, 2.0F);
-/// Of the walls −x, +x, −y, +y, −z, +z.
-constexpr glm::vec3 kWallColours[6] = {{0.9F, 0.2F, 0.2F}, {0.2F, 0.8F, 0.3F}, {0.6F, 0.5F, 0.4F},
-                                       {0.8F, 0.8F, 0.8F}, {0.3F, 0.4F, 0.9F}, {0.9F, 0.8F, 0.3F}};
+const scene::Box kWalls{glm::vec3(-2.0F, -1.5F, -2.0F), glm::vec3(2.0F, 1.5F, 2.0F)};
 
 enum class Surface { Diffuse, Mirror };
 
@@ -29,19 +26,11 @@ struct Ball {
 constexpr Ball kPot{{0.0F, -0.4F, 0.0F}, 0.4F}, kKnob{{0.0F, 0.3F, 0.0F}, 0.2F};
 scene::Mesh potAndKnob();
 
-/// Walls with two lights.
+/// mattRoom() of kWalls with two lights.
 scene::Scene room(bool hasWallAtMinusZ = true);
 /// A block, a ball and a pole on the floor.
 void addFurniture(scene::Scene& scene);
 /// The same scene behind a mirror in the plane z = `plane`.
 scene::Scene mirroredInZ(const scene::Scene& scene, float plane);
-
-/// What a ray from inside of the walls meets.
-struct WallHit {
-    glm::vec3 point;
-    glm::vec3 normal;  // inwards
-    glm::vec3 colour;
-};
-WallHit wallHit(const glm::vec3& origin, const glm::vec3& direction);
 
 }  // namespace gfxrepro::clustered_reflections::rooms

@@ -4,15 +4,13 @@
 #include <array>
 #include <cmath>
 
-#include "scenes/shared/mesh_builder.h"
+#include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::clustered_reflections {
 
 inline void addPart(scene::Scene& scene, scene::MeshBuilder& builder,
                     const scene::Material& material) {
-    scene.instances.push_back({.mesh = static_cast<int>(scene.meshes.size())});
-    scene.meshes.push_back(builder.take("part", static_cast<int>(scene.materials.size())));
-    scene.materials.push_back(material);
+    reflections::addPart(scene, builder.take("part", 0), material);
 }
 
 inline const scene::Material kMirror{

@@ -26,32 +26,29 @@ struct Traced {
     std::vector<gl::PassTime> passes;
     std::vector<reflections::GlCall> calls;
 
-    std::size_t reflectiveCount() const {
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < radiance.size(); ++i) count += gbuffer.isReflective(i);
-        return count;
+    /// Calls action(pixel, index) for the reflective samples; returns how many there are.
+    template <class Action>
+    int forEachReflective(Action&& action) const {
+        return reflections::forEachReflective(gbuffer, action);
+    }
+    int reflectiveCount() const {
+        return forEachReflective([](glm::ivec2, std::size_t) {});
     }
     bool isFinite() const {
-        for (std::size_t i = 0; i < radiance.size(); ++i) {
+        bool isFinite = true;
+        forEachReflective([&](glm::ivec2, std::size_t i) {
             const glm::vec3& c = radiance[i];
-            if (gbuffer.isReflective(i) && !std::isfinite(c.x + c.y + c.z + distanceM[i])) {
-                return false;
-            }
-        }
-        return true;
+            isFinite = isFinite && std::isfinite(c.x + c.y + c.z + distanceM[i]);
+        });
+        return isFinite;
     }
 };
 
 class TracerTest : public test::SuiteDeviceTest {
   protected:
-    static ClusteredSettings settingsFor(const reflections::ReflectiveScene& scene) {
-        ClusteredSettings settings;
-        settings.camera.diagonalM = scene.diagonalM();
-        return settings;
-    }
-
     static Traced trace(const reflections::ReflectiveScene& scene, const scene::Camera& camera,
-                        const ClusteredSettings& settings, int sizePx = 128) {
+                        ClusteredSettings settings, int sizePx = 128) {
+        settings.camera.diagonalM = scene.diagonalM();
         const reflections::GpuObjects objects(scene);
         reflections::GBuffer gbuffer(kit::viewOf(camera, glm::ivec2(sizePx)));
         reflections::GBufferRenderer(shaders(), scene).render(objects, gbuffer);
