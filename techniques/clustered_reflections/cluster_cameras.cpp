@@ -10,9 +10,10 @@ namespace {
 constexpr int kChunkLength = 32;
 constexpr int kCameraGroupSize = 64;
 constexpr int kChunkGroupSize = 256;
-constexpr std::size_t kPartials = 3;               // vec4 a chunk
-constexpr std::size_t kFrameBytes = 5 * 16;        // ClusterFrame of cluster_chunks.glsl
-constexpr std::size_t kClustersArguments = 3 * 4;  // behind those of the passes over chunks
+constexpr std::size_t kPartials = 3;         // vec4 a chunk
+constexpr std::size_t kFrameBytes = 5 * 16;  // ClusterFrame of cluster_chunks.glsl
+/// Where the arguments of the passes begin, in bytes.
+constexpr std::size_t kOverChunks = 0, kOverClusters = 3 * sizeof(std::uint32_t);
 
 gl::Pass pass(const gl::ShaderLibrary& shaders, const char* name, int groupSize,
               bool isWholeImage = false) {
@@ -44,27 +45,10 @@ std::size_t ClusterCameras::sizeBytes() const {
            frames_.sizeBytes() + cameras_.sizeBytes();
 }
 
-gl::Resources ClusterCameras::resources(const Clusters& clusters) const {
-    return {{"Ranges", clusters.ranges}, {"Samples", clusters.samples},
-            {"Counts", clusters.counts}, {"clusterOfSample", clusters.clusterOfSample},
-            {"Chunks", chunks_},         {"Arguments", arguments_},
-            {"Partials", partials_},     {"Frames", frames_},
-            {"Cameras", cameras_}};
-}
-
-void ClusterCameras::overChunks(const gl::Pass& pass, const reflections::GBuffer& gbuffer,
-                                const Clusters& clusters) {
+void ClusterCameras::setUniforms(const gl::Pass& pass, const kit::View& view) const {
+    const glm::mat3 eyeAxes = glm::transpose(glm::mat3(view.viewFromWorld));
     reflections::setLobe(pass, settings_.lobe, settings_.diagonalM);
     pass.setIfActive("maxSlope", settings_.maxSlope);
-    pass.dispatchIndirect(
-        arguments_, 0, gl::Resources{}.with(resources(clusters)).with(gbuffer.resourcesFor(pass)));
-}
-
-void ClusterCameras::overClusters(const gl::Pass& pass, const reflections::GBuffer& gbuffer,
-                                  const Clusters& clusters) {
-    reflections::setLobe(pass, settings_.lobe, settings_.diagonalM);
-    const kit::View& view = gbuffer.view;
-    const glm::mat3 eyeAxes = glm::transpose(glm::mat3(view.viewFromWorld));
     pass.setIfActive("eyeWorld", view.eyeWorld);
     pass.setIfActive("eyeRight", eyeAxes[0]);
     pass.setIfActive("eyeUp", eyeAxes[1]);
@@ -72,10 +56,6 @@ void ClusterCameras::overClusters(const gl::Pass& pass, const reflections::GBuff
     pass.setIfActive("leastHeight", kLeastHeight * settings_.diagonalM);
     pass.setIfActive("leastRoom", kLeastRoom * settings_.diagonalM);
     pass.setIfActive("pixelPitch", glm::length(glm::vec3(worldFromPixels(view)[0])));
-    pass.setIfActive("isNearAtFarthest", settings_.isNearAtFarthestSample ? 1 : 0);
-    pass.dispatchIndirect(
-        arguments_, kClustersArguments,
-        gl::Resources{}.with(resources(clusters)).with(gbuffer.resourcesFor(pass)));
 }
 
 void ClusterCameras::build(const reflections::GBuffer& gbuffer, const Clusters& clusters) {
@@ -85,13 +65,24 @@ void ClusterCameras::build(const reflections::GBuffer& gbuffer, const Clusters& 
     const std::size_t partialsBytes = mostChunks * kPartials * sizeof(glm::vec4);
     if (partials_.sizeBytes() != partialsBytes) partials_ = gl::Buffer(partialsBytes);
 
-    chunksPass_.dispatch({1, 1, 1}, gl::Resources{}.with(resources(clusters)));
-    overChunks(sums_, gbuffer, clusters);
-    overClusters(centres_, gbuffer, clusters);
-    overChunks(boxes_, gbuffer, clusters);
-    overClusters(eyes_, gbuffer, clusters);
-    overChunks(wholeBoxes_, gbuffer, clusters);
-    overClusters(camerasPass_, gbuffer, clusters);
+    const gl::Resources shared{
+        {"Ranges", clusters.ranges}, {"Samples", clusters.samples},
+        {"Counts", clusters.counts}, {"clusterOfSample", clusters.clusterOfSample},
+        {"Chunks", chunks_},         {"Arguments", arguments_},
+        {"Partials", partials_},     {"Frames", frames_},
+        {"Cameras", cameras_}};
+    chunksPass_.dispatch({1, 1, 1}, gl::Resources{}.with(shared));
+    const auto run = [&](const gl::Pass& pass, std::size_t arguments) {
+        setUniforms(pass, gbuffer.view);
+        pass.dispatchIndirect(arguments_, arguments,
+                              gl::Resources{}.with(shared).with(gbuffer.resourcesFor(pass)));
+    };
+    run(sums_, kOverChunks);
+    run(centres_, kOverClusters);
+    run(boxes_, kOverChunks);
+    run(eyes_, kOverClusters);
+    run(wholeBoxes_, kOverChunks);
+    run(camerasPass_, kOverClusters);
 }
 
 }  // namespace gfxrepro::clustered_reflections

@@ -47,9 +47,6 @@ struct CameraSettings {
     /// the far plane, leaves the image at its side and takes the environment map from there on.
     /// Images for the steepest 7° would be as wide as for all others together.
     float maxSlope = 8.0F;
-    /// Beyond the paper: the near plane goes through the sample farthest behind the fitting plane,
-    /// so that nothing before any sample is cut away.
-    bool isNearAtFarthestSample = false;
 };
 
 /// The eye's least height over a fitting plane, in scene diagonals: below it (a cluster seen
@@ -83,11 +80,7 @@ class ClusterCameras {
     std::size_t sizeBytes() const;
 
   private:
-    gl::Resources resources(const Clusters& clusters) const;
-    void overChunks(const gl::Pass& pass, const reflections::GBuffer& gbuffer,
-                    const Clusters& clusters);
-    void overClusters(const gl::Pass& pass, const reflections::GBuffer& gbuffer,
-                      const Clusters& clusters);
+    void setUniforms(const gl::Pass& pass, const kit::View& view) const;
 
     CameraSettings settings_;
     gl::Pass chunksPass_, sums_, centres_, boxes_, eyes_, wholeBoxes_, camerasPass_;

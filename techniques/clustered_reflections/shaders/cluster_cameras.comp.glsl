@@ -11,15 +11,14 @@ layout(std430) restrict writeonly buffer Cameras { ClusterCamera cameras[]; };
 uniform vec3 eyeWorld;
 uniform vec3 eyeForward;
 uniform float pixelPitch;  // of the screen, metres a metre of distance along its view axis
-uniform int isNearAtFarthest;
 
 shared vec4 boxes[GROUP_SIZE];
 shared vec2 distances[GROUP_SIZE];
 
-// Perspective from e_c: box on the fitting plane, at distance `plane`, becomes the whole image.
-mat4 clipFromWorld(ClusterFrame frame, vec3 eyeC, vec4 box, float plane, float near, float far) {
+// Perspective from e_c: box on the fitting plane, at distance `near`, becomes the whole image.
+mat4 clipFromWorld(ClusterFrame frame, vec3 eyeC, vec4 box, float near, float far) {
     vec2 lower = box.xy - frame.eye.xy, upper = box.zw - frame.eye.xy;
-    vec2 scale = 2.0 * plane / (upper - lower), shift = (lower + upper) / (upper - lower);
+    vec2 scale = 2.0 * near / (upper - lower), shift = (lower + upper) / (upper - lower);
     vec3 n = frame.normal.xyz;
     vec3 x = scale.x * frame.axisX.xyz - shift.x * n;
     vec3 y = scale.y * frame.axisY.xyz - shift.y * n;
@@ -58,13 +57,12 @@ void main() {
     float plane = -frame.eye.z, f = frame.axisY.w;
     vec3 mirrored = eyeWorld - n * (dot(n, eyeWorld - centre) + plane / f);  // e_0
     vec3 eyeC = centre + (mirrored - centre) * f;
-    float near = plane + (isNearAtFarthest != 0 ? frame.normal.w : 0.0);
     float far = plane + frame.centre.w;
 
     ClusterCamera camera;
     // 1.0001: no room; the matrix stays finite, and nothing is drawn.
-    camera.clipFromWorld = clipFromWorld(frame, eyeC, box, plane, near, max(far, 1.0001 * near));
-    camera.eyeWorld = vec4(eyeC, near);
+    camera.clipFromWorld = clipFromWorld(frame, eyeC, box, plane, max(far, 1.0001 * plane));
+    camera.eyeWorld = vec4(eyeC, plane);
     camera.planeNormal = vec4(n, far);
     camera.centreWorld = vec4(centre, f);
     // 1e-3: whole numbers of pixels, but for rounding.

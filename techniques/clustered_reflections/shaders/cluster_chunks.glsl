@@ -13,7 +13,7 @@ struct ClusterFrame {
     vec4 centre;  // P_c; w: far plane's distance from the fitting plane
     vec4 axisX;   // w: glossiness
     vec4 axisY;   // w: f of Eq. (6)
-    vec4 normal;  // n_c; w: z of the sample farthest behind the fitting plane, at most 0
+    vec4 normal;  // n_c
     vec4 eye;     // xyz: e_0, then e_c, in the frame (z negative); w: flags
 };
 layout(std430) restrict buffer Frames { ClusterFrame frames[]; };

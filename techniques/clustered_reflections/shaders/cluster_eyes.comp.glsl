@@ -36,7 +36,6 @@ void main() {
     }
 
     ClusterFrame frame = frames[cluster];
-    frame.normal.w = other.x;
     uint flags = floatBitsToUint(frame.eye.w);
     if (other.y < 0.0) flags |= kRaysTurned;
     frame.eye.w = uintBitsToFloat(flags);
