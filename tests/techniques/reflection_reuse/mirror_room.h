@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "techniques/reflection_reuse/reuse_renderer.h"
@@ -97,6 +98,21 @@ class ReuseTest : public reflections::ReflectionsTest {
         const std::vector<reflections::TracedSample> truth = world.truth(frame);
         return reflections::psnrDb(frame.gbuffer, frame.radiance,
                                    [&](std::size_t i) { return truth[i].radiance; });
+    }
+
+    /// Over the reflective samples, of any channel, from `radianceOf(sample)`.
+    template <class RadianceOf>
+    static float largestError(const Frame& frame, const RadianceOf& radianceOf) {
+        float largest = 0.0F;
+        reflections::forEachReflective(frame.gbuffer, [&](glm::ivec2, std::size_t i) {
+            largest =
+                std::max(largest, reflections::largestDifference(frame.radiance[i], radianceOf(i)));
+        });
+        return largest;
+    }
+    static float largestError(const World& world, const Frame& frame) {
+        const std::vector<reflections::TracedSample> truth = world.truth(frame);
+        return largestError(frame, [&](std::size_t i) { return truth[i].radiance; });
     }
 
     static double share(const ReuseCounts& counts) {

@@ -10,19 +10,7 @@ namespace {
 
 constexpr glm::vec3 kStep(0.5F, 0.2F, 0.1F);
 
-class MovedObjectsTest : public ReuseTest {
-  protected:
-    static float largestError(const World& world, const Frame& frame) {
-        const std::vector<reflections::TracedSample> truth = world.truth(frame);
-        float largest = 0.0F;
-        for (std::size_t i = 0; i < truth.size(); ++i) {
-            if (!frame.gbuffer.isReflective(i)) continue;
-            largest = std::max(
-                largest, reflections::largestDifference(frame.radiance[i], truth[i].radiance));
-        }
-        return largest;
-    }
-};
+using MovedObjectsTest = ReuseTest;
 
 TEST_F(MovedObjectsTest, WithoutRecomputingTheyLeaveGhosts) {
     World world(shaders, mirrorRoom(), {});
@@ -85,8 +73,7 @@ TEST_F(MovedObjectsTest, DoubtsAreThoseOfSegmentsThroughTheBox) {
     world.move(kBlock, kStep);
     ASSERT_TRUE(moved.find(world.objects));
     const std::vector<std::uint8_t> doubts =
-        moved.doubtful(world.renderer.keyFrame())
-            .read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1);
+        reflections::readMask(moved.doubtful(world.renderer.keyFrame()));
 
     const HostGBuffer gbuffer = readGBuffer(world.renderer.keyFrame().gbuffer);
     const std::vector<float> distanceM =

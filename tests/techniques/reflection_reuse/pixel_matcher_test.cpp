@@ -37,11 +37,8 @@ std::optional<glm::vec2> firstOffset(const HostReflectionDepthImage& key, glm::i
 }
 
 double invalidShare(const MatchingCounts& counts) {
-    return counts.reflectiveSamples > 0
-               ? static_cast<double>(counts.invalidSamples) / counts.reflectiveSamples
-               : 0.0;
+    return static_cast<double>(counts.invalidSamples) / std::max(counts.reflectiveSamples, 1U);
 }
-
 constexpr glm::ivec2 kImageSizePx(128, 96);
 
 using PixelMatcherTest = KeyFrameTest;
@@ -83,11 +80,9 @@ TEST_F(PixelMatcherTest, AnEyeThatStaysKeepsEverySample) {
     const KeyFrame key = keyFrame(roomWithAll(), aboveFloor(), kImageSizePx);
     for (const MatchingSettings& settings : kOrders) {
         const HostOffsets offsets(match(key, key.eyeWorld(), settings));
-        int count = 0;
-        forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
-            ++count;
+        const bool isFirst = settings.matching == Matching::FirstOrder;
+        const int count = forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
             EXPECT_EQ(offsets.steps[index], 0);
-            const bool isFirst = settings.matching == Matching::FirstOrder;
             EXPECT_LE(glm::length(offsets.offset[index]), isFirst ? 0.0F : 0.01F);
         });
         EXPECT_GT(count, 5000);
@@ -286,9 +281,8 @@ TEST_F(PixelMatcherTest, SearchesBeginWhereTheLastOneEnded) {
     EXPECT_GT(freshSteps, 2.0 * steps);
     // Both ways lead to the same matches.
     const HostOffsets a(previous), b(fresh);
-    int count = 0, same = 0;
-    forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
-        ++count;
+    int same = 0;
+    const int count = forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
         same += a.offset[index] == b.offset[index] ? 1 : 0;
     });
     EXPECT_GE(same, 0.97 * count) << same << " of " << count;
@@ -328,13 +322,9 @@ TEST_F(PixelMatcherTest, LongSearchesAreInvalid) {
     const HostOffsets some(match(key, eye, {.maxSteps = 3}));
     int longer = 0, shorter = 0;
     forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
-        if (all.steps[index] > 3) {
-            EXPECT_FALSE(some.isValid(index));
-            ++longer;
-        } else {
-            EXPECT_EQ(some.offset[index], all.offset[index]);
-            ++shorter;
-        }
+        const bool isLonger = all.steps[index] > 3;
+        ++(isLonger ? longer : shorter);
+        EXPECT_EQ(some.at(index), isLonger ? std::nullopt : all.at(index));
     });
     EXPECT_GT(longer, 100);
     EXPECT_GT(shorter, 100);
@@ -347,15 +337,14 @@ TEST_F(PixelMatcherTest, CountsAreSumsOverReflectiveSamples) {
     matcher.match(key.image, key.eyeWorld() + glm::vec3(0.2F, 0.1F, 0), nullptr, offsets);
     const MatchingCounts counts = matcher.counts(key.image, offsets);
     const HostOffsets host(offsets);
-    std::uint32_t reflective = 0, invalid = 0, steps = 0;
-    forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
-        ++reflective;
+    std::uint32_t invalid = 0, steps = 0;
+    const int reflective = forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
         invalid += host.isValid(index) ? 0 : 1;
         steps += host.steps[index];
     });
     EXPECT_GT(invalid, 0U);
     EXPECT_GT(steps, 0U);
-    EXPECT_EQ(counts.reflectiveSamples, reflective);
+    EXPECT_EQ(static_cast<int>(counts.reflectiveSamples), reflective);
     EXPECT_EQ(counts.invalidSamples, invalid);
     EXPECT_EQ(counts.steps, steps);
     EXPECT_EQ(counts.meanSteps(), static_cast<double>(steps) / reflective);
