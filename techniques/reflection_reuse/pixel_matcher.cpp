@@ -147,7 +147,7 @@ class Search {
           settings_(settings),
           eyeWorld_(eyeWorld),
           sample_(sample),
-          reflector_(key.gbuffer.reflector(key.gbuffer.indexOf(sample))),
+          reflector_(key.gbuffer.reflectorAt(sample)),
           reflected_(key.reflectedPositionWorld(sample)) {}
 
     HostMatch run(const std::optional<glm::vec2>& previous) {
@@ -181,11 +181,7 @@ class Search {
         match_.passed.push_back(std::sqrt(squared(candidate.miss)));
     }
 
-    bool isOnReflector(glm::ivec2 pixel) const {
-        return glm::all(glm::greaterThanEqual(pixel, glm::ivec2(0))) &&
-               glm::all(glm::lessThan(pixel, gbuffer_.view.sizePx)) &&
-               gbuffer_.reflector(gbuffer_.indexOf(pixel)) == reflector_;
-    }
+    bool isOnReflector(glm::ivec2 pixel) const { return gbuffer_.reflectorAt(pixel) == reflector_; }
 
     /// Whether a sample, `reach` steps away, continues the surface: no silhouette lies between.
     bool isNeighbour(glm::ivec2 pixel, int reach = 1) const {
@@ -332,7 +328,7 @@ HostMatch matchExhaustively(const HostReflectionDepthImage& key, glm::ivec2 samp
     for (int y = 0; y < gbuffer.view.sizePx.y; ++y) {
         for (int x = 0; x < gbuffer.view.sizePx.x; ++x) {
             const std::size_t index = gbuffer.indexOf({x, y});
-            if (gbuffer.reflector(index) != gbuffer.reflector(gbuffer.indexOf(sample))) continue;
+            if (gbuffer.reflector(index) != gbuffer.reflectorAt(sample)) continue;
             const float distance = matchingDistance(
                 gbuffer.positionWorld({x, y}), gbuffer.normalWorld[index], reflected, eyeWorld);
             if (distance >= match.distance) continue;
@@ -357,16 +353,9 @@ std::optional<float> distanceBetween(const HostReflectionDepthImage& key, const 
         const glm::vec2 near = glm::mix(1.0F - fraction, fraction, glm::vec2(corner));
         if (near.x * near.y == 0.0F) continue;
         const glm::ivec2 pixel = glm::ivec2(low) + corner;
-        if (glm::any(glm::lessThan(pixel, glm::ivec2(0))) ||
-            glm::any(glm::greaterThanEqual(pixel, gbuffer.view.sizePx))) {
-            return std::nullopt;
-        }
-        const std::size_t index = gbuffer.indexOf(pixel);
-        if (gbuffer.reflector(index) != gbuffer.reflector(gbuffer.indexOf(sample))) {
-            return std::nullopt;
-        }
+        if (gbuffer.reflectorAt(pixel) != gbuffer.reflectorAt(sample)) return std::nullopt;
         position += near.x * near.y * gbuffer.positionWorld(pixel);
-        normal += near.x * near.y * gbuffer.normalWorld[index];
+        normal += near.x * near.y * gbuffer.normalWorld[gbuffer.indexOf(pixel)];
     }
     return matchingDistance(position, normal, key.reflectedPositionWorld(sample), eyeWorld);
 }

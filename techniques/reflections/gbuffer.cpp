@@ -38,29 +38,25 @@ struct BesideMirror {
     glm::vec3 begin{0.0F}, perMetre{0.0F};
 };
 BesideMirror besideMirror(const HostGBuffer& gbuffer, glm::ivec2 pixel, glm::ivec2 axis) {
-    const std::size_t index = gbuffer.indexOf(pixel);
     const glm::vec3& eye = gbuffer.view.eyeWorld;
     const auto viewDirection = [&](glm::ivec2 through) {
         const glm::vec4 place((glm::vec2(through) + 0.5F), 1.0F, 1.0F);
         return glm::normalize(glm::vec3(gbuffer.worldFromPixels * place) - eye);
     };
-    const glm::vec3 normal = gbuffer.normalWorld[index];
+    const glm::vec3 normal = gbuffer.normalWorld[gbuffer.indexOf(pixel)];
     float least = std::numeric_limits<float>::max();
     int side = 1;
     glm::vec3 besideNormal = normal;
     for (const int i : {-1, 1}) {
         const glm::ivec2 beside = pixel + i * axis;
-        if (glm::any(glm::lessThan(beside, glm::ivec2(0))) ||
-            glm::any(glm::greaterThanEqual(beside, gbuffer.view.sizePx)))
-            continue;
-        const std::size_t there = gbuffer.indexOf(beside);
-        if (gbuffer.reflector(there) != gbuffer.reflector(index)) continue;
-        const glm::vec3 difference = gbuffer.normalWorld[there] - normal;
-        const float bend = glm::dot(difference, difference);
+        if (!gbuffer.holds(beside)) continue;
+        if (gbuffer.reflectorAt(beside) != gbuffer.reflectorAt(pixel)) continue;
+        const glm::vec3& there = gbuffer.normalWorld[gbuffer.indexOf(beside)];
+        const float bend = glm::dot(there - normal, there - normal);
         if (bend >= least) continue;
         least = bend;
         side = i;
-        besideNormal = gbuffer.normalWorld[there];
+        besideNormal = there;
     }
     const glm::vec3 view = viewDirection(pixel), besideView = viewDirection(pixel + side * axis);
     const float distanceM = glm::distance(gbuffer.positionWorld(pixel), eye);

@@ -85,6 +85,11 @@ struct HostGBuffer {
     }
     bool isReflective(std::size_t index) const { return reflections::isReflective(surface[index]); }
     int reflector(std::size_t index) const { return reflectorOf(surface[index]); }
+    bool holds(glm::ivec2 pixel) const {
+        return glm::min(glm::max(pixel, 0), view.sizePx - 1) == pixel;
+    }
+    /// 0 beyond the image, too.
+    int reflectorAt(glm::ivec2 pixel) const { return holds(pixel) ? reflector(indexOf(pixel)) : 0; }
     float glossiness(std::size_t index) const;
     glm::vec3 positionWorld(glm::ivec2 pixel) const;
     /// The mirror direction at a sample: unit.

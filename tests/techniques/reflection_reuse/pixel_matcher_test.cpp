@@ -15,11 +15,8 @@ namespace {
 std::optional<glm::vec2> firstOffset(const HostReflectionDepthImage& key, glm::ivec2 sample,
                                      const std::vector<glm::vec2>& previous) {
     const reflections::HostGBuffer& gbuffer = key.gbuffer;
-    const int reflector = gbuffer.reflector(gbuffer.indexOf(sample));
     const auto isOnReflector = [&](glm::ivec2 pixel) {
-        return glm::all(glm::greaterThanEqual(pixel, glm::ivec2(0))) &&
-               glm::all(glm::lessThan(pixel, gbuffer.view.sizePx)) &&
-               gbuffer.reflector(gbuffer.indexOf(pixel)) == reflector;
+        return gbuffer.reflectorAt(pixel) == gbuffer.reflectorAt(sample);
     };
     for (int reach = 0; reach <= kStartReach; reach = std::max(2 * reach, 1)) {
         for (int i = 0; i < (reach == 0 ? 1 : 9); ++i) {
@@ -68,9 +65,7 @@ int countNear(const HostReflectionDepthImage& key, const glm::vec2& positionPx, 
     int count = 0;
     for (int y = centre.y - radiusPx; y <= centre.y + radiusPx; ++y) {
         for (int x = centre.x - radiusPx; x <= centre.x + radiusPx; ++x) {
-            const glm::ivec2 size = key.gbuffer.view.sizePx;
-            if (x < 0 || y < 0 || x >= size.x || y >= size.y) continue;
-            count += key.gbuffer.reflector(key.gbuffer.indexOf({x, y})) == reflector ? 1 : 0;
+            count += key.gbuffer.reflectorAt({x, y}) == reflector ? 1 : 0;
         }
     }
     return count;
