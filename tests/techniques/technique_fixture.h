@@ -4,7 +4,6 @@
 
 #include <initializer_list>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,14 +22,13 @@ inline Params paramsOf(const technique::TechniqueInfo& technique, const std::str
 /// What a technique says against parameters; "": nothing. A case is YAML and what comes behind
 /// "case.yaml:1:".
 inline void expectRefused(const technique::TechniqueInfo& technique,
-                          std::initializer_list<std::pair<const char*, std::string_view>> cases) {
+                          std::initializer_list<std::pair<const char*, std::string>> cases) {
     for (const auto& [yaml, expected] : cases) {
         const std::string message = errorText([&] {
             Params params = paramsOf(technique, yaml);
             technique.create(params);
         });
-        EXPECT_EQ(message, expected.empty() ? "no error" : "case.yaml:1:" + std::string(expected))
-            << yaml;
+        EXPECT_EQ(message, expected.empty() ? "no error" : "case.yaml:1:" + expected) << yaml;
     }
 }
 
@@ -41,7 +39,7 @@ class TechniqueTest : public GlTest {
         : technique_(technique), outputSizePx_(outputSizePx) {}
 
     /// What is recorded of some of `frameCount` frames, each rendered `repeats` times: a repetition
-    /// overwrites what the one before has left. passes_ then names the last one's passes.
+    /// overwrites what the one before has left.
     std::vector<MetricRecorder> recordedFrames(const std::string& yaml, const scene::Scene* scene,
                                                const std::vector<int>& frames, int frameCount,
                                                int repeats, const technique::TechniqueInfo& info) {
@@ -60,9 +58,10 @@ class TechniqueTest : public GlTest {
             technique::FrameContext frameContext{frames[i], frameCount, profiler_};
             for (int repeat = 0; repeat < repeats; ++repeat) {
                 technique->render(frameContext);
-                passes_.clear();
-                for (const gl::PassTime& time : profiler_.collect()) passes_.push_back(time.pass);
+                passTimes_ = profiler_.collect();
             }
+            passes_.clear();
+            for (const gl::PassTime& time : passTimes_) passes_.push_back(time.pass);
             technique->record(recorders[i]);
             technique->recordOnce(recorders[i]);
             recorders[i].expectDeclared(outputs);
@@ -78,13 +77,15 @@ class TechniqueTest : public GlTest {
     }
 
     /// Cases of all of `frameCount` frames that follow one another in a worker record what each
-    /// does alone, but for times.
-    void expectSharedAsAlone(const std::vector<std::string>& yamls, const scene::Scene& scene,
-                             int frameCount = 1) {
+    /// does alone, but for times. Each is "{", what they have in `common`, and its own parameters.
+    /// Returns the bytes that they leave to be shared.
+    std::size_t expectSharedAsAlone(const std::string& common, const std::vector<std::string>& own,
+                                    const scene::Scene& scene, int frameCount = 1) {
         technique::SharedResults shared;
         std::vector<int> frames;
         for (int frame = 0; frame < frameCount; ++frame) frames.push_back(frame);
-        for (const std::string& yaml : yamls) {
+        for (const std::string& parameters : own) {
+            const std::string yaml = "{" + common + parameters + "}";
             SCOPED_TRACE(yaml);
             const auto recordedOf = [&](technique::SharedResults* results) {
                 shared_ = results;
@@ -94,7 +95,7 @@ class TechniqueTest : public GlTest {
             shared_ = nullptr;
             for (std::size_t frame = 0; frame < frames.size(); ++frame) {
                 const MetricRecorder &alone = allAlone[frame], &shares = allShare[frame];
-                ASSERT_EQ(shares.given.size(), alone.given.size());
+                EXPECT_EQ(shares.given.size(), alone.given.size());
                 for (const auto& [metric, unit, pass] : alone.given) {
                     if (unit.ends_with("ms") || unit.ends_with("/s")) continue;
                     const std::string key = metric + (pass.empty() ? "" : "/") + pass;
@@ -104,15 +105,15 @@ class TechniqueTest : public GlTest {
             }
         }
         shared.beginCase("", {});
-        sharedBytes_ = shared.otherBytes();
+        return shared.otherBytes();
     }
 
     const technique::TechniqueInfo& technique_;
     technique::SharedResults* shared_ = nullptr;
-    std::size_t sharedBytes_ = 0;  // that these cases have left
     glm::ivec2 outputSizePx_;
     gl::ShaderLibrary shaders_{dataFolder("shaders")};
     gl::Profiler profiler_{true};
+    std::vector<gl::PassTime> passTimes_;  // of the last frame
     std::vector<std::string> passes_;
 };
 

@@ -14,43 +14,15 @@ namespace {
 
 using test::errorText;
 
-Params paramsOf(const std::string& yaml) {
-    return Params(parseYaml(yaml, "case.yaml"), "technique 'depth_sampling'");
-}
-
-class DepthSamplingTest : public test::GlTest {
+class DepthSamplingTest : public test::TechniqueTest {
   protected:
     using Metrics = std::map<std::string, double>;
 
-    test::MetricRecorder recorded(const std::string& yaml, const scene::Scene* scene,
-                                  int sizePx = kSizePx) {
-        Params params = paramsOf(yaml);
-        const auto technique = kDepthSampling.create(params);
-        test::NoScenes scenes;
-        technique::SetupContext context{device,           shaders_, scenes,   scene,
-                                        {sizePx, sizePx}, 1,        profiler_};
-        technique::setUp(*technique, context);
-        EXPECT_TRUE(profiler_.collect().empty()) << "set-up is not timed by pass";
-        technique::FrameContext frame{0, 1, profiler_};
-        technique->render(frame);
-        passes_ = profiler_.collect();
-        test::MetricRecorder recorder;
-        technique->record(recorder);
-        technique->recordOnce(recorder);
-        const config::Outputs outputs = technique::outputsOf(kDepthSampling);
-        recorder.expectDeclared(outputs);
-        for (const gl::PassTime& time : passes_) EXPECT_TRUE(outputs.hasPass(time.pass));
-        profiler_.collect();
-        return recorder;
-    }
-    Metrics run(const std::string& yaml, const scene::Scene& scene) {
-        return recorded(yaml, &scene).metrics;
-    }
+    DepthSamplingTest() : TechniqueTest(kDepthSampling, {96, 96}) {}
 
-    static constexpr int kSizePx = 96;
-    gl::ShaderLibrary shaders_{dataFolder("shaders")};
-    gl::Profiler profiler_{true};
-    std::vector<gl::PassTime> passes_;
+    Metrics run(const std::string& yaml, const scene::Scene& scene) {
+        return recordedFrames(yaml, &scene, {0}, 1, 1, technique_).front().metrics;
+    }
 };
 
 scene::Camera lookingAt(const glm::vec3& eye, const glm::vec3& target) {
@@ -87,70 +59,55 @@ scene::Scene clutter() {
     return scene;
 }
 
-class SharedFramesTest : public test::TechniqueTest {
-  protected:
-    SharedFramesTest() : TechniqueTest(kDepthSampling, {96, 96}) {}
-};
-
-TEST_F(SharedFramesTest, TheMethodsHaveTheirOutputFramesInCommon) {
+TEST_F(DepthSamplingTest, TheMethodsHaveTheirOutputFramesInCommon) {
     const scene::Scene scene = clutter();
-    const auto cases = [](const std::vector<std::string>& given) {
-        std::vector<std::string> yamls;
-        for (const std::string& one : given) {
-            yamls.push_back("{usefulness: true, availability: true, output_frames: 20, " + one +
-                            "}");
-        }
-        return yamls;
-    };
-    expectSharedAsAlone(cases({"method: conventional"}), scene);
-    const std::size_t bytesOfOne = sharedBytes_;
-    EXPECT_EQ(bytesOfOne, 20U * 96 * 96 * 8);
+    const std::string frames = "output_frames: 20, ";
+    const std::string both = "usefulness: true, availability: true, ";
+    constexpr std::size_t kBytesOfOne = std::size_t{20} * 96 * 96 * 8;
+    EXPECT_EQ(expectSharedAsAlone(frames + both, {"method: conventional"}, scene), kBytesOfOne);
     // Each of what they are drawn regardless of.
-    std::vector<std::string> regardless =
-        cases({"method: conventional", "method: non_redundant", "method: depth_peeling",
-               "method: depth_peeling, peeled_from: first_view"});
-    regardless.emplace_back("{method: non_redundant, usefulness: true, output_frames: 20}");
-    regardless.emplace_back("{method: non_redundant, availability: true, output_frames: 20}");
-    expectSharedAsAlone(regardless, scene);
-    EXPECT_EQ(sharedBytes_, bytesOfOne);
+    const std::vector<std::string> regardless = {
+        both + "method: conventional",
+        both + "method: non_redundant",
+        both + "method: depth_peeling",
+        both + "method: depth_peeling, peeled_from: first_view",
+        "method: non_redundant, usefulness: true",
+        "method: non_redundant, availability: true"};
+    EXPECT_EQ(expectSharedAsAlone(frames, regardless, scene), kBytesOfOne);
     // What decides them.
-    expectSharedAsAlone(cases({"method: conventional", "views: 4", "view_distance: 0.5",
-                               "view_spread: 0.3", "depth_format: unorm24", "frame_size: 80"}),
-                        scene);
-    EXPECT_GT(sharedBytes_, 5 * bytesOfOne);
+    const std::vector<std::string> deciding = {"method: conventional",  "views: 4",
+                                               "view_distance: 0.5",    "view_spread: 0.3",
+                                               "depth_format: unorm24", "frame_size: 80"};
+    EXPECT_GT(expectSharedAsAlone(frames + both, deciding, scene), 5 * kBytesOfOne);
 }
 
 TEST(DepthSamplingParamsTest, RefusesWhatMeansNothing) {
-    const auto message = [](const std::string& yaml) {
-        return errorText([&] {
-            Params params = paramsOf(yaml);
-            kDepthSampling.create(params);
+    test::expectRefused(
+        kDepthSampling,
+        {
+            {"{}", ""},
+            {"{placement: automatic, views: 16}", ""},
+            {"{placement: automatic, redundancy: visibility}",
+             "13: 'placement: automatic' needs 'redundancy: pixel'"},
+            {"{method: depth_peeling, placement: automatic}",
+             "36: 'placement: automatic' chooses views; 'method: depth_peeling' has only one"},
+            {"{placement: automatic, views: 1}",
+             "31: 'placement: automatic' needs 2 views or more; found 1"},
+            {"{redundancy: visibility, depth_format: unorm24}",
+             "40: 'depth_format' needs 'redundancy: pixel'"},
+            {"{redundancy: visibility, triangle_ids: primitive_id}",
+             "40: 'triangle_ids' needs 'redundancy: pixel'"},
+            {"{redundancy: visibility, measured: output_frame}",
+             "36: 'measured: output_frame' needs 'redundancy: pixel'"},
+            {"{output_frames: 10}",
+             "17: 'output_frames' needs 'usefulness', 'availability', 'pictures' or 'measured: "
+             "output_frame'"},
+            {"{frame_size: 10}",
+             "14: 'frame_size' needs 'usefulness', 'availability', 'pictures' or 'measured: "
+             "output_frame'"},
+            {"{frame_size: 10, availability: true}", ""},
+            {"{views: 17}", "9: technique 'depth_sampling': views is 17; allowed: 1 … 16 images"},
         });
-    };
-    EXPECT_EQ(message("{}"), "no error");
-    EXPECT_EQ(message("{placement: automatic, views: 16}"), "no error");
-    EXPECT_EQ(message("{placement: automatic, redundancy: visibility}"),
-              "case.yaml:1:13: 'placement: automatic' needs 'redundancy: pixel'");
-    EXPECT_EQ(message("{method: depth_peeling, placement: automatic}"),
-              "case.yaml:1:36: 'placement: automatic' chooses views; 'method: depth_peeling' has "
-              "only one");
-    EXPECT_EQ(message("{placement: automatic, views: 1}"),
-              "case.yaml:1:31: 'placement: automatic' needs 2 views or more; found 1");
-    EXPECT_EQ(message("{redundancy: visibility, depth_format: unorm24}"),
-              "case.yaml:1:40: 'depth_format' needs 'redundancy: pixel'");
-    EXPECT_EQ(message("{redundancy: visibility, triangle_ids: primitive_id}"),
-              "case.yaml:1:40: 'triangle_ids' needs 'redundancy: pixel'");
-    EXPECT_EQ(message("{redundancy: visibility, measured: output_frame}"),
-              "case.yaml:1:36: 'measured: output_frame' needs 'redundancy: pixel'");
-    EXPECT_EQ(message("{output_frames: 10}"),
-              "case.yaml:1:17: 'output_frames' needs 'usefulness', 'availability', 'pictures' or "
-              "'measured: output_frame'");
-    EXPECT_EQ(message("{frame_size: 10}"),
-              "case.yaml:1:14: 'frame_size' needs 'usefulness', 'availability', 'pictures' or "
-              "'measured: output_frame'");
-    EXPECT_EQ(message("{frame_size: 10, availability: true}"), "no error");
-    EXPECT_EQ(message("{views: 17}"),
-              "case.yaml:1:9: technique 'depth_sampling': views is 17; allowed: 1 … 16 images");
 }
 
 TEST_F(DepthSamplingTest, SaysNothingOfUsefulSamplesThatNobodyCounted) {
@@ -355,7 +312,7 @@ TEST_F(DepthSamplingTest, TimesImagesOrOneOutputFrame) {
     const scene::Scene scene = clutter();
     const auto passes = [&](gl::PassTime::Clock clock) {
         std::set<std::string> names;
-        for (const gl::PassTime& pass : passes_) {
+        for (const gl::PassTime& pass : passTimes_) {
             if (pass.clock == clock) names.insert(pass.pass);
         }
         return names;
@@ -384,7 +341,7 @@ TEST_F(DepthSamplingTest, SavesPictures) {
                 redundancy + "}",
             &scene);
         for (const char* name : {"image_0", "image_1", "classes_0", "classes_1"}) {
-            EXPECT_EQ(recorder.images.at(name).width(), kSizePx) << redundancy << name;
+            EXPECT_EQ(recorder.images.at(name).width(), 96) << redundancy << name;
         }
         EXPECT_EQ(recorder.images.at("output_frame").width(), 40) << redundancy;
         EXPECT_EQ(recorder.images.at("unavailable").width(), 40) << redundancy;

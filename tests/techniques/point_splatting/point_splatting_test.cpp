@@ -56,62 +56,45 @@ int coveredPixels(const image::ImageF& image) {
 }
 
 TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
-    const auto message = [](const std::string& yaml) {
-        return errorText([&] {
-            Params params = test::paramsOf(kPointSplatting, yaml);
-            PointSplatting technique(params);
+    test::expectRefused(
+        kPointSplatting,
+        {
+            {"{}", ""},
+            {"{method: full_ewa, c_min: 0.1}", "27: 'c_min' needs 'method: adaptive'"},
+            {"{level: all, target_radius_px: 3}", "32: 'target_radius_px' needs 'level: by_size'"},
+            {"{level: all, fine_radius_px: 1}", "30: 'fine_radius_px' needs 'level: by_size'"},
+            {"{silhouette_deg: 91}",
+             "18: technique 'point_splatting': silhouette_deg is 91; allowed: 0 … 90 °"},
+            {"{method: compute, cutoff: 3}", "27: 'cutoff' needs a method of splats"},
+            {"{c_min: 4}", "9: c_min 4 is above c_max 3"},
+            {"{patch_points_max: 10}", "1: patch_points_min 64 is above patch_points_max 10"},
+            {"{distance: 0}",
+             "12: technique 'point_splatting': distance is 0; allowed: 0.01 … 1000 of the framing "
+             "distance"},
+            {"{method: splats}",
+             "10: technique 'point_splatting': method is 'splats'; allowed: adaptive | full_ewa | "
+             "reconstruction | low_pass | sprites | compute | gl_points"},
+            {"{storge: compressed}",
+             "2: technique 'point_splatting': unknown parameter 'storge'; did you mean 'storage'?"},
         });
-    };
-    EXPECT_EQ(message("{}"), "no error");
-    EXPECT_EQ(message("{method: full_ewa, c_min: 0.1}"),
-              "case.yaml:1:27: 'c_min' needs 'method: adaptive'");
-    EXPECT_EQ(message("{level: all, target_radius_px: 3}"),
-              "case.yaml:1:32: 'target_radius_px' needs 'level: by_size'");
-    EXPECT_EQ(message("{level: all, fine_radius_px: 1}"),
-              "case.yaml:1:30: 'fine_radius_px' needs 'level: by_size'");
-    EXPECT_EQ(message("{silhouette_deg: 91}"),
-              "case.yaml:1:18: technique 'point_splatting': silhouette_deg is 91; allowed: 0 … 90 "
-              "°");
-    EXPECT_EQ(message("{method: compute, cutoff: 3}"),
-              "case.yaml:1:27: 'cutoff' needs a method of splats");
-    EXPECT_EQ(message("{c_min: 4}"), "case.yaml:1:9: c_min 4 is above c_max 3");
-    EXPECT_EQ(message("{patch_points_max: 10}"),
-              "case.yaml:1:1: patch_points_min 64 is above patch_points_max 10");
-    EXPECT_EQ(message("{distance: 0}"),
-              "case.yaml:1:12: technique 'point_splatting': distance is 0; allowed: 0.01 … 1000 "
-              "of the framing distance");
-    EXPECT_EQ(message("{method: splats}"),
-              "case.yaml:1:10: technique 'point_splatting': method is 'splats'; allowed: adaptive "
-              "| full_ewa | reconstruction | low_pass | sprites | compute | gl_points");
-    EXPECT_EQ(message("{storge: compressed}"),
-              "case.yaml:1:2: technique 'point_splatting': unknown parameter 'storge'; did you "
-              "mean 'storage'?");
 }
 
 TEST_F(PointSplattingTest, TheTruthOfAViewIsMadeOnce) {
     const scene::Scene scene = bumpySphere(20000);
-    const auto cases = [](const std::vector<std::string>& given) {
-        std::vector<std::string> yamls;
-        for (const std::string& one : given) {
-            yamls.push_back("{cache: false, errors: true, pictures: true, " + one + "}");
-        }
-        return yamls;
-    };
-    expectSharedAsAlone(cases({"method: adaptive"}), scene);
-    const std::size_t bytesOfOne = sharedBytes_;
+    const std::string common = "cache: false, errors: true, pictures: true, ";
+    const std::size_t bytesOfOne = expectSharedAsAlone(common, {"method: adaptive"}, scene);
     EXPECT_GT(bytesOfOne, 0U);
     // Each of what it is made regardless of.
-    expectSharedAsAlone(
-        cases({"method: adaptive", "method: full_ewa", "method: low_pass", "method: sprites",
-               "method: compute", "method: adaptive, target_radius_px: 0.5"}),
-        scene);
-    EXPECT_EQ(sharedBytes_, bytesOfOne);
+    const std::vector<std::string> regardless = {
+        "method: adaptive", "method: full_ewa", "method: low_pass",
+        "method: sprites",  "method: compute",  "method: adaptive, target_radius_px: 0.5"};
+    EXPECT_EQ(expectSharedAsAlone(common, regardless, scene), bytesOfOne);
     // What decides it.
-    expectSharedAsAlone(cases({"method: adaptive", "distance: 2", "rotation_deg: 40",
-                               "low_pass_radius_px: 2", "cutoff: 2", "visibility_offset: 2",
-                               "cull_cones: false", "patch_points_max: 500", "look_at: [0, 0, 0]"}),
-                        scene);
-    EXPECT_GT(sharedBytes_, 8 * bytesOfOne);
+    const std::vector<std::string> deciding = {
+        "method: adaptive",  "distance: 2",          "rotation_deg: 40",  "low_pass_radius_px: 2",
+        "cutoff: 2",         "visibility_offset: 2", "cull_cones: false", "patch_points_max: 500",
+        "look_at: [0, 0, 0]"};
+    EXPECT_GT(expectSharedAsAlone(common, deciding, scene), 8 * bytesOfOne);
 }
 
 TEST_F(PointSplattingTest, EveryMethodRunsAndRecords) {

@@ -69,68 +69,61 @@ scene::Scene clutter() {
 }
 
 TEST(SoftShadowsParamsTest, RefusesWhatMeansNothing) {
-    const auto message = [](const std::string& yaml) {
-        return errorText([&] {
-            Params params = test::paramsOf(kSoftShadows, yaml);
-            SoftShadows technique(params);
-        });
-    };
     const std::string needsImages =
         "needs a method that takes depth images: non_redundant, conventional or depth_peeling";
-    EXPECT_EQ(message("{}"), "no error");
-    EXPECT_EQ(message("{light_ratio: 0}"), "no error");  // a point
-    EXPECT_EQ(message("{method: geometry, reference_size: 64}"),
-              "case.yaml:1:36: 'reference_size' " + needsImages);
-    EXPECT_EQ(message("{method: pcss, simplify_to: 0.5}"),
-              "case.yaml:1:29: 'simplify_to' " + needsImages);
-    EXPECT_EQ(message("{reconstruction: classic, grazing_limit: 4}"),
-              "case.yaml:1:42: 'grazing_limit' needs 'reconstruction: hybrid'");
-    EXPECT_EQ(message("{method: ray_traced, shadow_map_size: 64}"), "no error");  // of the truth
-    EXPECT_EQ(message("{method: ray_traced, errors: false, shadow_map_size: 64}"),
-              "case.yaml:1:54: 'shadow_map_size' needs a method that draws shadow maps, or "
-              "'errors: true'");
-    EXPECT_EQ(message("{method: pcss, measured: depth_and_pass}"),
-              "case.yaml:1:26: 'measured: depth_and_pass' needs a method that draws a shadow map "
-              "for each light sample");
-    EXPECT_EQ(message("{measured: depth_and_pass, pictures: true}"),
-              "case.yaml:1:38: 'pictures' needs 'measured: soft_shadow'");
-    EXPECT_EQ(message("{light_ratio: -1}"),
-              "case.yaml:1:15: technique 'soft_shadows': light_ratio is -1; allowed: 0 … 16");
+    test::expectRefused(
+        kSoftShadows,
+        {
+            {"{}", ""},
+            {"{light_ratio: 0}", ""},  // a point
+            {"{method: geometry, reference_size: 64}", "36: 'reference_size' " + needsImages},
+            {"{method: pcss, simplify_to: 0.5}", "29: 'simplify_to' " + needsImages},
+            {"{reconstruction: classic, grazing_limit: 4}",
+             "42: 'grazing_limit' needs 'reconstruction: hybrid'"},
+            {"{method: ray_traced, shadow_map_size: 64}", ""},  // of the truth
+            {"{method: ray_traced, errors: false, shadow_map_size: 64}",
+             "54: 'shadow_map_size' needs a method that draws shadow maps, or 'errors: true'"},
+            {"{method: pcss, measured: depth_and_pass}",
+             "26: 'measured: depth_and_pass' needs a method that draws a shadow map for each light "
+             "sample"},
+            {"{measured: depth_and_pass, pictures: true}",
+             "38: 'pictures' needs 'measured: soft_shadow'"},
+            {"{light_ratio: -1}",
+             "15: technique 'soft_shadows': light_ratio is -1; allowed: 0 … 16"},
+        });
 }
 
 TEST_F(SoftShadowsTest, TheTruthsOfALightAreMadeOnce) {
     const scene::Scene scene = clutter();
-    const auto cases = [](const std::vector<std::string>& given) {
-        std::vector<std::string> yamls;
-        for (const std::string& one : given) {
-            yamls.push_back(
-                "{traced_truth: true, pictures: true, light_grid: 4, "
-                "shadow_map_size: 96, " +
-                one + "}");
-        }
-        return yamls;
-    };
-    expectSharedAsAlone(cases({"method: geometry"}), scene);
-    const std::size_t bytesOfOne = sharedBytes_;
+    const std::string common =
+        "traced_truth: true, pictures: true, light_grid: 4, shadow_map_size: 96, ";
+    const std::size_t bytesOfOne = expectSharedAsAlone(common, {"method: geometry"}, scene);
     EXPECT_GT(bytesOfOne, 0U);
     // Each of what they are made regardless of.
     const std::string images = "reference_size: 96";
-    expectSharedAsAlone(
-        cases({images, images + ", method: conventional", images + ", method: depth_peeling",
-               "method: ray_traced", "method: pcss", images + ", redundancy: visibility",
-               images + ", reference_images: 2", "reference_size: 64",
-               images + ", reconstruction: classic", images + ", discontinuity: 9",
-               images + ", grazing_limit: 1", images + ", merge_rows: true",
-               images + ", simplify_to: 0.5, simplification_error: 0.01"}),
-        scene);
-    EXPECT_EQ(sharedBytes_, bytesOfOne);
+    const std::vector<std::string> regardless = {
+        images,
+        images + ", method: conventional",
+        images + ", method: depth_peeling",
+        "method: ray_traced",
+        "method: pcss",
+        images + ", redundancy: visibility",
+        images + ", reference_images: 2",
+        "reference_size: 64",
+        images + ", reconstruction: classic",
+        images + ", discontinuity: 9",
+        images + ", grazing_limit: 1",
+        images + ", merge_rows: true",
+        images + ", simplify_to: 0.5, simplification_error: 0.01"};
+    EXPECT_EQ(expectSharedAsAlone(common, regardless, scene), bytesOfOne);
     // What decides them.
-    expectSharedAsAlone(
-        cases({"method: geometry", "method: geometry, light_ratio: 0.3",
-               "method: geometry, light_height: 2", "method: geometry, ground: false",
-               "method: geometry, ground_size: 3", "method: geometry, shadow_bias: 3"}),
-        scene);
-    EXPECT_EQ(sharedBytes_, 6 * bytesOfOne);
+    const std::vector<std::string> deciding = {"",
+                                               "light_ratio: 0.3",
+                                               "light_height: 2",
+                                               "ground: false",
+                                               "ground_size: 3",
+                                               "shadow_bias: 3"};
+    EXPECT_EQ(expectSharedAsAlone(common + "method: geometry, ", deciding, scene), 6 * bytesOfOne);
 }
 
 TEST_F(SoftShadowsTest, RefusesScenesThatCastNothingAndLightsInside) {

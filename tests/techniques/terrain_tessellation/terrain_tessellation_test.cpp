@@ -41,34 +41,26 @@ class TerrainTessellationTest : public test::TechniqueTest {
 };
 
 TEST(TerrainTessellationParamsTest, RefusesWhatMeansNothing) {
-    const auto message = [](const std::string& yaml) {
-        return errorText([&] {
-            Params params = test::paramsOf(kTerrainTessellation, yaml);
-            TerrainTessellation technique(params);
-        });
-    };
-    EXPECT_EQ(message("{}"), "no error");
-    EXPECT_EQ(message("{tile_patches: 3}"), "case.yaml:1:16: tile_patches 3 is no power of two");
-    EXPECT_EQ(message("{block: 32, patch_blocks: 4}"),
-              "case.yaml:1:27: a patch of 4 blocks of 32 segments is 128 wide; allowed: 64, the "
-              "largest factor");
-    EXPECT_EQ(message("{method: uniform_grid, tau: 3}"),
-              "case.yaml:1:29: 'tau' needs another method");
-    EXPECT_EQ(message("{method: cdlod, skirts: false}"),
-              "case.yaml:1:25: 'skirts' needs 'method: adaptive'");
-    EXPECT_EQ(message("{method: cdlod, culling: tile_and_patch}"),
-              "case.yaml:1:26: 'culling: tile_and_patch' needs 'method: adaptive'");
-    EXPECT_EQ(message("{method: cdlod, seams: true}"),
-              "case.yaml:1:24: 'seams' needs 'method: adaptive'");
-    EXPECT_EQ(message("{method: patches, yardstick: true}"),
-              "case.yaml:1:30: 'yardstick' needs 'method: adaptive'");
     const std::string chequer =
         ": 'shading: patches' needs 'method: adaptive' or 'patches', without 'errors: true': the "
         "truth has none";
-    EXPECT_EQ(message("{method: cdlod, shading: patches}"), "case.yaml:1:26" + chequer);
-    EXPECT_EQ(message("{errors: true, shading: patches}"), "case.yaml:1:25" + chequer);
-    EXPECT_EQ(message("{supersampling: 2}"),
-              "case.yaml:1:17: 'supersampling' needs 'errors: true' or 'pictures: true'");
+    test::expectRefused(
+        kTerrainTessellation,
+        {
+            {"{}", ""},
+            {"{tile_patches: 3}", "16: tile_patches 3 is no power of two"},
+            {"{block: 32, patch_blocks: 4}",
+             "27: a patch of 4 blocks of 32 segments is 128 wide; allowed: 64, the largest factor"},
+            {"{method: uniform_grid, tau: 3}", "29: 'tau' needs another method"},
+            {"{method: cdlod, skirts: false}", "25: 'skirts' needs 'method: adaptive'"},
+            {"{method: cdlod, culling: tile_and_patch}",
+             "26: 'culling: tile_and_patch' needs 'method: adaptive'"},
+            {"{method: cdlod, seams: true}", "24: 'seams' needs 'method: adaptive'"},
+            {"{method: patches, yardstick: true}", "30: 'yardstick' needs 'method: adaptive'"},
+            {"{method: cdlod, shading: patches}", "26" + chequer},
+            {"{errors: true, shading: patches}", "25" + chequer},
+            {"{supersampling: 2}", "17: 'supersampling' needs 'errors: true' or 'pictures: true'"},
+        });
 }
 
 TEST_F(TerrainTessellationTest, TheUniformGridHasNoErrorsButThoseOfDepths) {
@@ -85,29 +77,24 @@ TEST_F(TerrainTessellationTest, TheUniformGridHasNoErrorsButThoseOfDepths) {
 
 TEST_F(TerrainTessellationTest, TheTruthOfAViewIsMadeOnce) {
     const scene::Scene scene = terrain({257, 257});
-    const auto cases = [](const std::vector<std::string>& given) {
-        std::vector<std::string> yamls;
-        for (const std::string& one : given) {
-            yamls.push_back("{cache: false, errors: true, pictures: true, tile_patches: 2, " + one +
-                            "}");
-        }
-        return yamls;
-    };
-    expectSharedAsAlone(cases({"delta_s: 4"}), scene);
-    const std::size_t bytesOfOne = sharedBytes_;
+    const std::string common = "cache: false, errors: true, pictures: true, tile_patches: 2, ";
+    const std::size_t bytesOfOne = expectSharedAsAlone(common, {"delta_s: 4"}, scene);
     EXPECT_GT(bytesOfOne, 0U);
     // Each of what it is made regardless of.
-    expectSharedAsAlone(cases({"delta_s: 4", "delta_s: 12", "delta_s: 4, tau: 9",
-                               "delta_s: 4, edges: own_patch", "delta_s: 4, inner: maximum",
-                               "delta_s: 4, partitioning: integer", "delta_s: 4, skirts: false"}),
-                        scene);
-    EXPECT_EQ(sharedBytes_, bytesOfOne);
+    const std::vector<std::string> regardless = {"delta_s: 4",
+                                                 "delta_s: 12",
+                                                 "delta_s: 4, tau: 9",
+                                                 "delta_s: 4, edges: own_patch",
+                                                 "delta_s: 4, inner: maximum",
+                                                 "delta_s: 4, partitioning: integer",
+                                                 "delta_s: 4, skirts: false"};
+    EXPECT_EQ(expectSharedAsAlone(common, regardless, scene), bytesOfOne);
     // What decides it.
-    expectSharedAsAlone(cases({"delta_s: 4", "supersampling: 2", "wireframe: true", "culling: none",
-                               "view: overview", "height_format: unorm16", "shading: generated_map",
-                               "block: 16", "patch_blocks: 1", "method: cdlod"}),
-                        scene);
-    EXPECT_GT(sharedBytes_, 9 * bytesOfOne);
+    const std::vector<std::string> deciding = {
+        "delta_s: 4",      "supersampling: 2",       "wireframe: true",        "culling: none",
+        "view: overview",  "height_format: unorm16", "shading: generated_map", "block: 16",
+        "patch_blocks: 1", "method: cdlod"};
+    EXPECT_GT(expectSharedAsAlone(common, deciding, scene), 9 * bytesOfOne);
 }
 
 TEST_F(TerrainTessellationTest, AColourMapLiesOverTheMapNorthOnTop) {

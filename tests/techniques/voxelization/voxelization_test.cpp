@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "tests/techniques/technique_fixture.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
 
 namespace gfxrepro::voxelization {
@@ -10,15 +11,11 @@ namespace {
 
 using test::errorText;
 
-Params paramsOf(const std::string& yaml) {
-    return Params(parseYaml(yaml, "case.yaml"), "technique 'voxelization'");
-}
-
 class VoxelizationTest : public VoxelizerTest {
   protected:
     std::map<std::string, double> run(const std::string& yaml, const scene::Scene& scene,
                                       const std::filesystem::path& folder = {}) {
-        Params params = paramsOf(yaml);
+        Params params = test::paramsOf(kVoxelization, yaml);
         const auto technique = kVoxelization.create(params);
         technique::SetupContext context = setupContext();
         context.scene = &scene;
@@ -44,54 +41,45 @@ class VoxelizationTest : public VoxelizerTest {
 };
 
 TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
-    const auto message = [](const std::string& yaml) {
-        return errorText([&] {
-            Params params = paramsOf(yaml);
-            kVoxelization.create(params);
+    test::expectRefused(
+        kVoxelization,
+        {
+            {"{}", ""},
+            {"resolution: 100",
+             "13: resolution: 100 is not allowed; allowed: 32, 64, 128, 256, 512, 1024"},
+            {"voxel_bits: 4", "13: voxel_bits: 4 is not allowed; allowed: 1, 8, 16, 32"},
+            {"value: normal",
+             "8: a voxel of 1 bit says occupancy only; allowed with 'value: normal' and 'value: "
+             "color': voxel_bits 8, 16 or 32"},
+            {"{fill: solid, rule: conservative}",
+             "21: 'fill: solid' decides by crossings of scan lines; leave 'rule' out or give "
+             "'thin'"},
+            {"{fill: solid, rule: thin}", ""},
+            {"fill_rule: surface_voxels", "12: 'fill_rule' needs 'fill: solid'"},
+            {"{fill: solid, fill_rule: surface_voxels, rule: thin}",
+             "48: 'fill_rule: surface_voxels' flips at rasterized voxels; leave 'rule' out or give "
+             "'rasterized'"},
+            {"{fill: solid, fill_rule: surface_voxels}", ""},
+            {"{fill: solid, method: direct}", "23: 'fill: solid' needs 'method: worksheet'"},
+            {"{fill: solid, voxel_bits: 8, value: normal}",
+             "37: 'fill: solid' needs 'value: occupancy'"},
+            {"{method: slices, rule: thin}",
+             "24: 'method: slices' and 'method: depth_only' need 'rule: rasterized'"},
+            {"{method: slices, rule: rasterized, synthesis: sparse}",
+             "47: 'synthesis' needs 'method: worksheet'"},
+            {"{fill: solid, synthesis: sparse}",
+             "26: 'synthesis: sparse' skips tiles without a surface, which solids fill; allowed "
+             "with 'fill: solid': per_voxel, transposed"},
+            {"{addressing: tables}", "14: 'addressing: tables' needs 'synthesis: per_voxel'"},
+            {"{addressing: tables, synthesis: per_voxel, voxel_bits: 32}",
+             "14: 'addressing: tables' needs a grid of one worksheet; 256³ voxels of 32 bits take "
+             "4"},
+            {"{addressing: tables, synthesis: per_voxel}", ""},
+            {"box_min: [0, 0, 0]", "10: box_min and box_max must be given together"},
+            {"{box_min: [0, 0, 0], box_max: [1, 2, 1]}",
+             "31: the box must be cubic and not empty; it is 1 × 2 × 1"},
+            {"{box_min: [0, 0, 0], box_max: [1, 1, 1]}", ""},
         });
-    };
-    EXPECT_EQ(message("{}"), "no error");
-    EXPECT_EQ(message("resolution: 100"),
-              "case.yaml:1:13: resolution: 100 is not allowed; allowed: 32, 64, 128, 256, 512, "
-              "1024");
-    EXPECT_EQ(message("voxel_bits: 4"),
-              "case.yaml:1:13: voxel_bits: 4 is not allowed; allowed: 1, 8, 16, 32");
-    EXPECT_EQ(message("value: normal"),
-              "case.yaml:1:8: a voxel of 1 bit says occupancy only; allowed with 'value: normal' "
-              "and 'value: color': voxel_bits 8, 16 or 32");
-    EXPECT_EQ(message("{fill: solid, rule: conservative}"),
-              "case.yaml:1:21: 'fill: solid' decides by crossings of scan lines; leave 'rule' out "
-              "or give 'thin'");
-    EXPECT_EQ(message("{fill: solid, rule: thin}"), "no error");
-    EXPECT_EQ(message("fill_rule: surface_voxels"),
-              "case.yaml:1:12: 'fill_rule' needs 'fill: solid'");
-    EXPECT_EQ(
-        message("{fill: solid, fill_rule: surface_voxels, rule: thin}"),
-        "case.yaml:1:48: 'fill_rule: surface_voxels' flips at rasterized voxels; leave 'rule' "
-        "out or give 'rasterized'");
-    EXPECT_EQ(message("{fill: solid, fill_rule: surface_voxels}"), "no error");
-    EXPECT_EQ(message("{fill: solid, method: direct}"),
-              "case.yaml:1:23: 'fill: solid' needs 'method: worksheet'");
-    EXPECT_EQ(message("{fill: solid, voxel_bits: 8, value: normal}"),
-              "case.yaml:1:37: 'fill: solid' needs 'value: occupancy'");
-    EXPECT_EQ(message("{method: slices, rule: thin}"),
-              "case.yaml:1:24: 'method: slices' and 'method: depth_only' need 'rule: rasterized'");
-    EXPECT_EQ(message("{method: slices, rule: rasterized, synthesis: sparse}"),
-              "case.yaml:1:47: 'synthesis' needs 'method: worksheet'");
-    EXPECT_EQ(message("{fill: solid, synthesis: sparse}"),
-              "case.yaml:1:26: 'synthesis: sparse' skips tiles without a surface, which solids "
-              "fill; allowed with 'fill: solid': per_voxel, transposed");
-    EXPECT_EQ(message("{addressing: tables}"),
-              "case.yaml:1:14: 'addressing: tables' needs 'synthesis: per_voxel'");
-    EXPECT_EQ(message("{addressing: tables, synthesis: per_voxel, voxel_bits: 32}"),
-              "case.yaml:1:14: 'addressing: tables' needs a grid of one worksheet; 256³ voxels of "
-              "32 bits take 4");
-    EXPECT_EQ(message("{addressing: tables, synthesis: per_voxel}"), "no error");
-    EXPECT_EQ(message("box_min: [0, 0, 0]"),
-              "case.yaml:1:10: box_min and box_max must be given together");
-    EXPECT_EQ(message("{box_min: [0, 0, 0], box_max: [1, 2, 1]}"),
-              "case.yaml:1:31: the box must be cubic and not empty; it is 1 × 2 × 1");
-    EXPECT_EQ(message("{box_min: [0, 0, 0], box_max: [1, 1, 1]}"), "no error");
 }
 
 TEST_F(VoxelizationTest, NeedsTrianglesThatReachSomewhere) {
