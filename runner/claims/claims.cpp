@@ -13,6 +13,7 @@
 #include "runner/claims/claim_reader.h"
 #include "runner/claims/kinds/operands.h"
 #include "runner/config/schema.h"
+#include "runner/tables/frame_times.h"
 #include "runner/tables/labels.h"
 
 namespace gfxrepro::claims {
@@ -41,7 +42,7 @@ bool isWorse(const Outcome& a, const Outcome& b) {
 
 /// How times are judged; absent for a claim that reads none.
 struct TimeRule {
-    std::optional<double> noise;  // of the table
+    std::optional<double> noise;  // of the columns that are read
 };
 
 Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
@@ -323,8 +324,10 @@ std::string partOfRows(const ClaimSpec& claim, const Laid& laid) {
     return isNone ? fmt::format("{} of {} rows", shared, there.size()) : joined(parts);
 }
 
-ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
-                          const std::string& rows, const ReportContext& context) {
+/// `given` is the table of which `table` may be the turned one (tableFor).
+ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& given,
+                          const tables::Table& table, const std::string& rows,
+                          const ReportContext& context) {
     ClaimResult result = unjudged(claim, table, context);
     result.rows = rows;
     if (result.verdict == Verdict::NotApplicable) return result;
@@ -344,7 +347,9 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& table,
     }
     const std::string clock = chooseClock(table, context, reader, result);
     std::optional<TimeRule> times;
-    if (reader.readsTime()) times = TimeRule{table.noise(reader.clock())};
+    if (reader.readsTime()) {
+        times = TimeRule{tables::columnNoise(given, reader.timeColumns(), reader.clock())};
+    }
     const std::vector<Rows> groups = reader.groups();
     std::vector<std::string> measured;
     std::optional<Outcome> worst;
@@ -382,7 +387,7 @@ ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const tables::Table& tab
                                 const std::optional<Laid>& laid, const ReportContext& context) {
     const tables::Table own = tableFor(claim, table);
     try {
-        return evaluateClaim(claim, own, laid ? partOfRows(claim, *laid) : "", context);
+        return evaluateClaim(claim, table, own, laid ? partOfRows(claim, *laid) : "", context);
     } catch (const AbsentColumnError& error) {
         ClaimResult result = unjudged(claim, own, context);
         result.reason = "not among what was measured: " + error.text();

@@ -79,7 +79,7 @@ void decide(const Contrast& contrast, const Told& told, double distance, double 
             judgement.verdict = Verdict::Holds;
         } else if (distanceToBound(told.interval.high, contrast.requirement) <= noise) {
             judgement.verdict = Verdict::Ambiguous;
-            judgement.why = "a step back in every round, within the noise of this table";
+            judgement.why = "a step back in every round, within the noise of these times";
         }
         return;
     }
@@ -88,7 +88,7 @@ void decide(const Contrast& contrast, const Told& told, double distance, double 
     if (!isDecided || distance >= noise) return;
     judgement.verdict = Verdict::Ambiguous;
     judgement.why =
-        fmt::format("nearer to the bound than the noise of this table, {:.3g} %", 100.0 * noise);
+        fmt::format("nearer to the bound than the noise of these times, {:.3g} %", 100.0 * noise);
 }
 
 std::string whyTooFew(std::size_t rounds, const Group& group) {

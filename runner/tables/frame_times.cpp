@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "engine/core/text.h"
@@ -43,6 +44,27 @@ std::vector<double> logRatios(const std::map<int, double>& a, const std::map<int
 
 double halfWidth(const metrics::Interval& interval) {
     return 0.5 * (interval.high - interval.low);
+}
+
+/// Half the intervals of what neighbours differ by, as logarithms.
+std::vector<double> noiseWidths(const std::vector<std::map<int, double>>& cases) {
+    std::vector<double> widths;
+    for (std::size_t i = 1; i < cases.size(); ++i) {
+        const auto interval = metrics::centreInterval(logRatios(cases[i - 1], cases[i]));
+        if (interval) widths.push_back(halfWidth(*interval));
+    }
+    if (cases.size() == 1) {
+        std::vector<double> logs = roundValues(cases[0]);
+        for (double& value : logs) value = std::log(value);
+        const auto interval = metrics::centreInterval(logs);
+        if (interval) widths.push_back(std::numbers::sqrt2 * halfWidth(*interval));
+    }
+    return widths;
+}
+
+std::optional<double> noiseOf(const std::vector<double>& widths) {
+    if (widths.empty()) return std::nullopt;
+    return std::expm1(medianOf(widths));
 }
 
 std::string percentText(double share) {
@@ -156,20 +178,30 @@ bool FrameTimes::isKnownTo(double relativeError, int asked) const {
 
 std::optional<double> FrameTimes::noise(Clock clock) const {
     if (clock == Clock::Process && goesByClock_) return std::nullopt;
-    const std::vector<std::map<int, double>> cases = times(clock);
+    return noiseOf(noiseWidths(times(clock)));
+}
+
+std::optional<double> columnNoise(const Table& table, const std::vector<std::string>& labels,
+                                  Clock clock) {
     std::vector<double> widths;
-    for (std::size_t i = 1; i < cases.size(); ++i) {
-        const auto interval = metrics::centreInterval(logRatios(cases[i - 1], cases[i]));
-        if (interval) widths.push_back(halfWidth(*interval));
+    for (const std::string& label : labels) {
+        const auto column = table.findColumn(label);
+        std::vector<std::map<int, double>> rows, certain;
+        for (const TableRow& row : table.rows) {
+            const Measured* time = column ? row.cells[*column].find("", clock) : nullptr;
+            if (!time || time->areDraws || time->rounds.size() < metrics::kFewestForInterval)
+                continue;
+            const std::vector<double> values = roundValues(time->rounds);
+            if (std::ranges::min(values) <= 0.0) continue;
+            const bool isCertain = std::ranges::min(values) == std::ranges::max(values);
+            (isCertain ? certain : rows).push_back(time->rounds);
+        }
+        // What is divided by itself tells nothing of its noise.
+        std::ranges::copy(noiseWidths(rows.empty() ? certain : rows), std::back_inserter(widths));
     }
-    if (cases.size() == 1) {
-        std::vector<double> logs = roundValues(cases[0]);
-        for (double& value : logs) value = std::log(value);
-        const auto interval = metrics::centreInterval(logs);
-        if (interval) widths.push_back(std::numbers::sqrt2 * halfWidth(*interval));
-    }
-    if (widths.empty()) return std::nullopt;
-    return std::expm1(medianOf(widths));
+    if (labels.empty()) return std::nullopt;
+    const std::optional<double> noise = noiseOf(widths);
+    return noise ? noise : table.noise(clock);
 }
 
 std::vector<Outlier> FrameTimes::outliers() const {
@@ -267,7 +299,7 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
         const auto own = times.noise(Clock::Process);
         notes.push_back(fmt::format(
             "Noise of this table: two equal cases would differ by up to {}{}. Claims about a "
-            "difference below it are not decided.",
+            "smaller difference of a frame's time are not decided.",
             percentText(*noise), own ? fmt::format(", by CPU time {}", percentText(*own)) : ""));
     }
     const std::vector<std::string> outliers = outlierTexts(times, names);

@@ -85,6 +85,11 @@ class FrameTimes {
     bool goesByClock_ = false;
 };
 
+/// The same of what stands in these columns of a table, whose neighbouring rows are such cases; of
+/// a table without two sets of rounds there the noise of its frames. None without columns.
+std::optional<double> columnNoise(const Table& table, const std::vector<std::string>& labels,
+                                  Clock clock);
+
 /// Which condition of `measure` ended the rounds: "processes" (as many as asked for, no more),
 /// "relative_error", "processes_at_most", or "time_budget_s".
 std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& times);

@@ -55,7 +55,7 @@ struct Contrast {
     Requirement requirement;
     Scale scale = Scale::Logarithmic;
     /// By which share times would have to differ for the quantity to reach its bound: what is
-    /// compared with the noise of the table. Absent: as a quantity that is a ratio or a time.
+    /// compared with the noise of what is read. Absent: as a quantity that is a ratio or a time.
     std::function<double(const GroupPoint&, double quantity)> distance = {};
     /// It can only fail: not to be told from its bound is as good as to hold.
     bool isRefutation = false;

@@ -93,7 +93,7 @@ Quantity stepAt(std::size_t place, int direction) {
 }
 
 /// Direction: Kendall's rank correlation with x is above 0 towards it (Kendall 1938), and no step
-/// goes back by more than the noise of the table for certain.
+/// goes back by more than the noise of these times for certain.
 Contrasts rising(int direction) {
     return [direction](const GroupPoint& group) {
         Requirement above;

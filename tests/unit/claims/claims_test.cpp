@@ -825,9 +825,36 @@ TEST(Claims, ADifferenceBelowTheNoiseOfTheTableIsAmbiguous) {
     EXPECT_THAT(result.measured, testing::HasSubstr("[102, 102.1]"));
     EXPECT_THAT(result.reason,
                 testing::MatchesRegex(
-                    "nearer to the bound than the noise of this table, [0-9.]+ %" + kByTheClock));
+                    "nearer to the bound than the noise of these times, [0-9.]+ %" + kByTheClock));
     EXPECT_EQ(judgeTimed("bound: ms, at_least: 50, at: {n: 2}, kind: algorithmic", records).verdict,
               Verdict::Holds);
+}
+
+/// What a program says of itself scatters by a thousandth; its start by the factor of hundred.
+TEST(Claims, ATimeIsJudgedByTheNoiseOfItsOwnColumn) {
+    tables::RecordMaker maker;
+    for (const char* build : {"old", "new"}) {
+        maker.beginCase("", std::string(R"({"build":")") + build + "\"}").lane("timing");
+        for (int round = 0; round < 6; ++round) {
+            const double own = (build[0] == 'o' ? 1000.0 : 1500.0) * (1.0 + 0.001 * round);
+            maker.process(round).add("wall_time_ms", {round % 2 == 0 ? 2000.0 : 20.0 * own});
+            maker.add("render_ms", {own});
+        }
+    }
+    const auto judge = [&](const std::string& claim) {
+        return judgeOne(
+            "sweep: {build: [old, new]}\nmeasure: {lane: timing, processes: 6}\nlayout:\n"
+            "  rows: build\n  columns: {own: {metric: render_ms}, wall: {metric: wall_time_ms}}\n"
+            "claims: {X: {says: as claimed, kind: algorithmic, " +
+                claim + "}}\n",
+            maker.records(), kGpu);
+    };
+    EXPECT_EQ(judge("ratio: new / old, across: build, of: own, at_least: 1.4").verdict,
+              Verdict::Holds);
+    EXPECT_EQ(judge("ratio: new / old, across: build, of: own, at_least: 1.6").verdict,
+              Verdict::Fails);
+    EXPECT_EQ(judge("ratio: new / old, across: build, of: wall, at_least: 1.2").verdict,
+              Verdict::Ambiguous);
 }
 
 TEST(Claims, AlgorithmicOnesAreJudgedByProcessTimeOnASoftwareDevice) {
