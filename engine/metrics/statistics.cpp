@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <random>
+#include <set>
 
 #include "engine/core/error.h"
 
@@ -53,6 +56,22 @@ std::vector<double> walshAverages(std::span<const double> values) {
     }
     std::ranges::sort(means);
     return means;
+}
+
+/// Changes of sign of so many rounds, the first of which changes none.
+std::vector<std::vector<double>> signChanges(std::size_t rounds) {
+    constexpr std::size_t kMostOfAll = 10, kDrawn = 1024;
+    const bool areAll = rounds <= kMostOfAll;
+    std::vector<std::vector<double>> changes(areAll ? std::size_t{1} << rounds : kDrawn,
+                                             std::vector<double>(rounds, 1.0));
+    std::mt19937_64 random(1);
+    for (std::size_t i = 1; i < changes.size(); ++i) {
+        for (std::size_t round = 0; round < rounds; ++round) {
+            const bool isChanged = ((areAll ? i >> round : random()) & 1U) != 0;
+            if (isChanged) changes[i][round] = -1.0;
+        }
+    }
+    return changes;
 }
 
 /// The greatest number of outcomes to leave out at each end of a symmetric distribution over 0, 1,
@@ -127,6 +146,54 @@ std::optional<Interval> centreInterval(std::span<const double> values) {
     std::iota(ranks.begin(), ranks.end(), std::size_t{1});
     const std::size_t count = leftOut(coinSums(ranks));
     return Interval{means[count - 1], means[means.size() - count]};
+}
+
+std::vector<double> jointChances(std::span<const std::map<int, double>> series, bool isTwoSided) {
+    if (series.empty()) return {};
+    std::set<int> rounds;
+    for (const auto& one : series) {
+        for (const auto& [round, value] : one) rounds.insert(round);
+    }
+    std::vector<std::vector<double>> values;  // of each series in each round, ÷ their number
+    std::vector<double> squares;
+    for (const auto& one : series) {
+        std::vector<double>& own = values.emplace_back();
+        for (const int round : rounds) {
+            const auto found = one.find(round);
+            own.push_back(found == one.end() ? 0.0
+                                             : found->second / static_cast<double>(one.size()));
+        }
+        const double sum = std::inner_product(own.begin(), own.end(), own.begin(), 0.0);
+        squares.push_back(sum * static_cast<double>(one.size()));
+    }
+    const double usual = median(squares);
+    const auto statistic = [&](std::size_t i, const std::vector<double>& signs) {
+        const double scale = std::sqrt(squares[i] + usual);
+        const double mean = std::inner_product(signs.begin(), signs.end(), values[i].begin(), 0.0);
+        return scale == 0.0 ? 0.0 : (isTwoSided ? std::abs(mean) : mean) / scale;
+    };
+    const std::vector<std::vector<double>> changes = signChanges(rounds.size());
+    std::vector<double> observed;
+    for (std::size_t i = 0; i < values.size(); ++i) observed.push_back(statistic(i, changes[0]));
+    std::vector<std::size_t> ascending(values.size());
+    std::iota(ascending.begin(), ascending.end(), std::size_t{0});
+    std::ranges::stable_sort(ascending, {}, [&](std::size_t i) { return observed[i]; });
+    constexpr double kRounding = 1e-12;
+    std::vector<double> chances(values.size(), 0.0);
+    for (const std::vector<double>& signs : changes) {
+        double largest = -std::numeric_limits<double>::infinity();
+        for (const std::size_t i : ascending) {
+            largest = std::max(largest, statistic(i, signs));
+            chances[i] += largest >= observed[i] - kRounding ? 1.0 : 0.0;
+        }
+    }
+    // What is nearer to 0 is no surer than what is farther.
+    double surest = 0.0;
+    for (auto i = ascending.rbegin(); i != ascending.rend(); ++i) {
+        surest = std::max(surest, chances[*i] / static_cast<double>(changes.size()));
+        chances[*i] = surest;
+    }
+    return chances;
 }
 
 std::vector<double> coinSums(std::span<const std::size_t> scores) {

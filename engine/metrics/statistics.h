@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -51,6 +52,15 @@ double centre(std::span<const double> values);
 /// Nonparametric Statistical Methods, Sec. 3.3); for differences of two equally noisy things, whose
 /// distribution is symmetric. None for fewer than kFewestForInterval values, which must be finite.
 std::optional<Interval> centreInterval(std::span<const double> values);
+
+/// Series of values in rounds that they share, each by its round: of each the chance that one of
+/// all, were they symmetric about 0, came out so far above it (`isTwoSided`: from it). The series
+/// are looked at together: their largest mean, under changes of the sign of whole rounds, is exact
+/// however they hang together (Westfall and Young 1993, "Resampling-based multiple testing": maxT,
+/// step down). A mean is taken in units of how far its own values and, by the median, those of all
+/// lie from 0: six values alone say little of their scatter. All changes of sign up to 10 rounds,
+/// of more 1023 that are drawn.
+std::vector<double> jointChances(std::span<const std::map<int, double>> series, bool isTwoSided);
 
 /// The chance of each sum, from 0 on, of scores that fair coins choose: with ranks for scores that
 /// of signed ranks. No number of scores overflows.

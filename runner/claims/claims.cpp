@@ -40,25 +40,41 @@ bool isWorse(const Outcome& a, const Outcome& b) {
     return left != right ? left > right : a.judgement.margin < b.judgement.margin;
 }
 
-/// How times are judged; absent for a claim that reads none.
-struct TimeRule {
-    std::optional<double> noise;  // of the columns that are read
+/// A group of rows, as a part of the claim reads it, and what its comparisons came to.
+struct GroupRead {
+    Rows all, unfit, rows;  // `unfit` of `all`; `rows` are those that count
+    ClaimReader::Reading reading;
+    bool varies = false;
+    std::vector<Judgement> judgements = {};  // none where it cannot be read
+
+    /// Whether the claim is judged in it.
+    bool counts() const { return unfit.empty() || unfit.size() < all.size(); }
 };
 
-Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
-                   const std::string& groupName, bool isNamed,
-                   const std::optional<TimeRule>& times) {
-    Outcome outcome;
-    if (!reading.problem.empty()) {
-        outcome.reason = reading.problem;
-        return outcome;
+/// `noise` is of the times that are read; absent for a claim that reads none.
+GroupRead readGroup(const ClaimPart& part, ClaimReader& reader, const Rows& all, bool isOfTimes,
+                    const std::optional<double>& noise) {
+    GroupRead group{all, reader.unfitOf(all), all, {}};
+    if (group.counts()) {
+        std::erase_if(group.rows, [&](std::size_t row) {
+            return std::ranges::find(group.unfit, row) != group.unfit.end();
+        });
     }
+    group.reading = reader.read(part, group.rows);
+    if (group.reading.rows.empty() || !group.reading.problem.empty()) return group;
     // A count is what it is, and a p-value is of several pictures.
+    const Group& values = group.reading.group;
     const bool isSampled = !part.requirement.isOfCounts && !part.isOfSeeds;
-    const bool varies = times || (isSampled && isRandom(reading.group));
-    outcome.judgement =
-        varies ? judgeVarying(reading.group, part.onTimes, times ? times->noise : std::nullopt)
-               : judge(reading.group, part.quantity, part.requirement);
+    group.varies = isOfTimes || (isSampled && isRandom(values));
+    group.judgements = group.varies ? judgeVarying(values, part.onTimes, noise)
+                                    : std::vector{judge(values, part.quantity, part.requirement)};
+    return group;
+}
+
+Outcome outcomeOf(const ClaimPart& part, const GroupRead& group, const std::string& groupName,
+                  bool isNamed) {
+    if (!group.reading.problem.empty()) return {{}, group.reading.problem};
+    Outcome outcome{worstOf(group.judgements), ""};
     std::vector<std::string> reasons;
     if (outcome.judgement.isAbsent) reasons.emplace_back("there is no crossing within the rows");
     if (isNamed) reasons.push_back("worst at " + groupName);
@@ -79,7 +95,7 @@ Outcome judgeGroup(const ClaimPart& part, const ClaimReader::Reading& reading,
     }
     if (outcome.judgement.isSingleSample) reasons.emplace_back("one sample");
     outcome.reason = joined(reasons, "; ");
-    if (!varies && !part.measuredName.empty() && !outcome.judgement.measured.empty()) {
+    if (!group.varies && !part.measuredName.empty() && !outcome.judgement.measured.empty()) {
         outcome.judgement.measured = part.measuredName + " " + outcome.judgement.measured;
     }
     return outcome;
@@ -131,37 +147,27 @@ struct ByScene {
     SceneVerdicts judged, unfit;
 };
 
-Outcome judgePart(const ClaimPart& part, ClaimReader& reader, const std::vector<Rows>& groups,
-                  const std::optional<TimeRule>& times, ByScene& scenes) {
+Outcome judgePart(const ClaimPart& part, const ClaimReader& reader,
+                  const std::vector<GroupRead>& groups, ByScene& scenes) {
     std::optional<Outcome> worst;
-    for (const Rows& all : groups) {
-        const Rows unfit = reader.unfitOf(all);
-        Rows rows = all;
-        if (unfit.size() < all.size())
-            std::erase_if(rows, [&](std::size_t row) {
-                return std::ranges::find(unfit, row) != unfit.end();
-            });
-        const ClaimReader::Reading reading = reader.read(part, rows);
-        if (reading.rows.empty() && reading.problem.empty()) continue;
-        const std::string name = reader.groupName(rows);
+    for (const GroupRead& group : groups) {
+        if (group.reading.rows.empty() && group.reading.problem.empty()) continue;
+        const std::string name = reader.groupName(group.rows);
         const bool isNamed = groups.size() > 1 && !name.empty();
-        Outcome outcome = judgeGroup(part, reading, name, isNamed, times);
-        if (!unfit.empty()) {
-            const bool isAll = unfit.size() == all.size();
-            const std::string scene = reader.sceneOf(unfit);
+        Outcome outcome = outcomeOf(part, group, name, isNamed);
+        if (!group.unfit.empty()) {
+            const std::string scene = reader.sceneOf(group.unfit);
             addToScene(scenes.unfit, scene.empty() ? "its scenes" : scene,
-                       isAll ? outcome.judgement.verdict : Verdict::NotApplicable);
-            if (isAll) continue;
+                       group.counts() ? Verdict::NotApplicable : outcome.judgement.verdict);
+            if (!group.counts()) continue;
         }
-        addToScene(scenes.judged, reader.sceneOf(rows), outcome.judgement.verdict);
+        addToScene(scenes.judged, reader.sceneOf(group.rows), outcome.judgement.verdict);
         if (!worst || isWorse(outcome, *worst)) worst = std::move(outcome);
     }
     if (worst) return *worst;
-    Outcome none;
-    none.reason = part.needsExpected && !groups.empty()
-                      ? "no printed number to compare with"
-                      : "this run has no row that the claim reads";
-    return none;
+    return {{},
+            part.needsExpected && !groups.empty() ? "no printed number to compare with"
+                                                  : "this run has no row that the claim reads"};
 }
 
 /// Where the claim is not to be judged here, says so; true then.
@@ -324,6 +330,27 @@ std::string partOfRows(const ClaimSpec& claim, const Laid& laid) {
     return isNone ? fmt::format("{} of {} rows", shared, there.size()) : joined(parts);
 }
 
+/// What each part reads of each group, judged together.
+std::vector<std::vector<GroupRead>> readParts(const std::vector<ClaimPart>& parts,
+                                              ClaimReader& reader,
+                                              const std::optional<double>& noise) {
+    const std::vector<Rows> groups = reader.groups();
+    const bool isOfTimes = reader.readsTime();
+    std::vector<std::vector<GroupRead>> read(parts.size());
+    std::vector<Judgement*> all;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        for (const Rows& rows : groups) {
+            read[i].push_back(readGroup(parts[i], reader, rows, isOfTimes, noise));
+        }
+        for (GroupRead& group : read[i]) {
+            if (!group.counts()) continue;
+            for (Judgement& judgement : group.judgements) all.push_back(&judgement);
+        }
+    }
+    forgiveChance(all);
+    return read;
+}
+
 /// `given` is the table of which `table` may be the turned one (tableFor).
 ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& given,
                           const tables::Table& table, const std::string& rows,
@@ -346,16 +373,14 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& given,
         return result;
     }
     const std::string clock = chooseClock(table, context, reader, result);
-    std::optional<TimeRule> times;
-    if (reader.readsTime()) {
-        times = TimeRule{tables::columnNoise(given, reader.timeColumns(), reader.clock())};
-    }
-    const std::vector<Rows> groups = reader.groups();
+    const std::vector<ClaimPart> parts = partsOf(claim);
+    const auto read =
+        readParts(parts, reader, tables::columnNoise(given, reader.timeColumns(), reader.clock()));
     std::vector<std::string> measured;
     std::optional<Outcome> worst;
     ByScene scenes;
-    for (const ClaimPart& part : partsOf(claim)) {
-        Outcome outcome = judgePart(part, reader, groups, times, scenes);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Outcome outcome = judgePart(parts[i], reader, read[i], scenes);
         if (!outcome.judgement.measured.empty()) measured.push_back(outcome.judgement.measured);
         if (worst && !isWorse(outcome, *worst)) continue;
         result.margin = outcome.judgement.marginText;

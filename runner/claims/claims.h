@@ -126,7 +126,8 @@ std::string whyText(const ClaimResult& claim);
 /// inside of the range holds, wholly outside fails, else it is ambiguous (judgeVarying(), judge.h).
 /// On a software device the times of an algorithmic claim are the CPU times of the process, but for
 /// what goes by the clock (config::goesByClock). Groups of
-/// rows are judged apart; the worst verdict counts. What reads a column that
+/// rows are judged apart; the worst verdict counts, and one that fails alone fails no surer than
+/// among all of them (forgiveChance(), judge.h). What reads a column that
 /// the table does not have is unmeasured. Throws Error with the claim's place for an operand that
 /// is no expression, or an axis that the table has not. On which part of its rows a claim is judged
 /// is known of the cases that were `planned` for the table.

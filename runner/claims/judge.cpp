@@ -69,6 +69,37 @@ Told tell(std::vector<double> rounds, Scale scale) {
     return told;
 }
 
+/// How far the rounds lie beyond the nearer bound: on a scale of which nothing is known, and of
+/// what is infinite, only on which side.
+std::map<int, double> beyondBound(const std::map<int, double>& rounds,
+                                  const Requirement& requirement, Scale scale) {
+    std::map<int, double> farthest;
+    double largest = -kInfinity;
+    for (const bool isHigh : {false, true}) {
+        const double bound = isHigh ? requirement.high : requirement.low;
+        if (!std::isfinite(bound)) continue;
+        const double side = isHigh ? 1.0 : -1.0;
+        const bool isFinite = std::ranges::all_of(
+            rounds, [](const auto& round) { return std::isfinite(round.second); });
+        const bool isLogarithmic =
+            scale == Scale::Logarithmic && bound > 0.0 &&
+            std::ranges::all_of(rounds, [](const auto& round) { return round.second > 0.0; });
+        double sum = 0.0;
+        std::map<int, double> beyond;
+        for (const auto& [round, value] : rounds) {
+            const double distance = !isFinite || scale == Scale::Ranks
+                                        ? static_cast<double>(value > bound) - (value < bound)
+                                    : isLogarithmic ? std::log(value / bound)
+                                                    : value - bound;
+            sum += beyond[round] = side * distance;
+        }
+        if (sum <= largest) continue;
+        largest = sum;
+        farthest = std::move(beyond);
+    }
+    return farthest;
+}
+
 /// A verdict, where times are far enough apart for one.
 void decide(const Contrast& contrast, const Told& told, double distance, double noise,
             Judgement& judgement) {
@@ -103,7 +134,10 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
     const GroupPoint whole = pointOf(group);
     double middle = contrast.quantity(whole);
     std::vector<double> values;
-    for (const int round : rounds) values.push_back(contrast.quantity(pointOf(group, round)));
+    std::map<int, double> byRound;
+    for (const int round : rounds) {
+        values.push_back(byRound[round] = contrast.quantity(pointOf(group, round)));
+    }
     Judgement judgement;
     if (std::isnan(middle) ||
         std::ranges::any_of(values, [](double value) { return std::isnan(value); })) {
@@ -125,10 +159,14 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
         const double distance = contrast.distance ? contrast.distance(whole, middle)
                                                   : ratioToBound(middle, requirement);
         decide(contrast, told, distance, noise, judgement);
+        if (verdictOf(told.interval, requirement) != Verdict::Holds) {
+            judgement.beyond = beyondBound(byRound, requirement, contrast.scale);
+        }
         judgement.measured =
             boundedText(middle, tables::Bounds::Interval, told.interval, requirement);
     }
     if (!contrast.name.empty()) judgement.measured = contrast.name + " " + judgement.measured;
+    judgement.isRefutation = contrast.isRefutation;
     judgement.isAbsent = requirement.isInfinityAbsence && std::isinf(middle);
     judgement.margin = std::min(middle - requirement.low, requirement.high - middle);
     judgement.marginText = quantityText(judgement.margin, requirement);
@@ -182,7 +220,10 @@ Judgement judge(Group group, const Quantity& quantity, const Requirement& requir
     Judgement judgement;
     const double point = quantity(pointOf(group));
     std::vector<double> values;
-    for (const int round : roundsOf(group)) values.push_back(quantity(pointOf(group, round)));
+    std::map<int, double> byRound;
+    for (const int round : roundsOf(group)) {
+        values.push_back(byRound[round] = quantity(pointOf(group, round)));
+    }
     const auto isNotANumber = [](double value) { return std::isnan(value); };
     if (std::isnan(point) || std::ranges::any_of(values, isNotANumber)) {
         judgement.measured = "not a number";
@@ -203,6 +244,17 @@ Judgement judge(Group group, const Quantity& quantity, const Requirement& requir
         interval = told.value_or(metrics::Interval{low, high});
     }
     judgement.verdict = verdictOf(interval, requirement);
+    if (bounds == tables::Bounds::Interval && judgement.verdict != Verdict::Holds) {
+        if (areDraws) {
+            const auto isWithin = [&](double value) {
+                return verdictOf({value, value}, requirement) == Verdict::Holds;
+            };
+            judgement.drawsWithin = static_cast<double>(std::ranges::count_if(values, isWithin)) /
+                                    static_cast<double>(values.size());
+        } else {
+            judgement.beyond = beyondBound(byRound, requirement, Scale::Linear);
+        }
+    }
     judgement.measured = boundedText(point, bounds, interval, requirement);
     judgement.margin = std::min(point - requirement.low, requirement.high - point);
     judgement.marginText = quantityText(judgement.margin, requirement);
@@ -235,16 +287,53 @@ std::string whyTooFewSeeds(const Group& group) {
         metrics::kFewestForInterval);
 }
 
-Judgement judgeVarying(const Group& group, const Contrasts& contrasts,
-                       std::optional<double> noise) {
+std::vector<Judgement> judgeVarying(const Group& group, const Contrasts& contrasts,
+                                    std::optional<double> noise) {
     const std::vector<int> rounds = roundsOf(group);
-    std::optional<Judgement> worst;
+    std::vector<Judgement> judgements;
     for (const Contrast& contrast : contrasts(pointOf(group))) {
-        Judgement judgement = judgeContrast(group, rounds, contrast, noise.value_or(0.0));
+        judgements.push_back(judgeContrast(group, rounds, contrast, noise.value_or(0.0)));
+    }
+    return judgements;
+}
+
+void forgiveChance(std::span<Judgement* const> all) {
+    constexpr double kOneEnd = 0.025;
+    std::vector<Judgement*> sampled, drawn;
+    std::vector<std::map<int, double>> series;
+    for (Judgement* one : all) {
+        if (one->drawsWithin) drawn.push_back(one);
+        if (one->beyond.empty()) continue;
+        sampled.push_back(one);
+        series.push_back(one->beyond);
+    }
+    const auto forgive = [](Judgement& one, double chance, std::size_t count) {
+        if (one.verdict != Verdict::Fails || chance <= kOneEnd) return;
+        one.verdict = Verdict::Ambiguous;
+        one.why = fmt::format(
+            "fails by itself, but the farthest of {} comparisons is as far off by chance in {:.2g} "
+            "% of tables",
+            count, 100.0 * std::min(chance, 1.0));
+    };
+    if (series.size() > 1) {
+        const std::vector<double> chances = metrics::jointChances(series, false);
+        for (std::size_t i = 0; i < chances.size(); ++i) {
+            forgive(*sampled[i], chances[i], series.size());
+        }
+    }
+    for (Judgement* one : drawn) {
+        if (drawn.size() < 2) break;
+        forgive(*one, *one->drawsWithin * static_cast<double>(drawn.size()), drawn.size());
+    }
+}
+
+Judgement worstOf(std::vector<Judgement> judgements) {
+    std::optional<Judgement> worst;
+    for (Judgement& judgement : judgements) {
         const auto isWorse = [&] {
             const int left = severity(judgement.verdict), right = severity(worst->verdict);
             return left != right ? left > right
-                                 : judgement.margin < worst->margin && !contrast.isRefutation;
+                                 : judgement.margin < worst->margin && !judgement.isRefutation;
         };
         if (!worst || isWorse()) worst = std::move(judgement);
     }

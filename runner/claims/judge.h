@@ -11,7 +11,9 @@
 // the noise; times are judged without them, each comparison by its own interval. That all must
 // hold needs no correction for their number (intersection-union test: Berger 1982, "Multiparameter
 // hypothesis testing and acceptance sampling", Technometrics 24). That one fails is the union of
-// theirs: among k comparisons on their bounds, up to k times the 2.5 % of one end.
+// theirs: among k comparisons on their bounds up to k times the 2.5 % of one end. So one fails only
+// where it is sure by itself and among all of its claim that are not surely within their bounds
+// (metrics::jointChances, forgiveChance()): together they fail by chance in 2.5 %.
 //
 // Random numbers whose seed is another in each round are judged likewise, and nothing is decided of
 // those of one seed: however many processes drew them, they are one sample.
@@ -20,7 +22,9 @@
 // their intervals hold the truth as often, too.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,8 +51,13 @@ struct Judgement {
     double margin = 0.0;  // to the nearest bound, negative outside
     std::string marginText;
     bool isSingleSample = false;
-    bool isAbsent = false;  // a crossing that is not there
-    std::string why;        // of an ambiguous verdict on times; empty: the interval tells
+    bool isAbsent = false;      // a crossing that is not there
+    bool isRefutation = false;  // of a contrast that can only fail
+    std::string why;            // of an ambiguous verdict on times; empty: the interval tells
+    /// Of what has an interval that is not wholly within the range: how far beyond the nearer bound
+    /// each round lies; of draws, the share of them that lies within.
+    std::map<int, double> beyond = {};
+    std::optional<double> drawsWithin = {};
 };
 /// What is inside of the range wholly holds, wholly outside fails, else is ambiguous.
 Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirement);
@@ -65,9 +74,17 @@ bool isRandom(const Group& group);
 /// What a group of random numbers lacks for judgeVarying(): more seeds; empty where it lacks none.
 std::string whyTooFewSeeds(const Group& group);
 
-/// Of times, and of random numbers: the worst of the contrasts. With fewer than
+/// Of times, and of random numbers: each of the contrasts. With fewer than
 /// metrics::kFewestForInterval rounds nothing is decided; nor where times would have to differ by
-/// less than `noise`, the table's, for another verdict.
-Judgement judgeVarying(const Group& group, const Contrasts& contrasts, std::optional<double> noise);
+/// less than `noise`, that of what is read, for another verdict.
+std::vector<Judgement> judgeVarying(const Group& group, const Contrasts& contrasts,
+                                    std::optional<double> noise);
+
+/// What fails by no more than the farthest of so many would by chance is ambiguous: `all` are those
+/// of a claim, of which one that fails is enough.
+void forgiveChance(std::span<Judgement* const> all);
+
+/// The worst of the judgements, the first of the contrasts where they are alike.
+Judgement worstOf(std::vector<Judgement> judgements);
 
 }  // namespace gfxrepro::claims

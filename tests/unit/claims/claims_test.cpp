@@ -857,6 +857,33 @@ TEST(Claims, ATimeIsJudgedByTheNoiseOfItsOwnColumn) {
               Verdict::Ambiguous);
 }
 
+/// Of twenty rows that are alike one fails by itself: six seeds of one sign are one in 64.
+TEST(Claims, OneOfManyRowsThatFailsByChanceIsAmbiguous) {
+    const auto judge = [](double larger, int rows) {
+        tables::RecordMaker maker;
+        for (int n = 1; n <= rows; ++n) {
+            maker.beginCase("", "{\"n\":" + std::to_string(n) + "}");
+            maker.seeds(config::Measure::Seeds::Process);
+            for (int round = 0; round < 6; ++round) {
+                const double wave = ((n * 7 + round * 5 + n * round) % 11) / 110.0;
+                maker.process(round).add("e", {n == 1 ? larger + 0.005 * round : 0.95 + wave}, "",
+                                         "1");
+            }
+        }
+        return judgeOne("sweep: {n: {range: [1, " + std::to_string(rows) +
+                            "]}}\nlayout: {rows: n, columns: {e: {metric: e}}}\n"
+                            "claims: {X: {says: as claimed, bound: e, at_most: 1}}\n",
+                        maker.records());
+    };
+    EXPECT_EQ(judge(1.02, 1).verdict, Verdict::Fails);
+    ClaimResult result = judge(1.02, 20);
+    EXPECT_EQ(result.verdict, Verdict::Ambiguous) << result.measured;
+    EXPECT_THAT(result.reason, testing::HasSubstr("n 1; fails by itself, but the farthest of"));
+    result = judge(1.5, 20);
+    EXPECT_EQ(result.verdict, Verdict::Fails) << result.reason;
+    EXPECT_THAT(result.reason, testing::HasSubstr("worst at n 1"));
+}
+
 TEST(Claims, AlgorithmicOnesAreJudgedByProcessTimeOnASoftwareDevice) {
     // By the clock a neighbour hides the slope; the work shows it.
     const Timed wall = [](double n, int round) {

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
+#include <vector>
 
 #include "tests/support/support.h"
 
@@ -108,6 +111,39 @@ TEST(Statistics, KendallCountsPairs) {
     EXPECT_DOUBLE_EQ(kendall(x, std::vector<double>{1.0, 3.0, 2.0, 4.0}), 4.0 / 6.0);
     EXPECT_EQ(kendall(x, std::vector<double>(4, 1.0)), 0.0);
     EXPECT_EQ(kendall(std::vector<double>{1.0, 1.0}, std::vector<double>{1.0, 2.0}), 0.0);
+}
+
+/// Of one series the sign test's chance: six values of one sign are 1 of 64 changes of sign, either
+/// way 2.
+TEST(JointChances, OfOneSeriesAreThoseOfItsSigns) {
+    const std::map<int, double> up = {{0, 1.0}, {1, 1.1}, {2, 0.9}, {3, 1.2}, {4, 1.0}, {5, 0.8}};
+    EXPECT_DOUBLE_EQ(jointChances(std::vector{up}, false).at(0), 1.0 / 64.0);
+    EXPECT_DOUBLE_EQ(jointChances(std::vector{up}, true).at(0), 2.0 / 64.0);
+    std::map<int, double> down;
+    for (const auto& [round, value] : up) down[round] = -value;
+    EXPECT_DOUBLE_EQ(jointChances(std::vector{down}, false).at(0), 1.0);
+    EXPECT_DOUBLE_EQ(jointChances(std::vector{down}, true).at(0), 2.0 / 64.0);
+}
+
+/// What is far from 0 is as sure among many as alone; what others come as near to is not.
+TEST(JointChances, ManySeriesAreLookedAtTogether) {
+    std::vector<std::map<int, double>> series(41);
+    for (int round = 0; round < 6; ++round) {
+        series[0][round] = 8.0 + round % 2;
+        for (std::size_t i = 1; i < series.size(); ++i) {
+            series[i][round] = ((i >> static_cast<unsigned>(round)) & 1U) != 0 ? 1.0 : -0.9;
+        }
+    }
+    const std::vector<double> chances = jointChances(series, false);
+    EXPECT_DOUBLE_EQ(chances[0], 1.0 / 64.0);
+    EXPECT_GT(*std::ranges::min_element(chances.begin() + 1, chances.end()), 0.1);
+    // A series with fewer rounds, and more rounds than there are changes of sign to go through.
+    series[0].erase(5);
+    EXPECT_EQ(jointChances(series, true).size(), 41U);
+    std::map<int, double> many;
+    for (int round = 0; round < 40; ++round) many[round] = 1.0;
+    EXPECT_DOUBLE_EQ(jointChances(std::vector{many}, false).at(0), 1.0 / 1024.0);
+    EXPECT_TRUE(jointChances({}, false).empty());
 }
 
 }  // namespace
