@@ -319,7 +319,7 @@ Results resultsOf(const run::StoredRun& run, const Experiments& experiments) {
     results.claims =
         claims::evaluateClaims(experiments, results.tables, results.context, run.plan.cases);
     for (tables::Table& table : results.tables) {
-        std::vector<std::string> labels;
+        std::vector<std::string> labels = table.judgedByProcess;
         for (const claims::ClaimResult& claim : results.claims) {
             if (claim.table != table.id) continue;
             labels.insert(labels.end(), claim.columnsByProcess.begin(),

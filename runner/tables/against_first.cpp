@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "engine/core/text.h"
+#include "engine/metrics/statistics.h"
 #include "runner/tables/case_records.h"
+#include "runner/tables/frame_times.h"
 #include "runner/tables/labels.h"
 
 namespace gfxrepro::tables {
@@ -73,22 +76,65 @@ struct RivalTally {
     std::size_t rows() const { return less.rows + more.rows + open; }
 };
 
-/// Marks the cells that are not apart.
-RivalTally rivalTallyOf(Table& table, std::size_t axis, const std::string& rival,
-                        std::size_t column) {
-    RivalTally tally;
-    for (TableRow& row : table.rows) {
-        Cell& cell = row.cells[column];
-        if (row.labels[axis] != rival || !cell.isOk()) continue;
-        const Measured& ratio = cell.values[0];
-        const bool isTold = ratio.bounds == Bounds::Interval && ratio.value > 0.0 &&
+/// The cells of a column that divides by the first rival, and how they are told from 1.
+struct RivalCells {
+    std::size_t axis, column;
+    Clock clock;
+    double noise;  // of the times that are divided; 0 of what are none
+    /// Of each row the chance that one of all came out as far from 1; 0 of what does not scatter.
+    std::map<std::size_t, double> chances = {};
+
+    const Measured* ratioOf(const Cell& cell) const {
+        const Measured* ratio = cell.isOk() ? cell.find("", clock) : nullptr;
+        return ratio && ratio->value > 0.0 ? ratio : nullptr;
+    }
+    bool isTold(std::size_t row, const Measured& ratio) const {
+        constexpr double kBothEnds = 0.05;
+        const bool isSure = ratio.bounds == Bounds::Interval &&
                             (ratio.interval.high < 1.0 || ratio.interval.low > 1.0);
-        const double noise = cell.isTime ? table.wallNoise.value_or(0.0) : 0.0;
-        cell.isWithinNoise = !isTold || std::abs(std::log(ratio.value)) <= noise;
-        if (cell.isWithinNoise) {
+        const auto chance = chances.find(row);
+        return isSure && std::abs(std::log(ratio.value)) > noise &&
+               (chance == chances.end() || chance->second <= kBothEnds);
+    }
+};
+
+/// Looks at all rows and rivals together: of many some are apart by chance.
+void findChances(const Table& table, const std::string& first, RivalCells& cells) {
+    std::vector<std::size_t> rows;
+    std::vector<std::map<int, double>> series;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        const Measured* ratio = cells.ratioOf(table.rows[row].cells[cells.column]);
+        const bool isOther = table.rows[row].labels[cells.axis] != first;
+        if (!isOther || !ratio || ratio->areDraws || ratio->bounds != Bounds::Interval) continue;
+        std::map<int, double> logs;
+        bool isCertain = true, isPositive = true;
+        for (const auto& [round, value] : ratio->rounds) {
+            isCertain &= value == ratio->value;
+            isPositive &= value > 0.0;
+            logs[round] = std::log(value);
+        }
+        if (isCertain || !isPositive) continue;
+        rows.push_back(row);
+        series.push_back(std::move(logs));
+    }
+    if (series.size() < 2) return;
+    const std::vector<double> chances = metrics::jointChances(series, true);
+    for (std::size_t i = 0; i < rows.size(); ++i) cells.chances[rows[i]] = chances[i];
+}
+
+/// Marks the cells that are not apart.
+RivalTally rivalTallyOf(Table& table, const RivalCells& cells, const std::string& rival) {
+    RivalTally tally;
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+        TableRow& row = table.rows[i];
+        const Measured* ratio = cells.ratioOf(row.cells[cells.column]);
+        if (row.labels[cells.axis] != rival || !ratio) continue;
+        const bool isTold = cells.isTold(i, *ratio);
+        row.cells[cells.column].isWithinNoise = !isTold;
+        if (!isTold) {
             ++tally.open;
         } else {
-            (ratio.value < 1.0 ? tally.less : tally.more).add(ratio.value);
+            (ratio->value < 1.0 ? tally.less : tally.more).add(ratio->value);
         }
     }
     return tally;
@@ -98,8 +144,10 @@ RivalTally rivalTallyOf(Table& table, std::size_t axis, const std::string& rival
 struct RivalWords {
     const char *less, *more, *what;
 
-    static RivalWords of(const std::string& metric) {
-        if (config::isTimeMetric(metric)) return {"faster", "slower", "time"};
+    static RivalWords of(const std::string& metric, Clock clock) {
+        if (config::isTimeMetric(metric)) {
+            return {"faster", "slower", clock == Clock::Process ? "CPU time" : "time"};
+        }
         if (config::isPictureError(metric)) {
             return {"nearer to its truth", "farther from its truth", "error"};
         }
@@ -142,22 +190,30 @@ void compareRivals(const Rivals& rivals, const std::vector<std::string>& columns
         const auto column = table.findColumn(label);
         if (!column || axis == table.rowAxes.end()) continue;
         std::string metric;
-        bool hasIntervals = false;
+        bool hasIntervals = false, hasProcessTimes = !table.goesByClock;
         for (const TableRow& row : table.rows) {
-            if (row.cells[*column].bounds() != Bounds::Interval) continue;
+            const Cell& cell = row.cells[*column];
+            hasProcessTimes &= cell.values.empty() || !cell.byProcess.empty();
+            if (cell.bounds() != Bounds::Interval) continue;
             hasIntervals = true;
             metric = row.cells[*column - 1].metric;  // of the column beside which it stands
         }
         if (!hasIntervals) continue;
+        const std::string& divided = table.columns[*column - 1].label;
+        const Clock clock = hasProcessTimes ? Clock::Process : Clock::Wall;
+        const bool isTime = config::isTimeMetric(metric);
+        RivalCells cells{static_cast<std::size_t>(axis - table.rowAxes.begin()), *column, clock,
+                         isTime ? columnNoise(table, {divided}, clock).value_or(0.0) : 0.0};
+        findChances(table, rivals.values[0], cells);
+        if (hasProcessTimes)
+            table.judgedByProcess.insert(table.judgedByProcess.end(), {divided, label});
         for (std::size_t i = 1; i < rivals.values.size(); ++i) {
-            const RivalTally tally =
-                rivalTallyOf(table, static_cast<std::size_t>(axis - table.rowAxes.begin()),
-                             rivals.values[i], *column);
+            const RivalTally tally = rivalTallyOf(table, cells, rivals.values[i]);
             if (tally.rows() == 0) continue;
             (tally.open == tally.rows() ? open : told)
                 .push_back(fmt::format("{}: {}.", label.substr(0, label.find(" ÷ ")),
                                        rivalSentence(tally, rivals.values[i], rivals.values[0],
-                                                     RivalWords::of(metric))));
+                                                     RivalWords::of(metric, clock))));
         }
     }
     table.toldNotes = told.size();

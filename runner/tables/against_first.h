@@ -26,9 +26,11 @@ std::pair<std::string, config::Selection> columnAgainst(const Rivals& rivals,
                                                         const config::Experiment& experiment);
 
 /// Puts before the notes which rivals are faster or slower, nearer to their truth or farther from
-/// it, than the first, in how many rows and by how much: by the intervals of those columns, a time
-/// only beyond the noise of the table. Behind what is told (Table::toldNotes) stands what cannot
-/// be. Marks the cells that are not apart. Nothing where a column has no intervals.
+/// it, than the first, in how many rows and by how much: by the intervals of those columns, all
+/// rows together (metrics::jointChances), a time only beyond the noise of what is divided, and by
+/// the CPU time of the process where that was recorded (Table::judgedByProcess). Behind what is
+/// told (Table::toldNotes) stands what cannot be. Marks the cells that are not apart. Nothing where
+/// a column has no intervals.
 void compareRivals(const Rivals& rivals, const std::vector<std::string>& columns, Table& table);
 
 }  // namespace gfxrepro::tables

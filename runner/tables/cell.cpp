@@ -561,6 +561,7 @@ Cell processCell(const Cell& cell) {
     own.caseIds = cell.caseIds;
     own.isTime = true;
     own.timePower = cell.timePower;
+    own.isWithinNoise = cell.isWithinNoise;
     own.unit = cell.unit;
     return own;
 }

@@ -291,7 +291,7 @@ void showProcessTimes(const std::vector<std::string>& labels, Table& table) {
         column.label = label.substr(0, label.size() - own.size()) + name;
         if (table.findColumn(column.label)) continue;
         if (!column.parts.empty()) column.parts.back() = name;
-        column.doc = "CPU time of all threads of the process, by which claims are judged";
+        column.doc = "CPU time of all threads of the process, which claims and comparisons go by";
         table.words[name] = quantityOf(own, table.words, column.unit).words + ", CPU";
         table.columns.insert(table.columns.begin() + next, std::move(column));
         for (auto* rows : {&table.rows, &table.printedRows}) {

@@ -62,6 +62,8 @@ struct Table {
     std::vector<std::string> constants;
     std::vector<std::string> notes;  // printed rows that found no place, and the like
     std::size_t toldNotes = 0;       // of these the first, which tell methods apart (compareRivals)
+    /// Columns that are told apart by the CPU time of the process (compareRivals): shown beside.
+    std::vector<std::string> judgedByProcess = {};
     std::string timesOf;  // where its times are another table's: a sentence without its end
     /// By how much two equal cases of this table would differ (frame_times.h), as a share; none
     /// with too few rounds.

@@ -1,9 +1,13 @@
 // The table and the curves of who laid out none.
 #include "runner/tables/table.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+
+#include "engine/core/random.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
@@ -13,6 +17,7 @@ namespace {
 using config::Better;
 using testing::Contains;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// A sweep of one's own whose technique declares a digest, voxels and an error.
@@ -149,6 +154,80 @@ TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
                 testing::Not(Contains(testing::HasSubstr("÷"))));
     EXPECT_THAT(labelsOf(buildTable(sweepOf("{resolution: [32, 64]}"), recordedAt({32, 64}))),
                 testing::Not(Contains(testing::HasSubstr("÷"))));
+}
+
+/// Two methods at so many sizes over six processes; `time` is of a method, a size and a process.
+using TimeAt = std::function<double(int method, int size, int process)>;
+Recorded atSizes(int sizes, const TimeAt& wall, const TimeAt& cpu = {},
+                 const char* metric = "wall_time_ms") {
+    RecordMaker maker;
+    for (int method = 0; method < 2; ++method) {
+        for (int size = 1; size <= sizes; ++size) {
+            maker.beginCase("", fmt::format(R"({{"method": "{}", "size": {}}})",
+                                            method == 0 ? "plain" : "fast", size));
+            maker.lane("timing");
+            for (int process = 0; process < 6; ++process) {
+                maker.process(process).add(metric, {wall(method, size, process)}, "",
+                                           metric[0] == 'w' ? "ms" : "1");
+                if (cpu) maker.add("process_time_ms", {cpu(method, size, process)});
+            }
+        }
+    }
+    Recorded records = maker.records();
+    for (records::Record& record : records) record.table = "sweep/s";
+    for (config::Case& item : records.cases) item.experiment = "sweep/s";
+    return records;
+}
+
+/// Of twenty rows of two equal methods nearly every other table has one whose six rounds are all of
+/// one sign.
+TEST(DefaultLayout, ManyRowsOfEqualMethodsAreNotToldApart) {
+    for (const char* metric : {"wall_time_ms", "rmse"}) {
+        int told = 0, apart = 0;
+        for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+            Random random(seed);
+            const auto noise = [&] {
+                double sum = 0.0;
+                for (int i = 0; i < 12; ++i) sum += double{random.uniform()} / 12.0;
+                return 1.0 + 0.6 * (sum - 0.5);  // 5 %
+            };
+            config::Experiment experiment =
+                sweepOf("{method: [plain, fast], size: {range: [1, 20]}}");
+            experiment.outputs.metrics.push_back({"rmse", "1", "wrong", Better::Lower});
+            experiment.outputs.metrics.push_back({"wall_time_ms", "ms", "a frame", Better::Lower});
+            const auto equal = [&](int, int size, int) { return size * noise(); };
+            told += buildTable(experiment, atSizes(20, equal, {}, metric)).toldNotes > 0 ? 1 : 0;
+            const auto faster = [&](int method, int size, int) {
+                return size * noise() * (method == 1 && size == 7 ? 0.7 : 1.0);
+            };
+            apart += buildTable(experiment, atSizes(20, faster, {}, metric)).toldNotes > 0 ? 1 : 0;
+        }
+        EXPECT_LE(told, 5) << metric << ": 5 % of 40, and two standard errors";
+        EXPECT_GE(apart, 34) << metric << ": one row is 30 % less";
+    }
+}
+
+/// What the clock says of neighbours hides what the work shows.
+TEST(DefaultLayout, BuiltInMethodsAreHeldByCpuTimeWhereItWasRecorded) {
+    const auto wall = [](int method, int, int process) {
+        return 10.0 + 9.0 * ((process * 7 + method * 3) % 5);
+    };
+    const auto cpu = [](int method, int, int process) {
+        return (method == 0 ? 10.0 : 8.0) + 0.01 * process;
+    };
+    config::Experiment experiment = sweepOf("{method: [plain, fast], size: [1, 2]}");
+    Table table = buildTable(experiment, atSizes(2, wall, cpu));
+    EXPECT_THAT(
+        table.notes[0],
+        HasSubstr("frame: fast is faster than plain in all 2 rows (0.8 times its CPU time)"));
+    EXPECT_THAT(table.judgedByProcess, ElementsAre("frame_ms", "frame ÷ plain"));
+    showProcessTimes(table.judgedByProcess, table);
+    EXPECT_THAT(labelsOf(table),
+                ElementsAre("frame_ms", "cpu_frame_ms", "frame ÷ plain", "cpu_frame ÷ plain"));
+    EXPECT_EQ(table.rows.back().cells[3].measured, "0.8");
+    table = buildTable(experiment, atSizes(2, wall));
+    EXPECT_THAT(table.notes[0], HasSubstr("cannot be told apart"));
+    EXPECT_THAT(table.judgedByProcess, IsEmpty());
 }
 
 /// A program that says a time of its own, and whose pictures have errors.
