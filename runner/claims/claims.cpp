@@ -410,14 +410,18 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& given,
 /// The same of a table that may lack what the claim reads.
 ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const tables::Table& table,
                                 const std::optional<Laid>& laid, const ReportContext& context) {
-    const tables::Table own = tableFor(claim, table);
+    std::string why = "nothing was measured";  // nor laid out
     try {
-        return evaluateClaim(claim, table, own, laid ? partOfRows(claim, *laid) : "", context);
+        if (!table.columns.empty()) {
+            return evaluateClaim(claim, table, tableFor(claim, table),
+                                 laid ? partOfRows(claim, *laid) : "", context);
+        }
     } catch (const AbsentColumnError& error) {
-        ClaimResult result = unjudged(claim, own, context);
-        result.reason = "not among what was measured: " + error.text();
-        return result;
+        why = "not among what was measured: " + error.text();
     }
+    ClaimResult result = unjudged(claim, table, context);
+    if (result.verdict != Verdict::NotApplicable) result.reason = why;
+    return result;
 }
 
 /// Kept results tell nothing of a verdict that they do not start from.

@@ -884,6 +884,21 @@ TEST(Claims, OneOfManyRowsThatFailsByChanceIsAmbiguous) {
     EXPECT_THAT(result.reason, testing::HasSubstr("worst at n 1"));
 }
 
+/// Where every case failed there is no row, and nobody laid any out.
+TEST(Claims, WhereNothingWasMeasuredTheyAreUnmeasured) {
+    const test::TemporaryFolder folder;
+    const auto file =
+        folder.write("s.yaml",
+                     "sweep_of: s\ntitle: Mine\ntechnique: x\nsweep: {way: [a, b]}\n"
+                     "claims: {better: {says: b is better, order: [b, a], of: rmse}}\n");
+    const config::Experiment experiment = config::loadExperiment(file, {}, folder.path());
+    const tables::Table table = tables::buildTable(experiment, tables::Recorded());
+    const auto results = evaluateClaims(experiment, table, kSoftware);
+    ASSERT_EQ(results.size(), 1U);
+    EXPECT_EQ(results[0].verdict, Verdict::Unmeasured);
+    EXPECT_EQ(results[0].reason, "nothing was measured");
+}
+
 TEST(Claims, AlgorithmicOnesAreJudgedByProcessTimeOnASoftwareDevice) {
     // By the clock a neighbour hides the slope; the work shows it.
     const Timed wall = [](double n, int round) {
