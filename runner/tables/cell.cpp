@@ -290,20 +290,12 @@ void takeAsOne(Measured& measured) {
     measured.interval = {measured.value, measured.value};
 }
 
-/// Equal values of several processes of the same seeds are one sample. A share that was counted
-/// once has the bounds of its count.
+/// Random numbers of one seed are one sample, however many processes drew them, and by how little
+/// these differ. A share that was counted once has the bounds of its count.
 void countSeeds(const Gathered& gathered, Cell& cell) {
-    const auto isEven = [](const Measured& measured) {
-        return std::ranges::all_of(measured.rounds, [&](const auto& round) {
-            return round.second == measured.rounds.begin()->second;
-        });
-    };
     if (std::ranges::any_of(cell.values, &Measured::areDraws)) return;
-    const bool areEven = std::ranges::all_of(cell.values, isEven);
-    if (gathered.seeds.size() == 1 && !areEven) return;
     cell.seedCount = gathered.seeds.size();
-    if (cell.seedCount == 0 || !areEven) return;
-    std::ranges::for_each(cell.values, takeAsOne);
+    if (cell.isOfOneSeed()) std::ranges::for_each(cell.values, takeAsOne);
 }
 
 void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {

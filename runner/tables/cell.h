@@ -84,7 +84,7 @@ struct Cell {
     /// Why it was not; empty also for a cell that has no counterpart in the profile `paper`.
     std::vector<Departure> departures;
     /// Of random numbers, other ones of which would give another value: how many different seeds it
-    /// is of. 0 of what has none, and of what differs between processes of one seed.
+    /// is of. 0 of what has none, as a time.
     std::size_t seedCount = 0;
     /// An input was fitted so that it comes out (config::isCalibrated).
     bool isCalibrated = false;

@@ -609,6 +609,31 @@ TEST(Table, WhatIsComputedOfOneSeedIsOneSample) {
                 Contains(HasSubstr("numbers: last error, ms at half, errors, speedup.")));
 }
 
+/// Processes of one seed whose pictures differ by a hair, as where threads add up in another order.
+TEST(Table, OneSeedIsOneSampleHoweverItsPicturesDiffer) {
+    using Seeds = config::Measure::Seeds;
+    const auto cellOf = [](Seeds seeds, std::size_t column) {
+        RecordMaker maker;
+        maker.beginCase("models/duck", "{}").seeds(seeds);
+        for (int process = 0; process < 6; ++process) {
+            maker.process(process).add("wall_time_ms", {10.0 + 0.1 * process});
+            maker.add("rmse", {0.1 + 1e-6 * process}, "", "1");
+        }
+        return buildTable(
+                   experimentFrom("scene: models/duck\nlayout: {columns: {e: {metric: rmse}, "
+                                  "ms: {metric: wall_time_ms}}}\n"),
+                   maker.records())
+            .rows[0]
+            .cells[column];
+    };
+    EXPECT_TRUE(cellOf(Seeds::Case, 0).isOfOneSeed());
+    EXPECT_EQ(cellOf(Seeds::Case, 0).bounds(), Bounds::None);
+    EXPECT_EQ(cellOf(Seeds::Case, 1).bounds(), Bounds::Interval) << "a time is of its processes";
+    EXPECT_EQ(cellOf(Seeds::None, 0).bounds(), Bounds::Interval);
+    EXPECT_EQ(cellOf(Seeds::Process, 0).seedCount, 6U);
+    EXPECT_EQ(cellOf(Seeds::Process, 0).bounds(), Bounds::Interval);
+}
+
 /// A baseline without the others' parameter is one for all values of it.
 TEST(Table, ARowElsewhereMayHaveLeftOutAxes) {
     RecordMaker maker;
