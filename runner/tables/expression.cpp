@@ -103,7 +103,8 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
         const bool isGuess = !hasRounds && !measured.statistic.empty() &&
                              isSpread(metrics::statisticFromName(measured.statistic));
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
-                         measured.areDraws, cell.seedCount > 0 || isGuess, cell.seedCount});
+                         measured.areDraws, cell.seedCount > 0 || isGuess, cell.seedCount,
+                         measured.isMean});
         values.push_back(measured.value);
         result.seedCount = fewerSeeds(result.seedCount, cell.seedCount);
     }
@@ -112,6 +113,7 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     result.point = evaluate(values);
     result.areDraws = keepRoundsOrDraws(all);
     result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
+    result.isMean = std::ranges::any_of(cells, &Sampled::isMean);
     // One sample of a part is one of the whole, however often the rest was measured.
     if (std::ranges::any_of(
             cells, [](const Sampled& cell) { return cell.isRandom && cell.rounds.empty(); })) {
@@ -217,6 +219,7 @@ std::vector<Measured> computedValues(Operand& operand, const TableRow& row,
         Measured& measured = values.emplace_back();
         static_cast<Summary&>(measured) =
             summaryOf(sampled.point, sampled.rounds, sampled.areDraws);
+        if (sampled.isMean) takeMean(measured);
         measured.statistic = placeholder.name;
     }
     return values;

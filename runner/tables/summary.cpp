@@ -101,6 +101,7 @@ Summary summarize(const Samples& samples, Statistic statistic) {
     summary.value = summarizeUnits(all, statistic);
     summary.interval = {summary.value, summary.value};
     if (!values.empty()) fillFromRounds(values, summary);
+    if (statistic == Statistic::Mean && hasOneValueEach(samples)) takeMean(summary);
     // A sum, a count or a spread of repeats is not what one of them gives.
     const bool isOfRepeats =
         all.size() == 1 &&
@@ -111,6 +112,17 @@ Summary summarize(const Samples& samples, Statistic statistic) {
     summary.bounds = Bounds::Range;
     summary.interval = rangeOf(repeats);
     return summary;
+}
+
+void takeMean(Summary& summary) {
+    if (summary.rounds.size() < 2) return;
+    std::vector<double> values;
+    for (const auto& [round, value] : summary.rounds) values.push_back(value);
+    const double mean = metrics::summarize(values, Statistic::Mean);
+    const bool isHeld = summary.interval.low <= mean && mean <= summary.interval.high;
+    if (!isHeld) summary = summaryOf(mean, {}, false);
+    summary.value = mean;
+    summary.isMean = true;
 }
 
 Summary summaryOf(double value, std::map<int, double> rounds, bool areDraws) {

@@ -24,6 +24,7 @@ struct Summary {
     metrics::Interval interval;    // by `bounds`; of none the value itself
     std::map<int, double> rounds;  // the statistic in each process that has all units
     bool areDraws = false;         // instead, what a share could be in truth (shareDraws)
+    bool isMean = false;           // the value is the mean over processes (takeMean)
 };
 
 /// The measurements of one cell: of each process (by its number), of each unit (a frame of a case),
@@ -34,7 +35,8 @@ struct Samples {
 
 /// In each process the statistic over units, each reduced to the median of its repeats; with a
 /// single unit, over the repeats themselves. Of several processes their median; a spread (stddev,
-/// p95, p99) of processes with one value each is that of these values, without bounds.
+/// p95, p99) of processes with one value each is that of these values, without bounds, and so is
+/// their mean (takeMean).
 ///
 /// The unit of uncertainty is the process: repeats within one share its memory layout, its hour
 /// and its neighbours, and tell nothing of those (Kalibera and Jones 2013, "Rigorous benchmarking
@@ -42,6 +44,10 @@ struct Samples {
 /// metrics::medianInterval() of them; with fewer their range; with one process the range of what
 /// each repeat alone would give. Frames are given, not drawn: a camera path is what it is.
 Summary summarize(const Samples& samples, metrics::Statistic statistic);
+
+/// Takes the mean of the rounds in the place of their median: with the bounds of that where they
+/// hold the mean, too, else without bounds and rounds.
+void takeMean(Summary& summary);
 
 /// Whether one value alone has none: stddev, p95, p99.
 bool isSpread(metrics::Statistic statistic);

@@ -634,6 +634,46 @@ TEST(Table, OneSeedIsOneSampleHoweverItsPicturesDiffer) {
     EXPECT_EQ(cellOf(Seeds::Process, 0).bounds(), Bounds::Interval);
 }
 
+/// Six of eight processes took 100 ms, two took 800.
+TEST(Table, TheMeanOfProcessesIsTheirMean) {
+    const auto cellOf = [](const std::string& columns, int processes) {
+        RecordMaker maker;
+        maker.beginCase("models/duck", "{}");
+        for (int process = 0; process < processes; ++process) {
+            maker.process(process).add("wall_time_ms", {process % 4 == 3 ? 800.0 : 100.0});
+        }
+        return buildTable(
+                   experimentFrom("scene: models/duck\nlayout: {columns: {" + columns + "}}\n"),
+                   maker.records())
+            .rows[0]
+            .cells.back();
+    };
+    const std::string mean = "t: {metric: wall_time_ms, format: \"{mean:.0f} ± {stddev:.0f}\"}";
+    EXPECT_EQ(cellOf(mean, 8).measured, "275 ± 324");
+    EXPECT_EQ(cellOf(mean, 8).bounds(), Bounds::Interval) << "100 to 800";
+    EXPECT_EQ(cellOf("t: {metric: wall_time_ms, format: \"{median:.0f}\"}", 8).measured, "100");
+    EXPECT_EQ(cellOf(mean + ", twice: {of: 2 * t, format: \"{mean:.0f}\"}", 8).measured, "550");
+    EXPECT_EQ(cellOf("t: {metric: wall_time_ms, format: \"{mean:.0f}\"}", 1).measured, "100");
+}
+
+/// The interval is that of their median: where it does not hold their mean, there is none.
+TEST(Table, AMeanBesideTheIntervalOfItsMedianHasNone) {
+    RecordMaker maker;
+    maker.beginCase("models/duck", "{}");
+    for (int process = 0; process < 20; ++process) {
+        maker.process(process).add("wall_time_ms", {process < 2 ? 9000.0 : 100.0 + process});
+    }
+    const Cell cell =
+        buildTable(
+            experimentFrom("scene: models/duck\nlayout: {columns: {t: {metric: wall_time_ms, "
+                           "format: \"{mean:.0f}\"}}}\n"),
+            maker.records())
+            .rows[0]
+            .cells[0];
+    EXPECT_EQ(cell.measured, "999");
+    EXPECT_EQ(cell.bounds(), Bounds::None);
+}
+
 /// A baseline without the others' parameter is one for all values of it.
 TEST(Table, ARowElsewhereMayHaveLeftOutAxes) {
     RecordMaker maker;
