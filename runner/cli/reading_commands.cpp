@@ -227,6 +227,26 @@ void sayPictures(std::size_t done, std::size_t all) {
     if (done % kEvery == 0 && done < all) tell("report: {} of {} pictures\n", done, all);
 }
 
+/// Says which columns name no pass of what was recorded of passes alone; how many there are.
+std::size_t sayWithoutPass(const std::vector<tables::Table>& tables) {
+    std::size_t count = 0;
+    for (const tables::Table& table : tables) {
+        for (std::size_t i = 0; i < table.columns.size(); ++i) {
+            const tables::Cell* found = nullptr;
+            bool isEmpty = true;
+            for (const tables::TableRow& row : table.rows) {
+                isEmpty &= row.cells[i].values.empty();
+                if (row.cells[i].isOfPasses) found = &row.cells[i];
+            }
+            if (!isEmpty || !found) continue;
+            ++count;
+            tell("error: {}: column '{}' names no pass: {}\n", table.id, table.columns[i].label,
+                 found->message);
+        }
+    }
+    return count;
+}
+
 }  // namespace
 
 void requireReport(const fs::path& file) {
@@ -257,6 +277,7 @@ int conclude(const fs::path& runDir) {
         say("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
     }
     sayReport(runDir / "report.html");
+    if (sayWithoutPass(results.tables) > 0) return kExitUsage;
     return failing > 0 ? kExitClaimFailed : kExitOk;
 }
 

@@ -13,8 +13,8 @@ void sayNotes(const run::Json& manifest);
 /// Throws Error where the file is there and is not a page of ours.
 void requireReport(const std::filesystem::path& file);
 
-/// Makes tables, claims and report; says what the claims came to. kExitClaimFailed when one fails,
-/// else kExitOk.
+/// Makes tables, claims and report; says what the claims came to. kExitUsage where a column names
+/// no pass of what is there of passes alone, kExitClaimFailed when a claim fails, else kExitOk.
 int conclude(const std::filesystem::path& runDir);
 
 }  // namespace gfxrepro::cli

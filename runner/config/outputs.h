@@ -45,6 +45,8 @@ struct Outputs {
     bool areRandom = false;
     /// The pictures of which a truth is recorded: the runner takes their errors (pictureErrors).
     std::vector<std::string> withTruth = {};
+    /// The metrics that are given of passes alone (Of::Pass), by their names.
+    std::vector<std::string> ofPasses = {};
 
     /// Of the share `m`, `m`_of is a metric, too. Null where there is none.
     const MetricInfo* find(std::string_view metric) const;

@@ -204,6 +204,10 @@ void RunRecorder::requireDeclared(std::string_view metric, std::string_view unit
     outputs_.requireMetric(metric, owner);
     if (!pass.empty()) outputs_.requirePass(pass, owner);
     const config::MetricInfo& info = *outputs_.find(metric);
+    if (info.of == config::MetricInfo::Of::Pass && pass.empty()) {
+        throw Error(
+            fmt::format("metric '{}' is declared of passes alone, and given of none", metric));
+    }
     if (info.name != metric || info.unit == unit) return;  // what a share is of has any unit
     throw Error(fmt::format("metric '{}' is recorded in '{}', but declared in '{}'", metric, unit,
                             info.unit));

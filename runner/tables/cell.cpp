@@ -522,6 +522,7 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     if (!hasSamples && gathered.worst == records::Status::Ok) {
         gathered.note(records::Status::Missing, whyNothing(query, cases));
         cell.isUnrecorded = true;
+        cell.isOfPasses = query.pass.empty() && !passesWith(query, cases).empty();
     }
     cell.status = gathered.worst;
     cell.message = gathered.message;

@@ -81,7 +81,12 @@ config::Outputs outputsOf(const TechniqueInfo& technique, const Node& program) {
     const std::span<const config::MetricInfo> common = commonMetrics();
     config::Outputs all{{common.begin(), common.end()}, own.passes, own.areRandom, own.withTruth};
     if (program.isNull()) {
-        all.metrics.insert(all.metrics.end(), own.metrics.begin(), own.metrics.end());
+        for (config::MetricInfo info : own.metrics) {
+            const bool isOfPasses =
+                std::ranges::find(own.ofPasses, info.name) != own.ofPasses.end();
+            if (isOfPasses) info.of = config::MetricInfo::Of::Pass;
+            all.metrics.push_back(std::move(info));
+        }
         return withPictureErrors(std::move(all));
     }
     const config::Outputs said = config::readProgram(program).outputs;

@@ -480,7 +480,11 @@ config::Outputs outputs() {
             {"image_*", "drawing one depth image; they are counted from 0"},
             {"output_frame", "drawing a frame from the images"},
             {"availability_test", "testing which of the frame's samples the images have"},
-        }};
+        },
+        false,
+        {},
+        {"redundant_pct", "occluded_pct", "useful_pct", "samples", "coverage_pct",
+         "redundant_of_pixels_pct", "useful_of_samples_pct"}};
 }
 
 }  // namespace

@@ -398,7 +398,11 @@ config::Outputs outputs() {
             {"device", "of a point on the device, with what all points share"},
         },
         false,
-        {"image"}};
+        {"image"},
+        {"display_psnr_db", "display_ssim", "display_flip", "mode_pct", "preprocess_ms",
+         "bits_before", "bits_after", "bits_stored", "compression_error_mean",
+         "compression_error_max", "compression_angle_mean", "compression_angle_max",
+         "compression_error_of_bound"}};
 }
 
 }  // namespace

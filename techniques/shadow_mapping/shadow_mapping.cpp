@@ -452,7 +452,8 @@ config::Outputs outputs() {
             {"blur_along_y", "blurring the maps' variances along y"},
         },
         false,
-        {"shadow_0", "shadow_1", "shadow_2", "shadow_3"}};
+        {"shadow_0", "shadow_1", "shadow_2", "shadow_3"},
+        {"colour_writes", "depth_writes", "fragment_work", "fetches", "comparisons"}};
 }
 
 }  // namespace

@@ -581,7 +581,10 @@ config::Outputs outputs() {
             {"outside", "as seen from beyond the light's edge"},
         },
         false,
-        {"shadow", "casters_inside", "casters_outside"}};
+        {"shadow", "casters_inside", "casters_outside"},
+        {"intensity_error_mean", "intensity_error_max", "visibility_error_mean",
+         "visibility_error_max", "wrongly_lit_mean", "wrongly_dark_mean", "missing_pct",
+         "nearer_pct"}};
 }
 
 }  // namespace

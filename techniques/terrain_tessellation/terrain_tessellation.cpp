@@ -512,7 +512,8 @@ config::Outputs outputs() {
             {"underside", "pixels that show the underside of the ground"},
         },
         false,
-        {"image"}};
+        {"image"},
+        {"height_error_m", "height_error_px", "crack_pixels", "edge_jump"}};
 }
 
 }  // namespace

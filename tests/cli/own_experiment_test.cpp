@@ -421,6 +421,19 @@ TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
     EXPECT_THAT(laidOut("{metric: gpu_time_ms}"),
                 HasSubstr("DIR/mine.yaml:5:36: metric 'gpu_time_ms' is of a pass, and the cell "
                           "names none; allowed: with pass: preprocess | "));
+    // What a technique gives of passes alone is known of it.
+    for (const auto& [technique, metric] :
+         {std::pair("depth_sampling", "coverage_pct"), std::pair("soft_shadows", "missing_pct"),
+          std::pair("shadow_mapping", "fetches"), std::pair("point_splatting", "display_psnr_db"),
+          std::pair("terrain_tessellation", "edge_jump")}) {
+        const std::string of = fmt::format("technique: {}\nscene: outdoor/grass\n", technique);
+        const std::string table =
+            fmt::format("layout: {{columns: {{a: {{metric: {}}}}}}}\n", metric);
+        EXPECT_THAT(checked(folder, of + table),
+                    HasSubstr(fmt::format("metric '{}' is of a pass, and the cell names none; "
+                                          "allowed: with pass: ",
+                                          metric)));
+    }
     const std::string computed =
         "layout: {rows: scene, columns: {a: {pass: draw}, b: {of: 2 * a}}, cell: {metric: "
         "gpu_time_ms}}\n";

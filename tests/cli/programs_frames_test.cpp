@@ -98,6 +98,32 @@ TEST_F(Frames, GivesAllFramesInOneRun) {
     EXPECT_EQ(std::ranges::count(images, well, &records::ImageEntry::caseId), 6);
 }
 
+/// A column that names no pass of what there is of passes alone.
+TEST_F(Frames, WhatIsOfPassesAloneIsToldWithThem) {
+    fs::permissions(
+        folder.write("passes.sh",
+                     "#!/bin/sh\nfor pass in left right; do echo '{\"metric\": \"number\", "
+                     "\"value\": 1, \"unit\": \"1\", \"pass\": \"'$pass'\"}' >&3; done\n"),
+        fs::perms::owner_all);
+    const auto reproduced = [&](const std::string& column) {
+        fs::remove_all(dir);
+        const std::string config = folder.write(
+            "mine.yaml",
+            "sweep_of: mine\ntitle: Mine\nprogram:\n  command: \"{here}/passes.sh {n}\"\n"
+            "  params: {n: 1}\n  metrics: {number: \"1\"}\n  passes: {left: l, right: r}\n"
+            "sweep: {n: [1, 2]}\nlayout: {rows: n, columns: {v: " +
+                column + "}}\n");
+        return gfxrepro({"reproduce", config, "--out", dir});
+    };
+    const ProcessResult result = reproduced("{metric: number}");
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.err,
+                HasSubstr("error: sweep/mine: column 'v' names no pass: no 'number' was "
+                          "recorded; it is there for pass: left, right\n"));
+    EXPECT_EQ(rowsOf(dir, "number").size(), 4U) << "nothing that was measured is lost";
+    EXPECT_EQ(reproduced("{metric: number, pass: left}").exitCode, 0);
+}
+
 TEST_F(Frames, SeedsAreOfTheCaseAndOfItsProcess) {
     fs::permissions(folder.write("seeded.sh",
                                  "#!/bin/sh\necho '{\"metric\": \"number\", \"value\": '$1', "
