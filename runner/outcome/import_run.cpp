@@ -155,7 +155,7 @@ Node axisOf(const config::Case& item, const std::string& axis) {
     return *value;
 }
 
-/// What is swept: of a config, its axes; else what differs between the cases.
+/// What is swept: of a config its axes, and what differs beside between the cases.
 std::vector<std::string> axesOf(const Experiment& experiment,
                                 const std::vector<std::string>& columns,
                                 const std::vector<config::Case*>& cases) {
@@ -166,7 +166,8 @@ std::vector<std::string> axesOf(const Experiment& experiment,
     for (const config::AxisPoint& point : config::expandSweep(experiment.sweep)) {
         for (const auto& [axis, value] : point) add(axis);
     }
-    if (!axes.empty() || !experiment.hasDefaultLayout()) return axes;
+    const bool isLaidOut = !axes.empty() || !experiment.hasDefaultLayout();
+    if (isLaidOut && config::isMeasuredHere(experiment)) return axes;
     std::vector<std::string> names = {"scene", kOutputWidth, kOutputHeight};
     for (const std::string& column : columns) {
         if (const std::string name = paramOf(column); !name.empty()) names.push_back(name);

@@ -154,6 +154,7 @@ std::vector<CaseRecords> groupByCase(std::span<const config::Case> planned,
             isSeeded.push_back(sample.has_value());
         }
         places[item.id] = {index, sample.value_or(0)};
+        cases[index].sceneSeeds = std::max(cases[index].sceneSeeds, sample.value_or(0) + 1);
     }
     int seedCount = 1;
     for (const records::Record& record : records) {

@@ -57,6 +57,7 @@ struct CaseRecords {
     Node params;        // Case::recordedParams()
     config::Measure::Seeds seeds = config::Measure::Seeds::None;
     std::uint64_t seed = 0;  // of its first process
+    int sceneSeeds = 1;      // at how many its scene is taken
 
     std::uint64_t seedOf(int process) const {
         const bool isOther = seeds == config::Measure::Seeds::Process;

@@ -142,9 +142,10 @@ struct Gathered {  // what the records of a cell came to
     bool isUntimed = false;  // ambiguous for being a time of the quality lane
     std::set<std::string> units;
     std::vector<std::string> caseIds;
-    std::set<std::uint64_t> seeds;    // of random numbers that the values hang on
-    std::size_t fewestSeeds = 0;      // of a curve's cases
-    std::size_t notRun = 0;           // further cases
+    std::set<std::uint64_t> seeds;  // of random numbers that the values hang on
+    std::size_t fewestSeeds = 0;    // of a curve's cases
+    std::size_t notRun = 0;         // further cases
+    std::set<int> frames;
     std::vector<double> shareCounts;  // of shares that say so: how many samples each is a share of
 
     void note(records::Status status, const std::string& why) {
@@ -193,6 +194,7 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             if (!matchesFrame(query.where, record->frame)) continue;
             const auto [unit, isNew] = unitOfFrame.try_emplace(record->frame, unitCount);
             if (isNew) ++unitCount;
+            gathered.frames.insert(record->frame);
             takeRow(*record, query, unit->second, process, gathered);
             isRandom &= record->frame != records::kSetup;
         }
@@ -237,6 +239,17 @@ std::vector<Pooled> pooledAt(const Where& where, const LayoutCases& cases) {
         if (pooled.values.size() > 1) all.push_back(std::move(pooled));
     }
     return all;
+}
+
+/// What else the cell takes together: seeds of scenes, and frames, as `measure` asks for.
+void addSampled(const CellQuery& query, const LayoutCases& cases, std::size_t frames, Cell& cell) {
+    std::size_t seeds = 1;
+    for (const CaseRecords* one : casesAt(query.where, cases)) {
+        seeds = std::max(seeds, static_cast<std::size_t>(one->sceneSeeds));
+    }
+    for (const auto& [axis, count] : {std::pair("scene_seed", seeds), std::pair("frame", frames)}) {
+        if (count > 1) cell.pooled.push_back({axis, {fmt::format("{} of them", count)}, true});
+    }
 }
 
 std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
@@ -382,6 +395,7 @@ std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRe
             gathered.fewestSeeds = fewerSeeds(gathered.fewestSeeds, one->seeds.size());
         }
         gathered.units.merge(y.units);
+        gathered.frames.merge(y.frames);
         if (x.samples.processes.empty() || y.samples.processes.empty()) continue;
         cases.push_back({std::move(x.samples), std::move(y.samples)});
     }
@@ -442,6 +456,7 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
         gathered.note(records::Status::Missing, "equal needs a swept axis of numbers in the cell");
     }
     if (!along.empty()) cell.values = equalValues(query, along, gathered);
+    addSampled(query, cases, gathered.frames.size(), cell);
     cell.status = gathered.worst;
     cell.message = gathered.message;
     if (!query.isScaled && gathered.units.size() == 1) cell.unit = *gathered.units.begin();
@@ -531,6 +546,7 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
         cell.metric = query.metric;
         if (gathered.units.size() == 1) cell.unit = *gathered.units.begin();
     }
+    addSampled(query, cases, gathered.frames.size(), cell);
     if (hasSamples) {
         fillValues(query, gathered, cell);
         fillProcessTimes(query, cases, gathered.samples, cell);

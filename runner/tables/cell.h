@@ -35,7 +35,7 @@ struct Departure {
     bool operator==(const Departure&) const = default;
 };
 
-/// A swept axis of which a cell takes several values together.
+/// An axis of which a cell takes several values together: swept, `frame`, or `scene_seed`.
 struct Pooled {
     std::string axis;
     std::vector<std::string> values;

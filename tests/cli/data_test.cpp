@@ -195,6 +195,22 @@ TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
     EXPECT_THAT(verdicts("flat"), testing::Contains("slope fails"));
 }
 
+/// A column of the file that the config's sweep does not name.
+TEST_F(Data, WhatDiffersBesideTheSweepIsSaid) {
+    const std::string csv =
+        folder_.write("t.csv", "method,scene,frame_t_ms\na,x,1\na,y,5\nb,x,2\nb,y,7\n");
+    const std::string config =
+        folder_.write("t.yaml",
+                      "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {method: [a, b]}\n"
+                      "layout: {rows: method, columns: {t: {metric: frame_t_ms}}}\n");
+    const ProcessResult result =
+        mockGfxrepro({"import", csv, "--metric", "frame_t_ms=ms", "--machine", "X", "--config",
+                      config, "--out", dir("t")});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_THAT(readFile(dir("t") + "/tables/sweep-t.md"),
+                HasSubstr("Each number is taken over scene (x, y)."));
+}
+
 TEST_F(Data, WhatIsMissingOfAnImportMakesItIncomplete) {
     const std::string csv = folder_.write(
         "a.csv", "n,metric,value,process,status\n1,mse,5,0,\n1,mse,6,2,\n2,,,0,crash\n");

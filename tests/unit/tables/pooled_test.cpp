@@ -91,6 +91,34 @@ TEST(Pooled, AColumnAtEqualErrorNeedsACurve) {
     EXPECT_EQ(refusalOf("{rows: method" + columns), "no error");
 }
 
+/// Frames of a case, and seeds of its scene, as `measure` asks for.
+TEST(Pooled, FramesAndSeedsOfScenesAreSaid) {
+    RecordMaker frames;
+    frames.beginCase("", "{}").frame(-1).add("setup", {1.0}, "", "1");
+    for (int frame = 0; frame < 5; ++frame)
+        frames.frame(frame).add("error", {1.0 + frame}, "", "1");
+    const std::string columns = "columns: {s: {metric: setup}, e: {metric: error}}";
+    const Table path = buildTable(experimentFrom("layout: {" + columns + "}\n"), frames.records());
+    EXPECT_THAT(path.notes, Contains("Each number of column e is taken over frame (5 of them)."));
+    EXPECT_EQ(pooledText(path.rows[0].cells[1]), "frame=5 of them");
+    EXPECT_EQ(pooledText(path.rows[0].cells[0]), "") << "what is of no frame";
+    const Table byFrame = buildTable(
+        experimentFrom("layout: {rows: frame, columns: {e: {metric: error}}}\n"), frames.records());
+    EXPECT_EQ(pooledText(byFrame.rows[0].cells[0]), "");
+    RecordMaker seeds;
+    for (const char* sample : {"0", "1", "2"}) {
+        seeds.beginCase("grass", std::string("{\"scene_sample\":") + sample + "}");
+        seeds.add("error", {1.0}, "", "1");
+    }
+    Recorded records = seeds.records();
+    for (std::size_t i = 0; i < records.cases.size(); ++i) {
+        records.cases[i].sceneSample = static_cast<int>(i);
+    }
+    const Table table = buildTable(
+        experimentFrom("scene: grass\nlayout: {columns: {e: {metric: error}}}\n"), records);
+    EXPECT_THAT(table.notes, Contains("Each number is taken over scene seed (3 of them)."));
+}
+
 /// What goes together with a row is one value in each.
 TEST(Pooled, AxesThatGoTogetherAreNotTakenTogether) {
     const config::Experiment experiment = experimentFrom(
