@@ -270,19 +270,6 @@ void readMeasurement(const Node& document, Experiment& experiment) {
     }
 }
 
-bool showsTimes(const Layout& layout) {
-    const auto isOfTime = [](const Selection& selection) {
-        return (selection.metric && isTimeMetric(*selection.metric)) ||
-               (selection.equal && isTimeMetric(selection.equal->metric));
-    };
-    const auto hasTime = [&](const LayoutAxis& axis) {
-        return std::ranges::any_of(axis.labels,
-                                   [&](const auto& label) { return isOfTime(label.second); });
-    };
-    return isOfTime(layout.cell) || std::ranges::any_of(layout.rows, hasTime) ||
-           std::ranges::any_of(layout.columns, hasTime);
-}
-
 /// How it is measured, which depends on what is shown: who shows times, or anything that there is,
 /// of one scene, wants times.
 void readLane(const Node& document, Experiment& experiment) {

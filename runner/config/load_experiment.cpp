@@ -432,6 +432,8 @@ Experiment readWhole(const Node& document, const fs::path& file, bool isComplete
                      const fs::path& configsFolder) {
     Experiment experiment = readExperiment(document, file, isComplete);
     requireNotFixed(experiment);
+    if (isComplete) requireEffect(experiment);
+    requireTimed(experiment);
     const Node* fit = document.find("fit");
     if (!fit) return experiment;
     Node cells = *fit;

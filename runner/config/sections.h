@@ -43,6 +43,8 @@ struct Vocabulary {
 };
 
 Layout readLayout(const Node& node, const Vocabulary& vocabulary);
+/// Whether some cell shows a time, or what is at one.
+bool showsTimes(const Layout& layout);
 
 /// The names of the row axes and of the columns (several column axes are joined by "_"), against
 /// which printed values and claims are checked.
@@ -86,6 +88,13 @@ const Names& identityKeys();
 /// swept in every one: it stands in the file of the sweep, in the experiment's own or on the
 /// command line. One of a file that is extended may be swept.
 void requireNotFixed(const Experiment& experiment);
+
+/// Throws Error for keys of the experiment's own file, as it stands, of which nothing would follow.
+void requireEffect(const Experiment& experiment);
+/// Throws Error for times that are shown or claimed, where the lane takes none.
+void requireTimed(const Experiment& experiment);
+/// Throws Error for an `exclude` of the experiment's own file that no point of its sweep matches.
+void requireExcluded(const Experiment& experiment);
 
 /// `isComplete` as in Vocabulary.
 Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);

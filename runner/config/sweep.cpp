@@ -311,6 +311,21 @@ void requireNotFixed(const Experiment& experiment) {
     }
 }
 
+void requireExcluded(const Experiment& experiment) {
+    const Node* exclude = experiment.sweep.isMap() ? experiment.sweep.find("exclude") : nullptr;
+    if (!exclude) return;
+    Node whole = experiment.sweep;
+    whole.erase("exclude");
+    const std::vector<AxisPoint> points = expandSweep(whole);
+    for (const Node& pairs : exclude->items()) {
+        const bool isOwn = pairs.location().file.text() == experiment.file;
+        const auto isMet = [&](const AxisPoint& point) { return matchesAll(point, pairs); };
+        if (!isOwn || std::ranges::any_of(points, isMet)) continue;
+        throw Error(pairs.location(),
+                    fmt::format("exclude: no point of the sweep has {}", pairs.toFlowText()));
+    }
+}
+
 std::vector<AxisPoint> expandSweep(const Node& sweep) {
     if (sweep.isNull()) return {{}};
     if (!sweep.isMap()) throwNotAllowed(sweep, "sweep", "a map, axis: values");

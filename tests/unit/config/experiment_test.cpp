@@ -490,5 +490,52 @@ TEST_F(ExperimentTest, AllIsWhatAProgramsParameterLists) {
         "{log2: [first, last]}, or all, of a program's parameter that lists its values");
 }
 
+/// Of one's own sweep of a technique, with these lines.
+TEST_F(ExperimentTest, KeysOfWhichNothingFollowsAreRefused) {
+    const auto errorOf = [&](const std::string& lines) {
+        return loadError("sweep_of: s\ntitle: t\ntechnique: x\n" + lines);
+    };
+    for (const char* key : {"relative_error: 0.01", "time_budget_s: 9", "processes_at_most: 9"}) {
+        const std::string name = std::string(key).substr(0, std::string(key).find(':'));
+        EXPECT_EQ(errorOf(std::string("measure: {lane: quality, ") + key + "}\n"),
+                  "DIR/zju/a.yaml:4:26: '" + name +
+                      "': in the quality lane no rounds are timed; allowed: lane: timing");
+    }
+    EXPECT_EQ(errorOf("measure: {processes_at_most: 9}\n"),
+              "DIR/zju/a.yaml:4:11: 'processes_at_most': no more rounds follow than 'processes' "
+              "asks for; allowed: with 'relative_error', and more than 'processes', of which there "
+              "are 6 or more");
+    EXPECT_EQ(errorOf("measure: {processes_at_most: 9, relative_error: 0.1}\n"), "no error");
+    EXPECT_EQ(errorOf("measure: {time_budget_s: 9}\n"), "no error");
+    EXPECT_EQ(errorOf("scene_params: {up: z}\n"),
+              "DIR/zju/a.yaml:4:1: 'scene_params': no case has a scene");
+    EXPECT_EQ(errorOf("scene: wood\nparams_by_scene: {grass: {n: 3}}\n"),
+              "DIR/zju/a.yaml:5:19: 'grass': no case has the scene of params_by_scene");
+    EXPECT_EQ(errorOf("sweep: {scene: [a@2, b]}\nparams_by_scene: {a: {n: 3}}\n"), "no error");
+    EXPECT_EQ(errorOf("assumptions: {scene: {why: w}}\n"),
+              "DIR/zju/a.yaml:4:15: 'scene': no case has a scene");
+    EXPECT_EQ(errorOf("sweep: {a: [1, 2], exclude: [{a: 2}, {a: 7}]}\n"),
+              "DIR/zju/a.yaml:4:38: exclude: no point of the sweep has {a: 7}");
+    EXPECT_EQ(errorOf("sweep: {a: [1, 2], exclude: [{a: 2}]}\n"), "no error");
+    // Another profile may have what the file lacks; what is extended serves others, too.
+    EXPECT_EQ(errorOf("extends: presets/timing.yaml\nmeasure: {relative_error: 0.1, processes: 6}\n"
+                      "profiles: {quick: {measure: {relative_error: 0}}}\n"),
+              "no error");
+    folder.write("presets/more.yaml", "scene_params: {up: z}\nmeasure: {processes_at_most: 9}\n");
+    EXPECT_EQ(errorOf("extends: presets/more.yaml\n"), "no error");
+}
+
+TEST_F(ExperimentTest, TimesAreNotAskedOfALaneThatTakesNone) {
+    const std::string head = "sweep_of: s\ntitle: t\ntechnique: x\nmeasure: {lane: quality}\n";
+    EXPECT_EQ(loadError(head + "layout: {columns: {t: {metric: render_ms}}}\n"),
+              "DIR/zju/a.yaml:4:17: 'lane: quality' takes no times, and the layout shows some; "
+              "allowed: lane: timing");
+    EXPECT_EQ(loadError(head + "claims: {c: {says: y, bound: 2 * render_ms, at_most: 4}}\n"),
+              "DIR/zju/a.yaml:5:10: 'lane: quality' takes no times, and claim 'c' reads "
+              "'render_ms'; allowed: lane: timing");
+    EXPECT_EQ(loadError(head + "claims: {c: {says: y, bound: rays, at_most: 4}}\n"), "no error");
+    EXPECT_EQ(loadError(head + "layout: {columns: {t: {metric: rays}}}\n"), "no error");
+}
+
 }  // namespace
 }  // namespace gfxrepro::config

@@ -381,7 +381,9 @@ TEST(Cases, TakeTheParametersOfTheirScene) {
     EXPECT_THAT(biases("scene: grass\nsweep: {bias: [0.3, 0.4]}\n" + grass),
                 ElementsAre("0.3", "0.4"));
     EXPECT_THAT(biases(swept + grass + "params_instead: {bias: 0.6}\n"), ElementsAre("0.6", "0.6"));
-    EXPECT_THAT(biases("scene: scan\n" + grass), ElementsAre("0.5")) << "catalogued, not measured";
+    ledger.folder.write("configs/grass.yaml", grass);
+    EXPECT_THAT(biases("extends: grass.yaml\nscene: scan\n"), ElementsAre("0.5"))
+        << "what is extended serves others, too";
     const config::Experiment bound =
         ledger.bound(swept + grass + "assumptions:\n  bias: {range: [0, 1], why: open}\n");
     EXPECT_EQ(bound.assumptions.front().value.text(), "0.2, 0.5");
@@ -394,12 +396,19 @@ TEST(Cases, RefuseParametersOfNoScene) {
                                ledger.folder.path());
     };
     EXPECT_EQ(errorOf("params_by_scene:\n  gras: {bias: 0.2}\n"),
-              "DIR/t.yaml:6:3: params_by_scene: unknown scene 'gras'; did you mean 'grass'?");
+              "DIR/t.yaml:6:3: 'gras': no case has the scene of params_by_scene; did you mean "
+              "'grass'?");
     EXPECT_EQ(
         errorOf("params_by_scene:\n  grass: {biass: 0.2}\n"),
         "DIR/t.yaml:6:11: technique 'still': unknown parameter 'biass'; did you mean 'bias'?");
-    EXPECT_EQ(errorOf("params_by_scene:\n  tree: {biass: 0.2}\n"),
-              "DIR/t.yaml:6:10: params_by_scene: unknown parameter 'biass'; did you mean 'bias'?");
+    ledger.folder.write("configs/gras.yaml", "params_by_scene:\n  gras: {bias: 0.2}\n");
+    EXPECT_EQ(
+        errorOf("extends: gras.yaml\n"),
+        "DIR/configs/gras.yaml:2:3: params_by_scene: unknown scene 'gras'; did you mean 'grass'?");
+    ledger.folder.write("configs/tree.yaml", "params_by_scene:\n  tree: {biass: 0.2}\n");
+    EXPECT_EQ(errorOf("extends: tree.yaml\n"),
+              "DIR/configs/tree.yaml:2:10: params_by_scene: unknown parameter 'biass'; did you "
+              "mean 'bias'?");
     EXPECT_EQ(errorOf("params_by_scene:\n  grass: {bias: 2}\n"),
               "DIR/t.yaml:6:17: technique 'still': bias is 2; allowed: 0 … 1 texels");
     EXPECT_EQ(errorOf("params_by_scene:\n  grass: 2\n"),
