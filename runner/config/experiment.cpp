@@ -201,6 +201,7 @@ void requireTold(const Node& document, const Experiment& experiment) {
         return experiment.sweep.isMap() && experiment.sweep.find(axis);
     };
     const bool hasScene = !experiment.scene.isNull() || isSwept("scene");
+    const Node measure = mapAt(document, "measure");
     const bool hasSize =
         document.find("output") || isSwept("output.width") || isSwept("output.height");
     require("scene", hasScene, "{scene}", program.uses(placeholder::kScene));
@@ -209,8 +210,9 @@ void requireTold(const Node& document, const Experiment& experiment) {
     const char* told = program.givesAllFrames ? placeholder::kFrames : placeholder::kFrame;
     require("measure", experiment.measure.frames > 1,
             fmt::format("{{{}}}, of which there are several", told), program.uses(told));
-    require("measure", experiment.measure.seeds != Measure::Seeds::None,
-            "{seed}, of which 'seeds' tells", program.uses(placeholder::kSeed));
+    const bool isSeeded = experiment.measure.seeds != Measure::Seeds::None;
+    require("measure", isSeeded && measure.find("seeds"), "{seed}, of which 'seeds' tells",
+            program.uses(placeholder::kSeed));
     for (const ProgramPicture& picture : program.pictures) {
         const bool isOfItsOwn =
             picture.truthParams.isNull() || picture.truthParams.find(placeholder::kSeed);
@@ -227,6 +229,7 @@ Measure::Seeds defaultSeeds(const Experiment& experiment) {
     if (experiment.technique == kImported) return Measure::Seeds::None;
     if (programOf(experiment).isNull()) return Measure::Seeds::Case;
     const ExternalProgram program = readProgram(programOf(experiment));
+    if (program.framesAreSeeds) return Measure::Seeds::Case;
     if (!program.uses(placeholder::kSeed)) return Measure::Seeds::None;
     return program.seedsByProcess ? Measure::Seeds::Process : Measure::Seeds::Case;
 }
@@ -281,6 +284,11 @@ void readLane(const Node& document, Experiment& experiment) {
     Measure defaults;
     if (isTimed) defaults.lane = Measure::Lane::Timing;
     defaults.seeds = defaultSeeds(experiment);
+    // Who wants other seeds in each process wants several.
+    const Node* given = node && node->isMap() ? node->find("seeds") : nullptr;
+    const bool isByProcess = given ? given->isScalar() && given->text() == "process"
+                                   : defaults.seeds == Measure::Seeds::Process;
+    if (isByProcess) defaults.processes = kFewestRounds;
     Params params(node ? *node : Node(), "measure");
     experiment.measure = readMeasure(params, defaults);
     requireTold(document, experiment);

@@ -460,6 +460,12 @@ ExternalProgram readProgram(const Node& node) {
     section("images", [&](const Node& images) { readPictures(images, known, program); });
     program.seedsByProcess =
         node.find("seeds") ? isSecond(node, "seeds", kSeedsOf) : hasRandomErrors(program);
+    program.framesAreSeeds =
+        !program.uses(placeholder::kSeed) &&
+        std::ranges::any_of(program.pictures, [](const ProgramPicture& picture) {
+            const Node& truth = picture.truthParams;
+            return picture.truthFrames > 1 || (!truth.isNull() && truth.find(placeholder::kFrame));
+        });
     for (const ProgramParam& param : program.params) {
         if (program.uses(param.name)) continue;
         throw Error(

@@ -81,6 +81,7 @@ struct ExternalProgram {
     std::string here;                  // absolute folder
     bool usesGpu = false;
     bool givesAllFrames = false;  // one run all frames of a case; else each frame has its own run
+    bool framesAreSeeds = false;  // without {seed}: truths are of other frames than the cases'
     bool seedsByProcess = false;  // unless `measure.seeds` says otherwise
     std::vector<ProgramParam> params;
     Outputs outputs;                           // what it says; pictures with a truth are passes

@@ -176,9 +176,10 @@ void takeRow(const records::Record& record, const CellQuery& query, int unit,
     process[unit].push_back(value * query.scale);
 }
 
-/// Neither a time nor what the device counted.
-bool isOfTechnique(const std::string& metric) {
-    return !config::isTimeMetric(metric) && !metric.starts_with("work_");
+/// Neither a time, nor what the device counted, nor a test of several seeds.
+bool isOfItsSeed(const std::string& metric) {
+    return !config::isTimeMetric(metric) && !metric.starts_with("work_") &&
+           metric != "same_mean_p" && metric != "bias_seen";
 }
 
 void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>& unitOfFrame,
@@ -189,7 +190,7 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             continue;
         }
         std::map<int, std::vector<double>> process;
-        bool isRandom = run.seeds != config::Measure::Seeds::None && isOfTechnique(query.metric);
+        bool isRandom = run.seeds != config::Measure::Seeds::None && isOfItsSeed(query.metric);
         for (const records::Record* record : attempt.values(query.metric, query.pass)) {
             if (!matchesFrame(query.where, record->frame)) continue;
             const auto [unit, isNew] = unitOfFrame.try_emplace(record->frame, unitCount);

@@ -537,5 +537,28 @@ TEST_F(ExperimentTest, TimesAreNotAskedOfALaneThatTakesNone) {
     EXPECT_EQ(loadError(head + "layout: {columns: {t: {metric: rays}}}\n"), "no error");
 }
 
+/// Another seed in each process wants several.
+TEST_F(ExperimentTest, RandomErrorsAloneAreOfSixProcesses) {
+    const std::string head =
+        "sweep_of: s\ntitle: t\nprogram:\n  command: t {seed} {frame} {n}\n  params: {n: 1}\n"
+        "  images: {p: {file: p.pfm, truth: {n: 9, seed: 99}}}\n";
+    const std::string layout = "layout: {columns: {e: {metric: rmse, pass: p}}}\n";
+    Measure measure = load(head + layout).measure;
+    EXPECT_EQ(measure.lane, Measure::Lane::Quality);
+    EXPECT_EQ(measure.seeds, Measure::Seeds::Process);
+    EXPECT_EQ(measure.processes, kFewestRounds);
+    EXPECT_EQ(load(head + layout + "measure: {seeds: case}\n").measure.processes, 1);
+    EXPECT_EQ(load(head + layout + "measure: {processes: 2}\n").measure.processes, 2);
+    // Without {seed} frames are its random numbers, where a truth is of others: of one seed.
+    std::string frames = head + layout;
+    frames.replace(frames.find("{seed} "), 7, "");
+    frames.replace(frames.find("seed: 99"), 8, "frame: 99");
+    measure = load(frames + "measure: {frames: 3}\n").measure;
+    EXPECT_EQ(measure.seeds, Measure::Seeds::Case);
+    EXPECT_EQ(measure.processes, 1);
+    frames.replace(frames.find(", frame: 99"), 11, "");
+    EXPECT_EQ(load(frames).measure.seeds, Measure::Seeds::None);
+}
+
 }  // namespace
 }  // namespace gfxrepro::config
