@@ -58,10 +58,10 @@ std::string whyWrongKind(const ClaimSpec& claim, const config::Experiment& exper
                          ClaimReader& reader) {
     if (!reader.readsTime()) return claim.timeKind ? "has a 'kind' and reads no time" : "";
     if (!reader.timeKind()) {
-        // A program's times are the clock's, whatever decides them.
-        return config::goesByClock(experiment)
-                   ? ""
-                   : "reads a time and needs 'kind': algorithmic | architectural";
+        // A program's times are the clock's, whatever decides them; of one's own sweep counts do.
+        const bool isOpen =
+            experiment.kind != config::Experiment::Kind::Sweep && !config::goesByClock(experiment);
+        return !isOpen ? "" : "reads a time and needs 'kind': algorithmic | architectural";
     }
     if (*reader.timeKind() != ClaimSpec::TimeKind::Absolute && reader.asksForATimeAsSuch()) {
         return "holds a time against a number, which neither a count of work nor another machine "

@@ -119,6 +119,7 @@ class ClaimParser {
         const std::string& name = claim_.kind->name();
         Names allowed = keysOf("claim");
         for (std::string& key : claim_.kind->section.keyNames()) allowed.push_back(std::move(key));
+        requireBounds(allowed);
         requireKeys(node_, what_, allowed);
         readCommon();
         if (const Node* at = node_.find("at")) readAt(*at);
@@ -150,6 +151,30 @@ class ClaimParser {
         }
         if (found) return *found;
         throw Error(claim_.location, what_ + " has no type; allowed: " + joined(names));
+    }
+
+    /// Says what to write for a bound of another name, or of a kind that has none.
+    void requireBounds(const Names& allowed) const {
+        static const std::pair<const char*, const char*> kWords[] = {
+            {"at_least", "at_least"},   {"more_than", "more_than"}, {"at_most", "at_most"},
+            {"less_than", "less_than"}, {"above", "more_than"},     {"below", "less_than"},
+            {"min", "at_least"},        {"max", "at_most"}};
+        static const std::pair<const char*, const char*> kInstead[] = {
+            {"order", "by how much is a ratio's: 'ratio: b / a' with at_least"},
+            {"exact", "'equals'; or 'bound' with at_least and at_most"},
+            {"same_mean", "'false_alarms'"},
+            {"independent", "'at_most'"},
+            {"tolerance", "'at_most'"}};
+        for (const auto& [word, bound] : kWords) {
+            if (!node_.find(word) || contains(allowed, word)) continue;
+            std::string instead = fmt::format("'{}'", bound);
+            for (const auto& [kind, text] : kInstead) {
+                if (kind == claim_.kind->name()) instead = text;
+            }
+            throw Error(node_.keyLocation(word),
+                        fmt::format("{}: unknown key '{}' of '{}'; allowed: {}", what_, word,
+                                    claim_.kind->name(), instead));
+        }
     }
 
     void readCommon() {
@@ -289,7 +314,7 @@ SchemaSection common() {
              "where the number that it requires comes from; print: it is a printed value, or two "
              "numbers about one, at most its half and its double, and met by all, unless it is an "
              "aim of ours"),
-         choiceKey("kind", kTimeKinds, "absolute, or required",
+         choiceKey("kind", kTimeKinds, "absolute; in a sweep algorithmic; or required",
                    "of a claim about time: counts of work decide; a GPU's units do; or times as "
                    "such, at the printed parameters, as where one is held against a number, which "
                    "need not say so. The last two are judged on a GPU only"),

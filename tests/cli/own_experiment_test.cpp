@@ -473,10 +473,9 @@ TEST_F(OwnExperiment, WhatCheckRefusesIsNotMeasured) {
          "printed: {values: \"fill,resolution,a\\nsurface,32,many\"}\n",
          ":7:19: printed: a is 'many'; allowed: as the cell's format writes numbers, or empty "
          "where it is lost\n"},
-        {"layout: {rows: [fill, resolution], columns: {a: {metric: gpu_time_ms, pass: "
-         "synthesis}}}\n"
-         "claims: {C: {says: so, order: [fill=surface, fill=solid]}}\n",
-         ":7:10: claim 'C' reads a time and needs 'kind': algorithmic | architectural\n"}};
+        {"layout: {rows: [fill, resolution], columns: {a: voxels}}\n"
+         "claims: {C: {says: so, order: [fill=surface, fill=solid], kind: algorithmic}}\n",
+         ":7:10: claim 'C' has a 'kind' and reads no time\n"}};
     for (const auto& [lines, error] : wrong) {
         const std::string file = folder.write("mine.yaml", head + lines);
         for (const char* command : {"check", "reproduce"}) {

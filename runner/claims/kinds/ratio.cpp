@@ -1,13 +1,39 @@
-// ratio: a / b.
+// ratio: a / b, of columns; m=a / m=b, of the rows with these values of an axis.
+#include "engine/core/checks.h"
 #include "engine/core/text.h"
 #include "runner/claims/kinds/kind.h"
+#include "runner/claims/kinds/operands.h"
 
 namespace gfxrepro::claims {
 
 namespace {
 
+/// The axis and the value of "method=slices"; empty of a comparison and of everything else.
+std::pair<std::string, std::string> valueOn(std::string_view side) {
+    const std::size_t equals = side.find('=');
+    const bool isOne = equals != side.npos && equals > 0 && equals + 1 < side.size() &&
+                       side.find_first_of("=<>!", equals + 1) == side.npos &&
+                       side.find_first_of("<>! '\"[(") > equals;
+    if (!isOne) return {};
+    return {std::string(side.substr(0, equals)), std::string(side.substr(equals + 1))};
+}
+
+std::optional<std::string> axisOfRatio(const Node& operands, const std::string& what) {
+    const std::vector<std::string> sides = sidesOf(lineOf(operands, what), " / ", {});
+    if (sides.size() != 2) return std::nullopt;
+    const std::string axis = valueOn(sides[0]).first;
+    if (axis.empty() || valueOn(sides[1]).first != axis) return std::nullopt;
+    return axis;
+}
+
 void readRatio(const ClaimKeys& keys, ClaimSpec& claim) {
-    keys.readSides(" / ", claim);
+    if (axisOfRatio(keys.operands, keys.what)) {
+        for (const std::string& side : sidesOf(keys.operands.text(), " / ", {})) {
+            keys.addOperands(keys.operands, {valueOn(side).second}, claim);
+        }
+    } else {
+        keys.readSides(" / ", claim);
+    }
     if (claim.operands.size() != 2) keys.refuse(keys.operands, "ratio", "a / b");
     keys.readBounds(claim);
 }
@@ -22,8 +48,13 @@ std::vector<ClaimPart> ratioParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind ratio() {
-    return {boundedSection({"ratio", "a / b", "", "the ratio lies within bounds", types::text()}),
-            readRatio, ratioParts, Kind::Compares::Operands, Scale::Logarithmic};
+    Kind kind{boundedSection({"ratio", "a / b | AXIS=VALUE / AXIS=VALUE", "",
+                              "the ratio lies within bounds: of columns, or of the rows with these "
+                              "values of an axis, which implies `across`",
+                              types::text()}),
+              readRatio, ratioParts, Kind::Compares::Operands, Scale::Logarithmic};
+    kind.axisOf = axisOfRatio;
+    return kind;
 }
 
 }  // namespace gfxrepro::claims

@@ -333,10 +333,9 @@ TEST(Claims, WhatReadsATimeHasAKind) {
     EXPECT_EQ(provenanceError("order: n < 2 * n, origin: calibrated"),
               "claim 'C' is of a calibrated input, and reads cells that 'printed.calibrated' does "
               "not mark");
-    // A sweep's are ours, and its times no others.
+    // A sweep's are ours, and its times no others; counts decide them.
     EXPECT_EQ(provenanceError("bound: a, at_most: 1, at: {e: much}", true), "no error");
-    EXPECT_EQ(provenanceError("bound: a / a, at_most: 100, at: {e: slow}", true),
-              "claim 'C' reads a time and needs 'kind': algorithmic | architectural");
+    EXPECT_EQ(provenanceError("bound: a / a, at_most: 100, at: {e: slow}", true), "no error");
     EXPECT_EQ(provenanceError("bound: a, at_most: 100, at: {e: slow}", true), "no error");
     EXPECT_EQ(provenanceError("bound: a, at_most: 100, at: {e: slow}, kind: algorithmic", true),
               isAbsolute);
@@ -851,10 +850,12 @@ TEST(Claims, ATimeIsJudgedByTheNoiseOfItsOwnColumn) {
     };
     EXPECT_EQ(judge("ratio: new / old, across: build, of: own, at_least: 1.4").verdict,
               Verdict::Holds);
-    EXPECT_EQ(judge("ratio: new / old, across: build, of: own, at_least: 1.6").verdict,
-              Verdict::Fails);
-    EXPECT_EQ(judge("ratio: new / old, across: build, of: wall, at_least: 1.2").verdict,
+    EXPECT_EQ(judge("ratio: build=new / build=old, of: own, at_least: 1.6").verdict, Verdict::Fails)
+        << "rows are compared by their values, too";
+    EXPECT_EQ(judge("ratio: build=new / build=old, of: wall, at_least: 1.2").verdict,
               Verdict::Ambiguous);
+    EXPECT_THAT(errorText([&] { judge("ratio: build=new / build=olt, of: own, at_least: 1"); }),
+                testing::HasSubstr("'olt' is no column"));
 }
 
 /// Of twenty rows that are alike one fails by itself: six seeds of one sign are one in 64.
