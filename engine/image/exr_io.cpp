@@ -29,6 +29,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/image/formats.h"
 #include "engine/image/image.h"
 
 namespace gfxrepro::image {
@@ -58,12 +59,9 @@ class MemoryStream : public Imf::IStream {
     std::uint64_t position_ = 0;
 };
 
-std::uint32_t wordAt(std::span<const std::byte> bytes, std::size_t at) {
-    std::uint32_t word = 0;
-    for (std::size_t i = 0; i < sizeof(word) && at + i < bytes.size(); ++i) {
-        word |= std::to_integer<std::uint32_t>(bytes[at + i]) << (8 * i);
-    }
-    return word;
+/// Little-endian, of 4 bytes.
+std::size_t wordAt(std::span<const std::byte> bytes, std::size_t at) {
+    return numberAt(bytes, at, 4, true);
 }
 
 /// Where the text that begins at `at` ends, behind its zero; empty when it has none.
@@ -113,7 +111,7 @@ bool hasItsSize(std::string_view type, std::span<const std::byte> value) {
     if (type == "chlist") return isChannelList(value);
     if (type == "stringvector") return isTextList(value);
     if (type == "preview") {
-        const std::uint64_t pixels = std::uint64_t{wordAt(value, 0)} * wordAt(value, 4);
+        const std::uint64_t pixels = wordAt(value, 0) * wordAt(value, 4);
         return value.size() >= 8 && pixels == (value.size() - 8) / 4;
     }
     return true;  // a text, or what the library keeps as it is
@@ -138,15 +136,16 @@ void checkAttributeSizes(std::span<const std::byte> bytes, bool isMultiPart,
         }
         const std::string_view attribute = readText();
         const std::string_view type = readText();
-        const std::uint32_t size = wordAt(bytes, at);
-        if (at + sizeof(size) > bytes.size() || size > bytes.size() - at - sizeof(size)) {
+        const std::size_t size = wordAt(bytes, at);
+        constexpr std::size_t kSizeBytes = 4;
+        if (at + kSizeBytes > bytes.size() || size > bytes.size() - at - kSizeBytes) {
             throw Error(name + ": an attribute reaches beyond the end of the file");
         }
-        if (!hasItsSize(type, bytes.subspan(at + sizeof(size), size))) {
+        if (!hasItsSize(type, bytes.subspan(at + kSizeBytes, size))) {
             throw Error(name + ": attribute '" + std::string(attribute) + "' has " +
                         std::to_string(size) + " bytes, which no '" + std::string(type) + "' has");
         }
-        at += sizeof(size) + size;
+        at += kSizeBytes + size;
     }
 }
 
@@ -266,11 +265,9 @@ void addColours(std::span<const std::byte> bytes, const std::string& name, ExrIm
     image.notes.emplace_back("its luminance and chroma (Y, RY, BY) are read as R, G, B");
 }
 
-/// Makes R, G and B those of Rec. 709's primaries, what a file without chromaticities has. White
-/// stays what it is: a colour keeps its X, Y, Z.
-void takePrimaries(const Imf::Chromaticities& given, ExrImage& image) {
-    const Imf::Chromaticities rec709;
-    if (given == rec709) return;
+/// Makes R, G and B those of Rec. 709's primaries, what a file without chromaticities has.
+void takePrimaries(const Imf::Chromaticities& given, const std::string& name, ExrImage& image) {
+    if (given == Imf::Chromaticities()) return;
     ImageF* planes[3] = {};
     for (ExrImage::Channel& channel : image.channels) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -278,19 +275,15 @@ void takePrimaries(const Imf::Chromaticities& given, ExrImage& image) {
         }
     }
     if (planes[0] == nullptr || planes[1] == nullptr || planes[2] == nullptr) return;
-    const Imath::M44f matrix = Imf::RGBtoXYZ(given, 1.0F) * Imf::XYZtoRGB(rec709, 1.0F);
-    for (int i = 0; i < 9; ++i) {
-        if (!std::isfinite(matrix[i / 3][i % 3])) {
-            throw std::runtime_error("its chromaticities are those of no colours");
-        }
-    }
+    const ToRec709 toRec709({given.red.x, given.red.y, given.green.x, given.green.y, given.blue.x,
+                             given.blue.y, given.white.x, given.white.y},
+                            name);
     for (std::size_t i = 0; i < planes[0]->values().size(); ++i) {
-        const Imath::V3f colour =
-            Imath::V3f(planes[0]->values()[i], planes[1]->values()[i], planes[2]->values()[i]) *
-            matrix;
-        for (int c = 0; c < 3; ++c) planes[c]->values()[i] = colour[c];
+        const auto colour =
+            toRec709({planes[0]->values()[i], planes[1]->values()[i], planes[2]->values()[i]});
+        for (std::size_t c = 0; c < 3; ++c) planes[c]->values()[i] = colour[c];
     }
-    image.notes.emplace_back("R, G, B are converted from its chromaticities to those of Rec. 709");
+    image.notes.emplace_back(kConvertedPrimaries);
 }
 
 /// Names what might change how the pixels are seen and is not used here.
@@ -366,7 +359,7 @@ ExrImage decoded(std::span<const std::byte> bytes, const std::string& name) {
             repeated(channel.values, width, height, stored.xSampling, stored.ySampling);
     }
     if (hasChroma(header)) addColours(bytes, name, image);
-    if (Imf::hasChromaticities(header)) takePrimaries(Imf::chromaticities(header), image);
+    if (Imf::hasChromaticities(header)) takePrimaries(Imf::chromaticities(header), name, image);
     noteOthers(header, image);
     for (auto i = header.begin(); i != header.end(); ++i) {
         const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute());
@@ -474,6 +467,26 @@ std::string encoded(const ExrImage& image) {
 }
 
 }  // namespace
+
+ToRec709::ToRec709(const Chromaticities& given, const std::string& name) : rows_{} {
+    const Imf::Chromaticities from({given[0], given[1]}, {given[2], given[3]}, {given[4], given[5]},
+                                   {given[6], given[7]});
+    const Imath::M44f matrix =
+        Imf::RGBtoXYZ(from, 1.0F) * Imf::XYZtoRGB(Imf::Chromaticities(), 1.0F);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        rows_[i] = matrix[static_cast<int>(i / 3)][i % 3];
+        if (std::isfinite(rows_[i])) continue;
+        throw Error(name + ": its chromaticities are those of no colours");
+    }
+}
+
+std::array<float, 3> ToRec709::operator()(const std::array<float, 3>& rgb) const {
+    std::array<float, 3> result{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        result[c] = rgb[0] * rows_[c] + rgb[1] * rows_[3 + c] + rgb[2] * rows_[6 + c];
+    }
+    return result;
+}
 
 const ImageF* ExrImage::find(const std::string& name) const {
     const auto channel = std::find_if(channels.begin(), channels.end(),

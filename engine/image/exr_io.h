@@ -19,6 +19,25 @@ enum class ExrPixelType {
     Uint,  // of 32 bits; in memory as float, which holds whole numbers up to 2²⁴
 };
 
+/// Of a display: x and y of its red, green, blue and white.
+using Chromaticities = std::array<float, 8>;
+constexpr Chromaticities kRec709{0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
+
+constexpr const char* kConvertedPrimaries =
+    "R, G, B are converted from its chromaticities to those of Rec. 709";
+
+/// From colours of a display to those of Rec. 709's. White stays what it is: a colour keeps its X,
+/// Y, Z.
+class ToRec709 {
+  public:
+    /// Throws Error, which begins with `name`, for chromaticities of no colours.
+    ToRec709(const Chromaticities& given, const std::string& name);
+    std::array<float, 3> operator()(const std::array<float, 3>& rgb) const;
+
+  private:
+    std::array<float, 9> rows_;  // takes row vectors
+};
+
 /// Channels of one size, each with its EXR name ("R", "depth.Z", "id"). Values are linear.
 struct ExrImage {
     struct Channel {

@@ -18,6 +18,19 @@
 #include "engine/core/text.h"
 
 namespace gfxrepro::image {
+
+using namespace std::string_view_literals;
+using Part = std::span<const std::byte>;
+
+std::size_t numberAt(Part part, std::size_t at, std::size_t count, bool isLittle) {
+    std::size_t value = 0;
+    for (std::size_t i = 0; i < count && at + i < part.size(); ++i) {
+        const auto digit = std::to_integer<std::size_t>(part[at + i]);
+        value = isLittle ? value | digit << 8 * i : value << 8 | digit;
+    }
+    return value;
+}
+
 namespace {
 
 /// The bytes of a file, from the front on.
@@ -148,45 +161,61 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
 
 namespace {
 
-/// What a JPEG file says of how it is to be turned, Exif's Orientation: 1 … 8, 1 where it says
-/// nothing.
-int orientationOf(std::span<const std::byte> bytes) {
-    using Part = std::span<const std::byte>;
-    const auto number = [](Part part, std::size_t at, std::size_t count, bool isLittle) {
-        std::size_t value = 0;
-        for (std::size_t i = 0; i < count && at + i < part.size(); ++i) {
-            const auto digit = std::to_integer<std::size_t>(part[at + i]);
-            value = isLittle ? value | digit << 8 * i : value << 8 | digit;
-        }
-        return value;
-    };
-    constexpr std::string_view kExif("Exif\0\0", 6);
+std::string_view textOf(Part part) {
+    return {reinterpret_cast<const char*>(part.data()), part.size()};
+}
+
+/// What follows `name` in each segment of a JPEG file with this marker that begins with it.
+std::vector<Part> segmentsOf(Part bytes, int marker, std::string_view name) {
+    std::vector<Part> found;
+    constexpr int kScan = 0xDA;
     for (std::size_t at = 2; at + 4 <= bytes.size() && bytes[at] == std::byte{0xFF};) {
-        const auto marker = std::to_integer<int>(bytes[at + 1]);
-        if (marker == 0xDA) return 1;  // the scan begins
-        const std::size_t length = number(bytes, at + 2, 2, false);
+        const auto kind = std::to_integer<int>(bytes[at + 1]);
+        if (kind == kScan) break;
+        const std::size_t length = numberAt(bytes, at + 2, 2, false);
         const Part segment = bytes.subspan(at + 4).first(
             std::min(bytes.size() - at - 4, std::max<std::size_t>(length, 2) - 2));
         at += 2 + length;
-        const bool isExif = marker == 0xE1 && segment.size() > kExif.size() + 8 &&
-                            std::memcmp(segment.data(), kExif.data(), kExif.size()) == 0;
-        if (!isExif) continue;
-        const Part tags = segment.subspan(kExif.size());
-        const bool isLittle = tags[0] == std::byte{'I'};
-        const std::size_t first = number(tags, 4, 4, isLittle);
-        const std::size_t count = number(tags, first, 2, isLittle);
-        for (std::size_t i = 0; i < count && first + 2 + 12 * (i + 1) <= tags.size(); ++i) {
-            const std::size_t entry = first + 2 + 12 * i;
-            if (number(tags, entry, 2, isLittle) != 0x0112) continue;
-            const std::size_t value = number(tags, entry + 8, 2, isLittle);
-            return value >= 1 && value <= 8 ? static_cast<int>(value) : 1;
-        }
+        if (kind != marker || !textOf(segment).starts_with(name)) continue;
+        found.push_back(segment.subspan(name.size()));
+    }
+    return found;
+}
+
+/// Orientation of an Exif block's tags: 1 … 8, 1 where they say nothing.
+int orientationOf(Part tags) {
+    if (tags.size() < 8) return 1;
+    const bool isLittle = tags[0] == std::byte{'I'};
+    const std::size_t first = numberAt(tags, 4, 4, isLittle);
+    const std::size_t count = numberAt(tags, first, 2, isLittle);
+    for (std::size_t i = 0; i < count && first + 2 + 12 * (i + 1) <= tags.size(); ++i) {
+        const std::size_t entry = first + 2 + 12 * i;
+        if (numberAt(tags, entry, 2, isLittle) != 0x0112) continue;
+        const std::size_t value = numberAt(tags, entry + 8, 2, isLittle);
+        return value >= 1 && value <= 8 ? static_cast<int>(value) : 1;
     }
     return 1;
 }
 
-/// As it is to be seen.
-ImageF turned(const ImageF& image, int orientation) {
+}  // namespace
+
+bool isProfileOfSrgb(std::span<const std::byte> profile, bool isLinear) {
+    constexpr std::size_t kTags = 128, kTagBytes = 12;
+    const std::size_t count = numberAt(profile, kTags, 4, false);
+    for (std::size_t i = 0; i < count && kTags + 4 + kTagBytes * (i + 1) <= profile.size(); ++i) {
+        const Part tag = profile.subspan(kTags + 4 + kTagBytes * i, kTagBytes);
+        const std::size_t at = numberAt(tag, 4, 4, false), size = numberAt(tag, 8, 4, false);
+        if (!textOf(tag).starts_with("desc") || at > profile.size()) continue;
+        std::string text(textOf(profile.subspan(at).first(std::min(size, profile.size() - at))));
+        std::erase(text, '\0');  // letters of two bytes
+        const auto says = [&](const char* word) { return text.find(word) != std::string::npos; };
+        return says("sRGB") && says("inear") == isLinear;
+    }
+    return false;
+}
+
+ImageF turnedAsExif(const ImageF& image, std::span<const std::byte> exif) {
+    const int orientation = orientationOf(exif);
     if (orientation == 1) return image;
     const bool isTransposed = orientation >= 5;
     const bool isMirrored = orientation == 2 || orientation == 3 || orientation >= 7;
@@ -206,7 +235,13 @@ ImageF turned(const ImageF& image, int orientation) {
     return result;
 }
 
-}  // namespace
+std::vector<std::string> notesOfJpeg(std::span<const std::byte> bytes) {
+    // Behind the name are the part's number and their count; the description is in the first.
+    const std::vector<Part> profile = segmentsOf(bytes, 0xE2, "ICC_PROFILE\0"sv);
+    if (profile.empty() || profile[0].size() < 2) return {};
+    if (isProfileOfSrgb(profile[0].subspan(2), false)) return {};
+    return {kProfileLeftOut};
+}
 
 Decoded decodeJpeg(std::span<const std::byte> bytes, const std::string& name) {
     std::span<const std::byte> end = bytes;  // stb fills up what is not there
@@ -218,7 +253,9 @@ Decoded decodeJpeg(std::span<const std::byte> bytes, const std::string& name) {
     Decoded result{ImageF(image.width(), image.height(), image.channels())};
     std::ranges::transform(image.values(), result.values.values().begin(),
                            [](std::uint8_t value) { return static_cast<float>(value) / 255.0F; });
-    result.values = turned(result.values, orientationOf(bytes));
+    const std::vector<Part> exif = segmentsOf(bytes, 0xE1, "Exif\0\0"sv);
+    if (!exif.empty()) result.values = turnedAsExif(result.values, exif[0]);
+    result.notes = notesOfJpeg(bytes);
     return result;
 }
 
@@ -277,7 +314,7 @@ Decoded decodeNetpbm(std::span<const std::byte> bytes, const std::string& name) 
 namespace {
 
 /// What the lines of the header multiply the values of each channel by.
-std::array<float, 3> factorsOfHdr(Bytes& file) {
+std::array<float, 3> factorsOfHdr(Bytes& file, std::vector<std::string>& notes) {
     std::array<float, 3> factors{1.0F, 1.0F, 1.0F};
     const auto numbersOf = [&](const std::string& line, std::size_t count) {
         std::vector<float> numbers;
@@ -296,6 +333,10 @@ std::array<float, 3> factorsOfHdr(Bytes& file) {
         if (isExposure || line.starts_with("COLORCORR=")) {
             const auto numbers = numbersOf(line, isExposure ? 1 : 3);
             for (std::size_t c = 0; c < 3; ++c) factors[c] *= numbers[isExposure ? 0 : c];
+        }
+        const bool isOfPixels = line.starts_with("PIXASPECT=");
+        if ((isOfPixels || line.starts_with("GAMMA=")) && numbersOf(line, 1)[0] != 1.0F) {
+            notes.push_back("left out: " + line);
         }
         if (line.starts_with("PRIMARIES=")) {
             // Radiance's own, whose white is that of equal energy, everybody takes for sRGB's.
@@ -352,7 +393,8 @@ void readPixels(Bytes& file, std::vector<Rgbe>& row, Rgbe pixel) {
 Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name) {
     Bytes file(bytes, name);
     file.line();  // "#?RADIANCE"
-    const std::array<float, 3> factors = factorsOfHdr(file);
+    std::vector<std::string> notes;
+    const std::array<float, 3> factors = factorsOfHdr(file, notes);
     const std::string size = file.line();
     const std::vector<std::string> words = split(trimmed(size), ' ');
     const bool isUsual = words.size() == 4 && words[0] == "-Y" && words[2] == "+X";
@@ -364,6 +406,7 @@ Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name) {
     checkDeclaredSize(width, height, 3 * sizeof(float), bytes.size(), name, kMaxSidePx,
                       ImageUse::Picture);
     Decoded result{ImageF(static_cast<int>(width), static_cast<int>(height), 3), true};
+    result.notes = std::move(notes);
     std::vector<Rgbe> row(static_cast<std::size_t>(width));
     for (int y = 0; y < result.values.height(); ++y) {
         Rgbe first{};
@@ -382,6 +425,22 @@ Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name) {
     }
     return result;
 }
+
+namespace {
+
+/// TGA 2.0: an extension area, which the file's end names, may have a gamma other than 1.
+bool saysGammaOfTga(Part bytes) {
+    constexpr std::size_t kFooter = 26, kGammaAt = 478;
+    if (bytes.size() < kFooter) return false;
+    const Part footer = bytes.last(kFooter);
+    const std::size_t area = numberAt(footer, 0, 4, true);
+    if (textOf(footer).substr(8, 16) != "TRUEVISION-XFILE" || area == 0) return false;
+    const std::size_t above = numberAt(bytes, area + kGammaAt, 2, true);
+    const std::size_t below = numberAt(bytes, area + kGammaAt + 2, 2, true);
+    return below != 0 && above != below;
+}
+
+}  // namespace
 
 Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
     Bytes file(bytes, name);
@@ -419,6 +478,7 @@ Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
         }
     }
     if ((flags & 0x20) == 0) flipRows(result.values);
+    if (saysGammaOfTga(bytes)) result.notes.emplace_back("left out: its gamma");
     return result;
 }
 

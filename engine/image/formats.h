@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/image/image.h"
 
@@ -18,7 +19,22 @@ struct Decoded {
     ImageF values;
     bool isLinear = false;  // light, multiplied by alpha; else sRGB in [0, 1] beside its alpha
     int bits = 8;           // of a value of sRGB: 8 or 16
+    std::vector<std::string> notes = {};  // what reading changed, and what it left out
 };
+
+/// Whether a colour profile (ICC) calls itself one of sRGB, or of its primaries' light.
+bool isProfileOfSrgb(std::span<const std::byte> profile, bool isLinear);
+constexpr const char* kProfileLeftOut = "left out: its colour profile";
+/// Of a JPEG file's colours.
+std::vector<std::string> notesOfJpeg(std::span<const std::byte> bytes);
+
+/// As the tags of an Exif block say that it is to be seen.
+ImageF turnedAsExif(const ImageF& image, std::span<const std::byte> exif);
+
+/// Of `count` bytes from `at` on, the first being the lowest or the highest; what is not there is
+/// left out.
+std::size_t numberAt(std::span<const std::byte> bytes, std::size_t at, std::size_t count,
+                     bool isLittle);
 
 // Each throws Error, which begins with `name`, for what it does not read; memory is bounded as in
 // png_io.h.
@@ -46,5 +62,7 @@ void flipRows(ImageF& image);
 /// which stays where it is meanwhile. Throws Error.
 std::unique_ptr<tiff, void (*)(tiff*)> openTiff(const std::filesystem::path& path,
                                                 std::string& message);
+/// Of several pages all but the first must be reductions of it. Throws Error.
+void requireOnePage(tiff& file, const std::filesystem::path& path, const std::string& message);
 
 }  // namespace gfxrepro::image

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +40,42 @@ constexpr Format kFormats[] = {
     {"jpeg", "\xFF\xD8\xFF", ".jpg.jpeg"},
 };
 
+/// Makes values and colours of a PNG file those of sRGB.
+void makeSrgb(const PngColours& given, const std::string& name, Decoded& decoded) {
+    if (given.gamma == 0.0 && !given.primaries) return;
+    ImageF& values = decoded.values;
+    const auto channels = static_cast<std::size_t>(values.channels());
+    const std::size_t colours = channels < 3 ? 1 : 3;
+    std::optional<ToRec709> toRec709;
+    if (given.primaries && colours == 3) toRec709.emplace(*given.primaries, name);
+    std::size_t beyond = 0;
+    for (std::size_t i = 0; i < values.values().size(); i += channels) {
+        std::array<float, 3> light{};
+        for (std::size_t c = 0; c < colours; ++c) {
+            const float value = values.values()[i + c];
+            light[c] = given.gamma == 0.0 ? linearOf(value)
+                                          : std::pow(value, static_cast<float>(1.0 / given.gamma));
+        }
+        if (toRec709) light = (*toRec709)(light);
+        constexpr float kRounding = 1e-4F;
+        const auto [least, most] = std::ranges::minmax(light);
+        if (least < -kRounding || most > 1.0F + kRounding) ++beyond;
+        for (std::size_t c = 0; c < colours; ++c) {
+            values.values()[i + c] = srgbOf(std::clamp(light[c], 0.0F, 1.0F));
+        }
+    }
+    decoded.bits = 16;
+    if (given.gamma != 0.0) {
+        decoded.notes.push_back(
+            fmt::format("its values are converted from a gamma of {:g} to sRGB", given.gamma));
+    }
+    if (toRec709) decoded.notes.emplace_back(kConvertedPrimaries);
+    if (beyond > 0) {
+        decoded.notes.push_back(
+            fmt::format("{} pixels have colours beyond Rec. 709, which are cut", beyond));
+    }
+}
+
 Decoded decodedPng(const std::filesystem::path& path) {
     PngRows stored(path, kMaxSidePx, ImageUse::Picture);
     Decoded result{ImageF(stored.width(), stored.height(), stored.channels()), false,
@@ -49,6 +88,11 @@ Decoded decodedPng(const std::filesystem::path& path) {
             return static_cast<float>(value) / 65535.0F;
         });
     }
+    const MappedFile file(path);
+    const PngColours colours = pngColours(file.bytes(), path.string());
+    result.notes = colours.notes;
+    makeSrgb(colours, path.string(), result);
+    if (!colours.exif.empty()) values = turnedAsExif(values, colours.exif);
     return result;
 }
 
@@ -146,18 +190,18 @@ Picture readPicture(const std::filesystem::path& path) {
     const std::string_view format = formatOf(path);
     if (format == "exr") {
         const ExrImage exr = readExr(path);
-        return shownOf(exr.colour(), exr.dataWindow(), exr.shownWindow(), path);
+        Picture picture = shownOf(exr.colour(), exr.dataWindow(), exr.shownWindow(), path);
+        picture.notes = exr.notes;
+        return picture;
     }
     Decoded decoded = decodedFile(path, format);
     const Rectangle whole{0, 0, decoded.values.width(), decoded.values.height()};
-    if (decoded.isLinear) return shownOf(std::move(decoded.values), whole, whole, path);
-    Picture picture;
-    picture.linear = lightOf(decoded.values);
-    picture.stored = std::move(decoded.values);
+    Picture picture = shownOf(std::move(decoded.values), whole, whole, path);
+    picture.notes = std::move(decoded.notes);
+    if (decoded.isLinear) return picture;
+    picture.isLinear = false;
+    picture.linear = lightOf(std::move(picture.linear));
     picture.bits = decoded.bits;
-    picture.width = whole.width;
-    picture.height = whole.height;
-    picture.part = whole;
     return picture;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/image/image.h"
 
@@ -23,15 +24,17 @@ std::string_view formatOf(const std::filesystem::path& path);
 
 /// What a file shows, of 1 to 4 channels: grey, grey and alpha, RGB, RGB and alpha. Of an EXR file
 /// it is what lies in its display window. EXR, PFM, HDR and TIFF of floats are linear; PNG, PNM,
-/// TGA, JPEG and other TIFF are sRGB. Colour profiles and gamma of a file are not read; a JPEG
-/// file is turned as its Exif says.
+/// TGA, JPEG and other TIFF are sRGB. A PNG file's gamma and primaries are converted to sRGB's;
+/// other colour profiles than those of sRGB are not read. PNG and JPEG are turned as their Exif
+/// says.
 struct Picture {
     ImageF stored;  // sRGB in [0, 1], not multiplied by alpha; of a linear file as `linear`
     ImageF linear;  // light of Rec. 709's primaries, multiplied by alpha
     bool isLinear = false;
-    int bits = 8;               // of a value of sRGB: 8 or 16
-    int width = 0, height = 0;  // of the whole
-    Rectangle part;             // that has these pixels: of an EXR file it may be smaller
+    int bits = 8;                    // of a value of sRGB: 8 or 16
+    int width = 0, height = 0;       // of the whole
+    Rectangle part;                  // that has these pixels: of an EXR file it may be smaller
+    std::vector<std::string> notes;  // what reading changed, and what it left out
 
     bool isWhole() const { return part == Rectangle{0, 0, width, height}; }
 };

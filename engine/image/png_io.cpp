@@ -6,14 +6,17 @@
 #include <array>
 #include <bit>
 #include <cerrno>
+#include <cmath>
 #include <csetjmp>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/core/files.h"
+#include "engine/image/formats.h"
 
 namespace gfxrepro::image {
 namespace {
@@ -62,6 +65,15 @@ class Reader {
     int height() const { return static_cast<int>(png_get_image_height(png_, info_)); }
     int channels() const { return png_get_channels(png_, info_); }
     bool isInterlaced() const { return png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE; }
+    /// Of chunk iCCP; empty where there is none.
+    std::span<const std::byte> profile() const {
+        png_charp name = nullptr;
+        png_bytep bytes = nullptr;
+        png_uint_32 size = 0;
+        int method = 0;
+        if (png_get_iCCP(png_, info_, &name, &method, &bytes, &size) == 0) return {};
+        return std::as_bytes(std::span(bytes, size));
+    }
 
     /// Rows come as T, palettes, low depths and transparent colours expanded.
     template <class T>
@@ -234,7 +246,63 @@ void writeEncoded(const std::filesystem::path& path, const Image<T>& image) {
     writeFileAtomic(path, Writer().encoded(image, "cannot write " + path.string()));
 }
 
+/// What each kind of chunk holds; of several of a kind the first.
+std::map<std::string, std::span<const std::byte>> chunksOf(std::span<const std::byte> bytes) {
+    constexpr std::size_t kSignature = 8, kHead = 8, kChecksum = 4;
+    std::map<std::string, std::span<const std::byte>> chunks;
+    for (std::size_t at = kSignature; at + kHead + kChecksum <= bytes.size();) {
+        const std::size_t length = numberAt(bytes, at, 4, false);
+        if (length > bytes.size() - at - kHead - kChecksum) break;
+        chunks.try_emplace({reinterpret_cast<const char*>(&bytes[at + 4]), 4},
+                           bytes.subspan(at + kHead, length));
+        at += kHead + length + kChecksum;
+    }
+    return chunks;
+}
+
 }  // namespace
+
+PngColours pngColours(std::span<const std::byte> bytes, const std::string& name) {
+    constexpr std::size_t kSrgbGamma = 45455;
+    constexpr std::array kSrgbCode{std::byte{1}, std::byte{13}, std::byte{0}, std::byte{1}};
+    constexpr double kStep = 1e-5, kTolerance = 1e-3;
+    const auto chunks = chunksOf(bytes);
+    const auto has = [&](const char* chunk, std::size_t size) {
+        const auto found = chunks.find(chunk);
+        return found != chunks.end() && found->second.size() == size;
+    };
+    PngColours colours;
+    if (const auto exif = chunks.find("eXIf"); exif != chunks.end()) colours.exif = exif->second;
+    if (chunks.contains("acTL")) colours.notes.emplace_back("left out: all but its first frame");
+    if (has("cICP", 4)) {
+        if (std::ranges::equal(chunks.at("cICP"), kSrgbCode)) return colours;
+        colours.notes.emplace_back("left out: its colour space (chunk cICP)");
+    } else if (chunks.contains("iCCP")) {
+        if (isProfileOfSrgb(Reader(bytes, name, ImageUse::Picture).profile(), false)) {
+            return colours;
+        }
+        colours.notes.emplace_back(kProfileLeftOut);
+    }
+    if (chunks.contains("sRGB")) return colours;
+    if (has("gAMA", 4)) {
+        const std::size_t gamma = numberAt(chunks.at("gAMA"), 0, 4, false);
+        if (gamma == 0) colours.notes.emplace_back("left out: its gamma of 0");
+        if (gamma < kSrgbGamma - 5 || gamma > kSrgbGamma + 5)
+            colours.gamma = static_cast<double>(gamma) * kStep;
+    }
+    if (has("cHRM", 8 * sizeof(std::uint32_t))) {
+        Chromaticities given{};  // the file has the white first
+        bool isRec709 = true;
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            given[i] =
+                static_cast<float>(kStep * static_cast<double>(numberAt(
+                                               chunks.at("cHRM"), 4 * ((i + 2) % 8), 4, false)));
+            isRec709 = isRec709 && std::abs(given[i] - kRec709[i]) < kTolerance;
+        }
+        if (!isRec709) colours.primaries = given;
+    }
+    return colours;
+}
 
 Image8 decodePng8(std::span<const std::byte> bytes, const std::string& name) {
     return decoded8(bytes, name, ImageUse::Texture);

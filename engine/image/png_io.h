@@ -5,12 +5,26 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "engine/image/exr_io.h"
 #include "engine/image/image.h"
 
 namespace gfxrepro::image {
+
+/// What a PNG file says of its colours and how it is held, where it is not sRGB from the top: by
+/// the standard's precedence cICP, iCCP, sRGB, then gAMA and cHRM.
+struct PngColours {
+    double gamma = 0.0;                       // light is value^(1 / gamma); 0: by the curve of sRGB
+    std::optional<Chromaticities> primaries;  // none: Rec. 709's
+    std::span<const std::byte> exif;
+    std::vector<std::string> notes;  // what is left out
+};
+/// A gamma of 1 / 2.2 is the standard's own number for sRGB. Of a broken file: as far as it goes.
+PngColours pngColours(std::span<const std::byte> bytes, const std::string& name);
 
 /// 8-bit values, 1 to 4 channels; palettes and lower depths are expanded, 16-bit is an Error.
 /// Throws Error with the path and the decoder's reason; the memory stays bounded by what the header

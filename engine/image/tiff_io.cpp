@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/image/exr_io.h"
 #include "engine/image/formats.h"
 
 namespace gfxrepro::image {
@@ -42,8 +45,8 @@ class TiffReader {
   public:
     explicit TiffReader(const std::filesystem::path& path)
         : path_(path), tiff_(openTiff(path, message_)) {
+        requireOnePage(*tiff_, path_, message_);
         readHeader();
-        requireOnePage();
     }
 
     Decoded read() {
@@ -59,6 +62,7 @@ class TiffReader {
         }
         if (isFromBottom_) flipRows(result.values);
         useAlpha(result.values);
+        result.notes = notes_;
         return result;
     }
 
@@ -105,17 +109,30 @@ class TiffReader {
         checkDeclaredSize(width_, height_, static_cast<std::size_t>(channels_) * sizeof(float),
                           std::filesystem::file_size(path_), path_.string(), kMaxSidePx,
                           ImageUse::Picture);
+        noteColours();
     }
 
-    void requireOnePage() {
-        int pages = 1;
-        while (TIFFReadDirectory(tiff_.get()) == 1) {
-            const auto kind = field<std::uint32_t>(TIFFTAG_SUBFILETYPE, 0);
-            if ((kind & FILETYPE_REDUCEDIMAGE) == 0) ++pages;
+    void noteColours() {
+        std::uint32_t size = 0;
+        const std::byte* profile = nullptr;
+        if (TIFFGetField(tiff_.get(), TIFFTAG_ICCPROFILE, &size, &profile) == 1) {
+            if (!isProfileOfSrgb({profile, size}, isFloat_)) notes_.emplace_back(kProfileLeftOut);
+            return;
         }
-        if (!message_.empty() || TIFFSetDirectory(tiff_.get(), 0) != 1) failOf(path_, message_);
-        if (pages > 1) {
-            throw Error(fmt::format("{}: has {} pages; one is allowed", path_.string(), pages));
+        const float* primaries = nullptr;
+        const float* white = nullptr;
+        const bool hasPrimaries =
+            TIFFGetField(tiff_.get(), TIFFTAG_PRIMARYCHROMATICITIES, &primaries) == 1;
+        const bool hasWhite = TIFFGetField(tiff_.get(), TIFFTAG_WHITEPOINT, &white) == 1;
+        const auto differs = [](const float* given, std::size_t count, std::size_t from) {
+            constexpr float kTolerance = 1e-3F;
+            for (std::size_t i = 0; i < count; ++i) {
+                if (std::abs(given[i] - kRec709[from + i]) > kTolerance) return true;
+            }
+            return false;
+        };
+        if ((hasPrimaries && differs(primaries, 6, 0)) || (hasWhite && differs(white, 2, 6))) {
+            notes_.emplace_back("left out: its chromaticities");
         }
     }
 
@@ -202,6 +219,7 @@ class TiffReader {
     std::filesystem::path path_;
     std::string message_;
     std::unique_ptr<TIFF, void (*)(TIFF*)> tiff_;
+    std::vector<std::string> notes_;
     std::uint32_t width_ = 0, height_ = 0;
     std::uint16_t bits_ = 0;
     int channels_ = 0;
@@ -221,6 +239,19 @@ std::unique_ptr<TIFF, void (*)(TIFF*)> openTiff(const std::filesystem::path& pat
                                                 TIFFClose);
     if (file == nullptr || !message.empty()) failOf(path, message);
     return file;
+}
+
+void requireOnePage(TIFF& file, const std::filesystem::path& path, const std::string& message) {
+    int pages = 1;
+    while (TIFFReadDirectory(&file) == 1) {
+        std::uint32_t kind = 0;
+        TIFFGetFieldDefaulted(&file, TIFFTAG_SUBFILETYPE, &kind);
+        if ((kind & FILETYPE_REDUCEDIMAGE) == 0) ++pages;
+    }
+    if (!message.empty() || TIFFSetDirectory(&file, 0) != 1) failOf(path, message);
+    if (pages > 1) {
+        throw Error(fmt::format("{}: has {} pages; one is allowed", path.string(), pages));
+    }
 }
 
 Decoded readTiff(const std::filesystem::path& path) {

@@ -399,6 +399,9 @@ class MaterialTable {
         scene_.filesBeside.push_back(*path);
         if (isPngOrJpeg(file.bytes())) {
             scene_.textures.push_back(decodeTexture(file.bytes(), path->string()));
+            if (!isPlainSrgb(file.bytes(), path->string())) {
+                leftOut_.add("the gamma, primaries or colour profile of a texture");
+            }
         } else {
             leftOut_.add(
                 fmt::format("the texture {}, which is neither PNG nor JPEG", inQuotes(name)));

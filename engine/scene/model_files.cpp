@@ -57,6 +57,12 @@ image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string&
     throw Error(name + ": neither a PNG nor a JPEG image");
 }
 
+bool isPlainSrgb(std::span<const std::byte> bytes, const std::string& name) {
+    if (!beginsWith(bytes, kPng)) return image::notesOfJpeg(bytes).empty();
+    const image::PngColours colours = image::pngColours(bytes, name);
+    return colours.gamma == 0.0 && !colours.primaries && colours.notes.empty();
+}
+
 bool isPngOrJpeg(std::span<const std::byte> bytes) {
     return beginsWith(bytes, kPng) || beginsWith(bytes, kJpeg);
 }

@@ -18,6 +18,10 @@ namespace gfxrepro::scene {
 /// message. Memory is bounded as in engine/image/png_io.h.
 image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string& name);
 
+/// Whether a PNG or JPEG file says no other colours than sRGB: decodeTexture() does not look, as
+/// glTF wants it.
+bool isPlainSrgb(std::span<const std::byte> bytes, const std::string& name);
+
 /// Whether decodeTexture() knows the format by its first bytes.
 bool isPngOrJpeg(std::span<const std::byte> bytes);
 

@@ -185,6 +185,7 @@ int imageInfo(const std::string& file) {
         const int channels = picture.stored.channels();
         say("{} {}x{}, {} {}, {}\n", format, picture.width, picture.height, channels,
             channels == 1 ? "channel" : "channels", picture.isLinear ? "linear" : "sRGB");
+        for (const std::string& note : picture.notes) say("{}\n", note);
         return kExitOk;
     }
     const image::ExrImage exr = image::readExr(file);
@@ -203,6 +204,13 @@ int imageInfo(const std::string& file) {
 
 namespace {
 
+/// Says what reading changed, and what it left out.
+image::Picture readTelling(const std::string& file) {
+    image::Picture picture = image::readPicture(file);
+    for (const std::string& note : picture.notes) tell("{}: {}\n", file, note);
+    return picture;
+}
+
 struct Pair {
     image::Picture reference, test;
     bool isLinear() const { return reference.isLinear; }
@@ -210,7 +218,7 @@ struct Pair {
 
 Pair readPair(const ImageDiffOptions& options) {
     if (!options.out.empty()) image::isExrFile(options.out);
-    Pair pair{image::readPicture(options.reference), image::readPicture(options.test)};
+    Pair pair{readTelling(options.reference), readTelling(options.test)};
     if (pair.test.isLinear != pair.isLinear()) {
         throw UsageError(
             fmt::format("image diff: {} and {} are of different kinds: one is linear, as EXR files "
@@ -441,7 +449,7 @@ Image8 shown(const ImageF& linear, const ImageConvertOptions& options) {
 Image8 convertedPicture(const ImageConvertOptions& options) {
     if (options.channels.empty()) {
         if (!options.range.empty()) throw UsageError("--range is of one channel: give --channels");
-        const image::Picture picture = image::readPicture(options.in);
+        const image::Picture picture = readTelling(options.in);
         if (!picture.isWhole()) tell("{}: {}\n", options.in, image::placeOf(picture));
         return shown(picture.linear, options);
     }
@@ -471,9 +479,8 @@ ExrImage exrFrom(const ImageConvertOptions& options) {
     if (options.toneMap != "none" || !options.range.empty()) {
         throw UsageError("--tonemap and --range are for PNG files; an EXR keeps its numbers");
     }
-    ExrImage exr = image::formatOf(options.in) == "exr"
-                       ? image::readExr(options.in)
-                       : exrOf(image::readPicture(options.in).linear);
+    ExrImage exr = image::formatOf(options.in) == "exr" ? image::readExr(options.in)
+                                                        : exrOf(readTelling(options.in).linear);
     if (!options.channels.empty()) exr = picked(exr, options.channels, options.in);
     const auto scale = static_cast<float>(std::exp2(options.exposureStops));
     for (ExrImage::Channel& channel : exr.channels) {
@@ -513,7 +520,7 @@ image::Image<T> quantized(const ImageF& unit) {
 int imageCrop(const ImageCropOptions& options) {
     const bool isExr = image::formatOf(options.in) == "exr";
     image::Picture picture;
-    if (!isExr) picture = image::readPicture(options.in);
+    if (!isExr) picture = readTelling(options.in);
     if (image::isExrFile(options.out) != (isExr || picture.isLinear)) {
         throw UsageError(
             fmt::format("image crop: {} and {} are of different kinds; 'image "
@@ -544,7 +551,7 @@ int imageSheet(const ImageSheetOptions& options) {
     requireNoInput(options.out, options.files);
     std::vector<image::Image8> images;
     for (const std::string& file : options.files) {
-        images.push_back(image::toSrgb8(image::withStraightAlpha(image::readPicture(file).linear)));
+        images.push_back(image::toSrgb8(image::withStraightAlpha(readTelling(file).linear)));
     }
     image::SheetLayout layout;
     layout.columns = options.columns;

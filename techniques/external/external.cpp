@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 
 #include "engine/core/files.h"
@@ -259,13 +260,23 @@ class External : public technique::Technique {
         return readPicture(placeOf(picture.file, values_, "out"), nameOf(picture), askedSize());
     }
 
+    /// Says once what reading changed, and what it left out.
+    void tellNotes(const Picture& picture, const std::string& what) {
+        for (const std::string& note : picture.notes) {
+            const std::string line = fmt::format("warning: {}: {}\n", what, note);
+            if (told_.insert(line).second) fmt::print(stderr, "{}", line);
+        }
+    }
+
     void recordPicture(const config::ProgramPicture& picture, technique::Recorder& recorder) {
         const std::string what = nameOf(picture);
         Picture own = ownPicture(picture);
+        tellNotes(own, what);
         if (!picture.hasTruth()) {
             return recorder.image(picture.name, own.linear, {.stored = &own.stored});
         }
         Picture truth = truthOf(picture, what + ": truth", askedSize());
+        tellNotes(truth, what + ": truth");
         keepCommonOf(own, truth, what + " and its truth");
         recorder.image(picture.name, own.linear, {.stored = &own.stored});
         technique::ImageOptions options;
@@ -390,6 +401,7 @@ class External : public technique::Technique {
     bool isRecorded_ = false;                 // of this run a frame
     std::vector<GivenMetric> given_;          // in the last run
     std::map<std::string, Samples> samples_;  // by picture, a frame each
+    std::set<std::string> told_;              // warnings of pictures
     ProcessEnd end_;
     long long peakBytes_ = 0;
     double truthsS_ = 0.0;  // it took to make those that were not there

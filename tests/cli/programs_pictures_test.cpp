@@ -122,6 +122,23 @@ echo '{"metric": "render_ms", "value": '"$1.$3"', "unit": "ms"}' >>"$GFXREPRO_ME
 )";
 
 /// The whole file of a comparison: what nobody says comes without being asked for.
+TEST_F(PicturesOfPrograms, GammaOfAPngIsReadAndSaid) {
+    std::string png = image::encodePng(image::Image8(16, 12, 3, 51));
+    // Behind the header: a gamma of 1, so that the values are light.
+    png.insert(33, std::string("\0\0\0\x04gAMA\0\x01\x86\xA0\x31\xE8\x96\x5F", 16));
+    folder.write("light.png", png);
+    std::string truth = "P6 16 12 65535\n";
+    for (int i = 0; i < 16 * 12 * 3; ++i) truth += "\x7C\n";  // 31754: 0.2 in sRGB
+    folder.write("truth.ppm", truth);
+    ASSERT_EQ(run("light.png", "truth.ppm").exitCode, 0);
+    EXPECT_LT(rowsOf(dir, "mse").at(0).value, 1e-9);
+    EXPECT_THAT(readFile(dir + "/journal.jsonl"),
+                HasSubstr("warning: image 'result': its values are converted from a "
+                          "gamma of 1 to sRGB"));
+    EXPECT_EQ(gfxrepro({"image", "info", (folder.path() / "light.png").string()}).out,
+              "png 16x12, 3 channels, sRGB\nits values are converted from a gamma of 1 to sRGB\n");
+}
+
 TEST_F(PicturesOfPrograms, TwoPatternsAreComparedByAFewLines) {
     const auto script = folder.write("tracer.sh", kTracer);
     std::filesystem::permissions(script, std::filesystem::perms::owner_all);

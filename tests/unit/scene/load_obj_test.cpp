@@ -154,6 +154,21 @@ TEST_F(LoadObj, SaysWhichTexturesAndMaterialsAreMissing) {
                   "left out: the texture 'a.tga', which is neither PNG nor JPEG"}));
 }
 
+TEST_F(LoadObj, SaysWhichColoursOfTexturesAreNotRead) {
+    folder_.write("a.mtl", "newmtl a\nmap_Kd a.png\n");
+    const auto warnings = [&](const std::string& gamma) {
+        std::string png = image::encodePng(image::Image8(1, 1, 3));
+        // A chunk before the others: its length, its name, what it holds, a checksum.
+        png.insert(33, std::string("\0\0\0\x04", 4) + "gAMA" + gamma + std::string(4, '\0'));
+        folder_.write("a.png", png);
+        return load("mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\n").warnings;
+    };
+    EXPECT_EQ(warnings(std::string("\0\0\xB1\x8F", 4)), std::vector<std::string>{});
+    EXPECT_EQ(
+        warnings(std::string("\0\x01\x86\xA0", 4)),
+        std::vector<std::string>{"left out: the gamma, primaries or colour profile of a texture"});
+}
+
 TEST_F(LoadObj, ReadsWhatIsUnusual) {
     const float half = 0.5F;
     folder_.write("a.mtl", "newmtl a\nKd spectral red.rfl 1.0\nd -halo 0.5\n");

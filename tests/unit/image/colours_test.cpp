@@ -1,0 +1,242 @@
+// What files say of their colours and of how they are held, and what of it is said to be left out.
+#include <gtest/gtest.h>
+
+#include <stb/stb_image_write.h>
+#include <tiffio.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/core/files.h"
+#include "engine/image/image_file.h"
+#include "engine/image/png_io.h"
+#include "engine/image/srgb.h"
+#include "tests/support/support.h"
+
+namespace gfxrepro::image {
+namespace {
+
+using test::TemporaryFolder;
+using Lines = std::vector<std::string>;
+
+std::string bigWord(std::uint32_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xFF);
+    return bytes;
+}
+
+std::string bigWords(const std::vector<std::uint32_t>& values) {
+    std::string bytes;
+    for (const std::uint32_t value : values) bytes += bigWord(value);
+    return bytes;
+}
+
+/// PNG's checksum.
+std::uint32_t crcOf(const std::string& bytes) {
+    std::uint32_t crc = 0xFFFFFFFFU;
+    for (const char c : bytes) {
+        crc ^= static_cast<unsigned char>(c);
+        for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1U ? 0xEDB88320U : 0U);
+    }
+    return ~crc;
+}
+
+/// As zlib holds it, not compressed.
+std::string stored(const std::string& bytes) {
+    std::uint32_t a = 1, b = 0;
+    for (const char c : bytes) {
+        a = (a + static_cast<unsigned char>(c)) % 65521;
+        b = (b + a) % 65521;
+    }
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    std::string result("\x78\x01\x01", 3);
+    for (const std::uint32_t length : {size, ~size}) {
+        result += static_cast<char>(length & 0xFF);
+        result += static_cast<char>(length >> 8 & 0xFF);
+    }
+    return result + bytes + bigWord(b << 16 | a);
+}
+
+/// A profile (ICC) that has its description alone.
+std::string profileOf(std::string description) {
+    description = "desc" + std::string(4, '\0') + bigWord(40) + description;
+    description.resize(52);
+    std::string profile(128, '\0');
+    profile.replace(0, 4, bigWord(144 + 52));
+    profile.replace(8, 4, bigWord(0x02100000));
+    profile.replace(12, 12, "mntrRGB XYZ ");
+    profile.replace(36, 4, "acsp");
+    profile.replace(68, 12, bigWords({0xF6D6, 0x10000, 0xD32D}));
+    return profile + bigWord(1) + "desc" + bigWord(144) + bigWord(52) + description;
+}
+
+class ColoursOfFiles : public testing::Test {
+  protected:
+    using Chunks = std::vector<std::pair<std::string, std::string>>;
+
+    /// One row of these values, with chunks before its palette.
+    Picture png(const Image8& image, const Chunks& chunks) const {
+        std::string file = encodePng(image);
+        std::size_t at = 33;  // behind the signature and the header
+        for (const auto& [name, content] : chunks) {
+            const std::string chunk = bigWord(static_cast<std::uint32_t>(content.size())) + name +
+                                      content + bigWord(crcOf(name + content));
+            file.insert(at, chunk);
+            at += chunk.size();
+        }
+        return readPicture(folder_.write("a.png", file));
+    }
+    static Image8 row(const std::vector<std::uint8_t>& values, int channels) {
+        Image8 image(static_cast<int>(values.size()) / channels, 1, channels);
+        std::copy(values.begin(), values.end(), image.values().begin());
+        return image;
+    }
+
+    TemporaryFolder folder_;
+    const std::pair<std::string, std::string> gammaOf1_{"gAMA", bigWord(100000)};
+    const std::pair<std::string, std::string> displayP3_{
+        "cHRM", bigWords({31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000})};
+    const Lines converted_{"its values are converted from a gamma of 1 to sRGB"};
+};
+
+TEST_F(ColoursOfFiles, GammaOfPng) {
+    const Picture plain = png(row({51, 102, 255}, 3), {{"gAMA", bigWord(45455)}});
+    EXPECT_EQ(plain.stored.at(0, 0, 0), 51.0F / 255.0F);
+    EXPECT_EQ(plain.bits, 8);
+    EXPECT_EQ(plain.notes, Lines{});
+    const Picture light = png(row({51, 102, 255}, 3), {gammaOf1_});
+    EXPECT_FALSE(light.isLinear);
+    EXPECT_EQ(light.bits, 16);
+    EXPECT_NEAR(light.linear.at(0, 0, 0), 0.2F, 1e-5F);
+    EXPECT_NEAR(light.linear.at(0, 0, 1), 0.4F, 1e-5F);
+    EXPECT_NEAR(light.linear.at(0, 0, 2), 1.0F, 1e-6F);
+    EXPECT_NEAR(light.stored.at(0, 0, 0), srgbOf(0.2F), 1e-6F);
+    EXPECT_EQ(light.notes, converted_);
+    // Alpha is no light; grey has gamma, too.
+    const Picture grey = png(row({51, 51}, 2), {{"gAMA", bigWord(50000)}});
+    EXPECT_NEAR(grey.stored.at(0, 0, 0), srgbOf(0.04F), 1e-6F);
+    EXPECT_EQ(grey.stored.at(0, 0, 1), 0.2F);
+    EXPECT_EQ(png(row({9}, 1), {{"gAMA", bigWord(0)}}).notes, Lines{"left out: its gamma of 0"});
+}
+
+TEST_F(ColoursOfFiles, PrimariesOfPng) {
+    const Picture same =
+        png(row({9, 99, 200}, 3),
+            {{"cHRM", bigWords({31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000})}});
+    EXPECT_EQ(same.stored.at(0, 0, 2), 200.0F / 255.0F);
+    EXPECT_EQ(same.notes, Lines{});
+    const Picture wide = png(row({128, 51, 51, 90, 90, 90, 255, 0, 0}, 3), {gammaOf1_, displayP3_});
+    // Display P3 to sRGB: 1.2249 −0.2247 0 | −0.0420 1.0419 0 | −0.0197 −0.0786 1.0979
+    EXPECT_NEAR(wide.linear.at(0, 0, 0), 0.5699F, 1e-3F);
+    EXPECT_NEAR(wide.linear.at(0, 0, 1), 0.1873F, 1e-3F);
+    EXPECT_NEAR(wide.linear.at(0, 0, 2), 0.1940F, 1e-3F);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(wide.linear.at(1, 0, c), 90.0F / 255.0F, 1e-4F);
+    EXPECT_NEAR(wide.linear.at(2, 0, 0), 1.0F, 1e-6F);
+    EXPECT_EQ(wide.linear.at(2, 0, 1), 0.0F);
+    EXPECT_EQ(
+        wide.notes,
+        (Lines{converted_[0], "R, G, B are converted from its chromaticities to those of Rec. 709",
+               "1 pixels have colours beyond Rec. 709, which are cut"}));
+}
+
+TEST_F(ColoursOfFiles, PrecedenceOfPng) {
+    const Image8 image = row({51, 102, 255}, 3);
+    const auto profileChunk = [](const std::string& description) {
+        return std::pair<std::string, std::string>(
+            "iCCP", "a name" + std::string(2, '\0') + stored(profileOf(description)));
+    };
+    const auto first = [&](const Chunks& chunks) { return png(image, chunks).linear.at(0, 0, 0); };
+    const float asSrgb = linearOf(0.2F);
+    EXPECT_EQ(first({gammaOf1_, displayP3_, {"sRGB", std::string(1, '\0')}}), asSrgb);
+    EXPECT_EQ(first({gammaOf1_, profileChunk("sRGB IEC61966-2.1")}), asSrgb);
+    EXPECT_EQ(first({gammaOf1_, {"cICP", std::string("\1\x0d\0\1", 4)}}), asSrgb);
+    // What the values are beside a profile that is not read is in gAMA.
+    const Picture other = png(image, {gammaOf1_, profileChunk("Adobe RGB (1998)")});
+    EXPECT_NEAR(other.linear.at(0, 0, 0), 0.2F, 1e-5F);
+    EXPECT_EQ(other.notes, (Lines{"left out: its colour profile", converted_[0]}));
+    EXPECT_EQ(png(image, {profileChunk("Linear sRGB")}).notes,
+              Lines{"left out: its colour profile"});
+    EXPECT_EQ(png(image, {{"cICP", std::string("\x09\x10\0\1", 4)}}).notes,
+              Lines{"left out: its colour space (chunk cICP)"});
+    EXPECT_EQ(png(image, {{"acTL", bigWords({2, 0})}}).notes,
+              Lines{"left out: all but its first frame"});
+}
+
+TEST_F(ColoursOfFiles, PngIsTurnedAsItsExifSays) {
+    const std::string exif("II*\0\x08\0\0\0\1\0\x12\1\3\0\1\0\0\0\3\0\0\0\0\0\0\0", 26);
+    EXPECT_EQ(png(row({1, 2, 3}, 1), {{"eXIf", exif}}).stored.at(0, 0), 3.0F / 255.0F);
+}
+
+TEST_F(ColoursOfFiles, ProfilesOfJpegAndTiff) {
+    const std::string jpeg = folder_.path() / "a.jpg", tiff = folder_.path() / "a.tif";
+    const std::array<std::uint8_t, 3> pixel{10, 20, 30};
+    stbi_write_jpg(jpeg.c_str(), 1, 1, 3, pixel.data(), 100);
+    const auto notesOfJpeg = [&](const std::string& description) {
+        const std::string segment =
+            "ICC_PROFILE" + std::string("\0\1\1", 3) + profileOf(description);
+        std::string file = readFile(jpeg);
+        file.insert(2, "\xFF\xE2" +
+                           bigWord(static_cast<std::uint32_t>(segment.size()) + 2).substr(2) +
+                           segment);
+        return readPicture(folder_.write("b.jpg", file)).notes;
+    };
+    EXPECT_EQ(notesOfJpeg("sRGB built-in"), Lines{});
+    EXPECT_EQ(notesOfJpeg("Display P3"), Lines{"left out: its colour profile"});
+    const auto notesOfTiff = [&](const std::string& description,
+                                 const std::vector<float>& primaries) {
+        TIFF* file = TIFFOpen(tiff.c_str(), "w");
+        TIFFSetField(file, TIFFTAG_IMAGEWIDTH, 1);
+        TIFFSetField(file, TIFFTAG_IMAGELENGTH, 1);
+        TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, 8);
+        TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, 3);
+        TIFFSetField(file, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
+        TIFFSetField(file, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+        const std::string profile = profileOf(description);
+        if (!description.empty()) {
+            TIFFSetField(file, TIFFTAG_ICCPROFILE, static_cast<std::uint32_t>(profile.size()),
+                         profile.data());
+        }
+        if (!primaries.empty()) {
+            TIFFSetField(file, TIFFTAG_PRIMARYCHROMATICITIES, primaries.data());
+        }
+        std::array<std::uint8_t, 3> row = pixel;
+        TIFFWriteScanline(file, row.data(), 0, 0);
+        TIFFClose(file);
+        return readPicture(tiff).notes;
+    };
+    EXPECT_EQ(notesOfTiff("", {}), Lines{});
+    EXPECT_EQ(notesOfTiff("sRGB", {}), Lines{});
+    EXPECT_EQ(notesOfTiff("Display P3", {}), Lines{"left out: its colour profile"});
+    EXPECT_EQ(notesOfTiff("", {0.64F, 0.33F, 0.3F, 0.6F, 0.15F, 0.06F}), Lines{});
+    EXPECT_EQ(notesOfTiff("", {0.68F, 0.32F, 0.265F, 0.69F, 0.15F, 0.06F}),
+              Lines{"left out: its chromaticities"});
+}
+
+TEST_F(ColoursOfFiles, GammaOfHdrAndTga) {
+    const std::string pixel("\x80\x80\x80\x81", 4);
+    const auto notesOfHdr = [&](const std::string& line) {
+        return readPicture(
+                   folder_.write("a.hdr", "#?RADIANCE\n" + line + "\n\n-Y 1 +X 1\n" + pixel))
+            .notes;
+    };
+    EXPECT_EQ(notesOfHdr("VIEW= -vp 0 0 0"), Lines{});
+    EXPECT_EQ(notesOfHdr("GAMMA=1.0"), Lines{});
+    EXPECT_EQ(notesOfHdr("GAMMA=2.2"), Lines{"left out: GAMMA=2.2"});
+    EXPECT_EQ(notesOfHdr("PIXASPECT=2"), Lines{"left out: PIXASPECT=2"});
+    std::string tga("\0\0\3\0\0\0\0\0\0\0\0\0\1\0\1\0\x08\0\x7F", 19);
+    std::string area(495, '\0');
+    area[478] = 22, area[480] = 10;
+    const auto footer = [](char at) {
+        return std::string(1, at) + std::string(7, '\0') + "TRUEVISION-XFILE." + '\0';
+    };
+    EXPECT_EQ(readPicture(folder_.write("a.tga", tga + footer(0))).notes, Lines{});
+    EXPECT_EQ(readPicture(folder_.write("a.tga", tga + area + footer(19))).notes,
+              Lines{"left out: its gamma"});
+}
+
+}  // namespace
+}  // namespace gfxrepro::image
