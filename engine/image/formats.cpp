@@ -62,25 +62,37 @@ class Bytes {
     }
     /// Between blanks, behind comments of '#'; one blank behind it is taken, too.
     std::string word() {
+        skipBlanks();
         std::string text;
-        while (true) {
+        do {
             const int c = byte();
-            if (c == '#' && text.empty()) {
-                line();
-            } else if (std::string_view(" \t\r\n").find(static_cast<char>(c)) ==
-                       std::string_view::npos) {
-                text += static_cast<char>(c);
-            } else if (!text.empty()) {
-                isReturn_ = c == '\r';
-                return text;
-            }
+            isReturn_ = c == '\r';
+            if (isBlank(c)) return text;
+            text += static_cast<char>(c);
+        } while (!rest_.empty());
+        return text;
+    }
+    /// Of text: bits need no blanks between them.
+    int bit() {
+        skipBlanks();
+        const int value = byte() - '0';
+        if (value != 0 && value != 1) fail("a bit is neither 0 nor 1");
+        return value;
+    }
+    /// Blanks, and comments of '#' up to their lines' ends.
+    void skipBlanks() {
+        while (!rest_.empty()) {
+            const int c = std::to_integer<int>(rest_[0]);
+            if (c != '#' && !isBlank(c)) return;
+            do take(1);
+            while (c == '#' && !rest_.empty() && rest_[0] != std::byte{'\n'});
         }
     }
     int number() {
         const std::string text = word();
         const auto value = parseInteger(text);
         if (!value || *value < 0 || *value > std::numeric_limits<int>::max()) {
-            fail("its header has '" + text + "' where a number is allowed");
+            fail("has '" + text + "' where a number is allowed");
         }
         return static_cast<int>(*value);
     }
@@ -94,6 +106,8 @@ class Bytes {
     }
 
   private:
+    static bool isBlank(int c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
     std::span<const std::byte> rest_;
     std::size_t size_;
     const std::string& name_;
@@ -287,23 +301,37 @@ Decoded decodeNetpbm(std::span<const std::byte> bytes, const std::string& name) 
     Bytes file(bytes, name);
     const std::string kind = file.word();
     if (kind == "PF" || kind == "Pf") return floatsOfPfm(file, kind == "PF" ? 3 : 1);
-    if (kind != "P5" && kind != "P6") {
-        file.fail("a file of kind " + kind + "; P5, P6, Pf and PF are read");
+    const int number = kind.size() == 2 && kind[0] == 'P' ? kind[1] - '0' : 0;
+    if (number < 1 || number > 6) {
+        file.fail("a file of kind " + kind + "; P1 to P6, Pf and PF are read");
     }
-    const int width = file.number(), height = file.number(), most = file.number();
+    const bool isText = number <= 3, isBits = number % 3 == 1;  // 1 is black
+    const int channels = number % 3 == 0 ? 3 : 1;
+    const int width = file.number(), height = file.number(), most = isBits ? 1 : file.number();
     if (most < 1 || most > 65535) {
         file.fail(fmt::format("its largest value is {}; 1 to 65535 are allowed", most));
     }
-    const std::size_t valueBytes = most < 256 ? 1 : 2;
-    const int channels = kind == "P6" ? 3 : 1;
     file.checkSize(width, height, static_cast<std::size_t>(channels) * sizeof(float));
     Decoded result{ImageF(width, height, channels), false, most < 256 ? 8 : 16};
-    const auto raster = file.raster(result.values.values().size() * valueBytes);
-    for (std::size_t i = 0; i < result.values.values().size(); ++i) {
-        int value = std::to_integer<int>(raster[i * valueBytes]);
-        if (valueBytes == 2) value = 256 * value + std::to_integer<int>(raster[2 * i + 1]);
+    const auto values = result.values.values();
+    const std::size_t valueBytes = most < 256 ? 1 : 2;
+    const std::size_t rowBytes = (static_cast<std::size_t>(width) + 7) / 8;  // of bits
+    const Part raster = isText   ? Part()
+                        : isBits ? file.raster(rowBytes * static_cast<std::size_t>(height))
+                                 : file.raster(values.size() * valueBytes);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        int value = 0;
+        if (isText) {
+            value = isBits ? file.bit() : file.number();
+        } else if (isBits) {
+            const std::size_t x = i % static_cast<std::size_t>(width);
+            const std::size_t row = i / static_cast<std::size_t>(width);
+            value = std::to_integer<int>(raster[row * rowBytes + x / 8]) >> (7 - x % 8) & 1;
+        } else {
+            value = static_cast<int>(numberAt(raster, i * valueBytes, valueBytes, false));
+        }
         if (value > most) file.fail(fmt::format("holds {}, its largest value is {}", value, most));
-        result.values.values()[i] = static_cast<float>(value) / static_cast<float>(most);
+        values[i] = static_cast<float>(isBits ? 1 - value : value) / static_cast<float>(most);
     }
     if (!file.rest().empty() && file.rest()[0] == std::byte{'P'}) {
         file.fail("has several pictures; one is allowed");

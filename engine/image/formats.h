@@ -45,7 +45,7 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name,
 
 /// sRGB of 8 bits. A file that ends early is refused.
 Decoded decodeJpeg(std::span<const std::byte> bytes, const std::string& name);
-/// sRGB: binary PGM and PPM of up to 16 bits. Linear: PFM, rows from the bottom.
+/// sRGB: PBM, PGM and PPM, in text or binary, of up to 16 bits. Linear: PFM, rows from the bottom.
 Decoded decodeNetpbm(std::span<const std::byte> bytes, const std::string& name);
 /// Radiance's HDR, linear: divided by its EXPOSURE and COLORCORR.
 Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name);

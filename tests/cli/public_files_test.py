@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 MODELS = {".glb", ".gltf", ".hgt", ".obj", ".off", ".ply", ".stl", ".tif", ".tiff"}
-PICTURES = {".exr", ".hdr", ".jpeg", ".jpg", ".pfm", ".pgm", ".png", ".pnm", ".ppm", ".tga", ".tif", ".tiff"}
+PICTURES = {".exr", ".hdr", ".jpeg", ".jpg", ".pbm", ".pfm", ".pgm", ".png", ".pnm", ".ppm", ".tga", ".tif", ".tiff"}
 OUTCOMES = ("read", "warned", "refused", "crashed", "hung")
 LIMIT_S = 60
 REFUSED = 2  # the exit code of what is wrong with a file

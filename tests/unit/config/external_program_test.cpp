@@ -337,12 +337,12 @@ TEST(ExternalProgram, RefusesWhatItCouldNotTake) {
               "c.yaml:2:11: program: metric 'm' needs 'unit'; \"1\" for none");
     EXPECT_EQ(errorOf("command: t\nimages: {r: r.gif}"),
               "c.yaml:2:13: program: image 'r': file is r.gif; allowed: a name that ends in one of "
-              ".exr, .png, .pfm, .hdr, .pgm, .ppm, .pnm, .tga, .tif, .tiff, .jpg, .jpeg");
+              ".exr, .png, .pfm, .hdr, .pbm, .pgm, .ppm, .pnm, .tga, .tif, .tiff, .jpg, .jpeg");
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: a.png}\nimages: {r: \"{n}\"}"), "no error");
     EXPECT_EQ(
         errorOf("command: t\nimages: {r: {file: r.png, truth: t.gif}}"),
         "c.yaml:2:34: program: image 'r': truth is t.gif; allowed: a name that ends in one of "
-        ".exr, .png, .pfm, .hdr, .pgm, .ppm, .pnm, .tga, .tif, .tiff, .jpg, .jpeg");
+        ".exr, .png, .pfm, .hdr, .pbm, .pgm, .ppm, .pnm, .tga, .tif, .tiff, .jpg, .jpeg");
     EXPECT_EQ(errorOf("command: t\nimages: {r: {file: r.png, truth: {}}}"),
               "c.yaml:2:34: program: image 'r': truth is {}; allowed: a file, or parameters that "
               "are not the case's");
