@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "engine/scene/scene.h"
@@ -110,7 +111,7 @@ inline glm::dvec3 distantMiddle(const Box& box) {
     return middle;
 }
 
-/// The places that vertices and points have, each counted once in a mesh.
+/// The places in the world that vertices and points have, each counted once in an instance.
 inline std::size_t differentPlaces(const Scene& scene) {
     const auto count = [](std::vector<glm::vec3> places) {
         std::ranges::sort(places, [](const glm::vec3& a, const glm::vec3& b) {
@@ -119,7 +120,11 @@ inline std::size_t differentPlaces(const Scene& scene) {
         return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
     };
     std::size_t sum = count(scene.points.positions);
-    for (const Mesh& mesh : scene.meshes) sum += count(mesh.positions);
+    for (const Instance& instance : scene.instances) {
+        std::vector<glm::vec3> places = scene.meshes[instance.mesh].positions;
+        for (glm::vec3& place : places) place = instance.worldFromMesh * glm::vec4(place, 1.0F);
+        sum += count(std::move(places));
+    }
     return sum;
 }
 

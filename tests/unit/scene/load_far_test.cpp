@@ -70,6 +70,32 @@ TEST_F(FarFiles, NodesFarAwayKeepTheirDistance) {
     EXPECT_EQ(scene.offset, glm::dvec3(500'001, 4'500'001, 0));
 }
 
+/// Vertices 0.01 mm apart in a mesh that its node puts 2000 m away, where a float's step is 0.12
+/// mm.
+TEST_F(FarFiles, VerticesThatANodeWouldJoinKeepTheirPlaces) {
+    folder.write("square.bin", squareBytes());
+    const auto at = [&](const char* scale) {
+        Document document = square();
+        document["nodes"] = fmt::format(
+            R"([{{"translation":[2000,0,0],"children":[1,2]}},{{"mesh":0,"scale":[{},1,1]}},
+                {{"mesh":0,"translation":[3,0,0]}}])",
+            scale);
+        document["scenes"] = R"([{"nodes":[0]}])";
+        return loadGltf(folder.write("a.gltf", text(document)));
+    };
+    const auto width = [](const Scene& scene) {
+        const glm::mat4& m = scene.instances.at(0).worldFromMesh;
+        return (m * glm::vec4(1, 0, 0, 1)).x - (m * glm::vec4(0, 0, 0, 1)).x;
+    };
+    const Scene fine = at("0.00001");
+    EXPECT_NEAR(width(fine), 1e-5F, 3e-7F);
+    EXPECT_EQ(fine.offset, glm::dvec3(2002, 0, 0));
+    EXPECT_EQ(fine.warnings.size(), 1U);
+    const Scene coarse = at("0.5");
+    EXPECT_EQ(coarse.offset, glm::dvec3(0.0));
+    EXPECT_TRUE(coarse.warnings.empty());
+}
+
 TEST_F(FarFiles, OthersStayAsTheyAre) {
     // A knob of 1 cm among the files of a room.
     const std::string face = "\nv 20.01 0 0\nv 20 0.01 0\nf 1 2 3\n";
