@@ -148,10 +148,7 @@ class ObjParser {
     float coordinate(int axis) {
         const double offset = offset_[axis];
         const double value = offset != 0.0 ? lines_.number<double>() : double{lines_.number()};
-        if (std::abs(value) > double{kMaxCoordinate}) {
-            lines_.fail(fmt::format("a coordinate is {:g}; {:g} to {:g} are allowed", value,
-                                    -kMaxCoordinate, kMaxCoordinate));
-        }
+        requireNear(value, [&](const std::string& problem) { lines_.fail(problem); });
         return static_cast<float>(value - offset);
     }
 

@@ -38,15 +38,7 @@ class OffParser {
         leftOut.add("the alpha of a vertex's colour", alphas_);
         leftOut.add("the colour of a face", faceColours_);
         leftOut.add("a line behind the last face", linesBehind);
-        Scene scene;
-        if (mesh_.triangles.empty()) {
-            leftOut.add("the texture coordinates of a point", mesh_.texcoords.size());
-            scene.points = {
-                std::move(mesh_.positions), std::move(mesh_.normals), {}, std::move(mesh_.colors)};
-        } else {
-            leftOut.add("a vertex that no face uses", dropUnusedVertices(mesh_));
-            scene = sceneOf(std::move(mesh_));
-        }
+        Scene scene = sceneOfVertices(std::move(mesh_), leftOut);
         scene.warnings = std::move(warnings);
         leftOut.tell(scene.warnings);
         return scene;

@@ -205,10 +205,7 @@ bool changesNothing(const Property& property) {
 }
 
 struct Vertices {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;
-    std::vector<glm::vec3> colors;
-    std::vector<glm::vec2> texcoords;
+    Mesh mesh;  // without triangles
     std::vector<float> radii;
     std::vector<std::string> warnings;
 };
@@ -261,26 +258,27 @@ class VertexParser {
 
     Vertices parse(bool hasLinearColours) {
         Vertices vertices;
+        Mesh& mesh = vertices.mesh;
         const bool normals = hasAll({kNx, kNy, kNz});
         const bool colors = hasAll({kRed, kGreen, kBlue});
         const bool texcoords = hasAll({kU, kV});
         const bool radii = hasAll({kRadius});
-        vertices.positions.reserve(element_.count);
-        if (normals) vertices.normals.reserve(element_.count);
-        if (colors) vertices.colors.reserve(element_.count);
-        if (texcoords) vertices.texcoords.reserve(element_.count);
+        mesh.positions.reserve(element_.count);
+        if (normals) mesh.normals.reserve(element_.count);
+        if (colors) mesh.colors.reserve(element_.count);
+        if (texcoords) mesh.texcoords.reserve(element_.count);
         if (radii) vertices.radii.reserve(element_.count);
         std::uint64_t& number = reader_.row.number;
         for (number = 0; number < element_.count; ++number) {
             readRow();
-            vertices.positions.push_back({row_[kX], row_[kY], row_[kZ]});
-            if (normals) vertices.normals.push_back(unitNormal({row_[kNx], row_[kNy], row_[kNz]}));
-            if (colors) vertices.colors.push_back({row_[kRed], row_[kGreen], row_[kBlue]});
-            if (texcoords) vertices.texcoords.push_back({row_[kU], row_[kV]});
+            mesh.positions.push_back({row_[kX], row_[kY], row_[kZ]});
+            if (normals) mesh.normals.push_back(unitNormal({row_[kNx], row_[kNy], row_[kNz]}));
+            if (colors) mesh.colors.push_back({row_[kRed], row_[kGreen], row_[kBlue]});
+            if (texcoords) mesh.texcoords.push_back({row_[kU], row_[kV]});
             if (radii) vertices.radii.push_back(row_[kRadius]);
         }
         if (!areBytes_) takePartsOfWhole(vertices);
-        if (!areBytes_ && !hasLinearColours) makeLinear(vertices.colors, vertices.warnings);
+        if (!areBytes_ && !hasLinearColours) makeLinear(mesh.colors, vertices.warnings);
         return vertices;
     }
 
@@ -290,7 +288,8 @@ class VertexParser {
         double largest = 0.0, taken = 0.0;
         for (int c = 0; c < 3; ++c) {
             if (!maximumOf(colourTypes_[c])) continue;
-            for (const glm::vec3& v : vertices.colors) largest = std::max(largest, double{v[c]});
+            for (const glm::vec3& v : vertices.mesh.colors)
+                largest = std::max(largest, double{v[c]});
         }
         for (int c = 0; c < 3; ++c) {
             const std::optional<double> maximum = maximumOf(colourTypes_[c]);
@@ -298,7 +297,8 @@ class VertexParser {
             const double stored = largest <= 255.0 ? 255.0 : 65535.0;
             const double whole = largest <= stored ? std::min(*maximum, stored) : *maximum;
             if (whole < *maximum) taken = whole;
-            for (glm::vec3& v : vertices.colors) v[c] = static_cast<float>(double{v[c]} / whole);
+            for (glm::vec3& v : vertices.mesh.colors)
+                v[c] = static_cast<float>(double{v[c]} / whole);
         }
         if (taken == 0.0 || largest == 0.0) return;
         vertices.warnings.push_back(fmt::format(
@@ -346,9 +346,9 @@ class VertexParser {
             reader_.fail(property.name + " is " + std::to_string(number) +
                          "; finite numbers in the range of float are allowed");
         }
-        if ((isPosition || slot == kRadius) && std::abs(number) > double{kMaxCoordinate}) {
-            reader_.fail(fmt::format("{} is {:g}; {:g} to {:g} are allowed", property.name, number,
-                                     -kMaxCoordinate, kMaxCoordinate));
+        if (isPosition || slot == kRadius) {
+            requireNear(
+                number, [&](const std::string& problem) { reader_.fail(problem); }, property.name);
         }
         return value;
     }
@@ -519,26 +519,17 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file,
     }
     leftOut.add(Reader::kIsAscii ? "a line behind the last row" : "a byte behind the last row",
                 reader.unread());
-    if (vertices.positions.empty()) {
+    Mesh& mesh = vertices.mesh;
+    if (mesh.positions.empty()) {
         throw Error({file, vertexElement->line, 0}, "element 'vertex' lacks x, y or z");
     }
-    fillPolygons(faces, vertices.positions, leftOut);
-    Scene scene;
-    if (faces.triangles.empty()) {
-        leftOut.add("the texture coordinates of a point", vertices.texcoords.size());
-        scene.points = {std::move(vertices.positions), std::move(vertices.normals),
-                        std::move(vertices.radii), std::move(vertices.colors)};
-    } else {
+    fillPolygons(faces, mesh.positions, leftOut);
+    mesh.triangles = std::move(faces.triangles);
+    if (!mesh.triangles.empty()) {
         leftOut.add("the radius of a vertex with faces", vertices.radii.size());
-        Mesh mesh;
-        mesh.triangles = std::move(faces.triangles);
-        mesh.positions = std::move(vertices.positions);
-        mesh.normals = std::move(vertices.normals);
-        mesh.texcoords = std::move(vertices.texcoords);
-        mesh.colors = std::move(vertices.colors);
-        leftOut.add("a vertex that no face uses", dropUnusedVertices(mesh));
-        scene = sceneOf(std::move(mesh));
     }
+    Scene scene = sceneOfVertices(std::move(mesh), leftOut);
+    if (scene.meshes.empty()) scene.points.radii = std::move(vertices.radii);
     scene.warnings = std::move(vertices.warnings);
     return scene;
 }

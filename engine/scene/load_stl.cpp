@@ -16,6 +16,7 @@
 #include "engine/scene/left_out.h"
 #include "engine/scene/load.h"
 #include "engine/scene/load_lines.h"
+#include "engine/scene/load_text.h"
 
 namespace gfxrepro::scene {
 namespace {
@@ -67,11 +68,10 @@ Mesh binaryMesh(std::string_view bytes, const std::string& file, const glm::dvec
         for (int i = 0; i < 3; ++i) {
             const glm::dvec3 corner(facet[static_cast<std::size_t>(i) + 1]);
             for (int axis = 0; axis < 3; ++axis) {
-                if (std::abs(corner[axis]) <= double{kMaxCoordinate}) continue;
-                throw Error(fmt::format(
-                    "{}: facet {}: a coordinate is {:g}; {:g} to {:g} are "
-                    "allowed",
-                    file, mesh.triangles.size(), corner[axis], -kMaxCoordinate, kMaxCoordinate));
+                requireNear(corner[axis], [&](const std::string& problem) {
+                    throw Error(
+                        fmt::format("{}: facet {}: {}", file, mesh.triangles.size(), problem));
+                });
             }
             triangle[i] = addCorner(mesh, corner - offset);
         }
@@ -95,9 +95,8 @@ Mesh textMesh(std::string_view text, const std::string& file, const glm::dvec3& 
                 glm::dvec3 position;
                 for (int axis = 0; axis < 3; ++axis) {
                     position[axis] = lines.number<double>();
-                    if (std::abs(position[axis]) <= double{kMaxCoordinate}) continue;
-                    lines.fail(fmt::format("a coordinate is {:g}; {:g} to {:g} are allowed",
-                                           position[axis], -kMaxCoordinate, kMaxCoordinate));
+                    requireNear(position[axis],
+                                [&](const std::string& problem) { lines.fail(problem); });
                 }
                 addCorner(mesh, position - offset);
                 ++corners;

@@ -15,7 +15,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/scene/left_out.h"
+#include "engine/scene/load.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/topology.h"
 
 namespace gfxrepro::scene {
 
@@ -83,6 +86,14 @@ inline void makeLinear(std::vector<glm::vec3>& colors, std::vector<std::string>&
     }
 }
 
+/// Calls `fail` with a message where a coordinate is not within ±kMaxCoordinate.
+template <class Fail>
+void requireNear(double value, const Fail& fail, std::string_view name = "a coordinate") {
+    if (std::abs(value) <= double{kMaxCoordinate}) return;
+    fail(fmt::format("{} is {:g}; {:g} to {:g} are allowed", name, value, -kMaxCoordinate,
+                     kMaxCoordinate));
+}
+
 inline bool isFinite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -94,6 +105,18 @@ inline glm::vec3 unitNormal(const glm::vec3& normal) {
     if (std::abs(squaredLength - 1.0F) < 1e-4F) return normal;
     const glm::vec3 unit = normal / std::sqrt(squaredLength);
     return isFinite(unit) ? unit : glm::vec3(0.0F);
+}
+
+/// Of a file's vertices: points where it has no triangles, else a mesh of those that these use.
+inline Scene sceneOfVertices(Mesh mesh, LeftOut& leftOut) {
+    if (!mesh.triangles.empty()) {
+        leftOut.add("a vertex that no face uses", dropUnusedVertices(mesh));
+        return sceneOf(std::move(mesh));
+    }
+    leftOut.add("the texture coordinates of a point", mesh.texcoords.size());
+    Scene scene;
+    scene.points = {std::move(mesh.positions), std::move(mesh.normals), {}, std::move(mesh.colors)};
+    return scene;
 }
 
 /// The middle of the box in round numbers, along each axis on which it lies farther from 0 than 64
