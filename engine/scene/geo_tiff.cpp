@@ -70,12 +70,6 @@ class Keys {
     const std::string& file_;
 };
 
-std::optional<float> floatIn(const std::string& text) {
-    char* end = nullptr;
-    const float value = std::strtof(text.c_str(), &end);
-    return end != text.c_str() ? std::optional(value) : std::nullopt;
-}
-
 /// The text of the item with this role; empty where there is none.
 std::string itemOf(const std::string& metadata, std::string_view role) {
     const std::size_t at = metadata.find(fmt::format("role=\"{}\"", role));
@@ -100,17 +94,24 @@ double heightUnitM(const GeoTags& tags, const Keys& keys, const std::string& fil
     throw Error(fmt::format("{}: its heights are in '{}'; allowed: m, ft, us-ft", file, unit));
 }
 
-/// How far samples stand apart, in units of the model; none where the file does not say it.
-std::optional<double> stepOf(const GeoTags& tags, bool isGeographic, const std::string& file) {
+/// How far samples stand apart along x and y, in units of the model; none where the file does not
+/// say it.
+std::optional<glm::dvec2> stepOf(const GeoTags& tags, bool isGeographic, const std::string& file) {
     double x = 0.0, y = 0.0, skew = 0.0;
+    bool isMirrored = false;  // rows go down: south
     if (tags.pixelScale.size() >= 2) {
         x = std::abs(tags.pixelScale[0]);
         y = std::abs(tags.pixelScale[1]);
+        isMirrored = tags.pixelScale[0] * tags.pixelScale[1] < 0.0;
     } else if (tags.transform.size() >= 6) {
         const std::vector<double>& m = tags.transform;
         x = std::hypot(m[0], m[4]);
         y = std::hypot(m[1], m[5]);
         skew = std::abs(m[0] * m[1] + m[4] * m[5]);
+        isMirrored = m[0] * m[5] - m[1] * m[4] > 0.0;
+    }
+    if (isMirrored) {
+        throw Error(file + ": its rows go north; allowed: from west to east and north to south");
     }
     if (!(y > 0.0) || !std::isfinite(y)) return std::nullopt;
     constexpr double kRounding = 1e-3;
@@ -120,10 +121,24 @@ std::optional<double> stepOf(const GeoTags& tags, bool isGeographic, const std::
                         "allowed: the same, on squares",
                         file, x, y, skew > kRounding * y * y ? ", askew" : ""));
     }
-    return y;
+    return glm::dvec2(x, y);
+}
+
+/// Of the middle of a geographic map; 0 where the file does not say where it lies.
+double latitudeDeg(const GeoTags& tags, double step) {
+    const glm::dvec2 middle = 0.5 * glm::dvec2(tags.sizeSamples);
+    const std::vector<double>&m = tags.transform, &t = tags.tiepoint;
+    if (t.size() >= 6) return t[4] - (middle.y - t[1]) * step;
+    return m.size() >= 8 ? m[4] * middle.x + m[5] * middle.y + m[7] : 0.0;
 }
 
 }  // namespace
+
+std::optional<float> floatIn(const std::string& text) {
+    char* end = nullptr;
+    const float value = std::strtof(text.c_str(), &end);
+    return end != text.c_str() ? std::optional(value) : std::nullopt;
+}
 
 GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
     const Keys keys(tags, file);
@@ -138,12 +153,24 @@ GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
     units.scale = static_cast<float>(units.scale * heightM);
     units.offset = static_cast<float>(units.offset * heightM);
     const bool isGeographic = keys.find(kModelType) == kGeographic;
-    if (const std::optional<double> step = stepOf(tags, isGeographic, file)) {
+    if (const std::optional<glm::dvec2> step = stepOf(tags, isGeographic, file)) {
         const double unitM = isGeographic ? keys.metresOfDegrees() : keys.metresOf(kLinearUnit);
-        const auto spacing = static_cast<float>(*step * unitM);
+        if (isGeographic) {
+            const double east = std::cos(glm::radians(latitudeDeg(tags, step->y)));
+            units.warning = unevenSpacing(step->x * unitM * east, step->y * unitM);
+        }
+        const auto spacing = static_cast<float>(step->y * unitM);
         if (spacing > 0.0F && std::isfinite(spacing)) units.spacingM = spacing;
     }
     return units;
+}
+
+std::string unevenSpacing(double eastM, double northM) {
+    if (std::abs(eastM - northM) < 0.01 * northM) return "";
+    return fmt::format(
+        "its samples stand {:.4g} m apart from west to east in its middle and {:.4g} m from north "
+        "to south; both are drawn {:.4g} m apart",
+        eastM, northM, northM);
 }
 
 }  // namespace gfxrepro::scene

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct GeoTags {
     std::vector<double> transform;    // 34264: 4 x 4, rows first
     std::vector<std::uint16_t> keys;  // 34735
     std::vector<double> keyDoubles;   // 34736
+    std::vector<double> tiepoint;     // 33922: i, j, k of a sample, x, y, z of the model
+    glm::ivec2 sizeSamples{0};
 };
 
 /// height in metres = value · scale + offset.
@@ -25,10 +28,18 @@ struct GeoUnits {
     float scale = 1.0F;
     float offset = 0.0F;
     std::optional<float> spacingM;
+    std::string warning;  // of degrees that are no squares on the ground
 };
+
+/// The number that a text begins with.
+std::optional<float> floatIn(const std::string& text);
 
 /// Feet and kilometres become metres, degrees those along a meridian. Throws Error, which names the
 /// file, for other units, and where samples on the ground do not stand on squares.
 GeoUnits unitsOf(const GeoTags& tags, const std::string& file);
+
+/// What to say of samples that are drawn as far apart from west to east as from north to south,
+/// though they are not; empty where the two differ by less than 1 %.
+std::string unevenSpacing(double eastM, double northM);
 
 }  // namespace gfxrepro::scene

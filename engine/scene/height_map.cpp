@@ -150,6 +150,7 @@ HeightMap withoutHeights(const HeightRows& source, const HeightMapUnits& units) 
     map.sizeSamples = source.sizeSamples;
     map.spacingM = units.spacingM.value_or(source.spacingM.value_or(1.0F));
     map.isSpacingOfFile = !units.spacingM && source.spacingM;
+    if (map.isSpacingOfFile) map.spacingWarning = source.spacingWarning;
     map.isEightBit = source.isEightBit;
     return map;
 }

@@ -8,13 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -84,13 +83,15 @@ class PngHeightRows : public HeightRows {
     std::vector<std::uint16_t> row_;
 };
 
-enum class ValueType { U16, I16, F32 };
+enum class ValueType { U8, I8, U16, I16, F32 };
 
 std::size_t valueBytes(ValueType type) {
-    return type == ValueType::F32 ? 4 : 2;
+    return type == ValueType::F32 ? 4 : type == ValueType::U8 || type == ValueType::I8 ? 1 : 2;
 }
 
 float valueAt(const char* bytes, ValueType type, bool isBigEndian) {
+    if (type == ValueType::U8) return static_cast<unsigned char>(*bytes);
+    if (type == ValueType::I8) return static_cast<signed char>(*bytes);
     std::array<char, 4> ordered{};
     const std::size_t size = valueBytes(type);
     const bool isSwapped = isBigEndian != (std::endian::native == std::endian::big);
@@ -141,6 +142,17 @@ std::uintmax_t bytesOfFile(const fs::path& path) {
     return bytes;
 }
 
+/// Of the middle of a tile, whose name is that of its corner in the south-west, as N46E007; 0 of
+/// another name.
+double latitudeOfTile(const fs::path& path) {
+    const std::string name = path.stem().string();
+    const auto isDigit = [&](std::size_t i) { return name[i] >= '0' && name[i] <= '9'; };
+    if (name.size() < 3 || !isDigit(1) || !isDigit(2)) return 0.0;
+    const double corner = 10.0 * (name[1] - '0') + (name[2] - '0');
+    const int side = std::toupper(static_cast<unsigned char>(name[0]));
+    return side == 'N' ? corner + 0.5 : side == 'S' ? corner - 0.5 : 0.0;
+}
+
 std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path) {
     const std::uintmax_t bytes = bytesOfFile(path);
     for (const int side : {1201, 3601}) {
@@ -148,7 +160,10 @@ std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path) {
             continue;
         }
         auto rows = std::make_unique<BareRows>(path, glm::ivec2(side), ValueType::I16, true);
-        rows->spacingM = static_cast<float>(kMetresPerDegree / (side - 1));  // of a tile's degree
+        const double spacingM = kMetresPerDegree / (side - 1);  // of a tile's degree
+        rows->spacingM = static_cast<float>(spacingM);
+        const double east = std::cos(glm::radians(latitudeOfTile(path)));
+        rows->spacingWarning = unevenSpacing(spacingM * east, spacingM);
         return rows;
     }
     throw Error(
@@ -211,7 +226,7 @@ std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
 }
 
 constexpr std::uint32_t kGdalNoData = 42113, kGdalMetadata = 42112;
-constexpr std::uint32_t kGeoPixelScale = 33550, kGeoTransform = 34264;
+constexpr std::uint32_t kGeoPixelScale = 33550, kGeoTiepoint = 33922, kGeoTransform = 34264;
 constexpr std::uint32_t kGeoKeys = 34735, kGeoKeyDoubles = 34736;
 /// Tiles of 1,024² of floats across the widest map.
 constexpr std::size_t kMostTileRowBytes = std::size_t{260} << 20;
@@ -223,10 +238,11 @@ class TiffRows : public HeightRows {
     explicit TiffRows(const fs::path& path)
         : name_(path.string()), tiff_(image::openTiff(path, message_)) {
         fileBytes_ = fs::file_size(path);
+        image::requireOnePage(*tiff_, path, message_);
         readHeader();
         sizeSamples = {static_cast<int>(width_), static_cast<int>(height_)};
-        isEightBit = bits_ == 8;
-        canBeNan = format_ == SAMPLEFORMAT_IEEEFP;
+        isEightBit = valueBytes(type_) == 1;
+        canBeNan = type_ == ValueType::F32;
         if (TIFFIsTiled(tiff_.get()) != 0) {
             prepareTiles();
         } else {
@@ -238,14 +254,17 @@ class TiffRows : public HeightRows {
     }
 
     void read(float* values) override {
-        const std::byte* row = band_.data();
+        const char* row = band_.data();
         if (tileHeight_ == 0) {
             if (TIFFReadScanline(tiff_.get(), band_.data(), row_, 0) != 1) fail();
         } else {
             if (row_ % tileHeight_ == 0) readTiles();
-            row += std::size_t{row_ % tileHeight_} * width_ * (bits_ / 8U);
+            row += std::size_t{row_ % tileHeight_} * rowBytes();
         }
-        for (std::uint32_t x = 0; x < width_; ++x) values[x] = valueAt(row + x * (bits_ / 8U));
+        constexpr bool kIsBigEndian = std::endian::native == std::endian::big;  // by libtiff
+        for (std::uint32_t x = 0; x < width_; ++x) {
+            values[x] = valueAt(row + x * valueBytes(type_), type_, kIsBigEndian);
+        }
         ++row_;
     }
 
@@ -258,49 +277,49 @@ class TiffRows : public HeightRows {
     void readHeader() {
         TIFFGetField(tiff_.get(), TIFFTAG_IMAGEWIDTH, &width_);
         TIFFGetField(tiff_.get(), TIFFTAG_IMAGELENGTH, &height_);
-        TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_BITSPERSAMPLE, &bits_);
-        TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLEFORMAT, &format_);
-        std::uint16_t channels = 1;
+        std::uint16_t channels = 1, bits = 1, format = SAMPLEFORMAT_UINT;
+        TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_BITSPERSAMPLE, &bits);
+        TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLEFORMAT, &format);
         TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, &channels);
-        const bool isInteger = format_ == SAMPLEFORMAT_UINT || format_ == SAMPLEFORMAT_INT;
-        if (channels != 1 || !((isInteger && (bits_ == 8 || bits_ == 16)) ||
-                               (format_ == SAMPLEFORMAT_IEEEFP && bits_ == 32))) {
+        struct Kind {
+            std::uint16_t bits, format;
+            ValueType type;
+        };
+        constexpr Kind kKinds[] = {{8, SAMPLEFORMAT_UINT, ValueType::U8},
+                                   {8, SAMPLEFORMAT_INT, ValueType::I8},
+                                   {16, SAMPLEFORMAT_UINT, ValueType::U16},
+                                   {16, SAMPLEFORMAT_INT, ValueType::I16},
+                                   {32, SAMPLEFORMAT_IEEEFP, ValueType::F32}};
+        const Kind* kind = std::ranges::find_if(
+            kKinds, [&](const Kind& each) { return each.bits == bits && each.format == format; });
+        if (channels != 1 || kind == std::end(kKinds)) {
             throw Error(
                 fmt::format("{}: {} channels of {} bits (sample format {}); allowed: one "
                             "of 8 or 16 bit integers or 32 bit floats",
-                            name_, channels, bits_, format_));
+                            name_, channels, bits, format));
+        }
+        type_ = kind->type;
+        std::uint16_t orientation = ORIENTATION_TOPLEFT;
+        TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_ORIENTATION, &orientation);
+        if (orientation != ORIENTATION_TOPLEFT) {
+            throw Error(fmt::format("{}: orientation {}; allowed: 1 (rows from the top)", name_,
+                                    orientation));
         }
         checkHeightMapSize(width_, height_, name_);
-        image::checkDeclaredSize(width_, height_, bits_ / 8U, fileBytes_, name_,
+        image::checkDeclaredSize(width_, height_, valueBytes(type_), fileBytes_, name_,
                                  kMaxHeightFileSide);
     }
 
-    std::size_t rowBytes() const { return std::size_t{width_} * (bits_ / 8U); }
-
-    float valueAt(const std::byte* at) const {
-        if (bits_ == 32) {
-            float value = 0.0F;
-            std::memcpy(&value, at, sizeof value);
-            return value;
-        }
-        std::uint16_t value = 0;
-        std::memcpy(&value, at, bits_ / 8U);
-        if (bits_ == 8) {
-            value = static_cast<std::uint16_t>(*at);
-            return format_ == SAMPLEFORMAT_INT ? static_cast<float>(static_cast<std::int8_t>(value))
-                                               : static_cast<float>(value);
-        }
-        return format_ == SAMPLEFORMAT_INT ? static_cast<float>(static_cast<std::int16_t>(value))
-                                           : static_cast<float>(value);
-    }
+    std::size_t rowBytes() const { return std::size_t{width_} * valueBytes(type_); }
 
     void prepareTiles() {
         TIFFGetField(tiff_.get(), TIFFTAG_TILEWIDTH, &tileWidth_);
         TIFFGetField(tiff_.get(), TIFFTAG_TILELENGTH, &tileHeight_);
-        image::checkDeclaredSize(tileWidth_, tileHeight_, bits_ / 8U, fileBytes_,
+        image::checkDeclaredSize(tileWidth_, tileHeight_, valueBytes(type_), fileBytes_,
                                  name_ + ": a tile", kMaxHeightFileSide);
         // The last tile may reach beyond the map.
-        const std::size_t bytes = std::size_t{width_ + tileWidth_} * tileHeight_ * (bits_ / 8U);
+        const std::size_t bytes =
+            std::size_t{width_ + tileWidth_} * tileHeight_ * valueBytes(type_);
         if (bytes > kMostTileRowBytes) {
             throw Error(fmt::format(
                 "{}: a row of tiles of {} x {} samples has {} MiB; allowed: at most {}, as it is "
@@ -309,32 +328,26 @@ class TiffRows : public HeightRows {
         }
         band_.resize(rowBytes() * tileHeight_);
         tile_.resize(static_cast<std::size_t>(TIFFTileSize(tiff_.get())));
-        if (tile_.size() < std::size_t{tileWidth_} * tileHeight_ * (bits_ / 8U)) fail();
+        if (tile_.size() < std::size_t{tileWidth_} * tileHeight_ * valueBytes(type_)) fail();
     }
 
     /// The row of tiles that begins with the next row.
     void readTiles() {
-        const std::size_t valueBytes = bits_ / 8U;
+        const std::size_t bytes = valueBytes(type_);
         const std::uint32_t rows = std::min(tileHeight_, height_ - row_);
         for (std::uint32_t left = 0; left < width_; left += tileWidth_) {
             if (TIFFReadTile(tiff_.get(), tile_.data(), left, row_, 0, 0) < 0) fail();
             const std::size_t columns = std::min(tileWidth_, width_ - left);
             for (std::size_t y = 0; y < rows; ++y) {
-                std::memcpy(&band_[y * rowBytes() + left * valueBytes],
-                            &tile_[y * tileWidth_ * valueBytes], columns * valueBytes);
+                std::memcpy(&band_[y * rowBytes() + left * bytes], &tile_[y * tileWidth_ * bytes],
+                            columns * bytes);
             }
         }
     }
 
     void findNoData() {
-        if (format_ != SAMPLEFORMAT_UINT) noData.push_back(-32768.0F);
-        if (const auto value = numberIn(textOf(kGdalNoData))) noData.push_back(*value);
-    }
-
-    static std::optional<float> numberIn(const std::string& text) {
-        char* end = nullptr;
-        const float value = std::strtof(text.c_str(), &end);
-        return end != text.c_str() ? std::optional(value) : std::nullopt;
+        if (type_ != ValueType::U8 && type_ != ValueType::U16) noData.push_back(kSrtmVoid);
+        if (const auto value = floatIn(textOf(kGdalNoData))) noData.push_back(*value);
     }
 
     void findUnits() {
@@ -343,11 +356,13 @@ class TiffRows : public HeightRows {
             unitsOf({textOf(kGdalMetadata), valuesOf<double>(kGeoPixelScale, TIFF_DOUBLE),
                      valuesOf<double>(kGeoTransform, TIFF_DOUBLE),
                      valuesOf<std::uint16_t>(kGeoKeys, TIFF_SHORT),
-                     valuesOf<double>(kGeoKeyDoubles, TIFF_DOUBLE)},
+                     valuesOf<double>(kGeoKeyDoubles, TIFF_DOUBLE),
+                     valuesOf<double>(kGeoTiepoint, TIFF_DOUBLE), sizeSamples},
                     name_);
         scale = units.scale;
         offset = units.offset;
         spacingM = units.spacingM;
+        spacingWarning = units.warning;
     }
 
     /// Of a tag that libtiff itself does not know; empty where there is none.
@@ -374,11 +389,10 @@ class TiffRows : public HeightRows {
     std::uintmax_t fileBytes_ = 0;
     std::uint32_t width_ = 0;
     std::uint32_t height_ = 0;
-    std::uint16_t bits_ = 1;
-    std::uint16_t format_ = SAMPLEFORMAT_UINT;
+    ValueType type_ = ValueType::U8;
     std::uint32_t tileWidth_ = 0, tileHeight_ = 0;  // 0: strips
-    std::vector<std::byte> band_;                   // a row, or a row of tiles
-    std::vector<std::byte> tile_;
+    std::vector<char> band_;                        // a row, or a row of tiles
+    std::vector<char> tile_;
     std::uint32_t row_ = 0;
 };
 

@@ -25,6 +25,7 @@ class HeightRows {
     float scale = 1.0F;         // as the file says: height = value · scale + offset
     float offset = 0.0F;
     std::optional<float> spacingM;  // as the file says
+    std::string spacingWarning;     // of a spacing that is not the same along x and z
     bool canBeNan = false;
     bool isEightBit = false;
 };

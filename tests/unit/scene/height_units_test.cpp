@@ -19,15 +19,16 @@ using test::TemporaryFolder;
 /// 2 x 2 values 0, 10, 20, 30 with tags of GDAL and GeoTIFF.
 fs::path writeGeoTiff(const fs::path& path, const char* metadata, std::vector<double> scale,
                       std::vector<std::uint16_t> keys, std::vector<double> transform = {},
-                      std::vector<double> keyDoubles = {}) {
+                      std::vector<double> keyDoubles = {}, std::vector<double> tiepoint = {}) {
     TIFF* tiff = TIFFOpen(path.c_str(), "w");
     static const TIFFFieldInfo kInfo[] = {
         {33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("PixelScale")},
+        {33922, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("Tiepoint")},
         {34264, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("Transform")},
         {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("Keys")},
         {34736, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("KeyDoubles")},
         {42112, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("Metadata")}};
-    TIFFMergeFieldInfo(tiff, kInfo, 5);
+    TIFFMergeFieldInfo(tiff, kInfo, 6);
     for (const int tag : {TIFFTAG_IMAGEWIDTH, TIFFTAG_IMAGELENGTH}) TIFFSetField(tiff, tag, 2);
     TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
     TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_INT);
@@ -42,6 +43,7 @@ fs::path writeGeoTiff(const fs::path& path, const char* metadata, std::vector<do
     setDoubles(33550, scale);
     setDoubles(34264, transform);
     setDoubles(34736, keyDoubles);
+    setDoubles(33922, tiepoint);
     if (!keys.empty()) TIFFSetField(tiff, 34735, static_cast<int>(keys.size()), keys.data());
     std::int16_t rows[2][2] = {{0, 10}, {20, 30}};
     for (std::uint32_t y = 0; y < 2; ++y) TIFFWriteScanline(tiff, rows[y], y, 0);
@@ -129,6 +131,73 @@ TEST_F(HeightUnits, SamplesThatStandOnNoSquaresAreRefused) {
               "DIR/a.tif: its samples stand 10 apart along x and 10 along y, askew; allowed: the "
               "same, on squares");
     EXPECT_EQ(error({30.001, 30, 0}, {}), "no error") << "rounded";
+    const std::string north =
+        "DIR/a.tif: its rows go north; allowed: from west to east and north to south";
+    EXPECT_EQ(error({30, -30, 0}, {}), north);
+    EXPECT_EQ(error({}, {30, 0, 0, 0, 0, 30, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}), north);
+    EXPECT_EQ(error({}, {-30, 0, 0, 0, 0, 30, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}), "no error")
+        << "turned about";
+}
+
+TEST_F(HeightUnits, OfSeveralPagesAndTurnedRowsNoneIsTaken) {
+    const fs::path path = folder.path() / "a.tif";
+    const auto error = [&](int pages, std::uint32_t kind, int orientation) {
+        TIFF* tiff = TIFFOpen(path.c_str(), "w");
+        for (int page = 0; page < pages; ++page) {
+            for (const int tag : {TIFFTAG_IMAGEWIDTH, TIFFTAG_IMAGELENGTH}) {
+                TIFFSetField(tiff, tag, 2);
+            }
+            TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+            TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+            TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+            TIFFSetField(tiff, TIFFTAG_ORIENTATION, orientation);
+            if (page > 0) TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, kind);
+            std::uint8_t row[2] = {1, 2};
+            for (std::uint32_t y = 0; y < 2; ++y) TIFFWriteScanline(tiff, row, y, 0);
+            TIFFWriteDirectory(tiff);
+        }
+        TIFFClose(tiff);
+        return test::errorText([&] { loadHeightMap(path, {}); }, folder.path());
+    };
+    EXPECT_EQ(error(2, FILETYPE_REDUCEDIMAGE, 1), "no error");
+    EXPECT_EQ(error(2, 0, 1), "DIR/a.tif: has 2 pages; one is allowed");
+    EXPECT_EQ(error(1, 0, 4), "DIR/a.tif: orientation 4; allowed: 1 (rows from the top)");
+}
+
+TEST_F(HeightUnits, DegreesThatAreNoSquaresOnTheGroundAreSaid) {
+    const std::vector<std::uint16_t> geographic{1, 1, 0, 1, 1024, 0, 1, 2};
+    const auto warning = [&](std::vector<double> scale, std::vector<double> tiepoint,
+                             std::vector<double> transform, const HeightMapUnits& units = {}) {
+        const fs::path path =
+            writeGeoTiff(folder.path() / "a.tif", nullptr, std::move(scale), geographic,
+                         std::move(transform), {}, std::move(tiepoint));
+        return loadHeightMap(path, units).spacingWarning;
+    };
+    const std::string said =
+        "its samples stand 15.44 m apart from west to east in its middle and 30.87 m from north to "
+        "south; both are drawn 30.87 m apart";
+    const double second = 1.0 / 3600;
+    // 60 degrees north: half as long.
+    EXPECT_EQ(warning({second, second, 0}, {0, 0, 0, 7, 60 + second, 0}, {}), said);
+    EXPECT_EQ(
+        warning({}, {}, {second, 0, 0, 7, 0, -second, 0, 60 + second, 0, 0, 0, 0, 0, 0, 0, 1}),
+        said);
+    EXPECT_EQ(warning({2 * second, second, 0}, {0, 0, 0, 7, 60, 0}, {}), "") << "squares there";
+    EXPECT_EQ(warning({second, second, 0}, {0, 0, 0, 7, 1, 0}, {}), "") << "near the equator";
+    EXPECT_EQ(warning({second, second, 0}, {0, 0, 0, 7, 60, 0}, {}, {30.0F, 1.0F, {}}), "")
+        << "given";
+    EXPECT_EQ(warning({2 * second, second, 0}, {}, {}).substr(0, 41),
+              "its samples stand 61.74 m apart from west");
+    // An SRTM tile's name says where it lies.
+    const std::string tile(std::size_t{2} * 1201 * 1201, '\0');
+    const auto ofTile = [&](const char* name) {
+        return loadHeightMap(folder.write(name, tile), {}).spacingWarning;
+    };
+    EXPECT_EQ(ofTile("N00E007.hgt"), "");
+    EXPECT_EQ(ofTile("a.hgt"), "");
+    for (const char* name : {"N60E007.hgt", "S61E007.hgt"}) {
+        EXPECT_EQ(ofTile(name).substr(0, 41), "its samples stand 45.6 m apart from west ") << name;
+    }
 }
 
 TEST_F(HeightUnits, HeightsInFeetBecomeMetres) {
