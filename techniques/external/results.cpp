@@ -294,12 +294,22 @@ bool isPartOfNumber(const Found& found, std::string_view regex) {
         return isExponent(behind(i)) &&
                (isDigit(behind(i + 1)) || (isSign(behind(i + 1)) && isDigit(behind(i + 2))));
     };
+    // Of an exponent of three digits Fortran leaves the letter out: 1.5-103.
+    const auto hasPoint = [&](std::size_t i) {
+        while (isDigit(before(i))) ++i;
+        return before(i) == '.';
+    };
+    const bool isBareExponent = digits == 3 && isSign(last) && isOfNumber(before(2)) && hasPoint(2);
+    const bool hasBareExponent = found.number().find('.') != std::string_view::npos &&
+                                 isSign(next) && isDigit(behind(2)) && isDigit(behind(3)) &&
+                                 isDigit(behind(4)) && !isOfNumber(behind(5));
     const bool isGroupBehind = next == kThinBlank && isDigit(behind(2)) && isDigit(behind(3)) &&
                                isDigit(behind(4)) && !isDigit(behind(5));
     std::size_t word = left.size();
     while (word > 0 && (isLetter(left[word - 1]) || isOfNumber(left[word - 1]))) --word;
     const bool isHexadecimal = left.compare(word, 2, "0x") == 0 || left.compare(word, 2, "0X") == 0;
-    return goesBefore || isHexadecimal || isDigit(next) || exponentAt(1) || isGroupBehind ||
+    return goesBefore || isBareExponent || hasBareExponent || isHexadecimal || isDigit(next) ||
+           exponentAt(1) || isGroupBehind ||
            (next == '.' && (isDigit(behind(2)) || exponentAt(2))) ||
            (groups(next, found.matchEnd > found.end) && isDigit(behind(2))) ||
            (found.number() == "0" && (next == 'x' || next == 'X')) ||
@@ -319,10 +329,14 @@ std::string_view wordAround(const Found& found) {
     return found.line.substr(begin, end - begin);
 }
 
-/// Also with Fortran's exponent, 1.5D+03, and a typesetter's minus.
+/// Also with Fortran's exponents, 1.5D+03 and 1.5-103, and a typesetter's minus.
 std::optional<double> numberFrom(std::string_view text) {
     std::string number = plain(text);
     if (const std::size_t at = number.find_first_of("dD"); at != number.npos) number[at] = 'e';
+    const std::size_t sign = number.find_last_of("+-");
+    const bool isBare = sign != number.npos && sign > 0 && number.size() - sign == 4 &&
+                        number.find('.') < sign && number.find_first_of("eE") == number.npos;
+    if (isBare) number.insert(sign, "e");
     return parseDouble(number);
 }
 

@@ -203,13 +203,15 @@ TEST(MetricLines, APatternTakesNoPartOfWhatFortranAndTypesettersWrite) {
             .ends_with("; allowed: a whole number");
     };
     const std::string decimal = "m=([0-9.]+)";
-    for (const char* whole : {"1d-3", "1.5D+03", "1.5D3", "2.d0", "1.5\u00D710^3", "1.5 x 10^3",
-                              "1.5*10**3", "1.5\u00B710\u00B3", "1.5 \u00D7 10\u207B\u2074",
-                              "1\u00A0234", "1\u202F234.5", "1\u2009234\u2009567", "1\u2019234"}) {
+    for (const char* whole :
+         {"1d-3", "1.5D+03", "1.5D3", "2.d0", "1.5\u00D710^3", "1.5 x 10^3", "1.5*10**3",
+          "1.5\u00B710\u00B3", "1.5 \u00D7 10\u207B\u2074", "1\u00A0234", "1\u202F234.5",
+          "1\u2009234\u2009567", "1\u2019234", "1.5-103", "1.5+103", ".5-103"}) {
         EXPECT_TRUE(isPart(decimal, std::string("m=") + whole)) << whole;
     }
-    for (const char* whole : {"0x15", "0xA5", "0x1.8p3", "1d-3", "1.5D3", "1\u00A0234",
-                              "1.5e\u22123", "\u22125", "1\u2019234"}) {
+    for (const char* whole :
+         {"0x15", "0xA5", "0x1.8p3", "1d-3", "1.5D3", "1\u00A0234", "1.5e\u22123", "\u22125",
+          "1\u2019234", "1.5-103", "0.-103", ".15+102"}) {
         EXPECT_TRUE(isPart("([0-9]+)$", std::string("m= ") + whole)) << whole;
     }
     EXPECT_EQ(errorText([] {
@@ -219,10 +221,14 @@ TEST(MetricLines, APatternTakesNoPartOfWhatFortranAndTypesettersWrite) {
     // Read where the pattern takes all of it.
     EXPECT_EQ(numberOf("m=([0-9.dD+-]+)", "m=1.5D+03"), 1500.0);
     EXPECT_EQ(numberOf("m=([0-9.dD+-]+)", "m=25d-2 s"), 0.25);
+    EXPECT_EQ(numberOf("m=(\\S+)", "m=1.5-103"), 1.5e-103);
+    EXPECT_EQ(numberOf("m=(\\S+)", "m=-.5+101 s"), -5e100);
     EXPECT_EQ(numberOf("m=(\\S+)", "m=\u22125"), -5.0);
     // Whole ones: sizes, days, names, products, blanks between columns.
     EXPECT_EQ(numberOf("x([0-9]+)$", "10x1080"), 1080.0);
     EXPECT_EQ(numberOf("([0-9]+)x", "16x10 tiles"), 16.0);
+    EXPECT_EQ(numberOf("([0-9.]+)-", "1.5-20 ms"), 1.5);
+    EXPECT_EQ(numberOf("-([0-9]+)", "100-103"), 103.0);
     EXPECT_EQ(numberOf("m=([0-9]+)", "m=5d 3h"), 5.0);
     EXPECT_EQ(numberOf("([0-9]+)$", "conv2d5"), 5.0);
     EXPECT_EQ(numberOf("m=([0-9]+)", "m=3\u00A0ms"), 3.0);
