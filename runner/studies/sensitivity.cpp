@@ -16,6 +16,7 @@
 #include "runner/records/csv.h"
 #include "runner/report/markup.h"
 #include "runner/run/ledger.h"
+#include "runner/run/plan_json.h"
 
 namespace gfxrepro::studies {
 
@@ -418,13 +419,16 @@ std::string basisOf(const run::Plan& plan, const config::Experiment& experiment)
     Json content = {{"device_class", plan.deviceClass}, {"technique", experiment.technique}};
     for (const config::Case& item : plan.cases) {
         if (item.experiment != experiment.id) continue;
-        const auto scene =
-            item.scene.isNull() ? plan.sceneKeys.end() : plan.sceneKeys.find(item.scene.text());
-        content["cases"].push_back({{"scene", scene == plan.sceneKeys.end() ? "" : scene->second},
-                                    {"params", item.recordedParams().toJson()},
-                                    {"axes", item.axes.toJson()},
-                                    {"frames", item.measure.frames},
-                                    {"lane", static_cast<int>(item.measure.lane)}});
+        Json one = {{"scene", ""},
+                    {"params", item.recordedParams().toJson()},
+                    {"axes", item.axes.toJson()},
+                    {"frames", item.measure.frames},
+                    {"lane", static_cast<int>(item.measure.lane)}};
+        for (const auto& [name, reference] : run::scenesOf(item)) {
+            const auto scene = plan.sceneKeys.find(reference.text());
+            if (scene != plan.sceneKeys.end()) one[name] = scene->second;
+        }
+        content["cases"].push_back(std::move(one));
     }
     if (const Node* layout = experiment.document.find("layout")) {
         content["layout"] = layout->toJson();

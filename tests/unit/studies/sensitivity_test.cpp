@@ -261,5 +261,22 @@ TEST_F(Sensitivity, KeptResultsOfAnotherCaseOrClaimAreStale) {
     EXPECT_TRUE(kept(planWith("{says: a, bound: n, at_least: 1}", 4)).empty());
 }
 
+TEST_F(Sensitivity, TheContentOfEachSceneIsInTheBasis) {
+    run::Plan plan = planWith("{says: a, bound: n, at_least: 1}", 3);
+    const auto basis = [&] { return basisOf(plan, plan.experiments.front()); };
+    const std::string none = basis();
+    plan.cases.back().scene = node("a.ply");
+    plan.cases.back().params.set("scene_b", node("b.ply"));
+    plan.sceneKeys = {{"a.ply", "1"}, {"b.ply", "1"}};
+    const std::string first = basis();
+    EXPECT_NE(first, none);
+    plan.sceneKeys["b.ply"] = "2";
+    const std::string second = basis();
+    EXPECT_NE(second, first);
+    plan.sceneKeys = {{"a.ply", "2"}, {"b.ply", "1"}};
+    EXPECT_NE(basis(), first);
+    EXPECT_NE(basis(), second);
+}
+
 }  // namespace
 }  // namespace gfxrepro::studies
