@@ -120,9 +120,9 @@ std::filesystem::path findExecutable(const std::string& name, const std::filesys
 /// of `files` that is not there.
 std::vector<ProgramFile> filesOf(const ExternalProgram& program, const Placeholders& values);
 
-/// Throws Error with file:line:column for one of `files`, and for a truth, that is no file. `node`
-/// is what `program` was read from. A truth below {out}, or one of {frame}, {width} or {height}, is
-/// passed over.
+/// Throws Error with file:line:column for one of `files`, and for a truth, that is no file, and for
+/// a program below `here`, also of `starts`, that is none. `node` is what `program` was read from.
+/// A truth below {out}, or one of {frame}, {width} or {height}, is passed over.
 void requireFiles(const Node& node, const ExternalProgram& program, const Placeholders& values);
 
 /// Digests of files, remembered by size and time.

@@ -1,9 +1,9 @@
 // What a program is run with: the values of its parameters, and the files that decide what it does.
 #include "runner/config/external_program.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
 
@@ -145,6 +145,23 @@ void requireFiles(const Node& node, const ExternalProgram& program, const Placeh
         for (const Node& file : files->items()) {
             require(file, "program: files",
                     (fs::path(program.here) / filled(file.text(), values)).lexically_normal());
+        }
+    }
+    // Other machines may have what lies elsewhere.
+    const auto requireProgram = [&](const Node& named, const char* key, const std::string& text) {
+        const std::string name = filled(text, values);
+        const fs::path path = (fs::path(program.here) / name).lexically_normal();
+        const fs::path below = path.lexically_relative(program.here);
+        const bool isBeside =
+            name.find('/') != std::string::npos && !below.empty() && *below.begin() != "..";
+        if (!isBeside || !findExecutable(name, program.here).empty()) return;
+        throw Error(named.location(),
+                    fmt::format("program: {}: there is no program {}", key, path.string()));
+    };
+    requireProgram(*node.find("command"), "command", program.command.front());
+    if (const Node* starts = node.find("starts")) {
+        for (std::size_t i = 0; i < program.starts.size(); ++i) {
+            requireProgram(starts->items()[i], "starts", program.starts[i]);
         }
     }
     for (const ProgramPicture& picture : program.pictures) {

@@ -317,6 +317,15 @@ TEST(ExternalProgram, NamesFilesThatAreNotThereByTheirPlace) {
     };
     EXPECT_EQ(missingIn("command: sh\nfiles: [bin/sh, no-such-file]\nhere: /usr"),
               "c.yaml:2:17: program: files: there is no file /usr/no-such-file");
+    EXPECT_EQ(missingIn("command: sh\nstarts: [sh, \"{here}/bin/none\"]\nhere: /usr"),
+              "c.yaml:2:14: program: starts: there is no program /usr/bin/none");
+    EXPECT_EQ(missingIn("command: bin/none\nhere: /usr"),
+              "c.yaml:1:10: program: command: there is no program /usr/bin/none");
+    // Other machines may have these.
+    for (const char* elsewhere : {"none", "/opt/none", "../none", "bin/sh"}) {
+        EXPECT_EQ(missingIn("command: sh\nstarts: [" + std::string(elsewhere) + "]\nhere: /usr"),
+                  "no error");
+    }
     const std::string head =
         "command: sh {n} {frame}\nparams: {n: a}\nimages: {r: {file: r.png, truth: ";
     EXPECT_EQ(missingIn(head + "\"{here}/{n}.png\"}}"),
