@@ -162,6 +162,7 @@ Node withSceneFile(const Node& reference, const std::optional<fs::path>& folder 
 }
 
 /// "scans/*.ply" of a sweep as the files of that name, sorted; parameters behind it are each one's.
+/// Stars stand for letters of names; what else patterns have stands for itself.
 void addMatches(const Node& reference, Node::Sequence& files) {
     const std::string pattern = reference.isScalar() ? scene::sceneName(reference.text()) : "";
     if (!scene::isSceneFile(pattern) || pattern.find('*') == pattern.npos) {
@@ -169,15 +170,28 @@ void addMatches(const Node& reference, Node::Sequence& files) {
         return;
     }
     const std::string params = reference.text().substr(pattern.size());
+    const auto escaped = [](const std::string& text, std::string_view special) {
+        std::string result;
+        for (const char c : text) {
+            if (special.find(c) != special.npos) result += '\\';
+            result += c;
+        }
+        return result;
+    };
+    const fs::path beside =
+        fs::absolute(fs::path(reference.location().file.text()).parent_path()) / "";
+    const std::string plain = (fs::path(pattern).is_absolute() ? "" : escaped(beside, "*?[\\")) +
+                              escaped(pattern, "?[\\");
     glob_t found = {};
-    ::glob(withSceneFile(Node::scalar(pattern, reference.location())).text().c_str(), 0, nullptr,
-           &found);
+    ::glob(plain.c_str(), 0, nullptr, &found);
+    const std::size_t before = files.size();
     for (std::size_t i = 0; i < found.gl_pathc; ++i) {
-        files.push_back(Node::scalar(found.gl_pathv[i] + params, reference.location(), true));
+        const fs::path file = fs::path(found.gl_pathv[i]).lexically_normal();
+        if (fs::is_directory(file)) continue;
+        files.push_back(Node::scalar(file.string() + params, reference.location(), true));
     }
-    const bool isNone = found.gl_pathc == 0;
     ::globfree(&found);
-    if (isNone) {
+    if (files.size() == before) {
         throw Error(reference.location(), fmt::format("no file is called '{}'; looked beside {}",
                                                       pattern, reference.location().file.text()));
     }

@@ -434,6 +434,18 @@ TEST_F(ExperimentTest, SweepsTakeTheSceneFilesThatMatch) {
     EXPECT_EQ(scenes("scene: 'scans/*.ply'"), "/zju/scans/a.ply /zju/scans/b.ply ");
     EXPECT_EQ(scenes("scene: ['scans/*.obj', m/x, 'scans/b*.ply?up=z']"),
               "/zju/scans/c.obj m/x /zju/scans/b.ply?up=z ");
+    // A folder is no file; brackets, of the config's own folder, too, are letters.
+    folder.write("zju/scans/dir.ply/none.txt", "");
+    EXPECT_EQ(scenes("scene: 'scans/*.ply'"), "/zju/scans/a.ply /zju/scans/b.ply ");
+    folder.write("zju/old [1]*/d.ply", "");
+    folder.write("zju/old 1/d.ply", "");
+    EXPECT_EQ(scenes("scene: 'old [1]*/*.ply'"), "/zju/old [1]*/d.ply ");
+    folder.write("n [x]*/scans/e.ply", "");
+    const auto path = folder.write("n [x]*/a.yaml",
+                                   "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: "
+                                   "'scans/../scans/*.ply'}\n");
+    EXPECT_EQ(expandCases(loadExperiment(path, {}, folder.path())).at(0).scene.text(),
+              folder.path().string() + "/n [x]*/scans/e.ply");
     EXPECT_EQ(errorText([&] { scenes("scene: 'scans/*.stl'"); }, folder.path()),
               "DIR/zju/a.yaml:4:16: no file is called 'scans/*.stl'; looked beside DIR/zju/a.yaml");
 }
