@@ -34,6 +34,12 @@ struct Parts {
     Box bounds;
 };
 
+/// Which vertices of an accessor are drawn.
+struct PositionUses {
+    std::vector<bool> isUsed;
+    bool byTriangles = false, byPoints = false;
+};
+
 std::vector<glm::uvec3> trianglesOf(const std::vector<std::uint32_t>& indices, int mode) {
     std::vector<glm::uvec3> triangles;
     if (mode == TINYGLTF_MODE_TRIANGLES) {
@@ -91,9 +97,15 @@ class SceneBuilder {
             const auto& from = model().scenes[std::max(model().defaultScene, 0)];
             scene_.paths = gltf::pathsIn(from.extras, offset_, leftOut_);
         }
-        for (const auto& [accessor, isUsed] : usedPositions_) {
-            leftOut_.add("a vertex that no triangle uses", std::ranges::count(isUsed, false));
+        for (const auto& [accessor, uses] : positionUses_) {
+            leftOut_.add(!uses.byPoints     ? "a vertex that no triangle uses"
+                         : uses.byTriangles ? "a vertex that no triangle and no point uses"
+                                            : "a vertex that no point uses",
+                         std::ranges::count(uses.isUsed, false));
         }
+        leftOut_.add(
+            "a node that is not in the scene",
+            std::ranges::count(worldFromNode_, false, &std::optional<glm::mat4>::has_value));
         leftOut_.tell(scene_.warnings);
         scene_.filesBeside = file_.opened;
         return std::move(scene_);
@@ -172,7 +184,10 @@ class SceneBuilder {
             fail(fmt::format("{}: {} vertices; at most 4294967295 are allowed", where, count));
         }
         std::vector<std::uint32_t> used;
-        if (primitive.mode == TINYGLTF_MODE_POINTS) {
+        const bool isPoints = primitive.mode == TINYGLTF_MODE_POINTS;
+        PositionUses& uses = positionUses_[positions];
+        (isPoints ? uses.byPoints : uses.byTriangles) = true;
+        if (isPoints) {
             used = checkedIndices(primitive, count, where);
             std::ranges::sort(used);
             used.erase(std::unique(used.begin(), used.end()), used.end());
@@ -180,23 +195,21 @@ class SceneBuilder {
             mesh.triangles = trianglesOf(checkedIndices(primitive, count, where), primitive.mode);
             used = usedVertices_.renumber(mesh.triangles, count);
         }
-        std::vector<bool>& isUsed = usedPositions_[positions];
-        if (used.size() == count) {
-            isUsed.assign(count, true);
-        } else {
-            isUsed.resize(count, false);
-            for (const std::uint32_t vertex : used) isUsed[vertex] = true;
-        }
+        uses.isUsed.resize(count, false);
+        for (const std::uint32_t vertex : used) uses.isUsed[vertex] = true;
 
         const gltf::UsedPart part{primitive, count, used, fmt::format("{}: {}", file_.name, where)};
         mesh.positions = attribute<glm::vec3>(part, "POSITION");
         mesh.normals = attribute<glm::vec3>(part, "NORMAL");
         for (glm::vec3& normal : mesh.normals) normal = unitNormal(normal);
         mesh.colors = attribute<glm::vec3>(part, "COLOR_0");
+        if (isPoints && mesh.material >= 0) colourPoints(scene_.materials[mesh.material], mesh);
         const gltf::TextureUse use =
             mesh.material < 0 ? gltf::TextureUse{} : textureUses_[mesh.material];
-        mesh.texcoords =
-            attribute<glm::vec2>(part, fmt::format("TEXCOORD_{}", use.texcoordSet).c_str());
+        if (!isPoints) {
+            mesh.texcoords =
+                attribute<glm::vec2>(part, fmt::format("TEXCOORD_{}", use.texcoordSet).c_str());
+        }
         if (use.isTransformed) {
             for (glm::vec2& uv : mesh.texcoords) uv = use.transform * glm::vec3(uv, 1.0F);
         }
@@ -206,6 +219,20 @@ class SceneBuilder {
                          gltf::moveToJoints(accessors_, part, joints, mesh));
         }
         return mesh;
+    }
+
+    /// Of a material points have the base colour alone.
+    void colourPoints(const Material& material, Mesh& points) {
+        Material plain;
+        plain.name = material.name;
+        plain.baseColor = material.baseColor;
+        plain.isDoubleSided = material.isDoubleSided;
+        if (material.metallic == 1.0F) plain.metallic = 1.0F;  // of a file that does not say it
+        if (material != plain) leftOut_.add("what a material of points has beside its base colour");
+        const glm::vec3 base(material.baseColor);
+        if (base == glm::vec3(1.0F)) return;
+        points.colors.resize(points.positions.size(), glm::vec3(1.0F));
+        for (glm::vec3& color : points.colors) color *= base;
     }
 
     /// Empty when the primitive does not have it.
@@ -371,6 +398,9 @@ class SceneBuilder {
             partsOf({node.mesh, node.skin, node.weights.empty() ? mesh.weights : node.weights});
         // Joints say where a skinned mesh is, whatever its node says.
         const bool isInWorld = node.skin >= 0;
+        if (isInWorld && node.extensions.contains(kInstancing)) {
+            leftOut_.add("the instances of a skinned node (EXT_mesh_gpu_instancing)");
+        }
         const auto matrices = isInWorld ? std::vector{glm::mat4(1.0F)} : instanceMatrices(node);
         for (const glm::mat4& nodeFromInstance : matrices) {
             const glm::mat4 worldFromMesh =
@@ -389,9 +419,11 @@ class SceneBuilder {
         }
     }
 
-    /// EXT_mesh_gpu_instancing: one matrix an instance; without it the identity.
+    static constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+    /// One matrix an instance; without that extension the identity.
     std::vector<glm::mat4> instanceMatrices(const tinygltf::Node& node) {
-        const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
+        const auto extension = node.extensions.find(kInstancing);
         if (extension == node.extensions.end()) return {glm::mat4(1.0F)};
         const tinygltf::Value& attributes = extension->second.Get("attributes");
         const auto accessor = [&](const char* name) {
@@ -425,25 +457,28 @@ class SceneBuilder {
         return matrices;
     }
 
-    /// Clouds join; an attribute that not all have is dropped.
+    /// Clouds join. One without colours is white among others; normals go where not all have them.
     void addPoints(const PointCloud& cloud, const glm::mat4& worldFromCloud) {
         PointCloud& points = scene_.points;
-        const bool isFirst = points.positions.empty();
+        const std::size_t before = points.positions.size();
         accessors_.charge(cloud.positions.size(), 3 * sizeof(glm::vec3));
-        const bool normals = !cloud.normals.empty() && (isFirst || !points.normals.empty());
-        const bool colors = !cloud.colors.empty() && (isFirst || !points.colors.empty());
         for (const glm::vec3& position : cloud.positions) {
             points.positions.emplace_back(worldFromCloud * glm::vec4(position, 1.0F));
         }
-        const glm::mat3 toWorld = normalMatrix(glm::mat3(worldFromCloud));
-        if (!normals) points.normals.clear();
-        if (!colors) points.colors.clear();
-        for (std::size_t i = 0; normals && i < cloud.normals.size(); ++i) {
-            points.normals.push_back(unitNormal(toWorld * cloud.normals[i]));
+        if (before > 0 && points.normals.empty() != cloud.normals.empty()) {
+            leftOut_.add("normals that not all points have",
+                         points.normals.size() + cloud.normals.size());
+            points.normals.clear();
+        } else {
+            const glm::mat3 toWorld = normalMatrix(glm::mat3(worldFromCloud));
+            for (const glm::vec3& normal : cloud.normals) {
+                points.normals.push_back(unitNormal(toWorld * normal));
+            }
         }
-        if (colors) {
-            points.colors.insert(points.colors.end(), cloud.colors.begin(), cloud.colors.end());
-        }
+        if (points.colors.empty() && cloud.colors.empty()) return;
+        points.colors.resize(before, glm::vec3(1.0F));
+        points.colors.insert(points.colors.end(), cloud.colors.begin(), cloud.colors.end());
+        points.colors.resize(points.positions.size(), glm::vec3(1.0F));
     }
 
     /// glTF has no target: it lies where the axis passes the middle of the scene most closely, in
@@ -490,7 +525,7 @@ class SceneBuilder {
     std::map<PosedMesh, Parts> parts_;
     std::map<int, int> readers_;  // of each accessor: attributes of primitives
     UsedVertices usedVertices_;
-    std::map<int, std::vector<bool>> usedPositions_;       // by their accessors
+    std::map<int, PositionUses> positionUses_;             // by their accessors
     std::vector<std::optional<glm::mat4>> worldFromNode_;  // of those visited
     std::vector<int> drawn_;                               // in the order of their visits
     std::vector<std::size_t> unaimed_;  // cameras whose file does not say how far they look

@@ -86,10 +86,14 @@ class TextureTable {
     }
 
   private:
-    Sampling samplingOf(const tinygltf::Texture& texture) const {
+    Sampling samplingOf(const tinygltf::Texture& texture) {
         if (texture.sampler < 0) return {};
         const tinygltf::Sampler& from = elementOf(file_.model.samplers, texture.sampler,
                                                   "{}: sampler {}", file_.name, texture.sampler);
+        const bool isTrilinear = from.minFilter == TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+        if (from.minFilter >= 0 && !isTrilinear) {
+            leftOut_.add("a sampler's minFilter other than LINEAR_MIPMAP_LINEAR");
+        }
         const auto wrap = [](int mode) {
             return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Sampling::Wrap::Clamp
                    : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Sampling::Wrap::Mirror

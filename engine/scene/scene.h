@@ -71,6 +71,8 @@ struct Material {
     bool isUnlit = false;
     float transmission = 0.0F;
     float indexOfRefraction = 1.5F;
+
+    bool operator==(const Material&) const = default;
 };
 
 /// How a texture is read beyond 0 … 1 and between its texels.

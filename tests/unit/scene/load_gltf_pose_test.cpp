@@ -72,6 +72,16 @@ TEST_F(PoseGltf, JointsHoldASkinnedMeshWhereverItsNodeIs) {
         R"([{"joints":[2],"inverseBindMatrices":)" + std::to_string(add("MAT4", 1, bind)) + "}]";
     EXPECT_LT(glm::length(load().bounds().min - glm::vec3(-1, 4, 0)), 1e-5F);
 
+    // Joints say where it is: once.
+    document_["nodes"].insert(document_["nodes"].find("\"mesh\":0,"),
+                              R"("extensions":{"EXT_mesh_gpu_instancing":
+                                 {"attributes":{"TRANSLATION":0}}},)");
+    scene = load();
+    EXPECT_EQ(scene.instances.size(), 1U);
+    EXPECT_EQ(scene.warnings,
+              std::vector<std::string>{
+                  "left out: the instances of a skinned node (EXT_mesh_gpu_instancing)"});
+
     document_["scenes"] = R"([{"nodes":[0]}])";
     EXPECT_EQ(errorText([&] { load(); }, folder_.path()),
               "DIR/a.gltf: skin 0: its joint, node 2, is not in the scene");

@@ -121,6 +121,54 @@ TEST_F(LoadGltf, ReadsThosePointsThatIndicesName) {
               (std::vector<glm::vec3>{{0, 0, 0}, {1, 1, 0}}));
 }
 
+TEST_F(LoadGltf, SaysOfPointsWhatIsTrueOfThem) {
+    Document document = square();
+    document["accessors"].insert(
+        document["accessors"].size() - 1,
+        R"(,{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"})");
+    const auto warnings = [&](const char* primitives) {
+        document["meshes"] = fmt::format(R"([{{"primitives":[{}]}}])", primitives);
+        return load(document).warnings;
+    };
+    using Lines = std::vector<std::string>;
+    EXPECT_EQ(warnings(R"({"attributes":{"POSITION":0},"indices":4,"mode":0})"),
+              Lines{"left out: a vertex that no point uses"});
+    EXPECT_EQ(warnings(R"({"attributes":{"POSITION":0},"indices":4,"mode":0},
+                          {"attributes":{"POSITION":0},"indices":4})"),
+              Lines{"left out: a vertex that no triangle and no point uses"});
+    EXPECT_EQ(warnings(R"({"attributes":{"POSITION":0},"mode":0},
+                          {"attributes":{"POSITION":0},"indices":4})"),
+              Lines{});
+    EXPECT_EQ(warnings(R"({"attributes":{"POSITION":0,"NORMAL":0},"mode":0},
+                          {"attributes":{"POSITION":0},"mode":0})"),
+              Lines{"left out: normals that not all points have (4 times)"});
+}
+
+TEST_F(LoadGltf, PointsHaveTheBaseColourOfTheirMaterial) {
+    Document document = square();
+    const auto loaded = [&](const char* more) {
+        document["materials"] = fmt::format(
+            R"([{{"pbrMetallicRoughness":{{"baseColorFactor":[0,0.5,1,1]{}}}}}])", more);
+        return load(document);
+    };
+    document["meshes"] =
+        R"([{"primitives":[{"attributes":{"POSITION":0},"mode":0},
+            {"attributes":{"POSITION":0,"COLOR_0":2},"mode":0,"material":0},
+            {"attributes":{"POSITION":0,"TEXCOORD_0":3},"mode":0,"material":0}]}])";
+    const Scene plain = loaded("");
+    const std::vector<glm::vec3>& colors = plain.points.colors;
+    ASSERT_EQ(colors.size(), 12U);
+    EXPECT_EQ(colors[0], glm::vec3(1));
+    EXPECT_EQ(colors[4], glm::vec3(0, 0, 0.2F));
+    EXPECT_EQ(colors[8], glm::vec3(0, 0.5F, 1));
+    EXPECT_EQ(plain.warnings, std::vector<std::string>{"left out: the alpha of vertex colours"});
+    EXPECT_EQ(loaded(R"(,"metallicFactor":0)").warnings, plain.warnings);
+    EXPECT_EQ(loaded(R"(,"roughnessFactor":0.5)").warnings,
+              (std::vector<std::string>{
+                  "left out: the alpha of vertex colours",
+                  "left out: what a material of points has beside its base colour (2 times)"}));
+}
+
 TEST_F(LoadGltf, KeepsNormalsOfPointsInAFlattenedNode) {
     Document document = square();
     document["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0,"NORMAL":0},"mode":0}]}])";
@@ -134,6 +182,17 @@ TEST_F(LoadGltf, AppliesTheNodeTree) {
                 {"mesh":0,"rotation":[0,0,0.70710678,0.70710678],"scale":[2,2,2]}])");
     const glm::vec4 corner = scene.instances.at(0).worldFromMesh * glm::vec4(1, 0, 0, 1);
     EXPECT_LT(glm::length(corner - glm::vec4(1, 2, 0, 1)), 1e-6F);
+}
+
+TEST_F(LoadGltf, SaysWhatItsSceneDoesNotHave) {
+    Document document = square();
+    document["nodes"] = R"([{"mesh":0},{"mesh":0,"children":[2]},{"mesh":0}])";
+    document["scenes"] = R"([{"nodes":[0]},{"nodes":[1]}])";
+    EXPECT_EQ(load(document).warnings,
+              std::vector<std::string>{"left out: a node that is not in the scene (2 times)"});
+    document["scene"] = "1";
+    EXPECT_EQ(load(document).warnings,
+              std::vector<std::string>{"left out: a node that is not in the scene"});
 }
 
 TEST_F(LoadGltf, ReadsSparseAccessors) {
@@ -256,7 +315,8 @@ TEST_F(LoadGltf, ReadsTexturesOfMaterials) {
 TEST_F(LoadGltf, ReadsSamplers) {
     Document document = square();
     document["images"] = kWhitePixel;
-    document["samplers"] = R"([{"wrapS":33071,"magFilter":9728},{"wrapT":33648},{}])";
+    document["samplers"] =
+        R"([{"wrapS":33071,"magFilter":9728,"minFilter":9728},{"wrapT":33648,"minFilter":9987},{}])";
     document["textures"] = R"([{"source":0},{"source":0,"sampler":0},{"source":0,"sampler":1},
         {"source":0,"sampler":2}])";
     document["materials"] = R"([{"normalTexture":{"index":0},"emissiveTexture":{"index":1}},
@@ -269,6 +329,9 @@ TEST_F(LoadGltf, ReadsSamplers) {
     const Sampling mirrored{Sampling::Wrap::Repeat, Sampling::Wrap::Mirror, false};
     EXPECT_EQ(samplingOf(scene, scene.materials[1].normalTexture), mirrored);
     EXPECT_EQ(samplingOf(scene, scene.materials[0].normalTexture), Sampling{});
+    EXPECT_EQ(scene.warnings,
+              std::vector<std::string>{
+                  "left out: a sampler's minFilter other than LINEAR_MIPMAP_LINEAR"});
 }
 
 TEST_F(LoadGltf, TakesPointLightsWithTheirShareOfWhatAllGive) {
