@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <optional>
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
@@ -29,8 +28,9 @@ std::string namesOf(const std::vector<Named>& all) {
     return names.empty() ? "none" : names;
 }
 
-/// Of "AZIMUTH ELEVATION" in degrees.
-std::optional<glm::vec3> directionOf(const std::string& view) {
+}  // namespace
+
+std::optional<glm::vec3> towardsEyeOf(const std::string& view) {
     const std::size_t blank = view.find(' ');
     if (blank == std::string::npos) return std::nullopt;
     const auto azimuth = parseDouble(view.substr(0, blank));
@@ -40,8 +40,6 @@ std::optional<glm::vec3> directionOf(const std::string& view) {
     const double east = glm::radians(*azimuth), up = glm::radians(*elevation);
     return glm::vec3(std::sin(east) * std::cos(up), std::sin(up), std::cos(east) * std::cos(up));
 }
-
-}  // namespace
 
 double frameTime(int frame, int frameCount) {
     return (static_cast<double>(frame) + 0.5) / static_cast<double>(frameCount);
@@ -56,7 +54,7 @@ scene::Camera cameraAtTime(const scene::Scene& scene, const std::string& view, d
     }
     if (const scene::CameraPath* path = find(scene.paths, view)) return cameraAt(*path, time);
     if (const scene::Camera* camera = find(scene.cameras, view)) return *camera;
-    if (const auto direction = directionOf(view)) {
+    if (const auto direction = towardsEyeOf(view)) {
         return scene::framingCamera(scene.bounds(), aspect, *direction);
     }
     throw Error(

@@ -1,11 +1,15 @@
 // Which camera a frame of an experiment is seen with.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "engine/scene/scene.h"
 
 namespace gfxrepro::kit {
+
+/// Where from the view "AZIMUTH ELEVATION" (in degrees) looks; none: `view` is something else.
+std::optional<glm::vec3> towardsEyeOf(const std::string& view);
 
 /// The middle of frame `frame` in a time of 0 … 1: (frame + 0.5) / frameCount. Objects are posed
 /// for it, too.

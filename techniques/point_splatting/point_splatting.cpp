@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/trigonometric.hpp>
 #include <string>
 
 #include "engine/core/files.h"
+#include "techniques/kit/path_view.h"
 #include "techniques/kit/requirements.h"
 
 namespace gfxrepro::point_splatting {
@@ -136,6 +138,11 @@ ViewSettings readView(Params& params) {
     const std::vector<double> lookAt =
         params.getVector("look_at", kCentre, {"in the model's box", "of its size", -1.0, 2.0});
     view.lookAt = glm::vec3(glm::dvec3(lookAt[0], lookAt[1], lookAt[2]));
+    view.name = params.getText("view", "",
+                               {"a path or camera of the scene, or where from to frame it, "
+                                "\"AZIMUTH ELEVATION\" in degrees; none: three quarters"});
+    view.towardsEye = kit::towardsEyeOf(view.name);
+    if (view.towardsEye) view.name.clear();
     return view;
 }
 
@@ -172,6 +179,9 @@ PointSplattingParams::PointSplattingParams(Params& params)
         params.refuseGiven({"low_pass_radius_px", "cutoff", "visibility_offset"},
                            "a method of splats");
     }
+    if (!view.name.empty()) {
+        params.refuseGiven({"distance", "rotation_deg", "look_at"}, "a 'view' that frames it");
+    }
     if (!selection.choosesLevels) {
         params.refuseGiven({"target_radius_px", "fine_radius_px", "curved_above", "wide_above_deg"},
                            "'level: by_size'");
@@ -203,13 +213,16 @@ scene::Box framedBox(const ModelFile& model) {
 }  // namespace
 
 scene::Camera turntableCamera(const scene::Box& box, float aspect, const ViewSettings& settings) {
-    scene::Camera camera = scene::framingCamera(box, aspect);
+    scene::Camera camera = settings.towardsEye
+                               ? scene::framingCamera(box, aspect, *settings.towardsEye)
+                               : scene::framingCamera(box, aspect);
     const glm::vec3 target = box.min + settings.lookAt * box.size();
     const glm::vec3 back = camera.position - camera.target;
     const glm::mat4 turn =
         glm::rotate(glm::mat4(1.0F), settings.rotationRad, glm::vec3(0.0F, 1.0F, 0.0F));
     camera.position = target + settings.distance * glm::vec3(turn * glm::vec4(back, 0.0F));
     camera.target = target;
+    if (camera.up.y == 0.0F) camera.up = glm::vec3(turn * glm::vec4(camera.up, 0.0F));
     // Around the box, wherever in it the eye looks; the near plane a thousandth of that away at
     // least, as depths of 24 bits want.
     const float diagonal = glm::length(box.size());
@@ -228,12 +241,22 @@ void PointSplatting::requireScene(const scene::Scene& scene) const {
     if (!hasPoints && scene.triangleCount() == 0) {
         throw Error("technique 'point_splatting' needs a scene with points or triangles");
     }
+    if (!params_.view.name.empty()) kit::stillCamera(scene, params_.view.name, 1.0F);
     if (hasPoints && pointsAt_) {
         throw Error(*pointsAt_, "'points' needs a scene without points of its own");
     }
 }
 
 scene::PointCloud PointSplatting::takePoints(const scene::Scene& scene) {
+    const bool isTextured =
+        std::ranges::any_of(scene.instances, [&](const scene::Instance& instance) {
+            const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+            return !mesh.texcoords.empty() && materialOf(scene, mesh).baseColorTexture >= 0;
+        });
+    if (isTextured && scene.points.positions.empty()) {
+        fmt::print(stderr, "warning: scene '{}': its points have no colours of its textures\n",
+                   scene.name);
+    }
     scene::PointCloud points =
         scene.points.positions.empty()
             ? scene::sampledPoints(scene, static_cast<std::size_t>(params_.points))
@@ -255,6 +278,8 @@ void PointSplatting::setup(technique::SetupContext& context) {
         std::chrono::steady_clock::now() - begin;
     preprocessMs_ = elapsed.count();
     framedBox_ = framedBox(*model_);
+    views_.cameras = context.scene->cameras;
+    views_.paths = context.scene->paths;
     if (params_.method == Method::Compute) {
         renderer_ = std::make_unique<ComputeSplatter>(context.shaders, *model_,
                                                       params_.splats.storage, sizePx_);
@@ -270,9 +295,12 @@ void PointSplatting::setup(technique::SetupContext& context) {
 
 scene::Camera PointSplatting::cameraAt(int frame, int frameCount) const {
     ViewSettings view = params_.view;
+    const glm::vec2 size(sizePx_);
+    if (!view.name.empty()) {
+        return kit::cameraFor(views_, view.name, frame, frameCount, size.x / size.y);
+    }
     view.rotationRad +=
         glm::two_pi<float>() * static_cast<float>(frame) / static_cast<float>(frameCount);
-    const glm::vec2 size(sizePx_);
     return turntableCamera(framedBox_, size.x / size.y, view);
 }
 

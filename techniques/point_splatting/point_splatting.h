@@ -24,11 +24,14 @@ enum class Method {
     GlPoints,  // one pixel per point, by a plain draw
 };
 
-/// From where a model is seen: on a turntable, from as far as frames it.
+/// From where a model is seen: on a turntable, from as far as frames it, or by a camera or along a
+/// path of the scene.
 struct ViewSettings {
     float distance = 1.0F;  // of the framing camera's
     float rotationRad = 0.0F;
-    glm::vec3 lookAt{0.5F};  // in the model's box
+    glm::vec3 lookAt{0.5F};                    // in the model's box
+    std::string name = {};                     // of the scene's camera or path; empty: a turntable
+    std::optional<glm::vec3> towardsEye = {};  // at no rotation; none: framingCamera()'s own
 };
 
 struct PointSplattingParams {
@@ -123,6 +126,7 @@ class PointSplatting final : public technique::Technique {
     std::optional<ModelFile> model_;
     double preprocessMs_ = 0.0;
     scene::Box framedBox_;
+    scene::Scene views_;  // the scene's cameras and paths
     std::unique_ptr<PointRenderer> renderer_;
     const SplatRenderer* splats_ = nullptr;  // the same; not of Method::Compute and GlPoints
 

@@ -71,6 +71,8 @@ TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
             {"{distance: 0}",
              "12: technique 'point_splatting': distance is 0; allowed: 0.01 … 1000 of the framing "
              "distance"},
+            {"{view: 30 17, distance: 2}", ""},
+            {"{view: front, distance: 2}", "25: 'distance' needs a 'view' that frames it"},
             {"{method: splats}",
              "10: technique 'point_splatting': method is 'splats'; allowed: adaptive | full_ewa | "
              "reconstruction | low_pass | sprites | compute | gl_points"},
@@ -326,6 +328,49 @@ TEST_F(PointSplattingTest, RefusesScenesWithoutPoints) {
     EXPECT_EQ(message(&empty), "no point with a finite position");
 }
 
+TEST_F(PointSplattingTest, SaysThatTexturesAreLeftOut) {
+    scene::Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    scene::Scene scene = sceneOf(mesh);
+    scene.name = "t";
+    const auto said = [&] {
+        testing::internal::CaptureStderr();
+        recorded("{cache: false, points: 100}", &scene);
+        return testing::internal::GetCapturedStderr();
+    };
+    EXPECT_EQ(said(), "");
+    scene.meshes[0].texcoords.assign(3, glm::vec2(0.0F));
+    scene.meshes[0].material = 0;
+    scene.materials = {{.baseColorTexture = 0}};
+    scene.textures = {image::Image8(1, 1, 3)};
+    EXPECT_EQ(said(), "warning: scene 't': its points have no colours of its textures\n");
+}
+
+TEST_F(PointSplattingTest, TakesCamerasAndPathsOfTheScene) {
+    scene::Scene scene = bumpySphere(20000);
+    const auto seen = [&](const std::string& view) {
+        return recorded("{cache: false, pictures: true, view: " + view + "}", &scene)
+            .images.at("image");
+    };
+    const image::ImageF framed = seen("30 17"), above = seen("30 80");
+    EXPECT_GT(difference(framed, above).first, 100);
+    scene::Camera camera = scene::framingCamera(scene.bounds(), 1.0F);
+    camera.name = "far";
+    camera.position = camera.target + 2.0F * (camera.position - camera.target);
+    camera.nearM = 0.1F;
+    camera.farM = 100.0F;
+    scene.cameras = {camera};
+    const int covered = coveredPixels(seen("far"));
+    EXPECT_NEAR(static_cast<double>(coveredPixels(framed)) / covered, 4.0, 0.5);  // its rim blurs
+    camera.name.clear();
+    scene.paths = {{"walk", {camera}}};
+    EXPECT_EQ(coveredPixels(seen("walk")), covered);
+    EXPECT_EQ(errorText([&] { seen("none"); }),
+              "the scene has no path or camera 'none'; paths: 'walk'; cameras: 'far'; or 'AZIMUTH "
+              "ELEVATION' in degrees");
+}
+
 TEST(TurntableCamera, HoldsTheBoxFromEverySide) {
     const scene::Box box{{-1, 0, 2}, {3, 1, 4}};
     for (const float rotation : {0.0F, 1.0F, 3.0F, 5.0F}) {
@@ -343,6 +388,18 @@ TEST(TurntableCamera, HoldsTheBoxFromEverySide) {
             EXPECT_GT(depth, camera.nearM);
             EXPECT_LT(depth, camera.farM);
         }
+    }
+    for (const glm::vec3& towardsEye : {glm::vec3(0, 1, 2), glm::vec3(0, 1, 0)}) {
+        const scene::Camera framing = scene::framingCamera(box, 1.0F, towardsEye);
+        ViewSettings settings;
+        settings.towardsEye = towardsEye;
+        const scene::Camera camera = turntableCamera(box, 1.0F, settings);
+        EXPECT_EQ(camera.position, framing.position);
+        EXPECT_EQ(camera.up, framing.up);
+        settings.rotationRad = 1.0F;  // turned about the vertical
+        const scene::Camera turned = turntableCamera(box, 1.0F, settings);
+        EXPECT_NEAR(turned.position.y, camera.position.y, 1e-5F);
+        EXPECT_EQ(turned.up == camera.up, towardsEye.z != 0.0F);
     }
     const scene::Camera moved = turntableCamera(box, 1.0F, {0.1F, 0.0F, {0, 0, 1}});
     EXPECT_EQ(moved.target, glm::vec3(-1, 0, 4));
