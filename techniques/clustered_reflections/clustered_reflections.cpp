@@ -278,7 +278,8 @@ class ClusteredReflections final : public technique::Technique {
         shared_ = context.shared;
         frame_.emplace(context, params_);
         gbufferRenderer_.emplace(shaders, frame_->scene);
-        gbuffer_.emplace(frame_->viewAt(kit::frameTime(0, 1)));
+        gbuffer_.emplace(frame_->viewAt(kit::frameTime(0, 1)),
+                         params_.method == Method::RayTraced || params_.method == Method::Embree);
         target_.emplace(frame_->samplesPx());
         tracer_ = makeTracer(shaders);
     }
@@ -321,7 +322,7 @@ class ClusteredReflections final : public technique::Technique {
         const bool hasErrors = params_.measuresErrors && hasReflections_;
         if (!hasErrors && !params_.showsPictures) return;
 
-        const HostGBuffer gbuffer = reflections::readGBuffer(*gbuffer_);
+        const HostGBuffer gbuffer = hasErrors ? samplesOfTruth() : readGBuffer(*gbuffer_);
         const image::ImageF picture =
             params_.drawsReflections() ? frame_->composite.read() : image::ImageF();
         if (params_.showsPictures) {
@@ -343,6 +344,15 @@ class ClusteredReflections final : public technique::Technique {
     }
 
   private:
+    /// The last frame's samples as rays need them: drawn again where the method does without
+    /// triangles' normals, which its memory then lacks.
+    HostGBuffer samplesOfTruth() const {
+        if (gbuffer_->hasTriangleNormals()) return readGBuffer(*gbuffer_);
+        reflections::GBuffer whole(gbuffer_->view);
+        gbufferRenderer_->render(frame_->objects, whole);
+        return readGBuffer(whole);
+    }
+
     /// What Embree says of the last frame; with the picture that it makes of it.
     struct Truth {
         kit::View view;
@@ -367,11 +377,10 @@ class ClusteredReflections final : public technique::Technique {
                 return std::make_unique<reflections::ScreenSpaceTracer>(
                     shaders, frame_->map, lobe, diagonalM, kThickness * diagonalM);
             case Method::RayTraced:
-                return std::make_unique<reflections::GpuRayTracer>(shaders, frame_->objects,
-                                                                   frame_->map, lobe, diagonalM);
+                return std::make_unique<reflections::GpuRayTracer>(shaders, frame_->objects, lobe,
+                                                                   diagonalM);
             case Method::Embree:
-                return std::make_unique<reflections::EmbreeTracer>(shaders, frame_->scene,
-                                                                   frame_->map, lobe);
+                return std::make_unique<reflections::EmbreeTracer>(shaders, frame_->scene, lobe);
             case Method::Clustered:
                 break;
         }

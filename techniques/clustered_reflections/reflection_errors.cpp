@@ -54,7 +54,6 @@ bool isClear(const ClusterCamera& camera, const glm::vec3& target, float toleran
     const glm::vec3 direction = (target - eye) / length;
     const float cosine = glm::dot(direction, glm::vec3(camera.planeNormal));
     if (cosine <= 0.0F) return false;  // beside the camera: not in its frustum either
-    // The truth's rays meet nothing nearer to their surface, either.
     float start = camera.eyeWorld.w / cosine + toleranceM;
     const float end = length - toleranceM;
     while (start < end) {

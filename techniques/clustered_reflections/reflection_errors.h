@@ -50,10 +50,10 @@ struct OcclusionInput {
 /// images, decide, so that the measure does not depend on the resolution. Samples whose mirror ray
 /// leaves the scene, or ends before Q (glossy samples' far plane), miss nothing.
 ///
-/// Tolerance: kOcclusionTolerance of the scene's diagonal, twice what the truth's own rays pass
-/// over before their surface. The line from e_c to Q of a planar cluster is the mirror ray itself
-/// up to rounding: without the tolerance, edges that the two pass on different sides would count.
-constexpr float kOcclusionTolerance = 2.0F * reflections::EmbreeTracer::kStart;
+/// Tolerance: kOcclusionTolerance of the scene's diagonal. The line from e_c to Q of a planar
+/// cluster is the mirror ray itself up to rounding: without the tolerance, edges that the two pass
+/// on different sides would count.
+constexpr float kOcclusionTolerance = 2e-4F;
 OcclusionErrors occlusionErrors(const OcclusionInput& input);
 
 /// Of a point of the world, as above; `reflector` is that which it lies on, 0 for none.

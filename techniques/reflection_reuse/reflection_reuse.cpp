@@ -404,11 +404,10 @@ class ReflectionReuse final : public technique::Technique {
         const float diagonalM = frame_->scene.diagonalM();
         switch (params_.tracer) {
             case Tracer::Compute:
-                return std::make_unique<reflections::GpuRayTracer>(shaders, frame_->objects,
-                                                                   frame_->map, lobe, diagonalM);
+                return std::make_unique<reflections::GpuRayTracer>(shaders, frame_->objects, lobe,
+                                                                   diagonalM);
             case Tracer::Embree:
-                return std::make_unique<reflections::EmbreeTracer>(shaders, frame_->scene,
-                                                                   frame_->map, lobe);
+                return std::make_unique<reflections::EmbreeTracer>(shaders, frame_->scene, lobe);
             case Tracer::Clustered:
                 break;
         }

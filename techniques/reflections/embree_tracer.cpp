@@ -23,8 +23,9 @@ struct ListedSample {
     float depthM = 0.0F;
     glm::vec2 normalOctahedral{0.0F};
     glm::vec3 keptDiffuse{0.0F};
+    std::uint32_t triangleNormal = 0;  // packed
 };
-static_assert(sizeof(ListedSample) == 28);
+static_assert(sizeof(ListedSample) == 32);
 
 gl::Pass samplesPass(const gl::ShaderLibrary& shaders, const char* file) {
     return {shaders, {file}, {{"GROUP_SIZE", static_cast<unsigned>(kSamplesGroupSize)}}};
@@ -89,9 +90,8 @@ struct EmbreeTracer::FoundSample {
 };
 
 EmbreeTracer::EmbreeTracer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
-                           const EnvironmentMap& map, const LobeSettings& lobe)
+                           const LobeSettings& lobe)
     : scene_(scene),
-      map_(map),
       lobe_(lobe),
       posed_(trianglesOf(scene.scene())),
       readWanted_(samplesPass(shaders, "reflections/wanted_samples.comp.glsl")),
@@ -104,14 +104,8 @@ void EmbreeTracer::update(const GpuObjects& objects, gl::Profiler& profiler) {
         posed_.instances[i].worldFromMesh = objects.poses()[i];
         normalFromMesh_.push_back(normalFromMesh(objects.poses()[i]));
     }
-    {
-        const gl::CpuScope scope(profiler, "bvh_build");
-        rays_.emplace(posed_);
-    }
-    const gl::CpuScope scope(profiler, "transfer");
-    if (environmentVersion_ == map_.version()) return;
-    environment_ = map_.read();
-    environmentVersion_ = map_.version();
+    const gl::CpuScope scope(profiler, "bvh_build");
+    rays_.emplace(posed_);
 }
 
 void EmbreeTracer::trace(const GBuffer& gbuffer, const gl::Texture* wanted,
@@ -183,6 +177,7 @@ std::vector<std::uint32_t> EmbreeTracer::readWanted(const GBuffer& gbuffer,
         const std::size_t i = places[k];
         host_.diffuse[i] = linearColour(listed[k].keptDiffuse);
         host_.setNormal(i, listed[k].normalOctahedral);
+        host_.setTriangleNormal(i, listed[k].triangleNormal);
         host_.depthM[i] = listed[k].depthM;
         host_.surface[i] = listed[k].surface;
         if (mask[i] != 0 && host_.isReflective(i)) indices.push_back(places[k]);
@@ -233,14 +228,25 @@ std::vector<TracedSample> EmbreeTracer::trace(const HostGBuffer& gbuffer,
 std::vector<TracedSample> EmbreeTracer::traceMirrorRays(const HostGBuffer& gbuffer) const {
     return samplesOf(gbuffer, [&](glm::ivec2 pixel) {
         TracedSample sample;
-        const auto hit = closestHit(gbuffer.positionWorld(pixel), gbuffer.mirrorDirection(pixel));
+        const auto hit = closestHit(gbuffer.positionWorld(pixel), gbuffer.mirrorDirection(pixel),
+                                    gbuffer.triangleNormalWorld[gbuffer.indexOf(pixel)]);
         if (hit) sample = {glm::vec3(0.0F), hit->distance, 1 + hit->instance};
         return sample;
     });
 }
 
+/// What a ray from a sample meets; nothing where it goes below the sample's triangle.
+std::optional<raycast::Hit> EmbreeTracer::closestHit(const glm::vec3& origin,
+                                                     const glm::vec3& direction,
+                                                     const glm::vec3& triangleNormal) const {
+    const float cosine = glm::dot(direction, triangleNormal);
+    if (cosine <= 0.0F) return std::nullopt;
+    return rays_->closestHit(origin, direction,
+                             kLift * scene_.diagonalM() / std::max(cosine, kGrazing));
+}
+
 // [xie2017] Sec. 4.6: the lobe, its fading towards the far plane; the diffuse colour stands in for
-// what has faded and for glossy rays that meet nothing.
+// what has faded, for glossy rays that meet nothing, and for rays below their triangle.
 TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel,
                                        const LobeSettings& lobe) const {
     const std::size_t index = gbuffer.indexOf(pixel);
@@ -248,19 +254,25 @@ TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pi
     const float diagonalM = scene_.diagonalM();
     const glm::vec3 origin = gbuffer.positionWorld(pixel);
     const glm::vec3 mirrorDirection = gbuffer.mirrorDirection(pixel);
+    const glm::vec3& triangleNormal = gbuffer.triangleNormalWorld[index];
 
     const glm::vec3 beam =
         scene_.textureFilter() == TextureFilter::Footprint ? gbuffer.beam(pixel) : glm::vec3(0.0F);
     TracedSample sample;
-    const std::optional<raycast::Hit> mirrorHit = closestHit(origin, mirrorDirection);
+    const std::optional<raycast::Hit> mirrorHit =
+        closestHit(origin, mirrorDirection, triangleNormal);
     if (mirrorHit) {
         sample.distanceM = mirrorHit->distance;
         sample.object = 1 + mirrorHit->instance;
     }
     if (glossiness <= 0.0F) {
-        sample.radiance =
-            mirrorHit ? radianceAt(*mirrorHit, mirrorDirection, beamArea(beam, mirrorHit->distance))
-                      : environment_.radianceFrom(mirrorDirection);
+        if (mirrorHit) {
+            sample.radiance =
+                radianceAt(*mirrorHit, mirrorDirection, beamArea(beam, mirrorHit->distance));
+        } else {
+            const bool isBelow = glm::dot(mirrorDirection, triangleNormal) <= 0.0F;
+            sample.radiance = isBelow ? gbuffer.diffuse[index] : kBackground;
+        }
         return sample;
     }
     const int count = raysOf(lobe, glossiness);
@@ -268,7 +280,7 @@ TracedSample EmbreeTracer::traceSample(const HostGBuffer& gbuffer, glm::ivec2 pi
     float weights = 0.0F;
     for (int i = 0; i < count; ++i) {
         const glm::vec3 direction = lobeDirection(lobe, mirrorDirection, glossiness, i, count);
-        const std::optional<raycast::Hit> hit = closestHit(origin, direction);
+        const std::optional<raycast::Hit> hit = closestHit(origin, direction, triangleNormal);
         if (!hit) continue;
         const float weight = fadeOf(lobe, glossiness, hit->distance, diagonalM);
         if (weight > 0.0F) {
@@ -286,7 +298,7 @@ glm::vec3 EmbreeTracer::radianceAt(const raycast::Hit& hit, const glm::vec3& dir
     const std::uint32_t triangle = hit.flattenedTriangle;
     const glm::mat4& pose = posed_.instances[hit.instance].worldFromMesh;
     const float footprint = scene_.footprintAt(triangle, pose, direction, beamArea);
-    // Turned to where the ray comes from; also where opposite normals cancel out in the middle of a
+    // Of the side that the ray meets; also where opposite normals cancel out in the middle of a
     // triangle, as shaders/surface.glsl has it.
     glm::vec3 normal =
         normalFromMesh_[hit.instance] * scene_.normalMeshAt(triangle, hit.barycentric);
@@ -297,7 +309,7 @@ glm::vec3 EmbreeTracer::radianceAt(const raycast::Hit& hit, const glm::vec3& dir
         if (glm::determinant(glm::mat3(pose)) < 0.0F) normal = -normal;
         normal =
             scene_.texturedNormalAt(triangle, hit.barycentric, pose, normal, -direction, footprint);
-    } else if (glm::dot(normal, direction) > 0.0F) {
+    } else if (isTurnedAway(normal, -direction, hit.geometricNormal)) {
         normal = -normal;
     }
     return shadeDiffuse(scene_.lights(), hit.position, normal,

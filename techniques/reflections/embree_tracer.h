@@ -15,22 +15,23 @@ namespace gfxrepro::reflections {
 /// What a sample's mirror ray meets.
 struct TracedSample {
     glm::vec3 radiance{0.0F};  // weighted mean over the lobe, as ReflectionTarget has it
-    float distanceM = 0.0F;    // of the mirror ray; 0: it left the scene
+    float distanceM = 0.0F;    // of the mirror ray; 0: it meets nothing, or is below its triangle
     std::uint32_t object = 0;  // 1 + object that the mirror ray meets; 0: none
 };
 
 /// Embree over the posed scene, its BVH rebuilt by every update() (the scenes are dynamic). Rays
 /// start from the G-buffer's samples. Passes: `bvh_build`, `intersection` (CPU), and `transfer`
-/// (CPU) for reading the G-buffer and the environment map and for writing the result.
+/// (CPU) for reading the G-buffer and for writing the result.
 class EmbreeTracer final : public ReflectionTracer {
   public:
-    /// Rays start this far from their surface, in diagonals of the scene's box: less would meet the
-    /// surface that they leave.
-    static constexpr float kStart = 1e-4F;
+    /// Rays start where they are this far off their triangle, in diagonals of the scene's box, but
+    /// no further along themselves than 1 / kGrazing times it: less would meet the surface that
+    /// they leave.
+    static constexpr float kLift = 1e-5F, kGrazing = 0.1F;
 
-    /// Scene and map must outlive this.
+    /// The scene must outlive this.
     EmbreeTracer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
-                 const EnvironmentMap& map, const LobeSettings& lobe);
+                 const LobeSettings& lobe);
     void update(const GpuObjects& objects, gl::Profiler& profiler) override;
     void trace(const GBuffer& gbuffer, const gl::Texture* wanted, ReflectionTarget& target,
                gl::Profiler& profiler) override;
@@ -51,7 +52,7 @@ class EmbreeTracer final : public ReflectionTracer {
     struct FoundSample;
 
     /// Wanted samples go by lists, so that what is transferred goes with them and not with the
-    /// image: beside its mask, a byte a sample, 28 bytes a wanted sample or neighbour of one, by
+    /// image: beside its mask, a byte a sample, 32 bytes a wanted sample or neighbour of one, by
     /// which its beam is found, and 20 back.
     void traceWanted(const GBuffer& gbuffer, const gl::Texture& wanted, ReflectionTarget& target,
                      gl::Profiler& profiler);
@@ -59,22 +60,17 @@ class EmbreeTracer final : public ReflectionTracer {
     void writeFound(std::vector<FoundSample>& found, ReflectionTarget& target) const;
     template <class Trace>
     std::vector<TracedSample> samplesOf(const HostGBuffer& gbuffer, const Trace& trace) const;
-    std::optional<raycast::Hit> closestHit(const glm::vec3& origin,
-                                           const glm::vec3& direction) const {
-        return rays_->closestHit(origin, direction, kStart * scene_.diagonalM());
-    }
+    std::optional<raycast::Hit> closestHit(const glm::vec3& origin, const glm::vec3& direction,
+                                           const glm::vec3& triangleNormal) const;
     TracedSample traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel,
                              const LobeSettings& lobe) const;
     glm::vec3 radianceAt(const raycast::Hit& hit, const glm::vec3& direction, float beamArea) const;
 
     const ReflectiveScene& scene_;
-    const EnvironmentMap& map_;
     LobeSettings lobe_;
     scene::Scene posed_;  // the triangles alone: all that a BVH is built of
     std::vector<glm::mat3> normalFromMesh_;
     std::optional<raycast::RayTracer> rays_;
-    EnvironmentMap::Host environment_;
-    std::uint64_t environmentVersion_ = 0;
     gl::Pass readWanted_, writeFound_;
     HostGBuffer host_;  // samples that were wanted; others stay what they are, nothing at first
 };

@@ -95,7 +95,7 @@ Frame::Frame(technique::SetupContext& context, const FrameSettings& wanted)
     map.render(objects);
     if (!settings.measuresErrors) return;
     untimed.emplace(context.device.info().isSoftware);
-    truth.emplace(context.shaders, scene, map, settings.lobe);
+    truth.emplace(context.shaders, scene, settings.lobe);
 }
 
 kit::View Frame::viewAt(double time) const {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <glm/packing.hpp>
 #include <limits>
 
 #include "techniques/kit/draws.h"
@@ -13,7 +14,13 @@ namespace gfxrepro::reflections {
 namespace {
 
 /// Outputs in the order of the framebuffer's attachments.
-enum Target { kDiffuseTarget = 0, kNormalTarget = 1, kDepthTarget = 2, kSurfaceTarget = 3 };
+enum Target {
+    kDiffuseTarget = 0,
+    kNormalTarget = 1,
+    kDepthTarget = 2,
+    kSurfaceTarget = 3,
+    kTriangleNormalTarget = 4
+};
 
 gl::Defines gbufferDefines(const ReflectiveScene& scene) {
     gl::Defines defines = surfaceDefines(scene);
@@ -21,6 +28,7 @@ gl::Defines gbufferDefines(const ReflectiveScene& scene) {
     defines["kDiffuseTarget"] = kDiffuseTarget;
     defines["kNormalTarget"] = kNormalTarget;
     defines["kSurfaceTarget"] = kSurfaceTarget;
+    defines["kTriangleNormalTarget"] = kTriangleNormalTarget;
     return defines;
 }
 
@@ -30,6 +38,10 @@ void clear(const GBuffer& target) {
     target.framebuffer.clearColour(kNormalTarget, glm::vec4(0.0F));
     target.framebuffer.clearColour(kDepthTarget, glm::vec4(0.0F));
     glClearNamedFramebufferuiv(target.framebuffer.id(), GL_COLOR, kSurfaceTarget, kNoSurface);
+    if (target.hasTriangleNormals()) {
+        glClearNamedFramebufferuiv(target.framebuffer.id(), GL_COLOR, kTriangleNormalTarget,
+                                   kNoSurface);
+    }
     target.framebuffer.clearDepth(1.0F);
 }
 
@@ -80,15 +92,20 @@ glm::vec3 directionFromOctahedral(const glm::vec2& e) {
     return v;
 }
 
-GBuffer::GBuffer(const kit::View& ofView)
+GBuffer::GBuffer(const kit::View& ofView, bool hasTriangleNormals)
     : view(ofView),
       diffuse(gl::Texture::make2D(kKeptColourFormat, view.sizePx)),
       normal(gl::Texture::make2D(GL_RG32F, view.sizePx)),
       depth(gl::Texture::make2D(GL_R32F, view.sizePx)),
       surface(gl::Texture::make2D(GL_R32UI, view.sizePx)),
-      depthBuffer(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, view.sizePx)),
-      framebuffer(std::array<const gl::Texture*, 4>{&diffuse, &normal, &depth, &surface},
-                  &depthBuffer) {}
+      depthBuffer(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, view.sizePx)) {
+    std::vector<const gl::Texture*> targets{&diffuse, &normal, &depth, &surface};
+    if (hasTriangleNormals) {
+        triangleNormal = gl::Texture::make2D(GL_R32UI, view.sizePx);
+        targets.push_back(&triangleNormal);
+    }
+    framebuffer = gl::Framebuffer(targets, &depthBuffer);
+}
 
 void GBuffer::setUniforms(const gl::Program& program) const {
     program.setIfActive("gbufferWorldFromPixels", kit::worldFromPixels(view));
@@ -96,15 +113,17 @@ void GBuffer::setUniforms(const gl::Program& program) const {
 }
 
 gl::Resources GBuffer::resources() const {
-    return {{"gbufferDiffuse", diffuse},
-            {"gbufferNormal", normal},
-            {"gbufferDepth", depth},
-            {"gbufferSurface", surface}};
+    gl::Resources resources{{"gbufferDiffuse", diffuse},
+                            {"gbufferNormal", normal},
+                            {"gbufferDepth", depth},
+                            {"gbufferSurface", surface}};
+    if (hasTriangleNormals()) resources.add({"gbufferTriangleNormal", triangleNormal});
+    return resources;
 }
 
 std::size_t GBuffer::sizeBytes() const {
     return diffuse.sizeBytes() + normal.sizeBytes() + depth.sizeBytes() + surface.sizeBytes() +
-           depthBuffer.sizeBytes();
+           (hasTriangleNormals() ? triangleNormal.sizeBytes() : 0) + depthBuffer.sizeBytes();
 }
 
 GBufferRenderer::GBufferRenderer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene)
@@ -128,9 +147,15 @@ HostGBuffer readGBuffer(const GBuffer& gbuffer) {
     const std::vector<float> normals = gbuffer.normal.read<float>(GL_RG, GL_FLOAT, 2);
     host.depthM = gbuffer.depth.read<float>(GL_RED, GL_FLOAT, 1);
     host.surface = readSurfaces(gbuffer);
+    std::vector<std::uint32_t> ofTriangles;
+    if (gbuffer.hasTriangleNormals()) {
+        ofTriangles =
+            gbuffer.triangleNormal.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+    }
     tbb::parallel_for(std::size_t{0}, host.depthM.size(), [&](std::size_t i) {
         host.diffuse[i] = linearColour({diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]});
         host.setNormal(i, {normals[2 * i], normals[2 * i + 1]});
+        if (!ofTriangles.empty()) host.setTriangleNormal(i, ofTriangles[i]);
     });
     return host;
 }
@@ -150,6 +175,7 @@ void HostGBuffer::resizeFor(const kit::View& of) {
     diffuse.resize(samples);
     normalWorld.resize(samples);
     normalOctahedral.resize(samples);
+    triangleNormalWorld.resize(samples);
     depthM.resize(samples);
     surface.resize(samples);
 }
@@ -157,6 +183,11 @@ void HostGBuffer::resizeFor(const kit::View& of) {
 void HostGBuffer::setNormal(std::size_t index, const glm::vec2& octahedral) {
     normalOctahedral[index] = octahedral;
     normalWorld[index] = glm::normalize(directionFromOctahedral(octahedral));
+}
+
+void HostGBuffer::setTriangleNormal(std::size_t index, std::uint32_t packed) {
+    triangleNormalWorld[index] =
+        glm::normalize(directionFromOctahedral(glm::unpackSnorm2x16(packed)));
 }
 
 float HostGBuffer::glossiness(std::size_t index) const {

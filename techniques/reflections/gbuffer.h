@@ -24,21 +24,26 @@ inline glm::vec3 linearColour(const glm::vec3& kept) {
     return kept * kept;
 }
 
-/// 24 bytes a sample with the depth buffer. Positions are not kept: a sample lies at
-/// kit::worldFromPixels(view) · (x·d, y·d, d, 1), (x, y) the pixel's centre.
+/// 24 bytes a sample with the depth buffer, and 4 of triangles' normals for what traces rays.
+/// Positions are not kept: a sample lies at kit::worldFromPixels(view) · (x·d, y·d, d, 1), (x, y)
+/// the pixel's centre.
 struct GBuffer {
     kit::View view;
     gl::Texture diffuse;  // keptColour(): rgb_d of Algorithm 6, as shadeDiffuse() gives it
     gl::Texture normal;   // RG32F, octahedral, unit world normal turned to the eye
     gl::Texture depth;    // R32F, d: distance along the view axis in metres; 0: nothing there
     gl::Texture surface;  // R32UI: reflector id | s in 255ths << 16 | g in 255ths << 24
+    /// R32UI, octahedral, two snorm16: unit world normal of the triangle on the side that is seen;
+    /// empty where it is not asked for.
+    gl::Texture triangleNormal;
     gl::Texture depthBuffer;
     gl::Framebuffer framebuffer;
 
-    explicit GBuffer(const kit::View& view);
+    explicit GBuffer(const kit::View& view, bool hasTriangleNormals = true);
     /// For passes that include gbuffer.glsl.
     gl::Resources resources() const;
     void setUniforms(const gl::Program& program) const;
+    bool hasTriangleNormals() const { return triangleNormal.id() != 0; }
     gl::Resources resourcesFor(const gl::Program& program) const {
         setUniforms(program);
         return resources();
@@ -71,14 +76,17 @@ struct HostGBuffer {
     glm::mat4 worldFromPixels{1.0F};
     std::vector<glm::vec3> diffuse;
     std::vector<glm::vec3> normalWorld;
-    std::vector<glm::vec2> normalOctahedral;  // as stored: for replays that must be exact
+    std::vector<glm::vec2> normalOctahedral;     // as stored: for replays that must be exact
+    std::vector<glm::vec3> triangleNormalWorld;  // 0 where the device has none
     std::vector<float> depthM;
     std::vector<std::uint32_t> surface;
 
     /// Room for the samples of a view.
     void resizeFor(const kit::View& of);
-    /// Sets both normals of a sample.
+    /// Sets both forms of a sample's normal.
     void setNormal(std::size_t index, const glm::vec2& octahedral);
+    /// Sets the normal of its triangle, as the texture has it.
+    void setTriangleNormal(std::size_t index, std::uint32_t packed);
     std::size_t indexOf(glm::ivec2 pixel) const {
         return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(view.sizePx.x) +
                static_cast<std::size_t>(pixel.x);

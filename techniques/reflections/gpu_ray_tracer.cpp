@@ -175,9 +175,8 @@ gl::Defines passDefines(const ReflectiveScene& scene) {
 }  // namespace
 
 GpuRayTracer::GpuRayTracer(const gl::ShaderLibrary& shaders, const GpuObjects& objects,
-                           const EnvironmentMap& map, const LobeSettings& lobe, float diagonalM)
+                           const LobeSettings& lobe, float diagonalM)
     : objects_(objects),
-      map_(map),
       lobe_(lobe),
       diagonalM_(diagonalM),
       bvh_(shaders, objects),
@@ -219,7 +218,9 @@ void GpuRayTracer::listSamples(const GBuffer& gbuffer, const gl::Texture* wanted
 
 void GpuRayTracer::traceSamples(const GBuffer& gbuffer, ReflectionTarget& target) {
     setLobe(trace_, lobe_, diagonalM_);
-    trace_.set("rayStart", EmbreeTracer::kStart * diagonalM_);
+    trace_.set("rayLift", EmbreeTracer::kLift * diagonalM_);
+    trace_.set("rayGrazing", EmbreeTracer::kGrazing);
+    trace_.set("background", kBackground);
     trace_.dispatchIndirect(arguments_, 0,
                             gl::Resources{{"Samples", samples_},
                                           {"Arguments", arguments_},
@@ -232,7 +233,6 @@ void GpuRayTracer::traceSamples(const GBuffer& gbuffer, ReflectionTarget& target
                                           {"distanceImage", target.distance}}
                                 .with(objects_.resources())
                                 .with(bvh_.resources())
-                                .with(map_.resources())
                                 .with(gbuffer.resourcesFor(trace_)));
 }
 

@@ -100,9 +100,9 @@ class GpuBvh {
 /// (and its parts), `ray_list`, `intersection`.
 class GpuRayTracer final : public ReflectionTracer {
   public:
-    /// `objects` and `map` outlive this.
+    /// `objects` outlives this.
     GpuRayTracer(const gl::ShaderLibrary& shaders, const GpuObjects& objects,
-                 const EnvironmentMap& map, const LobeSettings& lobe, float diagonalM);
+                 const LobeSettings& lobe, float diagonalM);
     /// `objects` are those of the constructor.
     void update(const GpuObjects& objects, gl::Profiler& profiler) override;
     void trace(const GBuffer& gbuffer, const gl::Texture* wanted, ReflectionTarget& target,
@@ -116,7 +116,6 @@ class GpuRayTracer final : public ReflectionTracer {
     void traceSamples(const GBuffer& gbuffer, ReflectionTarget& target);
 
     const GpuObjects& objects_;
-    const EnvironmentMap& map_;
     LobeSettings lobe_;
     float diagonalM_;
     GpuBvh bvh_;

@@ -141,7 +141,6 @@ EnvironmentMap::EnvironmentMap(const gl::ShaderLibrary& shaders, const Reflectiv
             surfaceDefines(scene)) {}
 
 void EnvironmentMap::render(const GpuObjects& objects) {
-    ++version_;
     // Everything lies before the far plane; what is nearer than a thousandth of it is cut off.
     const float farM = std::max(1.001F * reachOf(objects.boundsWorld(), centreWorld_), 1e-3F);
     const glm::mat4 clipFromView = glm::perspective(glm::radians(90.0F), 1.0F, 1e-3F * farM, farM);

@@ -30,8 +30,8 @@ int raysOf(const LobeSettings& lobe, float glossiness);
 glm::vec3 lobeDirection(const LobeSettings& lobe, const glm::vec3& mirrorDirection,
                         float glossiness, int index, int count);
 float farPlaneM(const LobeSettings& lobe, float glossiness, float diagonalM);
-/// Weight of a hit at `distanceM`: 1 for mirrors. Misses weigh 0 for glossy samples and 1 (with the
-/// environment map's radiance) for mirrors.
+/// Weight of a hit at `distanceM`: 1 for mirrors. Misses weigh 0 for glossy samples and 1 for
+/// mirrors.
 float fadeOf(const LobeSettings& lobe, float glossiness, float distanceM, float diagonalM);
 /// Sets the active ones of the uniforms of shaders/lobe.glsl.
 void setLobe(const gl::Program& program, const LobeSettings& lobe, float diagonalM);
@@ -48,8 +48,9 @@ struct ReflectionTarget {
     std::size_t sizeBytes() const;
 };
 
-/// Second-order rays only: what they meet shows its diffuse colour (Sec. 4.7.4), rays that meet
-/// nothing take the environment map in their direction.
+/// Second-order rays only: what they meet shows its diffuse colour (Sec. 4.7.4). Rays that meet
+/// nothing show kBackground in the ray tracers; the other methods take the environment map in their
+/// direction, for what their images lack as well.
 class ReflectionTracer {
   public:
     virtual ~ReflectionTracer() = default;
@@ -78,8 +79,6 @@ class EnvironmentMap {
                    const glm::vec3& centreWorld);
     /// `objects` are of the constructor's scene.
     void render(const GpuObjects& objects);
-    /// How often it was drawn: what was read of it is stale when this has grown.
-    std::uint64_t version() const { return version_; }
     /// For passes that include environment.glsl.
     gl::Resources resources() const { return {{"environmentMap", cube_}}; }
     const gl::Texture& cube() const { return cube_; }
@@ -97,7 +96,6 @@ class EnvironmentMap {
     Host read() const;
 
   private:
-    std::uint64_t version_ = 0;
     glm::vec3 centreWorld_;
     gl::Texture cube_, depth_;
     gl::Pass pass_;

@@ -535,15 +535,17 @@ glm::vec3 ReflectiveScene::texturedNormalAt(std::uint32_t triangle, const glm::v
     const glm::vec3 acrossFirst = glm::cross(normalWorld, first);
     const glm::vec3 alongU = acrossSecond * uvFirst.x + acrossFirst * uvSecond.x;
     const glm::vec3 alongV = acrossSecond * uvFirst.y + acrossFirst * uvSecond.y;
-    const float squared = std::max(glm::dot(alongU, alongU), glm::dot(alongV, alongV));
+    const float squaredU = glm::dot(alongU, alongU), squaredV = glm::dot(alongV, alongV);
     glm::vec3 normal = normalWorld;
-    if (squared > 0.0F) {
+    if (std::min(squaredU, squaredV) > 0.0F) {
         const float side = glm::dot(glm::cross(first, second), normalWorld) < 0.0F ? -1.0F : 1.0F;
-        const float scale = side * object.normalScale / std::sqrt(squared);
-        normal = scale * (texel.x * alongU - texel.y * alongV) + texel.z * normalWorld;
+        const float scale = side * object.normalScale;
+        normal = scale * (texel.x / std::sqrt(squaredU) * alongU -
+                          texel.y / std::sqrt(squaredV) * alongV) +
+                 texel.z * normalWorld;
         normal = glm::dot(normal, normal) > 0.0F ? glm::normalize(normal) : normalWorld;
     }
-    if (glm::dot(normalWorld, toViewer) < 0.0F) normal = -normal;
+    if (isTurnedAway(normalWorld, toViewer, glm::cross(first, second))) normal = -normal;
     const float facing = glm::dot(normal, toViewer);
     if (facing < kLeastFacing) {
         normal = glm::normalize(normal + (kLeastFacing - facing) * toViewer);

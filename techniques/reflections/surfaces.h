@@ -151,7 +151,7 @@ class ReflectiveScene {
     /// The interpolated normal in mesh space, not of unit length.
     glm::vec3 normalMeshAt(std::uint32_t triangle, const glm::vec2& barycentric) const;
     /// The normal that the object's normal texture gives, as texturedNormal() of
-    /// shaders/shading.glsl: unit, in the world, turned to the viewer. `normalWorld` is the
+    /// shaders/shading.glsl: unit, in the world, of the side that is seen. `normalWorld` is the
     /// interpolated one, unit, on the mesh's outside.
     glm::vec3 texturedNormalAt(std::uint32_t triangle, const glm::vec2& barycentric,
                                const glm::mat4& worldFromMesh, const glm::vec3& normalWorld,
@@ -188,11 +188,18 @@ class ReflectiveScene {
     int reflectorCount_ = 0, wholeReflectorCount_ = 0;
 };
 
+/// Whether a normal is of the side that is not seen, as isTurnedAway() of shaders/shading.glsl.
+inline bool isTurnedAway(const glm::vec3& normal, const glm::vec3& toViewer,
+                         const glm::vec3& across) {
+    return glm::dot(normal, toViewer) < 0.0F &&
+           glm::dot(normal, across) * glm::dot(across, toViewer) <= 0.0F;
+}
+
 /// Light that leaves a diffuse surface, without shadows, clamped to [0, 1]:
 ///
 ///     albedo · (0.30 + 0.10·N.y + Σ intensity · max(N·L, 0) / (1 + (d / radius)²)) + emissive
 ///
-/// `normalWorld` is of unit length and turned to the viewer. It does not depend on the viewer
+/// `normalWorld` is of unit length, of the side that is seen. It does not depend on the viewer
 /// otherwise, so that a surface looks the same directly and in every mirror.
 glm::vec3 shadeDiffuse(std::span<const scene::PointLight> lights, const glm::vec3& positionWorld,
                        const glm::vec3& normalWorld, const glm::vec3& albedo,

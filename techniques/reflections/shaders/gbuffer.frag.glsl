@@ -11,6 +11,7 @@ layout(location = kDiffuseTarget) out vec4 diffuse;
 layout(location = kNormalTarget) out vec2 normal;
 layout(location = kDepthTarget) out float depth;
 layout(location = kSurfaceTarget) out uint surface;
+layout(location = kTriangleNormalTarget) out uint triangleNormal;
 
 void main() {
     float footprint = footprintFrom(eyeWorld);
@@ -18,5 +19,6 @@ void main() {
     diffuse = vec4(keptColour(diffuseOf(normalWorld, footprint)), 1.0);
     normal = octahedralFromUnit(normalWorld);
     depth = 1.0 / gl_FragCoord.w;
+    triangleNormal = packSnorm2x16(octahedralFromUnit(seenSideOf(eyeWorld)));
     surface = surfaceOf(objects[point.object], point.texcoord, footprint);
 }

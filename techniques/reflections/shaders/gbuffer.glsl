@@ -6,6 +6,7 @@ uniform sampler2D gbufferDiffuse;
 uniform sampler2D gbufferNormal;
 uniform sampler2D gbufferDepth;
 uniform usampler2D gbufferSurface;
+uniform usampler2D gbufferTriangleNormal;
 uniform mat4 gbufferWorldFromPixels;
 uniform vec3 gbufferEyeWorld;
 
@@ -31,6 +32,10 @@ vec3 gbufferPosition(ivec2 pixel) {
 }
 vec3 gbufferUnitNormal(ivec2 pixel) {
     return unitFromOctahedral(texelFetch(gbufferNormal, pixel, 0).rg);
+}
+// Of the triangle, unit, on the side that is seen.
+vec3 gbufferUnitTriangleNormal(ivec2 pixel) {
+    return unitFromOctahedral(unpackSnorm2x16(texelFetch(gbufferTriangleNormal, pixel, 0).r));
 }
 // The mirror direction of a sample: unit.
 vec3 gbufferMirrorDirection(vec3 positionWorld, vec3 normalWorld) {

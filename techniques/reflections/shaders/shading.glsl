@@ -92,8 +92,15 @@ uint surfaceOf(Object object, vec2 texcoord, float footprint) {
 #endif
 }
 
+// Whether a normal is of the side that is not seen; `across` is perpendicular to the triangle. At the
+// outline of a smooth mesh interpolated normals turn away from the viewer though their side is seen:
+// those stay.
+bool isTurnedAway(vec3 normal, vec3 toViewer, vec3 across) {
+    return dot(normal, toViewer) < 0.0 && dot(normal, across) * dot(across, toViewer) <= 0.0;
+}
+
 #if MATERIAL_TEXTURES
-// The normal that the object's normal texture gives: unit, turned to the viewer. `normal` is the
+// The normal that the object's normal texture gives: unit, of the side that is seen. `normal` is the
 // interpolated one, unit, on the mesh's outside, toViewer of unit length. The frame is the
 // triangle's, of two edges and their texture coordinates: gradients of u and v across the normal
 // (Schüler 2013, "Followup: Normal Mapping Without Precomputed Tangents").
@@ -106,16 +113,18 @@ vec3 texturedNormal(Object object, vec2 texcoord, float footprint, vec3 normal, 
     vec3 acrossSecond = cross(second, normal), acrossFirst = cross(normal, first);
     vec3 alongU = acrossSecond * uvFirst.x + acrossFirst * uvSecond.x;
     vec3 alongV = acrossSecond * uvFirst.y + acrossFirst * uvSecond.y;
-    float squared = max(dot(alongU, alongU), dot(alongV, alongV));
+    float squaredU = dot(alongU, alongU), squaredV = dot(alongV, alongV);
     vec3 bent = normal;
-    if (squared > 0.0) {  // 0: no coordinates that differ
+    if (min(squaredU, squaredV) > 0.0) {  // 0: no coordinates that differ
         float side = dot(cross(first, second), normal) < 0.0 ? -1.0 : 1.0;
-        float scale = side * object.emissive.w * inversesqrt(squared);
-        // v grows downwards, the texture's y upwards.
-        bent = scale * (texel.x * alongU - texel.y * alongV) + texel.z * normal;
+        float scale = side * object.emissive.w;
+        // v grows downwards, the texture's y upwards. Each of unit length (Sec. 3.9.3).
+        bent = scale * (texel.x * inversesqrt(squaredU) * alongU -
+                        texel.y * inversesqrt(squaredV) * alongV) +
+               texel.z * normal;
         bent = dot(bent, bent) > 0.0 ? normalize(bent) : normal;
     }
-    if (dot(normal, toViewer) < 0.0) bent = -bent;
+    if (isTurnedAway(normal, toViewer, cross(first, second))) bent = -bent;
     // One that turns away would send mirror rays through the surface: seen edge-on at most.
     const float kLeastFacing = 1e-3;
     float facing = dot(bent, toViewer);
@@ -123,7 +132,7 @@ vec3 texturedNormal(Object object, vec2 texcoord, float footprint, vec3 normal, 
 }
 #endif
 
-// normalWorld is of unit length and turned to the viewer.
+// normalWorld is of unit length, of the side that is seen.
 vec3 shadeDiffuse(vec3 positionWorld, vec3 normalWorld, vec3 albedo, vec3 emissive) {
     vec3 irradiance = vec3(0.30 + 0.10 * normalWorld.y);
     // A constant, so that compilers unroll: llvmpipe then fetches a light once and not by fragment.

@@ -23,7 +23,17 @@ float footprintFrom(vec3 viewerWorld) {
 #endif
 }
 
-// Unit and turned to the viewer, as meshes need not wind consistently. Where opposite normals cancel
+// The triangle's normal on the side that is seen, unit. Needs derivatives, as above.
+vec3 seenSideOf(vec3 viewerWorld) {
+    vec3 toViewer = viewerWorld - point.positionWorld;
+    vec3 across = cross(dFdx(point.positionWorld), dFdy(point.positionWorld));
+    // Seen edge-on, it has no area here.
+    if (dot(across, across) == 0.0) across = toViewer;
+    across = normalize(across);
+    return dot(across, toViewer) < 0.0 ? -across : across;
+}
+
+// Unit, of the side that is seen, as meshes need not wind consistently. Where opposite normals cancel
 // out in the middle of a triangle: to the viewer.
 vec3 unitNormalTowards(vec3 viewerWorld, float footprint) {
     vec3 toViewer = viewerWorld - point.positionWorld;
@@ -39,7 +49,7 @@ vec3 unitNormalTowards(vec3 viewerWorld, float footprint) {
                               dFdx(point.texcoord), dFdy(point.texcoord));
     }
 #endif
-    return dot(normal, toViewer) < 0.0 ? -normal : normal;
+    return isTurnedAway(normal, toViewer, seenSideOf(viewerWorld)) ? -normal : normal;
 }
 
 // What the surface shows: rgb_d of [xie2017] Algorithm 6.

@@ -39,7 +39,7 @@ vec3 diffuseAt(uvec3 vertices, uint objectIndex, vec2 barycentric, vec3 position
         isTurned = true;
     }
 #endif
-    if (!isTurned && dot(normal, direction) > 0.0) normal = -normal;
+    if (!isTurned && isTurnedAway(normal, -direction, cross(ab, ac))) normal = -normal;
     return shadeDiffuse(positionWorld, normal, albedoOf(object, texcoord, footprint, color),
                         emissiveOf(object, texcoord, footprint));
 }

@@ -3,7 +3,6 @@
 // ([xie2017] Sec. 4.7.1: the ray tracer that the method is compared with).
 #include "reflections/beam.glsl"
 #include "reflections/bvh.glsl"
-#include "reflections/environment.glsl"
 #include "reflections/lobe.glsl"
 #include "reflections/surface_at.glsl"
 
@@ -20,7 +19,9 @@ layout(std430) restrict readonly buffer Arguments {
 layout(rgba16f) uniform restrict writeonly image2D radianceImage;
 layout(r32f) uniform restrict writeonly image2D distanceImage;
 
-uniform float rayStart;  // metres along the ray: less would meet the surface that it leaves
+uniform float rayLift;     // metres off the triangle where rays start: EmbreeTracer::kLift
+uniform float rayGrazing;  // … and kGrazing
+uniform vec3 background;
 
 // The diffuse colour at a hit (Sec. 4.7.4: second-order rays only).
 vec3 radianceAt(RayHit hit, vec3 origin, vec3 direction, float beamArea) {
@@ -36,6 +37,7 @@ void traceSample(ivec2 pixel) {
     float glossiness = glossinessOf(texelFetch(gbufferSurface, pixel, 0).r);
     vec3 origin = gbufferPosition(pixel);
     vec3 mirror = gbufferMirrorDirection(origin, gbufferUnitNormal(pixel));
+    vec3 triangleNormal = gbufferUnitTriangleNormal(pixel);
 #if FILTERS_TEXTURES
     vec3 beam = beamOf(pixel);
 #else
@@ -49,7 +51,9 @@ void traceSample(ivec2 pixel) {
     for (int i = glossiness > 0.0 ? -1 : 0; i < rays; ++i) {
         vec3 direction = i < 0 ? mirror : lobeDirection(mirror, glossiness, i, rays);
         RayHit hit;
-        bool isHit = closestHit(origin, direction, rayStart, 1e30, hit);
+        float cosine = dot(direction, triangleNormal);
+        if (cosine <= 0.0) continue;  // below its triangle: no weight
+        bool isHit = closestHit(origin, direction, rayLift / max(cosine, rayGrazing), 1e30, hit);
         if ((i < 0 || glossiness <= 0.0) && isHit) mirrorDistance = hit.t;
         if (i < 0) continue;
         float weight = isHit ? fadeOf(glossiness, hit.t) : (glossiness > 0.0 ? 0.0 : 1.0);
@@ -57,7 +61,7 @@ void traceSample(ivec2 pixel) {
         weightSum += weight;
         sum += weight *
                (isHit ? radianceAt(hit, origin, direction, beamArea(beam, hit.t))
-                      : radianceFrom(direction));
+                      : background);
     }
     // The diffuse colour stands in for the weight that is missing.
     vec3 diffuse = gbufferDiffuseAt(pixel);

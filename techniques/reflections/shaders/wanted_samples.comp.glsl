@@ -10,6 +10,7 @@ struct ListedSample {
     float depthM;
     float normal[2];   // octahedral
     float diffuse[3];  // kept
+    uint triangleNormal;
 };
 layout(std430) restrict readonly buffer Places { uint places[]; };  // x + width · y
 layout(std430) restrict writeonly buffer Samples { ListedSample samples[]; };
@@ -25,6 +26,7 @@ void main() {
         samples[i] = ListedSample(texelFetch(gbufferSurface, pixel, 0).r,
                                   texelFetch(gbufferDepth, pixel, 0).r,
                                   float[2](normal.x, normal.y),
-                                  float[3](diffuse.r, diffuse.g, diffuse.b));
+                                  float[3](diffuse.r, diffuse.g, diffuse.b),
+                                  texelFetch(gbufferTriangleNormal, pixel, 0).r);
     }
 }

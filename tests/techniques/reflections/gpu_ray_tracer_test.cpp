@@ -62,10 +62,10 @@ class GpuRayTracerTest : public ReflectionsTest {
         frame.objects.setPoses(scene::posesAt(frame.scene.scene(), time));
         frame.renderer.render(frame.objects, frame.gbuffer);
         ReflectionTarget target(frame.gbuffer.view.sizePx);
-        GpuRayTracer tracer(shaders, frame.objects, frame.map, lobe, diagonalM);
+        GpuRayTracer tracer(shaders, frame.objects, lobe, diagonalM);
         tracer.update(frame.objects, profiler);
         tracer.trace(frame.gbuffer, nullptr, target, profiler);
-        EmbreeTracer embree(shaders, frame.scene, frame.map, lobe);
+        EmbreeTracer embree(shaders, frame.scene, lobe);
         embree.update(frame.objects, profiler);
         const HostGBuffer host = readGBuffer(frame.gbuffer);
         const std::vector<TracedSample> truth = embree.trace(host);
@@ -73,7 +73,7 @@ class GpuRayTracerTest : public ReflectionsTest {
         const auto distances = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
         const auto radiances = target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
         // Rays start off their surface; hits nearer than that apart are told apart by rounding.
-        const float roundingM = 0.1F * EmbreeTracer::kStart * diagonalM;
+        const float roundingM = EmbreeTracer::kLift * diagonalM;
         Comparison result;
         result.samples = forEachReflective(host, [&](glm::ivec2, std::size_t i) {
             const float a = truth[i].distanceM, b = distances[i];
@@ -157,7 +157,7 @@ TEST_F(GpuRayTracerTest, FollowsMovedObjects) {
 // would wait for it.
 TEST_F(GpuRayTracerTest, TheHostNeitherWritesNorWaitsWhileItTraces) {
     const Prepared frame = prepared(mirrors());
-    GpuRayTracer tracer(shaders, frame.objects, frame.map, {}, frame.scene.diagonalM());
+    GpuRayTracer tracer(shaders, frame.objects, {}, frame.scene.diagonalM());
     tracer.update(frame.objects, profiler);
     ReflectionTarget target(frame.gbuffer.view.sizePx);
     gl::Profiler untimed(false);

@@ -326,6 +326,10 @@ TEST(TexturedNormalTest, LeansAlongUAndAgainstV) {
     expectNear(normal(bentSquare({255, 128, 255}), rest, toViewer, toViewer), {1, 0, 1});
     expectNear(normal(bentSquare({128, 255, 255}), rest, toViewer, toViewer), {0, 1, 1});
     expectNear(normal(bentSquare({255, 128, 255}, 0.5F), rest, toViewer, toViewer), {0.5F, 0, 1});
+    // Where the texture is stretched, each axis keeps its slope.
+    scene::Scene stretched = bentSquare({255, 255, 255});
+    for (glm::vec2& texcoord : stretched.meshes[0].texcoords) texcoord.y *= 3.0F;
+    expectNear(normal(stretched, rest, toViewer, toViewer), {1, 1, 1});
     // From behind all of the frame is turned round.
     expectNear(normal(bentSquare({255, 128, 255}), rest, toViewer, -toViewer), {-1, 0, -1});
     // A mirrored instance: u grows against x, and the outside stays.

@@ -45,14 +45,13 @@ TEST_F(WantedSamplesTest, AreAllThatIsWritten) {
          {"intersection"}},
         {"compute",
          [&](Prepared& p) -> Made {
-             return std::make_unique<GpuRayTracer>(shaders, p.objects, p.map, LobeSettings{},
-                                                   diagonalM);
+             return std::make_unique<GpuRayTracer>(shaders, p.objects, LobeSettings{}, diagonalM);
          },
          0.0F,
          {}},
         {"Embree",
          [&](Prepared& p) -> Made {
-             return std::make_unique<EmbreeTracer>(shaders, p.scene, p.map, LobeSettings{});
+             return std::make_unique<EmbreeTracer>(shaders, p.scene, LobeSettings{});
          },
          1.0F / 2048.0F,  // halves
          {"bvh_build", "transfer", "intersection"}},
