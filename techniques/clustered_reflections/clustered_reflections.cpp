@@ -201,6 +201,10 @@ config::Outputs outputs() {
             {"channel_error_b", "level", "channel_error of blue alone", Better::Lower, kIsDetail},
             {"channel_error_converged", "level", "channel_error to a truth of many rays per sample",
              Better::Lower},
+            {"wrong_hit_pct", "%",
+             "share of the mirroring samples whose ray ends more than a hundredth of the scene's "
+             "diagonal from where it should",
+             Better::Lower},
             {"clusters", "cluster", "clusters of reflective samples"},
             {"environment_pct", "%",
              "share of the clustered samples that fell back to the environment map", Better::Lower},
@@ -210,6 +214,8 @@ config::Outputs outputs() {
              Better::Lower},
             {"occlusion_hidden_pct", "%", "of these: it is hidden by something else", Better::Lower,
              kIsDetail},
+            {"occlusion_hidden_picture_pct", "%",
+             "samples that are hidden so, as a share of the picture's", Better::Lower},
             {"occlusion_near_pct", "%", "of these: it lies before the image's near plane",
              Better::Lower, kIsDetail},
             {"occlusion_side_pct", "%", "of these: it lies beside the image", Better::Lower,
@@ -322,7 +328,9 @@ class ClusteredReflections final : public technique::Technique {
         const bool hasErrors = params_.measuresErrors && hasReflections_;
         if (!hasErrors && !params_.showsPictures) return;
 
-        const HostGBuffer gbuffer = hasErrors ? samplesOfTruth() : readGBuffer(*gbuffer_);
+        const HostGBuffer gbuffer = hasErrors
+                                        ? gbufferRenderer_->readForRays(frame_->objects, *gbuffer_)
+                                        : readGBuffer(*gbuffer_);
         const image::ImageF picture =
             params_.drawsReflections() ? frame_->composite.read() : image::ImageF();
         if (params_.showsPictures) {
@@ -344,15 +352,6 @@ class ClusteredReflections final : public technique::Technique {
     }
 
   private:
-    /// The last frame's samples as rays need them: drawn again where the method does without
-    /// triangles' normals, which its memory then lacks.
-    HostGBuffer samplesOfTruth() const {
-        if (gbuffer_->hasTriangleNormals()) return readGBuffer(*gbuffer_);
-        reflections::GBuffer whole(gbuffer_->view);
-        gbufferRenderer_->render(frame_->objects, whole);
-        return readGBuffer(whole);
-    }
-
     /// What Embree says of the last frame; with the picture that it makes of it.
     struct Truth {
         kit::View view;
@@ -474,9 +473,14 @@ class ClusteredReflections final : public technique::Technique {
         const Truth& known = truthOf(gbuffer);
         const image::ImageF& truth = known.picture;
         const glm::dvec3 errors = frame_->recordErrors(recorder, gbuffer, picture, truth);
-        recorder.metric("channel_error_r", errors.r, "level");
-        recorder.metric("channel_error_g", errors.g, "level");
-        recorder.metric("channel_error_b", errors.b, "level");
+        for (int c = 0; c < 3; ++c)
+            recorder.metric(fmt::format("channel_error_{}", "rgb"[c]), errors[c], "level");
+        if (params_.method != Method::EnvironmentMap) {
+            const auto wrong = wrongHitPct(gbuffer, known.samples,
+                                           target_->distance.read<float>(GL_RED, GL_FLOAT, 1),
+                                           frame_->scene.diagonalM());
+            if (wrong) recorder.metric("wrong_hit_pct", *wrong, "%");
+        }
         if (!known.converged.empty()) {
             const auto reflective = reflections::reflectivePixels(gbuffer, params_.supersampling);
             recorder.metric(
@@ -544,6 +548,8 @@ class ClusteredReflections final : public technique::Technique {
         if (errors.reflective == 0) return;
         share("occlusion_error_pct", errors.missing());
         share("occlusion_hidden_pct", errors.of(Sight::Hidden));
+        recorder.metric("occlusion_hidden_picture_pct",
+                        kit::percent(errors.of(Sight::Hidden), gbuffer.surface.size()), "%");
         share("occlusion_near_pct", errors.of(Sight::BeforeNear));
         share("occlusion_side_pct", errors.of(Sight::Beside));
         share("occlusion_self_pct", errors.of(Sight::Self));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "techniques/kit/percent.h"
 
 namespace gfxrepro::clustered_reflections {
 
@@ -130,6 +131,22 @@ OcclusionErrors occlusionErrors(const OcclusionInput& input) {
         errors.planarMissing += isPlanar && isMissing ? 1 : 0;
     }
     return errors;
+}
+
+std::optional<double> wrongHitPct(const HostGBuffer& gbuffer,
+                                  const std::vector<reflections::TracedSample>& truth,
+                                  const std::vector<float>& distancesM, float diagonalM) {
+    std::size_t mirrors = 0, wrong = 0;
+    for (std::size_t i = 0; i < distancesM.size(); ++i) {
+        if (!gbuffer.isReflective(i) || gbuffer.glossiness(i) > 0.0F) continue;
+        const float truthM = truth[i].distanceM;
+        ++mirrors;
+        const bool isWrong = (truthM > 0.0F) != (distancesM[i] > 0.0F) ||
+                             std::abs(truthM - distancesM[i]) > 0.01F * diagonalM;
+        wrong += isWrong ? 1 : 0;
+    }
+    if (mirrors == 0) return std::nullopt;
+    return kit::percent(wrong, mirrors);
 }
 
 }  // namespace gfxrepro::clustered_reflections

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "techniques/clustered_reflections/cluster_images.h"
@@ -59,5 +60,12 @@ OcclusionErrors occlusionErrors(const OcclusionInput& input);
 /// Of a point of the world, as above; `reflector` is that which it lies on, 0 for none.
 Sight sightOf(const ClusterCamera& camera, const glm::vec3& pointWorld, std::uint32_t reflector,
               const OcclusionInput& input);
+
+/// Share of the samples of glossiness 0 whose mirror ray ends more than a hundredth of the scene's
+/// diagonal from where it truly does, in %; of others a lobe's first ray ends elsewhere. Distances
+/// are a ReflectionTarget's. None: there is no such sample.
+std::optional<double> wrongHitPct(const reflections::HostGBuffer& gbuffer,
+                                  const std::vector<reflections::TracedSample>& truth,
+                                  const std::vector<float>& distancesM, float diagonalM);
 
 }  // namespace gfxrepro::clustered_reflections

@@ -140,6 +140,13 @@ void GBufferRenderer::render(const GpuObjects& objects, GBuffer& target) const {
     objects.drawAll();
 }
 
+HostGBuffer GBufferRenderer::readForRays(const GpuObjects& objects, const GBuffer& gbuffer) const {
+    if (gbuffer.hasTriangleNormals()) return readGBuffer(gbuffer);
+    GBuffer whole(gbuffer.view);
+    render(objects, whole);
+    return readGBuffer(whole);
+}
+
 HostGBuffer readGBuffer(const GBuffer& gbuffer) {
     HostGBuffer host;
     host.resizeFor(gbuffer.view);

@@ -51,6 +51,8 @@ struct GBuffer {
     std::size_t sizeBytes() const;
 };
 
+struct HostGBuffer;
+
 /// Of a sample of `surface`; 0: none.
 inline int reflectorOf(std::uint32_t surface) {
     return static_cast<int>(surface & 0xFFFFU);
@@ -65,6 +67,9 @@ class GBufferRenderer {
     /// `objects` are of the constructor's scene. Clears and draws; no culling, so that a surface is
     /// seen from both sides.
     void render(const GpuObjects& objects, GBuffer& target) const;
+    /// What readGBuffer() gives, with triangles' normals: drawn again where `gbuffer`, of the same
+    /// objects, has none. Rays need them, methods without rays do not, nor does their memory.
+    HostGBuffer readForRays(const GpuObjects& objects, const GBuffer& gbuffer) const;
 
   private:
     gl::Pass pass_;

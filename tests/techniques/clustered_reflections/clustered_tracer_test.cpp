@@ -70,15 +70,17 @@ class ClusteredTracerTest : public TracerTest {
 
 TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
     const ReflectiveScene scene(mirrorRoom());
-    const reflections::HostGBuffer expected = seenBehind(furnishedRoomBefore());
+    constexpr int kSizePx = 160;
+    const reflections::HostGBuffer expected = seenBehind(furnishedRoomBefore(), kSizePx);
     for (const ImageDrawing drawing : kDrawings) {
         const Traced traced =
-            trace(scene, frontCamera(), {.camera = {.depthImageScale = 2.0F}, .drawing = drawing});
+            trace(scene, frontCamera(), {.camera = {.depthImageScale = 2.0F}, .drawing = drawing},
+                  kSizePx);
         EXPECT_GT(traced.reflectiveCount(), 3000);
         EXPECT_EQ(traced.cameras.size(), 1U);
         EXPECT_GE(psnrDb(traced, [&](std::size_t i) { return expected.diffuse[i]; }), 40.0);
         // As it is shown, with the resolution of Sec. 4.4 and the mean of 2 × 2 samples a pixel.
-        const Traced plain = trace(scene, frontCamera(), {.drawing = drawing});
+        const Traced plain = trace(scene, frontCamera(), {.drawing = drawing}, kSizePx);
         EXPECT_GE(shownPsnrDb(plain, expected.diffuse), 38.0);
         // C8: no occlusion error, nothing takes the environment map.
         EXPECT_EQ(std::count(traced.environment.begin(), traced.environment.end(), 1), 0);

@@ -50,7 +50,7 @@ class TracerTest : public test::SuiteDeviceTest {
                         ClusteredSettings settings, int sizePx = 128) {
         settings.camera.diagonalM = scene.diagonalM();
         const reflections::GpuObjects objects(scene);
-        reflections::GBuffer gbuffer(kit::viewOf(camera, glm::ivec2(sizePx)));
+        reflections::GBuffer gbuffer(kit::viewOf(camera, glm::ivec2(sizePx)), false);
         reflections::GBufferRenderer(shaders(), scene).render(objects, gbuffer);
         reflections::EnvironmentMap map(shaders(), scene);
         map.render(objects);
