@@ -68,7 +68,19 @@ std::uint32_t packed255ths(float value) {
     return static_cast<std::uint32_t>(std::lround(255.0F * value));
 }
 
-ObjectRecord recordOf(const Object& object, const glm::mat4& pose, const scene::Box& bounds) {
+/// In a record, a layer with how it is read.
+constexpr int kWrapBit = 16, kNearestBit = 20;
+
+std::int32_t withSampling(int layer, const std::vector<scene::Sampling>& samplings) {
+    if (layer < 0) return layer;
+    const scene::Sampling& sampling = samplings[static_cast<std::size_t>(layer)];
+    return layer | static_cast<int>(sampling.u) << kWrapBit |
+           static_cast<int>(sampling.v) << (kWrapBit + 2) |
+           (sampling.isNearest ? 1 << kNearestBit : 0);
+}
+
+ObjectRecord recordOf(const ReflectiveScene& scene, const Object& object, const glm::mat4& pose,
+                      const scene::Box& bounds) {
     ObjectRecord record{};
     record.worldFromMesh = pose;
     record.normalFromMesh = normalMatrix(pose);
@@ -80,9 +92,11 @@ ObjectRecord recordOf(const Object& object, const glm::mat4& pose, const scene::
     }
     record.firstTriangle = object.firstTriangle;
     record.triangleCount = object.triangleCount;
-    record.textureLayer = object.textureLayer;
-    record.layers = {object.metallicRoughnessLayer, object.normalLayer, object.emissiveLayer,
-                     object.hasOneGlossiness ? 1 : 0};
+    const auto colours = [&](int layer) { return withSampling(layer, scene.textureSamplings()); };
+    const auto values = [&](int layer) { return withSampling(layer, scene.valueSamplings()); };
+    record.textureLayer = colours(object.textureLayer);
+    record.layers = {values(object.metallicRoughnessLayer), values(object.normalLayer),
+                     colours(object.emissiveLayer), object.hasOneGlossiness ? 1 : 0};
     record.reflection = {object.metallic, object.roughness, object.headOnReflectivity,
                          object.maxRoughness};
     if (object.reflector != 0) {
@@ -139,7 +153,16 @@ gl::Defines surfaceDefines(const ReflectiveScene& scene) {
     defines["LIGHT_COUNT"] = static_cast<int>(scene.lights().size());
     defines["MATERIAL_TEXTURES"] = scene.hasMaterialTextures() ? 1 : 0;
     defines["MAX_LIGHTS"] = kMaxLights;
+    defines["NEAREST_BIT"] = kNearestBit;
+    const auto isOther = [](const scene::Sampling& each) { return each != scene::Sampling{}; };
+    defines["SAMPLINGS"] = std::ranges::any_of(scene.textureSamplings(), isOther) ||
+                                   std::ranges::any_of(scene.valueSamplings(), isOther)
+                               ? 1
+                               : 0;
     defines["TEXTURES"] = std::ranges::any_of(scene.objects(), &Object::isTextured) ? 1 : 0;
+    defines["WRAP_BIT"] = kWrapBit;
+    defines["WRAP_MIRROR"] = static_cast<int>(scene::Sampling::Wrap::Mirror);
+    defines["WRAP_REPEAT"] = static_cast<int>(scene::Sampling::Wrap::Repeat);
     return defines;
 }
 
@@ -192,7 +215,7 @@ void GpuObjects::setPoses(std::span<const glm::mat4> poses) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const Object& object = scene_->objects()[i];
         boundsWorld_.push_back(transformed(object.boundsMesh, poses[i]));
-        records.push_back(recordOf(object, poses[i], boundsWorld_.back()));
+        records.push_back(recordOf(*scene_, object, poses[i], boundsWorld_.back()));
     }
     records_.write(std::span<const ObjectRecord>(records));
 }

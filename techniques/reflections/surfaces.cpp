@@ -142,14 +142,9 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
                 glm::vec3(scene_.instances[i].worldFromMesh * glm::vec4(position, 1.0F)));
         }
     }
-    const auto otherwise = std::ranges::count_if(
-        scene_.samplings, [](const auto& each) { return each != scene::Sampling{}; });
-    if (otherwise > 0) {
-        warn(
-            fmt::format("{} textures are repeated and interpolated, though the file has it "
-                        "otherwise",
-                        otherwise));
-    }
+    const auto masked = std::ranges::count_if(
+        scene_.materials, [](const scene::Material& each) { return each.alphaCutoff > 0.0F; });
+    if (masked > 0) warn(fmt::format("{} materials with alphaMode MASK have no holes", masked));
     addLights();
     fillLayers(textureLayers_);
     fillLayers(valueLayers_);
@@ -218,6 +213,7 @@ void ReflectiveScene::fillLayers(Layers& layers) {
     }
     for (const int texture : layers.textures) {
         layers.levels.front().push_back(textureLayer(imageOf(texture), sizePx, layers.kind));
+        layers.samplings.push_back(samplingOf(scene_, texture));
     }
     if (filter_ == TextureFilter::FinestLevel || layers.textures.empty()) return;
     for (; sizePx > 1; sizePx /= 2) {
@@ -439,23 +435,39 @@ T interpolated(const std::vector<T>& values, const glm::uvec3& triangle,
            barycentric.x * values[triangle.y] + barycentric.y * values[triangle.z];
 }
 
-glm::vec3 bilinear(const image::Image8& texels, TexelKind kind, const glm::vec2& texcoord) {
+/// Between the texels of a level, or the nearest one, as fetchedTexel() of shaders/shading.glsl.
+glm::vec3 texelOf(const image::Image8& texels, TexelKind kind, const scene::Sampling& sampling,
+                  const glm::vec2& texcoord, bool isMagnified) {
+    using Wrap = scene::Sampling::Wrap;
     static const std::array<float, 256> kColours = decodingOf(TexelKind::Colours);
     static const std::array<float, 256> kValues = decodingOf(TexelKind::Values);
     const std::array<float, 256>& decoding = kind == TexelKind::Colours ? kColours : kValues;
     const int sizePx = texels.width();
-    const glm::vec2 place = (texcoord - glm::floor(texcoord)) * static_cast<float>(sizePx) - 0.5F;
-    const glm::vec2 low = glm::floor(place);
-    const glm::vec2 fraction = place - low;
-    const auto texel = [&](int dx, int dy) {
-        // place is in [−½, size − ½]: one texel out of the layer at most.
-        const int x = (static_cast<int>(low.x) + dx + sizePx) % sizePx;
-        const int y = (static_cast<int>(low.y) + dy + sizePx) % sizePx;
+    const bool isNearest = isMagnified && sampling.isNearest;
+    glm::ivec2 near, far;
+    glm::vec2 fraction;
+    for (int axis = 0; axis < 2; ++axis) {
+        const Wrap wrap = axis == 0 ? sampling.u : sampling.v;
+        float t = texcoord[axis];
+        t = wrap == Wrap::Mirror   ? 1.0F - std::abs(t - 2.0F * std::floor(0.5F * t) - 1.0F)
+            : wrap == Wrap::Repeat ? t - std::floor(t)
+                                   : std::clamp(t, 0.0F, 1.0F);
+        const float scaled = t * static_cast<float>(sizePx);
+        const float place = isNearest ? std::floor(scaled) : scaled - 0.5F;
+        const float lower = std::floor(place);
+        fraction[axis] = place - lower;
+        const auto wrapped = [&](int i) {
+            return wrap == Wrap::Repeat ? (i + sizePx) % sizePx : std::clamp(i, 0, sizePx - 1);
+        };
+        near[axis] = wrapped(static_cast<int>(lower));
+        far[axis] = wrapped(static_cast<int>(lower) + 1);
+    }
+    const auto texel = [&](int x, int y) {
         return glm::vec3(decoding[texels.at(x, y, 0)], decoding[texels.at(x, y, 1)],
                          decoding[texels.at(x, y, 2)]);
     };
-    return glm::mix(glm::mix(texel(0, 0), texel(1, 0), fraction.x),
-                    glm::mix(texel(0, 1), texel(1, 1), fraction.x), fraction.y);
+    return glm::mix(glm::mix(texel(near.x, near.y), texel(far.x, near.y), fraction.x),
+                    glm::mix(texel(near.x, far.y), texel(far.x, far.y), fraction.x), fraction.y);
 }
 
 }  // namespace
@@ -484,8 +496,8 @@ glm::vec3 ReflectiveScene::texelsAt(const Layers& layers, int layer, const glm::
     const float level = std::clamp(std::log2(std::max(footprint * sizePx, 1e-30F)), 0.0F, last);
     const auto finer = static_cast<std::size_t>(level);
     const auto at = [&](std::size_t ofLevel) {
-        return bilinear(layers.levels[ofLevel][static_cast<std::size_t>(layer)], layers.kind,
-                        texcoord);
+        return texelOf(layers.levels[ofLevel][static_cast<std::size_t>(layer)], layers.kind,
+                       layers.samplings[static_cast<std::size_t>(layer)], texcoord, level == 0.0F);
     };
     const float fraction = level - static_cast<float>(finer);
     return fraction == 0.0F ? at(finer) : glm::mix(at(finer), at(finer + 1), fraction);

@@ -118,6 +118,11 @@ class ReflectiveScene {
     const TextureLevels& valueLevels() const {
         return valueLayers_.levels;
     }  // RGBA, linear: metallic-roughness and normals
+    /// How each layer of the above is read beyond 0 … 1 and where its texels are magnified.
+    const std::vector<scene::Sampling>& textureSamplings() const {
+        return textureLayers_.samplings;
+    }
+    const std::vector<scene::Sampling>& valueSamplings() const { return valueLayers_.samplings; }
     /// Whether some object has a texture of roughness and metalness, of normals or of emission.
     bool hasMaterialTextures() const;
     std::span<const scene::PointLight> lights() const { return lights_; }
@@ -162,6 +167,7 @@ class ReflectiveScene {
     struct Layers {
         TexelKind kind;
         std::vector<int> textures = {};  // of the scene
+        std::vector<scene::Sampling> samplings = {};
         TextureLevels levels = {{}};
     };
 

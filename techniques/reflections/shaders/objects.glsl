@@ -9,7 +9,7 @@ struct Object {
     vec4 boundsHalfSize;
     uint firstTriangle;
     uint triangleCount;
-    int textureLayer;  // −1: none
+    int textureLayer;  // −1: none; with how it is read from WRAP_BIT on, as all layers
     uint surface;      // reflector | s in 255ths << 16 | g in 255ths << 24, as in the G-buffer
     ivec4 layers;      // metallic-roughness, normals, emission, −1: none; w: 1: g is surface's
     vec4 reflection;   // factors of metalness and roughness, least s, largest roughness

@@ -1,7 +1,7 @@
 // Light of diffuse surfaces, as surfaces.h has it. TEXTURES is 1 where some object of the scene has a
 // texture of colour, MATERIAL_TEXTURES where one has a texture of roughness and metalness, of normals
-// or of emission: asking each object for them costs every scene. A footprint is a width in texture
-// coordinates, as footprintOf() has it.
+// or of emission, SAMPLINGS where one is not repeated and interpolated: asking each object for them
+// costs every scene. A footprint is a width in texture coordinates, as footprintOf() has it.
 #include "reflections/objects.glsl"
 
 struct Light {
@@ -34,21 +34,64 @@ float wedge(vec2 first, vec2 second) {
     return first.x * second.y - first.y * second.x;
 }
 
+#if SAMPLINGS
+// A level of a layer between its texels, or the nearest one: by hand, as a sampler wraps all layers
+// alike.
+vec4 fetchedTexel(sampler2DArray layers, vec2 texcoord, int layer, int level, bool isNearest) {
+    int size = textureSize(layers, 0).x >> level;
+    ivec2 near, far;
+    vec2 fraction;
+    for (int axis = 0; axis < 2; ++axis) {
+        int wrap = layer >> (WRAP_BIT + 2 * axis) & 3;
+        float t = texcoord[axis];
+        t = wrap == WRAP_MIRROR   ? 1.0 - abs(mod(t, 2.0) - 1.0)
+            : wrap == WRAP_REPEAT ? fract(t)
+                                  : clamp(t, 0.0, 1.0);
+        float place = isNearest ? floor(t * size) : t * size - 0.5;
+        int low = int(floor(place));
+        fraction[axis] = place - float(low);
+        near[axis] = wrap == WRAP_REPEAT ? (low + size) % size : clamp(low, 0, size - 1);
+        far[axis] = wrap == WRAP_REPEAT ? (low + 1) % size : clamp(low + 1, 0, size - 1);
+    }
+    int z = layer & ((1 << WRAP_BIT) - 1);
+    return mix(mix(texelFetch(layers, ivec3(near, z), level),
+                   texelFetch(layers, ivec3(far.x, near.y, z), level), fraction.x),
+               mix(texelFetch(layers, ivec3(near.x, far.y, z), level),
+                   texelFetch(layers, ivec3(far, z), level), fraction.x),
+               fraction.y);
+}
+#endif
+
+// A level of a layer as the sampler reads it, or as the file says.
+vec4 texelOf(sampler2DArray layers, vec2 texcoord, int layer, int level, bool isMagnified) {
+#if SAMPLINGS
+    bool isNearest = isMagnified && (layer >> NEAREST_BIT & 1) != 0;
+    vec4 texel = vec4(0.0);
+    // llvmpipe fetches one level for a square of four pixels: each level for all of them.
+    for (int each = 0; each < textureQueryLevels(layers); ++each) {
+        if (each == level) texel = fetchedTexel(layers, texcoord, layer, each, isNearest);
+    }
+    return texel;
+#else
+    return textureLod(layers, vec3(texcoord, layer), float(level));
+#endif
+}
+
 // A texture at a place, averaged over `footprint`: between the two levels whose texels are next in
 // width. Mixed here, of whole levels: samplers mix with as few as 8 bits, and llvmpipe takes one
 // level alone for half of the range.
-vec4 filteredTexel(sampler2DArray layers, vec3 place, float footprint) {
+vec4 filteredTexel(sampler2DArray layers, vec2 texcoord, int layer, float footprint) {
 #if FILTERS_TEXTURES
     float last = float(textureQueryLevels(layers) - 1);
     // 1e-30: log2(0).
     float level = log2(max(footprint * float(textureSize(layers, 0).x), 1e-30));
     level = clamp(level, 0.0, last);
     float finer = floor(level);
-    vec4 texel = textureLod(layers, place, finer);
+    vec4 texel = texelOf(layers, texcoord, layer, int(finer), level == 0.0);
     if (level == finer) return texel;
-    return mix(texel, textureLod(layers, place, finer + 1.0), level - finer);
+    return mix(texel, texelOf(layers, texcoord, layer, int(finer) + 1, false), level - finer);
 #else
-    return textureLod(layers, place, 0.0);
+    return texelOf(layers, texcoord, layer, 0, true);
 #endif
 }
 
@@ -57,8 +100,7 @@ vec3 albedoOf(Object object, vec2 texcoord, float footprint, vec3 vertexColor) {
     vec3 albedo = object.baseColor.rgb * vertexColor;
 #if TEXTURES
     if (object.textureLayer >= 0) {
-        albedo *=
-            filteredTexel(textureLayers, vec3(texcoord, object.textureLayer), footprint).rgb;
+        albedo *= filteredTexel(textureLayers, texcoord, object.textureLayer, footprint).rgb;
     }
 #endif
     return albedo;
@@ -68,7 +110,7 @@ vec3 emissiveOf(Object object, vec2 texcoord, float footprint) {
     vec3 emissive = object.emissive.rgb;
 #if MATERIAL_TEXTURES
     if (object.layers.z >= 0) {
-        emissive *= filteredTexel(textureLayers, vec3(texcoord, object.layers.z), footprint).rgb;
+        emissive *= filteredTexel(textureLayers, texcoord, object.layers.z, footprint).rgb;
     }
 #endif
     return emissive;
@@ -79,7 +121,7 @@ vec3 emissiveOf(Object object, vec2 texcoord, float footprint) {
 uint surfaceOf(Object object, vec2 texcoord, float footprint) {
 #if MATERIAL_TEXTURES
     if (object.layers.x < 0) return object.surface;
-    vec2 texel = filteredTexel(valueLayers, vec3(texcoord, object.layers.x), footprint).gb;
+    vec2 texel = filteredTexel(valueLayers, texcoord, object.layers.x, footprint).gb;
     float roughness = object.reflection.y * texel.x;
     float reflectivity = max(object.reflection.x * texel.y, object.reflection.z);
     uint s = uint(round(255.0 * clamp(reflectivity, 0.0, 1.0)));
@@ -108,8 +150,8 @@ bool isTurnedAway(vec3 normal, vec3 toViewer, vec3 across) {
 // fragments, which know derivatives, have the same frame.
 vec3 texturedNormal(Object object, vec2 texcoord, float footprint, vec3 normal, vec3 toViewer,
                     vec3 first, vec3 second, vec2 uvFirst, vec2 uvSecond) {
-    vec3 place = vec3(texcoord, object.layers.y);
-    vec3 texel = 2.0 * filteredTexel(valueLayers, place, footprint).xyz - 1.0;
+    vec3 texel =
+        2.0 * filteredTexel(valueLayers, texcoord, object.layers.y, footprint).xyz - 1.0;
     vec3 acrossSecond = cross(second, normal), acrossFirst = cross(normal, first);
     vec3 alongU = acrossSecond * uvFirst.x + acrossFirst * uvSecond.x;
     vec3 alongV = acrossSecond * uvFirst.y + acrossFirst * uvSecond.y;

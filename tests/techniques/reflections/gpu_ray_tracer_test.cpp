@@ -149,6 +149,18 @@ TEST_F(GpuRayTracerTest, ShadesTexturedMaterialsAsEmbreeDoes) {
     }
 }
 
+TEST_F(GpuRayTracerTest, ReadsTexturesBeyondTheirEdgesAsEmbreeDoes) {
+    using Wrap = scene::Sampling::Wrap;
+    scene::Scene scene = texturedMirrors();
+    scene.samplings = {{Wrap::Mirror, Wrap::Clamp, false},
+                       {Wrap::Clamp, Wrap::Mirror, false},
+                       {Wrap::Mirror, Wrap::Mirror, false}};
+    const Comparison result = compared(scene, {}, 0.0F);
+    EXPECT_GT(result.samples, 1000U);
+    EXPECT_LE(result.mismatches, result.samples / 1000);
+    EXPECT_LT(result.radianceError, 2e-3);
+}
+
 TEST_F(GpuRayTracerTest, FollowsMovedObjects) {
     expectEmbrees(compared(mirrors(), {}, 0.0F, 0.7));
 }

@@ -34,9 +34,18 @@ scene::Scene litScene(Random& random) {
     return scene;
 }
 
-TEST_F(ReflectionsTest, ShadesAsTheHostDoes) {
+class ShadesAsTheHostDoes : public ReflectionsTest, public testing::WithParamInterface<int> {};
+
+INSTANTIATE_TEST_SUITE_P(Samplings, ShadesAsTheHostDoes, testing::Range(0, 3));
+
+TEST_P(ShadesAsTheHostDoes, AtAnyPoint) {
     Random random(3);
-    const ReflectiveScene scene(litScene(random));
+    scene::Scene lit = litScene(random);
+    using Wrap = scene::Sampling::Wrap;
+    const scene::Sampling samplings[] = {
+        {}, {Wrap::Mirror, Wrap::Clamp, false}, {Wrap::Clamp, Wrap::Repeat, true}};
+    lit.samplings = {{}, samplings[GetParam()]};
+    const ReflectiveScene scene(lit);
     const GpuObjects objects(scene);
     std::vector<ShadedPoint> inputs;
     std::vector<glm::vec3> albedos, colours;

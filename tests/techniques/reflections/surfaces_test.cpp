@@ -256,10 +256,46 @@ TEST(ReflectiveSceneTest, PassesOnWhatTheLoaderLeftOut) {
     EXPECT_EQ(ReflectiveScene(scene).warnings(),
               std::vector<std::string>{"scene 'test': something is left out"});
     scene.warnings.clear();
-    scene.samplings = {{scene::Sampling::Wrap::Clamp, scene::Sampling::Wrap::Clamp, false}, {}};
-    EXPECT_EQ(ReflectiveScene(scene).warnings(),
-              std::vector<std::string>{"scene 'test': 1 textures are repeated and interpolated, "
-                                       "though the file has it otherwise"});
+    scene.materials[0].alphaCutoff = 0.5F;
+    EXPECT_EQ(
+        ReflectiveScene(scene).warnings(),
+        std::vector<std::string>{"scene 'test': 1 materials with alphaMode MASK have no holes"});
+}
+
+TEST(ReflectiveSceneTest, ReadsTexturesBeyondTheirEdgesAsTheFileSays) {
+    using Wrap = scene::Sampling::Wrap;
+    scene::Scene scene =
+        sceneOf(squareMesh(), {.baseColor = glm::vec4(1.0F), .baseColorTexture = 0});
+    image::Image8 columns(512, 512, 3);  // the left quarter is white
+    for (int y = 0; y < 512; ++y) {
+        for (int i = 0; i < 3 * 128; ++i) columns.at(i / 3, y, i % 3) = 255;
+    }
+    scene.textures = {columns};
+    scene.meshes[0].texcoords = {{-1, 0.5F}, {2, 0.5F}, {2, 0.5F}, {-1, 0.5F}};
+    const auto at = [&](const scene::Sampling& sampling, float u) {
+        scene.samplings = {sampling};
+        return ReflectiveScene(scene).albedoAt(0, {(u + 1.0F) / 3.0F, 0.0F}).x;
+    };
+    struct Case {
+        float u, repeated, mirrored, clamped;
+    };
+    for (const Case& c : {Case{-0.9F, 1, 0, 1},
+                          {-0.1F, 0, 1, 1},
+                          {0.1F, 1, 1, 1},
+                          {0.5F, 0, 0, 0},
+                          {1.1F, 1, 0, 0},
+                          {1.9F, 0, 1, 0}}) {
+        EXPECT_NEAR(at({}, c.u), c.repeated, 1e-5F) << c.u;
+        EXPECT_NEAR(at({Wrap::Mirror, Wrap::Repeat, false}, c.u), c.mirrored, 1e-5F) << c.u;
+        EXPECT_NEAR(at({Wrap::Clamp, Wrap::Repeat, false}, c.u), c.clamped, 1e-5F) << c.u;
+    }
+    // On the edge itself half of what repeats is the other side's; and between two texels.
+    EXPECT_NEAR(at({}, 1.0F), 0.5F, 1e-3F);
+    EXPECT_EQ(at({Wrap::Clamp, Wrap::Clamp, false}, 1.0F), 0.0F);
+    EXPECT_EQ(at({Wrap::Mirror, Wrap::Clamp, false}, 1.0F), 0.0F);
+    EXPECT_NEAR(at({}, 128.1F / 512.0F), 0.4F, 1e-2F);
+    EXPECT_EQ(at({Wrap::Repeat, Wrap::Repeat, true}, 128.1F / 512.0F), 0.0F);
+    EXPECT_EQ(ReflectiveScene(scene).warnings().size(), 1U) << "its light";
 }
 
 /// A texture whose left half has one roughness and metalness, and whose right half another.
