@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "engine/core/random.h"
+#include "tests/support/support.h"
 
 namespace gfxrepro::metrics {
 namespace {
@@ -147,7 +148,7 @@ TEST(MeanTest, HoldsManyOfFewSamplesAgainstFewOfMany) {
 
 /// Unlike noise does no harm without heavy tails, and much of it is found to be unlike.
 TEST(MeanTest, KnowsUnlikeNoise) {
-    constexpr int kTrials = 200;
+    constexpr int kTrials = test::kIsSanitized ? 50 : 200;
     for (const auto& [name, noise, hasHeavyTail] : noiseShapes()) {
         if (hasHeavyTail) continue;
         EXPECT_LE(countOf(name, kTrials, kLevel, noise, 2, 4).alarms, mostAlarms(kTrials, kLevel))
