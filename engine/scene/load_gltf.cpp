@@ -209,6 +209,11 @@ class SceneBuilder {
         if (!isPoints) {
             mesh.texcoords =
                 attribute<glm::vec2>(part, fmt::format("TEXCOORD_{}", use.texcoordSet).c_str());
+            if (mesh.texcoords.empty() && mesh.material >= 0 &&
+                scene_.materials[mesh.material].baseColorTexture >= 0) {
+                leftOut_.add(
+                    fmt::format("a texture of a mesh without TEXCOORD_{}", use.texcoordSet));
+            }
         }
         if (use.isTransformed) {
             for (glm::vec2& uv : mesh.texcoords) uv = use.transform * glm::vec3(uv, 1.0F);
@@ -363,7 +368,7 @@ class SceneBuilder {
         }
     }
 
-    glm::dmat4 localMatrix(const tinygltf::Node& node, int index) const {
+    glm::dmat4 localMatrix(const tinygltf::Node& node, int index) {
         const auto has = [&](const std::vector<double>& values, std::size_t count) {
             if (!values.empty() && values.size() != count) {
                 fail(fmt::format("node {}: {} numbers where {} are needed", index, values.size(),
@@ -378,7 +383,10 @@ class SceneBuilder {
         }
         if (has(node.rotation, 4)) {
             const glm::dvec4 xyzw = glm::make_vec4(node.rotation.data());
-            matrix *= glm::mat4_cast(glm::dquat(xyzw.w, xyzw.x, xyzw.y, xyzw.z));
+            const glm::dquat rotation(xyzw.w, xyzw.x, xyzw.y, xyzw.z);
+            if (std::abs(glm::length(rotation) - 1.0) > 1e-3)
+                leftOut_.add("the length of a node's rotation, which is not 1");
+            matrix *= glm::mat4_cast(glm::normalize(rotation));
         }
         if (has(node.scale, 3)) {
             const glm::dvec3 scale = glm::make_vec3(node.scale.data());

@@ -117,10 +117,10 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
             material.roughness = roughnessOf(lines.number());
         } else if (key == "Ni") {
             material.indexOfRefraction = lines.number();
-        } else if (key == "d") {
-            material.baseColor.a = opacity(lines, leftOut);
-        } else if (key == "Tr") {
-            material.baseColor.a = 1.0F - lines.number();
+        } else if (key == "d" || key == "Tr") {
+            material.baseColor.a = key == "d" ? opacity(lines, leftOut) : 1.0F - lines.number();
+            if (material.baseColor.a < 1.0F)
+                leftOut.add("a material's opacity below 1, drawn as solid");
         } else if (key == "map_Kd") {
             leaveOptions(lines.name(), leftOut);
             current->colourFile = textureName(lines.name());

@@ -179,7 +179,7 @@ void addMatches(const Node& reference, Node::Sequence& files) {
         return result;
     };
     const fs::path beside =
-        fs::absolute(fs::path(reference.location().file.text()).parent_path()) / "";
+        fs::absolute("." / fs::path(reference.location().file.text()).parent_path()) / "";
     const std::string plain = (fs::path(pattern).is_absolute() ? "" : escaped(beside, "*?[\\")) +
                               escaped(pattern, "?[\\");
     glob_t found = {};

@@ -184,6 +184,26 @@ TEST_F(LoadGltf, AppliesTheNodeTree) {
     EXPECT_LT(glm::length(corner - glm::vec4(1, 2, 0, 1)), 1e-6F);
 }
 
+TEST_F(LoadGltf, TurnsByRotationsOfAnyLength) {
+    const Scene scene = loadWith("nodes", R"([{"mesh":0,"rotation":[0,0,1,1]}])");
+    const glm::vec4 corner = scene.instances.at(0).worldFromMesh * glm::vec4(1, 0, 0, 1);
+    EXPECT_LT(glm::length(corner - glm::vec4(0, 1, 0, 1)), 1e-6F);
+    EXPECT_EQ(scene.warnings, std::vector<std::string>{
+                                  "left out: the length of a node's rotation, which is not 1"});
+}
+
+TEST_F(LoadGltf, SaysThatATextureHasNoCoordinates) {
+    Document document = square();
+    document["meshes"] =
+        R"([{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_1":3},"material":0}]}])";
+    document["materials"] = R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+    document["images"] =
+        R"([{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="}])";
+    document["textures"] = R"([{"source":0}])";
+    EXPECT_THAT(load(document).warnings,
+                testing::Contains("left out: a texture of a mesh without TEXCOORD_0"));
+}
+
 TEST_F(LoadGltf, SaysWhatItsSceneDoesNotHave) {
     Document document = square();
     document["nodes"] = R"([{"mesh":0},{"mesh":0,"children":[2]},{"mesh":0}])";

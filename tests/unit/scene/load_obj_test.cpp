@@ -177,7 +177,8 @@ TEST_F(LoadObj, ReadsWhatIsUnusual) {
     EXPECT_EQ(scene.materials.at(0).baseColor, glm::vec4(glm::vec3(0.8F), half));
     EXPECT_EQ(scene.warnings,
               (std::vector<std::string>{"left out: 'Kd' by a spectrum in a material file",
-                                        "left out: 'd -halo' of a material file, taken as 'd'"}));
+                                        "left out: 'd -halo' of a material file, taken as 'd'",
+                                        "left out: a material's opacity below 1, drawn as solid"}));
 
     const Scene odd = load("vn nan nan nan\nvn 0 0 1\nvt nan nan\n" + kSquare +
                            "f 1/1/1 2/1/2 3/1/2\nf 1 2\nv 0 0 -0." + std::string(54, '0') +
@@ -257,6 +258,8 @@ TEST_F(LoadObj, SplitsByMaterial) {
     EXPECT_EQ(scene.textures.at(0), image::Image8(2, 1, 3, 128));
     EXPECT_NEAR(scene.materials.at(1).baseColor.a, 0.1F, 1e-6F);
     EXPECT_EQ(scene.materials.at(1).baseColorTexture, -1);
+    EXPECT_THAT(scene.warnings, testing::Contains("left out: a material's opacity below 1, drawn "
+                                                  "as solid (2 times)"));
 }
 
 TEST_F(LoadObj, LivesWithoutItsMaterialFile) {
