@@ -326,7 +326,8 @@ void applySweeps(const std::vector<Override>& sweeps, Node& document) {
     }
 }
 
-void requireNotOverridden(const Override& given, const std::string& name, const Node& document) {
+void requireNotOverridden(const Override& given, const std::string& name, Node document) {
+    resolveNames(document);  // patterns of scene files are lists from then on
     const Node* sweep = document.find("sweep");
     if (!sweep) return;
     for (const AxisPoint& point : expandSweep(*sweep)) {

@@ -444,8 +444,12 @@ TEST_F(ExperimentTest, SweepsTakeTheSceneFilesThatMatch) {
     const auto path = folder.write("n [x]*/a.yaml",
                                    "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: "
                                    "'scans/../scans/*.ply'}\n");
-    EXPECT_EQ(expandCases(loadExperiment(path, {}, folder.path())).at(0).scene.text(),
-              folder.path().string() + "/n [x]*/scans/e.ply");
+    for (const auto& sets :
+         {std::vector<Override>(), std::vector<Override>{parseOverride("output.width=64")}}) {
+        EXPECT_EQ(
+            expandCases(loadExperiment(path, {.sets = sets}, folder.path())).at(0).scene.text(),
+            folder.path().string() + "/n [x]*/scans/e.ply");
+    }
     EXPECT_EQ(errorText([&] { scenes("scene: 'scans/*.stl'"); }, folder.path()),
               "DIR/zju/a.yaml:4:16: no file is called 'scans/*.stl'; looked beside DIR/zju/a.yaml");
 }
