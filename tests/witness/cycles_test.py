@@ -4,7 +4,6 @@ A city under eight point lights. A pixel agrees where both show it lit, or both 
 """
 import json
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -28,14 +27,9 @@ MOST_DIFFERING = 0.002
 
 
 def main(program):
-    blender = shutil.which("blender")
-    if not blender:
-        print("skipped: Blender is not installed")
-        sys.exit(77)
-    # Of the system's Python, as Blender is.
-    if subprocess.run(["/usr/bin/python3", "-c", "import numpy"], stderr=subprocess.DEVNULL).returncode != 0:
-        print("skipped: NumPy, which Blender's importer needs, is not installed")
-        sys.exit(77)
+    from witness import blender_or_skip, found_in  # not in Blender, whose path lacks this folder
+
+    blender = blender_or_skip()
     with tempfile.TemporaryDirectory() as folder:
         config = os.path.join(folder, "witness.yaml")
         with open(config, "w", encoding="utf-8") as file:
@@ -43,10 +37,7 @@ def main(program):
         run = os.path.join(folder, "run")
         subprocess.run([program, "run", config, "--device", "software", "--quiet", "--out", run], check=True)
         subprocess.run([program, "scene", SCENE, "--export", os.path.join(folder, "scene.glb")], check=True, stdout=subprocess.DEVNULL)
-        subprocess.run([blender, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "-P", __file__, "--", folder],
-                       check=True, stdout=subprocess.DEVNULL, env=os.environ | {"PATH": "/usr/bin:/bin"})
-        with open(os.path.join(folder, "found.json"), encoding="utf-8") as file:
-            found = json.load(file)
+        found = found_in(blender, __file__, folder)
     share = found["differing"] / found["lit"]
     print(f"{found['lit']} pixels lit, {found['differing']} differ ({100 * share:.3f} %), {found['moved']} of Cycles' own when its light moves")
     assert found["lit"] > 50000 and share < MOST_DIFFERING

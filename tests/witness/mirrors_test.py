@@ -6,7 +6,6 @@ triangle (Cycles bends the normals of others) and meets something. Exit 77: skip
 """
 import json
 import os
-import shutil
 import struct
 import subprocess
 import sys
@@ -64,14 +63,9 @@ def glowing(head):
 
 
 def main(program):
-    blender = shutil.which("blender")
-    if not blender:
-        print("skipped: Blender is not installed")
-        sys.exit(77)
-    # Of the system's Python, as Blender is.
-    if subprocess.run(["/usr/bin/python3", "-c", "import numpy"], stderr=subprocess.DEVNULL).returncode != 0:
-        print("skipped: NumPy is not installed")
-        sys.exit(77)
+    from witness import blender_or_skip, found_in  # not in Blender, whose path lacks this folder
+
+    blender = blender_or_skip()
     counted = 0
     for room, views in (ROOMS | (REAL_ROOM if os.environ.get("GFXREPRO_ASSETS") else {})).items():
         with tempfile.TemporaryDirectory() as folder:
@@ -85,10 +79,7 @@ def main(program):
                 file.write(CONFIG.format(*SIZE, model, ", ".join(views)))
             run = os.path.join(folder, "run")
             subprocess.run([program, "run", config, "--device", "software", "--quiet", "--out", run], check=True)
-            subprocess.run([blender, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "-P", __file__, "--", folder, *views],
-                           check=True, stdout=subprocess.DEVNULL, env=os.environ | {"PATH": "/usr/bin:/bin"})
-            with open(os.path.join(folder, "found.json"), encoding="utf-8") as file:
-                found = json.load(file)
+            found = found_in(blender, __file__, folder, *views)
         for each in found:
             print(f"{room}, {each['view']}, {each['picture']}: {each['counted']} pixels of mirrors, {each['differing']} differ; "
                   f"{each['below']} leave below their triangle, of which {each['through']} show more than its own colour, {each['lost']} meet nothing, of which {each['lost_differing']} differ")
