@@ -131,15 +131,15 @@ function(gfxrepro_shaders target folder)
     endif()
 endfunction()
 
-# gfxrepro_test(NAME [SERIAL] [WHOLE] LABEL label SOURCES … LINK targets …) → one GoogleTest program, one ctest entry a case;
-# SERIAL: beside no other test. WHOLE: one entry for all, as cases share what takes long to make; none may be skipped.
-# A few sources are one unit, in every preset: most of what a test takes to compile are headers.
+# gfxrepro_test(NAME [COLD] [SERIAL] [WHOLE] LABEL label SOURCES … LINK targets …) → one GoogleTest program, one ctest entry a case;
+# COLD: a unit test that computes next to nothing. SERIAL: beside no other test. WHOLE: one entry for all, as cases share what takes long to make; none may be skipped.
+# A dozen sources are one unit, in every preset: most of what a test takes to compile are headers.
 function(gfxrepro_test name)
-    cmake_parse_arguments(arg "SERIAL;WHOLE" "LABEL" "SOURCES;LINK" ${ARGN})
+    cmake_parse_arguments(arg "COLD;SERIAL;WHOLE" "LABEL" "SOURCES;LINK" ${ARGN})
     add_executable(${name} ${arg_SOURCES})
-    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
     target_compile_options(${name} PRIVATE ${GFXREPRO_TEST_OPTIONS})
-    if(arg_LABEL STREQUAL "unit")  # computes and simulates by itself
+    if(arg_LABEL STREQUAL "unit" AND NOT arg_COLD)  # computes and simulates by itself
         target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
     endif()
     target_link_libraries(${name} PRIVATE gfxrepro_test_support ${arg_LINK} GTest::gmock GTest::gtest_main)
