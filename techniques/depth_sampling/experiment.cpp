@@ -1,7 +1,5 @@
 #include "techniques/depth_sampling/experiment.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -191,28 +189,6 @@ std::size_t PixelExperiment::referenceImageBytes() const {
     return bytes;
 }
 
-namespace {
-
-/// Calls markOf(point) for the sample of each pixel that has one.
-template <class MarkOf>
-std::vector<std::uint32_t> marksOf(const VisibilitySequence& sequence, std::size_t index,
-                                   const MarkOf& markOf) {
-    const glm::ivec2 size = sequence.views()[index].sizePx;
-    const auto width = static_cast<std::size_t>(size.x);
-    std::vector<std::uint32_t> marks(width * static_cast<std::size_t>(size.y), 0);
-    tbb::parallel_for(0, size.y, [&](int y) {
-        for (int x = 0; x < size.x; ++x) {
-            const std::optional<SurfacePoint> point = sequence.sample(index, {x, y});
-            if (!point) continue;
-            marks[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] =
-                kSample | markOf(*point);
-        }
-    });
-    return marks;
-}
-
-}  // namespace
-
 VisibilityExperiment::VisibilityExperiment(const scene::Scene& scene, raycast::RayTracer tracer,
                                            Method method, const Views& views)
     : method_(method),
@@ -220,8 +196,7 @@ VisibilityExperiment::VisibilityExperiment(const scene::Scene& scene, raycast::R
       shading_(scene),
       sequence_(tracer_, views.images, method != Method::Conventional),
       conventional_(tracer_, views.conventional, false),
-      frames_(tracer_, views.frames, false),
-      neededBy_(tracer_, {}, false) {}
+      frames_(tracer_, views.frames, false) {}
 
 // [xie2017] Algorithm 1
 void VisibilityExperiment::makeReferenceImages(gl::Profiler& profiler) {
@@ -234,37 +209,35 @@ void VisibilityExperiment::makeReferenceImages(gl::Profiler& profiler) {
 }
 
 Measures VisibilityExperiment::measure(const MeasureSettings& settings) {
-    if (settings.usefulness) neededBy_ = frames_;
-    occluded_ = settings.occluded;
+    const VisibilitySequence noFrames(tracer_, {}, false);
+    marks_.clear();
     Measures result;
     for (std::size_t i = 0; i < images_.size(); ++i) {
-        result.images.push_back(
-            countSamples(sequence_, i, conventional_, occludedIn(i), neededBy_));
+        const std::size_t count =
+            conventionalImages(method_, settings.occluded, i, conventional_.views().size());
+        marks_.push_back(markedSamples(sequence_, i, conventional_, count,
+                                       settings.usefulness ? frames_ : noFrames));
+        result.images.push_back(countsOf(marks_.back()));
     }
     if (settings.availability) result.frames = countAvailable(sequence_, frames_);
     return result;
 }
 
-std::size_t VisibilityExperiment::occludedIn(std::size_t index) const {
-    return conventionalImages(method_, occluded_, index, conventional_.views().size());
-}
-
 MarkedImage VisibilityExperiment::markedImage(std::size_t index) const {
-    const auto markOf = [&](const SurfacePoint& point) -> std::uint32_t {
-        if (conventional_.anyHolds(occludedIn(index), point)) return 0;
-        std::uint32_t marks = kOccluded;
-        if (neededBy_.anyHolds(neededBy_.views().size(), point)) marks |= kUseful;
-        return marks;
-    };
-    return {images_[index], marksOf(sequence_, index, markOf)};
+    return {images_[index], marks_[index]};
 }
 
 MarkedImage VisibilityExperiment::markedFrame(std::size_t index) {
-    const auto markOf = [&](const SurfacePoint& point) -> std::uint32_t {
-        if (!sequence_.anyHolds(sequence_.views().size(), point)) return 0;
-        return kAvailable;
-    };
-    return {rayCastImage(frames_, index, shading_), marksOf(frames_, index, markOf)};
+    MarkedImage frame{rayCastImage(frames_, index, shading_), {}};
+    const glm::ivec2 size = frame.image.view.sizePx;
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            const auto point = frames_.sample(index, {x, y});
+            const bool isHeld = point && sequence_.anyHolds(sequence_.views().size(), *point);
+            frame.marks.push_back((point ? kSample : 0U) | (isHeld ? kAvailable : 0U));
+        }
+    }
+    return frame;
 }
 
 std::size_t VisibilityExperiment::referenceImageBytes() const {

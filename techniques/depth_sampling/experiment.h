@@ -139,17 +139,14 @@ class VisibilityExperiment final : public Experiment {
     std::size_t referenceImageBytes() const override;
 
   private:
-    std::size_t occludedIn(std::size_t index) const;
-
     Method method_;
-    OccludedIn occluded_ = OccludedIn::UpToOwn;
     raycast::RayTracer tracer_;
     SurfaceShading shading_;
     VisibilitySequence sequence_;
     VisibilitySequence conventional_;
     VisibilitySequence frames_;
-    VisibilitySequence neededBy_;  // frames_ when usefulness is measured, else none
     std::vector<kit::HostDepthImage> images_;
+    std::vector<std::vector<std::uint32_t>> marks_;  // of images_
 };
 
 // Depth images as pictures that show what the measures found: rows from the top, 3 linear channels.

@@ -16,16 +16,6 @@ namespace gfxrepro::depth_sampling {
 
 using ImageSpan = std::span<const kit::DepthImage* const>;
 
-/// What is known of an image's samples: bits of an R32UI texture of the image's size. A pixel
-/// without a sample has none.
-enum Mark : std::uint32_t {
-    kSample = 1,
-    kRedundant = 2,   // with an earlier conventional image (measure 1)
-    kOccluded = 4,    // in no conventional image that counts (measure 2)
-    kUseful = 8,      // occluded, and needed by an output frame (measure 3)
-    kAvailable = 16,  // of an output frame: in at least one reference image (measure 4)
-};
-
 /// Pixel redundancy of samples with images, tested one fragment a sample ([xie2017] Algorithm 3):
 /// sample s of image I is redundant with image J when the pixel of J in which s lands holds the
 /// triangle of s. A sample outside of J or behind its eye is not.

@@ -2,7 +2,6 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
@@ -276,45 +275,42 @@ kit::HostDepthImage rayCastImage(const VisibilitySequence& sequence, std::size_t
     return image;
 }
 
-ImageCounts& ImageCounts::operator+=(const ImageCounts& other) {
-    samples += other.samples;
-    redundant += other.redundant;
-    occluded += other.occluded;
-    useful += other.useful;
-    return *this;
-}
-
-ImageCounts countSamples(const VisibilitySequence& sequence, std::size_t index,
-                         const VisibilitySequence& conventional, std::size_t conventionalCount,
-                         const VisibilitySequence& outputs) {
+std::vector<std::uint32_t> markedSamples(const VisibilitySequence& sequence, std::size_t index,
+                                         const VisibilitySequence& conventional,
+                                         std::size_t conventionalCount,
+                                         const VisibilitySequence& outputs) {
     const glm::ivec2 size = sequence.views()[index].sizePx;
+    std::vector<std::uint32_t> marks(static_cast<std::size_t>(size.x) *
+                                     static_cast<std::size_t>(size.y));
     // The nearest points on a view's rays are what its conventional image holds, whatever rounding
     // makes of a ray that is cast to one of them again.
     const bool isConventional = index == 0 && conventionalCount > 0 &&
                                 isSameView(sequence.views()[0], conventional.views()[0]);
-    const auto countRows = [&](const tbb::blocked_range<int>& rows, ImageCounts counts) {
+    tbb::parallel_for(0, size.y, [&](int y) {
         std::size_t frameBefore = 0;
-        for (int y = rows.begin(); y < rows.end(); ++y) {
-            for (int x = 0; x < size.x; ++x) {
-                const auto point = sequence.sample(index, {x, y});
-                if (!point) continue;
-                ++counts.samples;
-                counts.redundant += sequence.isRedundant(index, *point) ? 1 : 0;
-                if (isConventional || conventional.anyHolds(conventionalCount, *point)) continue;
-                ++counts.occluded;
-                const auto frame = outputs.visibleFrom(*point, frameBefore);
-                if (!frame) continue;
-                ++counts.useful;
-                frameBefore = *frame;
-            }
+        for (int x = 0; x < size.x; ++x) {
+            const auto point = sequence.sample(index, {x, y});
+            if (!point) continue;
+            std::uint32_t& mark = marks[static_cast<std::size_t>(y) * size.x + x];
+            mark = kSample;
+            if (sequence.isRedundant(index, *point)) mark |= kRedundant;
+            if (isConventional || conventional.anyHolds(conventionalCount, *point)) continue;
+            mark |= kOccluded;
+            const auto frame = outputs.visibleFrom(*point, frameBefore);
+            if (!frame) continue;
+            mark |= kUseful;
+            frameBefore = *frame;
         }
-        return counts;
+    });
+    return marks;
+}
+
+ImageCounts countsOf(std::span<const std::uint32_t> marks) {
+    const auto having = [&](std::uint32_t bit) {
+        return static_cast<std::uint64_t>(
+            std::ranges::count_if(marks, [&](std::uint32_t mark) { return (mark & bit) != 0; }));
     };
-    return tbb::parallel_reduce(tbb::blocked_range<int>(0, size.y), ImageCounts{}, countRows,
-                                [](ImageCounts a, const ImageCounts& b) {
-                                    a += b;
-                                    return a;
-                                });
+    return {having(kSample), having(kRedundant), having(kOccluded), having(kUseful)};
 }
 
 std::vector<FrameCounts> countAvailable(const VisibilitySequence& sequence,

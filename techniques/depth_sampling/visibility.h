@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/raycast/ray_tracer.h"
@@ -12,6 +13,16 @@
 
 namespace gfxrepro::depth_sampling {
 
+/// What is known of an image's samples ([xie2017] Sec. 2.3.2): bits, of a pixel without a sample
+/// none.
+enum Mark : std::uint32_t {
+    kSample = 1,
+    kRedundant = 2,   // with an earlier conventional image (measure 1)
+    kOccluded = 4,    // in no conventional image that counts (measure 2)
+    kUseful = 8,      // occluded, and needed by an output frame (measure 3)
+    kAvailable = 16,  // of an output frame: in at least one reference image (measure 4)
+};
+
 /// Counts of samples of one reference image ([xie2017] Sec. 2.3.2). Plain counts; shares are the
 /// caller's.
 struct ImageCounts {
@@ -20,7 +31,6 @@ struct ImageCounts {
     std::uint64_t occluded = 0;   // held by no conventional image that counts (measure 2)
     std::uint64_t useful = 0;     // occluded, and needed by an output frame (measure 3)
 
-    ImageCounts& operator+=(const ImageCounts& other);
     bool operator==(const ImageCounts&) const = default;
 };
 
@@ -115,13 +125,16 @@ kit::HostDepthImage rayCastImage(const VisibilitySequence& sequence, std::size_t
 
 // The measures of [xie2017] Sec. 2.3.2 under the visibility definition, on the CPU.
 
-/// Of the samples of image `index` of `sequence`. Occluded is what the first `conventionalCount`
-/// images of `conventional` lack; the output frames are those of `outputs` (both are conventional
-/// sequences; `outputs` may be empty). Measure 1 is the conventional sequence measured against
-/// itself; of a non-redundant or peeled sequence no sample is redundant.
-ImageCounts countSamples(const VisibilitySequence& sequence, std::size_t index,
-                         const VisibilitySequence& conventional, std::size_t conventionalCount,
-                         const VisibilitySequence& outputs);
+/// Marks of the samples of image `index` of `sequence`, a pixel each, rows from the bottom.
+/// Occluded is what the first `conventionalCount` images of `conventional` lack; the output frames
+/// are those of `outputs` (both are conventional sequences; `outputs` may be empty). Measure 1 is
+/// the conventional sequence measured against itself; of a non-redundant or peeled sequence no
+/// sample is redundant.
+std::vector<std::uint32_t> markedSamples(const VisibilitySequence& sequence, std::size_t index,
+                                         const VisibilitySequence& conventional,
+                                         std::size_t conventionalCount,
+                                         const VisibilitySequence& outputs);
+ImageCounts countsOf(std::span<const std::uint32_t> marks);
 
 /// For every image of `outputs` (a conventional sequence: the output frames).
 std::vector<FrameCounts> countAvailable(const VisibilitySequence& sequence,

@@ -1,6 +1,8 @@
 // The technique as a whole: parameters, metrics, invariants of the definitions.
 #include "techniques/depth_sampling/depth_sampling.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <set>
 
@@ -172,6 +174,26 @@ TEST_F(DepthSamplingTest, AnOutputFrameAtAReferenceViewFindsEverything) {
             << redundancy;
         EXPECT_EQ(metrics.at("unavailable_mean_pct"), 0) << redundancy;
         EXPECT_EQ(metrics.at("output_frames"), 2) << redundancy;
+    }
+}
+
+TEST_F(DepthSamplingTest, OccludedIsUpToTheOwnViewOrFromAll) {
+    const scene::Scene scene = clutter();
+    for (const std::string redundancy : {"pixel", "visibility"}) {
+        const auto counted = [&](const char* method, const char* occluded) {
+            return run(
+                fmt::format("{{method: {}, redundancy: {}{}}}", method, redundancy, occluded),
+                scene);
+        };
+        const Metrics own = counted("non_redundant", ", occluded: up_to_own");
+        const Metrics all = counted("non_redundant", ", occluded: all");
+        EXPECT_EQ(counted("non_redundant", ""), own);
+        for (const char* image : {"occluded_pct/image_0", "occluded_pct/image_2"}) {
+            EXPECT_EQ(own.at(image), all.at(image)) << "there is no further view";
+        }
+        // The third view sees some of what the first two do not.
+        EXPECT_LT(all.at("occluded_pct/image_1"), own.at("occluded_pct/image_1")) << redundancy;
+        EXPECT_GT(all.at("occluded_pct/image_1"), 0.0) << redundancy;
     }
 }
 

@@ -326,20 +326,20 @@ TEST(VisibilityMeasures, CountTwoSquares) {
 
     // 32 pixels for 4 m: the front square fills 16². The back one, a metre further, is seen at
     // 0.5 · 4/5 = 0.4 m of half size: samples at 0.125 · (k + 0.5) m, so 2 · 3 = 6 a side.
-    EXPECT_EQ(countSamples(conventional, 0, conventional, 2, before),
+    EXPECT_EQ(countsOf(markedSamples(conventional, 0, conventional, 2, before)),
               (ImageCounts{.samples = 256}));
-    EXPECT_EQ(countSamples(conventional, 1, conventional, 2, before),
+    EXPECT_EQ(countsOf(markedSamples(conventional, 1, conventional, 2, before)),
               (ImageCounts{.samples = 256, .redundant = 256}));
-    EXPECT_EQ(countSamples(layers, 1, conventional, 2, before),
+    EXPECT_EQ(countsOf(markedSamples(layers, 1, conventional, 2, before)),
               (ImageCounts{.samples = 36, .occluded = 36}));
     // From far aside the gap between the squares shows all of the back one.
-    EXPECT_EQ(countSamples(layers, 1, conventional, 2, aside),
+    EXPECT_EQ(countsOf(markedSamples(layers, 1, conventional, 2, aside)),
               (ImageCounts{.samples = 36, .occluded = 36, .useful = 36}));
-    EXPECT_EQ(countSamples(layers, 2, conventional, 2, aside), ImageCounts{});
+    EXPECT_EQ(countsOf(markedSamples(layers, 2, conventional, 2, aside)), ImageCounts{});
     // V₁ has what V₀ has not.
-    EXPECT_EQ(countSamples(layers, 1, aside, 1, aside),
+    EXPECT_EQ(countsOf(markedSamples(layers, 1, aside, 1, aside)),
               (ImageCounts{.samples = 36, .occluded = 36, .useful = 36}));
-    EXPECT_EQ(countSamples(layers, 1, aside, 2, aside), (ImageCounts{.samples = 36}));
+    EXPECT_EQ(countsOf(markedSamples(layers, 1, aside, 2, aside)), (ImageCounts{.samples = 36}));
 }
 
 TEST(VisibilityMeasures, AvailabilityOfTwoSquares) {
@@ -394,7 +394,8 @@ TEST(VisibilityMeasures, CountsAgreeWithALoopOverTriangles) {
             ++expected.occluded;
             expected.useful += isHeld(bruteOutputs, 3, *point);
         }
-        const ImageCounts counts = countSamples(sequence, j, conventional, j + 1, outputs);
+        const ImageCounts counts =
+            countsOf(markedSamples(sequence, j, conventional, j + 1, outputs));
         EXPECT_EQ(counts.redundant, 0U);
         // A few samples lie so near to an edge that rounding decides.
         constexpr double kFew = 3.0;
