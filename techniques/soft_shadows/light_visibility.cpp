@@ -14,10 +14,8 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-bool isInside(const scene::Box& box, const glm::vec3& point) {
-    return glm::all(glm::greaterThanEqual(point, box.min)) &&
-           glm::all(glm::lessThanEqual(point, box.max));
-}
+/// Of the box's diagonal: what comes nearer to the plane of a view's eye would need half of space.
+constexpr float kLeastDepth = 0.05F;
 
 }  // namespace
 
@@ -39,9 +37,8 @@ AreaLight makeAreaLight(const scene::Box& casters, const AreaLightSettings& sett
     const glm::vec3 toLight(std::sin(settings.azimuthRad) * std::cos(settings.elevationRad),
                             std::sin(settings.elevationRad),
                             std::cos(settings.azimuthRad) * std::cos(settings.elevationRad));
-    // Two edges are horizontal, and of a light overhead along the world's x axis.
-    const glm::vec3 other = std::abs(toLight.y) < 0.99F ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
-    const glm::vec3 right = glm::normalize(glm::cross(other, toLight));
+    // Two edges are horizontal, and across the azimuth also of a light overhead.
+    const glm::vec3 right(std::cos(settings.azimuthRad), 0.0F, -std::sin(settings.azimuthRad));
     // A square of diagonal d has half edges of d / √8.
     return {casters.centre() + settings.height * diagonal * toLight,
             glm::mat3(right, glm::cross(toLight, right), toLight),
@@ -50,14 +47,6 @@ AreaLight makeAreaLight(const scene::Box& casters, const AreaLightSettings& sett
 
 kit::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx) {
     const scene::Box& box = light.casters;
-    if (isInside(box, point)) {
-        throw Error(fmt::format(
-            "the light's point ({:.3g}, {:.3g}, {:.3g}) lies inside the scene's box ({:.3g}, "
-            "{:.3g}, "
-            "{:.3g}) … ({:.3g}, {:.3g}, {:.3g}): raise light_height or lower light_ratio",
-            point.x, point.y, point.z, box.min.x, box.min.y, box.min.z, box.max.x, box.max.y,
-            box.max.z));
-    }
     const float diagonal = glm::length(box.size());
     glm::mat3 axes = light.axes;
     if (light.viewFrame == LightViewFrame::Aimed) {
@@ -72,9 +61,14 @@ kit::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx) 
     for (int index = 0; index < 8; ++index) {
         const glm::vec3 offset = glm::transpose(axes) * (box.corner(index) - point);
         const float depth = -offset.z;
-        // Corners beside the light (the light is not far above a flat scene) would need more than
-        // half of space; what lies that far aside is cut off.
-        const glm::vec2 tangents = glm::vec2(offset) / std::max(depth, 0.05F * diagonal);
+        if (depth < kLeastDepth * diagonal) {
+            throw Error(fmt::format(
+                "the scene's box comes within {:.3g} m of the plane of the light's view from "
+                "({:.3g}, {:.3g}, {:.3g}), at least {:.3g} are needed (a twentieth of its "
+                "diagonal): raise light_height",
+                depth, point.x, point.y, point.z, kLeastDepth * diagonal));
+        }
+        const glm::vec2 tangents = glm::vec2(offset) / depth;
         nearest = std::min(nearest, depth);
         farthest = std::max(farthest, depth);
         least = glm::min(least, tangents);

@@ -47,7 +47,7 @@ AreaLight makeAreaLight(const scene::Box& casters, const AreaLightSettings& sett
 
 /// The view from a point on the light, which need not be one of its samples. Its frustum is the
 /// narrowest square one that holds the casters' box, with a margin of two pixels. Throws Error when
-/// the point lies inside the box: the frustum would have to be wider than half of space.
+/// the box comes near to the plane of its eye or beyond: it would have to be half of space.
 kit::View lightView(const AreaLight& light, const glm::vec3& point, int sizePx);
 
 /// The output samples: what each pixel of the output image shows.

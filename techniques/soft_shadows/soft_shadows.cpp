@@ -222,7 +222,14 @@ void SoftShadows::setup(technique::SetupContext& context) {
     shared_ = context.shared;
     scene_ = *context.scene;
     light_ = makeAreaLight(scene_.bounds(), params_.light);
-    for (int corner = 0; corner < 4; ++corner) lightView(light_, light_.corner(corner), 64);
+    for (int corner = 0; corner < 4; ++corner) {
+        lightView(light_, light_.corner(corner), 64);
+        if (params_.hasGround && light_.corner(corner).y < light_.casters.min.y) {
+            throw Error(
+                "the light reaches below the floor: raise light_height or light_elevation_deg, "
+                "lower light_ratio, or 'ground: false'");
+        }
+    }
     const glm::vec2 size(context.outputSizePx);
     const scene::Camera camera = kit::stillCamera(scene_, params_.view, size.x / size.y);
     if (params_.hasGround) addGround(scene_, params_.groundSize);

@@ -257,11 +257,39 @@ TEST(AreaLight, PixelsChangeWithItsSizeWithoutAJump) {
     }
 }
 
-TEST(AreaLight, LightInsideTheSceneIsRefused) {
-    const AreaLight light = makeAreaLight({{-1, 0, -1}, {1, 1, 1}}, {.height = 0.1F});
+TEST(AreaLight, PixelsFromItsCornersChangeWithItsElevationWithoutAJump) {
+    for (const glm::vec3& size : kBoxSizes) {
+        for (const float azimuth : {0.0F, 0.4F, 0.8F}) {
+            float before = 0.0F;
+            for (int deg = 60; deg <= 90; ++deg) {
+                const AreaLight light =
+                    lightOverBox(size, 40,
+                                 {.height = 1.0F,
+                                  .azimuthRad = azimuth,
+                                  .elevationRad = glm::radians(static_cast<float>(deg))});
+                const float width = pixelWidth(light, light.corner(0));
+                EXPECT_NEAR(width / pixelWidth(light, light.centre), 1.0F, 0.1F) << deg;
+                if (deg > 60) {
+                    EXPECT_NEAR(width / before, 1.0F, 0.02F) << size.y << " m high, " << deg;
+                }
+                before = width;
+            }
+        }
+    }
+}
+
+TEST(AreaLight, APlaneThroughTheSceneIsRefused) {
+    const scene::Box box{{-1, 0, -1}, {1, 1, 1}};
+    const AreaLight light = makeAreaLight(box, {.height = 0.1F, .azimuthRad = 0.0F});
     EXPECT_EQ(test::errorText([&] { lightView(light, light.centre, 64); }),
-              "the light's point (0.0915, 0.752, 0.134) lies inside the scene's box (-1, 0, -1) … "
-              "(1, 1, 1): raise light_height or lower light_ratio");
+              "the scene's box comes within -0.661 m of the plane of the light's view from "
+              "(0, 0.752, 0.162), at least 0.15 are needed (a twentieth of its diagonal): raise "
+              "light_height");
+    const AreaLight near = makeAreaLight(box, {.height = 0.216F, .elevationRad = 1.5707963F});
+    EXPECT_EQ(test::errorText([&] { lightView(near, near.centre, 64); }).substr(0, 43),
+              "the scene's box comes within 0.148 m of the");
+    EXPECT_NO_THROW(lightView(makeAreaLight(box, {.height = 0.22F, .elevationRad = 1.5707963F}),
+                              {0, 1.16F, 0}, 64));
 }
 
 TEST(ShadowErrors, CountWrongSamplesAndTheirAlgebraicSum) {
