@@ -153,6 +153,10 @@ constexpr double kFlatRad = 1e-3;
 /// How often each triangle goes with most of its neighbours: its own three edges may differ in sign
 /// from those beside it along a curve that is drawn with few triangles.
 constexpr int kRounds = 3;
+/// Parts lie in about one plane where their normals and places along them round to the same of
+/// these steps: to a unit, and to the mesh's diagonal.
+constexpr double kNormalSteps = 4.0;
+constexpr double kPlaneSteps = 50.0;
 
 /// Of vertices: places rounded to kWeld.
 using Cell = std::array<std::int64_t, 3>;
@@ -218,6 +222,13 @@ class Division {
     void findBorders();
     Border borderOf(std::uint32_t a, std::uint32_t b, const dvec3& from, const dvec3& to) const;
     std::vector<std::int8_t> bendingSides() const;
+    /// Weighted by area.
+    struct PartSum {
+        dvec3 normal{0.0}, centre{0.0};
+        double area = 0.0;
+        bool isFlat() const { return glm::length(normal) > (1.0 - kFlatRad * kFlatRad) * area; }
+    };
+    std::map<std::uint32_t, PartSum> partSums();  // by their least triangle
     void joinSmallOnes();
 
     const scene::Mesh& mesh_;
@@ -314,28 +325,46 @@ std::vector<std::int8_t> Division::bendingSides() const {
     return result;
 }
 
-/// Smallest first, each with what it has the longest border with; those without any with each
-/// other.
+std::map<std::uint32_t, Division::PartSum> Division::partSums() {
+    std::map<std::uint32_t, PartSum> sums;
+    for (std::uint32_t t = 0; t < areas_.size(); ++t) {
+        PartSum& sum = sums[joined_.of(t)];
+        sum.area += areas_[t];
+        sum.normal += areas_[t] * normals_[t];
+        sum.centre += areas_[t] / 3.0 * (corner(t, 0) + corner(t, 1) + corner(t, 2));
+    }
+    return sums;
+}
+
+/// Smallest first, each with what it has the longest border with, but none across a crease with a
+/// large plane, which would be one no more. Then those in about one plane, and the rest with each
+/// other: parts of two walls have no cluster in common.
 void Division::joinSmallOnes() {
     double total = 0.0;
     for (const double area : areas_) total += area;
-    for (bool hasJoined = true; hasJoined;) {
+    const double least = double{kLeastPartShare} * total;
+    std::map<std::uint32_t, PartSum> sums = partSums();
+    const auto smallOnes = [&] {
+        std::vector<std::pair<double, std::uint32_t>> small;
+        for (const auto& [part, sum] : sums) {
+            if (sum.area < least) small.emplace_back(sum.area, part);
+        }
+        std::ranges::sort(small);
+        return small;
+    };
+    const auto isLargePlane = [&](std::uint32_t part) {
+        return sums[part].area >= least && sums[part].isFlat();
+    };
+    for (bool hasJoined = true; hasJoined; sums = partSums()) {
         hasJoined = false;
-        std::map<std::uint32_t, double> areaOf;
-        for (std::uint32_t t = 0; t < areas_.size(); ++t) areaOf[joined_.of(t)] += areas_[t];
         std::map<Edge, double> lengthOf;
         for (const Border& border : borders_) {
             const std::uint32_t a = joined_.of(border.a), b = joined_.of(border.b);
-            if (a == b) continue;
+            if (a == b || (border.isCrease && (isLargePlane(a) || isLargePlane(b)))) continue;
             lengthOf[{a, b}] += border.lengthM;
             lengthOf[{b, a}] += border.lengthM;
         }
-        std::vector<std::pair<double, std::uint32_t>> small;
-        for (const auto& [part, area] : areaOf) {
-            if (area < double{kLeastPartShare} * total) small.emplace_back(area, part);
-        }
-        std::ranges::sort(small);
-        for (const auto& [area, part] : small) {
+        for (const auto& [area, part] : smallOnes()) {
             if (joined_.of(part) != part) continue;  // in this round, with a smaller one
             double longest = 0.0;
             std::uint32_t best = part;
@@ -348,11 +377,20 @@ void Division::joinSmallOnes() {
             joined_.join(part, best);
             hasJoined = true;
         }
-        if (hasJoined) continue;
-        for (std::size_t i = 1; i < small.size(); ++i) {
-            joined_.join(small[0].second, small[i].second);
-        }
     }
+    std::map<std::array<long, 4>, std::uint32_t> partIn;
+    for (const auto& [area, part] : smallOnes()) {
+        const dvec3 normal = sums[part].normal / std::max(area, 1e-300);
+        const double at = glm::dot(normal, sums[part].centre / std::max(area, 1e-300)) /
+                          double{glm::length(mesh_.bounds().size())};
+        const std::array<long, 4> plane = {
+            std::lround(normal.x * kNormalSteps), std::lround(normal.y * kNormalSteps),
+            std::lround(normal.z * kNormalSteps), std::lround(at * kPlaneSteps)};
+        joined_.join(part, partIn.emplace(plane, part).first->second);
+    }
+    sums = partSums();
+    const auto rest = smallOnes();
+    for (std::size_t i = 1; i < rest.size(); ++i) joined_.join(rest[0].second, rest[i].second);
 }
 
 /// The triangles of one part, with the vertices that they use.

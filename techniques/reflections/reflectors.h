@@ -59,8 +59,9 @@ constexpr float kLeastPartShare = 0.05F;
 /// The parts of a mesh, 0, 1, … in the order of first triangles. A part is connected by edges
 /// (vertices at the same place are one), has no crease inside, and bends to one side: inside of a
 /// bowl and outside are two, however smooth its rim is. The side is the sign of the mean curvature,
-/// by majority over neighbouring triangles; normals say which side is out. Small parts that border
-/// on nothing are one part together.
+/// by majority over neighbouring triangles; normals say which side is out. Small parts join what
+/// they border on, but no large plane across a crease, else those in about the same plane, and
+/// what is small then is one part together.
 struct Parts {
     std::vector<std::uint32_t> ofTriangle;
     std::vector<std::uint8_t> isConcave;  // by part: most of its area

@@ -110,6 +110,35 @@ TEST(ReflectorParts, PartsThatDoNotTouchAreApartUnlessTheyAreSmall) {
     EXPECT_EQ(parts.ofTriangle, (std::vector<std::uint32_t>{0, 0, 1, 1, 2, 2, 2, 2, 2, 2}));
 }
 
+TEST(ReflectorParts, SmallOnesAreJoinedWithinAPlaneAndNotFromWallToWall) {
+    scene::MeshBuilder builder;
+    for (int i = 0; i < 25; ++i) {  // tiles of two walls that face each other
+        const float y = static_cast<float>(i / 5), z = static_cast<float>(i % 5);
+        builder.addQuad({0, y, z}, {0, y + 0.9F, z}, {0, y + 0.9F, z + 0.9F}, {0, y, z + 0.9F});
+        builder.addQuad({4, y, z}, {4, y, z + 0.9F}, {4, y + 0.9F, z + 0.9F}, {4, y + 0.9F, z});
+    }
+    const Parts parts = partsOf(builder.take("tiles", 0));
+    ASSERT_EQ(countOf(parts), 2U);
+    for (std::size_t t = 0; t < parts.ofTriangle.size(); ++t) {
+        EXPECT_EQ(parts.ofTriangle[t], t / 2 % 2) << t;
+    }
+}
+
+TEST(ReflectorParts, ThinSidesLeaveAMirrorPlanar) {
+    scene::MeshBuilder builder;
+    builder.addBox(glm::vec3(0.0F), glm::vec3(1.0F, 1.0F, 0.01F));
+    const scene::Mesh mesh = builder.take("mirror", 0);
+    const Parts parts = partsOf(mesh);
+    EXPECT_EQ(countOf(parts), 3U);  // front, back, and the four sides
+    for (std::size_t t = 0; t < parts.ofTriangle.size(); ++t) {
+        const float z = mesh.normals[mesh.triangles[t].x].z;
+        for (std::size_t u = 0; u < parts.ofTriangle.size(); ++u) {
+            const float other = mesh.normals[mesh.triangles[u].x].z;
+            EXPECT_EQ(parts.ofTriangle[t] == parts.ofTriangle[u], z == other) << t << ' ' << u;
+        }
+    }
+}
+
 TEST(ReflectorParts, NothingAndDegenerateTrianglesAreNoError) {
     EXPECT_EQ(countOf(partsOf({})), 0U);
     scene::Mesh mesh;
