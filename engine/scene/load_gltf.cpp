@@ -201,6 +201,7 @@ class SceneBuilder {
         const gltf::UsedPart part{primitive, count, used, fmt::format("{}: {}", file_.name, where)};
         mesh.positions = attribute<glm::vec3>(part, "POSITION");
         mesh.normals = attribute<glm::vec3>(part, "NORMAL");
+        mesh.isFlat = !isPoints && mesh.normals.empty();
         for (glm::vec3& normal : mesh.normals) normal = unitNormal(normal);
         mesh.colors = attribute<glm::vec3>(part, "COLOR_0");
         if (isPoints && mesh.material >= 0) colourPoints(scene_.materials[mesh.material], mesh);

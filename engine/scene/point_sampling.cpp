@@ -86,7 +86,9 @@ std::vector<Surfel> surfelsOf(const Scene& scene) {
     std::vector<Surfel> surfels;
     surfels.reserve(scene.triangleCount());
     for (const Instance& instance : scene.instances) {
-        const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+        const Mesh& whole = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+        const Mesh flat = whole.isFlat ? withTriangleNormals(whole) : Mesh{};
+        const Mesh& mesh = whole.isFlat ? flat : whole;
         const glm::mat3 linear(instance.worldFromMesh);
         const glm::mat3 toWorld = glm::transpose(glm::inverse(linear));
         const glm::vec3 base(materialOf(scene, mesh).baseColor);

@@ -193,6 +193,26 @@ std::vector<glm::vec3> vertexNormals(const Mesh& mesh) {
     return normals;
 }
 
+Mesh withTriangleNormals(const Mesh& mesh) {
+    Mesh result;
+    result.name = mesh.name;
+    result.material = mesh.material;
+    const auto copy = [](const auto& from, auto& to, std::uint32_t vertex) {
+        if (!from.empty()) to.push_back(from[vertex]);
+    };
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const auto first = static_cast<std::uint32_t>(result.positions.size());
+        result.triangles.emplace_back(first, first + 1, first + 2);
+        for (int corner = 0; corner < 3; ++corner) {
+            copy(mesh.positions, result.positions, triangle[corner]);
+            copy(mesh.texcoords, result.texcoords, triangle[corner]);
+            copy(mesh.colors, result.colors, triangle[corner]);
+        }
+    }
+    result.normals = vertexNormals(result);
+    return result;
+}
+
 Camera framingCamera(const Box& box, float aspect, glm::vec3 towardsEye) {
     Camera camera;
     camera.name = "framing";

@@ -47,6 +47,8 @@ struct Mesh {
     std::vector<glm::vec3> colors;     // linear
     std::vector<glm::uvec3> triangles;
     int material = -1;  // into Scene::materials; -1: default grey
+    bool isFlat =
+        false;  // without normals, because triangles have their own: glTF 2.0 Sec. 3.7.2.1
 
     Box bounds() const;
     /// What the arrays hold.
@@ -199,6 +201,9 @@ Scene sceneOf(Mesh mesh);
 
 /// Area-weighted vertex normals (unit; zero for vertices without area).
 std::vector<glm::vec3> vertexNormals(const Mesh& mesh);
+
+/// The mesh with three vertices of its own for each triangle, and its normal (zero without area).
+Mesh withTriangleNormals(const Mesh& mesh);
 
 /// A view, three-quarter unless `towardsEye` (not zero) says where from, that holds the whole box
 /// at this aspect ratio (width / height).

@@ -108,8 +108,8 @@ class SceneBytes {
             positions, normals, radii, colors, cameras, paths, lights, motions, warnings, offset);
     }
     void take(scene::Mesh& mesh) {
-        auto& [name, positions, normals, texcoords, colors, triangles, material] = mesh;
-        all(name, positions, normals, texcoords, colors, triangles, material);
+        auto& [name, positions, normals, texcoords, colors, triangles, material, isFlat] = mesh;
+        all(name, positions, normals, texcoords, colors, triangles, material, isFlat);
     }
     void take(scene::Material& material) {
         auto& [name, color, metallic, roughness, emissive, colorTexture, roughnessTexture,

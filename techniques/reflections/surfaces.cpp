@@ -115,6 +115,9 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
         warn(fmt::format("{} of {} objects let light through and are left out", transmissiveCount,
                          scene.instances.size()));
     }
+    for (scene::Mesh& mesh : scene_.meshes) {
+        if (mesh.isFlat) mesh = scene::withTriangleNormals(mesh);
+    }
     std::vector<PartOrigin> parts;
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         parts.push_back({static_cast<int>(i), false});

@@ -100,6 +100,20 @@ TEST(PlanarTest, IsOnePlaneWithOneNormal) {
     EXPECT_FALSE(isPlanarReflector(box.take("box", 0)));
 }
 
+TEST(ReflectiveSceneTest, DrawsFlatWhatItsFormatSaysIsFlat) {
+    scene::Mesh slab;  // eight corners, as a file without normals has them
+    for (int i = 0; i < 8; ++i) slab.positions.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
+    slab.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    const auto planarCount = [&] {
+        const ReflectiveScene scene(sceneOf(slab, {.roughness = 0.0F}), {.splitsParts = true});
+        return std::ranges::count_if(scene.objects(), &Object::isPlanar);
+    };
+    EXPECT_EQ(planarCount(), 0);
+    slab.isFlat = true;
+    EXPECT_EQ(planarCount(), 6);
+}
+
 TEST(ReflectiveSceneTest, LeavesOutWhatLetsLightThrough) {
     scene::Scene scene;
     scene.lights = {{}};

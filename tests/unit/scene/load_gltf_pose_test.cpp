@@ -153,6 +153,7 @@ TEST_F(PoseGltf, PrimitivesKeepTheVerticesThatTheyUse) {
     ASSERT_EQ(scene.meshes.size(), 2U);
     EXPECT_EQ(scene.meshes[0].positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
     EXPECT_EQ(scene.meshes[0].normals.size(), 3U);
+    EXPECT_FALSE(scene.meshes[0].isFlat);
     EXPECT_EQ(scene.warnings, std::vector<std::string>{"left out: a vertex that no triangle uses"});
 }
 

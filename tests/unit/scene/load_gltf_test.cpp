@@ -44,6 +44,7 @@ TEST_F(LoadGltf, ReadsASquare) {
     const Mesh& mesh = scene.meshes.at(0);
     EXPECT_EQ(mesh.name, "m");
     EXPECT_EQ(mesh.positions[2], glm::vec3(1, 1, 0));
+    EXPECT_TRUE(mesh.isFlat) << "it has no normals";
     EXPECT_EQ(mesh.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}}));
     EXPECT_EQ(scene.instances.at(0).worldFromMesh, glm::mat4(1.0F));
 }

@@ -51,6 +51,18 @@ TEST(SampledPoints, AreSpreadByArea) {
     EXPECT_NEAR(points.colors[7].x, 0.4F, 1e-6F);  // default grey times vertex colour
 }
 
+TEST(SampledPoints, OfAFlatMeshHaveItsTrianglesNormals) {
+    Mesh mesh;  // two triangles at a right angle, with two vertices in common
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.triangles = {{0, 1, 2}, {0, 3, 1}};
+    mesh.isFlat = true;
+    const PointCloud points = sampledPoints(sceneOf(mesh), 100);
+    for (std::size_t i = 0; i < points.positions.size(); ++i) {
+        const bool isUpright = points.positions[i].y > 0.0F;
+        EXPECT_EQ(points.normals[i], isUpright ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0)) << i;
+    }
+}
+
 TEST(SampledPoints, RefuseWhatHasNoArea) {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};

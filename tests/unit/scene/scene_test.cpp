@@ -101,6 +101,24 @@ TEST(VertexNormals, HoldForTinyTriangles) {
     EXPECT_EQ(vertexNormals(mesh)[0], glm::vec3(0, 0, 1));
 }
 
+TEST(TriangleNormals, EachTriangleHasItsOwnCorners) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.texcoords = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+    mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 1, 2}};
+    mesh.isFlat = true;
+    const Mesh flat = withTriangleNormals(mesh);
+    EXPECT_EQ(flat.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {3, 4, 5}, {6, 7, 8}}));
+    EXPECT_EQ(flat.positions[4], glm::vec3(0, 0, 1));
+    EXPECT_EQ(flat.texcoords[4], glm::vec2(1, 1));
+    EXPECT_TRUE(flat.colors.empty());
+    EXPECT_FALSE(flat.isFlat);
+    for (std::size_t i = 0; i < 9; ++i) {
+        const glm::vec3 expected = i < 3 ? glm::vec3(0, 0, 1) : glm::vec3(0, i < 6 ? 1 : 0, 0);
+        EXPECT_EQ(flat.normals[i], expected) << i;
+    }
+}
+
 /// Depth and the two slopes of a point as the camera sees it.
 glm::vec3 seen(const Camera& camera, const glm::vec3& point) {
     const glm::vec3 view =
