@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
@@ -26,6 +28,37 @@ std::string namesOf(const std::vector<Named>& all) {
     for (const Named& one : all)
         names += fmt::format("{}'{}'", names.empty() ? "" : ", ", one.name);
     return names.empty() ? "none" : names;
+}
+
+std::optional<glm::vec3> pointOf(std::string_view text) {
+    std::istringstream stream{std::string(text)};
+    glm::vec3 point;
+    std::string rest;
+    if (!(stream >> point.x >> point.y >> point.z) || stream >> rest) return std::nullopt;
+    return point;
+}
+
+/// "X Y Z > X Y Z; …": keys from a point to another one, that hold the whole scene.
+std::optional<scene::CameraPath> pathOf(const scene::Scene& scene, const std::string& view) {
+    if (view.find('>') == std::string::npos) return std::nullopt;
+    const scene::Box box = scene.bounds();
+    scene::CameraPath path{view, {}};
+    for (const std::string& key : split(view, ';')) {
+        const std::vector<std::string> ends = split(key, '>');
+        const auto from = pointOf(ends.front()), to = pointOf(ends.back());
+        if (ends.size() != 2 || !from || !to || *from == *to) return std::nullopt;
+        scene::Camera camera;
+        camera.position = *from;
+        camera.target = *to;
+        if (from->x == to->x && from->z == to->z) camera.up = {0.0F, 0.0F, -1.0F};
+        camera.farM = glm::distance(*from, *to);
+        for (int corner = 0; corner < 8 && !box.isEmpty(); ++corner) {
+            camera.farM = std::max(camera.farM, 1.01F * glm::distance(*from, box.corner(corner)));
+        }
+        camera.nearM = 1e-3F * camera.farM;
+        path.keys.push_back(camera);
+    }
+    return path;
 }
 
 }  // namespace
@@ -57,9 +90,11 @@ scene::Camera cameraAtTime(const scene::Scene& scene, const std::string& view, d
     if (const auto direction = towardsEyeOf(view)) {
         return scene::framingCamera(scene.bounds(), aspect, *direction);
     }
+    if (const auto path = pathOf(scene, view)) return cameraAt(*path, time);
     throw Error(
         fmt::format("the scene has no path or camera '{}'; paths: {}; cameras: {}; or "
-                    "'AZIMUTH ELEVATION' in degrees",
+                    "'AZIMUTH ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more "
+                    "such behind ';' a path",
                     view, namesOf(scene.paths), namesOf(scene.cameras)));
 }
 

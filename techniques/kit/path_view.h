@@ -17,8 +17,10 @@ double frameTime(int frame, int frameCount);
 
 /// The camera at a time of 0 … 1. `view` names a path of the scene or, where none is called so, a
 /// camera; "30 17" frames the scene from an azimuth of 30°, from +z towards +x, and an elevation of
-/// 17°; empty: the first path, else the first camera, else one that frames the scene at `aspect`
-/// (width / height). Throws Error for a name that the scene does not have.
+/// 17°; "1 2 3 > 0 1 0" looks from a point of the world at another one, and several such, with ';'
+/// between them, are the keys of a path; empty: the first path, else the first camera, else one
+/// that frames the scene at `aspect` (width / height). Throws Error for a name that the scene does
+/// not have.
 scene::Camera cameraAtTime(const scene::Scene& scene, const std::string& view, double time,
                            float aspect);
 /// The camera of a frame, at its frameTime().

@@ -425,6 +425,17 @@ class ReflectionReuse final : public technique::Technique {
                             static_cast<double>(params_.pathFrames);
         view_ = frame_->viewAt(time);
         frame_->poseAt(time);
+        if (context.frame == 0 && context.frameCount > 1) warnOfAStill(context.frameCount, time);
+    }
+
+    void warnOfAStill(int frameCount, double time) {
+        const double last = time + (frameCount - 1) / static_cast<double>(params_.pathFrames);
+        if (hasWarned_ || frame_->viewAt(last).viewFromWorld != view_.viewFromWorld) return;
+        hasWarned_ = true;
+        fmt::print(stderr,
+                   "warning: the camera stands still over {} frames: what is saved tells nothing "
+                   "of a path ('view')\n",
+                   frameCount);
     }
 
     // The passes have the names that they have between key frames.
@@ -567,7 +578,8 @@ class ReflectionReuse final : public technique::Technique {
 
     std::optional<gl::Profiler> recomputeTimes_;  // of `recompute_fit`
     std::optional<double> leastMs_;               // of recomputing, in the frame at hand
-    std::vector<glm::dvec2> recomputed_;          // (samples, ms) of frames that are not key frames
+    bool hasWarned_ = false;
+    std::vector<glm::dvec2> recomputed_;  // (samples, ms) of frames that are not key frames
 };
 
 std::unique_ptr<technique::Technique> create(Params& params) {

@@ -34,9 +34,11 @@ ReflectiveScene prepared(const scene::Scene& given, const FrameSettings& setting
 }  // namespace
 
 void FrameSettings::readView(Params& params) {
-    view = params.getText("view", "",
-                          {"a path or camera of the scene, or where from to frame it, \"AZIMUTH "
-                           "ELEVATION\" in degrees; none: its first path, else its first camera"});
+    view = params.getText(
+        "view", "",
+        {"a path or camera of the scene, where from to frame it, \"AZIMUTH ELEVATION\" in degrees, "
+         "or keys of a path, \"X Y Z > X Y Z; …\" from and to; none: its first path, "
+         "else its first camera"});
 }
 
 void FrameSettings::readMotionAndSupersampling(Params& params, int defaultSupersampling) {

@@ -136,7 +136,8 @@ ShadowMappingParams::ShadowMappingParams(Params& params) {
          "1", 0.0, 100.0});
     readLights(params, *this);
     view = params.getText("view", "",
-                          {"a path of the scene, seen from its middle, a camera, or where from to "
+                          {"a path of the scene, seen from its middle, a camera, \"X Y Z > X Y Z\" "
+                           "from and to, or where from to "
                            "frame it, \"AZIMUTH ELEVATION\" in degrees; none: its first camera"});
     isStatic = params.getBool("static", false, {"the maps are drawn once and used again"});
     measuresErrors = params.getBool("errors", false, {"compares with shadow rays"});

@@ -105,7 +105,8 @@ SoftShadowsParams::SoftShadowsParams(Params& params)
           number(params, "simplification_error", 0.001,
                  {"bound on how far simplification moves the surface", "diagonals", 0.0, 1.0})),
       view(params.getText("view", "",
-                          {"a path of the scene, seen from its middle, a camera, or where from to "
+                          {"a path of the scene, seen from its middle, a camera, \"X Y Z > X Y Z\" "
+                           "from and to, or where from to "
                            "frame it, \"AZIMUTH ELEVATION\" in degrees; none: its first camera"})),
       light(readLight(params)),
       lightGrid(params.getInt("light_grid", 8,

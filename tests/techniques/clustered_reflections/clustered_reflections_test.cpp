@@ -162,7 +162,8 @@ TEST_F(ClusteredReflectionsTest, RefusesScenesWithoutReflectorsAndUnknownViews) 
     EXPECT_EQ(
         message("{view: path_1}", &room),
         "the scene has no path or camera 'path_1'; paths: none; cameras: 'front', 'ceiling'; or "
-        "'AZIMUTH ELEVATION' in degrees");
+        "'AZIMUTH ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more such behind ';' "
+        "a path");
 }
 
 TEST_F(ClusteredReflectionsTest, EveryMethodRecordsSharesMemoryAndErrors) {

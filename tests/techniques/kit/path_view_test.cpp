@@ -85,13 +85,34 @@ TEST(PathView, FramesTheSceneFromAnyDirection) {
                 testing::StartsWith("the scene has no path or camera '0 91'"));
 }
 
+TEST(PathView, LooksFromAPointToAnotherAndAlongAPathOfThem) {
+    const scene::Camera still = stillCamera(boxWithViews(), "4 2 0.5 > 0 -1 0", 1.0F);
+    EXPECT_EQ(still.position, glm::vec3(4, 2, 0.5F));
+    EXPECT_EQ(still.target, glm::vec3(0, -1, 0));
+    EXPECT_LT(still.nearM, 3.0F);
+    EXPECT_GT(still.farM, glm::distance(still.position, {-1, -1, -1}));
+    EXPECT_EQ(stillCamera(box(), "0 9 0 > 0 1 0", 1.0F).up, glm::vec3(0, 0, -1));
+    const std::string path = "0 0 8>0 0 0; 2 0 8>0 0 0;4 0 8 > 0 0 2";
+    EXPECT_EQ(cameraAtTime(box(), path, 0.0, 1.0F).position, glm::vec3(0, 0, 8));
+    EXPECT_EQ(cameraAtTime(box(), path, 0.5, 1.0F).position, glm::vec3(2, 0, 8));
+    EXPECT_EQ(cameraAtTime(box(), path, 1.0, 1.0F).target, glm::vec3(0, 0, 2));
+    for (const char* wrong : {"1 2 > 0 0 0", "1 2 3 > 1 2 3", "1 2 3 > 0 0 0 0", "1 2 3 >",
+                              "1 2 3 > 0 0 0;", "1 2 3 > 0 0 0 > 1 1 1"}) {
+        EXPECT_THAT(test::errorText([&] { stillCamera(box(), wrong, 1.0F); }),
+                    testing::StartsWith("the scene has no path or camera '"))
+            << wrong;
+    }
+}
+
 TEST(PathView, NamesWhatThereIsWhenANameIsUnknown) {
     EXPECT_EQ(test::errorText([] { cameraFor(boxWithViews(), "back", 0, 1, 1.0F); }),
               "the scene has no path or camera 'back'; paths: 'round', 'through'; cameras: "
-              "'front', 'side', 'round'; or 'AZIMUTH ELEVATION' in degrees");
-    EXPECT_EQ(test::errorText([] { cameraFor(box(), "back", 0, 1, 1.0F); }),
-              "the scene has no path or camera 'back'; paths: none; cameras: none; or 'AZIMUTH "
-              "ELEVATION' in degrees");
+              "'front', 'side', 'round'; or 'AZIMUTH ELEVATION' in degrees, or 'X Y Z > X Y Z' "
+              "from and to, with more such behind ';' a path");
+    EXPECT_EQ(
+        test::errorText([] { cameraFor(box(), "back", 0, 1, 1.0F); }),
+        "the scene has no path or camera 'back'; paths: none; cameras: none; or 'AZIMUTH "
+        "ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more such behind ';' a path");
 }
 
 }  // namespace

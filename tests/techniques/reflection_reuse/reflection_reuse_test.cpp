@@ -149,7 +149,8 @@ TEST_F(ReflectionReuseTest, RefusesScenesWithoutReflectorsUnknownViewsAndFramesB
               "'reflector_roughness: 1' takes them all");
     EXPECT_EQ(message("{view: run}", &room_),
               "the scene has no path or camera 'run'; paths: 'walk', 'rest', 'still', 'jump', "
-              "'none'; cameras: 'front', 'ceiling'; or 'AZIMUTH ELEVATION' in degrees");
+              "'none'; cameras: 'front', 'ceiling'; or 'AZIMUTH ELEVATION' in degrees, or 'X Y Z > "
+              "X Y Z' from and to, with more such behind ';' a path");
     EXPECT_EQ(message("{view: none}", &room_), "the camera path 'none' has no keys");
     EXPECT_EQ(message("{path_frames: 10, first_frame: 8}", &room_, 3),
               "frames 8 … 10 do not lie on a path of 10 ('first_frame', 'path_frames')");
