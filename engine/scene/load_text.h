@@ -134,34 +134,80 @@ inline glm::dvec3 distantMiddle(const Box& box) {
     return middle;
 }
 
+/// Calls `visit` with the vertices of each instance, and with the points, and what puts them into
+/// the world.
+template <class Visit>
+void visitPlaces(const Scene& scene, Visit&& visit) {
+    visit(scene.points.positions, glm::mat4(1.0F));
+    for (const Instance& instance : scene.instances) {
+        visit(scene.meshes[instance.mesh].positions, instance.worldFromMesh);
+    }
+}
+
+/// Where most vertices and points lie, within the box of all: around their median along each axis,
+/// to both sides twice as far as half of them stand from it. A stray one far away does not count.
+inline Box bulkOf(const Scene& scene) {
+    constexpr std::size_t kMostPlaces = std::size_t{1} << 16;  // the others are as these
+    const std::size_t step =
+        1 + (scene.vertexCount() + scene.points.positions.size()) / kMostPlaces;
+    std::vector<glm::vec3> places;
+    std::size_t next = 0;
+    visitPlaces(scene, [&](const std::vector<glm::vec3>& positions, const glm::mat4& toWorld) {
+        for (; next < positions.size(); next += step) {
+            places.emplace_back(toWorld * glm::vec4(positions[next], 1.0F));
+        }
+        next -= positions.size();
+    });
+    const Box whole = scene.bounds();
+    if (places.empty()) return whole;
+    const auto medianOf = [](std::vector<float>& values) {
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    };
+    Box bulk;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<float> values;
+        for (const glm::vec3& place : places) values.push_back(place[axis]);
+        const float median = medianOf(values);
+        for (float& value : values) value = std::abs(value - median);
+        const float half = 2.0F * medianOf(values);
+        bulk.min[axis] = std::max(median - half, whole.min[axis]);
+        bulk.max[axis] = std::min(median + half, whole.max[axis]);
+    }
+    return bulk;
+}
+
 /// The places in the world that vertices and points have, each counted once in an instance.
 inline std::size_t differentPlaces(const Scene& scene) {
-    const auto count = [](std::vector<glm::vec3> places) {
+    std::size_t sum = 0;
+    visitPlaces(scene, [&](std::vector<glm::vec3> places, const glm::mat4& toWorld) {
+        for (glm::vec3& place : places) place = toWorld * glm::vec4(place, 1.0F);
         std::ranges::sort(places, [](const glm::vec3& a, const glm::vec3& b) {
             return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
         });
-        return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
-    };
-    std::size_t sum = count(scene.points.positions);
-    for (const Instance& instance : scene.instances) {
-        std::vector<glm::vec3> places = scene.meshes[instance.mesh].positions;
-        for (glm::vec3& place : places) place = instance.worldFromMesh * glm::vec4(place, 1.0F);
-        sum += count(std::move(places));
-    }
+        sum += static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
+    });
     return sum;
 }
 
 /// A scene whose coordinates floats can hold. `load(offset)` reads a file and subtracts the offset
-/// from all coordinates in double; where the box lies far from the origin without one, or floats
-/// make one place of several, it reads again with one, which Scene::offset keeps and a warning
-/// tells.
+/// from all coordinates in double; where most of the scene lies far from the origin without one, or
+/// floats make one place of several, it reads again with one, which Scene::offset keeps and a
+/// warning tells.
 template <class Load>
 Scene loadedNearOrigin(Load&& load) {
-    Scene scene = load(glm::dvec3(0.0));
-    glm::dvec3 offset = offsetOf(scene.bounds());
-    const bool isFar = offset != glm::dvec3(0.0);
-    if (!isFar) offset = distantMiddle(scene.bounds());
-    if (offset == glm::dvec3(0.0)) return scene;
+    constexpr double kFarM = 1e4;
+    const glm::dvec3 none(0.0);
+    Scene scene = load(none);
+    const Box bulk = bulkOf(scene);
+    glm::dvec3 offset = offsetOf(bulk);
+    // Others are moved only where they are coarse: fine parts of rooms, and many vertices at one
+    // place, which may be others than floats tell.
+    const bool isFar = offset != none && bulk.size() != glm::vec3(0.0F) &&
+                       (glm::length(offset) >= kFarM || offsetOf(scene.bounds()) != none);
+    if (offset == none) offset = distantMiddle(bulk);
+    if (offset == none) return scene;
     Scene moved = load(offset);
     if (moved.bounds().size() == glm::vec3(0.0F)) return scene;  // one point is as good anywhere
     if (!isFar && differentPlaces(moved) <= differentPlaces(scene)) return scene;

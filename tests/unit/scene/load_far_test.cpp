@@ -3,8 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/scene/load.h"
 #include "tests/support/support.h"
@@ -126,6 +130,67 @@ TEST_F(FarFiles, PointsThatFloatsWouldJoinKeepTheirPlaces) {
         EXPECT_EQ(coarse.points.positions[1], glm::vec3(4000.125F, 0, 0));
         EXPECT_TRUE(coarse.warnings.empty());
     }
+}
+
+/// Between two vertices or points that are not at one place.
+float leastDistance(const Scene& scene) {
+    const std::vector<glm::vec3> places =
+        scene.points.positions.empty() ? flattened(scene).positions : scene.points.positions;
+    float least = std::numeric_limits<float>::infinity();
+    for (const glm::vec3& a : places) {
+        for (const glm::vec3& b : places) {
+            if (a != b) least = std::min(least, glm::length(a - b));
+        }
+    }
+    return least;
+}
+
+/// What lies together keeps its shape, wherever a stray vertex is.
+TEST_F(FarFiles, StrayVerticesDecideNothing) {
+    for (const char* stray : {"0 0 0", "600000 4400000 10"}) {
+        std::string cloud = points("double") + stray + "\n";
+        cloud.replace(cloud.find("400"), 3, "401");
+        const Scene scene = loadPly(folder.write("a.ply", cloud));
+        EXPECT_EQ(differentPoints(scene.points.positions), 401U) << stray;
+        EXPECT_NEAR(leastDistance(scene), 0.02F, 1e-6F) << stray;
+        const glm::dvec3 first = glm::dvec3(scene.points.positions[0]) + scene.offset;
+        EXPECT_LT(glm::length(first - glm::dvec3(500'000, 4'500'000, 10)), 1e-6);
+
+        const std::string a = "500000.12 4500000.12 10", b = "500000.22 4500000.12 10",
+                          c = "500000.22 4500000.22 10", d = "500000.12 4500000.22 10";
+        const auto facet = [](const std::string& p, const std::string& q, const std::string& r) {
+            return "facet normal 0 0 1\nouter loop\nvertex " + p + "\nvertex " + q + "\nvertex " +
+                   r + "\nendloop\nendfacet\n";
+        };
+        const std::pair<const char*, std::string> files[] = {
+            {"a.obj", "v " + a + "\nv " + b + "\nv " + c + "\nv " + d + "\nv " + stray +
+                          "\nf 1 2 3 4\nf 1 4 5\n"},
+            {"a.off", "OFF\n5 2 0\n" + a + '\n' + b + '\n' + c + '\n' + d + '\n' + stray +
+                          "\n4 0 1 2 3\n3 0 3 4\n"},
+            {"a.stl",
+             "solid a\n" + facet(a, b, c) + facet(a, c, d) + facet(a, d, stray) + "endsolid a\n"},
+        };
+        for (const auto& [name, content] : files) {
+            const Scene model = loadScene(folder.write(name, content));
+            EXPECT_NEAR(leastDistance(model), 0.1F, 1e-6F) << name << ' ' << stray;
+        }
+    }
+    folder.write("square.bin", squareBytes());
+    Document document = square();
+    document["nodes"] = R"([{"children":[1,2],"translation":[500000,4500000,0]},
+        {"mesh":0,"translation":[0.12,0.1,0]},{"mesh":0,"translation":[0.14,0.1,0]},{"mesh":0}])";
+    document["scenes"] = R"([{"nodes":[0,3]}])";
+    const Scene scene = loadGltf(folder.write("a.gltf", text(document)));
+    EXPECT_NEAR(leastDistance(scene), 0.02F, 1e-6F);
+}
+
+/// Half of a room's vertices in a knob of 1 mm: files that belong together keep their places.
+TEST_F(FarFiles, FinePartsOfARoomMoveNothing) {
+    std::string content = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 10 10 3\n";
+    for (int i = 0; i < 6; ++i) content += fmt::format("v 5 5.{:04} 1\n", i);
+    const Scene scene = loadObj(folder.write("a.obj", content));
+    EXPECT_EQ(scene.offset, glm::dvec3(0.0));
+    EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST_F(FarFiles, ComeBackFromWhatIsSaved) {
