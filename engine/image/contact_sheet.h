@@ -26,7 +26,7 @@ struct SheetLayout {
 };
 
 /// Row by row, each image at the top of its cell, grey between; a row is as high as its highest
-/// image. 1, 3 or 4 channels; alpha is laid over the grey. `captions`, one an image or none at all,
+/// image. 1 to 4 channels; alpha is laid over the grey. `captions`, one an image or none at all,
 /// stand above the images: of longer ones the end. Throws Error for no images, layouts without a
 /// size, and sheets beyond 32768 pixels a side.
 Image8 contactSheet(std::span<const Image8> images, const SheetLayout& layout,

@@ -508,11 +508,13 @@ void ExrImage::add(const ImageF& image, const std::vector<std::string>& names, E
 ImageF ExrImage::colour() const {
     std::vector<const ImageF*> planes{find("R"), find("G"), find("B")};
     if (planes[0] == nullptr || planes[1] == nullptr || planes[2] == nullptr) {
-        const ImageF* single = find("Y") != nullptr ? find("Y") : find("Z");
-        if (single != nullptr) return *single;
-        std::string names;
-        for (const Channel& channel : channels) names += " '" + channel.name + "'";
-        throw Error("the image has the channels" + names + "; R, G, B or Y or Z are needed");
+        planes = {find("Y")};
+        if (planes[0] == nullptr && find("Z") != nullptr) return *find("Z");
+        if (planes[0] == nullptr) {
+            std::string names;
+            for (const Channel& channel : channels) names += " '" + channel.name + "'";
+            throw Error("the image has the channels" + names + "; R, G, B or Y or Z are needed");
+        }
     }
     if (find("A") != nullptr) planes.push_back(find("A"));
     ImageF result(width(), height(), static_cast<int>(planes.size()));

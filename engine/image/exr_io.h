@@ -67,8 +67,8 @@ struct ExrImage {
     /// Adds image channel by channel under `names` ("R","G","B", …).
     void add(const ImageF& image, const std::vector<std::string>& names,
              ExrPixelType type = ExrPixelType::Half);
-    /// R, G, B (and A where it is there) as one image; a file with a single channel Y or Z gives 1
-    /// channel. Throws Error when neither is there.
+    /// R, G, B or Y, with A where it is there, as one image, or Z alone. Throws Error when none of
+    /// these is there.
     ImageF colour() const;
 };
 

@@ -22,6 +22,10 @@ void check(const ImageF& reference, const ImageF& test, float gain) {
     }
 }
 
+int colourCount(const ImageF& image) {
+    return image.channels() < 3 ? 1 : 3;
+}
+
 /// What is compared of a linear value.
 float comparedOf(float linear, ErrorOf values) {
     return values == ErrorOf::Linear ? linear : image::srgbOf(std::clamp(linear, 0.0F, 1.0F));
@@ -31,7 +35,7 @@ float comparedOf(float linear, ErrorOf values) {
 
 Image8 signedErrorPicture(const ImageF& reference, const ImageF& test, float gain, ErrorOf values) {
     check(reference, test, gain);
-    const int channels = std::min(reference.channels(), 3);
+    const int channels = colourCount(reference);
     ImageF difference(reference.width(), reference.height(), 1);
     for (int y = 0; y < reference.height(); ++y) {
         for (int x = 0; x < reference.width(); ++x) {
@@ -49,7 +53,7 @@ Image8 signedErrorPicture(const ImageF& reference, const ImageF& test, float gai
 Image8 absoluteErrorPicture(const ImageF& reference, const ImageF& test, float gain,
                             ErrorOf values) {
     check(reference, test, gain);
-    Image8 picture(reference.width(), reference.height(), std::min(reference.channels(), 3));
+    Image8 picture(reference.width(), reference.height(), colourCount(reference));
     for (int y = 0; y < picture.height(); ++y) {
         for (int x = 0; x < picture.width(); ++x) {
             for (int c = 0; c < picture.channels(); ++c) {

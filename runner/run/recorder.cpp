@@ -216,11 +216,11 @@ void RunRecorder::requireDeclared(std::string_view metric, std::string_view unit
 void RunRecorder::image(std::string_view name, const image::ImageF& image,
                         const technique::ImageOptions& options) {
     static const std::vector<std::string> kChannels[] = {
-        {}, {"Y"}, {}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+        {}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     const int channels = image.channels();
-    if (channels != 1 && channels != 3 && channels != 4) {
+    if (channels > 4) {
         throw Error("image '" + std::string(name) + "' has " + std::to_string(channels) +
-                    " channels; 1, 3 or 4 are allowed");
+                    " channels; 1 to 4 are allowed");
     }
     checkFileName(name);
     keepCompared(name, image, options);

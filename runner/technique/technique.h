@@ -91,7 +91,7 @@ class Recorder {
                std::string_view pass = "");
     /// An image that has a truth (Outputs::withTruth) gets its errors (config::pictureErrors()).
     /// Saved as images/<case>-<name>.exr, with a PNG beside it for the report (linear, shown as
-    /// sRGB). 1, 3 or 4 channels.
+    /// sRGB). 1 to 4 channels.
     virtual void image(std::string_view name, const image::ImageF& image,
                        const ImageOptions& options = {}) = 0;
     /// A path in the run directory for a file of the technique's own format ("grid.binvox").

@@ -381,16 +381,6 @@ void requireFinite(const ImageF& image, const std::string& what) {
     }
 }
 
-/// Grey with alpha has no place among recorded pictures.
-ImageF withoutLoneAlpha(const ImageF& image) {
-    if (image.channels() != 2) return image;
-    ImageF grey(image.width(), image.height(), 1);
-    for (int y = 0; y < image.height(); ++y) {
-        for (int x = 0; x < image.width(); ++x) grey.at(x, y) = image.at(x, y);
-    }
-    return grey;
-}
-
 }  // namespace
 
 Picture readPicture(const fs::path& file, const std::string& what, glm::ivec2 sizePx) {
@@ -407,8 +397,6 @@ Picture readPicture(const fs::path& file, const std::string& what, glm::ivec2 si
     Picture picture;
     try {
         picture = image::readPicture(file);
-        picture.stored = withoutLoneAlpha(picture.stored);
-        picture.linear = withoutLoneAlpha(picture.linear);
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", what, error.what()));
     }

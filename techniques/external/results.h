@@ -34,9 +34,8 @@ std::optional<double> numberIn(std::string_view output, const config::ProgramPat
 
 using image::Picture;
 
-/// Of 1, 3 or 4 channels. A link is followed. Throws Error, beginning with `what`, where the file
-/// is not there, cannot be read to its end, has a value that is not finite or, if that is not 0, is
-/// of another whole.
+/// A link is followed. Throws Error, beginning with `what`, where the file is not there, cannot be
+/// read to its end, has a value that is not finite or, if that is not 0, is of another whole.
 Picture readPicture(const std::filesystem::path& file, const std::string& what,
                     glm::ivec2 sizePx = {0, 0});
 

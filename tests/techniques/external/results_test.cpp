@@ -263,6 +263,17 @@ TEST_F(Pictures, APngIsComparedAsItIsStored) {
     EXPECT_NEAR(test.linear.at(0, 0), 0.1329, 1e-4);
 }
 
+TEST_F(Pictures, GreyKeepsItsAlpha) {
+    image::ExrImage exr;
+    exr.add(ImageF(4, 4, 1, 0.25F), {"Y"});
+    exr.add(ImageF(4, 4, 1, 0.5F), {"A"});
+    image::writeExr(folder.path() / "a.exr", exr);
+    const Picture light = readPicture(folder.path() / "a.exr", "p");
+    ASSERT_EQ(light.stored.channels(), 2);
+    EXPECT_EQ(light.stored.at(1, 1, 0), 0.25F);
+    EXPECT_EQ(light.linear.at(1, 1, 1), 0.5F);
+}
+
 TEST_F(Pictures, RefusesHalfAndWrongOnes) {
     const auto errorOf = [&](const std::filesystem::path& file, glm::ivec2 size = {0, 0}) {
         return errorText([&] { readPicture(file, "image 'result'", size); }, folder.path());

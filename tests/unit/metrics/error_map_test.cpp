@@ -82,6 +82,10 @@ TEST(ErrorMap, AlphaIsNoColour) {
     b.at(0, 0, 3) = 0.0F;
     EXPECT_EQ(pixel(signedErrorPicture(a, b, 100.0F), 0), kEqual);
     EXPECT_EQ(absoluteErrorPicture(a, b).channels(), 3);
+    ImageF grey(1, 1, 2, 0.5F), other = grey;
+    other.at(0, 0, 1) = 0.0F;
+    EXPECT_EQ(pixel(signedErrorPicture(grey, other, 100.0F), 0), kEqual);
+    EXPECT_EQ(absoluteErrorPicture(grey, other).channels(), 1);
 }
 
 TEST(ErrorMap, FlipIsShownAsItsAuthorsDo) {

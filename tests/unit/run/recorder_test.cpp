@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/node.h"
+#include "engine/image/png_io.h"
 #include "runner/run/manifest.h"
 #include "runner/run/recorder.h"
 #include "tests/support/support.h"
@@ -186,6 +187,24 @@ TEST(RunRecorder, KeepsLayersTruthsAndAttributes) {
     EXPECT_EQ(exr.attributes.at("command"), "gfxrepro run x.yaml");
     // As the runner gets it from the worker.
     EXPECT_EQ(caseResultFromJson(toJson(result)).images, result.images);
+}
+
+/// Grey at half cover: PNG has what is covered.
+TEST(RunRecorder, GreyMayHaveAlpha) {
+    const test::TemporaryFolder folder;
+    CaseResult result;
+    const Case item = someCase();
+    RunRecorder recorder(folder.path(), "", item, withTruthOf("result"), result);
+    image::ImageF grey(2, 1, 2, 0.5F);
+    grey.at(0, 0, 0) = 0.25F;
+    recorder.image("grey", grey, {});
+    EXPECT_EQ(image::readExr(folder.path() / result.images.at(0).exr).colour(), grey);
+    const image::Image8 png = image::readPng8(folder.path() / result.images[0].png);
+    ASSERT_EQ(png.channels(), 2);
+    EXPECT_EQ(png.at(0, 0, 0), 188);
+    EXPECT_EQ(png.at(0, 0, 1), 128);
+    EXPECT_EQ(test::errorText([&] { recorder.image("five", image::ImageF(1, 1, 5), {}); }),
+              "image 'five' has 5 channels; 1 to 4 are allowed");
 }
 
 TEST(RunRecorder, TruthsNeedTheirImage) {
