@@ -14,6 +14,7 @@
 #include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVersion.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -319,6 +320,16 @@ void noteOthers(const Imf::Header& header, ExrImage& image) {
     if (!others.empty()) image.notes.push_back("not used of its attributes: " + others);
 }
 
+constexpr float kMostWhole = 0x1p24F;  // from there on floats pass over whole numbers
+
+void noteRounding(const ExrImage::Channel& channel, std::vector<std::string>& notes) {
+    const float largest = std::ranges::max(channel.values.values());
+    if (largest < kMostWhole) return;
+    notes.push_back(
+        fmt::format("channel '{}' holds whole numbers up to {:.0f}; above {:.0f} they are rounded",
+                    channel.name, largest, kMostWhole));
+}
+
 Rectangle rectangleOf(const Imath::Box2i& box) {
     return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
 }
@@ -353,6 +364,7 @@ ExrImage decoded(std::span<const std::byte> bytes, const std::string& name) {
     file.readPixels(window.min.y, window.max.y);
 
     for (ExrImage::Channel& channel : image.channels) {
+        if (channel.type == ExrPixelType::Uint) noteRounding(channel, image.notes);
         const Imf::Channel& stored = header.channels()[channel.name.c_str()];
         if (stored.xSampling == 1 && stored.ySampling == 1) continue;
         channel.values =
@@ -373,9 +385,8 @@ ExrImage decoded(std::span<const std::byte> bytes, const std::string& name) {
 }
 
 void checkWhole(const ExrImage::Channel& channel) {
-    constexpr float kMost = 0x1p24F;
     for (const float value : channel.values.values()) {
-        if (value >= 0.0F && value <= kMost && value == std::floor(value)) continue;
+        if (value >= 0.0F && value <= kMostWhole && value == std::floor(value)) continue;
         throw Error("channel '" + channel.name + "' holds " + std::to_string(value) +
                     "; whole numbers from 0 to 16777216 are allowed");
     }

@@ -16,7 +16,7 @@ namespace gfxrepro::image {
 enum class ExrPixelType {
     Half,
     Float,
-    Uint,  // of 32 bits; in memory as float, which holds whole numbers up to 2²⁴
+    Uint,  // of 32 bits; in memory as float, which rounds numbers above 2²⁴: a note says so
 };
 
 /// Of a display: x and y of its red, green, blue and white.

@@ -187,6 +187,43 @@ TEST_F(ExrMeaning, ColoursOfOtherPrimariesAreThoseOfRec709) {
     EXPECT_TRUE(errorOf("none.exr").starts_with("DIR/none.exr: ")) << errorOf("none.exr");
 }
 
+TEST_F(ExrMeaning, GreyHasAlphaToo) {
+    const Picture picture =
+        readPicture(writeEven("ya.exr", Imf::Header(4, 4), {{"A", 0.5F}, {"Y", 0.25F}}));
+    ASSERT_EQ(picture.linear.channels(), 2);
+    EXPECT_EQ(picture.linear.at(3, 3, 0), 0.25F);
+    EXPECT_EQ(picture.linear.at(3, 3, 1), 0.5F);
+    EXPECT_EQ(toSrgb8(withStraightAlpha(picture.linear)).at(0, 0, 0), 188);
+    // Depths are multiplied by nothing.
+    const auto depths = writeEven("za.exr", Imf::Header(4, 4), {{"A", 0.5F}, {"Z", 9.0F}});
+    EXPECT_EQ(readPicture(depths).linear, ImageF(4, 4, 1, 9.0F));
+}
+
+TEST_F(ExrMeaning, WholeNumbersThatFloatsRoundAreSaid) {
+    const auto notes = [&](std::uint32_t largest) {
+        Imf::Header header(4, 4);
+        header.channels().insert("id", Imf::Channel(Imf::UINT));
+        std::vector<std::uint32_t> ids(16, 7);
+        ids[5] = largest;
+        Imf::FrameBuffer buffer;
+        buffer.insert("id", Imf::Slice(Imf::UINT, reinterpret_cast<char*>(ids.data()),
+                                       sizeof(std::uint32_t), 4 * sizeof(std::uint32_t)));
+        {
+            Imf::OutputFile file(path("id.exr").c_str(), header);
+            file.setFrameBuffer(buffer);
+            file.writePixels(4);
+        }
+        return readExr(path("id.exr")).notes;
+    };
+    EXPECT_EQ(notes((1U << 24) - 1), std::vector<std::string>{});
+    EXPECT_EQ(notes((1U << 24) + 1),
+              std::vector<std::string>{"channel 'id' holds whole numbers up to 16777216; above "
+                                       "16777216 they are rounded"});
+    EXPECT_EQ(notes(4'000'000'000U),
+              std::vector<std::string>{"channel 'id' holds whole numbers up to 4000000000; above "
+                                       "16777216 they are rounded"});
+}
+
 TEST_F(ExrMeaning, AttributesThatAreNotUsedAreNamed) {
     Imf::Header header(4, 4, 2.0F);
     header.insert("exposureOfNobody", Imf::FloatAttribute(3.0F));
