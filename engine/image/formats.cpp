@@ -16,6 +16,8 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "engine/image/exr_io.h"
+#include "engine/image/srgb.h"
 
 namespace gfxrepro::image {
 
@@ -213,19 +215,72 @@ int orientationOf(Part tags) {
 
 }  // namespace
 
-bool isProfileOfSrgb(std::span<const std::byte> profile, bool isLinear) {
+namespace {
+
+/// Of a profile (ICC.1); empty where it has no such tag.
+Part tagOf(Part profile, const std::string& name) {
     constexpr std::size_t kTags = 128, kTagBytes = 12;
     const std::size_t count = numberAt(profile, kTags, 4, false);
     for (std::size_t i = 0; i < count && kTags + 4 + kTagBytes * (i + 1) <= profile.size(); ++i) {
         const Part tag = profile.subspan(kTags + 4 + kTagBytes * i, kTagBytes);
         const std::size_t at = numberAt(tag, 4, 4, false), size = numberAt(tag, 8, 4, false);
-        if (!textOf(tag).starts_with("desc") || at > profile.size()) continue;
-        std::string text(textOf(profile.subspan(at).first(std::min(size, profile.size() - at))));
-        std::erase(text, '\0');  // letters of two bytes
-        const auto says = [&](const char* word) { return text.find(word) != std::string::npos; };
-        return says("sRGB") && says("inear") == isLinear;
+        if (!textOf(tag).starts_with(name) || at > profile.size()) continue;
+        return profile.subspan(at).first(std::min(size, profile.size() - at));
     }
-    return false;
+    return {};
+}
+
+double fixedAt(Part bytes, std::size_t at) {
+    return static_cast<std::int32_t>(numberAt(bytes, at, 4, false)) / 65536.0;
+}
+
+/// The light of a value by a curve: of samples, one exponent, or the parameters that sRGB has.
+/// Not a number of others.
+double lightBy(Part curve, double value) {
+    const std::size_t count = numberAt(curve, 8, 4, false);
+    const auto parameter = [&](std::size_t i) { return fixedAt(curve, 12 + 4 * i); };
+    if (textOf(curve).starts_with("para") && count >> 16 == 3) {
+        const double a = parameter(1), b = parameter(2), c = parameter(3), d = parameter(4);
+        return value < d ? c * value : std::pow(a * value + b, parameter(0));
+    }
+    if (!textOf(curve).starts_with("curv")) return std::numeric_limits<double>::quiet_NaN();
+    const auto sample = [&](std::size_t i) {
+        return static_cast<double>(numberAt(curve, 12 + 2 * i, 2, false));
+    };
+    if (count < 2) return std::pow(value, count == 0 ? 1.0 : sample(0) / 256.0);
+    const double place = value * static_cast<double>(count - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const double part = place - static_cast<double>(below);
+    return ((1.0 - part) * sample(below) + part * sample(std::min(below + 1, count - 1))) / 65535.0;
+}
+
+}  // namespace
+
+bool isProfileOfSrgb(std::span<const std::byte> profile, bool isLinear) {
+    struct Primary {
+        const char* letter;
+        std::array<double, 3> xyz;  // under ICC's D50
+    };
+    static constexpr Primary kSrgb[] = {{"r", {0.4361, 0.2225, 0.0139}},
+                                        {"g", {0.3851, 0.7169, 0.0971}},
+                                        {"b", {0.1431, 0.0606, 0.7141}}};
+    static constexpr Primary kGrey[] = {{"k", {}}};
+    const bool isGrey = !tagOf(profile, "kTRC").empty();
+    if (!tagOf(profile, "A2B0").empty()) return false;  // a table, which goes first
+    constexpr double kTolerance = 0.004;                // a step of 8 bits
+    for (const auto& [letter, xyz] : isGrey ? std::span<const Primary>(kGrey) : kSrgb) {
+        const Part given = tagOf(profile, std::string(letter) + "XYZ");
+        for (std::size_t i = 0; i < 3 && !isGrey; ++i) {
+            if (std::abs(fixedAt(given, 8 + 4 * i) - xyz[i]) > kTolerance) return false;
+        }
+        const Part curve = tagOf(profile, std::string(letter) + "TRC");
+        for (int step = 0; step <= 16; ++step) {
+            const double value = step / 16.0;
+            const double wanted = isLinear ? value : linearOf(static_cast<float>(value));
+            if (!(std::abs(lightBy(curve, value) - wanted) < kTolerance)) return false;
+        }
+    }
+    return true;
 }
 
 ImageF turnedAsExif(const ImageF& image, std::span<const std::byte> exif) {

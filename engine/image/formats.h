@@ -22,7 +22,8 @@ struct Decoded {
     std::vector<std::string> notes = {};  // what reading changed, and what it left out
 };
 
-/// Whether a colour profile (ICC) calls itself one of sRGB, or of its primaries' light.
+/// Whether a colour profile (ICC), whatever its name, has sRGB's primaries, unless it is of grey,
+/// and sRGB's curve, or none of linear light.
 bool isProfileOfSrgb(std::span<const std::byte> profile, bool isLinear);
 constexpr const char* kProfileLeftOut = "left out: its colour profile";
 /// Of a JPEG file's colours.

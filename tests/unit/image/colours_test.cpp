@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/core/files.h"
+#include "engine/image/formats.h"
 #include "engine/image/image_file.h"
 #include "engine/image/png_io.h"
 #include "engine/image/srgb.h"
@@ -61,17 +62,80 @@ std::string stored(const std::string& bytes) {
     return result + bytes + bigWord(b << 16 | a);
 }
 
-/// A profile (ICC) that has its description alone.
-std::string profileOf(std::string description) {
-    description = "desc" + std::string(4, '\0') + bigWord(40) + description;
-    description.resize(52);
+std::string fixed(double value) {
+    return bigWord(static_cast<std::uint32_t>(static_cast<std::int32_t>(value * 65536.0)));
+}
+
+const std::string kZeros(4, '\0');
+const std::string kSrgbCurve = "para" + kZeros + bigWord(3U << 16) + fixed(2.4) + fixed(1 / 1.055) +
+                               fixed(0.055 / 1.055) + fixed(1 / 12.92) + fixed(0.04045);
+/// The value to the power of this.
+std::string powerCurve(double exponent) {
+    const auto byte = static_cast<std::uint32_t>(exponent * 256.0);
+    return "curv" + kZeros + bigWord(1) + bigWord(byte << 16);
+}
+using Primaries = std::vector<double>;  // X, Y, Z of red, green, blue
+const Primaries kSrgbPrimaries{0.4361, 0.2225, 0.0139, 0.3851, 0.7169,
+                               0.0971, 0.1431, 0.0606, 0.7141};
+const Primaries kDisplayP3{0.5151, 0.2412, -0.0011, 0.2920, 0.6922, 0.0419, 0.1571, 0.0666, 0.7841};
+
+/// A profile (ICC) that calls itself sRGB, with these tags beside its name.
+std::string profileWith(std::vector<std::pair<std::string, std::string>> tags) {
+    tags.insert(tags.begin(), {"desc", "desc" + kZeros + bigWord(18) + "sRGB IEC61966-2.1" +
+                                           std::string(7, '\0')});
+    std::string table = bigWord(static_cast<std::uint32_t>(tags.size())), contents;
+    for (const auto& [name, content] : tags) {
+        table +=
+            name + bigWord(static_cast<std::uint32_t>(132 + 12 * tags.size() + contents.size()));
+        table += bigWord(static_cast<std::uint32_t>(content.size()));
+        contents += content;
+    }
     std::string profile(128, '\0');
-    profile.replace(0, 4, bigWord(144 + 52));
+    profile.replace(0, 4,
+                    bigWord(static_cast<std::uint32_t>(128 + table.size() + contents.size())));
     profile.replace(8, 4, bigWord(0x02100000));
     profile.replace(12, 12, "mntrRGB XYZ ");
     profile.replace(36, 4, "acsp");
     profile.replace(68, 12, bigWords({0xF6D6, 0x10000, 0xD32D}));
-    return profile + bigWord(1) + "desc" + bigWord(144) + bigWord(52) + description;
+    return profile + table + contents;
+}
+
+std::string profileOf(const std::string& curve, const Primaries& primaries = kSrgbPrimaries) {
+    std::vector<std::pair<std::string, std::string>> tags;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::string letter(1, "rgb"[c]);
+        std::string xyz = "XYZ " + kZeros;
+        for (std::size_t i = 0; i < 3; ++i) xyz += fixed(primaries[3 * c + i]);
+        tags.emplace_back(letter + "XYZ", xyz);
+        tags.emplace_back(letter + "TRC", curve);
+    }
+    return profileWith(std::move(tags));
+}
+
+/// Whatever they call themselves.
+TEST(ColourProfiles, AreComparedByTheirPrimariesAndCurves) {
+    const auto isSrgb = [](const std::string& profile, bool isLinear = false) {
+        return isProfileOfSrgb(std::as_bytes(std::span(profile)), isLinear);
+    };
+    EXPECT_TRUE(isSrgb(profileOf(kSrgbCurve)));
+    EXPECT_FALSE(isSrgb(profileOf(kSrgbCurve), true));
+    EXPECT_FALSE(isSrgb(profileOf(kSrgbCurve, kDisplayP3)));
+    EXPECT_FALSE(isSrgb(profileOf(powerCurve(2.2)))) << "0.0083 off at 0.8";
+    EXPECT_FALSE(isSrgb(profileOf(powerCurve(1.0))));
+    EXPECT_TRUE(isSrgb(profileOf(powerCurve(1.0)), true));
+    EXPECT_TRUE(isSrgb(profileOf("curv" + kZeros + kZeros), true)) << "no curve";
+    std::string samples = "curv" + kZeros + bigWord(256);
+    for (int i = 0; i < 256; ++i) {
+        samples += bigWord(static_cast<std::uint32_t>(
+                               65535.0F * linearOf(static_cast<float>(i) / 255.0F) + 0.5F))
+                       .substr(2);
+    }
+    EXPECT_TRUE(isSrgb(profileOf(samples)));
+    EXPECT_FALSE(isSrgb(profileOf(samples.substr(0, 200)))) << "cut";
+    EXPECT_TRUE(isSrgb(profileWith({{"kTRC", kSrgbCurve}}))) << "grey";
+    EXPECT_FALSE(isSrgb(profileWith({{"kTRC", powerCurve(1.8)}})));
+    EXPECT_FALSE(isSrgb(profileWith({}))) << "a name alone";
+    EXPECT_FALSE(isSrgb(profileWith({{"A2B0", "mft2"}, {"kTRC", kSrgbCurve}}))) << "a table";
 }
 
 class ColoursOfFiles : public testing::Test {
@@ -145,20 +209,20 @@ TEST_F(ColoursOfFiles, PrimariesOfPng) {
 
 TEST_F(ColoursOfFiles, PrecedenceOfPng) {
     const Image8 image = row({51, 102, 255}, 3);
-    const auto profileChunk = [](const std::string& description) {
+    const auto profileChunk = [](const std::string& profile) {
         return std::pair<std::string, std::string>(
-            "iCCP", "a name" + std::string(2, '\0') + stored(profileOf(description)));
+            "iCCP", "a name" + std::string(2, '\0') + stored(profile));
     };
     const auto first = [&](const Chunks& chunks) { return png(image, chunks).linear.at(0, 0, 0); };
     const float asSrgb = linearOf(0.2F);
     EXPECT_EQ(first({gammaOf1_, displayP3_, {"sRGB", std::string(1, '\0')}}), asSrgb);
-    EXPECT_EQ(first({gammaOf1_, profileChunk("sRGB IEC61966-2.1")}), asSrgb);
+    EXPECT_EQ(first({gammaOf1_, profileChunk(profileOf(kSrgbCurve))}), asSrgb);
     EXPECT_EQ(first({gammaOf1_, {"cICP", std::string("\1\x0d\0\1", 4)}}), asSrgb);
     // What the values are beside a profile that is not read is in gAMA.
-    const Picture other = png(image, {gammaOf1_, profileChunk("Adobe RGB (1998)")});
+    const Picture other = png(image, {gammaOf1_, profileChunk(profileOf(kSrgbCurve, kDisplayP3))});
     EXPECT_NEAR(other.linear.at(0, 0, 0), 0.2F, 1e-5F);
     EXPECT_EQ(other.notes, (Lines{"left out: its colour profile", converted_[0]}));
-    EXPECT_EQ(png(image, {profileChunk("Linear sRGB")}).notes,
+    EXPECT_EQ(png(image, {profileChunk(profileOf(powerCurve(1.0)))}).notes,
               Lines{"left out: its colour profile"});
     EXPECT_EQ(png(image, {{"cICP", std::string("\x09\x10\0\1", 4)}}).notes,
               Lines{"left out: its colour space (chunk cICP)"});
@@ -175,19 +239,18 @@ TEST_F(ColoursOfFiles, ProfilesOfJpegAndTiff) {
     const std::string jpeg = folder_.path() / "a.jpg", tiff = folder_.path() / "a.tif";
     const std::array<std::uint8_t, 3> pixel{10, 20, 30};
     stbi_write_jpg(jpeg.c_str(), 1, 1, 3, pixel.data(), 100);
-    const auto notesOfJpeg = [&](const std::string& description) {
-        const std::string segment =
-            "ICC_PROFILE" + std::string("\0\1\1", 3) + profileOf(description);
+    const auto notesOfJpeg = [&](const std::string& profile) {
+        const std::string segment = "ICC_PROFILE" + std::string("\0\1\1", 3) + profile;
         std::string file = readFile(jpeg);
         file.insert(2, "\xFF\xE2" +
                            bigWord(static_cast<std::uint32_t>(segment.size()) + 2).substr(2) +
                            segment);
         return readPicture(folder_.write("b.jpg", file)).notes;
     };
-    EXPECT_EQ(notesOfJpeg("sRGB built-in"), Lines{});
-    EXPECT_EQ(notesOfJpeg("Display P3"), Lines{"left out: its colour profile"});
-    const auto notesOfTiff = [&](const std::string& description,
-                                 const std::vector<float>& primaries) {
+    EXPECT_EQ(notesOfJpeg(profileOf(kSrgbCurve)), Lines{});
+    EXPECT_EQ(notesOfJpeg(profileOf(kSrgbCurve, kDisplayP3)),
+              Lines{"left out: its colour profile"});
+    const auto notesOfTiff = [&](const std::string& profile, const std::vector<float>& primaries) {
         TIFF* file = TIFFOpen(tiff.c_str(), "w");
         TIFFSetField(file, TIFFTAG_IMAGEWIDTH, 1);
         TIFFSetField(file, TIFFTAG_IMAGELENGTH, 1);
@@ -195,8 +258,7 @@ TEST_F(ColoursOfFiles, ProfilesOfJpegAndTiff) {
         TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, 3);
         TIFFSetField(file, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
         TIFFSetField(file, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
-        const std::string profile = profileOf(description);
-        if (!description.empty()) {
+        if (!profile.empty()) {
             TIFFSetField(file, TIFFTAG_ICCPROFILE, static_cast<std::uint32_t>(profile.size()),
                          profile.data());
         }
@@ -209,8 +271,9 @@ TEST_F(ColoursOfFiles, ProfilesOfJpegAndTiff) {
         return readPicture(tiff).notes;
     };
     EXPECT_EQ(notesOfTiff("", {}), Lines{});
-    EXPECT_EQ(notesOfTiff("sRGB", {}), Lines{});
-    EXPECT_EQ(notesOfTiff("Display P3", {}), Lines{"left out: its colour profile"});
+    EXPECT_EQ(notesOfTiff(profileOf(kSrgbCurve), {}), Lines{});
+    EXPECT_EQ(notesOfTiff(profileOf(kSrgbCurve, kDisplayP3), {}),
+              Lines{"left out: its colour profile"});
     EXPECT_EQ(notesOfTiff("", {0.64F, 0.33F, 0.3F, 0.6F, 0.15F, 0.06F}), Lines{});
     EXPECT_EQ(notesOfTiff("", {0.68F, 0.32F, 0.265F, 0.69F, 0.15F, 0.06F}),
               Lines{"left out: its chromaticities"});
