@@ -172,7 +172,7 @@ SceneEntry readEntry(const fs::path& path, const std::string& expectedName,
 /// Goes up when resampled() makes other heights.
 constexpr int kResamplingVersion = 1;
 /// Goes up when loadHeightMap() makes other heights.
-constexpr int kReadingVersion = 2;
+constexpr int kReadingVersion = 3;
 
 /// "the file s.obj", "generator grass".
 std::string kindOf(const SceneSource& source) {

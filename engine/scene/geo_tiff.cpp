@@ -94,6 +94,24 @@ double heightUnitM(const GeoTags& tags, const Keys& keys, const std::string& fil
     throw Error(fmt::format("{}: its heights are in '{}'; allowed: m, ft, us-ft", file, unit));
 }
 
+/// What the model makes of a value, by the scale of z and where it begins: a factor and what is
+/// added to it. A scale of 0 is none.
+glm::dvec2 verticalOf(const GeoTags& tags, const std::string& file) {
+    const std::vector<double>&m = tags.transform, &t = tags.tiepoint;
+    const bool isMatrix = tags.pixelScale.empty() && m.size() >= 12;
+    const double scale = isMatrix ? m[10] : tags.pixelScale.size() >= 3 ? tags.pixelScale[2] : 0.0;
+    const double offset = isMatrix ? m[11] : t.size() == 6 ? t[5] - t[2] * scale : 0.0;
+    if (isMatrix && (m[8] != 0.0 || m[9] != 0.0)) {
+        throw Error(file + ": its ModelTransformation tilts its heights; allowed: level ones");
+    }
+    if (scale == 0.0 && offset != 0.0) {
+        throw Error(
+            fmt::format("{}: z begins at {:g}, where its scale is 0; allowed: another scale, or 0",
+                        file, offset));
+    }
+    return scale == 0.0 ? glm::dvec2(1.0, 0.0) : glm::dvec2(scale, offset);
+}
+
 /// How far samples stand apart along x and y, in units of the model; none where the file does not
 /// say it.
 std::optional<glm::dvec2> stepOf(const GeoTags& tags, bool isGeographic, const std::string& file) {
@@ -143,8 +161,20 @@ std::optional<float> floatIn(const std::string& text) {
 GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
     const Keys keys(tags, file);
     GeoUnits units;
-    units.scale = floatIn(itemOf(tags.metadata, "scale")).value_or(1.0F);
-    units.offset = floatIn(itemOf(tags.metadata, "offset")).value_or(0.0F);
+    const auto scale = floatIn(itemOf(tags.metadata, "scale"));
+    const auto offset = floatIn(itemOf(tags.metadata, "offset"));
+    const glm::vec2 ofModel(verticalOf(tags, file));  // GDAL writes both, and both alike
+    const bool isGiven = scale || offset;
+    const glm::vec2 given =
+        isGiven ? glm::vec2(scale.value_or(1.0F), offset.value_or(0.0F)) : ofModel;
+    if (isGiven && given != ofModel && ofModel != glm::vec2(1.0F, 0.0F)) {
+        throw Error(fmt::format(
+            "{}: scale {} and offset {} of its metadata, {} and {} of its model's z; allowed: the "
+            "same, or of one alone",
+            file, given.x, given.y, ofModel.x, ofModel.y));
+    }
+    units.scale = given.x;
+    units.offset = given.y;
     if (!std::isfinite(units.scale) || !std::isfinite(units.offset)) {
         throw Error(fmt::format("{}: scale {} and offset {}; finite numbers are allowed", file,
                                 units.scale, units.offset));

@@ -69,6 +69,48 @@ TEST_F(HeightUnits, ScaleAndOffsetOfAGeoTiffAreApplied) {
     EXPECT_FALSE(map.isSpacingOfFile);
 }
 
+/// By ModelPixelScale and ModelTiepoint, or by ModelTransformation: 0, 10, 20, 30 are stored.
+TEST_F(HeightUnits, ZOfTheModelIsApplied) {
+    const fs::path path = folder.path() / "a.tif";
+    const auto corners = [&](std::vector<double> scale, std::vector<double> tiepoint,
+                             std::vector<double> transform = {}, const char* metadata = nullptr,
+                             std::vector<std::uint16_t> keys = {}) {
+        writeGeoTiff(path, metadata, std::move(scale), std::move(keys), std::move(transform), {},
+                     std::move(tiepoint));
+        const HeightMap map = loadHeightMap(path, {});
+        return std::pair(map.heightM(0, 0), map.heightM(1, 1));
+    };
+    using Pair = std::pair<float, float>;
+    EXPECT_EQ(corners({30, 30, 0}, {0, 0, 0, 7, 8, 0}), Pair(0, 30));
+    EXPECT_EQ(corners({30, 30, 0.5}, {0, 0, 0, 7, 8, 0}), Pair(0, 15));
+    EXPECT_EQ(corners({30, 30, 1}, {0, 0, 0, 7, 8, 100}), Pair(100, 130));
+    EXPECT_EQ(corners({30, 30, 0.5}, {0, 0, 10, 7, 8, 100}), Pair(95, 110));
+    EXPECT_EQ(corners({30, 30, 0.5}, {}, {}, nullptr, {1, 1, 0, 1, 4099, 0, 1, 9002}),
+              Pair(0, 30 * 0.1524F));
+    EXPECT_EQ(corners({}, {}, {30, 0, 0, 7, 0, -30, 0, 8, 0, 0, 0.5, 100, 0, 0, 0, 1}),
+              Pair(100, 115));
+    // Points on the ground that are given one by one scale nothing.
+    EXPECT_EQ(corners({}, {0, 0, 0, 7, 8, 100, 1, 0, 0, 8, 8, 99}), Pair(0, 30));
+    const char* metadata =
+        "<GDALMetadata>\n"
+        "  <Item name=\"OFFSET\" sample=\"0\" role=\"offset\">100</Item>\n"
+        "  <Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.5</Item>\n"
+        "</GDALMetadata>";
+    EXPECT_EQ(corners({30, 30, 0.5}, {0, 0, 0, 7, 8, 100}, {}, metadata), Pair(100, 115));
+    EXPECT_EQ(corners({30, 30, 1}, {0, 0, 0, 7, 8, 0}, {}, metadata), Pair(100, 115));
+    const auto error = [&](std::vector<double> scale, std::vector<double> tiepoint,
+                           std::vector<double> transform, const char* text = nullptr) {
+        return test::errorText([&] { corners(scale, tiepoint, transform, text); }, folder.path());
+    };
+    EXPECT_EQ(error({30, 30, 0}, {0, 0, 0, 7, 8, 100}, {}),
+              "DIR/a.tif: z begins at 100, where its scale is 0; allowed: another scale, or 0");
+    EXPECT_EQ(error({}, {}, {30, 0, 0, 7, 0, -30, 0, 8, 0, 1, 1, 0, 0, 0, 0, 1}),
+              "DIR/a.tif: its ModelTransformation tilts its heights; allowed: level ones");
+    EXPECT_EQ(error({30, 30, 2}, {0, 0, 0, 7, 8, 0}, {}, metadata),
+              "DIR/a.tif: scale 0.5 and offset 100 of its metadata, 2 and 0 of its model's z; "
+              "allowed: the same, or of one alone");
+}
+
 TEST_F(HeightUnits, SpacingComesFromTheFileUnlessItIsGiven) {
     const fs::path path = folder.path() / "a.tif";
     const auto spacing = [&](std::vector<double> scale, std::vector<std::uint16_t> keys) {
