@@ -106,6 +106,11 @@ class SceneBuilder {
         leftOut_.add(
             "a node that is not in the scene",
             std::ranges::count(worldFromNode_, false, &std::optional<glm::mat4>::has_value));
+        if (largestColour_ > 1.001F && model().asset.generator != "gfxrepro") {
+            scene_.warnings.push_back(fmt::format(
+                "vertex colours reach {:g}, above the 1 of glTF; they are taken as they are",
+                largestColour_));
+        }
         leftOut_.tell(scene_.warnings);
         scene_.filesBeside = file_.opened;
         return std::move(scene_);
@@ -204,6 +209,8 @@ class SceneBuilder {
         mesh.isFlat = !isPoints && mesh.normals.empty();
         for (glm::vec3& normal : mesh.normals) normal = unitNormal(normal);
         mesh.colors = attribute<glm::vec3>(part, "COLOR_0");
+        for (const glm::vec3& c : mesh.colors)
+            largestColour_ = std::max({largestColour_, c.r, c.g, c.b});
         if (isPoints && mesh.material >= 0) colourPoints(scene_.materials[mesh.material], mesh);
         const gltf::TextureUse use =
             mesh.material < 0 ? gltf::TextureUse{} : textureUses_[mesh.material];
@@ -248,6 +255,7 @@ class SceneBuilder {
         if (found == part.primitive.attributes.end()) return {};
         const bool isColour = std::string_view(name) == "COLOR_0";
         const std::size_t count = accessors_.values<T>(found->second, isColour).size();
+        if (isColour) requireColours(found->second);
         if (isColour && model().accessors[found->second].type == TINYGLTF_TYPE_VEC4) {
             const auto colours = accessors_.takenValues<glm::vec4>(found->second);
             const bool isSolid =
@@ -260,6 +268,19 @@ class SceneBuilder {
         }
         accessors_.charge(part.used.size(), sizeof(T));
         return part.of(accessors_.values<T>(found->second, isColour), name);
+    }
+
+    /// glTF 2.0, Sec. 3.7.2.1. Of other numbers nothing says of which whole they are parts.
+    void requireColours(int accessor) const {
+        const tinygltf::Accessor& colours = model().accessors[accessor];
+        const bool isUnsigned = colours.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                                colours.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+        if (colours.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) return;
+        if (isUnsigned && colours.normalized) return;
+        fail(
+            fmt::format("accessor {} has colours in integers that are not normalized; floats, or "
+                        "normalized unsigned bytes or shorts are allowed",
+                        accessor));
     }
 
     /// Of the vertices in their order; all of them where the file does not number any.
@@ -537,6 +558,7 @@ class SceneBuilder {
     std::map<int, PositionUses> positionUses_;             // by their accessors
     std::vector<std::optional<glm::mat4>> worldFromNode_;  // of those visited
     std::vector<int> drawn_;                               // in the order of their visits
+    float largestColour_ = 0.0F;                           // of vertices
     std::vector<std::size_t> unaimed_;  // cameras whose file does not say how far they look
     Scene scene_;
 };

@@ -78,6 +78,37 @@ TEST_F(LoadGltf, ConvertsNormalizedIntegers) {
                                                         "left out: the alpha of vertex colours"}));
 }
 
+TEST_F(LoadGltf, ColoursAreFloatsOrNormalized) {
+    Document document = square();
+    document["meshes"] =
+        R"([{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":2},"indices":1}]}])";
+    std::string& accessors = document["accessors"];
+    const std::size_t colours = accessors.find(R"("type":"VEC4","normalized":true)");
+    accessors.replace(colours + 14, 17, R"("normalized":false)");
+    const auto error = [&] { return errorText([&] { load(document); }, folder_.path()); };
+    const std::string refused =
+        "DIR/a.gltf: accessor 2 has colours in integers that are not normalized; floats, or "
+        "normalized unsigned bytes or shorts are allowed";
+    EXPECT_EQ(error(), refused);
+    accessors.replace(colours + 14, 18, R"("normalized":true)");
+    EXPECT_EQ(error(), "no error");
+    accessors.replace(accessors.find("5121"), 4, "5120");
+    EXPECT_EQ(error(), refused) << "signed";
+    // Floats above 1 stay, as nothing says what is meant.
+    document["meshes"] =
+        R"([{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":0},"indices":1}]}])";
+    EXPECT_EQ(load(document).warnings, std::vector<std::string>{});
+    const float nine = 9.0F;
+    std::string bytes = squareBytes();
+    bytes.replace(12, sizeof(nine), reinterpret_cast<const char*>(&nine), sizeof(nine));
+    folder_.write("square.bin", bytes);
+    const Scene scene = load(document);
+    EXPECT_EQ(scene.meshes.at(0).colors.at(1), glm::vec3(9, 0, 0));
+    EXPECT_EQ(scene.warnings, std::vector<std::string>{
+                                  "vertex colours reach 9, above the 1 of glTF; they are taken as "
+                                  "they are"});
+}
+
 TEST_F(LoadGltf, ReadsStripsAndFansWithTheirOutside) {
     const auto triangles = [this](int mode) {
         return loadWith("meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"mode":)" +
