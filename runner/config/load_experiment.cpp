@@ -197,10 +197,42 @@ void addMatches(const Node& reference, Node::Sequence& files) {
     }
 }
 
+/// A point of a list as one of each file that its patterns match.
+void addPoints(const Node& point, Node::Sequence& points) {
+    Node::Sequence made{point};
+    for (const auto& [key, value] : point.isMap() ? point.entries() : Node::Map()) {
+        if (!scene::isSceneKey(key)) continue;
+        Node::Sequence files, longer;
+        addMatches(value, files);
+        for (const Node& one : made) {
+            for (const Node& file : files) {
+                longer.push_back(one);
+                longer.back().set(key, file, point.keyLocation(key));
+            }
+        }
+        made = std::move(longer);
+    }
+    std::ranges::move(made, std::back_inserter(points));
+}
+
 Node withSceneMatches(const Node& sweep) {
     if (!sweep.isMap()) return sweep;
     Node result = sweep;
     for (const auto& [key, value] : sweep.entries()) {
+        if ((key == "zip" || key == "list") && value.isSequence()) {
+            Node::Sequence blocks;
+            for (const Node& block : value.items()) {
+                Node::Sequence points;
+                if (block.isSequence()) {
+                    for (const Node& point : block.items()) addPoints(point, points);
+                }
+                blocks.push_back(block.isSequence() ? Node::sequence(points, block.location())
+                                                    : withSceneMatches(block));
+            }
+            result.set(key, Node::sequence(std::move(blocks), value.location()),
+                       sweep.keyLocation(key));
+            continue;
+        }
         if (!scene::isSceneKey(key) || !(value.isScalar() || value.isSequence())) continue;
         Node::Sequence files;
         if (value.isScalar()) addMatches(value, files);

@@ -434,6 +434,13 @@ TEST_F(ExperimentTest, SweepsTakeTheSceneFilesThatMatch) {
     EXPECT_EQ(scenes("scene: 'scans/*.ply'"), "/zju/scans/a.ply /zju/scans/b.ply ");
     EXPECT_EQ(scenes("scene: ['scans/*.obj', m/x, 'scans/b*.ply?up=z']"),
               "/zju/scans/c.obj m/x /zju/scans/b.ply?up=z ");
+    // In points that are spelt out, and beside axes that go together.
+    EXPECT_EQ(scenes("list: [[{scene: 'scans/*.ply', n: 1}, {scene: m/x}]]"),
+              "/zju/scans/a.ply /zju/scans/b.ply m/x ");
+    EXPECT_EQ(scenes("list: [[{scene: scans/a.ply}], [{n: 1}, {n: 2}]]"),
+              "/zju/scans/a.ply /zju/scans/a.ply ");
+    EXPECT_EQ(scenes("zip: [{scene: ['scans/*.ply'], n: [1, 2]}]"),
+              "/zju/scans/a.ply /zju/scans/b.ply ");
     // A folder is no file; brackets, of the config's own folder, too, are letters.
     folder.write("zju/scans/dir.ply/none.txt", "");
     EXPECT_EQ(scenes("scene: 'scans/*.ply'"), "/zju/scans/a.ply /zju/scans/b.ply ");
@@ -452,6 +459,8 @@ TEST_F(ExperimentTest, SweepsTakeTheSceneFilesThatMatch) {
     }
     EXPECT_EQ(errorText([&] { scenes("scene: 'scans/*.stl'"); }, folder.path()),
               "DIR/zju/a.yaml:4:16: no file is called 'scans/*.stl'; looked beside DIR/zju/a.yaml");
+    EXPECT_EQ(errorText([&] { scenes("list: [[{scene: 'scans/*.stl'}]]"); }, folder.path()),
+              "DIR/zju/a.yaml:4:25: no file is called 'scans/*.stl'; looked beside DIR/zju/a.yaml");
 }
 
 TEST_F(ExperimentTest, SceneFilesOfTheCommandLineStandInTheCurrentFolder) {
