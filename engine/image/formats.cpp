@@ -423,8 +423,6 @@ std::array<float, 3> factorsOfHdr(Bytes& file, std::vector<std::string>& notes) 
         }
         if (line.starts_with("PRIMARIES=")) {
             // Radiance's own, whose white is that of equal energy, everybody takes for sRGB's.
-            static constexpr float kRec709[] = {0.64F, 0.33F, 0.30F,   0.60F,
-                                                0.15F, 0.06F, 0.3127F, 0.329F};
             const auto numbers = numbersOf(line, 8);
             for (std::size_t i = 0; i < numbers.size(); ++i) {
                 if (std::abs(numbers[i] - kRec709[i]) > 0.03F) {
