@@ -87,7 +87,8 @@ class Bytes {
             const int c = std::to_integer<int>(rest_[0]);
             if (c != '#' && !isBlank(c)) return;
             do take(1);
-            while (c == '#' && !rest_.empty() && rest_[0] != std::byte{'\n'});
+            while (c == '#' && !rest_.empty() && rest_[0] != std::byte{'\n'} &&
+                   rest_[0] != std::byte{'\r'});
         }
     }
     int number() {
@@ -139,6 +140,39 @@ std::vector<std::byte> withoutStuffedEnds(std::span<const std::byte> bytes) {
     return kept;
 }
 
+std::string_view textOf(Part part) {
+    return {reinterpret_cast<const char*>(part.data()), part.size()};
+}
+
+constexpr int kScan = 0xDA;
+
+/// What follows `name` in each segment of a JPEG file with this marker that begins with it, up to
+/// the first scan.
+std::vector<Part> segmentsOf(Part bytes, int marker, std::string_view name) {
+    std::vector<Part> found;
+    for (std::size_t at = 2; at + 4 <= bytes.size() && bytes[at] == std::byte{0xFF};) {
+        const auto kind = std::to_integer<int>(bytes[at + 1]);
+        const std::size_t length = numberAt(bytes, at + 2, 2, false);
+        const Part segment = bytes.subspan(at + 4).first(
+            std::min(bytes.size() - at - 4, std::max<std::size_t>(length, 2) - 2));
+        if (kind == marker && textOf(segment).starts_with(name)) {
+            found.push_back(segment.subspan(name.size()));
+        }
+        if (kind == kScan) break;
+        at += kind == 0xFF ? 1 : 2 + length;  // a marker may stand behind several
+    }
+    return found;
+}
+
+/// What stands behind the end of a JPEG file's picture; nothing where it has no end.
+std::optional<Part> behindJpeg(Part bytes) {
+    const std::vector<Part> scan = segmentsOf(bytes, kScan, "");
+    const auto from = scan.empty() ? 0 : static_cast<std::size_t>(scan[0].data() - bytes.data());
+    const std::size_t end = textOf(bytes).find("\xFF\xD9", from);
+    if (end == std::string_view::npos) return std::nullopt;
+    return bytes.subspan(end + 2);
+}
+
 }  // namespace
 
 void flipRows(ImageF& image) {
@@ -160,6 +194,10 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
         throw Error(name + ": " + stbi_failure_reason());
     }
     checkDeclaredSize(width, height, 4, bytes.size(), name, kMaxSidePx, use);
+    // stb fills up what is not there.
+    if (textOf(bytes).starts_with("\xFF\xD8") && !behindJpeg(bytes)) {
+        throw Error(name + ": the file ends early");
+    }
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
         stbi_load_from_memory(data, size, &width, &height, &channels, channels), stbi_image_free);
     if (pixels == nullptr) {
@@ -176,27 +214,6 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
 }
 
 namespace {
-
-std::string_view textOf(Part part) {
-    return {reinterpret_cast<const char*>(part.data()), part.size()};
-}
-
-/// What follows `name` in each segment of a JPEG file with this marker that begins with it.
-std::vector<Part> segmentsOf(Part bytes, int marker, std::string_view name) {
-    std::vector<Part> found;
-    constexpr int kScan = 0xDA;
-    for (std::size_t at = 2; at + 4 <= bytes.size() && bytes[at] == std::byte{0xFF};) {
-        const auto kind = std::to_integer<int>(bytes[at + 1]);
-        if (kind == kScan) break;
-        const std::size_t length = numberAt(bytes, at + 2, 2, false);
-        const Part segment = bytes.subspan(at + 4).first(
-            std::min(bytes.size() - at - 4, std::max<std::size_t>(length, 2) - 2));
-        at += 2 + length;
-        if (kind != marker || !textOf(segment).starts_with(name)) continue;
-        found.push_back(segment.subspan(name.size()));
-    }
-    return found;
-}
 
 /// Orientation of an Exif block's tags: 1 … 8, 1 where they say nothing.
 int orientationOf(Part tags) {
@@ -313,11 +330,6 @@ std::vector<std::string> notesOfJpeg(std::span<const std::byte> bytes) {
 }
 
 Decoded decodeJpeg(std::span<const std::byte> bytes, const std::string& name) {
-    std::span<const std::byte> end = bytes;  // stb fills up what is not there
-    while (!end.empty() && end.back() == std::byte{0}) end = end.first(end.size() - 1);
-    if (end.size() < 2 || end.back() != std::byte{0xD9} || end[end.size() - 2] != std::byte{0xFF}) {
-        throw Error(name + ": the file ends early");
-    }
     const Image8 image = decodeByStb(bytes, name, ImageUse::Picture);
     Decoded result{ImageF(image.width(), image.height(), image.channels())};
     std::ranges::transform(image.values(), result.values.values().begin(),
@@ -325,6 +337,10 @@ Decoded decodeJpeg(std::span<const std::byte> bytes, const std::string& name) {
     const std::vector<Part> exif = segmentsOf(bytes, 0xE1, "Exif\0\0"sv);
     if (!exif.empty()) result.values = turnedAsExif(result.values, exif[0]);
     result.notes = notesOfJpeg(bytes);
+    const Part behind = behindJpeg(bytes).value_or(Part());
+    if (std::ranges::any_of(behind, [](std::byte each) { return each != std::byte{0}; })) {
+        result.notes.push_back(fmt::format("left out: {} bytes behind its end", behind.size()));
+    }
     return result;
 }
 

@@ -8,10 +8,12 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/core/files.h"
+#include "engine/image/formats.h"
 #include "engine/image/image_file.h"
 #include "engine/image/png_io.h"
 #include "engine/image/srgb.h"
@@ -213,6 +215,22 @@ TEST_F(Formats, JpegIsSrgb) {
     EXPECT_NEAR(255.0F * picture.stored.at(3, 2, 1), 100.0F, 1.5F);
     const std::string whole = readFile(path("a.jpg"));
     EXPECT_EQ(errorOf("b.jpg", whole.substr(0, whole.size() - 3)),
+              "DIR/b.jpg: the file ends early");
+    EXPECT_EQ(errorText([&] {
+                  decodeByStb(std::as_bytes(std::span(whole).first(whole.size() - 3)), "a");
+              }),
+              "a: the file ends early");
+    // Phones put more pictures behind the first.
+    EXPECT_EQ(readPicture(folder_.write("b.jpg", whole + std::string(9, '\0'))).notes,
+              std::vector<std::string>{});
+    const Picture first = readPicture(folder_.write("b.jpg", whole + whole.substr(0, 99)));
+    EXPECT_EQ(first.stored, picture.stored);
+    EXPECT_EQ(first.notes, std::vector<std::string>{"left out: 99 bytes behind its end"});
+    // Markers may stand behind further FF; the end of a thumbnail within a segment is none.
+    std::string filled = whole;
+    filled.insert(2, "\xFF\xFF\xFE\0\4\xFF\xD9", 7);
+    EXPECT_EQ(readPicture(folder_.write("b.jpg", filled)).stored, picture.stored);
+    EXPECT_EQ(errorOf("b.jpg", filled.substr(0, filled.size() - 3)),
               "DIR/b.jpg: the file ends early");
     // By what it is, not by its name.
     EXPECT_EQ(readPicture(folder_.write("c.png", whole)).stored, picture.stored);
