@@ -79,6 +79,25 @@ class LineReader {
         return *value;
     }
 
+    /// Three coordinates less the offset.
+    glm::vec3 position(const glm::dvec3& offset) {
+        glm::dvec3 position(0.0);
+        for (int axis = 0; axis < 3; ++axis) {
+            position[axis] = number<double>();
+            requireNear(position[axis], [this](const std::string& problem) { fail(problem); });
+        }
+        return position - offset;
+    }
+
+    /// Goes on to the next line that has a word.
+    void nextFilledLine() {
+        while (nextLine()) {
+            skipBlanks();
+            if (!rest_.empty()) return;
+        }
+        fail("the file ends early");
+    }
+
     /// It may be infinite or not a number, as "nan" is none.
     float anyNumber() {
         const std::string_view text = word();

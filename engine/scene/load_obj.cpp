@@ -123,9 +123,7 @@ class ObjParser {
 
     /// "v x y z", "v x y z w", "v x y z r g b".
     void parseVertex() {
-        const float x = coordinate(0);
-        const float y = coordinate(1);
-        content_.positions.emplace_back(x, y, coordinate(2));
+        content_.positions.push_back(lines_.position(offset_));
         const auto red = lines_.optionalNumber();
         const auto green = red ? lines_.optionalNumber() : std::nullopt;
         const auto blue = green ? lines_.optionalNumber() : std::nullopt;
@@ -143,13 +141,6 @@ class ObjParser {
 
     void leaveNumbers(const char* key) {
         leftOut_.add(fmt::format("further numbers of the line '{}'", key));
-    }
-
-    float coordinate(int axis) {
-        const double offset = offset_[axis];
-        const double value = offset != 0.0 ? lines_.number<double>() : double{lines_.number()};
-        requireNear(value, [&](const std::string& problem) { lines_.fail(problem); });
-        return static_cast<float>(value - offset);
     }
 
     float texcoord(float value) {

@@ -1,8 +1,8 @@
 // OFF as Geomview describes it, in text.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,12 +45,10 @@ class OffParser {
     }
 
   private:
-    /// The next line with a word in it; its first word.
+    /// The first word of the next line that has one.
     std::string_view nextWord() {
-        while (lines_.nextLine()) {
-            if (const std::string_view word = lines_.word(); !word.empty()) return word;
-        }
-        lines_.fail("the file ends early");
+        lines_.nextFilledLine();
+        return lines_.word();
     }
 
     std::uint64_t whole(std::string_view word, std::uint64_t end, const char* what) const {
@@ -89,19 +87,9 @@ class OffParser {
         return isThere;
     }
 
-    double coordinate(std::string_view word) const {
-        const std::optional<double> value = parsedNumber<double>(word);
-        if (value && std::abs(*value) <= double{kMaxCoordinate}) return *value;
-        lines_.fail(fmt::format("{} is no coordinate; {:g} to {:g} are allowed", inQuotes(word),
-                                -kMaxCoordinate, kMaxCoordinate));
-    }
-
     void parseVertex() {
-        glm::dvec3 position(0.0);
-        position.x = coordinate(nextWord());
-        position.y = coordinate(lines_.word());
-        position.z = coordinate(lines_.word());
-        mesh_.positions.emplace_back(position - offset_);
+        lines_.nextFilledLine();
+        mesh_.positions.push_back(lines_.position(offset_));
         const auto vector = [&] {
             glm::vec3 v;
             for (int i = 0; i < 3; ++i) v[i] = lines_.number();

@@ -136,13 +136,7 @@ Mesh textMesh(std::string_view text, const std::string& file, const glm::dvec3& 
                                    [](unsigned char c) { return std::tolower(c); });
             if (word == "solid" || word == "endsolid") break;  // a name follows
             if (word == "vertex") {
-                glm::dvec3 position;
-                for (int axis = 0; axis < 3; ++axis) {
-                    position[axis] = lines.number<double>();
-                    requireNear(position[axis],
-                                [&](const std::string& problem) { lines.fail(problem); });
-                }
-                addCorner(mesh, position - offset);
+                addCorner(mesh, lines.position(offset));
                 ++corners;
             } else if (word == "facet") {
                 for (int i = 0; i < 4; ++i) lines.word();  // "normal" and its numbers
