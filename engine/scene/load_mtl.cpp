@@ -105,6 +105,7 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
             const std::string name(lines.name());
             current = &materials[name];
             current->material.name = name;
+            current->folder = path.parent_path();
         } else if (key == "Kd" || key == "Ke") {
             const auto read = colour(lines);
             if (!read) leftOut.add(fmt::format("'{}' by a spectrum in a material file", key));
@@ -148,10 +149,16 @@ std::vector<std::string> libraryNames(std::string_view line, const std::filesyst
     return isOneThere ? names : std::vector<std::string>{std::string(line)};
 }
 
-std::optional<std::filesystem::path> textureFile(const std::string& name,
+std::optional<std::filesystem::path> textureFile(const MtlMaterial& material,
                                                  const std::filesystem::path& folder) {
-    const auto whole = fileInside(folder, name);
-    return whole ? whole : fileInside(folder, std::string(LineReader::withoutComment(name)));
+    const std::string_view written = material.colourFile;
+    for (const auto& beside :
+         {material.folder.lexically_relative(folder), std::filesystem::path()}) {
+        for (const std::string_view name : {written, LineReader::withoutComment(written)}) {
+            if (const auto file = fileInside(folder, beside / name)) return file;
+        }
+    }
+    return std::nullopt;
 }
 
 std::set<std::filesystem::path> filesOfObj(std::string_view text,
@@ -177,7 +184,7 @@ std::set<std::filesystem::path> filesOfObj(std::string_view text,
             try {
                 LeftOut ignored;
                 for (const auto& [material, read] : loadMtl(*library, ignored)) {
-                    if (const auto file = textureFile(read.colourFile, folder)) files.insert(*file);
+                    if (const auto file = textureFile(read, folder)) files.insert(*file);
                 }
             } catch (const Error&) {  // its loader says what is wrong
             }

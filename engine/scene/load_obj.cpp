@@ -351,7 +351,7 @@ class MaterialTable {
         Material material;
         if (found != defined_.end()) {
             material = found->second.material;
-            material.baseColorTexture = texture(found->second.colourFile);
+            material.baseColorTexture = texture(found->second);
         } else if (isComplete_) {
             leftOut_.add(fmt::format("the material {}, which no material file has: it is grey",
                                      inQuotes(name)));
@@ -372,9 +372,10 @@ class MaterialTable {
             "material file '{}' is not beside the model: its materials are grey", name));
     }
 
-    int texture(const std::string& name) {
+    int texture(const MtlMaterial& material) {
+        const std::string& name = material.colourFile;
         if (name.empty()) return -1;
-        const auto path = textureFile(name, folder_);
+        const auto path = textureFile(material, folder_);
         if (!path) {
             leftOut_.add(
                 fmt::format("the texture {}, which is not beside the model", inQuotes(name)));

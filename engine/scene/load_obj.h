@@ -16,7 +16,8 @@ namespace gfxrepro::scene {
 
 struct MtlMaterial {
     Material material;
-    std::string colourFile;  // map_Kd, as written; empty: none
+    std::string colourFile;        // map_Kd, as written; empty: none
+    std::filesystem::path folder;  // of the material file
 };
 
 /// Materials by name. Kd, Ke and map_Kd keep their meaning; d and Tr become the base colour's
@@ -28,8 +29,9 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
 /// none of its words is one, else word by word. A name may stand in quotes.
 std::vector<std::string> libraryNames(std::string_view line, const std::filesystem::path& folder);
 
-/// Of what stands behind "map_Kd", perhaps with a comment.
-std::optional<std::filesystem::path> textureFile(const std::string& name,
+/// Of what stands behind "map_Kd", perhaps with a comment: beside the material file, else beside
+/// the model, which `folder` is of.
+std::optional<std::filesystem::path> textureFile(const MtlMaterial& material,
                                                  const std::filesystem::path& folder);
 
 /// The material files that an OBJ file names, and their textures, where they are there.
