@@ -16,11 +16,13 @@ namespace gfxrepro::scene {
 
 /// Goes through a text line by line and through a line word by word. A backslash at the end of a
 /// line continues it; '#' begins a comment at the start of a line and behind a blank. A byte order
-/// mark is skipped.
+/// mark is skipped. In a text without line feeds carriage returns end the lines.
 class LineReader {
   public:
     LineReader(std::string_view text, std::string file)
-        : text_(withoutByteOrderMark(text)), file_(std::move(file)) {}
+        : text_(withoutByteOrderMark(text)),
+          file_(std::move(file)),
+          lineEndMark_(lineEndOf(text)) {}
 
     /// False at the end of the text.
     bool nextLine() {
@@ -138,7 +140,7 @@ class LineReader {
 
     std::string_view takeLine() {
         ++nextLine_;
-        const std::size_t end = text_.find('\n');
+        const std::size_t end = text_.find(lineEndMark_);
         const std::string_view line = text_.substr(0, end);
         if (line.size() > kMostLineBytes) {
             line_ = nextLine_ - 1;
@@ -162,6 +164,7 @@ class LineReader {
 
     std::string_view text_;
     std::string file_;
+    char lineEndMark_;
     std::string_view rest_;
     const char* lineEnd_ = nullptr;  // behind its comment
     std::string joined_;

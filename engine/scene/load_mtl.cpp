@@ -170,7 +170,8 @@ std::set<std::filesystem::path> filesOfObj(std::string_view text,
     text = withoutByteOrderMark(text);
     for (std::size_t at = text.find(kKey); at != text.npos; at = text.find(kKey, at)) {
         const std::size_t before = text.find_last_not_of(" \t", at - (at > 0 ? 1 : 0));
-        const bool beginsLine = at == 0 || before == text.npos || text[before] == '\n';
+        const bool beginsLine =
+            at == 0 || before == text.npos || text[before] == '\n' || text[before] == '\r';
         const std::string_view rest = text.substr(at, beginsLine ? kMostBytes : kKey.size());
         LineReader reader(rest, "");
         reader.nextLine();

@@ -73,6 +73,7 @@ class AsciiReader {
         : file_(file),
           rest_(text.substr(header.bodyAt)),
           line_(header.bodyLine),
+          lineEnd_(header.lineEnd),
           isExact_(isExact) {}
 
     static constexpr bool kIsAscii = true;
@@ -85,7 +86,7 @@ class AsciiReader {
         bool isFilled = false;
         std::size_t lines = 0;
         for (const char c : rest_) {
-            if (c == '\n') isFilled = false;
+            if (c == lineEnd_) isFilled = false;
             lines += !isFilled && !isBlank(c);
             isFilled = isFilled || !isBlank(c);
         }
@@ -125,7 +126,7 @@ class AsciiReader {
   private:
     std::string_view nextWord() {
         std::size_t begin = 0;
-        while (begin < rest_.size() && isBlank(rest_[begin])) line_ += rest_[begin++] == '\n';
+        while (begin < rest_.size() && isBlank(rest_[begin])) line_ += rest_[begin++] == lineEnd_;
         std::size_t end = begin;
         while (end < rest_.size() && !isBlank(rest_[end])) ++end;
         if (begin == end) fail("the file ends early");
@@ -139,6 +140,7 @@ class AsciiReader {
     const std::string& file_;
     std::string_view rest_;
     int line_;
+    char lineEnd_;
     bool isExact_;
 };
 

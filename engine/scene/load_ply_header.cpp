@@ -47,7 +47,11 @@ std::vector<std::string_view> words(std::string_view line) {
 class HeaderParser {
   public:
     HeaderParser(std::string_view text, const std::string& file)
-        : text_(text), file_(file), at_(text.size() - withoutByteOrderMark(text).size()) {}
+        : text_(text), file_(file), at_(text.size() - withoutByteOrderMark(text).size()) {
+        const std::string_view start = text_.substr(at_, 5);
+        const bool hasReturns = start.starts_with("ply\r") && !start.ends_with('\n');
+        header_.lineEnd = hasReturns ? '\r' : '\n';
+    }
 
     Header parse() {
         if (nextLine() != std::vector<std::string_view>{"ply"}) {
@@ -87,7 +91,7 @@ class HeaderParser {
     std::vector<std::string_view> nextLine() {
         ++line_;
         if (at_ >= text_.size()) fail("the file ends before 'end_header'");
-        const std::size_t end = text_.find('\n', at_);
+        const std::size_t end = text_.find(header_.lineEnd, at_);
         const std::string_view line = text_.substr(at_, end - at_);
         if (line.size() > kMostLineBytes) {
             fail(fmt::format("a line of {} bytes; a header's have at most {}", line.size(),

@@ -66,6 +66,7 @@ struct Header {
     std::vector<Element> elements;
     std::size_t bodyAt = 0;  // bytes from the start of the file
     int bodyLine = 0;
+    char lineEnd = '\n';              // of text, '\r' by programs of old Macintoshes
     bool hasLinearColours = false;    // by kLinearColours
     std::size_t textureComments = 0;  // "comment TextureFile wood.png"
 

@@ -28,6 +28,11 @@ inline std::string_view withoutByteOrderMark(std::string_view text) {
     return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
+/// Of a text's lines: programs of old Macintoshes write no line feeds.
+inline char lineEndOf(std::string_view text) {
+    return text.find('\n') == text.npos ? '\r' : '\n';
+}
+
 /// The whole word as a number, independent of the locale; "nan" and "inf" are numbers here, what is
 /// too large becomes infinite and what is too small 0. Empty when it is anything else.
 template <class T>

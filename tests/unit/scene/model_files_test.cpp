@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
+#include "engine/image/png_io.h"
 #include "engine/scene/load.h"
 #include "tests/support/support.h"
 #include "tests/unit/scene/gltf_document.h"
@@ -64,6 +66,79 @@ TEST_F(ModelFiles, AnObjFileHasThoseThatItsLoaderOpens) {
     std::ranges::sort(opened);
     EXPECT_EQ(opened, filesBeside(path));
     EXPECT_EQ(opened.size(), 3U);
+}
+
+TEST_F(ModelFiles, TexturesStandBesideTheirMaterialFileOrTheModel) {
+    const std::string png = image::encodePng(image::Image8(1, 1, 3));
+    for (const char* name : {"m/a.png", "t/b.png", "c.png", "d.png", "m/d.png"}) {
+        folder.write(name, png);
+    }
+    folder.write("m/a.mtl",
+                 "newmtl a\nmap_Kd a.png\nnewmtl b\nmap_Kd ..\\t\\b.png\n"
+                 "newmtl c\nmap_Kd c.png\nnewmtl d\nmap_Kd d.png # the nearer\n"
+                 "newmtl e\nmap_Kd ../../e.png\n");
+    std::string content = "mtllib m/a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n";
+    for (const char* name : {"a", "b", "c", "d", "e"}) {
+        content += std::string("usemtl ") + name + "\nf 1/1 2/1 3/1\n";
+    }
+    const auto path = folder.write("a.obj", content);
+    const Scene scene = loadScene(path);
+    EXPECT_EQ(scene.textures.size(), 4U);
+    EXPECT_EQ(scene.warnings,
+              std::vector<std::string>{
+                  "left out: the texture '../../e.png', which is not beside the model"});
+    std::vector<std::string> files;
+    for (const auto& file : filesBeside(path)) {
+        files.push_back(file.lexically_relative(folder.path()));
+    }
+    EXPECT_EQ(files,
+              (std::vector<std::string>{"c.png", "m/a.mtl", "m/a.png", "m/d.png", "t/b.png"}));
+}
+
+/// As programs of old Macintoshes end lines.
+TEST_F(ModelFiles, CarriageReturnsEndLinesWhereNothingElseDoes) {
+    const auto written = [&](const char* name, std::string content) {
+        std::ranges::replace(content, '\n', '\r');
+        return folder.write(name, content);
+    };
+    const auto error = [&](const char* name, const std::string& content) {
+        return errorText([&] { loadScene(written(name, content)); }, folder.path());
+    };
+    written("a.mtl", "# a comment\nnewmtl a\nKd 1 0 0\n");
+    const auto obj = written("a.obj",
+                             "# a comment\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                             "usemtl a\nf 1 2 3\n");
+    EXPECT_EQ(filesBeside(obj), std::vector<std::filesystem::path>{folder.path() / "a.mtl"});
+    EXPECT_EQ(loadScene(obj).materials.at(0).baseColor, glm::vec4(1, 0, 0, 1));
+    EXPECT_EQ(error("b.obj", "v 0 0 0\nv x 0 0\n"), "DIR/b.obj:2: 'x' is not a finite number");
+    const std::string ply =
+        "ply\nformat ascii 1.0\ncomment a\nelement vertex 3\nproperty float x\n"
+        "property float y\nproperty float z\nelement face 1\n"
+        "property list uchar int vertex_indices\nend_header\n";
+    EXPECT_EQ(loadScene(written("a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")).triangleCount(),
+              1U);
+    EXPECT_EQ(error("a.ply", ply + "0 0 0\nx 0 0\n0 1 0\n3 0 1 2\n"),
+              "DIR/a.ply:12: vertex 1: 'x' is not a number of type float");
+    EXPECT_EQ(loadScene(written("a.off", "OFF # 1\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"))
+                  .triangleCount(),
+              1U);
+    EXPECT_EQ(loadScene(written("a.stl",
+                                "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
+                                "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"))
+                  .triangleCount(),
+              1U);
+}
+
+/// As clouds of depth cameras have where nothing was seen.
+TEST_F(ModelFiles, PlacesThatAreNoNumbersAreRefused) {
+    const auto error = [&](const char* name, const std::string& content) {
+        return errorText([&] { loadScene(folder.write(name, content)); }, folder.path());
+    };
+    EXPECT_EQ(error("a.ply",
+                    "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
+                    "property float y\nproperty float z\nend_header\n0 0 0\nnan nan nan\n"),
+              "DIR/a.ply:9: vertex 1: x is nan; finite numbers in the range of float are allowed");
+    EXPECT_EQ(error("a.obj", "v 0 0 0\nv nan 0 0\n"), "DIR/a.obj:2: 'nan' is not a finite number");
 }
 
 /// A progressive JPEG of 16 x 16 texels with FF 00 between its first scan and the next marker.
