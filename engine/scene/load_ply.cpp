@@ -253,9 +253,6 @@ class VertexParser {
         if (!hasAll({kX, kY, kZ})) {
             throw Error({file, element.line, 0}, "element 'vertex' lacks x, y or z");
         }
-        for (int byte = 0; byte < 256; ++byte) {
-            linearBytes_[byte] = linearFromSrgb(static_cast<float>(byte / 255.0));
-        }
     }
 
     Vertices parse(bool hasLinearColours) {
@@ -363,7 +360,7 @@ class VertexParser {
     std::vector<PropertySlot> slots_;
     std::array<bool, kNoSlot + 1> has_{};
     std::array<float, kSlotCount> row_{};
-    std::array<float, 256> linearBytes_;
+    std::array<float, 256> linearBytes_ = image::srgbDecoding();
 };
 
 /// The triangles of faces, as long as no corner's position is known: fans around the first corners.

@@ -80,7 +80,7 @@ class FacetColours {
 void setColour(Mesh& mesh, const glm::uvec3& triangle, const glm::vec3& srgb) {
     mesh.colors.resize(mesh.positions.size(), glm::vec3(1.0F));
     for (int i = 0; i < 3; ++i) {
-        for (int c = 0; c < 3; ++c) mesh.colors[triangle[i]][c] = linearFromSrgb(srgb[c]);
+        for (int c = 0; c < 3; ++c) mesh.colors[triangle[i]][c] = image::linearOf(srgb[c]);
     }
 }
 

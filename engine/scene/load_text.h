@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/image/srgb.h"
 #include "engine/scene/left_out.h"
 #include "engine/scene/load.h"
 #include "engine/scene/scene.h"
@@ -66,11 +67,6 @@ inline std::string inQuotes(std::string_view word) {
     return '\'' + text + "…' (" + std::to_string(word.size()) + " bytes)";
 }
 
-/// IEC 61966-2-1, for values from 0 to 1.
-inline float linearFromSrgb(float srgb) {
-    return srgb <= 0.04045F ? srgb / 12.92F : std::pow((srgb + 0.055F) / 1.055F, 2.4F);
-}
-
 /// Vertex colours of OBJ, OFF and PLY are what a display shows (sRGB), as parts of 1, or, where any
 /// is above 2, of 255: makes them linear. Warns where the numbers do not tell which of the two.
 inline void makeLinear(std::vector<glm::vec3>& colors, std::vector<std::string>& warnings) {
@@ -87,7 +83,7 @@ inline void makeLinear(std::vector<glm::vec3>& colors, std::vector<std::string>&
             fmt::format("vertex colours up to {:g} are taken as parts of {:g}", largest, whole));
     }
     for (glm::vec3& color : colors) {
-        for (int c = 0; c < 3; ++c) color[c] = linearFromSrgb(color[c] / whole);
+        for (int c = 0; c < 3; ++c) color[c] = image::linearOf(color[c] / whole);
     }
 }
 
