@@ -62,11 +62,11 @@ std::vector<glm::uvec3> trianglesOf(const std::vector<std::uint32_t>& indices, i
 class SceneBuilder {
   public:
     /// `offset` is subtracted from everything in world space.
-    SceneBuilder(const gltf::File& file, const glm::dvec3& offset)
+    SceneBuilder(const gltf::File& file, const glm::dvec3& offset, LeftOut& leftOut)
         : file_(file),
           offset_(offset),
           isMoved_(offset != glm::dvec3(0.0)),
-          leftOut_(file.leftOut),
+          leftOut_(leftOut),
           accessors_(file),
           lights_(file) {}
 
@@ -111,7 +111,6 @@ class SceneBuilder {
                 "vertex colours reach {:g}, above the 1 of glTF; they are taken as they are",
                 largestColour_));
         }
-        leftOut_.tell(scene_.warnings);
         scene_.filesBeside = file_.opened;
         return std::move(scene_);
     }
@@ -548,7 +547,7 @@ class SceneBuilder {
     const gltf::File& file_;
     glm::dvec3 offset_;
     bool isMoved_;
-    LeftOut leftOut_;
+    LeftOut& leftOut_;
     gltf::Accessors accessors_;
     gltf::Lights lights_;
     std::vector<gltf::TextureUse> textureUses_;
@@ -567,8 +566,10 @@ class SceneBuilder {
 
 Scene loadGltf(const std::filesystem::path& path) {
     const gltf::File file = gltf::readFile(path);
-    return loadedNearOrigin(
-        [&](const glm::dvec3& offset) { return SceneBuilder(file, offset).build(); });
+    return loadedNearOrigin([&](const glm::dvec3& offset, LeftOut& leftOut) {
+        leftOut = file.leftOut;
+        return SceneBuilder(file, offset, leftOut).build();
+    });
 }
 
 }  // namespace gfxrepro::scene

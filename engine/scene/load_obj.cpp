@@ -462,12 +462,9 @@ Scene sceneOf(ObjContent content, const std::filesystem::path& path, LeftOut& le
 
 Scene loadObj(const std::filesystem::path& path) {
     const MappedFile mapped(path);
-    return loadedNearOrigin([&](const glm::dvec3& offset) {
-        LeftOut leftOut;
-        ObjContent content = ObjParser(mapped.text(), path.string(), offset, leftOut).parse();
-        Scene scene = sceneOf(std::move(content), path, leftOut);
-        leftOut.tell(scene.warnings);
-        return scene;
+    return loadedNearOrigin([&](const glm::dvec3& offset, LeftOut& leftOut) {
+        return sceneOf(ObjParser(mapped.text(), path.string(), offset, leftOut).parse(), path,
+                       leftOut);
     });
 }
 

@@ -20,8 +20,9 @@ namespace {
 
 class OffParser {
   public:
-    OffParser(std::string_view text, const std::string& file, const glm::dvec3& offset)
-        : lines_(text, file), offset_(offset) {}
+    OffParser(std::string_view text, const std::string& file, const glm::dvec3& offset,
+              LeftOut& leftOut)
+        : lines_(text, file), offset_(offset), leftOut_(leftOut) {}
 
     Scene parse() {
         parseHeader();
@@ -31,16 +32,10 @@ class OffParser {
         while (lines_.nextLine()) linesBehind += !lines_.word().empty();
         std::vector<std::string> warnings;
         makeLinear(mesh_.colors, warnings);
-        LeftOut leftOut;
-        leftOut.add(kOverlap, filler_.overlappingCount());
-        leftOut.add("a face of fewer than 3 corners", thinFaces_);
-        leftOut.add("a number behind a vertex", extraNumbers_);
-        leftOut.add("the alpha of a vertex's colour", alphas_);
-        leftOut.add("the colour of a face", faceColours_);
-        leftOut.add("a line behind the last face", linesBehind);
-        Scene scene = sceneOfVertices(std::move(mesh_), leftOut);
+        leftOut_.add(kOverlap, filler_.overlappingCount());
+        leftOut_.add("a line behind the last face", linesBehind);
+        Scene scene = sceneOfVertices(std::move(mesh_), leftOut_);
         scene.warnings = std::move(warnings);
-        leftOut.tell(scene.warnings);
         return scene;
     }
 
@@ -100,14 +95,15 @@ class OffParser {
         if (hasColors_) mesh_.colors.push_back(vector());
         while (const auto value = lines_.optionalNumber()) rest.push_back(*value);
         const std::size_t texcoordAt = hasColors_ && rest.size() % 2 == 1 ? 1 : 0;  // behind alpha
-        if (texcoordAt == 1 && rest[0] != 1.0F && rest[0] != 255.0F) ++alphas_;
+        if (texcoordAt == 1 && rest[0] != 1.0F && rest[0] != 255.0F)
+            leftOut_.add("the alpha of a vertex's colour");
         std::size_t used = texcoordAt;
         if (hasTexcoords_) {
             if (rest.size() < used + 2) lines_.fail("the vertex lacks texture coordinates");
             mesh_.texcoords.emplace_back(rest[used], rest[used + 1]);
             used += 2;
         }
-        extraNumbers_ += rest.size() - used;
+        leftOut_.add("a number behind a vertex", rest.size() - used);
     }
 
     void parseFace() {
@@ -121,11 +117,9 @@ class OffParser {
                 static_cast<std::uint32_t>(whole(word, vertexCount_, "vertex of the file")));
             places.push_back(mesh_.positions[corners.back()]);
         }
-        if (!lines_.word().empty()) ++faceColours_;
-        if (count < 3) {
-            ++thinFaces_;
-            return;
-        }
+        if (!lines_.word().empty()) leftOut_.add("the colour of a face");
+        if (count < 3) leftOut_.add("a face of fewer than 3 corners");
+        if (count < 3) return;
         for (const glm::uvec3& t : filler_.fill(places)) {
             mesh_.triangles.emplace_back(corners[t.x], corners[t.y], corners[t.z]);
         }
@@ -137,15 +131,15 @@ class OffParser {
     std::uint64_t vertexCount_ = 0, faceCount_ = 0;
     Mesh mesh_;
     PolygonFiller filler_;
-    std::size_t alphas_ = 0, extraNumbers_ = 0, faceColours_ = 0, thinFaces_ = 0;  // left out
+    LeftOut& leftOut_;
 };
 
 }  // namespace
 
 Scene loadOff(const std::filesystem::path& path) {
     const MappedFile mapped(path);
-    return loadedNearOrigin([&](const glm::dvec3& offset) {
-        return OffParser(mapped.text(), path.string(), offset).parse();
+    return loadedNearOrigin([&](const glm::dvec3& offset, LeftOut& leftOut) {
+        return OffParser(mapped.text(), path.string(), offset, leftOut).parse();
     });
 }
 

@@ -539,16 +539,13 @@ Scene loadPly(const std::filesystem::path& path) {
     const MappedFile mapped(path);
     const std::string file = path.string();
     const Header header = ply::parseHeader(mapped.text(), file);
-    return loadedNearOrigin([&](const glm::dvec3& offset) {
-        LeftOut leftOut;
+    return loadedNearOrigin([&](const glm::dvec3& offset, LeftOut& leftOut) {
         const bool isExact = offset != glm::dvec3(0.0);
-        Scene scene = header.format == ply::Format::Ascii
-                          ? parseBody(AsciiReader(mapped.text(), header, file, isExact), header,
-                                      file, offset, leftOut)
-                          : parseBody(BinaryReader(mapped.text(), header, file), header, file,
-                                      offset, leftOut);
-        leftOut.tell(scene.warnings);
-        return scene;
+        return header.format == ply::Format::Ascii
+                   ? parseBody(AsciiReader(mapped.text(), header, file, isExact), header, file,
+                               offset, leftOut)
+                   : parseBody(BinaryReader(mapped.text(), header, file), header, file, offset,
+                               leftOut);
     });
 }
 

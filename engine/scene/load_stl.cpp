@@ -165,14 +165,11 @@ Scene loadStl(const std::filesystem::path& path) {
     const MappedFile mapped(path);
     const std::string file = path.string();
     const bool isText = isTextStl(mapped.text());
-    return loadedNearOrigin([&](const glm::dvec3& offset) {
-        LeftOut leftOut;
+    return loadedNearOrigin([&](const glm::dvec3& offset, LeftOut& leftOut) {
         Mesh mesh = isText ? textMesh(mapped.text(), file, offset)
                            : binaryMesh(mapped.text(), file, offset, leftOut);
         if (mesh.triangles.empty()) throw Error(file + ": no facets");
-        Scene scene = sceneOf(std::move(mesh));
-        leftOut.tell(scene.warnings);
-        return scene;
+        return sceneOf(std::move(mesh));
     });
 }
 

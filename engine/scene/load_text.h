@@ -192,12 +192,18 @@ inline std::size_t differentPlaces(const Scene& scene) {
     return sum;
 }
 
-/// A scene whose coordinates floats can hold. `load(offset)` reads a file and subtracts the offset
-/// from all coordinates in double; where most of the scene lies far from the origin without one, or
-/// floats make one place of several, it reads again with one, which Scene::offset keeps and a
-/// warning tells.
+/// A scene whose coordinates floats can hold. `load(offset, leftOut)` reads a file and subtracts
+/// the offset from all coordinates in double; where most of the scene lies far from the origin
+/// without one, or floats make one place of several, it reads again with one, which Scene::offset
+/// keeps and a warning tells.
 template <class Load>
-Scene loadedNearOrigin(Load&& load) {
+Scene loadedNearOrigin(Load&& loadLess) {
+    const auto load = [&](const glm::dvec3& offset) {
+        LeftOut leftOut;
+        Scene scene = loadLess(offset, leftOut);
+        leftOut.tell(scene.warnings);
+        return scene;
+    };
     constexpr double kFarM = 1e4;
     const glm::dvec3 none(0.0);
     Scene scene = load(none);
