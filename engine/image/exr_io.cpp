@@ -162,15 +162,11 @@ std::string channelNames(const Imf::Header& header) {
 /// with `name`, for what is no OpenEXR image, has several parts, is deep, or declares more than
 /// checkDeclaredSize() allows.
 void checkExrHeader(std::span<const std::byte> bytes, const std::string& name) {
-    unsigned char start[8];  // magic number and version, little-endian
-    if (bytes.size() < sizeof(start)) throw Error(name + ": not an OpenEXR file");
-    std::memcpy(start, bytes.data(), sizeof(start));
-    const auto word = [&start](int at) {
-        return start[at] | start[at + 1] << 8 | start[at + 2] << 16 |
-               static_cast<int>(static_cast<unsigned>(start[at + 3]) << 24);
-    };
-    if (word(0) != Imf::MAGIC) throw Error(name + ": not an OpenEXR file");
-    int version = word(4);
+    constexpr std::size_t kStartBytes = 8;  // magic number and version
+    if (bytes.size() < kStartBytes || wordAt(bytes, 0) != Imf::MAGIC) {
+        throw Error(name + ": not an OpenEXR file");
+    }
+    auto version = static_cast<int>(wordAt(bytes, 4));
     if (Imf::getVersion(version) != Imf::EXR_VERSION ||
         !Imf::supportsFlags(Imf::getFlags(version))) {
         throw Error(name + ": OpenEXR version " + std::to_string(Imf::getVersion(version)) +
@@ -178,7 +174,7 @@ void checkExrHeader(std::span<const std::byte> bytes, const std::string& name) {
     }
     checkAttributeSizes(bytes, Imf::isMultiPart(version), name);
     MemoryStream stream(bytes, name);
-    stream.seekg(sizeof(start));
+    stream.seekg(kStartBytes);
     std::vector<Imf::Header> parts;
     bool isLast = false;
     while (!isLast) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <unordered_set>
 
 #include "engine/core/error.h"
@@ -121,11 +120,9 @@ class HeaderParser {
         Element element;
         element.name = line[1];
         element.line = line_;
-        const char* end = line[2].data() + line[2].size();
-        const auto [stop, error] = std::from_chars(line[2].data(), end, element.count);
-        if (error != std::errc() || stop != end) {
-            fail(fmt::format("{} is not a count of elements", inQuotes(line[2])));
-        }
+        const auto count = parsedNumber<std::uint64_t>(line[2]);
+        if (!count) fail(fmt::format("{} is not a count of elements", inQuotes(line[2])));
+        element.count = *count;
         if (!names_.insert(line[1]).second) {
             fail(fmt::format("element {} is declared twice", inQuotes(element.name)));
         }
