@@ -33,19 +33,6 @@ struct Corner {
     int position = -1;
     int texcoord = -1;
     int normal = -1;
-
-    bool operator==(const Corner&) const = default;
-};
-
-struct CornerHash {
-    std::size_t operator()(const Corner& corner) const {
-        // Odd 64-bit constants (the golden ratio's and two of its kin) spread close indices apart.
-        const std::uint64_t hash =
-            static_cast<std::uint64_t>(corner.position) * 0x9E3779B97F4A7C15U ^
-            static_cast<std::uint64_t>(corner.texcoord) * 0xC2B2AE3D27D4EB4FU ^
-            static_cast<std::uint64_t>(corner.normal) * 0x165667B19E3779F9U;
-        return hash ^ (hash >> 29);
-    }
 };
 
 /// The triangles of one material, three corners each.
@@ -314,14 +301,15 @@ Mesh meshOfTriples(const ObjContent& content, const std::vector<Corner>& corners
     const bool normals = (attributes & 2) != 0;
     Mesh mesh;
     mesh.triangles.resize(corners.size() / 3);
-    std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
+    KeyTable<std::array<std::uint32_t, 3>> vertices;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         Corner corner = corners[i];
         if (!texcoords) corner.texcoord = -1;
         if (!normals) corner.normal = -1;
-        const auto [found, isNew] =
-            vertices.try_emplace(corner, static_cast<std::uint32_t>(mesh.positions.size()));
-        mesh.triangles[i / 3][static_cast<int>(i % 3)] = found->second;
+        const auto [vertex, isNew] = vertices.number({static_cast<std::uint32_t>(corner.position),
+                                                      static_cast<std::uint32_t>(corner.texcoord),
+                                                      static_cast<std::uint32_t>(corner.normal)});
+        mesh.triangles[i / 3][static_cast<int>(i % 3)] = vertex;
         if (!isNew) continue;
         mesh.positions.push_back(content.positions[corner.position]);
         if (!content.colors.empty()) mesh.colors.push_back(content.colors[corner.position]);

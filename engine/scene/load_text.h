@@ -11,7 +11,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -184,10 +183,7 @@ inline std::size_t differentPlaces(const Scene& scene) {
     std::size_t sum = 0;
     visitPlaces(scene, [&](std::vector<glm::vec3> places, const glm::mat4& toWorld) {
         for (glm::vec3& place : places) place = toWorld * glm::vec4(place, 1.0F);
-        std::ranges::sort(places, [](const glm::vec3& a, const glm::vec3& b) {
-            return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-        });
-        sum += static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
+        sum += weldedByPosition(places).count;
     });
     return sum;
 }
