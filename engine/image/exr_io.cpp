@@ -285,30 +285,15 @@ void takePrimaries(const Imf::Chromaticities& given, const std::string& name, Ex
 
 /// Names what might change how the pixels are seen and is not used here.
 void noteOthers(const Imf::Header& header, ExrImage& image) {
-    static constexpr std::string_view kChangeNothing[] = {"capDate",
-                                                          "channels",
-                                                          "chromaticities",
-                                                          "chunkCount",
-                                                          "compression",
-                                                          "dataWindow",
-                                                          "displayWindow",
-                                                          "dwaCompressionLevel",
-                                                          "lineOrder",
-                                                          "maxSamplesPerPixel",
-                                                          "name",
-                                                          "owner",
-                                                          "preview",
-                                                          "screenWindowCenter",
-                                                          "screenWindowWidth",
-                                                          "tiles",
-                                                          "type",
-                                                          "utcOffset",
-                                                          "version"};
+    static constexpr std::string_view kChangeNothing =
+        " capDate channels chromaticities chunkCount compression dataWindow displayWindow "
+        "dwaCompressionLevel lineOrder maxSamplesPerPixel name owner preview screenWindowCenter "
+        "screenWindowWidth tiles type utcOffset version ";
     std::string others;
     for (auto i = header.begin(); i != header.end(); ++i) {
         const std::string name = i.name();
         const std::string type = i.attribute().typeName();
-        if (std::ranges::find(kChangeNothing, name) != std::end(kChangeNothing)) continue;
+        if (kChangeNothing.find(' ' + name + ' ') != kChangeNothing.npos) continue;
         if (type == "string" || type == "m44f") continue;  // kept
         if (name == "pixelAspectRatio" && header.pixelAspectRatio() == 1.0F) continue;
         others += (others.empty() ? "" : ", ") + name;

@@ -179,37 +179,24 @@ std::string_view nameOf(Type type) {
 }
 
 PropertySlot slotOf(const Property& property) {
-    struct Named {
-        std::string_view name;
-        PropertySlot slot;
-    };
-    constexpr std::array<Named, 22> kNamed{{{"x", kX},
-                                            {"y", kY},
-                                            {"z", kZ},
-                                            {"nx", kNx},
-                                            {"ny", kNy},
-                                            {"nz", kNz},
-                                            {"red", kRed},
-                                            {"green", kGreen},
-                                            {"blue", kBlue},
-                                            {"diffuse_red", kRed},
-                                            {"diffuse_green", kGreen},
-                                            {"diffuse_blue", kBlue},
-                                            {"r", kRed},
-                                            {"g", kGreen},
-                                            {"b", kBlue},
-                                            {"u", kU},
-                                            {"v", kV},
-                                            {"s", kU},
-                                            {"t", kV},
-                                            {"texture_u", kU},
-                                            {"texture_v", kV},
-                                            {"radius", kRadius}}};
+    constexpr std::string_view kNames[kSlotCount] = {" x ",
+                                                     " y ",
+                                                     " z ",
+                                                     " nx ",
+                                                     " ny ",
+                                                     " nz ",
+                                                     " red diffuse_red r ",
+                                                     " green diffuse_green g ",
+                                                     " blue diffuse_blue b ",
+                                                     " u s texture_u ",
+                                                     " v t texture_v ",
+                                                     " radius "};
     if (property.isList()) return kNoSlot;
-    for (const Named& each : kNamed) {
-        if (property.name == each.name) return each.slot;
-    }
-    return kNoSlot;
+    const auto hasName = [name = ' ' + property.name + ' '](std::string_view names) {
+        return names.find(name) != names.npos;
+    };
+    const auto found = std::ranges::find_if(kNames, hasName);
+    return found == std::end(kNames) ? kNoSlot : static_cast<PropertySlot>(found - kNames);
 }
 
 std::size_t Element::minimumRowBytes(bool isAscii) const {
