@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,8 +19,7 @@ namespace gfxrepro::config {
 namespace {
 
 /// Scenes that cases have, by the names that configs give them.
-std::set<std::string> scenesOf(const Experiment& experiment) {
-    std::set<std::string> scenes;
+void addScenes(const Experiment& experiment, std::set<std::string>& scenes) {
     for (const AxisPoint& point : expandSweep(experiment.sweep)) {
         const auto swept = std::ranges::find(point, "scene", &Node::Entry::key);
         const Node& scene = swept == point.end() ? experiment.scene : swept->value;
@@ -27,7 +27,24 @@ std::set<std::string> scenesOf(const Experiment& experiment) {
         scenes.insert(scene.text());
         scenes.insert(scene::sceneName(scene.text()));
     }
-    return scenes;
+}
+
+/// Scenes of the cases in whose place an assumption has others, also of profile `paper` alone.
+void addRanges(const Experiment& experiment, std::set<std::string> scenes,
+               std::vector<NoEffect>& found) {
+    if (!experiment.paperDocument.isNull()) {
+        addScenes(experimentFromDocument(experiment.paperDocument, experiment.file), scenes);
+    }
+    for (const Assumption& assumption : experiment.assumptions) {
+        if (assumption.name != kSceneAssumption || !assumption.range.isMap()) continue;
+        for (const auto& [scene, others] : assumption.range.entries()) {
+            if (scenes.contains(scene)) continue;
+            found.push_back({assumption.range.keyLocation(scene),
+                             fmt::format("assumption '{}': range: '{}' is no scene of {}; it has {}",
+                                         assumption.name, scene, experiment.id,
+                                         joined({scenes.begin(), scenes.end()}))});
+        }
+    }
 }
 
 }  // namespace
@@ -45,15 +62,14 @@ bool showsTimes(const Layout& layout) {
            std::ranges::any_of(layout.columns, hasTime);
 }
 
-void requireEffect(const Experiment& experiment) {
-    if (!isMeasuredHere(experiment)) return;
+std::vector<NoEffect> keysInVain(const Experiment& experiment) {
+    std::vector<NoEffect> found = valuesInVain(experiment);
+    if (!isMeasuredHere(experiment)) return found;
     const Node& document = experiment.document;
     const auto require = [&](const Node* map, const char* key, bool hasEffect,
                              const std::string& why) {
         if (!map || !map->isMap() || !map->find(key) || hasEffect) return;
-        const SourceLocation& where = map->keyLocation(key);
-        if (where.file.text() == experiment.file)
-            throw Error(where, fmt::format("'{}': {}", key, why));
+        found.push_back({map->keyLocation(key), fmt::format("'{}': {}", key, why)});
     };
     // A document's profiles share what a file says of rounds.
     const bool isSweep = experiment.kind == Experiment::Kind::Sweep;
@@ -67,7 +83,8 @@ void requireEffect(const Experiment& experiment) {
     require(measure, "processes_at_most", own.mayContinue(),
             "no more rounds follow than 'processes' asks for; allowed: with 'relative_error', and "
             "more than 'processes', of which there are 6 or more");
-    const std::set<std::string> scenes = scenesOf(experiment);
+    std::set<std::string> scenes;
+    addScenes(experiment, scenes);
     require(&document, "scene_params", !scenes.empty(), "no case has a scene");
     for (const auto& [scene, params] : experiment.paramsByScene.entries()) {
         const std::vector<std::string> known(scenes.begin(), scenes.end());
@@ -77,7 +94,15 @@ void requireEffect(const Experiment& experiment) {
     for (const char* name : {kSceneAssumption, kSceneSeedAssumption}) {
         require(document.find("assumptions"), name, !scenes.empty(), "no case has a scene");
     }
-    requireExcluded(experiment);
+    addRanges(experiment, scenes, found);
+    std::ranges::move(excludedInVain(experiment), std::back_inserter(found));
+    return found;
+}
+
+void requireEffect(const Experiment& experiment) {
+    for (const auto& [where, why] : keysInVain(experiment)) {
+        if (where.file.text() == experiment.file) throw Error(where, why);
+    }
 }
 
 void requireTimed(const Experiment& experiment) {

@@ -479,7 +479,6 @@ Experiment readWhole(const Node& document, const fs::path& file, bool isComplete
                      const fs::path& configsFolder) {
     Experiment experiment = readExperiment(document, file, isComplete);
     requireNotFixed(experiment);
-    if (isComplete) requireEffect(experiment);
     requireTimed(experiment);
     const Node* fit = document.find("fit");
     if (!fit) return experiment;
@@ -495,6 +494,34 @@ Experiment readWhole(const Node& document, const fs::path& file, bool isComplete
     Node whole = document;
     whole.set("fit", std::move(cells), document.keyLocation("fit"));
     return readExperiment(whole, file, isComplete);
+}
+
+/// The document without these, and without the maps and lists that are empty then: of a file that
+/// is extended they may stand, of the one that has all they are refused.
+Node without(const std::vector<NoEffect>& places, const Node& node) {
+    const auto has = [&](const SourceLocation& where) {
+        return std::ranges::find(places, where, &NoEffect::where) != places.end();
+    };
+    const auto isEmptied = [](const Node& before, const Node& after) {
+        return (after.isMap() && after.entries().empty() && !before.entries().empty()) ||
+               (after.isSequence() && after.items().empty() && !before.items().empty());
+    };
+    if (node.isSequence()) {
+        Node::Sequence items;
+        for (const Node& item : node.items()) {
+            if (!has(item.location())) items.push_back(without(places, item));
+        }
+        return Node::sequence(std::move(items), node.location());
+    }
+    if (!node.isMap()) return node;
+    Node result = Node::map({}, node.location());
+    for (const auto& [key, value] : node.entries()) {
+        // A map in block style stands where its first key does.
+        if (has(node.keyLocation(key)) || (!value.isMap() && has(value.location()))) continue;
+        Node rest = without(places, value);
+        if (!isEmptied(value, rest)) result.set(key, std::move(rest), node.keyLocation(key));
+    }
+    return result;
 }
 
 }  // namespace
@@ -516,9 +543,11 @@ Override parseOverride(const std::string& text) {
 Node wholeDocument(const fs::path& file, const fs::path& configsFolder) {
     auto [document, overlays] = FileReader(configsFolder).read(file);
     resolveNames(document);
+    document = without(keysInVain(loadExperiment(file, {}, configsFolder)), document);
     Node profiles = Node::map({});
     for (auto& [name, overlay] : overlays) {
         resolveNames(overlay);
+        overlay = without(valuesInVain(loadExperiment(file, {name}, configsFolder)), overlay);
         const Node* earlier = profiles.find(name);
         profiles.set(name, earlier ? overlayOf(*earlier, overlay) : overlay);
     }
@@ -561,6 +590,7 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
         experiment.paperDocument = withProfile(document, overlays, "paper");
         resolveNames(experiment.paperDocument);
     }
+    requireEffect(experiment);
     bool isChanged = !options.sets.empty() || !options.sweeps.empty();
     for (const auto& [name, overlay] : overlays) isChanged |= name == profile;
     if (!isChanged) return experiment;

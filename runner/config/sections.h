@@ -89,12 +89,22 @@ const Names& identityKeys();
 /// command line. One of a file that is extended may be swept.
 void requireNotFixed(const Experiment& experiment);
 
-/// Throws Error for keys of the experiment's own file, as it stands, of which nothing would follow.
+/// A key, or a value, of which nothing follows.
+struct NoEffect {
+    SourceLocation where;
+    std::string why;
+};
+/// The values of which no case would know, of whichever file.
+std::vector<NoEffect> valuesInVain(const Experiment& experiment);
+/// Each `exclude` that no point of the sweep matches.
+std::vector<NoEffect> excludedInVain(const Experiment& experiment);
+/// These, and every other key of which nothing follows. `experiment` is the file as it stands, with
+/// what profile `paper` makes of it.
+std::vector<NoEffect> keysInVain(const Experiment& experiment);
+/// Throws Error for such keys of the experiment's own file.
 void requireEffect(const Experiment& experiment);
 /// Throws Error for times that are shown or claimed, where the lane takes none.
 void requireTimed(const Experiment& experiment);
-/// Throws Error for an `exclude` of the experiment's own file that no point of its sweep matches.
-void requireExcluded(const Experiment& experiment);
 
 /// `isComplete` as in Vocabulary.
 Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);

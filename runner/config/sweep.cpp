@@ -252,6 +252,7 @@ struct Fixed {
     std::string axis;  // by which a sweep would name it
     const char* section;
     SourceLocation where;
+    SourceLocation swept = {};
 };
 
 std::vector<Fixed> fixedOf(const Experiment& experiment) {
@@ -276,6 +277,27 @@ std::vector<Fixed> fixedOf(const Experiment& experiment) {
     return all;
 }
 
+/// Those whose axis is swept in every case. Where the sweep leaves it out, a case takes the fixed
+/// value.
+std::vector<Fixed> fixedInVain(const Experiment& experiment) {
+    if (!experiment.sweep.isMap()) return {};
+    const Factors factors = factorsOf(experiment.sweep);
+    std::vector<AxisPoint> points;
+    std::vector<Fixed> found;
+    for (Fixed& fixed : fixedOf(experiment)) {
+        const SourceLocation* swept = factors.placeOf(fixed.axis);
+        if (!swept) continue;
+        if (points.empty()) points = expandSweep(experiment.sweep);
+        const auto isIn = [&](const AxisPoint& point) {
+            return valueAt(point, fixed.axis) != nullptr;
+        };
+        if (!std::ranges::all_of(points, isIn)) continue;
+        fixed.swept = *swept;
+        found.push_back(std::move(fixed));
+    }
+    return found;
+}
+
 }  // namespace
 
 void applyWhen(const Node& when, AxisPoint& point) {
@@ -289,41 +311,41 @@ void applyWhen(const Node& when, AxisPoint& point) {
 }
 
 void requireNotFixed(const Experiment& experiment) {
-    if (!experiment.sweep.isMap()) return;
-    const Factors factors = factorsOf(experiment.sweep);
-    std::vector<AxisPoint> points;
-    for (const auto& [axis, section, fixed] : fixedOf(experiment)) {
-        const SourceLocation* swept = factors.placeOf(axis);
-        if (!swept) continue;
+    for (const auto& [axis, section, fixed, swept] : fixedInVain(experiment)) {
         const bool isTyped = fixed.file.text().starts_with(kCommandLine);
-        const bool isOwn = fixed.file == swept->file || fixed.file.text() == experiment.file;
+        const bool isOwn = fixed.file == swept.file || fixed.file.text() == experiment.file;
         if (!isTyped && !(isOwn && fixed.line > 0)) continue;
-        if (points.empty()) points = expandSweep(experiment.sweep);
-        // Where the sweep leaves the axis out, a case takes the fixed value.
-        const auto isIn = [&axis = axis](const AxisPoint& point) {
-            return valueAt(point, axis) != nullptr;
-        };
-        if (!std::ranges::all_of(points, isIn)) continue;
         throw Error(fixed,
-                    "'" + axis + "' is swept, too, in " + toString(*swept) +
+                    "'" + axis + "' is swept, too, in " + toString(swept) +
                         (isTyped ? "; use --sweep " + axis + "=… instead"
                                  : std::string("; allowed: in '") + section + "' or in 'sweep'"));
     }
 }
 
-void requireExcluded(const Experiment& experiment) {
+std::vector<NoEffect> valuesInVain(const Experiment& experiment) {
+    std::vector<NoEffect> found;
+    for (const Fixed& fixed : fixedInVain(experiment)) {
+        const bool isPart = fixed.axis != "scene" && fixed.section == std::string_view("scene");
+        if (!isPart) found.push_back({fixed.where, "swept, too"});
+    }
+    return found;
+}
+
+std::vector<NoEffect> excludedInVain(const Experiment& experiment) {
     const Node* exclude = experiment.sweep.isMap() ? experiment.sweep.find("exclude") : nullptr;
-    if (!exclude) return;
+    if (!exclude) return {};
     Node whole = experiment.sweep;
     whole.erase("exclude");
     const std::vector<AxisPoint> points = expandSweep(whole);
+    std::vector<NoEffect> found;
     for (const Node& pairs : exclude->items()) {
-        const bool isOwn = pairs.location().file.text() == experiment.file;
         const auto isMet = [&](const AxisPoint& point) { return matchesAll(point, pairs); };
-        if (!isOwn || std::ranges::any_of(points, isMet)) continue;
-        throw Error(pairs.location(),
-                    fmt::format("exclude: no point of the sweep has {}", pairs.toFlowText()));
+        if (std::ranges::any_of(points, isMet)) continue;
+        found.push_back(
+            {pairs.location(),
+             fmt::format("exclude: no point of the sweep has {}", pairs.toFlowText())});
     }
+    return found;
 }
 
 std::vector<AxisPoint> expandSweep(const Node& sweep) {

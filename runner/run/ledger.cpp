@@ -250,36 +250,12 @@ void requireAlternatives(const Assumption& assumption, const Node& others, const
     }
 }
 
-/// The scenes of the config, as it names them, and of its profile `paper`.
-std::vector<std::string> scenesOf(const config::Experiment& experiment) {
-    std::vector<std::string> names;
-    const auto add = [&](const config::Experiment& one) {
-        for (const Case& item : config::expandCases(one)) {
-            const std::string name = item.scene.isNull() ? "" : item.scene.text();
-            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-        }
-    };
-    add(experiment);
-    if (!experiment.paperDocument.isNull()) {
-        add(config::experimentFromDocument(experiment.paperDocument, experiment.file));
-    }
-    return names;
-}
-
 void requireScenes(const config::Experiment& experiment, const Assumption& assumption,
                    const scene::Catalog& catalog) {
     const Node& range = assumption.range;
     if (range.isMap()) {
-        const std::vector<std::string> measured = scenesOf(experiment);
         for (const auto& [scene, others] : range.entries()) {
             const Node name = Node::scalar(scene, range.keyLocation(scene));
-            // A preset names those of all files that extend it.
-            const bool isOfFile = name.location().file.text() == experiment.file.string();
-            if (isOfFile && std::ranges::find(measured, scene) == measured.end()) {
-                throw Error(name.location(),
-                            fmt::format("assumption '{}': range: '{}' is no scene of {}; it has {}",
-                                        assumption.name, scene, experiment.id, joined(measured)));
-            }
             requireCatalogued(assumption, name, catalog);
             requireAlternatives(assumption, others, scene, catalog);
         }

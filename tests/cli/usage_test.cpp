@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "engine/core/text.h"
 #include "runner/config/documents.h"
 #include "tests/cli/cli_support.h"
 
@@ -140,7 +141,7 @@ TEST_F(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
     EXPECT_EQ(errorOf("128,12", "few, shown_by: zju2005.md#table-21-v2-proportional"), "");
 }
 
-/// Two files that it extends have profiles of their own.
+/// Files that a table extends have profiles, values that it sweeps and scenes that it lacks.
 TEST_F(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
     EXPECT_THAT(
         gfxrepro({"describe", "xie2017/10"}).out,
@@ -151,15 +152,29 @@ TEST_F(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
     EXPECT_EQ(merged.out.find("extends:"), std::string::npos);
     EXPECT_EQ(merged.out.find("# table-10.yaml with all that it extends\ntable: xie2017/10\n"), 0u);
     const std::string file = folder.write("merged.yaml", merged.out);
+    std::vector<std::string> tables, files;
+    for (const std::string& line : split(gfxrepro({"list", "tables"}).out, '\n')) {
+        if (line.empty()) continue;
+        tables.push_back(line.substr(0, line.find(' ')));
+        files.push_back(folder.write("merged" + std::to_string(files.size()) + ".yaml",
+                                     gfxrepro({"describe", tables.back(), "--merged"}).out));
+    }
+    ASSERT_GT(tables.size(), 100U);
+    std::vector<std::string> check = files;
+    check.insert(check.begin(), "check");
+    const ProcessResult checked = gfxrepro(check);
+    EXPECT_EQ(checked.exitCode, 0) << checked.err;
     for (const char* profile : {"quick", "full", "paper"}) {
-        const auto planOf = [&](const std::string& name) {
-            const ProcessResult plan =
-                gfxrepro({"plan", name, "--profile", profile, "--json", "--device", "software"});
+        const auto planOf = [&](std::vector<std::string> command) {
+            command.insert(command.begin(), "plan");
+            command.insert(command.end(),
+                           {"--profile", profile, "--json", "--device", "software"});
+            const ProcessResult plan = gfxrepro(command);
             const std::size_t cases = plan.out.find("\n \"cases\": [");
             EXPECT_NE(cases, std::string::npos) << plan.err;
             return cases == std::string::npos ? plan.err : plan.out.substr(cases);
         };
-        EXPECT_EQ(planOf(file), planOf("xie2017/10")) << profile;
+        EXPECT_EQ(planOf(files), planOf(tables)) << profile;
     }
     const auto body = [](const std::string& text) { return text.substr(text.find('\n')); };
     EXPECT_EQ(body(gfxrepro({"describe", file, "--merged"}).out), body(merged.out));
