@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <climits>
+#include <utility>
 
 #include "engine/core/node.h"
 
@@ -123,11 +124,17 @@ void requireShallowJson(std::string_view text, const SourceLocation& where) {
     throw Error(where, fmt::format("nested deeper than {} levels", kMostJsonLevels));
 }
 
+std::optional<Json> jsonObjectIn(std::string_view text) {
+    if (isTooDeepJson(text)) return std::nullopt;
+    std::optional<Json> json = Json::parse(text, nullptr, false);
+    return json->is_object() ? std::move(json) : std::nullopt;
+}
+
 Json parseJsonObject(std::string_view text, const SourceLocation& where) {
     requireShallowJson(text, where);
-    Json json = Json::parse(text, nullptr, false);
-    if (!json.is_object()) throw Error(where, "is no JSON object");
-    return json;
+    std::optional<Json> json = jsonObjectIn(text);
+    if (!json) throw Error(where, "is no JSON object");
+    return std::move(*json);
 }
 
 void requireMembers(const Json& object, std::span<const JsonMember> members,

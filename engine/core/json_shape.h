@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,6 +46,8 @@ constexpr int kMostJsonLevels = 200;
 bool isTooDeepJson(std::string_view text);
 /// Throws Error(where, …) for what is nested deeper than kMostJsonLevels.
 void requireShallowJson(std::string_view text, const SourceLocation& where);
+/// The text as an object; none for any other, as a line that was torn.
+std::optional<Json> jsonObjectIn(std::string_view text);
 /// The text as an object. Throws Error(where, …) for any other, and as requireShallowJson().
 Json parseJsonObject(std::string_view text, const SourceLocation& where);
 

@@ -10,10 +10,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/json_shape.h"
 #include "engine/core/text.h"
 
 namespace gfxrepro::gl {
@@ -102,11 +103,15 @@ std::vector<fs::path> vendorFiles() {
 
 /// Empty: it can be loaded.
 std::string problemOf(const fs::path& file) {
+    static constexpr JsonMember kMembers[] = {{"/ICD/library_path", JsonKind::Text}};
     std::string library;
     try {
-        library = nlohmann::json::parse(readFile(file)).at("ICD").at("library_path");
-    } catch (const std::exception& error) {
-        return fmt::format("{}: {}", file.string(), error.what());
+        const SourceLocation where{file.string(), 0, 0};
+        const Json json = parseJsonObject(readFile(file), where);
+        requireMembers(json, kMembers, where);
+        library = json["ICD"]["library_path"];
+    } catch (const Error& error) {
+        return error.what();
     }
     if (void* driver = ::dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL)) {
         ::dlclose(driver);

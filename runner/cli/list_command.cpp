@@ -6,10 +6,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "engine/core/files.h"
 #include "engine/core/text.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
+#include "runner/run/run_directory.h"
 
 namespace gfxrepro::cli {
 
@@ -69,14 +69,14 @@ Rows generators(const Context& context) {
     return rows;
 }
 
-/// What first measured a run.
+/// What first measured a run, or why that cannot be told.
 std::string commandOf(const fs::path& manifest) {
-    std::error_code isAbsent;
-    if (!fs::is_regular_file(manifest, isAbsent)) return "not begun";
-    const auto json = nlohmann::json::parse(readFile(manifest), nullptr, false);
-    const nlohmann::json::json_pointer first("/invocations/0/command");
-    const bool isSaid = json.is_object() && json.contains(first) && json[first].is_string();
-    return isSaid ? json[first].get<std::string>() : "not finished";
+    if (!fs::exists(fs::symlink_status(manifest))) return "not begun";
+    try {
+        return run::readManifest(manifest)["invocations"][0]["command"];
+    } catch (const Error& error) {
+        return error.what();
+    }
 }
 
 /// Those in runs/, the newest last.

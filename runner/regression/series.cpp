@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 
 #include "engine/core/error.h"
+#include "engine/core/json_shape.h"
 #include "engine/core/text.h"
 #include "engine/metrics/mean_test.h"
 #include "engine/metrics/statistics.h"
@@ -63,8 +63,6 @@ bool isWatched(const records::Record& record, const Tables& byClock) {
            metric.ends_with("_ms");
 }
 
-using Json = nlohmann::ordered_json;
-
 ParamNames paramNamesOf(const SeriesMap& series) {
     ParamNames names;
     for (const auto& [key, values] : series) addParamNames(key, names);
@@ -83,13 +81,17 @@ std::optional<SeriesMap> reduced(const SeriesMap& series, const ParamNames& know
     return result;
 }
 
+Json paramsOf(const SeriesKey& key) {
+    if (key.params.empty()) return Json::object();
+    return parseJsonObject(key.params, {key.caseTitle(), 0, 0});
+}
+
 /// The parameters of each key that are not the same in all, "a=1 b=2".
 std::vector<std::string> differingParams(const std::vector<const SeriesKey*>& keys) {
     std::vector<Json> params;
     std::map<std::string, std::set<std::string>> values;
     for (const SeriesKey* key : keys) {
-        Json own = Json::parse(key->params, nullptr, false);
-        if (!own.is_object()) own = Json::object();
+        Json own = paramsOf(*key);
         for (const auto& [name, value] : own.items()) values[name].insert(value.dump());
         params.push_back(std::move(own));
     }
@@ -194,15 +196,14 @@ std::size_t untimedCases(const std::vector<records::Record>& records) {
 }
 
 void addParamNames(const SeriesKey& key, ParamNames& names) {
-    if (key.params.empty()) return;
-    const Json params = Json::parse(key.params);
+    const Json params = paramsOf(key);
     for (const auto& [name, value] : params.items()) names[key.technique].insert(name);
 }
 
 std::string reducedParams(const SeriesKey& key, const ParamNames& known) {
     const auto found = known.find(key.technique);
     if (found == known.end() || key.params.empty()) return key.params;
-    const Json all = Json::parse(key.params);
+    const Json all = paramsOf(key);
     Json params = Json::object();
     for (const auto& [name, value] : all.items()) {
         if (found->second.contains(name)) params[name] = value;

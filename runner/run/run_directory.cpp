@@ -12,6 +12,7 @@
 #include <cstring>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -89,6 +90,15 @@ constexpr JsonMember kCost[] = {{"/load_s", JsonKind::Number},
                                 {"/record_s", JsonKind::Number},
                                 {"/peak_bytes", JsonKind::Whole}};
 
+void requirePlain(const fs::directory_entry& entry) {
+    std::error_code isGone;  // meanwhile
+    const bool isLink = entry.is_symlink(isGone);
+    if (!isLink && (entry.is_regular_file(isGone) || entry.is_directory(isGone))) return;
+    if (!isLink && !fs::exists(entry.symlink_status(isGone))) return;
+    throw Error(entry.path().string() +
+                ": a link, a pipe or a device, which a run folder does not hold");
+}
+
 }  // namespace
 
 void requireModestFiles(const fs::path& runDir) {
@@ -110,6 +120,7 @@ void requireModestFiles(const fs::path& runDir) {
 }
 
 Json readManifest(const fs::path& file) {
+    requirePlain(fs::directory_entry(file));
     const SourceLocation where{file.string(), 0, 0};
     Json manifest = parseJsonObject(MappedFile(file).text(), where);
     requireMembers(manifest, kManifest, where);
@@ -135,12 +146,13 @@ void forEachEvent(const fs::path& file, const std::function<void(Json&&)>& take)
         const std::string_view text = rest.substr(0, rest.find('\n'));
         rest.remove_prefix(std::min(text.size() + 1, rest.size()));
         if (text.empty()) continue;
-        requireShallowJson(text, {name, line, 0});
-        Json event = Json::parse(text, nullptr, false);
-        if (!event.is_object()) continue;
-        requireMembers(event, kEvent, {name, line, 0});
-        if (event.contains("cost")) requireMembers(event["cost"], kCost, {name, line, 0}, "/cost");
-        take(std::move(event));
+        const SourceLocation where{name, line, 0};
+        requireShallowJson(text, where);
+        std::optional<Json> event = jsonObjectIn(text);
+        if (!event) continue;
+        requireMembers(*event, kEvent, where);
+        if (event->contains("cost")) requireMembers((*event)["cost"], kCost, where, "/cost");
+        take(std::move(*event));
     }
 }
 
@@ -262,12 +274,7 @@ void requirePlainFiles(const fs::path& runDir) {
             entry.disable_recursion_pending();
             if (!entry->is_symlink()) continue;
         }
-        std::error_code isGone;  // meanwhile
-        const bool isLink = entry->is_symlink(isGone);
-        if (!isLink && (entry->is_regular_file(isGone) || entry->is_directory(isGone))) continue;
-        if (!isLink && !fs::exists(entry->symlink_status(isGone))) continue;
-        throw Error(entry->path().string() +
-                    ": a link, a pipe or a device, which a run folder does not hold");
+        requirePlain(*entry);
     }
     if (problem) throw Error("cannot read " + runDir.string() + ": " + problem.message());
 }

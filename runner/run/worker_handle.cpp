@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/wait.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>
+#include <string_view>
 
 #include "engine/core/descriptor.h"
+#include "engine/core/json_shape.h"
 #include "engine/core/processors.h"
 #include "engine/core/text.h"
 #include "runner/run/plan_json.h"
@@ -136,11 +137,10 @@ std::optional<CaseResult> WorkerHandle::handleLines() {
     for (std::size_t end;
          (end = messages_.find('\n', std::max(lineBegin, searchedBytes_))) != std::string::npos;
          lineBegin = end + 1) {
-        const Json message =
-            Json::parse(messages_.begin() + static_cast<std::ptrdiff_t>(lineBegin),
-                        messages_.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
-        if (!message.is_object()) continue;  // a library's own words on descriptor 3
-        if (std::optional<CaseResult> given = handle(message)) result = std::move(given);
+        const std::optional<Json> message =
+            jsonObjectIn(std::string_view(messages_).substr(lineBegin, end - lineBegin));
+        if (!message) continue;  // a library's own words on descriptor 3
+        if (std::optional<CaseResult> given = handle(*message)) result = std::move(given);
     }
     messages_.erase(0, lineBegin);
     searchedBytes_ = messages_.size();

@@ -121,13 +121,16 @@ TEST(VendorLibraries, SayWhyADriverCannotBeLoaded) {
     folder.write("30_torn.json", driver.substr(0, 20));
     const std::string libraries = folder.write("no.so", "no library").string();
     folder.write("40_no.json", naming(libraries));
+    folder.write("50_other.json", R"({"ICD": {"library_path": 3}})");
     const std::vector<std::string> problems = problemsOf(folder);
-    ASSERT_EQ(problems.size(), 3U);
+    ASSERT_EQ(problems.size(), 4U);
     EXPECT_EQ(problems[0], (folder.path() / "20_gone.json").string() +
                                " names the driver libEGL_gone.so.0: libEGL_gone.so.0: cannot open "
                                "shared object file: No such file or directory");
-    EXPECT_THAT(problems[1], testing::StartsWith((folder.path() / "30_torn.json").string() + ": "));
+    EXPECT_EQ(problems[1], (folder.path() / "30_torn.json").string() + ": is no JSON object");
     EXPECT_THAT(problems[2], testing::HasSubstr("no.so: file too short"));
+    EXPECT_EQ(problems[3], (folder.path() / "50_other.json").string() +
+                               ": '/ICD/library_path' is number; expected text");
 }
 
 TEST(CppLibrary, ReleaseComesFromTheName) {

@@ -19,6 +19,7 @@ TEST(JsonShape, AnObjectThatIsNotTooDeep) {
     }
     EXPECT_EQ(errorText([] { parseJsonObject("{\"a\": " + std::string(300, '['), kFile); }),
               "a.json: nested deeper than 200 levels");
+    EXPECT_FALSE(jsonObjectIn("{\"a\": " + std::string(300, '[') + std::string(300, ']') + "}"));
 }
 
 TEST(JsonShape, EachKindSaysWhatItIsAndWhatItShouldBe) {
