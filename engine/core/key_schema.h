@@ -6,32 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/core/json_shape.h"
+#include "engine/core/number_range.h"
 
 namespace gfxrepro {
-
-/// The numbers that a key may have, declared once: the reader takes these (numberIn, checks.h), its
-/// message names them, and so does the schema for editors.
-struct NumberRange {
-    double least = -std::numeric_limits<double>::infinity();
-    double most = std::numeric_limits<double>::infinity();
-    bool isLeastExcluded = false;
-    bool isMostExcluded = false;
-    bool isWhole = false;
-
-    bool has(double value) const {
-        return (isLeastExcluded ? value > least : value >= least) &&
-               (isMostExcluded ? value < most : value <= most);
-    }
-    /// "1 … 1000", "above 0, at most 1000000", "at least 0", "".
-    std::string text() const;
-};
 
 /// A key of a map.
 struct SchemaKey {

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "engine/core/key_schema.h"
 #include "engine/core/node.h"
+#include "engine/core/number_range.h"
 
 namespace gfxrepro::config {
 
