@@ -1,4 +1,4 @@
-// What the readers of a config's sections share; private to this module.
+// What readers of a file's sections share.
 #pragma once
 
 #include <optional>

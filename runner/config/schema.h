@@ -1,5 +1,4 @@
-// The schema of the files that people write. A new key is one line in schema_*.cpp, and its
-// reading.
+// The schema of the files that people write. A key is declared in the source that reads it.
 #pragma once
 
 #include <array>
