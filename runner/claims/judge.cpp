@@ -209,7 +209,7 @@ Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirem
     return Verdict::Ambiguous;
 }
 
-Judgement judge(Group group, const Quantity& quantity, const Requirement& requirement) {
+Judgement judge(Group group, const GroupNumber& quantity, const Requirement& requirement) {
     std::vector<Sampled*> all;
     for (auto& operand : group.operands)
         for (Sampled& sampled : operand) all.push_back(&sampled);

@@ -66,7 +66,7 @@ Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirem
 /// judged, of one sample too. Where it differs between rounds all the same (memory, the order of a
 /// parallel sum), it is judged by what it was in them: their medianInterval, or the range of fewer.
 /// Shares that were counted once are judged by the interval of the quantity over their draws.
-Judgement judge(Group group, const Quantity& quantity, const Requirement& requirement);
+Judgement judge(Group group, const GroupNumber& quantity, const Requirement& requirement);
 
 /// Whether another seed would give the group other values.
 bool isRandom(const Group& group);

@@ -19,7 +19,6 @@
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
 #include "runner/config/external_program.h"
-#include "runner/config/schema.h"
 #include "runner/records/csv.h"
 #include "runner/records/records.h"
 #include "runner/run/case_filter.h"
@@ -371,7 +370,7 @@ tables::Table tableBefore(const Context& context, const config::Experiment& expe
 }
 
 /// Says what a file comes to, and gives its cases; adds its size.
-std::vector<config::Case> checkFile(const Context& context, const Selection& selection,
+std::vector<config::Case> checkFile(const Context& context, const Chosen& selection,
                                     const scene::Catalog& catalog, const std::string& file,
                                     Size& all) {
     const run::Request request{{file}, selection.sets, selection.sweeps, {}, selection.device};
@@ -412,7 +411,7 @@ void requireSound(const Context& context, const scene::Catalog& catalog,
     run::resolvePaperCases(experiment, catalog, context.techniques);
 }
 
-int check(const Context& context, const Selection& selection) {
+int check(const Context& context, const Chosen& selection) {
     const scene::Catalog catalog = openCatalog(context, selection.assets);
     run::Plan all;
     Size size;

@@ -28,7 +28,7 @@ namespace {
 
 /// All options of all commands, and the command that was chosen.
 struct Options {
-    Selection selection;
+    Chosen selection;
     RunOptions run;
     SceneOptions scene;
     CompareOptions compare;
@@ -76,7 +76,7 @@ void addEach(CLI::App* app, const char* name, std::vector<std::string>& values, 
     app->add_option(name, values, doc)->allow_extra_args(false)->option_text(value);
 }
 
-void addSelection(CLI::App* app, Selection& selection) {
+void addSelection(CLI::App* app, Chosen& selection) {
     addProfile(app, selection.profile);
     addEach(app, "--set", selection.sets, "override a key of every config", "KEY=VALUE");
     addEach(app, "--sweep", selection.sweeps, "replace or add an axis", "AXIS=A,B");

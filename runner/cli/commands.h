@@ -33,7 +33,7 @@ struct Context {
 };
 
 /// Which experiments, and how they are changed.
-struct Selection {
+struct Chosen {
     std::vector<std::string> names;  // config files, or papers and tables for `reproduce`
     std::string profile = "full";
     std::vector<std::string> sets;
@@ -44,7 +44,7 @@ struct Selection {
 };
 
 struct RunOptions {
-    Selection selection;
+    Chosen selection;
     std::string budget;  // "20m": only the tables that decide most claims in this time
     std::string out;
     std::string resume;
@@ -57,7 +57,7 @@ struct RunOptions {
 };
 
 struct SubmitOptions {
-    Selection selection;
+    Chosen selection;
     std::string engine = "slurm";  // slurm | commands
     std::string out;
     std::vector<std::string> from;
@@ -104,7 +104,7 @@ struct CompareOptions {
 
 /// Tables, measured once for each value of their assumptions.
 struct SensitivityOptions {
-    Selection selection;
+    Chosen selection;
     int points = 3;         // of a range of numbers
     std::string budget;     // "15m": no further run after it; empty: all
     bool hasTimes = false;  // claims about times, too
@@ -122,8 +122,8 @@ int describe(const Context& context, const DescribeOptions& options);
 using ParamInfos = std::vector<ParamInfo>;
 /// All parameters of a technique: those of its defaults, then those that single choices bring.
 ParamInfos paramsOf(const technique::TechniqueInfo& technique);
-int check(const Context& context, const Selection& selection);
-int plan(const Context& context, const Selection& selection, const std::vector<std::string>& from,
+int check(const Context& context, const Chosen& selection);
+int plan(const Context& context, const Chosen& selection, const std::vector<std::string>& from,
          bool asJson);
 int run(const Context& context, const RunOptions& options);
 int reproduce(const Context& context, const RunOptions& options);

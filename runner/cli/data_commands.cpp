@@ -136,7 +136,7 @@ int importRun(const Context& context, const ImportOptions& options) {
     }
     request.commandLine = context.commandLine;
     if (!options.configs.empty()) {
-        Selection selection;
+        Chosen selection;
         request.experiments = loadExperiments(
             requestOf(selection, findPaperConfigs(options.configs)), options.profile);
     }

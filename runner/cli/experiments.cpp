@@ -151,7 +151,7 @@ std::vector<config::Experiment> loadExperiments(const run::Request& request,
     return experiments;
 }
 
-run::Request requestOf(const Selection& selection, const std::vector<std::string>& files) {
+run::Request requestOf(const Chosen& selection, const std::vector<std::string>& files) {
     run::Request request{{}, selection.sets, selection.sweeps, selection.only, selection.device};
     for (const std::string& file : files) {
         request.configs.push_back(fs::absolute(file).lexically_normal());
@@ -175,7 +175,7 @@ void tellDevice(const std::string& asked) {
     }
 }
 
-std::string deviceClassFor(const Selection& selection) {
+std::string deviceClassFor(const Chosen& selection) {
     if (selection.device == "software" || selection.device == "gpu") return selection.device;
     try {
         run::PhaseClock phases;

@@ -37,7 +37,7 @@ std::vector<config::Experiment> loadExperiments(const run::Request& request,
                                                 const std::string& profile);
 
 /// What a selection asks for; its files as absolute paths.
-run::Request requestOf(const Selection& selection, const std::vector<std::string>& files);
+run::Request requestOf(const Chosen& selection, const std::vector<std::string>& files);
 
 /// A line that names it: the first of whatever measures.
 void tellDevice(const gl::DeviceInfo& device);
@@ -45,7 +45,7 @@ void tellDevice(const gl::DeviceInfo& device);
 void tellDevice(const std::string& asked);
 
 /// "software" | "gpu". A case's identity holds it; a machine without a device plans for software.
-std::string deviceClassFor(const Selection& selection);
+std::string deviceClassFor(const Chosen& selection);
 
 /// `asked`, or "none" for "auto" where nothing of the experiments needs a device.
 std::string deviceFor(const Context& context, const std::string& asked,

@@ -44,7 +44,7 @@ std::vector<std::string> rowTexts(const config::Case& item, const config::Case& 
 
 }  // namespace
 
-int plan(const Context& context, const Selection& selection, const std::vector<std::string>& from,
+int plan(const Context& context, const Chosen& selection, const std::vector<std::string>& from,
          bool asJson) {
     const run::Plan plan = planFor(context, requestOf(selection, findPaperConfigs(selection.names)),
                                    selection.profile, selection.assets, deviceClassFor(selection));

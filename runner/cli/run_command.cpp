@@ -299,7 +299,7 @@ run::Json begunManifest(const Context& context, const gl::DeviceInfo& device, co
 
 Prepared prepareNew(const Context& context, const RunOptions& options, const run::Request& request,
                     run::PhaseClock& phases) {
-    const Selection& selection = options.selection;
+    const Chosen& selection = options.selection;
     // Experiments are read first: what is wrong in a config is said before a device is asked for.
     const std::string choice =
         deviceFor(context, request.device, loadExperiments(request, selection.profile));

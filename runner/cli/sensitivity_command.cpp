@@ -70,7 +70,7 @@ std::string folderName(std::string title) {
 /// Measures in a process of its own; a run that is there already goes on. What goes wrong is the
 /// outcome; cases that failed, or a run that came to no end, leave the study incomplete. A value
 /// that the technique refuses does not.
-studies::Outcome measureNext(Study& study, const Selection& selection) {
+studies::Outcome measureNext(Study& study, const Chosen& selection) {
     const studies::Variation& variation = study.next();
     const fs::path dir = study.folder / folderName(variation.title());
     std::vector<std::string> arguments = {"/proc/self/exe", "run",      study.file,
@@ -173,7 +173,7 @@ void writeUntried(const fs::path& kept, const config::Experiment& experiment,
 std::optional<Study> studyOf(const Context& context, const std::string& file,
                              const SensitivityOptions& options, const std::string& deviceClass,
                              const fs::path& folder) {
-    const Selection& selection = options.selection;
+    const Chosen& selection = options.selection;
     Study study{.file = file,
                 .plan = planFor(context, requestOf(selection, {file}), selection.profile,
                                 selection.assets, deviceClass),

@@ -40,7 +40,7 @@ Contrasts allAlike(double within) {
             for (std::size_t j = i + 1; j < values.size(); ++j) {
                 const bool isRising = values[i] <= values[j];
                 const std::size_t low = isRising ? i : j, high = isRising ? j : i;
-                const Quantity ratio = [low, high](const GroupPoint& one) {
+                const GroupNumber ratio = [low, high](const GroupPoint& one) {
                     return one.operands[0][high] / one.operands[0][low];
                 };
                 contrasts.push_back({"ratio of two rows", ratio, alike});

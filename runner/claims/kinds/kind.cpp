@@ -258,7 +258,7 @@ double distanceToBound(double value, const Requirement& requirement) {
     return std::min(std::abs(value - requirement.low), std::abs(requirement.high - value));
 }
 
-Contrasts asItself(std::string name, Quantity quantity, Requirement requirement, Scale scale) {
+Contrasts asItself(std::string name, GroupNumber quantity, Requirement requirement, Scale scale) {
     Contrast contrast{std::move(name), std::move(quantity), std::move(requirement), scale};
     if (scale == Scale::Linear) {
         contrast.distance = [range = contrast.requirement](const GroupPoint&, double value) {

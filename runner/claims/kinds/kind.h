@@ -30,7 +30,7 @@ using GroupPoint = GroupOf<double>;
 /// The number that is made of a group. A measured value may be +∞: the PSNR of equal pictures. It
 /// is larger than any other, equal to itself, and ∞ − ∞ or ∞ ÷ ∞ is not a number: a quantity that
 /// needs one is unmeasured.
-using Quantity = std::function<double(const GroupPoint&)>;
+using GroupNumber = std::function<double(const GroupPoint&)>;
 
 /// The range that the quantity must lie in.
 struct Requirement {
@@ -51,7 +51,7 @@ enum class Scale { Linear, Logarithmic, Ranks };
 /// One comparison of times.
 struct Contrast {
     std::string name;  // "exponent": before the measured value; may be empty
-    Quantity quantity;
+    GroupNumber quantity;
     Requirement requirement;
     Scale scale = Scale::Logarithmic;
     /// By which share times would have to differ for the quantity to reach its bound: what is
@@ -67,7 +67,7 @@ using Contrasts = std::function<std::vector<Contrast>(const GroupPoint&)>;
 /// an independence is asked of each operand.
 struct ClaimPart {
     std::vector<std::size_t> operands;  // of the claim
-    Quantity quantity;
+    GroupNumber quantity;
     Requirement requirement;
     std::string measuredName = {};  // "smallest step": before the measured value; may be empty
     bool needsX = false;            // numeric abscissa
@@ -171,7 +171,7 @@ std::string quantityText(double value, const Requirement& requirement);
 /// From a value to the nearer bound.
 double distanceToBound(double value, const Requirement& requirement);
 /// Whatever the quantity is: itself, on a scale.
-Contrasts asItself(std::string name, Quantity quantity, Requirement requirement, Scale scale);
+Contrasts asItself(std::string name, GroupNumber quantity, Requirement requirement, Scale scale);
 
 /// (right − left) / max(|right|, |left|); ±1 where one of the two is infinite.
 double relativeDifference(double left, double right);

@@ -86,7 +86,7 @@ Contrasts neighbourGaps(const Requirement& requirement) {
     return [requirement](const GroupPoint& group) {
         std::vector<Contrast> contrasts;
         for (std::size_t i = 1; i < group.operands.size(); ++i) {
-            const Quantity gap = [i](const GroupPoint& all) {
+            const GroupNumber gap = [i](const GroupPoint& all) {
                 return smallestGap({{all.operands[i - 1], all.operands[i]}, {}});
             };
             contrasts.push_back(asItself("gap", gap, requirement, Scale::Linear)(group)[0]);

@@ -82,7 +82,7 @@ Contrasts slope(Requirement requirement) {
 }
 
 /// Of the steps between neighbours by x, the one that begins at `place`, towards `direction`.
-Quantity stepAt(std::size_t place, int direction) {
+GroupNumber stepAt(std::size_t place, int direction) {
     return [place, direction](const GroupPoint& group) {
         const std::vector<std::size_t> rows = rowsByX(group);
         const double before = group.operands[0][rows[place]];
@@ -99,7 +99,7 @@ Contrasts rising(int direction) {
         Requirement above;
         above.low = 0.0;
         above.isLowExcluded = true;
-        const Quantity rank = [direction](const GroupPoint& one) {
+        const GroupNumber rank = [direction](const GroupPoint& one) {
             return direction * metrics::kendall(one.x, one.operands[0]);
         };
         Contrast whole{"rank correlation", rank, above, Scale::Linear};
