@@ -9,7 +9,6 @@
 #include <set>
 
 #include "engine/core/text.h"
-#include "runner/claims/kinds/operands.h"
 #include "runner/tables/case_records.h"
 #include "runner/tables/labels.h"
 

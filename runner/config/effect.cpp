@@ -39,10 +39,11 @@ void addRanges(const Experiment& experiment, std::set<std::string> scenes,
         if (assumption.name != kSceneAssumption || !assumption.range.isMap()) continue;
         for (const auto& [scene, others] : assumption.range.entries()) {
             if (scenes.contains(scene)) continue;
-            found.push_back({assumption.range.keyLocation(scene),
-                             fmt::format("assumption '{}': range: '{}' is no scene of {}; it has {}",
-                                         assumption.name, scene, experiment.id,
-                                         joined({scenes.begin(), scenes.end()}))});
+            found.push_back(
+                {assumption.range.keyLocation(scene),
+                 fmt::format("assumption '{}': range: '{}' is no scene of {}; it has {}",
+                             assumption.name, scene, experiment.id,
+                             joined({scenes.begin(), scenes.end()}))});
         }
     }
 }

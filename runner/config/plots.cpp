@@ -4,7 +4,6 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
-#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {

@@ -341,9 +341,8 @@ std::vector<NoEffect> excludedInVain(const Experiment& experiment) {
     for (const Node& pairs : exclude->items()) {
         const auto isMet = [&](const AxisPoint& point) { return matchesAll(point, pairs); };
         if (std::ranges::any_of(points, isMet)) continue;
-        found.push_back(
-            {pairs.location(),
-             fmt::format("exclude: no point of the sweep has {}", pairs.toFlowText())});
+        found.push_back({pairs.location(),
+                         fmt::format("exclude: no point of the sweep has {}", pairs.toFlowText())});
     }
     return found;
 }

@@ -11,7 +11,6 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "engine/metrics/statistics.h"
 #include "runner/records/csv.h"
 #include "runner/report/curves.h"
 #include "runner/report/markup.h"

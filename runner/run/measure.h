@@ -11,7 +11,7 @@
 
 #include "engine/gl/objects.h"
 #include "engine/image/image.h"
-#include "runner/config/experiment.h"
+#include "runner/config/case.h"
 #include "runner/run/plan.h"
 #include "runner/run/protocol.h"
 #include "runner/run/scene_cache.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/scene/generators.h"
-#include "runner/config/experiment.h"
+#include "runner/config/case.h"
 #include "runner/technique/technique.h"
 
 namespace gfxrepro::run {

@@ -13,7 +13,6 @@
 #include "engine/core/processors.h"
 #include "engine/core/text.h"
 #include "runner/run/plan_json.h"
-#include "runner/run/process_memory.h"
 
 namespace gfxrepro::run {
 

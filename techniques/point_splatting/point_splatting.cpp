@@ -12,7 +12,6 @@
 
 #include "engine/core/files.h"
 #include "techniques/kit/path_view.h"
-#include "techniques/kit/requirements.h"
 
 namespace gfxrepro::point_splatting {
 namespace {

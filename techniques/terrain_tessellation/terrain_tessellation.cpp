@@ -11,7 +11,6 @@
 
 #include "engine/core/files.h"
 #include "engine/gl/gl.h"
-#include "techniques/kit/requirements.h"
 
 namespace gfxrepro::terrain_tessellation {
 namespace {

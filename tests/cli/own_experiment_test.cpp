@@ -153,10 +153,11 @@ TEST_F(OwnExperiment, LatestIsTheNewestAndRunsAreListed) {
     fs::create_symlink("/etc/passwd", folder.path() / "runs/20260104-d/manifest.json");
     folder.write("runs/20260105-e/plan.json", "{}");
     const std::string others = inFolder("list runs").out;
-    EXPECT_THAT(others, HasSubstr("runs/20260103-c  runs/20260103-c/manifest.json: nested deeper "
-                                  "than 200 levels\nruns/20260104-d  runs/20260104-d/manifest.json: "
-                                  "a link, a pipe or a device, which a run folder does not hold\n"
-                                  "runs/20260105-e  not begun\n"));
+    EXPECT_THAT(others,
+                HasSubstr("runs/20260103-c  runs/20260103-c/manifest.json: nested deeper "
+                          "than 200 levels\nruns/20260104-d  runs/20260104-d/manifest.json: "
+                          "a link, a pipe or a device, which a run folder does not hold\n"
+                          "runs/20260105-e  not begun\n"));
 }
 
 /// What check says of a config with these lines and a file beside it.

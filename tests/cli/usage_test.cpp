@@ -167,8 +167,7 @@ TEST_F(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
     for (const char* profile : {"quick", "full", "paper"}) {
         const auto planOf = [&](std::vector<std::string> command) {
             command.insert(command.begin(), "plan");
-            command.insert(command.end(),
-                           {"--profile", profile, "--json", "--device", "software"});
+            command.insert(command.end(), {"--profile", profile, "--json", "--device", "software"});
             const ProcessResult plan = gfxrepro(command);
             const std::size_t cases = plan.out.find("\n \"cases\": [");
             EXPECT_NE(cases, std::string::npos) << plan.err;

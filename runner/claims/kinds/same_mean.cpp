@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "engine/core/checks.h"
 #include "engine/metrics/mean_test.h"
 #include "runner/claims/kinds/kind.h"
 
