@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,17 +10,6 @@ namespace gfxrepro::gl {
 namespace egl {
 struct Candidate;
 }
-
-/// How fast it does each kind of work, beside any method (measureBalance).
-struct DeviceBalance {
-    double fragmentGflops = 0.0;  // multiply-adds count twice
-    double computeGflops = 0.0;   // of the same arithmetic
-    double fillGpixelsPerS = 0.0;
-    double trianglesMPerS = 0.0;  // of half a pixel, without attributes
-    double copyGbytesPerS = 0.0;  // read and written
-    /// About 1 on graphics cards. Far less where a chip for computing draws with a small part.
-    double fragmentShare() const { return fragmentGflops / computeGflops; }
-};
 
 /// Its clock, which GL_TIMESTAMP asks.
 struct DeviceTimer {
@@ -46,7 +34,6 @@ struct DeviceInfo {
     /// their pictures alone.
     bool countsWork = false;
     DeviceTimer timer;
-    std::optional<DeviceBalance> balance;  // of hardware, once a run has asked for it
 };
 
 /// What a device can do, read once.

@@ -232,19 +232,6 @@ ClaimResult unjudged(const ClaimSpec& claim, const tables::Table& table,
     return result;
 }
 
-/// What to know of a claim about a GPU's units where these are not those of a graphics card; empty
-/// elsewhere.
-std::string balanceNote(const ClaimResult& claim, const ReportContext& context) {
-    constexpr double kLeast = 0.5;
-    const bool isArchitectural = claim.timeKind == ClaimSpec::TimeKind::Architectural;
-    if (!isArchitectural || context.fragmentShare.value_or(1.0) >= kLeast) return "";
-    return fmt::format(
-        "this device does the same arithmetic {:.1f} times as fast in compute shaders as in "
-        "fragment shaders, a graphics card about as fast: what it says of drawing against "
-        "computing is of this device",
-        1.0 / *context.fragmentShare);
-}
-
 /// That an input was fitted to what a claim reads that is not of that input; else empty.
 std::string calibratedNote(const ClaimSpec& claim, const ClaimReader& reader) {
     if (claim.origin == ClaimSpec::Origin::Calibrated || !reader.readsSome(isCalibrated)) return "";
@@ -400,8 +387,7 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& given,
         return result;
     }
     const std::string part = result.rows.empty() ? "" : fmt::format("on {}", result.rows);
-    for (const std::string& note :
-         {unfit, clock, balanceNote(result, context), calibratedNote(claim, reader), part}) {
+    for (const std::string& note : {unfit, clock, calibratedNote(claim, reader), part}) {
         if (!note.empty()) result.reason += (result.reason.empty() ? "" : "; ") + note;
     }
     return result;

@@ -47,7 +47,6 @@ struct ReportContext {
     std::string profile;      // "quick" | "full" | "paper"
     std::string commit;       // of the program
     std::string command;      // of the whole run, for people
-    std::optional<double> fragmentShare = {};  // of hardware: gl::DeviceBalance::fragmentShare()
     KeptSensitivity tried = {};
     bool knowsTried = true;  // false: there was nowhere to look
     tables::TableNotes tableNotes = {};

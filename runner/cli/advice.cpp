@@ -18,8 +18,6 @@ constexpr double kMaxTimerStepNs = 1000.0;
 constexpr int kMinTextureSizePx = 16384;
 constexpr int kMin3dTextureSizePx = 2048;
 constexpr long long kMinStorageBlockBytes = 128LL << 20;
-// Graphics cards have about 1; a chip made for computing 0.03.
-constexpr double kMinFragmentShare = 0.5;
 // What the programs use at most, of one stage (tests/drivers counts them).
 constexpr gl::DeviceLimits::StorageBlocks kUsedStorageBlocks{.vertex = 4,
                                                              .tessellationControl = 4,
@@ -117,16 +115,6 @@ void addLimitFindings(const DeviceFacts& device, Findings& findings) {
                          device.index, small),
              "Measure those on another device; --set and --sweep make them "
              "smaller."});
-    }
-    if (device.balance && device.balance->fragmentShare() < kMinFragmentShare) {
-        findings.push_back(
-            {"draws_slowly", Severity::Result,
-             fmt::format("Device {} does {:.0f} GFLOP/s when it draws and {:.0f} when it computes: "
-                         "claims that compare drawing with ray tracing come out otherwise than on "
-                         "a graphics card.",
-                         device.index, device.balance->fragmentGflops,
-                         device.balance->computeGflops),
-             "Measure those on a graphics card, too."});
     }
     std::string few;
     const auto use = [&](int most, int used, const char* stage) {

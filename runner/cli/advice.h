@@ -2,7 +2,6 @@
 // `gfxrepro doctor` gathers them.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +22,6 @@ struct DeviceFacts {
     int max3dTextureSizePx = 0;
     long long maxStorageBlockBytes = 0;
     gl::DeviceLimits::StorageBlocks maxStorageBlocks;
-    std::optional<gl::DeviceBalance> balance;  // of hardware
 };
 
 /// What `doctor` looked at. The defaults are a machine without a fault.

@@ -316,7 +316,6 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
     workerApp->add_option("--run", o.worker.runDir);
     workerApp->add_option("--command", o.worker.command);
     workerApp->add_option("--jobs", o.worker.jobs);
-    workerApp->add_flag("--balance", o.worker.isBalanceMeasured);
     workerApp->callback([&] {
         o.command = [&] {
             o.worker.lane =

@@ -12,7 +12,6 @@
 #include "engine/core/files.h"
 #include "engine/core/processors.h"
 #include "engine/core/text.h"
-#include "engine/gl/balance.h"
 #include "engine/gl/device.h"
 #include "engine/gl/unused_gpus.h"
 #include "engine/raycast/embree.h"
@@ -81,8 +80,7 @@ std::vector<DeviceFacts> deviceFacts(const std::vector<gl::DeviceReport>& report
         devices.push_back({report.info.index, report.info.renderer, report.problem,
                            report.info.isSoftware, report.isGpu, report.info.timer,
                            report.limits.maxTextureSizePx, report.limits.max3dTextureSizePx,
-                           report.limits.maxStorageBlockBytes, report.limits.maxStorageBlocks,
-                           report.info.balance});
+                           report.limits.maxStorageBlockBytes, report.limits.maxStorageBlocks});
     }
     return devices;
 }
@@ -217,23 +215,14 @@ void printFacts(const Json& found) {
     say("disk       {:.1f} GiB free here\n", found["free_disk_bytes"].get<double>() / kBytesPerGib);
 }
 
-/// With the balance of those that are hardware: a second or two each.
-std::vector<gl::DeviceReport> askDrivers() {
-    const DriverLimit limit;
-    std::vector<gl::DeviceReport> reports = gl::listDevices();
-    for (gl::DeviceReport& report : reports) {
-        if (!report.problem.empty() || report.info.isSoftware) continue;
-        const gl::Device device = gl::Device::open({std::to_string(report.info.index)});
-        report.info.balance = gl::measureBalance(gl::ShaderLibrary(dataFolder("shaders")));
-    }
-    return reports;
-}
-
 }  // namespace
 
 int doctor(const Context& context, const std::string& assets, bool asJson) {
     const scene::Catalog catalog = openCatalog(context, assets);
-    const std::vector<gl::DeviceReport> reports = askDrivers();
+    const std::vector<gl::DeviceReport> reports = [] {
+        const DriverLimit limit;
+        return gl::listDevices();
+    }();
     const MachineFacts facts = gatherFacts(reports, catalog);
     const std::vector<Finding> findings = findingsOf(facts);
     Json found = gather(reports, catalog, facts);

@@ -223,7 +223,7 @@ fs::path machineRoot() {
 
 /// Says on what a run measures, and keeps its workers to that: "auto" could find another later.
 gl::DeviceInfo settleDevice(run::SchedulerOptions& scheduler, run::PhaseClock& phases) {
-    const gl::DeviceInfo device = run::probeDevice(scheduler, phases, true);
+    const gl::DeviceInfo device = run::probeDevice(scheduler, phases);
     if (device.platform == "none") return device;
     scheduler.device = std::to_string(device.index);
     tellDevice(device);

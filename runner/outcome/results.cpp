@@ -240,10 +240,6 @@ claims::ReportContext reportContext(const run::Json& manifest) {
     context.profile = manifest.at("profile").get<std::string>();
     context.commit = manifest.at("commit").get<std::string>();
     context.command = manifest.at("invocations").at(0).at("command").get<std::string>();
-    if (const auto info = manifest.at("gl"); info.contains("balance")) {
-        context.fragmentShare =
-            run::balanceFromJson(info["balance"], {"manifest.json", 0, 0}).fragmentShare();
-    }
     return context;
 }
 

@@ -38,21 +38,6 @@ std::string processorText(const Json& manifest) {
     return cores.empty() || cores == "0" ? cpu : fmt::format("{}, {} cores", cpu, cores);
 }
 
-/// "fragment shaders 0.97 times as fast as compute shaders (1.2e+04, 1.24e+04 Gflop/s); …"; nothing
-/// of a device that was not asked, as none is that is software.
-std::string balanceText(const Json& manifest) {
-    const Json::json_pointer place("/gl/balance");
-    if (!manifest.contains(place)) return "";
-    const Json& balance = manifest[place];
-    const auto number = [&](const char* key) { return balance.value(key, 0.0); };
-    return fmt::format(
-        "fragment shaders {:.2g} times as fast as compute shaders ({:.3g}, {:.3g} Gflop/s); "
-        "{:.3g} Gpixel/s filled, {:.3g} M small triangles/s, {:.3g} GB/s copied",
-        number("fragment_gflops") / number("compute_gflops"), number("fragment_gflops"),
-        number("compute_gflops"), number("fill_gpixels_per_s"), number("triangles_m_per_s"),
-        number("copy_gbytes_per_s"));
-}
-
 /// "llvmpipe (LLVM 15.0.6, 256 bits) on Intel Xeon, 2 cores · quick profile · 2026-11-25".
 std::string machineText(const ReportRun& run) {
     std::string text = run.context.device;
@@ -130,7 +115,6 @@ std::vector<std::pair<const char*, std::string>> factsOf(const ReportRun& run) {
     const claims::ReportContext& context = run.context;
     return {{"Device", escapeXml(fmt::format("{} ({})", context.device, context.deviceClass))},
             {"OpenGL", escapeXml(manifestText(manifest, "/gl/version"))},
-            {"Balance", escapeXml(balanceText(manifest))},
             {"Processor", escapeXml(processorText(manifest))},
             {"Profile", escapeXml(context.profile)},
             {"Commit", escapeXml(context.commit)},

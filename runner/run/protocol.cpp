@@ -21,11 +21,6 @@ constexpr JsonMember kDevice[] = {{"/index", JsonKind::Int},
                                   {"/counts_work", JsonKind::Boolean},
                                   {"/timer_bits", JsonKind::Int},
                                   {"/timer_resolution_ns", JsonKind::Number}};
-constexpr JsonMember kBalance[] = {{"/fragment_gflops", JsonKind::Number},
-                                   {"/compute_gflops", JsonKind::Number},
-                                   {"/fill_gpixels_per_s", JsonKind::Number},
-                                   {"/triangles_m_per_s", JsonKind::Number},
-                                   {"/copy_gbytes_per_s", JsonKind::Number}};
 constexpr JsonMember kResult[] = {{"/status", JsonKind::Text},
                                   {"/message", JsonKind::Text},
                                   {"/void", JsonKind::Text},
@@ -60,40 +55,18 @@ double numberFrom(const Json& json) {
 
 }  // namespace
 
-Json toJson(const gl::DeviceBalance& balance) {
-    return {{"fragment_gflops", balance.fragmentGflops},
-            {"compute_gflops", balance.computeGflops},
-            {"fill_gpixels_per_s", balance.fillGpixelsPerS},
-            {"triangles_m_per_s", balance.trianglesMPerS},
-            {"copy_gbytes_per_s", balance.copyGbytesPerS}};
-}
-
-gl::DeviceBalance balanceFromJson(const Json& json, const SourceLocation& where,
-                                  const std::string& prefix) {
-    requireMembers(json, kBalance, where, prefix);
-    gl::DeviceBalance balance;
-    json.at("fragment_gflops").get_to(balance.fragmentGflops);
-    json.at("compute_gflops").get_to(balance.computeGflops);
-    json.at("fill_gpixels_per_s").get_to(balance.fillGpixelsPerS);
-    json.at("triangles_m_per_s").get_to(balance.trianglesMPerS);
-    json.at("copy_gbytes_per_s").get_to(balance.copyGbytesPerS);
-    return balance;
-}
-
 Json toJson(const gl::DeviceInfo& info) {
-    Json json = {{"index", info.index},
-                 {"platform", info.platform},
-                 {"vendor", info.vendor},
-                 {"renderer", info.renderer},
-                 {"version", info.version},
-                 {"mesa_version", info.mesaVersion},
-                 {"uuid", info.uuid},
-                 {"is_software", info.isSoftware},
-                 {"counts_work", info.countsWork},
-                 {"timer_bits", info.timer.bits},
-                 {"timer_resolution_ns", info.timer.stepNs}};
-    if (info.balance) json["balance"] = toJson(*info.balance);
-    return json;
+    return {{"index", info.index},
+            {"platform", info.platform},
+            {"vendor", info.vendor},
+            {"renderer", info.renderer},
+            {"version", info.version},
+            {"mesa_version", info.mesaVersion},
+            {"uuid", info.uuid},
+            {"is_software", info.isSoftware},
+            {"counts_work", info.countsWork},
+            {"timer_bits", info.timer.bits},
+            {"timer_resolution_ns", info.timer.stepNs}};
 }
 
 gl::DeviceInfo deviceInfoFromJson(const Json& json) {
@@ -110,8 +83,6 @@ gl::DeviceInfo deviceInfoFromJson(const Json& json) {
     json.at("counts_work").get_to(info.countsWork);
     json.at("timer_bits").get_to(info.timer.bits);
     json.at("timer_resolution_ns").get_to(info.timer.stepNs);
-    if (json.contains("balance"))
-        info.balance = balanceFromJson(json["balance"], kAnswer, "/balance");
     return info;
 }
 

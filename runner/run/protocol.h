@@ -83,9 +83,6 @@ struct CaseResult {
 
 Json toJson(const gl::DeviceInfo& info);
 gl::DeviceInfo deviceInfoFromJson(const Json& json);
-/// Throws Error(where, …), `prefix` before the places, for what has another shape.
-gl::DeviceBalance balanceFromJson(const Json& json, const SourceLocation& where,
-                                  const std::string& prefix = "");
 Json toJson(const Cost& cost);
 Cost costFromJson(const Json& json);
 Json toJson(const CaseResult& result);

@@ -43,7 +43,6 @@ constexpr JsonMember kManifest[] = {{"/commit", JsonKind::Line},
                                     {"/gl/vendor", JsonKind::Line},
                                     {"/gl/renderer", JsonKind::Line},
                                     {"/gl/version", JsonKind::Line},
-                                    {"/gl/balance", JsonKind::Object, false},
                                     {"/invocations", JsonKind::List},
                                     {"/invocations", JsonKind::Objects},
                                     {"/scenes", JsonKind::Objects},
@@ -124,9 +123,6 @@ Json readManifest(const fs::path& file) {
     const SourceLocation where{file.string(), 0, 0};
     Json manifest = parseJsonObject(MappedFile(file).text(), where);
     requireMembers(manifest, kManifest, where);
-    if (const auto& gl = manifest["gl"]; gl.contains("balance")) {
-        balanceFromJson(gl["balance"], where, "/gl/balance");
-    }
     if (manifest.contains("units")) requireMembers(manifest["units"], kUnits, where, "/units");
     requireEach(manifest, "/invocations", kInvocation, where);
     requireEach(manifest, "/rounds", kRounds, where);

@@ -507,11 +507,8 @@ std::set<std::string> preparedInPairs(const Plan& plan,
     return pairs;
 }
 
-gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,
-                           bool isBalanceMeasured) {
-    std::vector<std::string> command = workerCommand(options, Lane::Quality, ".");
-    if (isBalanceMeasured) command.emplace_back("--balance");
-    WorkerHandle worker(command, Lane::Quality, true, phases);
+gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases) {
+    WorkerHandle worker(workerCommand(options, Lane::Quality, "."), Lane::Quality, true, phases);
     const Clock::time_point limit = Clock::now() + WorkerHandle::startLimit();
     while (!worker.device() && !worker.isGone()) {
         pollfd fds[] = {{worker.process().messageFd(), POLLIN, 0},

@@ -75,10 +75,8 @@ std::vector<std::string> workerCommand(const SchedulerOptions& options, config::
                                        const std::filesystem::path& runDir);
 
 /// Starts a worker for a moment to ask what the device is; a driver that crashes does not take the
-/// runner with it. On hardware with its balance where that is asked for: a second or two. Throws
-/// NoDeviceError.
-gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases,
-                           bool isBalanceMeasured = false);
+/// runner with it. Throws NoDeviceError.
+gl::DeviceInfo probeDevice(const SchedulerOptions& options, PhaseClock& phases);
 
 /// Runs `units` and the further rounds that `rounds` asks for, appending records, images and
 /// journal lines as each ends. Of units that are twins the first is run and recorded for each. A

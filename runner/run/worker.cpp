@@ -12,7 +12,6 @@
 
 #include "engine/core/files.h"
 #include "engine/core/json_shape.h"
-#include "engine/gl/balance.h"
 #include "runner/run/child_process.h"
 #include "runner/run/measure.h"
 #include "runner/run/plan_json.h"
@@ -91,11 +90,7 @@ void serve(gl::Device& device, const WorkerOptions& options,
                            [](std::string_view phase, bool isBegin) {
                                send({{isBegin ? "begin" : "end", phase}});
                            }};
-    gl::DeviceInfo info = device.info();
-    if (options.isBalanceMeasured && !device.isNone() && !info.isSoftware) {
-        info.balance = gl::measureBalance(shaders);
-    }
-    send({{"ready", toJson(info)}});
+    send({{"ready", toJson(device.info())}});
     std::string line;
     while (std::getline(std::cin, line)) {
         const SourceLocation where{"what the runner sent", 0, 0};

@@ -15,9 +15,8 @@ struct WorkerOptions {
     config::Measure::Lane lane = config::Measure::Lane::Quality;
     std::string assetsFolder;
     std::string runDir;
-    std::string command = {};        // that measures, as typed
-    int jobs = 1;                    // quality units at once
-    bool isBalanceMeasured = false;  // of hardware, before it is ready (gl::DeviceBalance)
+    std::string command = {};  // that measures, as typed
+    int jobs = 1;              // quality units at once
 };
 
 /// Runs until standard input ends. Every failure of a case becomes its status; nothing is thrown

@@ -58,17 +58,6 @@ TEST(Doctor, AGpuThatDoesNotServeIsOne) {
               "take another device with --device.\n");
 }
 
-TEST(Doctor, DrawsSlowly) {
-    MachineFacts facts = goodMachine();
-    facts.devices[0].balance = {.fragmentGflops = 20000, .computeGflops = 21000};
-    EXPECT_EQ(linesOf(facts), "");
-    facts.devices[0].balance = {.fragmentGflops = 1850, .computeGflops = 58900};
-    EXPECT_EQ(linesOf(facts),
-              "results draws_slowly: Device 0 does 1850 GFLOP/s when it draws and 58900 when it "
-              "computes: claims that compare drawing with ray tracing come out otherwise than on a "
-              "graphics card. → Measure those on a graphics card, too.\n");
-}
-
 TEST(Doctor, FewStorageBlocks) {
     MachineFacts facts = goodMachine();
     facts.devices[0].maxStorageBlocks = {0, 16, 16, 16, 8};

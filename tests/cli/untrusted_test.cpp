@@ -191,8 +191,6 @@ TEST_F(Untrusted, WhatHasAnotherShapeIsSaidWithItsPlace) {
          "'/cores' is number; expected a whole number below 2^31");
     with(manifest, "/invocations/0/command", nullptr, {"report", dir},
          "'/invocations/0/command' is null; expected text");
-    with(manifest, "/gl/balance", nlohmann::ordered_json::object(), {"table", dir},
-         "'/gl/balance/fragment_gflops' is missing");
     folder.write("run/journal.jsonl",
                  "{\"event\": \"case\", \"case\": \"a\", \"cost\": {\"load_s\": 0, "
                  "\"setup_s\": 0, \"render_s\": 0, \"record_s\": 0, "

@@ -2,7 +2,7 @@
 than one driver.
 
 WHAT  software  runs them on the software device into FOLDER/software, keeps every GL program that they link, and looks for
-                hazards at every draw (LIBRARY: keep_programs, check_hazards, and test_gl)
+                hazards at every draw (LIBRARY: keep_programs and check_hazards)
       zink      runs them on zink, Mesa's OpenGL through Vulkan, on lavapipe: no quality may differ from software's by more
                 than a picture's last bits
       gpu       runs them on the software device that calls itself a GPU (LIBRARY: pretended_gpu): no quality
@@ -151,12 +151,10 @@ if WHAT == "software":
     shutil.rmtree(PROGRAMS, ignore_errors=True)
     PROGRAMS.mkdir(parents=True)
     HAZARDS.unlink(missing_ok=True)
-    keeping = {"LD_PRELOAD": ":".join(LIBRARY[:2]), "KEPT_PROGRAMS": str(PROGRAMS), "HAZARDS": str(HAZARDS)}
+    keeping = {"LD_PRELOAD": ":".join(LIBRARY), "KEPT_PROGRAMS": str(PROGRAMS), "HAZARDS": str(HAZARDS)}
     measure("software", "software", keeping)
     preview = [PROGRAM, "scene", "shapes/torus", "--device", "software", "--render", FOLDER / "preview.png"]
     subprocess.run(preview, env=os.environ | keeping, check=True)
-    # What hardware alone is asked: its balance.
-    subprocess.run([LIBRARY[2], "--gtest_filter=Balance.*"], env=os.environ | keeping, check=True)
 elif WHAT == "zink":
     vulkan = list(LAVAPIPE.glob("lvp_icd*.json")) or skip("Mesa's lavapipe is not here (scripts/setup --tests installs it)")
     mesa = int(read("software", "manifest")["gl"]["mesa_version"].split(".")[0])

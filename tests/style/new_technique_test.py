@@ -80,7 +80,7 @@ with tempfile.TemporaryDirectory() as folder:
             "a__b": "is not snake_case, such as contact_shadows",
             "voxelization": "is taken: techniques/voxelization is there already",
             "class": "is a word of C++",
-            "gl": "is taken: engine/gl/balance.h has a namespace of that name"}.items():
+            "gl": "is taken: engine/gl/device.h has a namespace of that name"}.items():
         refused = run(script, name, "--write-only")
         expect(refused.returncode == 1 and refused.stderr == f"new_technique: '{name}' {reason}\n",
                f"{name}: {refused.stderr}")

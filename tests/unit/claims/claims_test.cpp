@@ -753,24 +753,6 @@ TEST(Claims, TimesAreComparedWithinTheirRound) {
               Verdict::Ambiguous);
 }
 
-/// A chip for computing draws with a small part of itself.
-TEST(Claims, OfAGpusUnitsOneThatIsNoGraphicsCardSaysSo) {
-    const auto records = timedRows(6, [](double n, int round) { return n * drift(round); });
-    const std::string claim = "trend: ms, over: n, direction: increasing, kind: ";
-    ReportContext context = kGpu;
-    EXPECT_EQ(judgeTimed(claim + "architectural", records, context).reason, "");
-    context.fragmentShare = 0.9;
-    EXPECT_EQ(judgeTimed(claim + "architectural", records, context).reason, "");
-    context.fragmentShare = 0.04;
-    const ClaimResult result = judgeTimed(claim + "architectural", records, context);
-    EXPECT_EQ(result.verdict, Verdict::Holds);
-    EXPECT_EQ(result.reason,
-              "this device does the same arithmetic 25.0 times as fast in compute shaders as in "
-              "fragment shaders, a graphics card about as fast: what it says of drawing against "
-              "computing is of this device");
-    EXPECT_EQ(judgeTimed(claim + "algorithmic", records, context).reason, "");
-}
-
 TEST(Claims, TimesRiseOnTheWhole) {
     const std::string rising = "trend: ms, over: n, direction: increasing";
     ClaimResult result =

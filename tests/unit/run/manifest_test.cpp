@@ -4,6 +4,10 @@
 
 #include <sstream>
 
+#include "engine/core/json_shape.h"
+#include "runner/run/run_directory.h"
+#include "tests/support/support.h"
+
 namespace gfxrepro::run {
 namespace {
 
@@ -21,6 +25,15 @@ TEST(CpuName, IsTheModelOrThePartOfAnArm) {
         "ARM 0x41 0xd0c");
     EXPECT_EQ(nameIn("processor\t: 0\nuarch : x\n"), "unknown");
     EXPECT_EQ(nameIn(""), "unknown");
+}
+
+TEST(Manifest, OfAnEarlierVersionMayHaveMore) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.write("manifest.json", R"({
+        "commit": "c", "profile": "quick", "device_class": "gpu", "cpu": "CPU", "cores": 2,
+        "gl": {"vendor": "v", "renderer": "r", "version": "4.5", "balance": {"x": 1}},
+        "invocations": [{"command": "gfxrepro run a.yaml"}], "scenes": {}})");
+    EXPECT_EQ(readManifest(file)["gl"]["balance"]["x"], 1);
 }
 
 }  // namespace
