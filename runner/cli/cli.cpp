@@ -102,8 +102,6 @@ void addRunOptions(CLI::App* app, RunOptions& options) {
     app->add_option("--shard", options.shard, "part K of N; give all parts the same --from")
         ->option_text("K/N");
     addFrom(app, options.from);
-    app->add_option("--budget", options.budget, "only the tables that decide most claims in TIME")
-        ->option_text("TIME");
     app->add_option("--jobs", options.jobs, "cases to run at once where no times are taken")
         ->check(CLI::Range(1, 256))
         ->option_text("N");

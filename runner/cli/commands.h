@@ -45,7 +45,6 @@ struct Chosen {
 
 struct RunOptions {
     Chosen selection;
-    std::string budget;  // "20m": only the tables that decide most claims in this time
     std::string out;
     std::string resume;
     std::string shard;              // "k/n"; empty: everything

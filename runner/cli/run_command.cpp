@@ -31,7 +31,6 @@
 #include "runner/run/run_directory.h"
 #include "runner/run/scheduler.h"
 #include "runner/run/twins.h"
-#include "runner/studies/budget.h"
 
 namespace gfxrepro::cli {
 
@@ -230,34 +229,6 @@ gl::DeviceInfo settleDevice(run::SchedulerOptions& scheduler, run::PhaseClock& p
     return device;
 }
 
-/// Leaves the tables alone that decide most claims in `budgetS`, as earlier runs predict their
-/// times; says which are left out. Twins count in each of their tables: the other may be left out.
-run::Request withinBudget(const run::Plan& plan, const run::Request& request,
-                          const std::vector<std::string>& from, double budgetS) {
-    const History history = openHistory(from, plan.deviceClass);
-    const std::vector<double> timesS = cluster::caseTimesS(plan, history.predictor);
-    std::vector<studies::BudgetItem> items(plan.experiments.size());
-    for (std::size_t e = 0; e < items.size(); ++e) {
-        items[e].claimCount = plan.experiments[e].claims.size();
-        for (std::size_t i = 0; i < plan.cases.size(); ++i) {
-            if (plan.cases[i].experiment == plan.experiments[e].id) items[e].timeS += timesS[i];
-        }
-    }
-    const std::vector<std::size_t> chosen = studies::withinBudget(items, budgetS);
-    if (chosen.empty()) throw Error("--budget: no table with a claim fits into it");
-    run::Request result = request;
-    result.configs.clear();
-    for (std::size_t e = 0; e < items.size(); ++e) {
-        if (std::ranges::binary_search(chosen, e)) {
-            result.configs.push_back(request.configs[e]);
-            continue;
-        }
-        tell("left out: {} ({}, {} claims)\n", plan.experiments[e].id, durationText(items[e].timeS),
-             items[e].claimCount);
-    }
-    return result;
-}
-
 /// Of the user's own height maps: at a wrong scale one sees it after the run, in every picture.
 void warnOfSteepTerrain(const run::Plan& plan, const scene::Catalog& catalog) {
     std::set<std::string> seen;
@@ -309,12 +280,6 @@ Prepared prepareNew(const Context& context, const RunOptions& options, const run
     run::Plan plan =
         planFor(context, request, selection.profile, scheduler.assetsFolder, deviceClassOf(device));
     warnOfSteepTerrain(plan, openCatalog(context, selection.assets));
-    if (!options.budget.empty()) {
-        const run::Request affordable =
-            withinBudget(plan, request, options.from, studies::parseBudgetS(options.budget));
-        plan = planFor(context, affordable, selection.profile, scheduler.assetsFolder,
-                       deviceClassOf(device));
-    }
     fs::path path = options.resume.empty() ? options.out : options.resume;
     if (path.empty()) path = run::defaultRunPath(runSlug(plan));
     run::RunDirectory directory = run::RunDirectory::create(path);
@@ -553,7 +518,6 @@ void requireUsable(const RunOptions& options) {
         throw UsageError("--out and --resume exclude each other: both name the folder");
     }
     if (!options.shard.empty()) cluster::parseShard(options.shard);
-    if (!options.budget.empty()) studies::parseBudgetS(options.budget);
 }
 
 }  // namespace

@@ -18,7 +18,6 @@
 #include "runner/outcome/results.h"
 #include "runner/run/child_process.h"
 #include "runner/run/run.h"
-#include "runner/studies/budget.h"
 #include "runner/studies/sensitivity.h"
 
 namespace gfxrepro::cli {
@@ -224,12 +223,24 @@ void printStudy(const Study& study) {
     say("{}\n", (study.folder / "sensitivity.md").string());
 }
 
+/// "90s", "20m", "1.5h" in seconds. Throws UsageError for anything else, and for 0.
+double parseBudgetS(const std::string& text) {
+    const char unit = text.empty() ? ' ' : text.back();
+    const double seconds = unit == 's' ? 1.0 : unit == 'm' ? 60.0 : unit == 'h' ? 3600.0 : 0.0;
+    const std::optional<double> value =
+        parseDouble(std::string_view(text).substr(0, text.empty() ? 0 : text.size() - 1));
+    if (!value || *value <= 0.0 || seconds == 0.0) {
+        throw UsageError("--budget is '" + text + "'; allowed: a time such as 90s, 20m or 1.5h");
+    }
+    return *value * seconds;
+}
+
 }  // namespace
 
 int sensitivity(const Context& context, const SensitivityOptions& options) {
     const Clock::time_point begin = Clock::now();
     const double budgetS = options.budget.empty() ? std::numeric_limits<double>::infinity()
-                                                  : studies::parseBudgetS(options.budget);
+                                                  : parseBudgetS(options.budget);
     const fs::path folder =
         options.out.empty() ? run::defaultRunPath("sensitivity") : fs::path(options.out);
     tellDevice(options.selection.device);

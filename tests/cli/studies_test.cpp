@@ -89,6 +89,11 @@ TEST_F(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
     EXPECT_THAT(all.out, HasSubstr("sweep/mock any: holds under all 4; rests on: none of the 1 "
                                    "tried\n"));
     EXPECT_FALSE(fs::exists(out + "/sweep-mock/as_configured"));
+    for (const char* bad : {"20", "m", "0m", "-1m", "20 m", "20min", "nanm", "infh"}) {
+        EXPECT_EQ(mockGfxrepro({"sensitivity", config, std::string("--budget=") + bad}).err,
+                  std::string("gfxrepro: --budget is '") + bad +
+                      "'; allowed: a time such as 90s, 20m or 1.5h\n");
+    }
 }
 
 TEST_F(Sensitivity, GoesOnWhereKeptResultsEnd) {
@@ -232,28 +237,6 @@ TEST_F(Sensitivity, WhereNothingCouldBeKeptIsSaidOnce) {
     EXPECT_THAT(readFile(run + "/claims.csv"), HasSubstr(",not tried,,,\n"));
     EXPECT_EQ(timesSaid(out({"claims", run, "--config", config})), 0);
     EXPECT_THAT(readFile(run + "/judged-afterwards/claims.csv"), HasSubstr(",not tried,,,\n"));
-}
-
-TEST(Budget, TablesThatDoNotFitAreLeftOutAndNamed) {
-    const TemporaryFolder folder;
-    const std::string body =
-        "title: t\ntechnique: mock\nlayout:\n  rows: number\n  columns:\n    n: {metric: number}\n"
-        "claims:\n  C: {says: n is there, bound: n, at_least: -1}\n";
-    const std::string small =
-        folder.write("small.yaml", "sweep_of: small\nsweep: {number: [1]}\n" + body);
-    const std::string large = folder.write(
-        "large.yaml",
-        "sweep_of: large\nsweep: {number: [1, 2, 3, 4]}\nparams: {pause_ms: 400}\n" + body);
-    const std::string pilot = folder.path() / "pilot", dir = folder.path() / "run";
-    ASSERT_EQ(mockGfxrepro({"run", small, large, "--device", "software", "--out", pilot}).exitCode,
-              0);
-    const ProcessResult run = mockGfxrepro({"run", small, large, "--device", "software", "--budget",
-                                            "1s", "--from", pilot, "--out", dir});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
-    EXPECT_EQ(run.out, "1 of 1 finished; records: " + dir + "/records.csv\n");
-    EXPECT_THAT(run.err, HasSubstr("left out: sweep/large ("));
-    EXPECT_EQ(mockGfxrepro({"run", small, "--budget", "soon"}).err,
-              "gfxrepro: --budget is 'soon'; allowed: a time such as 90s, 20m or 1.5h\n");
 }
 
 TEST(Export, AnArtifactCanBeMeasuredAgain) {
