@@ -227,8 +227,6 @@ config::Outputs outputs() {
             {"planar_pct", "%", "share of the reflective samples that lie on planes",
              Better::Neither, kIsDetail},
             {"visible_reflectors", "reflector", "reflecting objects that are seen"},
-            {"visible_parts", "reflector", "smooth parts of the reflecting objects that are seen",
-             Better::Neither, kIsDetail},
             {"reflectors", "reflector", "reflecting objects"},
             {"parts", "reflector", "smooth parts of the reflecting objects", Better::Neither,
              kIsDetail},
@@ -437,19 +435,16 @@ class ClusteredReflections final : public technique::Technique {
         }
         std::size_t reflective = 0, planar = 0;
         std::set<std::uint32_t> visible;
-        std::size_t visibleParts = 0;
         for (std::size_t reflector = 1; reflector < samples.size(); ++reflector) {
             reflective += samples[reflector];
             planar += isPlanar(families[reflector]) ? samples[reflector] : 0;
             if (samples[reflector] == 0) continue;
             visible.insert(wholeOf(families[reflector]));
-            ++visibleParts;
         }
         recorder.metric("reflective_pct", kit::percent(reflective, surfaces.size()), "%");
         if (reflective > 0) recorder.metric("planar_pct", kit::percent(planar, reflective), "%");
         // Objects, as the thesis counts them; parts are what the clusters are made of.
         recorder.metric("visible_reflectors", static_cast<double>(visible.size()), "reflector");
-        recorder.metric("visible_parts", static_cast<double>(visibleParts), "reflector");
         recorder.metric("reflectors", scene.wholeReflectorCount(), "reflector");
         recorder.metric("parts", scene.reflectorCount(), "reflector");
         recorder.metric("diffuse_triangles", static_cast<double>(diffuseTriangles), "triangle");

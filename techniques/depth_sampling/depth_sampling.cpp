@@ -256,7 +256,6 @@ void requireSamples(const Measures& measures, Method method, const Views& views,
 /// samples that nobody counted.
 void recordMeasures(technique::Recorder& recorder, const Measures& measures, bool hasUsefulness,
                     std::uint64_t pixels) {
-    double occludedSumPct = 0.0;
     double usefulSumPct = 0.0;
     for (std::size_t i = 0; i < measures.images.size(); ++i) {
         const ImageCounts& counts = measures.images[i];
@@ -272,7 +271,6 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, boo
         recorder.metric("redundant_of_pixels_pct", kit::percent(counts.redundant, pixels), "%",
                         pass);
         ofSamples("occluded_pct", counts.occluded);
-        occludedSumPct += kit::percent(counts.occluded, counts.samples);
         if (!hasUsefulness) continue;
         ofSamples("useful_of_samples_pct", counts.useful);
         // Of no occluded sample none is useful: the thesis prints 0 for the first images.
@@ -284,7 +282,6 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, boo
         }
         usefulSumPct += kit::percent(counts.useful, counts.samples);
     }
-    recorder.metric("occluded_sum_pct", occludedSumPct, "%");
     if (hasUsefulness) recorder.metric("useful_sum_pct", usefulSumPct, "%");
     if (!measures.frames.empty()) recordAvailability(recorder, measures.frames);
 }
@@ -457,7 +454,6 @@ config::Outputs outputs() {
              Better::Higher},
             {"useful_pct", "%", "share of the occluded samples that some output frame shows",
              Better::Higher},
-            {"occluded_sum_pct", "%", "occluded_pct, summed over all images", Better::Higher},
             {"useful_sum_pct", "%", "useful_pct, summed over all images", Better::Higher},
             {"available_pct", "%", "share of an output frame's samples that the images have",
              Better::Higher},

@@ -361,8 +361,6 @@ std::vector<ReconstructedMesh> SoftShadows::reconstructMeshes() {
         meshCounts_.samples += mesh.sampleCount;
         meshCounts_.triangles += mesh.triangleCount;
         meshCounts_.bytes += mesh.sizeBytes();
-        meshCounts_.sharedCorners += mesh.sharedCorners;
-        meshCounts_.fittedCorners += mesh.fittedCorners;
     }
     return meshes;
 }
@@ -486,16 +484,11 @@ void SoftShadows::recordErrors(technique::Recorder& recorder, const char* truthN
 
 void SoftShadows::recordMeshes(technique::Recorder& recorder) const {
     const MeshCounts& total = meshCounts_;
-    const auto ratio = [](std::uint64_t part, std::uint64_t whole) {
-        return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
-    };
-    recorder.metric("reference_samples", static_cast<double>(total.samples), "sample");
+    const double perSample =
+        total.samples == 0 ? 0.0
+                           : static_cast<double>(total.bytes) / static_cast<double>(total.samples);
     recorder.metric("mesh_triangles", static_cast<double>(total.triangles), "triangle");
-    recorder.metric("mesh_bytes", static_cast<double>(total.bytes), "byte");
-    recorder.metric("bytes_per_sample", ratio(total.bytes, total.samples), "byte");
-    recorder.metric("fitted_corners_pct",
-                    100.0 * ratio(total.fittedCorners, total.fittedCorners + total.sharedCorners),
-                    "%");
+    recorder.metric("bytes_per_sample", perSample, "byte");
     if (params_.simplifyTo < 1.0F) {
         recorder.metric("simplification_error", simplificationErrorM_, "m");
     }
@@ -561,13 +554,8 @@ config::Outputs outputs() {
              Better::Neither, kIsDetail},
             {"caster_triangles", "triangle", "triangles that cast the shadows"},
             {"mesh_triangles", "triangle", "triangles of the meshes made of depth images"},
-            {"mesh_bytes", "byte", "memory of these meshes", Better::Lower},
-            {"reference_samples", "sample", "samples of the depth images"},
             {"bytes_per_sample", "byte", "memory of the meshes for each sample of the depth images",
              Better::Lower, kIsDetail},
-            {"fitted_corners_pct", "%",
-             "share of a mesh's corners that were fitted and are not shared", Better::Neither,
-             kIsDetail},
             {"simplification_error", "m", "largest distance by which simplification moved a mesh",
              Better::Lower},
             {"missing_pct", "%", "share of the casters seen from the light that the meshes lack",

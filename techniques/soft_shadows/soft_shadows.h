@@ -17,7 +17,7 @@ namespace gfxrepro::soft_shadows {
 
 /// What is recorded of the reconstructed meshes.
 struct MeshCounts {
-    std::uint64_t samples = 0, triangles = 0, bytes = 0, sharedCorners = 0, fittedCorners = 0;
+    std::uint64_t samples = 0, triangles = 0, bytes = 0;
 };
 
 enum class Method {

@@ -452,8 +452,6 @@ config::Outputs outputs() {
             {"tiles", "tile", "tiles drawn"},
             {"patches", "patch", "patches drawn"},
             {"draw_calls", "call", "draw calls of a frame", Better::Lower},
-            detail("visited_tiles", "tile", "tiles of the tree that were visited"),
-            detail("culled_tiles", "tile", "tiles left out because they lie outside the view"),
             detail("culled_patches", "patch", "patches left out because they lie outside the view"),
             {"culled_patches_pct", "%", "culled patches as a share of all patches"},
             {"tile_error_px", "pixel", "greatest error of a drawn tile, on the screen",

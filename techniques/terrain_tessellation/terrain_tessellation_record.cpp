@@ -133,8 +133,6 @@ void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
     if (drawS > 0.0) count("triangles_per_second", triangles / drawS, "triangle/s");
     count("draw_calls", counts.drawCalls, "call");
     count("tiles", static_cast<double>(selection_.tiles.size()), "tile");
-    count("visited_tiles", selection_.visitedCount, "tile");
-    count("culled_tiles", selection_.culledCount, "tile");
     float errorPx = 0.0F;
     for (const Tile& tile : selection_.tiles) errorPx = std::max(errorPx, tile.screenErrorPx);
     count("tile_error_px", errorPx, "pixel");

@@ -79,7 +79,6 @@ void TileTree::walk(int level, glm::ivec2 place, const TileView& view, bool isCu
     // A tile that begins at the last sample or after it has no ground; a map of one sample keeps
     // its only tile.
     if (glm::any(glm::greaterThanEqual(tile.originSample, glm::max(sizeSamples_ - 1, 1)))) return;
-    ++selection.visitedCount;
     if (isCulling && !mayBeVisible(tile.box, view.clipFromWorld)) {
         ++selection.culledCount;
         return;

@@ -30,8 +30,7 @@ struct Tile {
 
 struct TileSelection {
     std::vector<Tile> tiles;
-    int visitedCount = 0;  // tiles that the walk looked at
-    int culledCount = 0;   // of these, dropped as outside the frustum
+    int culledCount = 0;  // of these, dropped as outside the frustum
 };
 
 struct TileView {

@@ -96,36 +96,14 @@ bool isFinite(const glm::vec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-bool isInside(const scene::Box& box, const glm::vec3& p) {
-    return glm::all(glm::greaterThanEqual(p, box.min)) && glm::all(glm::lessThan(p, box.max));
-}
-
 }  // namespace
 
-SampleStatistics statisticsOf(std::span<const glm::vec3> points, int countU, int countV) {
-    SampleStatistics statistics;
-    const auto at = [&](int i, int j) {
-        return points[static_cast<std::size_t>(j) * static_cast<std::size_t>(countU) +
-                      static_cast<std::size_t>(i)];
-    };
-    for (int j = 0; j < countV; ++j) {
-        for (int i = 0; i < countU; ++i) {
-            const glm::vec3 here = at(i, j);
-            if (!isFinite(here)) {
-                ++statistics.nonFinite;
-                continue;
-            }
-            statistics.bounds.add(here);
-            // max() passes over what is not a number.
-            if (i > 0)
-                statistics.largestGap =
-                    std::max(statistics.largestGap, glm::distance(here, at(i - 1, j)));
-            if (j > 0)
-                statistics.largestGap =
-                    std::max(statistics.largestGap, glm::distance(here, at(i, j - 1)));
-        }
+scene::Box finiteBounds(std::span<const glm::vec3> points) {
+    scene::Box bounds;
+    for (const glm::vec3& point : points) {
+        if (isFinite(point)) bounds.add(point);
     }
-    return statistics;
+    return bounds;
 }
 
 ParametricSource::ParametricSource(Params& params, const GridSettings& settings,
@@ -177,14 +155,10 @@ std::vector<glm::vec3> ParametricSource::samplePoints(const gl::ShaderLibrary& s
 
 void ParametricSource::setup(technique::SetupContext& context) {
     const std::vector<glm::vec3> points = samplePoints(context.shaders);
-    statistics_ = statisticsOf(points, sampleCounts_.x, sampleCounts_.y);
-    if (statistics_.bounds.isEmpty()) {
-        throw Error("the parametric surface has no finite sample");
-    }
+    const scene::Box bounds = finiteBounds(points);
+    if (bounds.isEmpty()) throw Error("the parametric surface has no finite sample");
     grid_.layout = settings_.layout;
-    grid_.box = box_ ? *box_ : cubicBox(statistics_.bounds, settings_.layout.resolution(), 1);
-    samplesOutside_ = static_cast<std::size_t>(std::ranges::count_if(
-        points, [&](const glm::vec3& point) { return !isInside(grid_.box, point); }));
+    grid_.box = box_ ? *box_ : cubicBox(bounds, settings_.layout.resolution(), 1);
     grid_.sheets = makeSheets(grid_.layout);
     pass_ = gl::Pass(context.shaders,
                      {"voxelization/parametric.vert.glsl", "voxelization/parametric.frag.glsl"},
@@ -210,9 +184,6 @@ void ParametricSource::render(gl::Profiler& profiler) {
 
 void ParametricSource::record(technique::Recorder& recorder) {
     recorder.metric("samples", static_cast<double>(sampleCounts_.x) * sampleCounts_.y, "sample");
-    recorder.metric("samples_outside", static_cast<double>(samplesOutside_), "sample");
-    // Above 1 the surface may have holes.
-    recorder.metric("sample_gap_voxels", statistics_.largestGap / grid_.voxelSize(), "1");
 }
 
 }  // namespace gfxrepro::voxelization

@@ -32,14 +32,8 @@ class ImplicitSource final : public GridSource {
     gl::Pass pass_;
 };
 
-/// What a grid of samples covers.
-struct SampleStatistics {
-    scene::Box bounds;          // of the finite samples, world space
-    float largestGap = 0.0F;    // between neighbours along u or v, world units
-    std::size_t nonFinite = 0;  // samples that are no point
-};
-/// `points` holds `countU` × `countV` samples, row by row.
-SampleStatistics statisticsOf(std::span<const glm::vec3> points, int countU, int countV);
+/// Of those points that are some: formulas may give none.
+scene::Box finiteBounds(std::span<const glm::vec3> points);
 
 /// Parametric surfaces (x, y, z)(u, v), sampled by points in the vertex stage. [zju2005] Sec. 2.4.1
 /// (2). Every voxel that holds a sample; without holes where the sample gap is at most one voxel.
@@ -53,7 +47,6 @@ class ParametricSource final : public GridSource {
     void setup(technique::SetupContext& context) override;
     void render(gl::Profiler& profiler) override;
     const VoxelGrid* grid() const override { return &grid_; }
-    /// samples, samples_outside, sample_gap_voxels.
     void record(technique::Recorder& recorder) override;
 
   private:
@@ -66,8 +59,6 @@ class ParametricSource final : public GridSource {
     glm::vec4 domain_{0.0F};            // u0, v0, u1, v1
     glm::ivec2 sampleCounts_{0};
     std::optional<scene::Box> box_;
-    SampleStatistics statistics_;
-    std::size_t samplesOutside_ = 0;
     VoxelGrid grid_;
     gl::Pass pass_;
     gl::Framebuffer framebuffer_;

@@ -210,14 +210,10 @@ TEST_F(SurfaceTest, ParametricNormalsPointOutOfTheTorus) {
     });
 }
 
-TEST(SampleStatistics, MeasuresGapsAndSkipsWhatIsNoPoint) {
+TEST(FiniteBounds, PassesOverWhatIsNoPoint) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    const std::vector<glm::vec3> points{{0, 0, 0},    {1, 0, 0},   {3, 0, 0},
-                                        {0, 2.5F, 0}, {nan, 0, 0}, {3, 1, 0}};
-    const SampleStatistics statistics = statisticsOf(points, 3, 2);
-    EXPECT_FLOAT_EQ(statistics.largestGap, 2.5F);
-    EXPECT_EQ(statistics.nonFinite, 1U);
-    EXPECT_EQ(statistics.bounds.max, glm::vec3(3, 2.5F, 0));
+    const std::vector<glm::vec3> points{{0, 0, 0}, {3, 0, 0}, {0, 2.5F, 0}, {nan, 9, 9}, {3, 1, 0}};
+    EXPECT_EQ(finiteBounds(points).max, glm::vec3(3, 2.5F, 0));
 }
 
 TEST(ParametricSource, RefusesWhatItCannotDo) {
