@@ -104,7 +104,7 @@ scene::Box Combination::loadSecond(technique::SetupContext& context, VoxelValue 
                                    const scene::Box& firstBounds) {
     const scene::Scene& second = context.scenes.load(settings_.sceneB);
     requireVoxelizable(second);
-    secondInput_.emplace(second, value);
+    secondInput_.emplace(second);
     const scene::Box bounds = secondInput_->mesh().bounds();
     const glm::vec3 size = firstBounds.size();
     offsetWorld_ = settings_.offsetB * std::max({size.x, size.y, size.z});

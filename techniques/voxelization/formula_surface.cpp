@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "techniques/kit/draws.h"
@@ -33,11 +32,6 @@ bool readInside(Params& params) {
 ImplicitSource::ImplicitSource(Params& params, const GridSettings& settings,
                                const std::optional<scene::Box>& box)
     : settings_(settings), formula_(readFormula(params)), isNegativeInside_(readInside(params)) {
-    if (settings.value == VoxelValue::Color) {
-        throw Error(params.locationOf("value"),
-                    "an implicit surface has no colours; allowed: "
-                    "occupancy, normal");
-    }
     grid_.layout = settings.layout;
     grid_.box = box.value_or(scene::Box{glm::vec3(-kQuarticExtent), glm::vec3(kQuarticExtent)});
 }
@@ -120,10 +114,6 @@ ParametricSource::ParametricSource(Params& params, const GridSettings& settings,
     if (settings.fill == Fill::Solid) {
         throw Error(params.locationOf("fill"),
                     "a parametric surface has no inside; allowed with it: surface");
-    }
-    if (settings.value == VoxelValue::Color) {
-        throw Error(params.locationOf("value"),
-                    "a parametric surface has no colours; allowed: occupancy, normal");
     }
 }
 

@@ -17,15 +17,6 @@ bool isPlain(const scene::Scene& scene) {
     return scene.instances.size() == 1 && scene.instances[0].worldFromMesh == glm::mat4(1.0F);
 }
 
-/// The scene with a colour at every vertex.
-scene::Scene coloured(scene::Scene scene) {
-    for (scene::Mesh& mesh : scene.meshes) {
-        if (!mesh.colors.empty()) continue;
-        mesh.colors.assign(mesh.positions.size(), glm::vec3(materialOf(scene, mesh).baseColor));
-    }
-    return scene;
-}
-
 }  // namespace
 
 void requireVoxelizable(const scene::Scene& scene) {
@@ -52,13 +43,11 @@ void requireVoxelizable(const scene::Scene& scene) {
     }
 }
 
-MeshInput::MeshInput(const scene::Scene& scene, VoxelValue value) {
-    const bool needsColors = value == VoxelValue::Color;
-    if (isPlain(scene))
+MeshInput::MeshInput(const scene::Scene& scene) {
+    if (isPlain(scene)) {
         original_ = &scene.meshes[static_cast<std::size_t>(scene.instances[0].mesh)];
-    if (!original_ || (needsColors && original_->colors.empty())) {
-        original_ = nullptr;
-        copy_ = scene::flattened(needsColors ? coloured(scene) : scene);
+    } else {
+        copy_ = scene::flattened(scene);
     }
 }
 
@@ -154,8 +143,6 @@ void checkFits(const char* what, std::size_t sizeBytes, const gl::DeviceLimits& 
 }
 
 gl::Buffer attributesOf(const MeshRequest& request) {
-    if (request.settings.grid.value == VoxelValue::Color)
-        return gl::Buffer::of(request.mesh.colors);
     if (request.settings.grid.value == VoxelValue::Occupancy) return gl::Buffer(1);
     if (!request.mesh.normals.empty()) return gl::Buffer::of(request.mesh.normals);
     return gl::Buffer::of(scene::vertexNormals(request.mesh));

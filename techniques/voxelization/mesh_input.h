@@ -21,9 +21,8 @@ void requireVoxelizable(const scene::Scene& scene);
 /// there already, else a copy.
 class MeshInput {
   public:
-    /// `scene` must outlive this. For VoxelValue::Color, vertices without a colour take their
-    /// material's.
-    MeshInput(const scene::Scene& scene, VoxelValue value);
+    /// `scene` must outlive this.
+    explicit MeshInput(const scene::Scene& scene);
     MeshInput(const MeshInput&) = delete;
     MeshInput& operator=(const MeshInput&) = delete;
 
@@ -149,7 +148,7 @@ struct MeshRequest {
 /// The mesh under voxelization on the device, in the form that a rule needs.
 struct DeviceMesh {
     gl::Buffer positions;   // world space, or lattice units when the request is exact
-    gl::Buffer attributes;  // normals or colours; one element when voxels say occupancy only
+    gl::Buffer attributes;  // normals; one element when voxels say occupancy only
     gl::Buffer triangles;   // in the order of the split
     gl::VertexArray vertexArray;
     std::array<TriangleRange, 3> ranges;

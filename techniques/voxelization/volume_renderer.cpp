@@ -101,7 +101,6 @@ VolumeRenderer::VolumeRenderer(const gl::ShaderLibrary& shaders, const Worksheet
     const bool isOpaque = settings.mode == DrawMode::Opaque;
     gl::Defines defines = layout.defines();
     defines["AXIS"] = static_cast<int>(view_.axis);
-    defines["COLORS"] = settings.value == VoxelValue::Color ? 1 : 0;
     defines["CUT"] = settings.cut ? 1 : 0;
     defines["FRONT_TO_BACK"] = isOpaque ? 1 : 0;
     defines["HEAD"] = settings.mode == DrawMode::Mixed ? 1 : 0;

@@ -49,7 +49,6 @@ constexpr Choice<FillRule> kFillRules[] = {
 constexpr Choice<VoxelValue> kValues[] = {
     {VoxelValue::Occupancy, "occupancy", "full or empty"},
     {VoxelValue::Normal, "normal", "octahedral normal"},
-    {VoxelValue::Color, "color", "the vertices' or the material's colour"},
 };
 constexpr Choice<Split> kSplits[] = {
     {Split::Once, "once", "a static model: split at set-up"},
@@ -179,9 +178,10 @@ MeshVoxelizerSettings readVoxelizer(Params& params) {
     settings.split =
         params.getEnum("split", Split::Once, kSplits, {"when the index buffer is split by axis"});
     if (settings.grid.value != VoxelValue::Occupancy && voxelBits == 1) {
-        throw Error(params.locationOf("value"),
-                    "a voxel of 1 bit says occupancy only; allowed with 'value: normal' and "
-                    "'value: color': voxel_bits 8, 16 or 32");
+        throw Error(
+            params.locationOf("value"),
+            "a voxel of 1 bit says occupancy only; allowed with 'value: normal': voxel_bits "
+            "8, 16 or 32");
     }
     if (isRasterizedOnly && settings.rule != Rule::Rasterized) {
         throw Error(params.locationOf("rule"),
@@ -350,7 +350,7 @@ class Voxelization final : public technique::Technique {
     void setupMesh(technique::SetupContext& context) {
         const MeshVoxelizerSettings& settings = params_.voxelizer;
         const WorksheetLayout& layout = settings.grid.layout;
-        input_.emplace(*context.scene, settings.grid.value);
+        input_.emplace(*context.scene);
         scene::Box bounds = input_->mesh().bounds();
         if (params_.combination.needsSecond()) {
             bounds.add(combination_.loadSecond(context, settings.grid.value, bounds));

@@ -142,7 +142,7 @@ void writeBinvox(const std::filesystem::path& path, const DenseGrid& grid, const
 scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels);
 
 /// What a voxel's value says.
-enum class VoxelValue { Occupancy, Normal, Color };
+enum class VoxelValue { Occupancy, Normal };
 enum class Fill { Surface, Solid };
 
 /// What every source has to know of the grid that is asked for.

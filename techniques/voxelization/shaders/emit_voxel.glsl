@@ -1,18 +1,16 @@
 // Where a fragment shader's voxels go: to the fragment list, or with EMIT_INTO_GRID straight into a
-// grid of the z layout (methods direct and slices). The value is made from the interpolated normal
-// or colour as VALUE says (0 occupancy, 1 normal, 2 colour).
+// grid of the z layout (methods direct and slices). The value is full, or with VALUE the interpolated
+// normal.
 #include "voxelization/worksheet.glsl"
-#if VALUE != 0
+#if VALUE
 #include "voxelization/voxel_value.glsl"
 #endif
 
 uniform int axis;  // of projection: 0 x, 1 y, 2 z
 
 uint encodedValue(vec3 meaning) {
-#if VALUE == 1
+#if VALUE
     return encodeNormal(meaning);
-#elif VALUE == 2
-    return encodeColor(meaning);
 #else
     return LANE_MASK;
 #endif

@@ -74,5 +74,5 @@ void main() {
     normal = normalize(normal + kFaceShare * vec3(face));
     // A plane leaves two fifths open; less is a crevice.
     float crevice = mix(0.55, 1.0, smoothstep(0.08, 0.40, openness));
-    color = vec4(lit(albedoOf(voxel, value), normal, towardsEye) * crevice, 1.0);
+    color = vec4(lit(albedoOf(voxel), normal, towardsEye) * crevice, 1.0);
 }

@@ -58,7 +58,7 @@ vec3 normalOf(ivec3 voxel, uint value) {
 vec3 shaded(ivec3 voxel, uint value, vec3 towardsEye) {
     vec3 normal = normalOf(voxel, value);
     if (normal == vec3(0.0)) normal = towardsEye;
-    return lit(albedoOf(voxel, value), faceForward(normalize(normal), towardsEye), towardsEye);
+    return lit(albedoOf(voxel), faceForward(normalize(normal), towardsEye), towardsEye);
 }
 
 // `below` lies under what is already there.

@@ -36,10 +36,8 @@ const vec3 kFirstColor = vec3(0.62, 0.56, 0.47);  // grey-beige
 const vec3 kSecondColor = vec3(0.42, 0.50, 0.60);  // grey-blue
 const vec3 kCommonColor = vec3(0.80, 0.03, 0.02);  // red, as figure 2.8 marks what collides
 
-vec3 albedoOf(ivec3 voxel, uint value) {
-#if COLORS
-    return decodeColor(value);
-#elif SECOND
+vec3 albedoOf(ivec3 voxel) {
+#if SECOND
     if (loadVoxel(sheets, voxel) == 0u) return kSecondColor;
     return loadVoxel(secondSheets, voxel) == 0u ? kFirstColor : kCommonColor;
 #else

@@ -1,9 +1,8 @@
-// What the bits of a voxel say: a quantised normal or colour, for voxels of VOXEL_BITS (8, 16 or 32)
-// bits. 0 is empty; no encoding gives 0. The host has the same codes in
+// What the bits of a voxel say: a quantised normal, for voxels of VOXEL_BITS (8, 16 or 32) bits.
+// 0 is empty; no normal gives 0. The host has the same codes in
 // tests/techniques/voxelization/voxel_value.h.
 
 const uvec2 kNormalLevels = VOXEL_BITS == 8 ? uvec2(15u) : VOXEL_BITS == 16 ? uvec2(255u) : uvec2(65535u, 32767u);
-const uvec3 kColorBits = VOXEL_BITS == 8 ? uvec3(3u, 3u, 2u) : VOXEL_BITS == 16 ? uvec3(5u, 6u, 5u) : uvec3(8u);
 
 vec2 signNotZero(vec2 v) { return vec2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0); }
 
@@ -23,17 +22,4 @@ vec3 decodeNormal(uint code) {
     vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
     if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * signNotZero(p);
     return normalize(n);
-}
-
-// Linear colour, red in the highest bits; black in 8 and 16 bits is the darkest blue.
-uint encodeColor(vec3 color) {
-    uvec3 q = uvec3(floor(clamp(color, 0.0, 1.0) * vec3((uvec3(1u) << kColorBits) - 1u) + 0.5));
-    uint code = q.r << (kColorBits.g + kColorBits.b) | q.g << kColorBits.b | q.b;
-    return VOXEL_BITS == 32 ? 0xFF000000u | code : max(code, 1u);
-}
-
-vec3 decodeColor(uint code) {
-    uvec3 maximum = (uvec3(1u) << kColorBits) - 1u;
-    uvec3 q = uvec3(code >> (kColorBits.g + kColorBits.b), code >> kColorBits.b, code) & maximum;
-    return vec3(q) / vec3(maximum);
 }

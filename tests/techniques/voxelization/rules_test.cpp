@@ -193,23 +193,20 @@ TEST_F(RulesTest, WidthsAgreeOnOccupancy) {
 TEST_F(RulesTest, ValuesDependOnNoOrder) {
     scene::Mesh mesh = shapes::joined(shapes::torus(glm::vec3(0.0F), 0.7F, 0.3F, 40, 20),
                                       shapes::sphere(glm::vec3(0.2F), 0.7F, 3));
-    for (const glm::vec3& p : mesh.positions) mesh.colors.push_back(glm::abs(p));
     mesh.normals = scene::vertexNormals(mesh);
     scene::Mesh reversed = mesh;
     std::ranges::reverse(reversed.triangles);
-    for (const VoxelValue value : {VoxelValue::Normal, VoxelValue::Color}) {
-        for (const int bits : {8, 16, 32}) {
-            for (const Rule rule : {Rule::Rasterized, Rule::Thin, Rule::Conservative}) {
-                auto s = settings(32, rule, bits);
-                s.grid.value = value;
-                const DenseGrid grid = voxelize(mesh, s).grid;
-                EXPECT_EQ(voxelize(reversed, s).grid, grid);
-                auto occupancy = settings(32, rule, 1);
-                EXPECT_EQ(occupancyOf(grid), voxelize(mesh, occupancy).grid);
-                if (rule == Rule::Conservative) continue;
-                s.method = Method::Direct;
-                EXPECT_EQ(voxelize(mesh, s).grid, grid);
-            }
+    for (const int bits : {8, 16, 32}) {
+        for (const Rule rule : {Rule::Rasterized, Rule::Thin, Rule::Conservative}) {
+            auto s = settings(32, rule, bits);
+            s.grid.value = VoxelValue::Normal;
+            const DenseGrid grid = voxelize(mesh, s).grid;
+            EXPECT_EQ(voxelize(reversed, s).grid, grid);
+            auto occupancy = settings(32, rule, 1);
+            EXPECT_EQ(occupancyOf(grid), voxelize(mesh, occupancy).grid);
+            if (rule == Rule::Conservative) continue;
+            s.method = Method::Direct;
+            EXPECT_EQ(voxelize(mesh, s).grid, grid);
         }
     }
 }

@@ -226,8 +226,6 @@ TEST(ParametricSource, RefusesWhatItCannotDo) {
     EXPECT_EQ(
         errorOf("{fill: solid}", {WorksheetLayout(32, 1), VoxelValue::Occupancy, Fill::Solid}),
         "test.yaml:1:8: a parametric surface has no inside; allowed with it: surface");
-    EXPECT_EQ(errorOf("{value: color}", {WorksheetLayout(32, 8), VoxelValue::Color}),
-              "test.yaml:1:9: a parametric surface has no colours; allowed: occupancy, normal");
     EXPECT_EQ(errorOf("{samples: [2.5, 4]}", {WorksheetLayout(32, 8)}),
               "test.yaml:1:11: 'samples' must be whole numbers, found 2.5");
 }

@@ -1,4 +1,4 @@
-// What the bits of a voxel say, beside "full": a quantised normal or colour. 0 is empty.
+// What the bits of a voxel say, beside "full": a quantised normal. 0 is empty.
 // By the host: what voxel_value.glsl gives.
 #pragma once
 
@@ -16,13 +16,6 @@ inline glm::uvec2 normalLevels(int voxelBits) {
     return voxelBits == 8    ? glm::uvec2(15)
            : voxelBits == 16 ? glm::uvec2(255)
                              : glm::uvec2(65535, 32767);
-}
-
-inline glm::uvec3 colorBits(int voxelBits) {
-    GFXREPRO_ASSERT(voxelBits == 8 || voxelBits == 16 || voxelBits == 32);
-    return voxelBits == 8    ? glm::uvec3(3, 3, 2)
-           : voxelBits == 16 ? glm::uvec3(5, 6, 5)
-                             : glm::uvec3(8);
 }
 
 inline std::uint32_t quantised(float value, std::uint32_t maximum) {
@@ -62,24 +55,6 @@ inline glm::vec3 decodeNormal(std::uint32_t code, int voxelBits) {
         n = {folded, n.z};
     }
     return glm::normalize(n);
-}
-
-/// Linear colour in 3:3:2, 5:6:5 or 8:8:8 bits (red highest). In 8 and 16 bits black becomes the
-/// darkest blue, code 1; in 32 bits the highest byte is 255. Never 0.
-inline std::uint32_t encodeColor(const glm::vec3& color, int voxelBits) {
-    const glm::uvec3 bits = colorBits(voxelBits);
-    const glm::uvec3 maximum = (glm::uvec3(1) << bits) - 1U;
-    const std::uint32_t code = quantised(color.r, maximum.r) << (bits.g + bits.b) |
-                               quantised(color.g, maximum.g) << bits.b |
-                               quantised(color.b, maximum.b);
-    return voxelBits == 32 ? 0xFF000000U | code : std::max(code, 1U);
-}
-
-inline glm::vec3 decodeColor(std::uint32_t code, int voxelBits) {
-    const glm::uvec3 bits = colorBits(voxelBits);
-    const glm::uvec3 maximum = (glm::uvec3(1) << bits) - 1U;
-    const glm::uvec3 q = glm::uvec3(code >> (bits.g + bits.b), code >> bits.b, code) & maximum;
-    return glm::vec3(q) / glm::vec3(maximum);
 }
 
 }  // namespace gfxrepro::voxelization
