@@ -1,6 +1,7 @@
 #include "runner/technique/technique.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <utility>
 
 #include "engine/core/error.h"
