@@ -43,8 +43,7 @@ void applyWhen(const Node& when, AxisPoint& point);
 
 /// Where another metric, a time or an error, has this value between the cases that a cell takes.
 struct Equal {
-    std::string metric;
-    std::string pass;  // empty: the whole case
+    std::string metric;  // of the whole case
     double is = 0.0;
 };
 

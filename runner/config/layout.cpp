@@ -41,7 +41,6 @@ Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
         requireKeys(*equal, "equal", keysOf("equal"));
         const std::string what = "equal";
         selection.equal = Equal{lineOf(requiredAt(*equal, "metric", what), "metric"),
-                                optionalLine(*equal, "pass", what),
                                 numberIn(requiredAt(*equal, "is", what), {}, "equal: is")};
     }
     if (const Node* of = node.find("of")) {
@@ -403,7 +402,6 @@ std::vector<SchemaSection> layoutKeys() {
          "The cell takes the cases of a swept axis, and shows its metric where another one has a "
          "value: interpolated between the two nearest cases, on logarithmic scales.",
          {{"metric", "name", "required", "the other metric", text()},
-          {"pass", "name", "whole case", "step of the algorithm", text()},
           {"is", "number", "required", "its value", number()}},
          false}};
 }

@@ -115,7 +115,7 @@ void requireCells(const config::Layout& layout, const config::Outputs& outputs) 
             const tables::CellQuery cell = tables::makeQuery(layout, row, column);
             requireNoWhole(cell.metric, cell.pass, outputs, cell.location);
             if (!cell.equal) continue;
-            requireNoWhole(cell.equal->metric, cell.equal->pass, outputs, cell.location);
+            requireNoWhole(cell.equal->metric, "", outputs, cell.location);
         }
     }
 }
@@ -131,12 +131,7 @@ void requireOutputs(const config::Experiment& experiment,
     const auto require = [&](const config::Selection& selection) {
         const SourceLocation& where = selection.location;
         if (selection.metric) outputs.requireMetric(*selection.metric, owner, where);
-        if (selection.equal) {
-            outputs.requireMetric(selection.equal->metric, owner, where);
-            if (!selection.equal->pass.empty()) {
-                outputs.requirePass(selection.equal->pass, owner, where);
-            }
-        }
+        if (selection.equal) outputs.requireMetric(selection.equal->metric, owner, where);
         if (selection.pass && !selection.pass->empty()) {
             outputs.requirePass(*selection.pass, owner, where);
             if (selection.metric) requireOfPasses(*outputs.find(*selection.metric), where);

@@ -469,13 +469,9 @@ bool showsSetup(const config::Layout& layout, const config::Outputs& outputs) {
     };
     const auto shows = [&](const config::Selection& selection) {
         std::vector<std::string> metrics = {selection.metric.value_or("")};
-        std::vector<std::string> passes = {selection.pass.value_or("")};
-        if (selection.equal) {
-            metrics.push_back(selection.equal->metric);
-            passes.push_back(selection.equal->pass);
-        }
+        if (selection.equal) metrics.push_back(selection.equal->metric);
         return std::ranges::any_of(metrics, std::bind_front(isOfSetup, outputs.metrics)) ||
-               std::ranges::any_of(passes, std::bind_front(isOfSetup, outputs.passes));
+               isOfSetup(outputs.passes, selection.pass.value_or(""));
     };
     if (shows(layout.cell)) return true;
     for (const auto* axes : {&layout.rows, &layout.columns}) {

@@ -380,7 +380,7 @@ std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRe
                                   Gathered& gathered) {
     CellQuery other = query;
     other.metric = query.equal->metric;
-    other.pass = query.equal->pass;
+    other.pass.clear();
     other.scale = 1.0;
     other.isRateOfTime = false;
     std::vector<CurveCase> cases;

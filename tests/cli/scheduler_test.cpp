@@ -213,8 +213,6 @@ TEST_F(SchedulerTest, TablesThatShowSetUpAreNotPreparedInPairs) {
     add("memory", "{metric: peak_memory_bytes}");
     add("pass", "{metric: cpu_time_ms, pass: preprocess}");
     add("equal", "{metric: wall_time_ms, equal: {metric: setup_time_ms, is: 5}}");
-    add("equal-pass",
-        "{metric: wall_time_ms, equal: {metric: cpu_time_ms, pass: preprocess, is: 5}}");
     add("all", "");
     EXPECT_THAT(run::preparedInPairs(plan, techniques), ElementsAre("sweep/frames"));
 }
