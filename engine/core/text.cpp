@@ -137,6 +137,11 @@ bool isUtf8(std::string_view text) {
     return true;
 }
 
+std::size_t columnsOf(std::string_view text) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
 std::string shellQuoted(const std::string& argument) {
     const bool isSafe = !argument.empty() && std::ranges::all_of(argument, [](unsigned char c) {
         return std::isalnum(c) ||

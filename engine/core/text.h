@@ -37,6 +37,9 @@ std::size_t utf8Length(std::string_view text);
 /// Whether all of it is UTF-8.
 bool isUtf8(std::string_view text);
 
+/// Columns on a screen: `…` is one of them and three bytes.
+std::size_t columnsOf(std::string_view text);
+
 /// For /bin/sh: as it is where that is safe, else in single quotes.
 std::string shellQuoted(const std::string& argument);
 

@@ -13,15 +13,17 @@
 #include "engine/core/error.h"
 
 namespace gfxrepro::metrics {
-namespace {
 
 double median(std::span<const double> values) {
+    GFXREPRO_ASSERT(!values.empty());
     std::vector<double> sorted(values.begin(), values.end());
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
     if (sorted.size() % 2 == 1) return *middle;
     return std::midpoint(*std::max_element(sorted.begin(), middle), *middle);
 }
+
+namespace {
 
 double percentile(std::span<const double> values, double share) {
     std::vector<double> sorted(values.begin(), values.end());

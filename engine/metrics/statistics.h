@@ -31,6 +31,7 @@ Statistic statisticFromName(std::string_view name);
 /// Of at least one value; Count of none is 0. Median of an even count is the mean of the middle
 /// two. The rate of values of which one is zero is 0; the standard deviation of one value is NaN.
 double summarize(std::span<const double> values, Statistic statistic);
+double median(std::span<const double> values);
 
 /// The fewest independent values of which a 95 % interval can be made by ranks: the range of five
 /// misses the median in 2 · 2⁻⁵ = 6 %, that of six in 3 %.

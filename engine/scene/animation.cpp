@@ -8,17 +8,6 @@
 #include "engine/core/error.h"
 
 namespace gfxrepro::scene {
-namespace {
-
-/// The uniform Catmull-Rom spline between p1 and p2.
-template <class T>
-T catmullRom(const T& p0, const T& p1, const T& p2, const T& p3, float u) {
-    return 0.5F * (2.0F * p1 + (p2 - p0) * u + (2.0F * p0 - 5.0F * p1 + 4.0F * p2 - p3) * (u * u) +
-                   (3.0F * p1 - p0 - 3.0F * p2 + p3) * (u * u * u));
-}
-
-}  // namespace
-
 Camera cameraAt(const CameraPath& path, double time) {
     if (path.keys.empty()) throw Error("the camera path '" + path.name + "' has no keys");
     const auto last = static_cast<int>(path.keys.size()) - 1;

@@ -59,13 +59,6 @@ std::size_t helpPlaceOf(const CLI::App& command) {
     return static_cast<std::size_t>(found - std::begin(kPlaces));
 }
 
-/// Columns on a screen: `…` is one of them and three bytes.
-std::size_t widthOf(std::string_view text) {
-    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-        return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-    }));
-}
-
 bool isChoice(const std::string& value) {
     return value.find('|') != std::string::npos;
 }
@@ -114,7 +107,7 @@ class ScreenFormatter : public CLI::FormatterBase {
         const std::vector<HelpEntry> entries = helpEntries(*app);
         std::size_t column = 0;
         for (const HelpEntry& entry : entries) {
-            const std::size_t width = widthOf(entry.name);
+            const std::size_t width = columnsOf(entry.name);
             if (width <= kMaxNameWidth) column = std::max(column, width + 4);
         }
         for (const HelpEntry& entry : entries) {
@@ -135,15 +128,15 @@ void setFormatter(CLI::App& app, const std::shared_ptr<CLI::FormatterBase>& form
 std::string entryLines(const std::string& name, const std::string& doc, std::size_t column) {
     std::string text;
     std::string line = name;
-    if (widthOf(line) + 2 > column) {
+    if (columnsOf(line) + 2 > column) {
         text = line + "\n";
         line.clear();
     }
-    line.append(column - widthOf(line), ' ');
+    line.append(column - columnsOf(line), ' ');
     const std::size_t width = screenWidth();
     for (const std::string& word : split(doc, ' ')) {
         const bool isFirst = line.find_last_not_of(' ') == std::string::npos || line.back() == ' ';
-        if (!isFirst && widthOf(line) + 1 + widthOf(word) > width) {
+        if (!isFirst && columnsOf(line) + 1 + columnsOf(word) > width) {
             text += line + "\n";
             line = std::string(column, ' ');
         } else if (!isFirst) {

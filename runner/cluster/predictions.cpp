@@ -48,10 +48,6 @@ std::string methodOf(const config::Case& item) {
     return item.technique + '/' + item.method();
 }
 
-double medianOf(std::vector<double> values) {
-    return metrics::summarize(values, metrics::Statistic::Median);
-}
-
 /// The costs in a run's log, by case. Lines that are torn or without a cost are passed over.
 std::map<std::string, std::vector<run::Cost>> loggedCosts(const fs::path& runDir) {
     std::map<std::string, std::vector<run::Cost>> costs;
@@ -104,7 +100,7 @@ run::Cost usualCost(const std::vector<run::Cost>& costs) {
     const auto of = [&](auto member) {
         std::vector<double> values;
         for (const run::Cost& cost : costs) values.push_back(static_cast<double>(cost.*member));
-        return medianOf(std::move(values));
+        return metrics::median(std::move(values));
     };
     return {of(&run::Cost::loadS),
             of(&run::Cost::setupS),
@@ -252,7 +248,8 @@ std::optional<Prediction> Predictor::median(const config::Case& item) const {
     }
     const int which = timesS[1].empty() ? 0 : 1;
     const std::string count = std::to_string(timesS[which].size());
-    return Prediction{medianOf(timesS[which]), static_cast<long long>(medianOf(bytes[which])),
+    return Prediction{metrics::median(timesS[which]),
+                      static_cast<long long>(metrics::median(bytes[which])),
                       Prediction::Source::Median, "of " + count + " cases", false};
 }
 

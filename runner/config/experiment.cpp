@@ -149,13 +149,11 @@ std::vector<Assumption> readAssumptions(const Node& node) {
 
 /// A file without a technique measures nothing: it holds what the paper printed.
 void requireOnlyPrinted(const Node& document) {
-    for (const char* key : {"program", "scene", "scene_params", "scene_instead", "params",
-                            "params_by_scene", "params_instead", "output", "sweep", "measure",
-                            "shows", "layout", "fit", "claims", "plots"}) {
-        if (document.find(key)) {
-            throw Error(document.keyLocation(key),
-                        std::string("'") + key + "' without 'technique'");
-        }
+    for (const std::string& key : sectionKeys()) {
+        const bool isOfPrint =
+            key == "title" || key == "labels" || key == "printed" || key == "assumptions";
+        if (isOfPrint || !document.find(key)) continue;
+        throw Error(document.keyLocation(key), "'" + key + "' without 'technique'");
     }
     if (!document.find("printed")) {
         throw Error(document.location(),

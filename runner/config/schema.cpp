@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "engine/core/text.h"
 #include "engine/scene/catalog_schema.h"
 #include "runner/config/sections.h"
 
@@ -14,15 +15,8 @@ namespace {
 
 using Row = std::array<std::string, 4>;
 
-/// Columns on a screen: `…` is one of them and three bytes.
-std::size_t widthOf(const std::string& text) {
-    std::size_t width = 0;
-    for (const char c : text) width += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-    return width;
-}
-
 std::string padded(const std::string& text, std::size_t width) {
-    return text + std::string(width - std::min(width, widthOf(text)) + 2, ' ');
+    return text + std::string(width - std::min(width, columnsOf(text)) + 2, ' ');
 }
 
 /// The text of a cell: a bar would end it, and `<` begin a tag.
@@ -83,7 +77,7 @@ std::string describeConfig() {
     }
     std::array<std::size_t, 3> widths = {};
     for (const Row& row : rows) {
-        for (std::size_t i = 0; i < 3; ++i) widths[i] = std::max(widths[i], widthOf(row[i]));
+        for (std::size_t i = 0; i < 3; ++i) widths[i] = std::max(widths[i], columnsOf(row[i]));
     }
     std::string text;
     for (const Row& row : rows) {

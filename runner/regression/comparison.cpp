@@ -45,7 +45,8 @@ bool areWhole(const Series& values) {
 
 Difference compareValues(const SeriesKey& key, const Series& before, const Series& after,
                          const Rules& rules) {
-    Difference result{.key = key, .before = medianOf(before), .after = medianOf(after)};
+    Difference result{
+        .key = key, .before = metrics::median(before), .after = metrics::median(after)};
     const bool isRatio = result.before != 0.0 && std::isfinite(result.before);
     result.ratio = isRatio ? result.after / result.before : 1.0;
     result.interval = {result.ratio, result.ratio};
@@ -71,7 +72,7 @@ Difference missing(const SeriesKey& key, const Series& values, bool isBefore) {
             .reason = isBefore ? "void before, not there after" : "void after, not there before"};
     }
     Difference result{.key = key, .verdict = isBefore ? Verdict::Lost : Verdict::Missing};
-    (isBefore ? result.before : result.after) = medianOf(own);
+    (isBefore ? result.before : result.after) = metrics::median(own);
     result.reason = isBefore ? "measured before only" : "measured after only";
     return result;
 }
@@ -98,7 +99,8 @@ struct TestedTime {
 TestedTime testTime(const SeriesKey& key, const Series& allBefore, const Series& allAfter,
                     Pairing pairing, const Rules& rules) {
     const Series before = standing(allBefore), after = standing(allAfter);
-    TestedTime time{{.key = key, .before = medianOf(before), .after = medianOf(after)}, {}};
+    TestedTime time{
+        {.key = key, .before = metrics::median(before), .after = metrics::median(after)}, {}};
     Difference& difference = time.difference;
     if (!arePositive(before) || !arePositive(after)) {
         difference.reason = "a time of zero or less";

@@ -70,7 +70,7 @@ void appendNight(const std::filesystem::path& path, const Night& night) {
         records::CsvRow row(text);
         row.text(night.time).text(night.commit).text(night.machine).text(key.table);
         row.text(key.technique).text(key.method).text(key.scene).text(key.params);
-        row.text(key.pass).text(key.metric).text(key.unit).number(medianOf(values));
+        row.text(key.pass).text(key.metric).text(key.unit).number(metrics::median(values));
         row.end();
     }
     writeFileAtomic(path, text);
@@ -116,7 +116,7 @@ std::optional<Step> findStep(const Series& nights, double significance, double e
     const Split best = clearestSplit(ranksOf(all));
     if (best.first == 0) return std::nullopt;
     const std::span<const double> first = all.first(best.first), rest = all.subspan(best.first);
-    const double before = medianOf(first), after = medianOf(rest);
+    const double before = metrics::median(first), after = metrics::median(rest);
     if (before <= 0.0 || after <= 0.0) return std::nullopt;
     if (std::abs(std::log(after / before)) < std::log1p(effectFloor)) return std::nullopt;
     const auto splits = static_cast<double>(all.size() - 2 * kFewestNights + 1);
@@ -157,8 +157,8 @@ std::vector<Step> findAllSteps(const Series& nights, double significance, double
         const std::size_t begin = i == 0 ? 0 : steps[i - 1].first;
         const std::size_t end = i + 1 == steps.size() ? nights.size() : steps[i + 1].first;
         const std::size_t first = steps[i].first;
-        steps[i].ratio =
-            medianOf(all.subspan(first, end - first)) / medianOf(all.subspan(begin, first - begin));
+        steps[i].ratio = metrics::median(all.subspan(first, end - first)) /
+                         metrics::median(all.subspan(begin, first - begin));
     }
     return steps;
 }
@@ -340,7 +340,7 @@ tables::FigureCurve curveOf(const MachineHistory& history, const SeriesHistory& 
         const bool isLast = level == series.changes.size();
         const std::size_t end =
             isLast ? series.nights.size() : placeOf(series.changes[level].night, series);
-        const double median = medianOf(std::span(series.values).subspan(begin, end - begin));
+        const double median = metrics::median(std::span(series.values).subspan(begin, end - begin));
         curve.reference.push_back(pointAt(series.nights[begin], median));
         curve.reference.push_back(pointAt(series.nights[end - 1], median));
         curve.reference.push_back(pointAt(series.nights[end - 1], std::nullopt));

@@ -31,7 +31,7 @@ double meanOfMedians(const Frames& frames) {
         Series values;
         for (const auto& [repeat, value] : repeats) values.push_back(value);
         if (standing(values).size() < values.size()) return kVoid;
-        sum += medianOf(values);
+        sum += metrics::median(values);
         ++count;
     }
     return sum / static_cast<double>(count);
@@ -211,10 +211,6 @@ std::string reducedParams(const SeriesKey& key, const ParamNames& known) {
     return params.dump();
 }
 
-double medianOf(std::span<const double> values) {
-    return metrics::summarize(values, metrics::Statistic::Median);
-}
-
 std::vector<std::string> titlesOf(const std::vector<const SeriesKey*>& keys) {
     std::map<std::string, std::vector<std::size_t>> places;
     for (std::size_t i = 0; i < keys.size(); ++i) places[keys[i]->title()].push_back(i);
@@ -392,7 +388,7 @@ RankTest rankSum(std::span<const double> before, std::span<const double> after) 
         for (const double b : before) steps.push_back(a - b);
     }
     std::ranges::sort(steps);
-    test.shift = medianOf(steps);
+    test.shift = metrics::median(steps);
     const auto within = [&](double tail) {
         const std::size_t out = stepsInTail(untied, least, tail);
         return out > 0 ? metrics::Interval{steps[out - 1], steps[steps.size() - out]} : kUnbounded;

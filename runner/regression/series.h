@@ -46,8 +46,6 @@ using SeriesMap = std::map<SeriesKey, Series>;
 /// The values that are not void.
 Series standing(const Series& values);
 
-double medianOf(std::span<const double> values);
-
 /// The parameters of a run's cases as SeriesKey has them, by id.
 using CaseParams = std::map<std::string, std::string>;
 

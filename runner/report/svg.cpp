@@ -193,9 +193,7 @@ std::vector<Tick> ticksNamed(const std::vector<std::string>& names, const Axis& 
 
 double textWidth(std::string_view text) {
     constexpr double kLetter = 0.56 * kFontPx;
-    return kLetter * static_cast<double>(std::ranges::count_if(text, [](char c) {
-               return (static_cast<unsigned char>(c) & 0xC0) != 0x80;  // begins a letter
-           }));
+    return kLetter * static_cast<double>(columnsOf(text));
 }
 
 std::string svgElement(double width, double height, const std::string& title,

@@ -15,16 +15,10 @@ namespace {
 
 static_assert(config::kFewestRounds == metrics::kFewestForInterval);
 
-using metrics::Statistic;
-
 /// Values that an interval has beyond those by which it was found to be narrow.
 constexpr std::size_t kNewRounds = 2;
 /// Fewer rounds do not end by a relative error.
 constexpr std::size_t kFewestByError = 14;
-
-double medianOf(const std::vector<double>& values) {
-    return metrics::summarize(values, Statistic::Median);
-}
 
 std::vector<double> roundValues(const std::map<int, double>& rounds) {
     std::vector<double> values;
@@ -64,7 +58,7 @@ std::vector<double> noiseWidths(const std::vector<std::map<int, double>>& cases)
 
 std::optional<double> noiseOf(const std::vector<double>& widths) {
     if (widths.empty()) return std::nullopt;
-    return std::expm1(medianOf(widths));
+    return std::expm1(metrics::median(widths));
 }
 
 std::string percentText(double share) {
@@ -120,7 +114,7 @@ std::vector<std::map<int, double>> FrameTimes::times(Clock clock) const {
         for (const auto& [process, frames] : processes) {
             if (frames.size() < frameCount) continue;
             for (const auto& [frame, repeats] : frames) {
-                sums[process] += medianOf(roundValues(repeats));
+                sums[process] += metrics::median(roundValues(repeats));
             }
         }
     }
@@ -157,7 +151,7 @@ std::optional<double> FrameTimes::relativeErrorOf(std::size_t rounds) const {
         values.resize(rounds);
         const auto interval = metrics::medianInterval(values);
         if (!interval) continue;
-        largest = std::max(largest.value_or(0.0), halfWidth(*interval) / medianOf(values));
+        largest = std::max(largest.value_or(0.0), halfWidth(*interval) / metrics::median(values));
     }
     return largest;
 }
@@ -211,7 +205,7 @@ std::vector<Outlier> FrameTimes::outliers() const {
             for (const auto& [frame, repeats] : frames) {
                 const std::vector<double> fellows = times.fellowsOf(frame);
                 if (fellows.size() < kFewestFellows) continue;
-                const double usual = medianOf(fellows);
+                const double usual = metrics::median(fellows);
                 for (const auto& [repeat, value] : repeats) {
                     if (value < kOutlierFactor * usual) continue;
                     outliers.push_back(

@@ -4,18 +4,13 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "engine/scene/animation.h"
 #include "engine/scene/refine.h"
 #include "scenes/indoor/parts.h"
 #include "scenes/shared/sdf.h"
 
 namespace gfxrepro::scene::indoor {
 namespace {
-
-template <class T>
-T catmullRom(const T& p0, const T& p1, const T& p2, const T& p3, float u) {
-    return 0.5F * (2.0F * p1 + (p2 - p0) * u + (2.0F * p0 - 5.0F * p1 + 4.0F * p2 - p3) * (u * u) +
-                   (3.0F * p1 - p0 - 3.0F * p2 + p3) * (u * u * u));
-}
 
 /// Stretches of an outline without sharp edges, as finely sampled lines.
 std::vector<Outline> runsOf(std::span<const glm::vec2> outline) {

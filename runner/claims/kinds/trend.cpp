@@ -85,10 +85,8 @@ Contrasts slope(Requirement requirement) {
 GroupNumber stepAt(std::size_t place, int direction) {
     return [place, direction](const GroupPoint& group) {
         const std::vector<std::size_t> rows = rowsByX(group);
-        const double before = group.operands[0][rows[place]];
-        const double after = group.operands[0][rows[place + 1]];
-        if (before == after) return 0.0;
-        return direction * (after - before) / std::max(std::abs(before), std::abs(after));
+        return direction * relativeDifference(group.operands[0][rows[place]],
+                                              group.operands[0][rows[place + 1]]);
     };
 }
 
