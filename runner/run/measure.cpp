@@ -161,13 +161,13 @@ void recordPasses(const std::vector<gl::PassTime>& times, bool isSoftware, RunRe
     for (const gl::PassTime& time : times) {
         const bool isGpu = time.clock == gl::PassTime::Clock::Gpu;
         if (time.timeMs) {
-            recorder.metric(isGpu ? "gpu_time_ms" : "cpu_time_ms", *time.timeMs, "ms", time.pass);
+            recorder.metric(isGpu ? "gpu_time_ms" : "cpu_time_ms", *time.timeMs, time.pass);
         }
         processTimesMs[time.pass] += time.processTimeMs;
     }
     if (!isSoftware) return;
     for (const auto& [pass, timeMs] : processTimesMs) {
-        recorder.metric("process_time_ms", timeMs, "ms", pass);
+        recorder.metric("process_time_ms", timeMs, pass);
     }
 }
 
@@ -182,11 +182,11 @@ void requireOfSetup(const std::string& pass, const config::Outputs& outputs) {
 
 void recordScene(const SceneCache::Entry& entry, RunRecorder& recorder) {
     const scene::Scene& scene = entry.scene;
-    recorder.metric("scene_triangles", static_cast<double>(scene.triangleCount()), "triangle", "");
-    recorder.metric("scene_vertices", static_cast<double>(scene.vertexCount()), "vertex", "");
+    recorder.metric("scene_triangles", static_cast<double>(scene.triangleCount()));
+    recorder.metric("scene_vertices", static_cast<double>(scene.vertexCount()));
     // 0 real, 1 stand-in, 2 generated: the kinds in their order.
-    recorder.metric("scene_source", static_cast<int>(scene.origin.kind), "enum", "");
-    recorder.metric("load_time_ms", entry.loadTimeMs, "ms", "");
+    recorder.metric("scene_source", static_cast<int>(scene.origin.kind));
+    recorder.metric("load_time_ms", entry.loadTimeMs);
 }
 
 void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
@@ -194,9 +194,8 @@ void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
     const long long peakBytes = std::max(peakResidentBytes(), entry.peakResidentBytes);
     const auto otherBytes =
         static_cast<long long>(context.scenes.otherBytes() + context.shared.otherBytes());
-    recorder.metric("peak_memory_bytes", static_cast<double>(peakBytes - otherBytes), "byte", "");
-    recorder.metric("baseline_memory_bytes", static_cast<double>(context.baselineMemoryBytes),
-                    "byte", "");
+    recorder.metric("peak_memory_bytes", static_cast<double>(peakBytes - otherBytes));
+    recorder.metric("baseline_memory_bytes", static_cast<double>(context.baselineMemoryBytes));
 }
 
 std::vector<SceneUse> scenesOfCase(const SceneCache& scenes) {
@@ -231,16 +230,13 @@ class WorkGuard {
         work.counts = query_.result();
         if (work.counts) {
             const gl::Work& counts = *work.counts;
-            const auto record = [&](const char* name, std::uint64_t count, const char* unit) {
-                recorder.metric(name, static_cast<double>(count), unit, "");
-            };
-            record("work_primitives", counts.primitives, "primitive");
-            record("work_fragments", counts.fragments, "fragment");
-            record("work_compute_invocations", counts.invocations, "1");
+            recorder.metric("work_primitives", static_cast<double>(counts.primitives));
+            recorder.metric("work_fragments", static_cast<double>(counts.fragments));
+            recorder.metric("work_compute_invocations", static_cast<double>(counts.invocations));
         }
         if (const gl::Texture* image = technique.frameImage()) {
             work.image = ImageDigest::of(image->readImage(4));
-            recorder.metric("work_image_digest", work.image->hash, "1", "");
+            recorder.metric("work_image_digest", work.image->hash);
         }
         repeats_.push_back(std::move(work));
     }
@@ -393,10 +389,10 @@ class FrameLoop {
     }
     /// Its wall time, in ms; of frames that are drawn at once, that of all ÷ their number.
     double measureFrame(technique::FrameContext& frame, int repeat, RunRecorder& recorder) {
-        const auto recordOfEach = [&](const char* metric, double value, const char* unit) {
+        const auto recordOfEach = [&](const char* metric, double value) {
             for (int drawn = frame.frame; drawn < frame.frame + atOnce_; ++drawn) {
                 recorder.setIteration(drawn, repeat);
-                recorder.metric(metric, value, unit, "");
+                recorder.metric(metric, value);
             }
         };
         guard_.beginRepeat();
@@ -406,16 +402,16 @@ class FrameLoop {
         context_.device.finish("rendering");
         const double wallTimeMs = millisecondsSince(begin) / atOnce_;
         const double processTimeMs = gl::processTimeMs() - processBeginMs;
-        recordOfEach("wall_time_ms", wallTimeMs, "ms");
+        recordOfEach("wall_time_ms", wallTimeMs);
         if (const auto elsewhere = technique_.usageElsewhere()) {
-            recordOfEach("process_time_ms", elsewhere->processTimeMs / atOnce_, "ms");
+            recordOfEach("process_time_ms", elsewhere->processTimeMs / atOnce_);
         } else if (isSoftware_) {
-            recordOfEach("process_time_ms", processTimeMs / atOnce_, "ms");
+            recordOfEach("process_time_ms", processTimeMs / atOnce_);
         }
         recorder.setIteration(frame.frame, repeat);
         recordPasses(profiler_.collect(), isSoftware_, recorder);
         guard_.endRepeat(technique_, recorder);
-        recordOfEach("frame_rate", 1000.0 / timeInFlightMs(frame, wallTimeMs), "1/s");
+        recordOfEach("frame_rate", 1000.0 / timeInFlightMs(frame, wallTimeMs));
         return wallTimeMs;
     }
     /// The time of a frame of several that follow one another without a wait for each.
@@ -497,7 +493,7 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
         const Clock::time_point begin = Clock::now();
         technique::setUp(*technique, setup);
         context.device.finish("setting up");
-        recorder.metric("setup_time_ms", millisecondsSince(begin), "ms", "");
+        recorder.metric("setup_time_ms", millisecondsSince(begin));
         const std::vector<gl::PassTime> times = profiler.collect();
         for (const gl::PassTime& time : times) requireOfSetup(time.pass, outputs);
         recordPasses(times, context.device.info().isSoftware, recorder);
@@ -512,7 +508,7 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
         result.cost.peakBytes += elsewhere->peakBytes;
         const bool isOfOneSeed = item.measure.seeds != config::Measure::Seeds::Process;
         if (!isOfOneSeed) result.cost.onceS += elsewhere->onceS;
-        recorder.metric("peak_memory_bytes", static_cast<double>(elsewhere->peakBytes), "byte", "");
+        recorder.metric("peak_memory_bytes", static_cast<double>(elsewhere->peakBytes));
     } else if (scene && isWhole) {
         recordMemory(context, *scene, recorder);
     }

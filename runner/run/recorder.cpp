@@ -179,9 +179,9 @@ std::vector<std::pair<const char*, double>> errorsOf(const image::ImageF& test,
 
 }  // namespace
 
-void RunRecorder::metric(std::string_view metric, double value, std::string_view unit,
-                         std::string_view pass) {
-    requireDeclared(metric, unit, pass);
+void RunRecorder::metric(std::string_view metric, double value, std::string_view pass,
+                         std::optional<std::string_view> givenUnit) {
+    std::string unit = declaredUnit(metric, pass, givenUnit);
     const bool isPerfect = value == kInfinity && unit == "dB";
     if (!std::isfinite(value) && !isPerfect) {
         throw Error(
@@ -195,11 +195,11 @@ void RunRecorder::metric(std::string_view metric, double value, std::string_view
                                 pass.empty() ? "" : fmt::format(" of pass '{}'", pass), where));
     }
     result_.samples.push_back(
-        {frame_, repeat_, std::string(pass), std::string(metric), std::string(unit), value, false});
+        {frame_, repeat_, std::string(pass), std::string(metric), std::move(unit), value, false});
 }
 
-void RunRecorder::requireDeclared(std::string_view metric, std::string_view unit,
-                                  std::string_view pass) const {
+std::string RunRecorder::declaredUnit(std::string_view metric, std::string_view pass,
+                                      std::optional<std::string_view> unit) const {
     const std::string owner = "technique '" + item_.technique + "'";
     outputs_.requireMetric(metric, owner);
     if (!pass.empty()) outputs_.requirePass(pass, owner);
@@ -208,8 +208,9 @@ void RunRecorder::requireDeclared(std::string_view metric, std::string_view unit
         throw Error(
             fmt::format("metric '{}' is declared of passes alone, and given of none", metric));
     }
-    if (info.name != metric || info.unit == unit) return;  // what a share is of has any unit
-    throw Error(fmt::format("metric '{}' is recorded in '{}', but declared in '{}'", metric, unit,
+    if (info.name != metric) return std::string(unit.value_or(""));  // what a share is of
+    if (!unit || *unit == info.unit) return info.unit;
+    throw Error(fmt::format("metric '{}' is recorded in '{}', but declared in '{}'", metric, *unit,
                             info.unit));
 }
 
@@ -289,8 +290,7 @@ void RunRecorder::compareWithTruths() {
             throw Error(fmt::format("image '{}' and its truth: {}", name, error.what()));
         }
         for (const auto& [metric, value] : errorsOf(test, reference, *own.picture, *own.truth)) {
-            const bool isDb = std::string_view(metric) == "psnr_db";
-            this->metric(metric, value, isDb ? "dB" : "1", name);
+            this->metric(metric, value, name);
         }
     }
     compared_.clear();

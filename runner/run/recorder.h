@@ -53,8 +53,8 @@ class RunRecorder : public technique::Recorder {
         repeat_ = repeat;
     }
 
-    void metric(std::string_view metric, double value, std::string_view unit,
-                std::string_view pass) override;
+    void metric(std::string_view metric, double value, std::string_view pass = "",
+                std::optional<std::string_view> unit = {}) override;
     void image(std::string_view name, const image::ImageF& image,
                const technique::ImageOptions& options) override;
     std::filesystem::path artifact(std::string_view fileName) override;
@@ -64,8 +64,9 @@ class RunRecorder : public technique::Recorder {
     void compareWithTruths();
 
   private:
-    void requireDeclared(std::string_view metric, std::string_view unit,
-                         std::string_view pass) const;
+    /// The metric's unit: the declared one, or of what a share is of `unit`.
+    std::string declaredUnit(std::string_view metric, std::string_view pass,
+                             std::optional<std::string_view> unit) const;
     void keepCompared(std::string_view name, const image::ImageF& image,
                       const technique::ImageOptions& options);
 

@@ -13,8 +13,8 @@ namespace gfxrepro::technique {
 void Recorder::share(std::string_view name, double part, double whole, std::string_view unit,
                      std::string_view pass) {
     if (whole == 0.0) return;
-    metric(name, 100.0 * part / whole, "%", pass);
-    metric(std::string(name).append(config::kShareOf), whole, unit, pass);
+    metric(name, 100.0 * part / whole, pass);
+    metric(std::string(name).append(config::kShareOf), whole, pass, unit);
 }
 
 std::span<const config::MetricInfo> commonMetrics() {

@@ -80,10 +80,11 @@ struct ImageOptions {
 class Recorder {
   public:
     virtual ~Recorder() = default;
-    /// `metric`, its `unit` and `pass` as the technique declares them (TechniqueInfo::outputs). A
-    /// metric may be given once a pass and frame.
-    virtual void metric(std::string_view metric, double value, std::string_view unit,
-                        std::string_view pass = "") = 0;
+    /// `metric` and `pass` as the technique declares them (TechniqueInfo::outputs). A metric may be
+    /// given once a pass and frame. `unit`: of what a share is of, which alone is not declared, or
+    /// as a program says it; else it is the declared one.
+    virtual void metric(std::string_view metric, double value, std::string_view pass = "",
+                        std::optional<std::string_view> unit = {}) = 0;
     /// `part` of `whole` as the percentage `metric` ("redundant_pct"), with `whole` as
     /// <metric>_of, from which the report knows how far the share is certain. A share of nothing is
     /// not recorded.

@@ -441,15 +441,14 @@ class ClusteredReflections final : public technique::Technique {
             if (samples[reflector] == 0) continue;
             visible.insert(wholeOf(families[reflector]));
         }
-        recorder.metric("reflective_pct", kit::percent(reflective, surfaces.size()), "%");
-        if (reflective > 0) recorder.metric("planar_pct", kit::percent(planar, reflective), "%");
+        recorder.metric("reflective_pct", kit::percent(reflective, surfaces.size()));
+        if (reflective > 0) recorder.metric("planar_pct", kit::percent(planar, reflective));
         // Objects, as the thesis counts them; parts are what the clusters are made of.
-        recorder.metric("visible_reflectors", static_cast<double>(visible.size()), "reflector");
-        recorder.metric("reflectors", scene.wholeReflectorCount(), "reflector");
-        recorder.metric("parts", scene.reflectorCount(), "reflector");
-        recorder.metric("diffuse_triangles", static_cast<double>(diffuseTriangles), "triangle");
-        recorder.metric("reflective_triangles", static_cast<double>(reflectiveTriangles),
-                        "triangle");
+        recorder.metric("visible_reflectors", static_cast<double>(visible.size()));
+        recorder.metric("reflectors", scene.wholeReflectorCount());
+        recorder.metric("parts", scene.reflectorCount());
+        recorder.metric("diffuse_triangles", static_cast<double>(diffuseTriangles));
+        recorder.metric("reflective_triangles", static_cast<double>(reflectiveTriangles));
     }
 
     // Sec. 4.7.1 counts what holds colours and depths of the screen and of a cluster as frame
@@ -457,10 +456,9 @@ class ClusteredReflections final : public technique::Technique {
     void recordMemory(technique::Recorder& recorder) const {
         const std::size_t ofScreen =
             gbuffer_->sizeBytes() + target_->sizeBytes() + frame_->composite.sizeBytes();
-        recorder.metric("memory_bytes", static_cast<double>(ofScreen + tracer_->sizeBytes()),
-                        "byte");
+        recorder.metric("memory_bytes", static_cast<double>(ofScreen + tracer_->sizeBytes()));
         recorder.metric("frame_buffer_bytes",
-                        static_cast<double>(ofScreen + tracer_->frameBufferBytes()), "byte");
+                        static_cast<double>(ofScreen + tracer_->frameBufferBytes()));
     }
 
     void recordErrors(technique::Recorder& recorder, const HostGBuffer& gbuffer,
@@ -469,19 +467,17 @@ class ClusteredReflections final : public technique::Technique {
         const image::ImageF& truth = known.picture;
         const glm::dvec3 errors = frame_->recordErrors(recorder, gbuffer, picture, truth);
         for (int c = 0; c < 3; ++c)
-            recorder.metric(fmt::format("channel_error_{}", "rgb"[c]), errors[c], "level");
+            recorder.metric(fmt::format("channel_error_{}", "rgb"[c]), errors[c]);
         if (params_.method != Method::EnvironmentMap) {
             const auto wrong = wrongHitPct(gbuffer, known.samples,
                                            target_->distance.read<float>(GL_RED, GL_FLOAT, 1),
                                            frame_->scene.diagonalM());
-            if (wrong) recorder.metric("wrong_hit_pct", *wrong, "%");
+            if (wrong) recorder.metric("wrong_hit_pct", *wrong);
         }
         if (!known.converged.empty()) {
             const auto reflective = reflections::reflectivePixels(gbuffer, params_.supersampling);
-            recorder.metric(
-                "channel_error_converged",
-                reflections::meanOf(kit::channelErrors(picture, known.converged, &reflective)),
-                "level");
+            recorder.metric("channel_error_converged", reflections::meanOf(kit::channelErrors(
+                                                           picture, known.converged, &reflective)));
         }
         if (!params_.showsPictures) return;
         frame_->recordTruth(recorder, gbuffer, picture, truth, 50);
@@ -490,19 +486,18 @@ class ClusteredReflections final : public technique::Technique {
     }
 
     void recordClusters(technique::Recorder& recorder) {
-        recorder.metric("clusters", clusteredTracer_->clusterCount(), "cluster");
+        recorder.metric("clusters", clusteredTracer_->clusterCount());
         if (!params_.drawsReflections()) return;
         const std::vector<std::uint16_t> clusterOfSample = readClusters();
         const std::vector<std::uint8_t> environment = clusteredTracer_->environmentSamples();
         const std::size_t clustered = countOf(clusterOfSample), fallen = countOf(environment);
-        if (clustered > 0) recorder.metric("environment_pct", kit::percent(fallen, clustered), "%");
+        if (clustered > 0) recorder.metric("environment_pct", kit::percent(fallen, clustered));
         const ClusteredTracer::Drawn drawn = clusteredTracer_->drawn();
-        recorder.metric("drawn_triangles", static_cast<double>(drawn.triangles), "triangle");
-        recorder.metric("drawn_left_out", static_cast<double>(drawn.leftOut), "triangle");
+        recorder.metric("drawn_triangles", static_cast<double>(drawn.triangles));
+        recorder.metric("drawn_left_out", static_cast<double>(drawn.leftOut));
         if (clustered > 0) {
             recorder.metric("texels_per_sample",
-                            static_cast<double>(drawn.texels) / static_cast<double>(clustered),
-                            "texel");
+                            static_cast<double>(drawn.texels) / static_cast<double>(clustered));
         }
     }
 
@@ -538,19 +533,19 @@ class ClusteredReflections final : public technique::Technique {
             {gbuffer, truthOf(gbuffer).samples, clusterOfSample, clusteredTracer_->cameras(),
              frame_->scene, frame_->truth->rays(), params_.lobe, reflectorFamilies(frame_->scene)});
         const auto share = [&](const char* name, std::size_t samples) {
-            recorder.metric(name, kit::percent(samples, errors.reflective), "%");
+            recorder.metric(name, kit::percent(samples, errors.reflective));
         };
         if (errors.reflective == 0) return;
         share("occlusion_error_pct", errors.missing());
         share("occlusion_hidden_pct", errors.of(Sight::Hidden));
         recorder.metric("occlusion_hidden_picture_pct",
-                        kit::percent(errors.of(Sight::Hidden), gbuffer.surface.size()), "%");
+                        kit::percent(errors.of(Sight::Hidden), gbuffer.surface.size()));
         share("occlusion_near_pct", errors.of(Sight::BeforeNear));
         share("occlusion_side_pct", errors.of(Sight::Beside));
         share("occlusion_self_pct", errors.of(Sight::Self));
         if (errors.planar > 0) {
             recorder.metric("occlusion_error_planar_pct",
-                            kit::percent(errors.planarMissing, errors.planar), "%");
+                            kit::percent(errors.planarMissing, errors.planar));
         }
         if (params_.showsPictures) {
             frame_->recordMarks(recorder, "occlusion", gbuffer, picture, errors.isMissing);

@@ -233,7 +233,7 @@ void recordAvailability(technique::Recorder& recorder, const std::vector<FrameCo
     recorder.share("available_mean_pct", mean * count, count, "sample");
     recorder.share("available_min_pct", static_cast<double>(worst->available),
                    static_cast<double>(worst->samples), "sample");
-    recorder.metric("unavailable_mean_pct", 100.0 * (1.0 - mean), "%");
+    recorder.metric("unavailable_mean_pct", 100.0 * (1.0 - mean));
 }
 
 /// A conventional image without samples is of a view that looks past the scene. A later one of the
@@ -264,25 +264,24 @@ void recordMeasures(technique::Recorder& recorder, const Measures& measures, boo
             recorder.share(name, static_cast<double>(part), static_cast<double>(counts.samples),
                            "sample", pass);
         };
-        recorder.metric("samples", static_cast<double>(counts.samples), "sample", pass);
-        recorder.metric("coverage_pct", kit::percent(counts.samples, pixels), "%", pass);
+        recorder.metric("samples", static_cast<double>(counts.samples), pass);
+        recorder.metric("coverage_pct", kit::percent(counts.samples, pixels), pass);
         if (counts.samples == 0) continue;
         ofSamples("redundant_pct", counts.redundant);
-        recorder.metric("redundant_of_pixels_pct", kit::percent(counts.redundant, pixels), "%",
-                        pass);
+        recorder.metric("redundant_of_pixels_pct", kit::percent(counts.redundant, pixels), pass);
         ofSamples("occluded_pct", counts.occluded);
         if (!hasUsefulness) continue;
         ofSamples("useful_of_samples_pct", counts.useful);
         // Of no occluded sample none is useful: the thesis prints 0 for the first images.
         if (counts.occluded == 0) {
-            recorder.metric("useful_pct", 0.0, "%", pass);
+            recorder.metric("useful_pct", 0.0, pass);
         } else {
             recorder.share("useful_pct", static_cast<double>(counts.useful),
                            static_cast<double>(counts.occluded), "sample", pass);
         }
         usefulSumPct += kit::percent(counts.useful, counts.samples);
     }
-    if (hasUsefulness) recorder.metric("useful_sum_pct", usefulSumPct, "%");
+    if (hasUsefulness) recorder.metric("useful_sum_pct", usefulSumPct);
     if (!measures.frames.empty()) recordAvailability(recorder, measures.frames);
 }
 
@@ -355,9 +354,9 @@ class DepthSampling final : public technique::Technique {
         recordMeasures(recorder, *measures_, params_.measures.usefulness,
                        static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y));
         recorder.metric("reference_image_bytes",
-                        static_cast<double>(experiment_->referenceImageBytes()), "byte");
+                        static_cast<double>(experiment_->referenceImageBytes()));
         const bool usesFrames = params_.measures.usefulness || params_.measures.availability;
-        recorder.metric("output_frames", usesFrames ? params_.outputFrames : 0, "frame");
+        recorder.metric("output_frames", usesFrames ? params_.outputFrames : 0);
     }
 
   private:

@@ -218,15 +218,14 @@ class External : public technique::Technique {
             if (one.frame != frame_) continue;
             requireItsOwn(one);
             requireTime(one.metric, one.value);
-            recorder.metric(one.metric, one.value, one.unit, one.pass);
+            recorder.metric(one.metric, one.value, one.pass, one.unit);
             given.push_back(one.metric);
         }
         for (const config::ProgramPattern& pattern : program_.patterns) {
             const std::optional<double> value = numberIn(end_.output, pattern);
             if (!value) continue;
             requireTime(pattern.metric, *value);
-            recorder.metric(pattern.metric, *value, program_.outputs.find(pattern.metric)->unit,
-                            "");
+            recorder.metric(pattern.metric, *value);
             given.push_back(pattern.metric);
         }
         const auto isIn = [](const std::vector<std::string>& names, const std::string& name) {

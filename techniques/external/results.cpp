@@ -466,8 +466,8 @@ void recordSameMean(const Samples& pictures, const Samples& truths, const std::s
                         "times, by as many samples a pixel, or as many more frames",
                         what, test.noiseRatio, metrics::kMostNoiseRatio));
     }
-    recorder.metric("same_mean_p", test.p, "1", name);
-    if (std::isfinite(test.seen)) recorder.metric("bias_seen", test.seen, "1", name);
+    recorder.metric("same_mean_p", test.p, name);
+    if (std::isfinite(test.seen)) recorder.metric("bias_seen", test.seen, name);
 }
 
 }  // namespace gfxrepro::external

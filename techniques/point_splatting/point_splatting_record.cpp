@@ -93,11 +93,11 @@ image::ImageF recordDifference(technique::Recorder& recorder, const image::Image
     constexpr double kMostDb = 100.0;
     const image::ImageF a = shown(truth), b = shown(picture);
     recorder.metric("display_psnr_db",
-                    std::min(metrics::peakSignalToNoiseDb(model.of(a), model.of(b)), kMostDb), "dB",
+                    std::min(metrics::peakSignalToNoiseDb(model.of(a), model.of(b)), kMostDb),
                     truthName);
-    recorder.metric("display_ssim", metrics::structuralSimilarity(a, b), "1", truthName);
+    recorder.metric("display_ssim", metrics::structuralSimilarity(a, b), truthName);
     image::ImageF flip = metrics::flipMap(truth, picture);
-    recorder.metric("display_flip", metrics::meanOfFlip(model.of(flip)), "1", truthName);
+    recorder.metric("display_flip", metrics::meanOfFlip(model.of(flip)), truthName);
     return flip;
 }
 
@@ -223,21 +223,20 @@ void PointSplatting::recordModes(technique::Recorder& recorder) const {
 }
 
 void PointSplatting::recordModel(technique::Recorder& recorder) const {
-    const auto count = [&](const char* name, std::size_t value, const char* unit) {
-        recorder.metric(name, static_cast<double>(value), unit);
+    const auto count = [&](const char* name, std::size_t value) {
+        recorder.metric(name, static_cast<double>(value));
     };
     const std::size_t points = model_->positions().size();
-    count("points", points, "point");
-    count("patches", model_->patches().size(), "patch");
-    count("normals_estimated", repairs_.normals, "point");
-    count("radii_estimated", repairs_.radii, "point");
-    count("points_dropped", repairs_.dropped + repairs_.duplicates, "point");
-    recorder.metric("preprocess_ms", preprocessMs_, "ms", model_->wasBuilt() ? "built" : "mapped");
-    count("point_bytes", renderer_->pointBytes(), "byte");
-    count("target_bytes", renderer_->targetBytes(), "byte");
+    count("points", points);
+    count("patches", model_->patches().size());
+    count("normals_estimated", repairs_.normals);
+    count("radii_estimated", repairs_.radii);
+    count("points_dropped", repairs_.dropped + repairs_.duplicates);
+    recorder.metric("preprocess_ms", preprocessMs_, model_->wasBuilt() ? "built" : "mapped");
+    count("point_bytes", renderer_->pointBytes());
+    count("target_bytes", renderer_->targetBytes());
     recorder.metric("bytes_per_point",
-                    static_cast<double>(renderer_->pointBytes()) / static_cast<double>(points),
-                    "byte");
+                    static_cast<double>(renderer_->pointBytes()) / static_cast<double>(points));
     if (params_.selection.prefixShare >= 1.0F) return;
     std::size_t arrived = 0;
     for (const Patch& patch : model_->patches()) {
@@ -245,18 +244,18 @@ void PointSplatting::recordModel(technique::Recorder& recorder) const {
             arrivedLevel(patch, model_->levels(), params_.selection.prefixShare);
         arrived += model_->levels()[patch.firstLevel + level].count;
     }
-    count("arrived_bytes", arrived * sizeof(CompressedPoint), "byte");
+    count("arrived_bytes", arrived * sizeof(CompressedPoint));
 }
 
 void PointSplatting::recordDrawn(technique::Recorder& recorder) const {
     const auto drawn = static_cast<double>(counts_.points);
     const auto all = static_cast<double>(model_->positions().size());
-    recorder.metric("drawn_points", drawn, "point");
-    recorder.metric("drawn_pct", kit::percent(drawn, all), "%");
-    recorder.metric("facing_pct", facingPct(), "%");
-    recorder.metric("patches_drawn", counts_.drawn, "patch");
-    recorder.metric("patches_outside", counts_.outside, "patch");
-    recorder.metric("patches_turned_away", counts_.turnedAway, "patch");
+    recorder.metric("drawn_points", drawn);
+    recorder.metric("drawn_pct", kit::percent(drawn, all));
+    recorder.metric("facing_pct", facingPct());
+    recorder.metric("patches_drawn", counts_.drawn);
+    recorder.metric("patches_outside", counts_.outside);
+    recorder.metric("patches_turned_away", counts_.turnedAway);
 
     std::array<double, 4> ofMode{};
     for (const DrawnPatch& item : drawn_) {
@@ -266,7 +265,7 @@ void PointSplatting::recordDrawn(technique::Recorder& recorder) const {
     }
     constexpr std::array<const char*, 4> kNames{"full_ewa", "reconstruction", "low_pass", "sprite"};
     for (std::size_t mode = 0; mode < ofMode.size(); ++mode) {
-        recorder.metric("mode_pct", kit::percent(ofMode[mode], drawn), "%", kNames[mode]);
+        recorder.metric("mode_pct", kit::percent(ofMode[mode], drawn), kNames[mode]);
     }
 }
 
@@ -298,10 +297,10 @@ void PointSplatting::recordCompression(technique::Recorder& recorder) const {
     };
     Attribute total{"total", 0, 0, 0};
     const auto bits = [&](const Attribute& attribute) {
-        recorder.metric("bits_before", 8.0 * static_cast<double>(attribute.bytesBefore), "bit",
+        recorder.metric("bits_before", 8.0 * static_cast<double>(attribute.bytesBefore),
                         attribute.name);
-        recorder.metric("bits_after", attribute.after, "bit", attribute.name);
-        recorder.metric("bits_stored", attribute.stored, "bit", attribute.name);
+        recorder.metric("bits_after", attribute.after, attribute.name);
+        recorder.metric("bits_stored", attribute.stored, attribute.name);
     };
     for (const Attribute& attribute : kAttributes) {
         bits(attribute);
@@ -316,18 +315,17 @@ void PointSplatting::recordCompression(technique::Recorder& recorder) const {
     recorder.metric("bits_stored",
                     8.0 * static_cast<double>(renderer_->pointBytes()) /
                         static_cast<double>(model_->positions().size()),
-                    "bit", "device");
+                    "device");
 
     const CompressionErrors errors = compressionErrors(*model_);
     constexpr std::array kNames{"position", "normal", "tangents", "radius"};
     for (std::size_t kind = 0; kind < errors.size(); ++kind) {
         const bool isAngle = kind == kNormalError || kind == kTangentError;
         const std::string metric = isAngle ? "compression_angle" : "compression_error";
-        const char* unit = isAngle ? "degree" : "%";
-        recorder.metric(metric + "_mean", errors[kind].mean, unit, kNames[kind]);
-        recorder.metric(metric + "_max", errors[kind].max, unit, kNames[kind]);
+        recorder.metric(metric + "_mean", errors[kind].mean, kNames[kind]);
+        recorder.metric(metric + "_max", errors[kind].max, kNames[kind]);
         if (errors[kind].ofBound > 0.0) {
-            recorder.metric("compression_error_of_bound", errors[kind].ofBound, "1", kNames[kind]);
+            recorder.metric("compression_error_of_bound", errors[kind].ofBound, kNames[kind]);
         }
     }
 }
@@ -360,11 +358,10 @@ void PointSplatting::recordSpeed(technique::Recorder& recorder) {
         seconds.push_back(elapsed.count());
     }
     const double median = metrics::summarize(seconds, metrics::Statistic::Median);
-    recorder.metric("selection_ms", selectionMs(), "ms");
-    recorder.metric("drawn_points_per_second", static_cast<double>(counts_.points) / median,
-                    "point/s");
+    recorder.metric("selection_ms", selectionMs());
+    recorder.metric("drawn_points_per_second", static_cast<double>(counts_.points) / median);
     recorder.metric("model_points_per_second",
-                    static_cast<double>(model_->positions().size()) / median, "point/s");
+                    static_cast<double>(model_->positions().size()) / median);
 }
 
 std::size_t PointSplatting::Truth::sizeBytes() const {

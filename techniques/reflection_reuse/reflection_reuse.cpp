@@ -349,15 +349,14 @@ class ReflectionReuse final : public technique::Technique {
         const std::vector<std::uint32_t> surfaces = reflections::readSurfaces(gbuffer());
         const auto reflective =
             static_cast<std::size_t>(std::ranges::count_if(surfaces, isReflective));
-        recorder.metric("reflective_pct", kit::percent(reflective, surfaces.size()), "%");
+        recorder.metric("reflective_pct", kit::percent(reflective, surfaces.size()));
         if (reflective == 0) frame_->scene.printEmptyView();
         const std::size_t frameBytes =
             renderer_ ? renderer_->sizeBytes()
                       : fullTracing_->gbuffer.sizeBytes() + fullTracing_->target.sizeBytes();
         recorder.metric(
             "memory_bytes",
-            static_cast<double>(frameBytes + frame_->composite.sizeBytes() + tracer_->sizeBytes()),
-            "byte");
+            static_cast<double>(frameBytes + frame_->composite.sizeBytes() + tracer_->sizeBytes()));
         const ReuseCounts counts = renderer_ ? renderer_->counts() : ReuseCounts{};
         if (renderer_) recordReuse(recorder, counts);
         hasReflections_ = reflective > 0;
@@ -461,18 +460,18 @@ class ReflectionReuse final : public technique::Technique {
     void recordReuse(technique::Recorder& recorder, const ReuseCounts& counts) {
         const double recomputedPct =
             kit::percent(counts.recomputedSamples, counts.reflectiveSamples);
-        recorder.metric("is_key_frame", counts.isKeyFrame ? 1.0 : 0.0, "1");
-        recorder.metric("recomputed_samples", counts.recomputedSamples, "sample");
-        if (counts.reflectiveSamples > 0) recorder.metric("saved_pct", 100.0 - recomputedPct, "%");
+        recorder.metric("is_key_frame", counts.isKeyFrame ? 1.0 : 0.0);
+        recorder.metric("recomputed_samples", counts.recomputedSamples);
+        if (counts.reflectiveSamples > 0) recorder.metric("saved_pct", 100.0 - recomputedPct);
         recordRecomputeFit(recorder, counts);
         if (counts.isKeyFrame) {
             if (lastKeyFrame_ >= 0 && frameIndex_ > lastKeyFrame_) {
-                recorder.metric("key_frame_interval", frameIndex_ - lastKeyFrame_, "frame");
+                recorder.metric("key_frame_interval", frameIndex_ - lastKeyFrame_);
             }
             lastKeyFrame_ = frameIndex_;
             return;
         }
-        if (counts.reflectiveSamples > 0) recorder.metric("recomputed_pct", recomputedPct, "%");
+        if (counts.reflectiveSamples > 0) recorder.metric("recomputed_pct", recomputedPct);
         if (params_.method == Method::Reuse) recordMatches(recorder, counts);
     }
 
@@ -493,9 +492,9 @@ class ReflectionReuse final : public technique::Technique {
         if (frameIndex_ + 1 < frameCount_) return;
         const std::optional<LinearFit> fit = linearFit(recomputed_);
         if (!fit) return;
-        recorder.metric("recompute_time_r_squared", fit->rSquared, "1");
-        recorder.metric("recompute_fit_us_per_sample", 1e3 * fit->slope, "us");
-        recorder.metric("recompute_fit_fixed_ms", fit->intercept, "ms");
+        recorder.metric("recompute_time_r_squared", fit->rSquared);
+        recorder.metric("recompute_fit_us_per_sample", 1e3 * fit->slope);
+        recorder.metric("recompute_fit_fixed_ms", fit->intercept);
     }
 
     void recordMatches(technique::Recorder& recorder, const ReuseCounts& counts) {
@@ -509,21 +508,21 @@ class ReflectionReuse final : public technique::Technique {
             unmatched += isValid(offsets[i]) ? 0 : 1;
         }
         if (reflective == 0) return;
-        recorder.metric("matching_steps", counts.matchingSteps, "step");
-        recorder.metric("unmatched_pct", kit::percent(unmatched, reflective), "%");
+        recorder.metric("matching_steps", counts.matchingSteps);
+        recorder.metric("unmatched_pct", kit::percent(unmatched, reflective));
         if (renderer_->shifted()) {
             const std::vector<glm::vec4> shifted = readRadiance(renderer_->shifted()->radiance);
             std::size_t unshifted = 0;
             for (std::size_t i = 0; i < shifted.size(); ++i) {
                 unshifted += isReflective(surfaces[i]) && shifted[i].a <= 0.5F ? 1 : 0;
             }
-            recorder.metric("unshifted_pct", kit::percent(unshifted, reflective), "%");
+            recorder.metric("unshifted_pct", kit::percent(unshifted, reflective));
         }
         if (params_.exhaustiveSamples == 0) return;
         const MatchCheck check =
             checkMatches(readReflectionDepthImage(key), offsets, view_.eyeWorld,
                          params_.reuse.matching, params_.exhaustiveSamples);
-        recorder.metric("wrong_minimum_pct", kit::percent(check.wrong, check.checked), "%");
+        recorder.metric("wrong_minimum_pct", kit::percent(check.wrong, check.checked));
     }
 
     void recordUndetected(technique::Recorder& recorder, const HostGBuffer& host,
@@ -532,7 +531,7 @@ class ReflectionReuse final : public technique::Technique {
             undetectedErrors(host, reflections::readMask(renderer_->recomputed()), picture, truth);
         const auto undetected = static_cast<std::size_t>(std::ranges::count(marks, 1));
         recorder.metric("undetected_pct",
-                        kit::percent(undetected, renderer_->counts().reflectiveSamples), "%");
+                        kit::percent(undetected, renderer_->counts().reflectiveSamples));
         if (params_.showsPictures)
             frame_->recordMarks(recorder, "undetected", host, picture, marks);
     }

@@ -135,11 +135,10 @@ glm::dvec3 Frame::recordErrors(technique::Recorder& recorder, const HostGBuffer&
                                const image::ImageF& picture, const image::ImageF& known) const {
     const std::vector<std::uint8_t> reflective = reflectivePixels(gbuffer, settings.supersampling);
     const glm::dvec3 errors = kit::channelErrors(picture, known, &reflective);
-    recorder.metric("channel_error", meanOf(errors), "level");
-    recorder.metric("channel_error_image", meanOf(kit::channelErrors(picture, known, nullptr)),
-                    "level");
-    recorder.metric("display_flip", metrics::flip(known, picture), "1");
-    recorder.metric("display_psnr_db", kit::shownPsnrDb(picture, known), "dB");
+    recorder.metric("channel_error", meanOf(errors));
+    recorder.metric("channel_error_image", meanOf(kit::channelErrors(picture, known, nullptr)));
+    recorder.metric("display_flip", metrics::flip(known, picture));
+    recorder.metric("display_psnr_db", kit::shownPsnrDb(picture, known));
     return errors;
 }
 

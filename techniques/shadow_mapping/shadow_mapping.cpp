@@ -304,8 +304,8 @@ class ShadowMapping final : public technique::Technique {
 
     void record(technique::Recorder& recorder) override {
         recordSteps(recorder);
-        recorder.metric("lights_without_caster", lightsWithoutCaster_, "light");
-        recorder.metric("memory_bytes", static_cast<double>(maps_->sizeBytes()), "byte");
+        recorder.metric("lights_without_caster", lightsWithoutCaster_);
+        recorder.metric("memory_bytes", static_cast<double>(maps_->sizeBytes()));
     }
 
     void recordOnce(technique::Recorder& recorder) override {
@@ -328,11 +328,11 @@ class ShadowMapping final : public technique::Technique {
                                : step.step == "shading" ? "shading_pass"
                                                         : step.step;
             std::replace(pass.begin(), pass.end(), ' ', '_');
-            recorder.metric("colour_writes", step.colourWrites ? 1.0 : 0.0, "1", pass);
-            recorder.metric("depth_writes", step.depthWrites ? 1.0 : 0.0, "1", pass);
-            recorder.metric("fragment_work", step.fragmentWork ? 1.0 : 0.0, "1", pass);
-            recorder.metric("fetches", step.fetches, "1", pass);
-            recorder.metric("comparisons", step.comparisons, "1", pass);
+            recorder.metric("colour_writes", step.colourWrites ? 1.0 : 0.0, pass);
+            recorder.metric("depth_writes", step.depthWrites ? 1.0 : 0.0, pass);
+            recorder.metric("fragment_work", step.fragmentWork ? 1.0 : 0.0, pass);
+            recorder.metric("fetches", step.fetches, pass);
+            recorder.metric("comparisons", step.comparisons, pass);
         }
     }
 
@@ -370,11 +370,11 @@ class ShadowMapping final : public technique::Technique {
             recorder.image(fmt::format("errors_{}", i), classPicture(errors, sizePx),
                            kit::seenFrom(image.view));
         }
-        recorder.metric("compared_points", static_cast<double>(compared), "pixel");
-        recorder.metric("wrong_pct", kit::percent(edge + acne + leak, compared), "%");
-        recorder.metric("acne_pct", kit::percent(acne, compared), "%");
-        recorder.metric("leak_pct", kit::percent(leak, compared), "%");
-        recorder.metric("edge_pct", kit::percent(edge, compared), "%");
+        recorder.metric("compared_points", static_cast<double>(compared));
+        recorder.metric("wrong_pct", kit::percent(edge + acne + leak, compared));
+        recorder.metric("acne_pct", kit::percent(acne, compared));
+        recorder.metric("leak_pct", kit::percent(leak, compared));
+        recorder.metric("edge_pct", kit::percent(edge, compared));
     }
 
     // S4: pixels whose shadow differs from that of the other method by more than a filtered fetch
@@ -398,7 +398,7 @@ class ShadowMapping final : public technique::Technique {
             }
             differing += differs ? 1 : 0;
         }
-        recorder.metric("methods_differ_pct", kit::percent(differing, here.size()), "%");
+        recorder.metric("methods_differ_pct", kit::percent(differing, here.size()));
     }
 
     ShadowMappingParams params_;

@@ -422,10 +422,10 @@ const HostVisibilityMask& SoftShadows::tracedTruth() {
 
 void SoftShadows::record(technique::Recorder& recorder) {
     recorder.metric("coverage_pct",
-                    kit::percent(hostReceivers_.covered(), hostReceivers_.positions.size()), "%");
+                    kit::percent(hostReceivers_.covered(), hostReceivers_.positions.size()));
     if (params_.method == Method::RayTraced) return;
     const ShadowCaster& caster = caster_ ? *caster_ : *geometry_;
-    recorder.metric("caster_triangles", static_cast<double>(caster.triangleCount()), "triangle");
+    recorder.metric("caster_triangles", static_cast<double>(caster.triangleCount()));
 }
 
 void SoftShadows::recordOnce(technique::Recorder& recorder) {
@@ -464,13 +464,13 @@ void SoftShadows::recordErrors(technique::Recorder& recorder, const char* truthN
     const ShadowErrors errors =
         params_.isFiltered() ? compareShares(litShares_.read<float>(GL_RED, GL_FLOAT, 1), truth)
                              : compareMasks(measuredMask(), truth);
-    recorder.metric("intensity_error_mean", errors.intensityMean, "light sample", truthName);
-    recorder.metric("intensity_error_max", errors.intensityMax, "light sample", truthName);
+    recorder.metric("intensity_error_mean", errors.intensityMean, truthName);
+    recorder.metric("intensity_error_max", errors.intensityMax, truthName);
     if (!params_.isFiltered()) {
-        recorder.metric("visibility_error_mean", errors.visibilityMean, "light sample", truthName);
-        recorder.metric("visibility_error_max", errors.visibilityMax, "light sample", truthName);
-        recorder.metric("wrongly_lit_mean", errors.wronglyLitMean, "light sample", truthName);
-        recorder.metric("wrongly_dark_mean", errors.wronglyDarkMean, "light sample", truthName);
+        recorder.metric("visibility_error_mean", errors.visibilityMean, truthName);
+        recorder.metric("visibility_error_max", errors.visibilityMax, truthName);
+        recorder.metric("wrongly_lit_mean", errors.wronglyLitMean, truthName);
+        recorder.metric("wrongly_dark_mean", errors.wronglyDarkMean, truthName);
     }
     if (params_.showsPictures) {
         recorder.image(fmt::format("error_{}", truthName),
@@ -487,10 +487,10 @@ void SoftShadows::recordMeshes(technique::Recorder& recorder) const {
     const double perSample =
         total.samples == 0 ? 0.0
                            : static_cast<double>(total.bytes) / static_cast<double>(total.samples);
-    recorder.metric("mesh_triangles", static_cast<double>(total.triangles), "triangle");
-    recorder.metric("bytes_per_sample", perSample, "byte");
+    recorder.metric("mesh_triangles", static_cast<double>(total.triangles));
+    recorder.metric("bytes_per_sample", perSample);
     if (params_.simplifyTo < 1.0F) {
-        recorder.metric("simplification_error", simplificationErrorM_, "m");
+        recorder.metric("simplification_error", simplificationErrorM_);
     }
 }
 

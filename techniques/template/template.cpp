@@ -97,7 +97,7 @@ class TemplateTechnique : public technique::Technique {
         const image::ImageF image = colour_.readImage(1);
         const auto values = image.values();
         const double sum = std::accumulate(values.begin(), values.end(), 0.0);
-        recorder.metric("mean_brightness", sum / static_cast<double>(values.size()), "1");
+        recorder.metric("mean_brightness", sum / static_cast<double>(values.size()));
     }
 
     // Where the picture is the same it has the same errors: images, and what is made of them.

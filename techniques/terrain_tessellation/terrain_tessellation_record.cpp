@@ -123,35 +123,32 @@ std::shared_ptr<const TerrainTessellation::Truth> TerrainTessellation::truthOfFr
 }
 
 void TerrainTessellation::recordDrawn(technique::Recorder& recorder) {
-    const auto count = [&](const char* name, double value, const char* unit) {
-        recorder.metric(name, value, unit);
-    };
     const DrawCounts counts = renderer_->counts();
     const double drawS = secondsOf(*drawTime_);
     const auto triangles = static_cast<double>(counts.triangles);
-    count("drawn_triangles", triangles, "triangle");
-    if (drawS > 0.0) count("triangles_per_second", triangles / drawS, "triangle/s");
-    count("draw_calls", counts.drawCalls, "call");
-    count("tiles", static_cast<double>(selection_.tiles.size()), "tile");
+    recorder.metric("drawn_triangles", triangles);
+    if (drawS > 0.0) recorder.metric("triangles_per_second", triangles / drawS);
+    recorder.metric("draw_calls", counts.drawCalls);
+    recorder.metric("tiles", static_cast<double>(selection_.tiles.size()));
     float errorPx = 0.0F;
     for (const Tile& tile : selection_.tiles) errorPx = std::max(errorPx, tile.screenErrorPx);
-    count("tile_error_px", errorPx, "pixel");
-    count("preprocess_ms", preprocessMs_, "ms");
-    count("loaded_tiles", static_cast<double>(loadedTiles_), "tile");
+    recorder.metric("tile_error_px", errorPx);
+    recorder.metric("preprocess_ms", preprocessMs_);
+    recorder.metric("loaded_tiles", static_cast<double>(loadedTiles_));
     const glm::dvec2 samples(scene_->heights->sizeSamples);
-    count("map_mib", samples.x * samples.y * sizeof(float) / (1 << 20), "MiB");
-    count("memory_bytes", static_cast<double>(terrain_->sizeBytes()), "byte");
+    recorder.metric("map_mib", samples.x * samples.y * sizeof(float) / (1 << 20));
+    recorder.metric("memory_bytes", static_cast<double>(terrain_->sizeBytes()));
     const bool hasPatches = params_.method == Method::Adaptive || params_.method == Method::Patches;
     if (!hasPatches) return;
-    count("patches", counts.patches, "patch");
-    count("culled_patches", counts.culledPatches, "patch");
-    count("culled_patches_pct", kit::percent(counts.culledPatches, counts.patches), "%");
+    recorder.metric("patches", counts.patches);
+    recorder.metric("culled_patches", counts.culledPatches);
+    recorder.metric("culled_patches_pct", kit::percent(counts.culledPatches, counts.patches));
     if (params_.method != Method::Adaptive) return;
     const auto skirts =
         params_.render.hasSkirts
             ? static_cast<double>(renderer_->countSkirtTriangles(selection_.tiles, view_))
             : 0.0;
-    count("surface_triangles", triangles - skirts, "triangle");
+    recorder.metric("surface_triangles", triangles - skirts);
     if (params_.drawsYardstick && drawS > 0.0) recordNetRate(recorder, counts, drawS);
 }
 
@@ -160,19 +157,18 @@ void TerrainTessellation::recordFactors(technique::Recorder& recorder) {
     FactorReplay replay(*shaders_, *terrain_, renderer_->settings());
     const std::vector<PatchFactors> drawn = replay.run(selection_.tiles, view_);
     const EdgeAgreement agreement = compareEdges(selection_.tiles, factors.tile, drawn);
-    recorder.metric("shared_edges", agreement.sharedEdges, "edge");
-    recorder.metric("factor_mismatches", agreement.unequalEdges, "edge");
+    recorder.metric("shared_edges", agreement.sharedEdges);
+    recorder.metric("factor_mismatches", agreement.unequalEdges);
     if (params_.checksSeams) recordSeams(recorder, drawn);
     const EdgeJumps jumps = edgeJumps(drawn, factors.inner);
-    recorder.metric("edge_jump", jumps.mean, "1", "mean");
-    recorder.metric("edge_jump", jumps.greatest, "1", "max");
+    recorder.metric("edge_jump", jumps.mean, "mean");
+    recorder.metric("edge_jump", jumps.greatest, "max");
     replay.setSegmentPx(2.0F * factors.segmentPx);
     const FactorHalving halving =
         compareHalving(factors, drawn, replay.run(selection_.tiles, view_));
-    recorder.metric("edges_at_greatest_pct", kit::percent(halving.greatestEdges, halving.edges),
-                    "%");
-    recorder.metric("unclamped_edges", halving.unclampedEdges, "edge");
-    recorder.metric("unhalved_edges", halving.unhalvedEdges, "edge");
+    recorder.metric("edges_at_greatest_pct", kit::percent(halving.greatestEdges, halving.edges));
+    recorder.metric("unclamped_edges", halving.unclampedEdges);
+    recorder.metric("unhalved_edges", halving.unhalvedEdges);
     if (params_.render.spacing != Spacing::FractionalEven ||
         params_.render.factors.edges != EdgeRule::Shared) {
         return;
@@ -183,7 +179,7 @@ void TerrainTessellation::recordFactors(technique::Recorder& recorder) {
         const glm::dvec4 outer(patch.outer);
         most = std::max(most, patchVertices({outer.x, outer.y, outer.z, outer.w}, factors.inner));
     }
-    recorder.metric("most_patch_vertices", most, "vertex");
+    recorder.metric("most_patch_vertices", most);
 }
 
 /// What clearing the window and shading its ground cost without tessellation is taken off.
@@ -200,11 +196,11 @@ void TerrainTessellation::recordNetRate(technique::Recorder& recorder, const Dra
         }
         leastS = std::min(leastS, secondsOf(profiler));
     }
-    recorder.metric("yardstick_ms", 1000.0 * leastS, "ms");
+    recorder.metric("yardstick_ms", 1000.0 * leastS);
     const auto triangles =
         static_cast<double>(counts.triangles) - static_cast<double>(yardstick_->counts().triangles);
     if (drawS <= leastS) return;
-    recorder.metric("triangles_per_second", triangles / (drawS - leastS), "triangle/s", "net");
+    recorder.metric("triangles_per_second", triangles / (drawS - leastS), "net");
 }
 
 void TerrainTessellation::recordSeams(technique::Recorder& recorder,
@@ -214,11 +210,11 @@ void TerrainTessellation::recordSeams(technique::Recorder& recorder,
     TerrainRenderer captured(*shaders_, *terrain_, settings);
     const Seams seams = checkSeams(selection_.tiles, settings.factors.tile, drawn,
                                    captured.capture(selection_.tiles, view_));
-    recorder.metric("seam_edges", static_cast<double>(seams.edges), "edge");
-    recorder.metric("seam_edges", static_cast<double>(seams.patchEdges), "edge", "patches");
-    recorder.metric("seam_edges", static_cast<double>(seams.tileEdges), "edge", "tiles");
-    recorder.metric("open_edges", static_cast<double>(seams.openEdges), "edge");
-    recorder.metric("largest_fan", static_cast<double>(seams.largestFan), "triangle");
+    recorder.metric("seam_edges", static_cast<double>(seams.edges));
+    recorder.metric("seam_edges", static_cast<double>(seams.patchEdges), "patches");
+    recorder.metric("seam_edges", static_cast<double>(seams.tileEdges), "tiles");
+    recorder.metric("open_edges", static_cast<double>(seams.openEdges));
+    recorder.metric("largest_fan", static_cast<double>(seams.largestFan));
 }
 
 void TerrainTessellation::recordCulling(technique::Recorder& recorder) {
@@ -264,23 +260,23 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
     const HeightErrors height = heightErrors(
         framed.depths, [&](float x, float z) { return heightAt(map, x, z); },
         [&] { map.release(); });
-    recorder.metric("height_error_m", height.meanM, "m", "mean");
-    recorder.metric("height_error_m", height.maxM, "m", "max");
-    recorder.metric("height_error_px", height.meanPx / params_.supersampling, "pixel", "mean");
-    recorder.metric("height_error_px", height.maxPx / params_.supersampling, "pixel", "max");
+    recorder.metric("height_error_m", height.meanM, "mean");
+    recorder.metric("height_error_m", height.maxM, "max");
+    recorder.metric("height_error_px", height.meanPx / params_.supersampling, "mean");
+    recorder.metric("height_error_px", height.maxPx / params_.supersampling, "max");
     const std::vector<std::uint8_t> cracks = crackMarks(drawn.upperDepths, truth.upperDepths);
     const std::size_t background = markedCount(crackMarks(framed.depths, truth.depths));
-    recorder.metric("crack_pixels", static_cast<double>(background), "pixel", "background");
-    recorder.metric("crack_pixels", static_cast<double>(markedCount(cracks)), "pixel", "underside");
+    recorder.metric("crack_pixels", static_cast<double>(background), "background");
+    recorder.metric("crack_pixels", static_cast<double>(markedCount(cracks)), "underside");
     // Edge-on triangles may turn over when the device rounds their corners: the truth's, too.
-    recorder.metric("truth_underside_pixels", static_cast<double>(truth.undersidePixels), "pixel");
+    recorder.metric("truth_underside_pixels", static_cast<double>(truth.undersidePixels));
 
     const image::ImageF picture = image::averaged(drawn.picture, params_.supersampling);
     const image::ImageF& truthPicture = known.picture;
     const glm::dvec3 channels = kit::channelErrors(picture, truthPicture, nullptr);
-    recorder.metric("channel_error", (channels.x + channels.y + channels.z) / 3.0, "level");
-    recorder.metric("display_psnr_db", kit::shownPsnrDb(picture, truthPicture), "dB");
-    recorder.metric("display_flip", metrics::flip(truthPicture, picture), "1");
+    recorder.metric("channel_error", (channels.x + channels.y + channels.z) / 3.0);
+    recorder.metric("display_psnr_db", kit::shownPsnrDb(picture, truthPicture));
+    recorder.metric("display_flip", metrics::flip(truthPicture, picture));
     if (!params_.showsPictures) return;
     recorder.image("truth", truthPicture,
                    kit::ImageLayers(truth.depths.view, params_.supersampling)

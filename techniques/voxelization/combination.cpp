@@ -146,14 +146,14 @@ void Combination::render(gl::Profiler& profiler, const VoxelGrid& first) {
 void Combination::record(technique::Recorder& recorder) const {
     if (!extentPass_) return;
     const GridExtent extent = extentPass_->read();
-    recorder.metric("collision_voxels", extent.count, "voxel");
+    recorder.metric("collision_voxels", extent.count);
     if (extent.count == 0) return;
     const scene::Box bounds = extent.bounds(common_);
     constexpr std::array<char, 3> kAxisNames{'x', 'y', 'z'};
     for (int i = 0; i < 3; ++i) {
         const char axis = kAxisNames[static_cast<std::size_t>(i)];
-        recorder.metric(fmt::format("collision_min_{}", axis), bounds.min[i], "scene unit");
-        recorder.metric(fmt::format("collision_max_{}", axis), bounds.max[i], "scene unit");
+        recorder.metric(fmt::format("collision_min_{}", axis), bounds.min[i]);
+        recorder.metric(fmt::format("collision_max_{}", axis), bounds.max[i]);
     }
 }
 

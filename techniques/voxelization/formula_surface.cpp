@@ -173,7 +173,7 @@ void ParametricSource::render(gl::Profiler& profiler) {
 }
 
 void ParametricSource::record(technique::Recorder& recorder) {
-    recorder.metric("samples", static_cast<double>(sampleCounts_.x) * sampleCounts_.y, "sample");
+    recorder.metric("samples", static_cast<double>(sampleCounts_.x) * sampleCounts_.y);
 }
 
 }  // namespace gfxrepro::voxelization

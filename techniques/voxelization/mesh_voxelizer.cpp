@@ -113,7 +113,7 @@ void MeshVoxelizer::render(gl::Profiler& profiler) {
 void MeshVoxelizer::record(technique::Recorder& recorder) {
     method_->record(recorder);
     recorder.metric("memory_bytes",
-                    static_cast<double>(deviceMesh_->sizeBytes() + method_->sizeBytes()), "byte");
+                    static_cast<double>(deviceMesh_->sizeBytes() + method_->sizeBytes()));
 }
 
 }  // namespace gfxrepro::voxelization

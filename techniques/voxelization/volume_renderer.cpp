@@ -271,7 +271,7 @@ void Drawing::render(gl::Profiler& profiler, const VoxelGrid& grid, const VoxelG
 }
 
 void Drawing::record(technique::Recorder& recorder) const {
-    recorder.metric("planes", renderer_->planeCount(), "plane");
+    recorder.metric("planes", renderer_->planeCount());
     recorder.image("draw", renderer_->readImage(), kit::seenFrom(view_));
 }
 

@@ -315,12 +315,12 @@ class Voxelization final : public technique::Technique {
     }
 
     void record(technique::Recorder& recorder) override {
-        const auto count = [&](const char* name, std::size_t value, const char* unit) {
-            recorder.metric(name, static_cast<double>(value), unit);
+        const auto count = [&](const char* name, std::size_t value) {
+            recorder.metric(name, static_cast<double>(value));
         };
         if (input_) {
-            count("triangles", input_->mesh().triangles.size(), "triangle");
-            count("vertices", input_->mesh().positions.size(), "vertex");
+            count("triangles", input_->mesh().triangles.size());
+            count("vertices", input_->mesh().positions.size());
         }
         source_->record(recorder);
         combination_.record(recorder);
@@ -383,10 +383,10 @@ class Voxelization final : public technique::Technique {
 
     static void recordGrid(technique::Recorder& recorder, const DenseGrid& grid) {
         const WorksheetLayout& layout = grid.layout();
-        recorder.metric("voxels", static_cast<double>(grid.countFull()), "voxel");
-        recorder.metric("voxel_bits", layout.voxelBits(), "bit");
-        recorder.metric("worksheet_bytes", static_cast<double>(layout.sizeBytes()), "byte");
-        recorder.metric("digest", digestOf(grid.words()), "1");
+        recorder.metric("voxels", static_cast<double>(grid.countFull()));
+        recorder.metric("voxel_bits", layout.voxelBits());
+        recorder.metric("worksheet_bytes", static_cast<double>(layout.sizeBytes()));
+        recorder.metric("digest", digestOf(grid.words()));
     }
 
     /// `stray_voxels` (fill_rule: surface_voxels) neither lie inside nor touch the surface.
@@ -394,7 +394,7 @@ class Voxelization final : public technique::Technique {
         const int resolution = grid.resolution();
         const LatticeMesh mesh = snapped(input_->mesh(), box_, resolution);
         const auto count = [&](const char* name, const DenseGrid& a, const DenseGrid& b) {
-            recorder.metric(name, static_cast<double>(reference::countMissing(a, b)), "voxel");
+            recorder.metric(name, static_cast<double>(reference::countMissing(a, b)));
         };
         if (params_.voxelizer.grid.fill == Fill::Solid) {
             const DenseGrid expected = reference::solid(mesh, resolution).grid;

@@ -357,12 +357,12 @@ class WorksheetMethod : public MeshMethod {
 
     void record(technique::Recorder& recorder) override {
         const std::size_t fragments = rasterization_.checkedCount();
-        recorder.metric("fragments", static_cast<double>(fragments), "fragment");
+        recorder.metric("fragments", static_cast<double>(fragments));
         if (!solidFill_) return;
         const SolidStatistics found = statistics_.read<SolidStatistics>(1).front();
-        recorder.metric("ambiguous_scan_lines", found.ambiguousScanLines, "scan line");
+        recorder.metric("ambiguous_scan_lines", found.ambiguousScanLines);
         if (takesMajority_) {
-            recorder.metric("disagreeing_voxels", found.disagreeingVoxels, "voxel");
+            recorder.metric("disagreeing_voxels", found.disagreeingVoxels);
         }
     }
 

@@ -154,9 +154,9 @@ class Mock : public technique::Technique {
 
     void record(technique::Recorder& recorder) override {
         const bool isNan = behaviour_ == Behaviour::NotANumber;
-        recorder.metric("number", isNan ? std::nan("") : number_, "1");
-        if (behaviour_ == Behaviour::Twice) recorder.metric("number", number_, "1");
-        if (behaviour_ == Behaviour::Infinite) recorder.metric("fidelity_db", HUGE_VAL, "dB");
+        recorder.metric("number", isNan ? std::nan("") : number_);
+        if (behaviour_ == Behaviour::Twice) recorder.metric("number", number_);
+        if (behaviour_ == Behaviour::Infinite) recorder.metric("fidelity_db", HUGE_VAL);
         // A build that draws something else, for tests that compare two.
         const char* shade = std::getenv("GFXREPRO_MOCK_SHADE");
         if (shade && std::string_view(shade) == "none") return;
@@ -234,10 +234,10 @@ class Dice : public technique::Technique {
         image_.upload(GL_RED, GL_FLOAT, pixels.data());
     }
     void record(technique::Recorder& recorder) override {
-        recorder.metric("face", double{Random(seed_).uniform()}, "1");
+        recorder.metric("face", double{Random(seed_).uniform()});
     }
     void recordOnce(technique::Recorder& recorder) override {
-        recorder.metric("worth", 1.0 + double{Random(seed_).uniform()}, "1");
+        recorder.metric("worth", 1.0 + double{Random(seed_).uniform()});
     }
     const gl::Texture* frameImage() const override { return &image_; }
 

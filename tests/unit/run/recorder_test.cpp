@@ -229,11 +229,11 @@ TEST(RunRecorder, TakesWhatIsDeclaredAlone) {
     const config::Outputs outputs{{{"voxels", "voxel", "full ones"}, {"useful_pct", "%", "useful"}},
                                   {{"draw", "the picture"}, {"image_*", "an image"}}};
     RunRecorder recorder(folder.path(), "", item, outputs, result);
-    recorder.metric("voxels", 7, "voxel", "draw");
-    recorder.metric("voxels", 8, "voxel", "image_12");
+    recorder.metric("voxels", 7, "draw", "voxel");
+    recorder.metric("voxels", 8, "image_12");
     recorder.share("useful_pct", 1, 4, "sample", "");
     const auto refused = [&](const char* metric, const char* unit, const char* pass) {
-        return test::errorText([&] { recorder.metric(metric, 1, unit, pass); });
+        return test::errorText([&] { recorder.metric(metric, 1, pass, unit); });
     };
     EXPECT_EQ(refused("voxel", "voxel", ""),
               "technique 'dots' has no metric 'voxel'; did you mean 'voxels'?");
@@ -245,7 +245,9 @@ TEST(RunRecorder, TakesWhatIsDeclaredAlone) {
               "technique 'dots' has no pass 'image_'; did you mean 'image_*'?");
     EXPECT_EQ(refused("voxels_of", "voxel", ""),
               "technique 'dots' has no metric 'voxels_of'; did you mean 'voxels'?");
-    EXPECT_EQ(result.samples.size(), 4U);
+    std::string units;
+    for (const auto& sample : result.samples) units += sample.metric + " " + sample.unit + "; ";
+    EXPECT_EQ(units, "voxels voxel; voxels voxel; useful_pct %; useful_pct_of sample; ");
 }
 
 }  // namespace
