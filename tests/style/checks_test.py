@@ -55,6 +55,8 @@ expect("check_layers", {"techniques/marching/x.h": "", "engine/core/a.cpp": "// 
        "engine/core/a.cpp: engine/ names the technique 'marching'")
 expect("check_layers", {"engine/core/a.cpp": '#include "error.h"\n'},
        'engine/core/a.cpp:1: includes are root-relative, not "error.h"')
+expect("check_layers", {"runner/config/case.h": '#include "engine/core/a.h"\n', "engine/core/a.h": "#include <nlohmann/json.hpp>\n"},
+       "runner/config/case.h: reaches nlohmann/json.hpp")
 WORKFLOW = ".github/workflows/a.yml"
 for action in ("other/action@v1", "'other/action@main'", "other/action@0123abc", "actions/checkout@v4"):
     expect("check_style", {WORKFLOW: f"      - uses: {action}\n"},
