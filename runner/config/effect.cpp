@@ -43,7 +43,7 @@ void addRanges(const Experiment& experiment, std::set<std::string> scenes,
                 {assumption.range.keyLocation(scene),
                  fmt::format("assumption '{}': range: '{}' is no scene of {}; it has {}",
                              assumption.name, scene, experiment.id,
-                             joined({scenes.begin(), scenes.end()}))});
+                             joined(Names(scenes.begin(), scenes.end())))});
         }
     }
 }
