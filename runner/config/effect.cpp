@@ -64,8 +64,8 @@ bool showsTimes(const Layout& layout) {
 }
 
 std::vector<NoEffect> keysInVain(const Experiment& experiment) {
-    std::vector<NoEffect> found = valuesInVain(experiment);
-    if (!isMeasuredHere(experiment)) return found;
+    if (!isMeasuredHere(experiment)) return {};
+    std::vector<NoEffect> found;
     const Node& document = experiment.document;
     const auto require = [&](const Node* map, const char* key, bool hasEffect,
                              const std::string& why) {

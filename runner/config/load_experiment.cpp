@@ -543,11 +543,13 @@ Override parseOverride(const std::string& text) {
 Node wholeDocument(const fs::path& file, const fs::path& configsFolder) {
     auto [document, overlays] = FileReader(configsFolder).read(file);
     resolveNames(document);
-    document = without(keysInVain(loadExperiment(file, {}, configsFolder)), document);
+    const Experiment asItStands = loadExperiment(file, {}, configsFolder);
+    document = without(valuesInVain(asItStands), without(keysInVain(asItStands), document));
     Node profiles = Node::map({});
     for (auto& [name, overlay] : overlays) {
         resolveNames(overlay);
-        overlay = without(valuesInVain(loadExperiment(file, {name}, configsFolder)), overlay);
+        overlay =
+            without(valuesInVain(loadExperiment(file, {name, {}, {}}, configsFolder)), overlay);
         const Node* earlier = profiles.find(name);
         profiles.set(name, earlier ? overlayOf(*earlier, overlay) : overlay);
     }

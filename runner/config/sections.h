@@ -98,8 +98,8 @@ struct NoEffect {
 std::vector<NoEffect> valuesInVain(const Experiment& experiment);
 /// Each `exclude` that no point of the sweep matches.
 std::vector<NoEffect> excludedInVain(const Experiment& experiment);
-/// These, and every other key of which nothing follows. `experiment` is the file as it stands, with
-/// what profile `paper` makes of it.
+/// These, and every key of which nothing follows. `experiment` is the file as it stands, with what
+/// profile `paper` makes of it.
 std::vector<NoEffect> keysInVain(const Experiment& experiment);
 /// Throws Error for such keys of the experiment's own file.
 void requireEffect(const Experiment& experiment);

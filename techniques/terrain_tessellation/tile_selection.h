@@ -30,7 +30,7 @@ struct Tile {
 
 struct TileSelection {
     std::vector<Tile> tiles;
-    int culledCount = 0;  // of these, dropped as outside the frustum
+    int culledCount = 0;  // tiles that the walk dropped as outside the frustum
 };
 
 struct TileView {

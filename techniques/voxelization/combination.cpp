@@ -100,7 +100,7 @@ CombinationSettings::CombinationSettings(Params& params)
     }
 }
 
-scene::Box Combination::loadSecond(technique::SetupContext& context, VoxelValue value,
+scene::Box Combination::loadSecond(technique::SetupContext& context,
                                    const scene::Box& firstBounds) {
     const scene::Scene& second = context.scenes.load(settings_.sceneB);
     requireVoxelizable(second);

@@ -73,8 +73,7 @@ class Combination {
     explicit Combination(const CombinationSettings& settings) : settings_(settings) {}
 
     /// Loads the second model and returns its bounds where it is put.
-    scene::Box loadSecond(technique::SetupContext& context, VoxelValue value,
-                          const scene::Box& firstBounds);
+    scene::Box loadSecond(technique::SetupContext& context, const scene::Box& firstBounds);
     void setup(technique::SetupContext& context, const MeshVoxelizerSettings& voxelizer,
                const scene::Box& box);
     /// Voxelizes the second model like the first, then combines; scopes "csg" and "collision".

@@ -353,7 +353,7 @@ class Voxelization final : public technique::Technique {
         input_.emplace(*context.scene);
         scene::Box bounds = input_->mesh().bounds();
         if (params_.combination.needsSecond()) {
-            bounds.add(combination_.loadSecond(context, settings.grid.value, bounds));
+            bounds.add(combination_.loadSecond(context, bounds));
         }
         const bool isInHead = params_.drawing.draw.mode == DrawMode::Mixed;
         box_ = params_.box ? *params_.box
