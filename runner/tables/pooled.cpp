@@ -14,30 +14,60 @@ namespace {
 
 constexpr std::size_t kMostSaid = 4;  // values of an axis, rows, columns
 
-/// "a, b", or how many there are.
-std::string listed(const std::vector<std::string>& names, const char* what, const Words& words) {
-    if (names.size() > kMostSaid) return fmt::format("{} {}", names.size(), what);
+/// "a, b", or how many values there are.
+std::string listed(const std::vector<std::string>& values, const Words& words) {
+    if (values.size() > kMostSaid) return fmt::format("{} values", values.size());
     std::vector<std::string> said;
-    for (const std::string& name : names) said.push_back(valueInWords(name, words));
+    for (const std::string& value : values) said.push_back(valueInWords(value, words));
     return joined(said);
 }
 
-/// Cells that take their cases together along the same axes.
+/// "column a", "columns a, b", or "7 columns".
+std::string named(const char* what, const std::vector<std::string>& names) {
+    if (names.size() > kMostSaid) return fmt::format("{} {}s", names.size(), what);
+    return fmt::format("{}{} {}", what, names.size() > 1 ? "s" : "", joined(names));
+}
+
+std::string columnsNamed(const std::set<std::size_t>& columns, const Table& table) {
+    std::vector<std::string> names;
+    for (const std::size_t i : columns) {
+        names.push_back(quantityOf(table.columns[i], table.words).text());
+    }
+    return named("column", names);
+}
+
+std::string rowsNamed(const std::set<std::size_t>& rows, const Table& table) {
+    std::vector<std::string> names;
+    for (const std::size_t row : rows) {
+        std::vector<std::string> labels;
+        for (const std::string& label : table.rows[row].labels) {
+            labels.push_back(valueInWords(label, table.words));
+        }
+        names.push_back(joined(labels));
+    }
+    return named("row", names);
+}
+
+/// Cells that take their cases together along the same axes: the same values of them, or, where
+/// there would be too much to say, each some of these.
 struct Pool {
     std::vector<Pooled> axes;
     std::set<std::size_t> rows, columns;
     std::size_t count = 0;
+    bool isOfSome = false;
 
-    void add(const std::vector<Pooled>& pooled) {
-        axes.resize(pooled.size());
-        for (std::size_t i = 0; i < pooled.size(); ++i) {
-            axes[i].axis = pooled[i].axis;
-            for (const std::string& value : pooled[i].values) {
+    void add(const Pool& other) {
+        if (axes.empty()) axes = other.axes;
+        isOfSome |= axes != other.axes;
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            for (const std::string& value : other.axes[i].values) {
                 const bool isNew = std::ranges::find(axes[i].values, value) == axes[i].values.end();
                 if (isNew) axes[i].values.push_back(value);
             }
         }
-        ++count;
+        rows.insert(other.rows.begin(), other.rows.end());
+        columns.insert(other.columns.begin(), other.columns.end());
+        count += other.count;
     }
 };
 
@@ -59,42 +89,56 @@ std::string subjectOf(const Pool& pool, const Table& table) {
     const auto inRows = [&](std::size_t row) { return pool.rows.contains(row); };
     const auto inColumns = [&](std::size_t column) { return pool.columns.contains(column); };
     if (pool.count == plannedCount(table, any, any)) return "Each number is";
-    std::vector<std::string> names;
     if (pool.count == plannedCount(table, inRows, any)) {
-        for (const std::size_t row : pool.rows) names.push_back(joined(table.rows[row].labels));
-        return fmt::format("Each number of row{} {} is", names.size() > 1 ? "s" : "",
-                           listed(names, "of the table", table.words));
+        return fmt::format("Each number of {} is", rowsNamed(pool.rows, table));
     }
     if (pool.count == plannedCount(table, any, inColumns)) {
-        for (const std::size_t i : pool.columns) names.push_back(table.columns[i].label);
-        return fmt::format("Each number of column{} {} is", names.size() > 1 ? "s" : "",
-                           listed(names, "of the table", table.words));
+        return fmt::format("Each number of {} is", columnsNamed(pool.columns, table));
+    }
+    if (pool.count == plannedCount(table, inRows, inColumns)) {
+        return fmt::format("Each number of {} in {} is", columnsNamed(pool.columns, table),
+                           rowsNamed(pool.rows, table));
     }
     return fmt::format("{} number{}", pool.count, pool.count == 1 ? " is" : "s are");
 }
 
-}  // namespace
-
-std::vector<std::string> pooledNotes(const Table& table) {
-    std::map<std::string, Pool> pools;
+/// Those of other values of their axes apart, unless there are too many.
+std::vector<Pool> poolsOf(const Table& table) {
+    std::map<std::string, std::vector<Pool>> byAxes;
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
         for (std::size_t i = 0; i < table.columns.size(); ++i) {
             const Cell& cell = table.rows[row].cells[i];
             if (!cell.isPlanned || cell.pooled.empty()) continue;
             std::vector<std::string> axes;
             for (const Pooled& pooled : cell.pooled) axes.push_back(pooled.axis);
-            Pool& pool = pools[joined(axes)];
-            pool.add(cell.pooled);
-            pool.rows.insert(row);
-            pool.columns.insert(i);
+            std::vector<Pool>& pools = byAxes[joined(axes)];
+            auto same = std::ranges::find(pools, cell.pooled, &Pool::axes);
+            if (same == pools.end()) same = pools.insert(pools.end(), Pool{});
+            same->add({cell.pooled, {row}, {i}, 1});
         }
     }
+    std::vector<Pool> all;
+    for (const auto& [axes, pools] : byAxes) {
+        if (pools.size() <= kMostSaid) {
+            all.insert(all.end(), pools.begin(), pools.end());
+            continue;
+        }
+        Pool& whole = all.emplace_back();
+        for (const Pool& pool : pools) whole.add(pool);
+    }
+    return all;
+}
+
+}  // namespace
+
+std::vector<std::string> pooledNotes(const Table& table) {
     std::vector<std::string> notes;
-    for (const auto& [axes, pool] : pools) {
+    for (const Pool& pool : poolsOf(table)) {
         std::vector<std::string> over;
         for (const Pooled& pooled : pool.axes) {
-            over.push_back(fmt::format("{} ({})", quantityOf(pooled.axis, table.words).words,
-                                       listed(pooled.values, "values", table.words)));
+            over.push_back(fmt::format("{} ({}{})", quantityOf(pooled.axis, table.words).words,
+                                       pool.isOfSome ? "some of " : "",
+                                       listed(pooled.values, table.words)));
         }
         notes.push_back(
             fmt::format("{} taken over {}.", subjectOf(pool, table), joined(over, " and ")));

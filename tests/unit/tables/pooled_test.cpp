@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,6 +65,41 @@ TEST(Pooled, SomeRowsAndColumnsAreNamed) {
     const Table two = tableWith("{columns: {e: {metric: error}}}");
     EXPECT_THAT(two.notes,
                 Contains("Each number is taken over method (oct, snorm) and bits (8, 10)."));
+}
+
+/// Columns and rows that ask for other values of the same axis.
+TEST(Pooled, EachColumnsOwnValuesAreSaid) {
+    RecordMaker maker;
+    for (const char* method : {"a", "b", "c", "d", "e", "f"}) {
+        maker.beginCase("", fmt::format(R"({{"method":"{}"}})", method));
+        maker.add("error", {1.0}, "", "1").add("steps", {1.0}, "", "1");
+    }
+    const auto notesOf = [&](const std::string& layout) {
+        return buildTable(
+                   experimentFrom("sweep: {method: [a, b, c, d, e, f]}\nlayout: " + layout + "\n"),
+                   maker.records())
+            .notes;
+    };
+    EXPECT_THAT(
+        notesOf("{columns: {old: {where: {method: [a, b]}}, new: {where: {method: [c, d]}}, "
+                "more: {metric: steps, where: {method: [a, b]}}, one: {where: "
+                "{method: a}}}, cell: {metric: error}}"),
+        testing::ElementsAre("Each number of columns old, more is taken over method "
+                             "(a, b).",
+                             "Each number of column new is taken over method (c, d)."));
+    EXPECT_THAT(
+        notesOf("{rows: {x: {where: {method: [a, b]}}, y: {where: {method: a}}}, columns: "
+                "{e: {metric: error}, most: {metric: error, where: {method: [c, d]}}}}"),
+        testing::ElementsAre("Each number of column e in row x is taken over method (a, b).",
+                             "Each number of column most is taken over method (c, d)."));
+    std::string columns;
+    for (const char* pair : {"[a, b]", "[b, c]", "[c, d]", "[d, e]", "[e, f]"}) {
+        columns += fmt::format("{}x{}: {{metric: error, where: {{method: {}}}}}",
+                               columns.empty() ? "" : ", ", columns.size(), pair);
+    }
+    EXPECT_THAT(notesOf("{columns: {" + columns + "}}"),
+                testing::ElementsAre("Each number is taken over method (some of 6 values)."))
+        << "too many to tell apart";
 }
 
 TEST(Pooled, AnAxisThatTheLayoutDoesNotNameIsRefused) {
