@@ -65,7 +65,7 @@ GroupRead readGroup(const ClaimPart& part, ClaimReader& reader, const Rows& all,
     // A count is what it is, and a p-value is of several pictures.
     const Group& values = group.reading.group;
     const bool isSampled = !part.requirement.isOfCounts && !part.isOfSeeds;
-    group.varies = isOfTimes || (isSampled && isRandom(values));
+    group.varies = isOfTimes || isOverProcesses(values) || (isSampled && isRandom(values));
     group.judgements = group.varies ? judgeVarying(values, part.onTimes, noise)
                                     : std::vector{judge(values, part.quantity, part.requirement)};
     return group;

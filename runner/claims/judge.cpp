@@ -123,7 +123,7 @@ void decide(const Contrast& contrast, const Told& told, double distance, double 
 }
 
 std::string whyTooFew(std::size_t rounds, const Group& group) {
-    if (const std::string why = whyTooFewSeeds(group); !why.empty()) return why;
+    if (const std::string why = whyNoInterval(group); !why.empty()) return why;
     if (rounds < 2) return "one sample of a time decides nothing";
     return fmt::format("a range of {} processes; an interval needs {}", rounds,
                        metrics::kFewestForInterval);
@@ -145,7 +145,7 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
         return judgement;
     }
     const Requirement& requirement = contrast.requirement;
-    if (values.size() < metrics::kFewestForInterval || !whyTooFewSeeds(group).empty()) {
+    if (values.size() < metrics::kFewestForInterval || !whyNoInterval(group).empty()) {
         judgement.verdict = Verdict::Ambiguous;
         judgement.why = whyTooFew(values.size(), group);
         metrics::Interval range{middle, middle};
@@ -261,14 +261,40 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
     return judgement;
 }
 
-bool isRandom(const Group& group) {
-    const auto isSuch = [](const std::vector<Sampled>& values) {
-        return std::ranges::any_of(values, &Sampled::isRandom);
-    };
-    return isSuch(group.x) || std::ranges::any_of(group.operands, isSuch);
+namespace {
+
+/// The first of its values that is such; null where none is.
+const Sampled* findIn(const Group& group, const std::function<bool(const Sampled&)>& isSuch) {
+    std::vector<const std::vector<Sampled>*> all = {&group.x};
+    for (const auto& operand : group.operands) all.push_back(&operand);
+    for (const auto* values : all) {
+        const auto found = std::ranges::find_if(*values, isSuch);
+        if (found != values->end()) return &*found;
+    }
+    return nullptr;
 }
 
-std::string whyTooFewSeeds(const Group& group) {
+const Sampled* findOverProcesses(const Group& group) {
+    return findIn(group, [](const Sampled& value) { return !value.overProcesses.empty(); });
+}
+
+}  // namespace
+
+bool isRandom(const Group& group) {
+    return findIn(group, &Sampled::isRandom) != nullptr;
+}
+
+bool isOverProcesses(const Group& group) {
+    return findOverProcesses(group) != nullptr;
+}
+
+std::string whyNoInterval(const Group& group) {
+    if (const Sampled* over = findOverProcesses(group)) {
+        return fmt::format(
+            "a {} over processes has no interval, as what is rare moves it by any amount; "
+            "'{{median}}' has one",
+            over->overProcesses);
+    }
     std::optional<std::size_t> fewest;
     const auto count = [&](const std::vector<Sampled>& values) {
         for (const Sampled& value : values) {

@@ -70,9 +70,11 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
 
 /// Whether another seed would give the group other values.
 bool isRandom(const Group& group);
-
-/// What a group of random numbers lacks for judgeVarying(): more seeds; empty where it lacks none.
-std::string whyTooFewSeeds(const Group& group);
+/// Whether one of its values is taken over processes (tables::Summary::isOverProcesses).
+bool isOverProcesses(const Group& group);
+/// Why a group has no interval however many rounds there are: what is taken over processes, too few
+/// seeds of random numbers; empty where it has one.
+std::string whyNoInterval(const Group& group);
 
 /// Of times, and of random numbers: each of the contrasts. With fewer than
 /// metrics::kFewestForInterval rounds nothing is decided; nor where times would have to differ by

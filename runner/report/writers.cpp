@@ -350,7 +350,7 @@ class LatexWriter {
         if (const std::string note = tables::seedNote(table_); !note.empty()) {
             addNote(escapeLatex(note));
         }
-        for (const std::string& note : tables::pooledNotes(table_)) addNote(escapeLatex(note));
+        for (const std::string& note : tables::cellNotes(table_)) addNote(escapeLatex(note));
         for (const std::string& note : runNotes_) {
             addNote(fmt::format("Note: {}.", escapeLatex(note)));
         }

@@ -314,11 +314,16 @@ void countSeeds(const Gathered& gathered, Cell& cell) {
 
 void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
     cell.values = measuredOf(query, gathered);
-    const auto unknown = std::ranges::find_if(
-        cell.values, [](const Measured& measured) { return std::isnan(measured.value); });
+    const bool isOfOneSeed = gathered.seeds.size() == 1;
+    const auto unknown = std::ranges::find_if(cell.values, [&](const Measured& measured) {
+        const bool isOfSeeds = measured.isOverProcesses && measured.statistic == "stddev";
+        return std::isnan(measured.value) || (isOfOneSeed && isOfSeeds);
+    });
     if (unknown != cell.values.end()) {
         cell.status = records::Status::Missing;
-        cell.message = fmt::format("'{}' needs two values or more", unknown->statistic);
+        cell.message = fmt::format("'{}' needs two {} or more", unknown->statistic,
+                                   isOfOneSeed ? "seeds (`seeds: process`)" : "values");
+        cell.seedCount = gathered.seeds.size();
         cell.values.clear();
         return;
     }
@@ -342,10 +347,12 @@ void fillProcessTimes(const CellQuery& query, const LayoutCases& cases, const Sa
 
 // Equal time, equal error.
 
-Sampled sampledOf(const Samples& samples, Statistic statistic) {
-    Summary summary = summarize(samples, statistic);
+Sampled sampledOf(const Samples& samples, const CellFormat::Placeholder& placeholder) {
+    Summary summary = summarize(samples, placeholder.statistic);
     if (summary.rounds.size() < 2) summary.rounds.clear();  // no more than the value
-    return {summary.value, std::move(summary.rounds), false};
+    Sampled sampled{summary.value, std::move(summary.rounds)};
+    if (summary.isOverProcesses) sampled.overProcesses = placeholder.name;
+    return sampled;
 }
 
 /// The axis of numbers along which the curve goes: the one of those that the cell takes together.
@@ -428,8 +435,7 @@ std::vector<Measured> equalValues(const CellQuery& query, std::span<const CaseRe
     for (const auto& placeholder : query.format.placeholders()) {
         std::vector<CurvePoint> curve;
         for (const CurveCase& one : cases) {
-            curve.push_back(
-                {sampledOf(one.x, placeholder.statistic), sampledOf(one.y, placeholder.statistic)});
+            curve.push_back({sampledOf(one.x, placeholder), sampledOf(one.y, placeholder)});
         }
         Measured& measured = values.emplace_back();
         static_cast<Summary&>(measured) = readCurve(curve, query.equal->is);
@@ -554,26 +560,10 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
         writeValues(query.format, cell);
     }
     const bool isTimed = !gathered.isUntimed || cell.status != records::Status::Ambiguous;
-    writeStatus(isTimed ? records::statusName(cell.status) : "not timed", cell);
+    const bool lacksSeeds = cell.values.empty() && cell.isOfOneSeed();
+    const std::string_view word = isTimed ? records::statusName(cell.status) : "not timed";
+    writeStatus(lacksSeeds ? "one seed" : word, cell);
     return cell;
-}
-
-Cell processCell(const Cell& cell) {
-    Cell own;
-    own.isPlanned = !cell.byProcess.empty();
-    if (!own.isPlanned) return own;
-    own.status = cell.status;
-    own.message = cell.message;
-    own.values = cell.byProcess;
-    own.measured = cell.measuredByProcess;
-    own.low = cell.lowByProcess;
-    own.high = cell.highByProcess;
-    own.caseIds = cell.caseIds;
-    own.isTime = true;
-    own.timePower = cell.timePower;
-    own.isWithinNoise = cell.isWithinNoise;
-    own.unit = cell.unit;
-    return own;
 }
 
 SceneSource sceneSourceOf(const config::Layout& layout, const Key& row, const LayoutCases& cases) {

@@ -142,10 +142,6 @@ CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& col
 /// power is a line; between the two nearest cases, and missing beyond them all.
 Cell buildCell(const CellQuery& query, const LayoutCases& cases);
 
-/// Of a time the same by the process's CPU time, formatted likewise; nothing is planned where it
-/// has none.
-Cell processCell(const Cell& cell);
-
 /// Where a row's scene comes from: metric `scene_source` of its cases (0 real, 1 stand-in, 2
 /// generated). Of several the last of these counts.
 enum class SceneSource { Unknown, Real, Generated, StandIn };

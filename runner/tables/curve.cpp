@@ -54,7 +54,9 @@ Summary readCurve(std::span<const CurvePoint> curve, double at) {
     }
     const double value = readAt(points, at);
     std::map<int, double> rounds;
-    for (const int round : commonRounds(all)) {
+    const bool isOver = std::ranges::any_of(
+        all, [](const Sampled& sampled) { return !sampled.overProcesses.empty(); });
+    for (const int round : isOver ? std::vector<int>() : commonRounds(all)) {
         points.clear();
         for (const CurvePoint& point : curve) {
             points.emplace_back(point.x.at(round), point.y.at(round));
@@ -63,8 +65,11 @@ Summary readCurve(std::span<const CurvePoint> curve, double at) {
     }
     const bool isThere =
         std::ranges::all_of(rounds, [](const auto& round) { return std::isfinite(round.second); });
-    if (isThere && std::isfinite(value)) return summaryOf(value, std::move(rounds), false);
-    return summaryOf(std::numeric_limits<double>::quiet_NaN(), {}, false);
+    if (!isThere || !std::isfinite(value))
+        return summaryOf(std::numeric_limits<double>::quiet_NaN(), {}, false);
+    Summary summary = summaryOf(value, std::move(rounds), false);
+    summary.isOverProcesses = isOver;
+    return summary;
 }
 
 }  // namespace gfxrepro::tables

@@ -24,7 +24,8 @@ bool keepRoundsOrDraws(std::span<Sampled* const> values) {
     if (!hasRounds) return std::ranges::any_of(values, &Sampled::areDraws);
     for (Sampled* value : values) {
         if (value->areDraws) {
-            *value = {value->point, {}, false, value->isRandom, value->seedCount};
+            *value = {value->point,        {}, false, value->isRandom, value->seedCount,
+                      value->overProcesses};
         }
     }
     return false;
@@ -99,12 +100,9 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
         const Measured& measured = named ? *named : *cell.find("", own);
         // A single round tells no more than the value.
         const bool hasRounds = measured.rounds.size() > 1;
-        // How well a spread is known nobody tells: as random numbers of one seed.
-        const bool isGuess = !hasRounds && !measured.statistic.empty() &&
-                             isSpread(metrics::statisticFromName(measured.statistic));
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
-                         measured.areDraws, cell.seedCount > 0 || isGuess, cell.seedCount,
-                         measured.isMean});
+                         measured.areDraws, cell.seedCount > 0, cell.seedCount,
+                         measured.isOverProcesses ? measured.statistic : ""});
         values.push_back(measured.value);
         result.seedCount = fewerSeeds(result.seedCount, cell.seedCount);
     }
@@ -113,12 +111,12 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     result.point = evaluate(values);
     result.areDraws = keepRoundsOrDraws(all);
     result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
-    result.isMean = std::ranges::any_of(cells, &Sampled::isMean);
-    // One sample of a part is one of the whole, however often the rest was measured.
-    if (std::ranges::any_of(
-            cells, [](const Sampled& cell) { return cell.isRandom && cell.rounds.empty(); })) {
-        return result;
+    for (const Sampled& cell : cells) {
+        if (result.overProcesses.empty()) result.overProcesses = cell.overProcesses;
     }
+    // One sample of a part is one of the whole, however often the rest was measured.
+    const auto isOne = [](const Sampled& cell) { return cell.isRandom && cell.rounds.empty(); };
+    if (!result.overProcesses.empty() || std::ranges::any_of(cells, isOne)) return result;
     for (const int round : commonRounds(cells)) {
         for (std::size_t i = 0; i < cells.size(); ++i) values[i] = cells[i].at(round);
         result.rounds[round] = evaluate(values);
@@ -219,7 +217,7 @@ std::vector<Measured> computedValues(Operand& operand, const TableRow& row,
         Measured& measured = values.emplace_back();
         static_cast<Summary&>(measured) =
             summaryOf(sampled.point, sampled.rounds, sampled.areDraws);
-        if (sampled.isMean) takeMean(measured);
+        measured.isOverProcesses = !sampled.overProcesses.empty();
         measured.statistic = placeholder.name;
     }
     return values;

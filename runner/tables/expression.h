@@ -21,8 +21,8 @@ struct Sampled {
     std::map<int, double> rounds;
     bool areDraws = false;  // they are of shares that were counted once (shareDraws)
     bool isRandom = false;  // another seed would give another value: it has no rounds of one seed
-    std::size_t seedCount = 0;  // as Cell::seedCount
-    bool isMean = false;        // of means over processes (takeMean)
+    std::size_t seedCount = 0;       // as Cell::seedCount
+    std::string overProcesses = {};  // of "mean", "max", …: Summary::isOverProcesses
 
     double at(int round) const { return rounds.empty() ? point : rounds.at(round); }
 };

@@ -1,4 +1,5 @@
-// Cells that take several cases together: what is said of them.
+// What is said of cells below their table: that they take several cases together, and of which
+// statistics they are.
 #include <fmt/format.h>
 #include <algorithm>
 #include <map>
@@ -129,10 +130,41 @@ std::vector<Pool> poolsOf(const Table& table) {
     return all;
 }
 
+/// Of which statistics the numbers are, where they are not medians of processes.
+std::vector<std::string> statisticNotes(const Table& table) {
+    std::map<std::string, std::set<std::size_t>> inProcesses, overProcesses;  // columns
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        for (const TableRow& row : table.rows) {
+            for (const Measured& one : row.cells[i].values) {
+                const bool isOfRounds =
+                    one.statistic != "median" && !one.areDraws && one.rounds.size() > 1;
+                if (one.isOverProcesses) overProcesses[one.statistic].insert(i);
+                if (isOfRounds && one.interval.low != one.interval.high) {
+                    inProcesses[one.statistic].insert(i);
+                }
+            }
+        }
+    }
+    std::vector<std::string> notes;
+    for (const auto& [statistic, columns] : inProcesses) {
+        notes.push_back(
+            fmt::format("In {} the {} is taken in each process; a number and its bounds are of the "
+                        "median process.",
+                        columnsNamed(columns, table), statistic));
+    }
+    for (const auto& [statistic, columns] : overProcesses) {
+        notes.push_back(
+            fmt::format("In {} the {} is over processes, and has no interval: what is rare moves "
+                        "it by any amount. No claim is decided by it.",
+                        columnsNamed(columns, table), statistic));
+    }
+    return notes;
+}
+
 }  // namespace
 
-std::vector<std::string> pooledNotes(const Table& table) {
-    std::vector<std::string> notes;
+std::vector<std::string> cellNotes(const Table& table) {
+    std::vector<std::string> notes = statisticNotes(table);
     for (const Pool& pool : poolsOf(table)) {
         std::vector<std::string> over;
         for (const Pooled& pooled : pool.axes) {

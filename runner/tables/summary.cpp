@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -72,6 +73,24 @@ void fillFromRounds(const std::vector<double>& values, Summary& summary) {
     }
 }
 
+/// Whether one value alone has none.
+bool isSpread(Statistic statistic) {
+    return statistic == Statistic::StdDev || statistic == Statistic::P95 ||
+           statistic == Statistic::P99;
+}
+
+/// What the processes' values come to together where their median is not what is asked for.
+std::optional<double> overProcesses(const Samples& samples, Statistic statistic) {
+    const bool isOver = isSpread(statistic) || statistic == Statistic::Mean ||
+                        statistic == Statistic::Min || statistic == Statistic::Max;
+    if (!isOver || samples.processes.size() < 2 || !hasOneValueEach(samples)) return std::nullopt;
+    const std::vector<double> values = pooled(samples).begin()->second;
+    const bool areAlike =
+        std::ranges::all_of(values, [&](double value) { return value == values.front(); });
+    if (areAlike && statistic != Statistic::StdDev) return std::nullopt;
+    return metrics::summarize(values, statistic);
+}
+
 }  // namespace
 
 std::string_view boundsName(Bounds bounds) {
@@ -79,19 +98,15 @@ std::string_view boundsName(Bounds bounds) {
     return kNames[static_cast<std::size_t>(bounds)];
 }
 
-bool isSpread(Statistic statistic) {
-    return statistic == Statistic::StdDev || statistic == Statistic::P95 ||
-           statistic == Statistic::P99;
-}
-
 Summary summarize(const Samples& samples, Statistic statistic) {
     const Units all = pooled(samples);
     GFXREPRO_ASSERT(!all.empty());
-    if (isSpread(statistic) && hasOneValueEach(samples)) {
-        const double spread = metrics::summarize(all.begin()->second, statistic);
-        return summaryOf(spread, {}, false);
-    }
     Summary summary;
+    if (const auto value = overProcesses(samples, statistic)) {
+        summary = summaryOf(*value, {}, false);
+        summary.isOverProcesses = true;
+        return summary;
+    }
     std::vector<double> values;
     for (const auto& [process, units] : samples.processes) {
         if (units.size() < all.size()) continue;
@@ -101,7 +116,6 @@ Summary summarize(const Samples& samples, Statistic statistic) {
     summary.value = summarizeUnits(all, statistic);
     summary.interval = {summary.value, summary.value};
     if (!values.empty()) fillFromRounds(values, summary);
-    if (statistic == Statistic::Mean && hasOneValueEach(samples)) takeMean(summary);
     // A sum, a count or a spread of repeats is not what one of them gives.
     const bool isOfRepeats =
         all.size() == 1 &&
@@ -112,17 +126,6 @@ Summary summarize(const Samples& samples, Statistic statistic) {
     summary.bounds = Bounds::Range;
     summary.interval = rangeOf(repeats);
     return summary;
-}
-
-void takeMean(Summary& summary) {
-    if (summary.rounds.size() < 2) return;
-    std::vector<double> values;
-    for (const auto& [round, value] : summary.rounds) values.push_back(value);
-    const double mean = metrics::summarize(values, Statistic::Mean);
-    const bool isHeld = summary.interval.low <= mean && mean <= summary.interval.high;
-    if (!isHeld) summary = summaryOf(mean, {}, false);
-    summary.value = mean;
-    summary.isMean = true;
 }
 
 Summary summaryOf(double value, std::map<int, double> rounds, bool areDraws) {

@@ -24,7 +24,9 @@ struct Summary {
     metrics::Interval interval;    // by `bounds`; of none the value itself
     std::map<int, double> rounds;  // the statistic in each process that has all units
     bool areDraws = false;         // instead, what a share could be in truth (shareDraws)
-    bool isMean = false;           // the value is the mean over processes (takeMean)
+    /// It is of the values of processes, one each, that is not their median: without bounds and
+    /// rounds, as what is rare may move it by any amount.
+    bool isOverProcesses = false;
 };
 
 /// The measurements of one cell: of each process (by its number), of each unit (a frame of a case),
@@ -34,9 +36,9 @@ struct Samples {
 };
 
 /// In each process the statistic over units, each reduced to the median of its repeats; with a
-/// single unit, over the repeats themselves. Of several processes their median; a spread (stddev,
-/// p95, p99) of processes with one value each is that of these values, without bounds, and so is
-/// their mean (takeMean).
+/// single unit, over the repeats themselves. Of several processes their median; but of processes
+/// with one value each, which differ, mean, min, max, stddev, p95 and p99 are those of these values
+/// (Summary::isOverProcesses). A sum, a count and a rate of one value are of that.
 ///
 /// The unit of uncertainty is the process: repeats within one share its memory layout, its hour
 /// and its neighbours, and tell nothing of those (Kalibera and Jones 2013, "Rigorous benchmarking
@@ -44,13 +46,6 @@ struct Samples {
 /// metrics::medianInterval() of them; with fewer their range; with one process the range of what
 /// each repeat alone would give. Frames are given, not drawn: a camera path is what it is.
 Summary summarize(const Samples& samples, metrics::Statistic statistic);
-
-/// Takes the mean of the rounds in the place of their median: with the bounds of that where they
-/// hold the mean, too, else without bounds and rounds.
-void takeMean(Summary& summary);
-
-/// Whether one value alone has none: stddev, p95, p99.
-bool isSpread(metrics::Statistic statistic);
 
 /// Of values in each round: their median, with bounds as summarize() gives them; of draws
 /// (shareDraws) the value as it is. Without rounds the value as it is, without bounds.

@@ -273,12 +273,36 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     fillComputed(layout, table);
     if (std::string note = seedNote(table); !note.empty()) table.notes.push_back(std::move(note));
     compareRivals(rivals, against, table);
-    for (std::string& note : pooledNotes(table)) table.notes.push_back(std::move(note));
+    for (std::string& note : cellNotes(table)) table.notes.push_back(std::move(note));
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {
         table.notes.push_back(std::move(note));
     }
     return table;
 }
+
+namespace {
+
+/// Of a time the same by the process's CPU time, formatted likewise; nothing is planned where it
+/// has none.
+Cell processCell(const Cell& cell) {
+    Cell own;
+    own.isPlanned = !cell.byProcess.empty();
+    if (!own.isPlanned) return own;
+    own.status = cell.status;
+    own.message = cell.message;
+    own.values = cell.byProcess;
+    own.measured = cell.measuredByProcess;
+    own.low = cell.lowByProcess;
+    own.high = cell.highByProcess;
+    own.caseIds = cell.caseIds;
+    own.isTime = true;
+    own.timePower = cell.timePower;
+    own.isWithinNoise = cell.isWithinNoise;
+    own.unit = cell.unit;
+    return own;
+}
+
+}  // namespace
 
 void showProcessTimes(const std::vector<std::string>& labels, Table& table) {
     for (const std::string& label : labels) {

@@ -130,17 +130,19 @@ std::vector<Table> buildTables(const std::vector<config::Experiment>& experiment
                                std::span<const config::Case> planned,
                                const std::vector<records::Record>& records);
 
-// Cells that take several cases together.
+// What is said of cells, below their table.
 
-/// Sentences that say so: "Each number of row average is taken over scene (a, b)."
-std::vector<std::string> pooledNotes(const Table& table);
+/// Sentences: "Each number of row average is taken over scene (a, b)."; and of which statistics
+/// numbers are that are not medians of processes.
+std::vector<std::string> cellNotes(const Table& table);
 
 /// "scene=a|b; light=1|2" of a cell; empty where it is of one case.
 std::string pooledText(const Cell& cell);
 
+// What `check` refuses of a layout; `table` may have been built from no records.
+
 /// Throws Error, at the layout, where a cell would take cases together that differ along an axis
-/// which the layout does not name, and where those of a column with `equal` have no curve. `table`
-/// may have been built from no records.
+/// which the layout does not name, and where those of a column with `equal` have no curve.
 void requireToldApart(const config::Experiment& experiment, const Table& table);
 
 // Times that are not of one clock: a GPU whose clock moved while a case was timed.

@@ -977,6 +977,39 @@ TEST(Claims, OtherValuesAreJudgedByTheirRounds) {
     EXPECT_EQ(judge({5, 7, 6, 6, 6, 6}, "bound: a, at_most: 6").measured, "6 [5, 7]");
 }
 
+/// What is rare moves them by any amount.
+TEST(Claims, StatisticsOverProcessesDecideNothing) {
+    const auto judge = [](const std::string& format, const std::string& claim, double last) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})");
+        for (int process = 0; process < 8; ++process) {
+            const double a = process == 7 ? last : 1.0;
+            maker.process(process).add("a", {a}, "", "byte").add("b", {1.0}, "", "byte");
+        }
+        return judgeOne(
+            "sweep: {n: [1]}\nlayout: {rows: n, columns: {a: {metric: a}, "
+            "b: {metric: b}, c: {of: a + b}}, cell: \"{" +
+                format + ":.3f}\"}\nclaims: {C: {says: so, " + claim + "}}\n",
+            maker.records());
+    };
+    for (const std::string format : {"mean", "max", "min"}) {
+        for (const char* claim :
+             {"bound: a, at_most: 100", "order: b < a", "ratio: a / b, at_least: 9",
+              "exact: a, equals: 1", "bound: c, at_most: 100"}) {
+            const ClaimResult result = judge(format, claim, 2.0);
+            EXPECT_EQ(result.verdict, Verdict::Ambiguous) << format << ": " << claim;
+            EXPECT_EQ(result.reason,
+                      "a " + format +
+                          " over processes has no interval, as what is rare moves it "
+                          "by any amount; '{median}' has one")
+                << claim;
+        }
+        EXPECT_EQ(judge(format, "bound: a, at_most: 100", 1.0).verdict, Verdict::Holds) << format;
+        EXPECT_EQ(judge(format, "exact: c, equals: 2", 1.0).verdict, Verdict::Holds) << format;
+    }
+    EXPECT_EQ(judge("median", "bound: a, at_most: 100", 2.0).verdict, Verdict::Holds);
+}
+
 /// Errors of two samplers that draw alike, a value a seed; `seeds` as a case has them.
 tables::Recorded twoSamplers(config::Measure::Seeds seeds, int processes, std::uint64_t seed,
                              double ratio = 1.0) {

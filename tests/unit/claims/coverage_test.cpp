@@ -11,6 +11,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "engine/core/random.h"
@@ -117,8 +118,13 @@ bool isHeld(const Group& group, const char* kind, double truth) {
 
 class Coverage : public ::testing::TestWithParam<int> {};
 
+/// Of a path also the mean of its frames, in the median process.
 TEST_P(Coverage, OfTheMedianOfACell) {
-    for (const int frames : {1, 5}) {
+    using metrics::Statistic;
+    const double mean = 10.0 * std::exp(0.5 * kWithin * kWithin);
+    for (const auto& [frames, statistic, truth] :
+         {std::tuple(1, Statistic::Median, 10.0), std::tuple(5, Statistic::Median, 10.0),
+          std::tuple(5, Statistic::Mean, mean)}) {
         const double share =
             shareOf(frames == 1 ? "cell" : "path", GetParam(), [&](Random& random) {
                 tables::Samples samples;
@@ -129,9 +135,8 @@ TEST_P(Coverage, OfTheMedianOfACell) {
                             10.0 * own * std::exp(kWithin * normalDraw(random))};
                     }
                 }
-                const tables::Summary summary =
-                    tables::summarize(samples, metrics::Statistic::Median);
-                return summary.bounds == tables::Bounds::Interval && holds(summary.interval, 10.0);
+                const tables::Summary summary = tables::summarize(samples, statistic);
+                return summary.bounds == tables::Bounds::Interval && holds(summary.interval, truth);
             });
         EXPECT_GE(share, kRequired);
     }
@@ -291,6 +296,51 @@ TEST_P(ScatterCoverage, OfCellsColumnsAndClaims) {
             },
             25 * kTrials);
         EXPECT_GE(silent, atLeast(0.95));
+    }
+}
+
+/// One value a process, with outliers: whose mean no interval of so few holds, neither that of
+/// their median nor Student's, as most have met no outlier. So a mean has none, and decides
+/// nothing.
+TEST(MeanCoverage, OfProcessesIsNotToBeHad) {
+    static const std::map<int, double> kStudent = {
+        {6, 2.571}, {8, 2.365}, {10, 2.262}, {20, 2.093}};
+    for (const double scatter : {0.02, 0.05, 0.10}) {
+        const double truth = std::exp(0.5 * scatter * scatter) * 10.0 * 1.05;
+        for (const auto& [processes, quantile] : kStudent) {
+            const auto valuesOf = [&](Random& random) {
+                std::vector<double> values;
+                const Group pair = pairOf({scatter, true, false}, 1.0, processes, random);
+                for (const auto& [round, value] : pair.operands[0][0].rounds)
+                    values.push_back(value);
+                return values;
+            };
+            const double students = shareOf("mean, Student", processes, [&](Random& random) {
+                const std::vector<double> values = valuesOf(random);
+                const double mean = metrics::summarize(values, metrics::Statistic::Mean);
+                const double half = quantile *
+                                    metrics::summarize(values, metrics::Statistic::StdDev) /
+                                    std::sqrt(processes);
+                return holds({mean - half, mean + half}, truth);
+            });
+            EXPECT_LT(students, kRequired) << "then a mean could have an interval";
+            const double told = shareOf("a mean decides", processes, [&](Random& random) {
+                tables::Samples samples;
+                int process = 0;
+                for (const double value : valuesOf(random)) {
+                    samples.processes[process++][0] = {value};
+                }
+                const tables::Summary mean = tables::summarize(samples, metrics::Statistic::Mean);
+                Group group;
+                group.operands.assign(1, {Sampled{mean.value, mean.rounds}});
+                group.operands[0][0].overProcesses = mean.isOverProcesses ? "mean" : "";
+                ClaimSpec atMost = claimOf("bound");
+                atMost.high = 1.02 * 10.0;  // which the truth is not
+                const bool isDecided = verdictOn(group, atMost) != Verdict::Ambiguous;
+                return isDecided || mean.bounds != tables::Bounds::None;
+            });
+            EXPECT_EQ(told, 0.0);
+        }
     }
 }
 

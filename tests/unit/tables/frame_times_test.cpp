@@ -205,7 +205,8 @@ TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
 TEST(FrameTimes, NotesStandUnderTablesOfTimes) {
     const config::Experiment experiment = experimentFrom(
         "sweep: {scene: [models/duck]}\nmeasure: {lane: timing, processes: 6}\n"
-        "layout:\n  rows: scene\n  columns: {ms: {metric: wall_time_ms, format: \"{max:.0f}\"}}\n");
+        "layout:\n  rows: scene\n  columns: {ms: {metric: wall_time_ms, format: "
+        "\"{median:.0f}\"}}\n");
     const RecordMaker maker = rounds({9, 10, 10, 10, 10, 11});
     const Table table = buildTable(experiment, maker.records());
     EXPECT_EQ(table.rows.at(0).cells.at(0).measured, "10");

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -408,7 +409,6 @@ layout:
     twice_pct: {of: pct * 2}
     seconds: {of: ms / 1000}
     nothing: {of: ms / (pct - pct)}
-    other: {of: ms, format: "{min:.1f}"}
   cell: {format: "{mean:.1f}"}
 )";
 
@@ -455,11 +455,24 @@ TEST(Table, ColumnsOfColumnsAreComputedInEachProcess) {
     EXPECT_EQ(six.columns[5].unit, "") << "no longer that of what it reads";
     EXPECT_EQ(six.rows[0].cells[6].message, "no number comes out");
     EXPECT_EQ(six.rows[0].cells[6].measured, "missing");
-    EXPECT_EQ(six.rows[0].cells[7].message, "a cell that it reads shows 'mean' and no 'min'");
 
     EXPECT_EQ(sharesOf(5).rows[0].cells[1].bounds(), Bounds::Range);
     EXPECT_EQ(sharesOf(1).rows[0].cells[1].measured, "20.0");
     EXPECT_EQ(sharesOf(1).rows[0].cells[1].bounds(), Bounds::None);
+}
+
+/// Of columns `check` says so.
+TEST(Table, ARowsFormatMayLackWhatAColumnIsComputedOf) {
+    RecordMaker maker;
+    maker.beginCase("models/duck").add("wall_time_ms", {4.0});
+    const Table table = buildTable(experimentFrom(R"(
+scene: models/duck
+layout:
+  rows: {all: {format: "{mean:.1f}"}}
+  columns: {ms: {metric: wall_time_ms}, least: {of: ms, format: "{min:.1f}"}}
+)"),
+                                   maker.records());
+    EXPECT_EQ(table.rows[0].cells[1].message, "a cell that it reads shows 'mean' and no 'min'");
 }
 
 TEST(Table, AColumnOfWhatIsMissingIsMissing) {
@@ -635,43 +648,110 @@ TEST(Table, OneSeedIsOneSampleHoweverItsPicturesDiffer) {
 }
 
 /// Six of eight processes took 100 ms, two took 800.
-TEST(Table, TheMeanOfProcessesIsTheirMean) {
-    const auto cellOf = [](const std::string& columns, int processes) {
-        RecordMaker maker;
-        maker.beginCase("models/duck", "{}");
-        for (int process = 0; process < processes; ++process) {
-            maker.process(process).add("wall_time_ms", {process % 4 == 3 ? 800.0 : 100.0});
-        }
-        return buildTable(
-                   experimentFrom("scene: models/duck\nlayout: {columns: {" + columns + "}}\n"),
-                   maker.records())
-            .rows[0]
-            .cells.back();
-    };
-    const std::string mean = "t: {metric: wall_time_ms, format: \"{mean:.0f} ± {stddev:.0f}\"}";
-    EXPECT_EQ(cellOf(mean, 8).measured, "275 ± 324");
-    EXPECT_EQ(cellOf(mean, 8).bounds(), Bounds::Interval) << "100 to 800";
-    EXPECT_EQ(cellOf("t: {metric: wall_time_ms, format: \"{median:.0f}\"}", 8).measured, "100");
-    EXPECT_EQ(cellOf(mean + ", twice: {of: 2 * t, format: \"{mean:.0f}\"}", 8).measured, "550");
-    EXPECT_EQ(cellOf("t: {metric: wall_time_ms, format: \"{mean:.0f}\"}", 1).measured, "100");
-}
-
-/// The interval is that of their median: where it does not hold their mean, there is none.
-TEST(Table, AMeanBesideTheIntervalOfItsMedianHasNone) {
+Cell cellOfProcesses(const std::string& columns, int processes) {
     RecordMaker maker;
     maker.beginCase("models/duck", "{}");
-    for (int process = 0; process < 20; ++process) {
-        maker.process(process).add("wall_time_ms", {process < 2 ? 9000.0 : 100.0 + process});
+    for (int process = 0; process < processes; ++process) {
+        maker.process(process).add("wall_time_ms", {process % 4 == 3 ? 800.0 : 100.0});
+        maker.add("triangles", {7.0}, "", "triangle");
     }
-    const Cell cell =
-        buildTable(
-            experimentFrom("scene: models/duck\nlayout: {columns: {t: {metric: wall_time_ms, "
-                           "format: \"{mean:.0f}\"}}}\n"),
-            maker.records())
+    return buildTable(experimentFrom("scene: models/duck\nlayout: {columns: {" + columns + "}}\n"),
+                      maker.records())
+        .rows[0]
+        .cells.back();
+}
+
+TEST(Table, TheMeanOfProcessesIsTheirMean) {
+    const std::string mean = "t: {metric: wall_time_ms, format: \"{mean:.0f} ± {stddev:.0f}\"}";
+    const Cell cell = cellOfProcesses(mean, 8);
+    EXPECT_EQ(cell.measured, "275 ± 324");
+    EXPECT_EQ(cell.bounds(), Bounds::None) << "the interval of the median is another's";
+    EXPECT_TRUE(cell.values[0].rounds.empty());
+    EXPECT_EQ(cellOfProcesses("t: {metric: wall_time_ms, format: \"{median:.0f}\"}", 8).measured,
+              "100");
+    const Cell twice = cellOfProcesses(mean + ", twice: {of: 2 * t, format: \"{mean:.0f}\"}", 8);
+    EXPECT_EQ(twice.measured, "550");
+    EXPECT_EQ(twice.bounds(), Bounds::None);
+    EXPECT_TRUE(twice.values[0].isOverProcesses);
+    EXPECT_EQ(cellOfProcesses("t: {metric: wall_time_ms, format: \"{mean:.0f}\"}", 1).measured,
+              "100");
+}
+
+/// Of one value each: the median of processes would stand under the name of another statistic.
+TEST(Table, ExtremesOfProcessesAreOfAllOfThem) {
+    const auto cellOf = [](const std::string& format, const char* metric = "wall_time_ms") {
+        return cellOfProcesses(
+            fmt::format("t: {{metric: {}, format: \"{{{}:.0f}}\"}}", metric, format), 8);
+    };
+    EXPECT_EQ(cellOf("max").measured, "800");
+    EXPECT_EQ(cellOf("max").bounds(), Bounds::None);
+    EXPECT_EQ(cellOf("min").measured, "100");
+    EXPECT_EQ(cellOf("p95").measured, "800");
+    EXPECT_TRUE(cellOf("p95").values[0].isOverProcesses);
+    for (const char* of : {"mean", "max", "min", "p95", "rate", "sum"}) {
+        const Cell alike = cellOf(of, "triangles");
+        EXPECT_EQ(alike.measured, "7") << of;
+        EXPECT_EQ(alike.values[0].rounds.size(), 8U) << of << ": alike in each process";
+    }
+    EXPECT_EQ(cellOf("stddev", "triangles").measured, "0");
+}
+
+/// However many processes drew them.
+TEST(Table, OneSeedHasNoStandardDeviation) {
+    using Seeds = config::Measure::Seeds;
+    const auto cellOf = [](Seeds seeds) {
+        RecordMaker maker;
+        maker.beginCase("models/duck", "{}").seeds(seeds);
+        for (int process = 0; process < 6; ++process) {
+            maker.process(process).add("rmse", {seeds == Seeds::Case ? 0.5 : 0.1 * process});
+        }
+        return buildTable(experimentFrom("scene: models/duck\nlayout: {columns: {e: {metric: rmse, "
+                                         "format: \"{mean:.2f} ± {stddev:.2f}\"}}}\n"),
+                          maker.records())
             .rows[0]
             .cells[0];
-    EXPECT_EQ(cell.measured, "999");
-    EXPECT_EQ(cell.bounds(), Bounds::None);
+    };
+    const Cell one = cellOf(Seeds::Case);
+    EXPECT_EQ(one.measured, "one seed");
+    EXPECT_EQ(one.status, records::Status::Missing);
+    EXPECT_EQ(one.message, "'stddev' needs two seeds (`seeds: process`) or more");
+    EXPECT_TRUE(one.values.empty());
+    EXPECT_EQ(cellOf(Seeds::Process).measured, "0.25 ± 0.19");
+}
+
+TEST(Table, StatisticsBesideTheMedianOfProcessesAreSaid) {
+    RecordMaker maker;
+    maker.beginCase("models/duck");
+    for (int process = 0; process < 6; ++process) {
+        for (int frame = 0; frame < 2; ++frame) {
+            maker.process(process).frame(frame).add("wall_time_ms", {10.0 + process + frame});
+            maker.add("triangles", {7.0}, "", "triangle");
+        }
+        maker.frame(records::kSetup).add("cpu_time_ms", {1.0 + process}, "load");
+    }
+    const Table table = buildTable(experimentFrom(R"x(
+scene: models/duck
+measure: {frames: 2}
+layout:
+  columns:
+    frame_ms: {metric: wall_time_ms, format: "{mean:.1f}"}
+    most_ms: {metric: wall_time_ms, format: "{max:.1f}"}
+    usual_ms: {metric: wall_time_ms, format: "{median:.1f}"}
+    triangles: {metric: triangles, format: "{max:.0f}"}
+    load_ms: {metric: cpu_time_ms, pass: load, format: "{mean:.1f}"}
+)x"),
+                                   maker.records());
+    EXPECT_THAT(table.notes,
+                testing::IsSupersetOf(
+                    {"In column most [ms] the max is taken in each process; a number and "
+                     "its bounds are of the median process.",
+                     "In column frame [ms] the mean is taken in each process; a number and "
+                     "its bounds are of the median process.",
+                     "In column load [ms] the mean is over processes, and has no interval: "
+                     "what is rare moves it by any amount. No claim is decided by it."}));
+    EXPECT_EQ(std::ranges::count_if(
+                  table.notes, [](const std::string& note) { return note.starts_with("In "); }),
+              3);
 }
 
 /// A baseline without the others' parameter is one for all values of it.
