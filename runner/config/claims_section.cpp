@@ -165,6 +165,19 @@ class ClaimParser {
             {"same_mean", "'false_alarms'"},
             {"independent", "'at_most'"},
             {"tolerance", "'at_most'"}};
+        if (const Node* exponent = node_.find("exponent")) {
+            std::vector<std::string> bounds;
+            if (exponent->isMap()) {
+                for (const auto& [bound, value] : exponent->entries())
+                    bounds.push_back(fmt::format("{}: {}", bound, value.toFlowText()));
+            }
+            throw Error(
+                node_.keyLocation("exponent"),
+                fmt::format("{}: unknown key 'exponent' of '{}'; allowed: its bounds beside "
+                            "'trend', as {}",
+                            what_, claim_.kind->name(),
+                            bounds.empty() ? "at_most: -0.5" : joined(bounds)));
+        }
         for (const auto& [word, bound] : kWords) {
             if (!node_.find(word) || contains(allowed, word)) continue;
             std::string instead = fmt::format("'{}'", bound);

@@ -1,4 +1,4 @@
-// Keys of which nothing would follow.
+// Keys of which nothing would follow, or that stand in the wrong place.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,17 +12,41 @@
 #include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
+#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {
 
 namespace {
 
+const Node& sceneOfPoint(const Experiment& experiment, const AxisPoint& point) {
+    const auto swept = std::ranges::find(point, "scene", &Node::Entry::key);
+    return swept == point.end() ? experiment.scene : swept->value;
+}
+
+/// Whether each case of the scene has the parameter from the sweep.
+bool isSweptOver(const Experiment& experiment, const std::string& scene, const std::string& name) {
+    bool isUsed = false;
+    for (const AxisPoint& point : expandSweep(experiment.sweep)) {
+        const Node& own = sceneOfPoint(experiment, point);
+        if (!own.isScalar() || scene::sceneName(own.text()) != scene) continue;
+        if (std::ranges::find(point, name, &Node::Entry::key) == point.end()) return false;
+        isUsed = true;
+    }
+    return isUsed;
+}
+
+/// As ClaimReader::unfitOf.
+bool isReadOffADocument(const ClaimSpec& claim) {
+    using Origin = ClaimSpec::Origin;
+    return claim.origin == Origin::Document || claim.origin == Origin::Derived ||
+           claim.origin == Origin::Existence;
+}
+
 /// Scenes that cases have, by the names that configs give them.
 void addScenes(const Experiment& experiment, std::set<std::string>& scenes) {
     for (const AxisPoint& point : expandSweep(experiment.sweep)) {
-        const auto swept = std::ranges::find(point, "scene", &Node::Entry::key);
-        const Node& scene = swept == point.end() ? experiment.scene : swept->value;
+        const Node& scene = sceneOfPoint(experiment, point);
         if (!scene.isScalar()) continue;
         scenes.insert(scene.text());
         scenes.insert(scene::sceneName(scene.text()));
@@ -84,6 +108,23 @@ std::vector<NoEffect> keysInVain(const Experiment& experiment) {
     require(measure, "processes_at_most", own.mayContinue(),
             "no more rounds follow than 'processes' asks for; allowed: with 'relative_error', and "
             "more than 'processes', of which there are 6 or more");
+    require(measure, "relative_error", own.relativeError == 0.0 || own.mayContinue(),
+            "no rounds follow; allowed: with 'processes' of 6 or more, and fewer than "
+            "'processes_at_most'");
+    require(
+        measure, "time_budget_s", own.isWithinBudget || own.mayContinue(),
+        "all 'processes' are measured whatever they take; allowed: without 'processes', or with "
+        "'relative_error'");
+    const Node* printed = document.find("printed");
+    const bool hasValues = !experiment.printed.rows.empty();
+    require(printed, "at", experiment.isPublished(),
+            "nothing is printed that could have been measured there; allowed: with 'values'");
+    require(printed, "compared", hasValues,
+            "no fit reads a table without printed cells; allowed: with 'values'");
+    require(printed, "unfit",
+            isSweep ? std::ranges::any_of(experiment.claims, isReadOffADocument)
+                    : !experiment.claims.empty(),
+            "it takes scenes from the claims of a document, and there are none");
     std::set<std::string> scenes;
     addScenes(experiment, scenes);
     require(&document, "scene_params", !scenes.empty(), "no case has a scene");
@@ -91,6 +132,11 @@ std::vector<NoEffect> keysInVain(const Experiment& experiment) {
         const std::vector<std::string> known(scenes.begin(), scenes.end());
         require(&experiment.paramsByScene, scene.c_str(), scenes.contains(scene),
                 "no case has the scene of params_by_scene" + suggestion(scene, known));
+        for (const auto& [name, value] : params.entries()) {
+            require(&params, name.c_str(), !isSweptOver(experiment, scene, name),
+                    "each case of the scene has it from the sweep, which wins over "
+                    "params_by_scene");
+        }
     }
     for (const char* name : {kSceneAssumption, kSceneSeedAssumption}) {
         require(document.find("assumptions"), name, !scenes.empty(), "no case has a scene");
@@ -106,6 +152,26 @@ void requireEffect(const Experiment& experiment) {
     }
 }
 
+void requireInSections(const Node& document, const Names& allowed) {
+    for (const auto& [key, value] : document.entries()) {
+        if (contains(allowed, key)) continue;
+        for (const char* section : {"measure", "output", "layout", "printed"}) {
+            if (!contains(keysOf(section), key)) continue;
+            throw Error(
+                document.keyLocation(key),
+                fmt::format("config: '{0}' is of '{1}'; allowed: {1}: {{{0}: …}}", key, section));
+        }
+        // Of a model or a height map beside the file.
+        for (const char* own : {"up", "spacing_m", "height_scale_m", "no_data"}) {
+            if (key != own) continue;
+            throw Error(document.keyLocation(key),
+                        fmt::format("config: '{0}' is of 'scene_params'; allowed: scene_params: "
+                                    "{{{0}: {1}}}",
+                                    key, value.toFlowText()));
+        }
+    }
+}
+
 void requireTimed(const Experiment& experiment) {
     if (!isMeasuredHere(experiment) || experiment.measure.lane == Measure::Lane::Timing) return;
     const Node* measure = experiment.document.find("measure");
@@ -117,7 +183,7 @@ void requireTimed(const Experiment& experiment) {
             fmt::format("'lane: quality' takes no times, and {}; allowed: lane: timing", what));
     };
     if (isOwn && showsTimes(experiment.layout)) refuse(lane->location(), "the layout shows some");
-    if (!experiment.hasDefaultLayout()) return;
+    if (!experiment.hasDefaultLayout() || (lane && !isOwn)) return;
     for (const ClaimSpec& claim : experiment.claims) {
         for (const std::string& operand : claim.operands) {
             std::string name;

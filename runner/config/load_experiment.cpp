@@ -95,6 +95,7 @@ class FileReader {
         Names allowed = sectionKeys();
         allowed.insert(allowed.end(), identityKeys().begin(), identityKeys().end());
         for (std::string& key : keysOf("composition")) allowed.push_back(std::move(key));
+        requireInSections(whole, allowed);
         for (const auto& [key, value] : whole.entries()) {
             const bool isKnown = contains(allowed, key);
             if (isKnown || !suggestion(key, allowed).empty()) continue;

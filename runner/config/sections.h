@@ -103,6 +103,8 @@ std::vector<NoEffect> excludedInVain(const Experiment& experiment);
 std::vector<NoEffect> keysInVain(const Experiment& experiment);
 /// Throws Error for such keys of the experiment's own file.
 void requireEffect(const Experiment& experiment);
+/// Throws Error for a key of a section that stands beside the `allowed` ones.
+void requireInSections(const Node& document, const Names& allowed);
 /// Throws Error for times that are shown or claimed, where the lane takes none.
 void requireTimed(const Experiment& experiment);
 

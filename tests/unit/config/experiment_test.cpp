@@ -531,12 +531,36 @@ TEST_F(ExperimentTest, KeysOfWhichNothingFollowsAreRefused) {
               "asks for; allowed: with 'relative_error', and more than 'processes', of which there "
               "are 6 or more");
     EXPECT_EQ(errorOf("measure: {processes_at_most: 9, relative_error: 0.1}\n"), "no error");
+    EXPECT_EQ(
+        errorOf("measure: {processes: 5, relative_error: 0.1}\n"),
+        "DIR/zju/a.yaml:4:25: 'relative_error': no rounds follow; allowed: with 'processes' of "
+        "6 or more, and fewer than 'processes_at_most'");
+    EXPECT_EQ(errorOf("measure: {processes: 6, time_budget_s: 9, lane: timing}\n"),
+              "DIR/zju/a.yaml:4:25: 'time_budget_s': all 'processes' are measured whatever they "
+              "take; allowed: without 'processes', or with 'relative_error'");
+    EXPECT_EQ(errorOf("measure: {processes: 6, time_budget_s: 9, relative_error: 0.1}\n"),
+              "no error");
+    EXPECT_EQ(errorOf("printed: {at: {n: 3}}\n"),
+              "DIR/zju/a.yaml:4:11: 'at': nothing is printed that could have been measured there; "
+              "allowed: with 'values'");
+    EXPECT_EQ(errorOf("printed: {compared: [usual]}\n"),
+              "DIR/zju/a.yaml:4:11: 'compared': no fit reads a table without printed cells; "
+              "allowed: with 'values'");
+    EXPECT_EQ(errorOf("printed: {unfit: [grass]}\n"),
+              "DIR/zju/a.yaml:4:11: 'unfit': it takes scenes from the claims of a document, and "
+              "there are none");
     EXPECT_EQ(errorOf("measure: {time_budget_s: 9}\n"), "no error");
     EXPECT_EQ(errorOf("scene_params: {up: z}\n"),
               "DIR/zju/a.yaml:4:1: 'scene_params': no case has a scene");
     EXPECT_EQ(errorOf("scene: wood\nparams_by_scene: {grass: {n: 3}}\n"),
               "DIR/zju/a.yaml:5:19: 'grass': no case has the scene of params_by_scene");
     EXPECT_EQ(errorOf("sweep: {scene: [a@2, b]}\nparams_by_scene: {a: {n: 3}}\n"), "no error");
+    EXPECT_EQ(errorOf("sweep: {scene: [a@2, b], n: [1, 2]}\nparams_by_scene: {a: {n: 3}}\n"),
+              "DIR/zju/a.yaml:5:23: 'n': each case of the scene has it from the sweep, which wins "
+              "over params_by_scene");
+    EXPECT_EQ(errorOf("sweep: {m: [x, y], n: [1, 2], when: {n: {m: y}}}\nscene: a\n"
+                      "params_by_scene: {a: {n: 3}}\n"),
+              "no error");
     EXPECT_EQ(errorOf("assumptions: {scene: {why: w}}\n"),
               "DIR/zju/a.yaml:4:15: 'scene': no case has a scene");
     EXPECT_EQ(errorOf("sweep: {a: [1, 2], exclude: [{a: 2}, {a: 7}]}\n"),
