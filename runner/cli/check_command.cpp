@@ -55,21 +55,51 @@ void sayUnread(const Context& context, const scene::Catalog& catalog, const std:
     }
 }
 
-/// Throws Error for what is wrong under some profile, as a value that it fixes and the file sweeps,
-/// and for a printed row or value that has no place in the table, whatever the profile.
+/// The cases of its sweep; of what was measured elsewhere as far as that says.
+std::vector<config::Case> casesOf(const Context& context, const scene::Catalog& catalog,
+                                  const config::Experiment& experiment) {
+    if (config::isMeasuredHere(experiment)) {
+        return run::resolveParameters(experiment, catalog, context.techniques, 1);
+    }
+    std::vector<config::Case> cases = config::expandCases(experiment);
+    for (config::Case& item : cases) {
+        for (const auto& [name, value] : item.given.entries()) item.params.set(name, value);
+    }
+    return cases;
+}
+
+/// Throws Error for what is wrong under some profile, as a value that it fixes and the file sweeps;
+/// and for a printed row or value, or a `where` of the layout, that has no place in the table,
+/// whatever the profile.
 void requireProfiles(const Context& context, const scene::Catalog& catalog,
                      const std::string& file) {
-    std::optional<config::Experiment> whole;
+    std::vector<config::Experiment> profiles;
+    std::vector<std::vector<config::Case>> cases;
     std::vector<tables::Table> tables;
     for (const char* profile : {"full", "quick", "paper"}) {
-        const config::Experiment one = loadExperiments({{file}, {}, {}, {}, ""}, profile).front();
-        if (one.technique.empty() || one.printed.rows.empty()) continue;
-        const std::vector<config::Case> cases =
-            run::resolveParameters(one, catalog, context.techniques, 1);
-        tables.push_back(tables::buildTable(one, cases, {}));
-        if (!whole) whole = one;
+        config::Experiment one = loadExperiments({{file}, {}, {}, {}, ""}, profile).front();
+        if (one.technique.empty() || !one.layout.isGiven) continue;
+        cases.push_back(casesOf(context, catalog, one));
+        const bool areRowsKnown =
+            config::isMeasuredHere(one) ||
+            std::ranges::all_of(one.layout.rows, [&](const config::LayoutAxis& axis) {
+                return !axis.isSweepAxis() ||
+                       (!cases.back().empty() && cases.back().front().axes.find(axis.name));
+            });
+        if (!one.printed.rows.empty() && areRowsKnown)
+            tables.push_back(tables::buildTable(one, cases.back(), {}));
+        profiles.push_back(std::move(one));
     }
-    if (whole) tables::requirePrintedValues(*whole, tables);
+    // What was measured elsewhere may have more than the sweep says.
+    for (const config::Experiment& one : profiles) {
+        if (!config::isMeasuredHere(one)) break;
+        std::vector<tables::LayoutCases> each;
+        for (const auto& own : cases) each.push_back(tables::gatherCases(one, own, {}));
+        tables::requireCases(one, each);
+    }
+    const auto whole = std::ranges::find_if(
+        profiles, [](const config::Experiment& one) { return !one.printed.rows.empty(); });
+    if (!tables.empty()) tables::requirePrintedValues(*whole, tables);
 }
 
 /// Throws Error for a sweep that the text names ("sweeps/NAME") and that is not among the configs.
@@ -347,28 +377,6 @@ std::vector<records::Record> foreseen(std::span<config::Case> cases,
     return all;
 }
 
-/// The table before anything is recorded. Throws Error for a column that a claim reads and that the
-/// cases will not give.
-tables::Table tableBefore(const Context& context, const config::Experiment& experiment,
-                          std::span<const config::Case> cases) {
-    if (!experiment.hasDefaultLayout() || experiment.claims.empty()) {
-        return tables::buildTable(experiment, cases, {});
-    }
-    config::Experiment known = experiment;
-    known.outputs =
-        technique::outputsOf(technique::findTechnique(context.techniques, experiment.technique, {}),
-                             config::programOf(experiment));
-    std::vector<config::Case> own(cases.begin(), cases.end());
-    const std::vector<records::Record> records = foreseen(own, known.outputs);
-    tables::Table table = tables::buildTable(known, own, records);
-    for (const config::ClaimSpec& claim : experiment.claims) {
-        const std::string absent = records.empty() ? "" : claims::whatIsAbsent(claim, table);
-        if (absent.empty()) continue;
-        throw Error(claim.location, fmt::format("claim '{}': {}", claim.id, absent));
-    }
-    return table;
-}
-
 /// Says what a file comes to, and gives its cases; adds its size.
 std::vector<config::Case> checkFile(const Context& context, const Chosen& selection,
                                     const scene::Catalog& catalog, const std::string& file,
@@ -395,6 +403,26 @@ std::vector<config::Case> checkFile(const Context& context, const Chosen& select
 
 }  // namespace
 
+tables::Table tableBefore(const Context& context, const config::Experiment& experiment,
+                          std::span<const config::Case> cases) {
+    if (!experiment.hasDefaultLayout() || experiment.claims.empty()) {
+        return tables::buildTable(experiment, cases, {});
+    }
+    config::Experiment known = experiment;
+    known.outputs =
+        technique::outputsOf(technique::findTechnique(context.techniques, experiment.technique, {}),
+                             config::programOf(experiment));
+    std::vector<config::Case> own(cases.begin(), cases.end());
+    const std::vector<records::Record> records = foreseen(own, known.outputs);
+    tables::Table table = tables::buildTable(known, own, records);
+    for (const config::ClaimSpec& claim : experiment.claims) {
+        const std::string absent = records.empty() ? "" : claims::whatIsAbsent(claim, table);
+        if (absent.empty()) continue;
+        throw Error(claim.location, fmt::format("claim '{}': {}", claim.id, absent));
+    }
+    return table;
+}
+
 void requireSound(const Context& context, const scene::Catalog& catalog,
                   const config::Experiment& experiment, std::span<const config::Case> cases) {
     run::requireRanges(experiment, {cases.begin(), cases.end()}, catalog, context.techniques);
@@ -405,8 +433,12 @@ void requireSound(const Context& context, const scene::Catalog& catalog,
         if (node) requireNamedSweeps(*node);
     }
     if (const Node* given = experiment.document.find("claims")) requireFindings(*given);
-    const tables::Table table = tableBefore(context, experiment, cases);
+    const bool isImported = experiment.technique == config::kImported;
+    const tables::Table table =
+        isImported ? tables::buildTable(experiment, casesOf(context, catalog, experiment), {})
+                   : tableBefore(context, experiment, cases);
     tables::requireToldApart(experiment, table);
+    tables::requireStatistics(experiment, cases, table);
     claims::requireProvenance(experiment, table);
     run::resolvePaperCases(experiment, catalog, context.techniques);
 }

@@ -9,6 +9,7 @@
 #include "engine/scene/catalog.h"
 #include "runner/cli/commands.h"
 #include "runner/run/plan.h"
+#include "runner/tables/table.h"
 
 namespace gfxrepro::cli {
 
@@ -50,6 +51,11 @@ std::string deviceClassFor(const Chosen& selection);
 /// `asked`, or "none" for "auto" where nothing of the experiments needs a device.
 std::string deviceFor(const Context& context, const std::string& asked,
                       const std::vector<config::Experiment>& experiments);
+
+/// The table before anything is recorded. Throws Error for a column that a claim reads and that the
+/// cases will not give.
+tables::Table tableBefore(const Context& context, const config::Experiment& experiment,
+                          std::span<const config::Case> cases);
 
 /// Throws Error for what is wrong in an experiment of these cases, all that it has, so that nothing
 /// is measured in vain.

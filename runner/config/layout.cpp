@@ -159,6 +159,45 @@ Names combine(const Names& heads, const Names& tails) {
     return names;
 }
 
+/// The statistics in a format that is sound.
+Names statisticsOf(const std::string& format) {
+    Names names;
+    for (std::size_t at = 0; (at = format.find('{', at)) != format.npos; ++at) {
+        if (format[at + 1] == '{') {
+            ++at;
+            continue;
+        }
+        const std::size_t end = format.find_first_of(":}", at);
+        names.push_back(format.substr(at + 1, end - at - 1));
+    }
+    return names;
+}
+
+/// In each process a column is computed of the same statistic of those that it reads. What a row
+/// says of its format is known cell by cell.
+void requireSameStatistics(const Layout& layout, const Selection& selection,
+                           const Names& columnsRead) {
+    const auto hasFormat = [](const LayoutAxis& axis) {
+        return std::ranges::any_of(
+            axis.labels, [](const auto& label) { return label.second.format.has_value(); });
+    };
+    if (std::ranges::any_of(layout.rows, hasFormat)) return;
+    const auto formatOf = [&](const Selection& one) {
+        return one.format.value_or(*layout.cell.format);
+    };
+    for (const auto& [label, read] : layout.columns[0].labels) {
+        if (!contains(columnsRead, label)) continue;
+        const Names there = statisticsOf(formatOf(read));
+        for (const std::string& statistic : statisticsOf(formatOf(selection))) {
+            if (contains(there, statistic)) continue;
+            throw Error(selection.location,
+                        fmt::format("layout: of: '{}' shows {}, and this column {}; allowed: of "
+                                    "both the same, as format: \"{{{}:.4g}}\"",
+                                    label, joined(there), statistic, there.front()));
+        }
+    }
+}
+
 /// Expressions stand in the columns, and read columns before them, in rows that there are.
 void requireComputed(const Layout& layout, const Vocabulary& vocabulary) {
     const auto refuse = [](const Selection& selection, const std::string& text) {
@@ -183,8 +222,10 @@ void requireComputed(const Layout& layout, const Vocabulary& vocabulary) {
         Names known = before;
         before.push_back(label);
         if (!selection.of) continue;
+        Names columnsRead;
         for (const claims::RowReference& reference : claims::rowReferences(*selection.of, known)) {
             const std::string text(reference.text);
+            columnsRead.push_back(known[reference.column]);
             if (reference.at.empty()) refuse(selection, text + "; allowed: column[axis=value, …]");
             for (const auto& [axis, value] : reference.at) {
                 if (!contains(names.rowAxes, axis)) {
@@ -206,7 +247,9 @@ void requireComputed(const Layout& layout, const Vocabulary& vocabulary) {
         }
         for (const claims::OperandPiece& piece : claims::operandPieces(*selection.of, known)) {
             if (!piece.problem.empty()) refuse(selection, piece.problem);
+            if (piece.column) columnsRead.push_back(known[*piece.column]);
         }
+        requireSameStatistics(layout, selection, columnsRead);
         const std::string& format = selection.format ? *selection.format : *layout.cell.format;
         for (const char* spread : {"{stddev", "{p95", "{p99"}) {
             if (format.find(spread) == format.npos) continue;

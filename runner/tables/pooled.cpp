@@ -186,32 +186,4 @@ std::string pooledText(const Cell& cell) {
     return joined(parts, "; ");
 }
 
-void requireToldApart(const config::Experiment& experiment, const Table& table) {
-    if (!experiment.layout.isGiven) return;
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        const auto isSuch = [&](bool lacksCurve) {
-            return std::ranges::any_of(table.rows, [&](const TableRow& row) {
-                return row.cells[i].isPlanned && row.cells[i].lacksCurve == lacksCurve;
-            });
-        };
-        if (!isSuch(true) || isSuch(false)) continue;
-        throw Error(experiment.document.keyLocation("layout"),
-                    fmt::format("layout: column '{}' has 'equal', and its cells have no curve: "
-                                "each needs the values of an axis of numbers that is swept and "
-                                "that names neither rows nor columns",
-                                table.columns[i].label));
-    }
-    for (const TableRow& row : table.rows) {
-        for (const Cell& cell : row.cells) {
-            const auto silent = std::ranges::find(cell.pooled, false, &Pooled::isAsked);
-            if (silent == cell.pooled.end()) continue;
-            throw Error(experiment.document.keyLocation("layout"),
-                        fmt::format("layout: each number would be taken over {0} ({1}), which is "
-                                    "swept; allowed: as an axis of rows or columns, or in a "
-                                    "'where': {{{0}: [{1}]}} takes its values together",
-                                    silent->axis, joined(silent->values)));
-        }
-    }
-}
-
 }  // namespace gfxrepro::tables

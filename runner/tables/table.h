@@ -141,9 +141,17 @@ std::string pooledText(const Cell& cell);
 
 // What `check` refuses of a layout; `table` may have been built from no records.
 
+/// Throws Error for a `where` that is met by no case of any profile, and for a row or a column
+/// without a case. `profiles` are gatherCases() of this layout.
+void requireCases(const config::Experiment& experiment, std::span<const LayoutCases> profiles);
+
 /// Throws Error, at the layout, where a cell would take cases together that differ along an axis
 /// which the layout does not name, and where those of a column with `equal` have no curve.
 void requireToldApart(const config::Experiment& experiment, const Table& table);
+
+/// Throws Error for a sum, a count or a deviation of what has one value.
+void requireStatistics(const config::Experiment& experiment, std::span<const config::Case> planned,
+                       const Table& table);
 
 // Times that are not of one clock: a GPU whose clock moved while a case was timed.
 

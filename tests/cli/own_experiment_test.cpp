@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -450,6 +451,43 @@ TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
         "gpu_time_ms}}\n";
     const auto file = folder.write("of.yaml", "sweep_of: mine\ntitle: Mine\n" + head + computed);
     EXPECT_EQ(gfxrepro({"check", file}).err, "");
+}
+
+/// Cells of no case would be blank, or missing.
+TEST_F(OwnExperiment, CheckKnowsCases) {
+    const std::string head =
+        "technique: voxelization\nscene: shapes/torus\nmeasure: {lane: quality}\n"
+        "sweep: {fill: [surface, solid], resolution: [32, 64], exclude: [{fill: solid, "
+        "resolution: 64}]}\n";
+    const auto laidOut = [&](const std::string& columns, const std::string& more = "") {
+        return checked(folder, head + more + "layout: {rows: scene, columns: {" + columns + "}}\n");
+    };
+    EXPECT_EQ(laidOut("a: {metric: voxels, where: {fill: sold, resolution: 32}}"),
+              "gfxrepro: DIR/mine.yaml:7:67: layout: where.fill is sold; allowed: surface | "
+              "solid\n");
+    EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: surface, resolution: [32, 128]}}"),
+                EndsWith(": layout: where.resolution is 128; allowed: 32 | 64\n"));
+    EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: surface, resolution: 32, frame: 1}}"),
+                EndsWith(": layout: where.frame is 1; allowed: 0\n"));
+    EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: solid, resolution: 64}}"),
+                EndsWith(": layout: column 'a' is of no case: none has fill=solid, resolution=64, "
+                         "scene=shapes/torus\n"));
+    const std::string solid = "a: {metric: voxels, where: {fill: solid, resolution: 32}}";
+    const std::string file = folder.write(
+        "quick.yaml", "sweep_of: mine\ntitle: Mine\n" + head +
+                          "profiles: {quick: {sweep: {fill: [surface], exclude: []}}}\n"
+                          "layout: {rows: scene, columns: {" +
+                          solid + "}}\n");
+    for (const char* profile : {"full", "quick"}) {  // in one of which it is blank
+        EXPECT_EQ(gfxrepro({"check", file, "--profile", profile}).err, "") << profile;
+    }
+    EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: solid, resolution: 32}, format: "
+                        "'{sum:.0f}'}"),
+                EndsWith(": layout: column 'a' shows the sum of one value in each process; "
+                         "allowed: median, or 'measure: {frames}'\n"));
+    EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: solid, resolution: 32}, format: "
+                        "'{stddev:.0f}'}"),
+                HasSubstr("shows the stddev of one value"));
 }
 
 TEST_F(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {

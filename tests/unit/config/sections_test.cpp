@@ -8,6 +8,8 @@ namespace gfxrepro::config {
 namespace {
 
 using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
 
 TEST_F(ExperimentTest, BadSections) {
     EXPECT_EQ(errorWith("titl: u"),
@@ -106,6 +108,15 @@ TEST_F(ExperimentTest, BadLayouts) {
               place + "a[methd=x]: 'methd' is no row axis; allowed: scene");
     EXPECT_EQ(computed("a[scene] / a"), place + "a[scene]; allowed: column[axis=value, …]");
     EXPECT_EQ(computed("a / a[scene=t]"), place + "a[scene=t]: scene is t; allowed: s");
+    const auto shown = [&](const std::string& format, const std::string& of) {
+        return layoutError("{rows: scene, columns: {a: {metric: m, format: '" + format +
+                           "'}, b: {of: '" + of + "'}}}");
+    };
+    EXPECT_THAT(shown("{mean:.1f}", "2 * a"),
+                EndsWith("layout: of: 'a' shows mean, and this column median; allowed: of both the "
+                         "same, as format: \"{mean:.4g}\""));
+    EXPECT_THAT(shown("{p95:.1f} {{}} {max}", "a[scene=s] / 2"), HasSubstr("shows p95, max, and"));
+    EXPECT_EQ(shown("{median:.1f} {mean}", "a / a[scene=s]"), "no error");
     EXPECT_EQ(layoutError("{rows: scene, columns: {a: {metric: m}, b: {of: a, metric: m}}}"),
               head + "60: a computed column: unknown key 'metric'; allowed: of, format");
     EXPECT_EQ(layoutError("{rows: {a: {of: a}}, columns: scene, cell: {metric: m}}"),
@@ -571,6 +582,18 @@ TEST_F(ExperimentTest, OneRowHasNoTrend) {
     EXPECT_EQ(error("trend: aa, over: n, direction: increasing", "n: [1, 2]"), "no error");
 }
 
+TEST_F(ExperimentTest, KeysOfASectionSayWhereTheyBelong) {
+    const std::string head = "sweep_of: own\ntitle: t\ntechnique: x\n";
+    EXPECT_EQ(
+        loadError(head + "scene: a.ply\nup: z\n"),
+        "DIR/zju/a.yaml:5:1: config: 'up' is of 'scene_params'; allowed: scene_params: {up: z}");
+    EXPECT_EQ(loadError(head + "processes: 9\n"),
+              "DIR/zju/a.yaml:4:1: config: 'processes' is of 'measure'; allowed: measure: "
+              "{processes: …}");
+    EXPECT_EQ(loadError(head + "width: 9\n"),
+              "DIR/zju/a.yaml:4:1: config: 'width' is of 'output'; allowed: output: {width: …}");
+}
+
 /// What people write for a bound, and bounds of kinds that have none.
 TEST_F(ExperimentTest, OtherWordsForBoundsSayWhatToWrite) {
     EXPECT_THAT(
@@ -583,6 +606,10 @@ TEST_F(ExperimentTest, OtherWordsForBoundsSayWhatToWrite) {
                                    "ratio's: 'ratio: b / a' with at_least"));
     EXPECT_THAT(claimError("{says: s, independent: aa, of: scene, less_than: 1%}\n"),
                 testing::HasSubstr("unknown key 'less_than' of 'independent'; allowed: 'at_most'"));
+    EXPECT_THAT(
+        claimError("{says: s, trend: aa, over: scene, exponent: {at_most: -0.5}}\n"),
+        EndsWith("unknown key 'exponent' of 'trend'; allowed: its bounds beside 'trend', as "
+                 "at_most: -0.5"));
     EXPECT_EQ(claimError("{says: s, ratio: scene=s / scene=t, at_least: 1}\n"), "no error");
     EXPECT_THAT(claimError("{says: s, ratio: scene=s / scene=u, at_least: 1}\n"),
                 testing::HasSubstr("'u' is no column; did you mean 's'? (columns: s, t)"));
