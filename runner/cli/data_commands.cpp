@@ -140,8 +140,12 @@ int importRun(const Context& context, const ImportOptions& options) {
         request.experiments = loadExperiments(
             requestOf(selection, findPaperConfigs(options.configs)), options.profile);
     }
-    const run::StoredRun run =
-        outcome::importRun(request, openCatalog(context, options.assets), context.techniques);
+    const scene::Catalog catalog = openCatalog(context, options.assets);
+    for (const config::Experiment& experiment : request.experiments) {
+        requireSound(context, catalog, experiment,
+                     run::resolveCases(experiment, catalog, context.techniques, 1));
+    }
+    const run::StoredRun run = outcome::importRun(request, catalog, context.techniques);
     const fs::path dir =
         options.out.empty() ? run::defaultRunPath(runSlug(run.plan)) : fs::path(options.out);
     {

@@ -18,7 +18,7 @@ using testing::Not;
 constexpr const char* kLines =
     "scene: shapes/torus\n"
     "sweep: {number: [1, 2, 4], behaviour: [ok, throw]}\n"
-    "measure: {lane: timing, processes: 6, time_budget_s: 600}\n"
+    "measure: {lane: timing, processes: 6}\n"
     "layout: {rows: number, columns: {out: {metric: number, where: {behaviour: ok}}, "
     "ms: {metric: wall_time_ms, where: {behaviour: ok}}, "
     "bad: {metric: number, where: {behaviour: throw}}}}\n"
@@ -193,6 +193,30 @@ TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
         folder_.write("flat.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.5\n64,mse,0.5\n");
     EXPECT_EQ(mockGfxrepro({"import", flat, "--config", config, "--out", dir("flat")}).exitCode, 1);
     EXPECT_THAT(verdicts("flat"), testing::Contains("slope fails"));
+}
+
+TEST_F(Data, WhatCheckRefusesIsNotImported) {
+    const std::string csv = folder_.write("t.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.1\n");
+    const std::string head =
+        "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {samples: [4, 16]}\n"
+        "layout: {rows: samples, columns: {mse: {metric: mse}}}\n";
+    const auto refusals = [&](const std::string& lines) {
+        const std::string config = folder_.write("t.yaml", head + lines);
+        const ProcessResult checked = mockGfxrepro({"check", config});
+        const ProcessResult imported =
+            mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
+        EXPECT_EQ(imported.exitCode, checked.exitCode) << imported.err;
+        EXPECT_EQ(imported.err.find(checked.err), 0U) << imported.err;
+        std::filesystem::remove_all(dir("t"));
+        return checked.err;
+    };
+    EXPECT_EQ(refusals("printed: {values: \"samples,mse\\n4,0.5\"}\n"), "");
+    EXPECT_THAT(
+        refusals("printed: {values: \"samples,mse\\n8,0.5\"}\n"),
+        EndsWith(":6:19: printed: no profile measures the row '8,0.5'; allowed: samples 4 | "
+                 "16\n"));
+    EXPECT_THAT(refusals("claims: {C: {says: so, bound: mse, at_most: 1, kind: absolute}}\n"),
+                EndsWith(": claim 'C' has a 'kind' and reads no time\n"));
 }
 
 /// A column of the file that the config's sweep does not name.
