@@ -180,7 +180,7 @@ std::optional<Study> studyOf(const Context& context, const std::string& file,
                 .basis = {},
                 .folder = {}};
     const config::Experiment& experiment = study.experiment();
-    const tables::Table table = tables::buildTable(experiment, study.plan.cases, {});
+    const tables::Table table = tableBefore(context, experiment, study.plan.cases);
     for (const config::ClaimSpec& claim : experiment.claims) {
         if (claims::isOfTime(claim, table)) study.timed.insert(claim.id);
     }

@@ -146,6 +146,20 @@ TEST_F(Sensitivity, TablesOfTimesAreNamed) {
         HasSubstr("\nNot tried, each says why: [sweep-mock](software/full/sweep-mock.md).\n"));
 }
 
+/// Which of its claims are of times is known by what its cases will give.
+TEST_F(Sensitivity, OfATableThatNobodyLaidOutTheOtherClaimsAreTried) {
+    const std::string config =
+        writeMockConfig(folder,
+                        "sweep: {behaviour: [ok]}\nparams: {number: 3}\nmeasure: {processes: 1}\n"
+                        "claims:\n  few: {says: few, bound: number, at_most: 6}\n"
+                        "  fast: {says: fast, bound: frame_ms, at_most: 9e9, kind: absolute}\n"
+                        "assumptions: {number: {range: [0, 10], why: left open}}\n");
+    const ProcessResult run = mockGfxrepro(sensitivityCommand(config, folder.path() / "out"));
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_THAT(run.err, Not(HasSubstr("exit code")));
+    EXPECT_THAT(run.out, HasSubstr("sweep/mock few: holds unless number is 10 (flips between"));
+}
+
 TEST_F(Sensitivity, TriesTimesWhereTheyAreAskedForAndKeepsThem) {
     const std::string keep = folder.path() / "keep";
     const std::string fast =
