@@ -161,6 +161,14 @@ std::vector<std::string> frameNotes(const config::Experiment& experiment,
     return notes;
 }
 
+/// What is declared of the metric; errors that were taken elsewhere are known by their names.
+const config::MetricInfo* infoOf(const std::string& metric, const config::Experiment& experiment) {
+    if (const config::MetricInfo* info = experiment.outputs.find(metric)) return info;
+    const auto errors = config::pictureErrors();
+    const auto known = std::ranges::find(errors, metric, &config::MetricInfo::name);
+    return known == errors.end() ? nullptr : &*known;
+}
+
 /// Whether a claim names the column.
 bool isClaimed(const std::string& label, const config::Experiment& experiment) {
     const auto isIn = [&](const auto& text) { return text.find(label) != text.npos; };
@@ -201,7 +209,7 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
     const auto isRivals = [&](const Series& series, bool isFirst) {
         if (!result.rivals.isThere()) return false;
         if (isFirst && config::isTimeMetric(series.metric)) return true;
-        const config::MetricInfo* info = experiment.outputs.find(series.metric);
+        const config::MetricInfo* info = infoOf(series.metric, experiment);
         const bool isError = info && info->better == config::Better::Lower && !hasError &&
                              !config::isTimeMetric(series.metric) && series.unit != "byte";
         hasError |= isError;
@@ -244,7 +252,7 @@ void describeColumns(const config::Experiment& experiment, const config::Layout&
     for (TableColumn& column : table.columns) {
         for (const auto& [label, selection] : layout.columns.front().labels) {
             const config::MetricInfo* info = label == column.label && selection.metric
-                                                 ? experiment.outputs.find(*selection.metric)
+                                                 ? infoOf(*selection.metric, experiment)
                                                  : nullptr;
             if (!info) continue;
             column.doc = info->doc;

@@ -156,6 +156,25 @@ TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
                 testing::Not(Contains(testing::HasSubstr("÷"))));
 }
 
+/// Of what was measured elsewhere no technique declares it.
+TEST(DefaultLayout, ImportedErrorsAreKnownByTheirNames) {
+    RecordMaker maker;
+    for (const char* method : {"sobol", "jittered"}) {
+        maker.beginCase("", fmt::format(R"({{"method": "{}"}})", method));
+        const double less = method[0] == 's' ? 1.0 : 0.5;
+        maker.add("mse", {0.4 * less}, "", "1").add("shots", {3.0 * less}, "", "1");
+    }
+    Recorded records = maker.records();
+    for (records::Record& record : records) record.table = "sweep/s";
+    for (config::Case& item : records.cases) item.experiment = "sweep/s";
+    config::Experiment experiment = sweepOf("{method: [sobol, jittered]}");
+    experiment.outputs = {};
+    const Table table = buildTable(experiment, records);
+    EXPECT_THAT(labelsOf(table), ElementsAre("mse", "mse ÷ sobol", "shots"));
+    EXPECT_EQ(table.rows[1].cells[1].measured, "0.5");
+    EXPECT_EQ(table.columns[0].better, Better::Lower);
+}
+
 /// Two methods at so many sizes over six processes; `time` is of a method, a size and a process.
 using TimeAt = std::function<double(int method, int size, int process)>;
 Recorded atSizes(int sizes, const TimeAt& wall, const TimeAt& cpu = {},
