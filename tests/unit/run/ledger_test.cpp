@@ -297,22 +297,25 @@ TEST(Ledger, RefusesAListOfWhatNobodyTries) {
 TEST(PaperCases, RefuseWhatTheTechniqueDoesNotTake) {
     const Ledger ledger;
     const auto errorOf = [&](const std::string& at) {
+        ledger.folder.write("configs/at.yaml", "printed: {at: " + at + "}\n");
         return test::errorText(
             [&] {
-                config::Experiment experiment = ledger.load("printed: {at: " + at + "}\n");
+                config::Experiment experiment = ledger.load("extends: at.yaml\n");
                 experiment.paperDocument = experiment.document;
                 resolvePaperCases(experiment, ledger.catalog(), kTechniques);
             },
             ledger.folder.path());
     };
     EXPECT_EQ(errorOf("{bias: 5}"),
-              "DIR/t.yaml:4:22: printed.at: bias is 5; allowed: 0 … 1 texels");
-    EXPECT_EQ(errorOf("{bias: much}"),
-              "DIR/t.yaml:4:22: printed.at: bias is 'much'; allowed: a number, 0 … 1 texels");
-    EXPECT_EQ(errorOf("{biass: 1}"),
-              "DIR/t.yaml:4:23: printed.at: 'biass' is no parameter; did you mean 'bias'?");
+              "DIR/configs/at.yaml:1:22: printed.at: bias is 5; allowed: 0 … 1 texels");
+    EXPECT_EQ(
+        errorOf("{bias: much}"),
+        "DIR/configs/at.yaml:1:22: printed.at: bias is 'much'; allowed: a number, 0 … 1 texels");
+    EXPECT_EQ(
+        errorOf("{biass: 1}"),
+        "DIR/configs/at.yaml:1:23: printed.at: 'biass' is no parameter; did you mean 'bias'?");
     EXPECT_EQ(errorOf("{scene: gras}"),
-              "DIR/t.yaml:4:23: printed.at: scene is gras; allowed: a catalogued scene");
+              "DIR/configs/at.yaml:1:23: printed.at: scene is gras; allowed: a catalogued scene");
     EXPECT_EQ(errorOf("{bias: 0.25, scene: grass}"), "no error");
 }
 
@@ -378,10 +381,10 @@ TEST(Cases, TakeTheParametersOfTheirScene) {
     EXPECT_THAT(biases(swept + "params: {bias: 0.1}\n" + grass), ElementsAre("0.2", "0.1"));
     EXPECT_THAT(biases("sweep: {scene: [grass@7, scan]}\n" + grass), ElementsAre("0.2", "0.5"));
     EXPECT_THAT(biases("scene: grass\nscene_instead: {grass: tree}\n" + grass), ElementsAre("0.2"));
-    EXPECT_THAT(biases("scene: grass\nsweep: {bias: [0.3, 0.4]}\n" + grass),
-                ElementsAre("0.3", "0.4"));
     EXPECT_THAT(biases(swept + grass + "params_instead: {bias: 0.6}\n"), ElementsAre("0.6", "0.6"));
     ledger.folder.write("configs/grass.yaml", grass);
+    EXPECT_THAT(biases("extends: grass.yaml\nscene: grass\nsweep: {bias: [0.3, 0.4]}\n"),
+                ElementsAre("0.3", "0.4"));
     EXPECT_THAT(biases("extends: grass.yaml\nscene: scan\n"), ElementsAre("0.5"))
         << "what is extended serves others, too";
     const config::Experiment bound =
