@@ -44,7 +44,7 @@ constexpr Choice<Forward> kForwards[] = {
 constexpr Choice<Resampling> kResamplings[] = {
     {Resampling::Twice, "twice",
      "shifted in the key frame's view, then warped (Sec. 5.4.2, 5.4.3)"},
-    {Resampling::Once, "once", "moved to the new view at once"},
+    {Resampling::Gather, "gather", "found in the key frame by the new view's samples"},
 };
 
 float number(Params& params, const char* name, float fallback, const ParamSpec& spec) {
@@ -76,7 +76,7 @@ ReuseSettings readReuse(Params& params) {
                                                    kForwards, {"how images are drawn forward"});
     settings.reprojection.resampling =
         params.getEnum("resampling", settings.reprojection.resampling, kResamplings,
-                       {"how often reflections are resampled on their way"});
+                       {"how reflections come from the key frame to the new view"});
     settings.reprojection.maxGrowth = number(
         params, "max_growth", settings.reprojection.maxGrowth,
         {"how much a grid triangle's area may grow; a larger one is left out", "1", 1.0, 1e6});
@@ -132,6 +132,11 @@ ReuseParams::ReuseParams(Params& params)
         params.refuseGiven(
             {"matching", "max_steps", "widest_ring", "resampling", "exhaustive_samples"},
             "'method: reuse'");
+    } else if (reuse.reprojection.resampling == Resampling::Gather) {
+        params.refuseGiven({"matching", "max_steps", "widest_ring", "exhaustive_samples"},
+                           "'resampling: twice'");
+        params.refuseGiven({"silhouette", "forward", "max_growth"},
+                           "'resampling: twice' or 'method: direct'");
     }
     if (firstFrame >= pathFrames) {
         throw Error(params.locationOf("first_frame"),
@@ -208,7 +213,7 @@ config::Outputs outputs() {
             {"diffuse", "drawing what the eye sees"},
             {"recompute", "tracing what is not reused"},
             {"reflection_shift", "moving the key frame's reflections to their new places"},
-            {"reflection_warp", "moving them by a grid instead"},
+            {"reflection_warp", "moving them on to the new view, or finding them for it"},
             {"pixel_matching", "searching where the new view shows a reflected point"},
         },
     });
@@ -472,7 +477,7 @@ class ReflectionReuse final : public technique::Technique {
             return;
         }
         if (counts.reflectiveSamples > 0) recorder.metric("recomputed_pct", recomputedPct);
-        if (params_.method == Method::Reuse) recordMatches(recorder, counts);
+        if (renderer_->shifted()) recordMatches(recorder, counts);
     }
 
     /// Of a frame's repetitions the fastest counts: what else runs on the machine only adds.
@@ -510,14 +515,12 @@ class ReflectionReuse final : public technique::Technique {
         if (reflective == 0) return;
         recorder.metric("matching_steps", counts.matchingSteps);
         recorder.metric("unmatched_pct", kit::percent(unmatched, reflective));
-        if (renderer_->shifted()) {
-            const std::vector<glm::vec4> shifted = readRadiance(renderer_->shifted()->radiance);
-            std::size_t unshifted = 0;
-            for (std::size_t i = 0; i < shifted.size(); ++i) {
-                unshifted += isReflective(surfaces[i]) && shifted[i].a <= 0.5F ? 1 : 0;
-            }
-            recorder.metric("unshifted_pct", kit::percent(unshifted, reflective));
+        const std::vector<glm::vec4> shifted = readRadiance(renderer_->shifted()->radiance);
+        std::size_t unshifted = 0;
+        for (std::size_t i = 0; i < shifted.size(); ++i) {
+            unshifted += isReflective(surfaces[i]) && shifted[i].a <= 0.5F ? 1 : 0;
         }
+        recorder.metric("unshifted_pct", kit::percent(unshifted, reflective));
         if (params_.exhaustiveSamples == 0) return;
         const MatchCheck check =
             checkMatches(readReflectionDepthImage(key), offsets, view_.eyeWorld,
@@ -549,13 +552,12 @@ class ReflectionReuse final : public technique::Technique {
         const ReflectionDepthImage& key = renderer_->keyFrame();
         frame_->composite.render(key.gbuffer, key.reflection);
         recorder.image("key_frame", frame_->composite.read(), seenFrom(key.gbuffer.view));
-        if (params_.method != Method::Reuse) return;
+        if (!renderer_->shifted()) return;
         const HostGBuffer hostKey = reflections::readGBuffer(key.gbuffer);
         recorder.image(
             "offsets",
             offsetsPicture(hostKey, readOffsets(renderer_->offsets()), params_.supersampling),
             seenFrom(hostKey.view));
-        if (!renderer_->shifted()) return;
         recorder.image("shifted",
                        shiftedPicture(hostKey, readRadiance(renderer_->shifted()->radiance),
                                       params_.supersampling),

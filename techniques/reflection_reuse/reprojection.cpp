@@ -113,6 +113,23 @@ namespace {
 
 enum Target { kRadianceTarget = 0, kWantedTarget = 1 };
 
+/// Of a search of gather(); a longer one finds nothing.
+constexpr int kMaxGatherSteps = 24;
+/// Samples between a place that is found and where the key frame sees the reflecting surface itself
+/// that are asked for a nearer one.
+constexpr int kMostBetween = 8;
+/// Of a pixel's change: by how much a place may miss the ray. Twice as much recomputes less and
+/// errs more.
+constexpr float kMostMissed = 0.5F;
+/// Share of the distance along the ray by which samples next to a place may differ that show the
+/// same surface. What another one shows, beyond an edge, weighs kAcrossEdge: with 1 edges are
+/// blurred, and the mean error is larger; with 0 those that are off are off by all, and PSNR is
+/// less.
+constexpr float kSameSurface = 0.1F;
+constexpr float kAcrossEdge = 0.5F;
+/// An angle that no R before the ray's origin has.
+constexpr float kBehind = 100.0F;
+
 /// Points mend the rim of the grid: they fall back by this share of their depth, so that they only
 /// show where the grid leaves a gap, and not half a pixel beside their place on a slope. Larger
 /// shares would let what is farther show through.
@@ -120,7 +137,16 @@ constexpr float kPointBias = 0.01F;
 
 gl::Defines reprojectionDefines() {
     return {{"kRadianceTarget", static_cast<int>(kRadianceTarget)},
-            {"kWantedTarget", static_cast<int>(kWantedTarget)}};
+            {"kWantedTarget", static_cast<int>(kWantedTarget)},
+            {"DAMPING", kDamping},
+            {"ROUNDING", kRounding},
+            {"LONGEST_STEP", kLongestStep},
+            {"MAX_STEPS", kMaxGatherSteps},
+            {"MOST_BETWEEN", kMostBetween},
+            {"MOST_MISSED", kMostMissed},
+            {"SAME_SURFACE", kSameSurface},
+            {"ACROSS_EDGE", kAcrossEdge},
+            {"BEHIND", kBehind}};
 }
 
 /// What vertices carry (grid_vertex.glsl).
@@ -143,102 +169,106 @@ std::size_t ShiftedImage::sizeBytes() const {
 
 Reprojection::Reprojection(const gl::ShaderLibrary& shaders, const ReprojectionSettings& settings,
                            glm::ivec2 sizePx)
-    : settings_(settings),
-      cells_(shaders, sizePx, settings.splitsDraws),
-      shift_(shaders, {"reflection_reuse/shift.vert.glsl", "reflection_reuse/shift.frag.glsl"},
-             reprojectionDefines()),
-      warp_(shaders, {"reflection_reuse/warp.vert.glsl", "reflection_reuse/warp.frag.glsl"},
-            reprojectionDefines()),
-      project_(shaders,
-               {"reflection_reuse/project.vert.glsl", "reflection_reuse/project.frag.glsl"},
-               reprojectionDefines()),
-      wantAll_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/want_all.frag.glsl"},
-               reprojectionDefines()),
-      depthBuffer_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
-      noDoubts_(gl::Texture::make2D(GL_R8UI, glm::ivec2(1))) {
+    : settings_(settings), noDoubts_(gl::Texture::make2D(GL_R8UI, glm::ivec2(1))) {
     noDoubts_.clearToZero();
+    const auto passOf = [&](const char* vertices, const char* fragments) {
+        return gl::Pass(shaders, {vertices, fragments}, reprojectionDefines());
+    };
+    constexpr const char* kWhole = "kit/whole_image.vert.glsl";
+    wantAll_ = passOf(kWhole, "reflection_reuse/want_all.frag.glsl");
+    if (settings.resampling == Resampling::Gather) {
+        reflectedPoints_ = passOf(kWhole, "reflection_reuse/reflected_points.frag.glsl");
+        gather_ = passOf(kWhole, "reflection_reuse/gather.frag.glsl");
+        reflected_ = gl::Texture::make2D(GL_RGBA32F, sizePx);
+        return;
+    }
+    cells_.emplace(shaders, sizePx, settings.splitsDraws);
+    shift_ = passOf("reflection_reuse/shift.vert.glsl", "reflection_reuse/shift.frag.glsl");
+    warp_ = passOf("reflection_reuse/warp.vert.glsl", "reflection_reuse/warp.frag.glsl");
+    depthBuffer_ = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx);
 }
 
 void Reprojection::setKeyFrame(const ReflectionDepthImage& key) {
-    cells_.classify(key.gbuffer, settings_.silhouette);
+    if (cells_) {
+        cells_->classify(key.gbuffer, settings_.silhouette);
+        return;
+    }
+    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&reflected_});
+    framebuffer.bind();
+    reflectedPoints_.set("missDistance", key.diagonalM);
+    reflectedPoints_.use(gl::Resources{{"distanceM", key.reflection.distance}}.with(
+        key.gbuffer.resourcesFor(reflectedPoints_)));
+    wholeImage_.draw();
 }
 
 void Reprojection::drawGrid(const gl::Program& program, float pointBias) {
     kit::setNearestWins();  // no culling: reflections in a hollow turn over
     program.set("isPoints", 0);
     program.set("pointBias", 0.0F);
-    cells_.drawTriangles();
+    cells_->drawTriangles();
     program.set("isPoints", 1);
     program.set("pointBias", settings_.forward == Forward::Grid ? pointBias : 0.0F);
-    cells_.drawPoints();
-}
-
-/// Where vertices go in the key frame's image, and how long their paths are (grid_path.glsl).
-gl::Resources Reprojection::paths(const gl::Program& program, const ReflectionDepthImage& key,
-                                  const Offsets& offsets, const gl::Texture* doubtful) const {
-    program.set("hasDoubts", doubtful != nullptr ? 1 : 0);
-    program.set("missDistance", key.diagonalM);
-    // Eye depths end at the far plane; objects that move may carry hits beyond the scene's diagonal
-    // at rest.
-    program.set("longestPath", key.gbuffer.view.farM + 2.0F * key.diagonalM);
-    program.set("maxGrowth", settings_.maxGrowth);
-    return {{"distanceM", key.reflection.distance},
-            {"offsets", offsets.offset},
-            {"doubtful", doubtful != nullptr ? *doubtful : noDoubts_}};
-}
-
-gl::Resources Reprojection::newViewOf(const gl::Program& program, const ReflectionDepthImage& key,
-                                      const reflections::GBuffer& gbuffer) const {
-    program.set("clipFromKeyPixels", glm::mat4(glm::dmat4(gbuffer.view.clipFromView) *
-                                               glm::dmat4(gbuffer.view.viewFromWorld) *
-                                               glm::dmat4(kit::worldFromPixels(key.gbuffer.view))));
-    program.set("maxGrowth", settings_.maxGrowth);
-    program.set("depthTolerance", settings_.depthTolerance);
-    return gbuffer.resourcesFor(program);
-}
-
-gl::Framebuffer Reprojection::newView(const reflections::GBuffer& gbuffer,
-                                      reflections::ReflectionTarget& target, gl::Texture& wanted) {
-    wantAll(gbuffer, wanted);
-    target.distance.clearToZero();
-    gl::Framebuffer framebuffer(std::array<const gl::Texture*, 2>{&target.radiance, &wanted},
-                                &depthBuffer_);
-    framebuffer.clearDepth(1.0F);
-    framebuffer.bind();
-    return framebuffer;
+    cells_->drawPoints();
 }
 
 void Reprojection::shift(const ReflectionDepthImage& key, const Offsets& offsets,
                          const gl::Texture* doubtful, ShiftedImage& result) {
-    cells_.list(offsets.offset, CellList::Validity::Offset, settings_.forward == Forward::Splats);
+    cells_->list(offsets.offset, CellList::Validity::Offset, settings_.forward == Forward::Splats);
     result.framebuffer.clearColour(kRadianceTarget, glm::vec4(0.0F));
     result.framebuffer.clearDepth(1.0F);
     result.framebuffer.bind();
-    shift_.use(carried(key, key.reflection.radiance).with(paths(shift_, key, offsets, doubtful)));
+    shift_.set("hasDoubts", doubtful != nullptr ? 1 : 0);
+    shift_.set("missDistance", key.diagonalM);
+    // Eye depths end at the far plane; objects that move may carry hits beyond the scene's diagonal
+    // at rest.
+    shift_.set("longestPath", key.gbuffer.view.farM + 2.0F * key.diagonalM);
+    shift_.set("maxGrowth", settings_.maxGrowth);
+    shift_.use(carried(key, key.reflection.radiance)
+                   .with({{"distanceM", key.reflection.distance},
+                          {"offsets", offsets.offset},
+                          {"doubtful", doubtful != nullptr ? *doubtful : noDoubts_}}));
     drawGrid(shift_, kPointBias);
 }
 
 void Reprojection::warp(const ReflectionDepthImage& key, const gl::Texture& radiance,
                         const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
                         gl::Texture& wanted) {
-    cells_.list(radiance, CellList::Validity::Alpha, settings_.forward == Forward::Splats);
-    const gl::Framebuffer framebuffer = newView(gbuffer, target, wanted);
-    warp_.use(carried(key, radiance).with(newViewOf(warp_, key, gbuffer)));
+    cells_->list(radiance, CellList::Validity::Alpha, settings_.forward == Forward::Splats);
+    wantAll(gbuffer, wanted);
+    target.distance.clearToZero();
+    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 2>{&target.radiance, &wanted},
+                                      &depthBuffer_);
+    framebuffer.clearDepth(1.0F);
+    framebuffer.bind();
+    warp_.set("clipFromKeyPixels", glm::mat4(glm::dmat4(gbuffer.view.clipFromView) *
+                                             glm::dmat4(gbuffer.view.viewFromWorld) *
+                                             glm::dmat4(kit::worldFromPixels(key.gbuffer.view))));
+    warp_.set("maxGrowth", settings_.maxGrowth);
+    warp_.set("depthTolerance", settings_.depthTolerance);
+    warp_.use(carried(key, radiance).with(gbuffer.resourcesFor(warp_)));
     // z/w = a + b/w: what is kPointBias farther on the same ray has b / (1 + kPointBias).
     const float b = gbuffer.view.clipFromView[3].z;
     drawGrid(warp_, b / (1.0F + kPointBias) - b);
 }
 
-void Reprojection::project(const ReflectionDepthImage& key, const Offsets& offsets,
-                           const gl::Texture* doubtful, const reflections::GBuffer& gbuffer,
-                           reflections::ReflectionTarget& target, gl::Texture& wanted) {
-    cells_.list(offsets.offset, CellList::Validity::Offset, settings_.forward == Forward::Splats);
-    const gl::Framebuffer framebuffer = newView(gbuffer, target, wanted);
-    project_.use(carried(key, key.reflection.radiance)
-                     .with(paths(project_, key, offsets, doubtful))
-                     .with(newViewOf(project_, key, gbuffer)));
-    project_.set("silhouette", settings_.silhouette);
-    drawGrid(project_, kPointBias);
+void Reprojection::gather(const ReflectionDepthImage& key, const gl::Texture* doubtful,
+                          const reflections::GBuffer& gbuffer,
+                          reflections::ReflectionTarget& target, gl::Texture& wanted) {
+    wanted.clearToZero();
+    target.distance.clearToZero();
+    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 2>{&target.radiance, &wanted});
+    framebuffer.bind();
+    gather_.set("keyClipFromWorld", key.gbuffer.view.clipFromWorld());
+    gather_.set("depthTolerance", settings_.depthTolerance);
+    gather_.set("hasDoubts", doubtful != nullptr ? 1 : 0);
+    gather_.use(gl::Resources{{"keyReflected", reflected_},
+                              {"keyRadiance", key.reflection.radiance},
+                              {"keyDepth", key.gbuffer.depth},
+                              {"doubtful", doubtful != nullptr ? *doubtful : noDoubts_}}
+                    .with(gbuffer.resourcesFor(gather_)));
+    reflective_.begin();
+    wholeImage_.draw();
+    reflective_.end();
 }
 
 void Reprojection::wantAll(const reflections::GBuffer& gbuffer, gl::Texture& wanted) {
@@ -256,7 +286,8 @@ std::uint32_t Reprojection::reflectiveSamples() const {
 }
 
 std::size_t Reprojection::sizeBytes() const {
-    return cells_.sizeBytes() + depthBuffer_.sizeBytes() + noDoubts_.sizeBytes();
+    return (cells_ ? cells_->sizeBytes() + depthBuffer_.sizeBytes() : reflected_.sizeBytes()) +
+           noDoubts_.sizeBytes();
 }
 
 }  // namespace gfxrepro::reflection_reuse

@@ -1,6 +1,8 @@
-// Shift and warp ([xie2017] Sec. 5.4.2–5.4.3): the key frame's reflections moved to a new view, in
-// two steps or in one.
+// Shift and warp ([xie2017] Sec. 5.4.2–5.4.3): the key frame's reflections moved to a new view; or
+// gathered from it.
 #pragma once
+
+#include <optional>
 
 #include "engine/gl/objects.h"
 #include "engine/gl/program.h"
@@ -60,9 +62,9 @@ enum class Forward {
 };
 
 enum class Resampling {
-    Twice,  // the shift makes an image in the key frame's view (Fig. 36 C), which the warp
-            // resamples
-    Once,   // ours: a vertex goes at once to where its match lies in the new view
+    Twice,   // the shift makes an image in the key frame's view (Fig. 36 C), which the warp
+             // resamples
+    Gather,  // ours: each sample of the new view finds its place in the key frame
 };
 
 struct ReprojectionSettings {
@@ -106,37 +108,30 @@ class Reprojection {
     void warp(const ReflectionDepthImage& key, const gl::Texture& radiance,
               const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
               gl::Texture& wanted);
-    /// shift() and warp() at once (Resampling::Once): the grid's vertices go where the surface of
-    /// their matches lies in the view of `gbuffer`, drawn with depth s.d + s.r. What the shift
-    /// makes invalid is wanted, the growth being that of both steps together, and so is what the
-    /// warp does not find.
-    void project(const ReflectionDepthImage& key, const Offsets& offsets,
-                 const gl::Texture* doubtful, const reflections::GBuffer& gbuffer,
-                 reflections::ReflectionTarget& target, gl::Texture& wanted);
+    /// In place of Algorithm 9, shift() and warp() (Resampling::Gather): for each reflective sample
+    /// of `gbuffer` the place of the key frame whose reflected point lies on the sample's own
+    /// mirror ray, and of several the one with the nearest point. Wanted is what has none or a
+    /// `doubtful` one, and what the key frame did not see itself.
+    void gather(const ReflectionDepthImage& key, const gl::Texture* doubtful,
+                const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
+                gl::Texture& wanted);
     /// 1 at every reflective sample, else 0: what a key frame traces.
     void wantAll(const reflections::GBuffer& gbuffer, gl::Texture& wanted);
 
-    /// Of the last warp(), project() or wantAll(); waits for the device.
+    /// Of the last warp(), gather() or wantAll(); waits for the device.
     std::uint32_t reflectiveSamples() const;
-    /// Of the last list made, of shift(), warp() or project().
-    const CellList& cells() const { return cells_; }
+    /// Of the last list made, of shift() or warp().
+    const CellList& cells() const { return *cells_; }
     std::size_t sizeBytes() const;
 
   private:
     void drawGrid(const gl::Program& program, float pointBias);
-    // Set uniforms of `program`, and return the rest of what it uses.
-    gl::Resources paths(const gl::Program& program, const ReflectionDepthImage& key,
-                        const Offsets& offsets, const gl::Texture* doubtful) const;
-    gl::Resources newViewOf(const gl::Program& program, const ReflectionDepthImage& key,
-                            const reflections::GBuffer& gbuffer) const;
-    /// Cleared, all of it wanted, and bound.
-    gl::Framebuffer newView(const reflections::GBuffer& gbuffer,
-                            reflections::ReflectionTarget& target, gl::Texture& wanted);
 
     ReprojectionSettings settings_;
-    CellList cells_;
-    gl::Pass shift_, warp_, project_, wantAll_;
+    std::optional<CellList> cells_;  // of two steps
+    gl::Pass shift_, warp_, reflectedPoints_, gather_, wantAll_;
     gl::Texture depthBuffer_;  // of the warped image
+    gl::Texture reflected_;    // to gather from: RGBA32F, R of Eq. 8 and the reflector
     gl::Texture noDoubts_;     // one texel of 0
     gl::SampleQuery reflective_;
     kit::WholeImage wholeImage_;

@@ -91,6 +91,16 @@ kit::View emptyView(glm::ivec2 sizePx) {
     return view;
 }
 
+bool isGathered(const ReuseSettings& settings) {
+    return !settings.isDirect && settings.reprojection.resampling == Resampling::Gather;
+}
+
+ReprojectionSettings reprojectionOf(const ReuseSettings& settings) {
+    ReprojectionSettings reprojection = settings.reprojection;
+    if (!isGathered(settings)) reprojection.resampling = Resampling::Twice;
+    return reprojection;
+}
+
 }  // namespace
 
 ReuseRenderer::ReuseRenderer(const gl::ShaderLibrary& shaders,
@@ -102,7 +112,7 @@ ReuseRenderer::ReuseRenderer(const gl::ShaderLibrary& shaders,
       settings_(settings),
       gbufferRenderer_(shaders, objects.scene()),
       matcher_(shaders, settings.matching),
-      reprojection_(shaders, settings.reprojection, sizePx),
+      reprojection_(shaders, reprojectionOf(settings), sizePx),
       movedObjects_(shaders, sizePx),
       mend_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/mend.frag.glsl"}),
       key_(emptyView(sizePx), diagonalM),
@@ -112,8 +122,7 @@ ReuseRenderer::ReuseRenderer(const gl::ShaderLibrary& shaders,
       offsets_{Offsets(sizePx), Offsets(sizePx)},
       wanted_(gl::Texture::make2D(GL_R8UI, sizePx)) {
     GFXREPRO_ASSERT(settings.seamPx >= 0);
-    if (!settings.isDirect && settings.reprojection.resampling == Resampling::Twice)
-        shifted_.emplace(sizePx);
+    if (!settings.isDirect && !isGathered(settings)) shifted_.emplace(sizePx);
 }
 
 void ReuseRenderer::render(const kit::View& view, gl::Profiler& profiler,
@@ -166,16 +175,21 @@ void ReuseRenderer::renderKeyFrame(gl::Profiler& profiler) {
 
 void ReuseRenderer::renderReused(gl::Profiler& profiler, gl::Profiler* recomputeTimes) {
     const bool hasMoved = settings_.recomputesMoved && movedObjects_.find(objects_);
-    if (!settings_.isDirect) match(profiler);
     const gl::Texture* doubtful =
         hasMoved && !settings_.isDirect ? &movedObjects_.doubtful(key_) : nullptr;
     if (shifted_) {
+        match(profiler);
         const gl::GpuScope scope(profiler, "reflection_shift");
         reprojection_.shift(key_, offsets_[0], doubtful, *shifted_);
     }
     {
         const gl::GpuScope scope(profiler, "reflection_warp");
-        warp(doubtful);
+        if (isGathered(settings_)) {
+            reprojection_.gather(key_, doubtful, gbuffer_, reflection_, wanted_);
+        } else {
+            reprojection_.warp(key_, shifted_ ? shifted_->radiance : key_.reflection.radiance,
+                               gbuffer_, reflection_, wanted_);
+        }
         if (hasMoved) movedObjects_.want(objects_, gbuffer_, key_.diagonalM, wanted_);
     }
     const gl::GpuScope scope(profiler, "recompute");
@@ -190,16 +204,6 @@ void ReuseRenderer::match(gl::Profiler& profiler) {
     std::swap(offsets_[0], offsets_[1]);
     matcher_.match(key_, gbuffer_.view.eyeWorld, hasOffsets_ ? &offsets_[1] : nullptr, offsets_[0]);
     hasOffsets_ = true;
-}
-
-void ReuseRenderer::warp(const gl::Texture* doubtful) {
-    if (shifted_) {
-        reprojection_.warp(key_, shifted_->radiance, gbuffer_, reflection_, wanted_);
-    } else if (settings_.isDirect) {
-        reprojection_.warp(key_, key_.reflection.radiance, gbuffer_, reflection_, wanted_);
-    } else {
-        reprojection_.project(key_, offsets_[0], doubtful, gbuffer_, reflection_, wanted_);
-    }
 }
 
 void ReuseRenderer::mendReflections() {
@@ -223,7 +227,7 @@ void ReuseRenderer::undo() {
     isUndone_ = true;
     if (isKeyFrame_) return;  // it overwrote all there was, and so will the next
     hasOffsets_ = hadOffsets_;
-    if (!settings_.isDirect) std::swap(offsets_[0], offsets_[1]);
+    if (shifted_) std::swap(offsets_[0], offsets_[1]);
 }
 
 ReuseCounts ReuseRenderer::counts() const {
@@ -232,7 +236,7 @@ ReuseCounts ReuseRenderer::counts() const {
     if (!hasFrame_) return counts;
     counts.reflectiveSamples = reprojection_.reflectiveSamples();
     counts.recomputedSamples = recomputedSamples();
-    if (!isKeyFrame_ && !settings_.isDirect) {
+    if (!isKeyFrame_ && shifted_) {
         counts.matchingSteps = matcher_.counts(key_, offsets_[0]).meanSteps();
     }
     return counts;

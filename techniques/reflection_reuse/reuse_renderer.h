@@ -51,10 +51,10 @@ struct ReuseSettings {
     /// When more than this share of a frame's reflective samples was recomputed, the next frame is
     /// a key frame (Sec. 5.4.4). 0: every frame that needs any; 1: never again.
     float keyFrameThreshold = 0.3F;
-    /// Not the printed algorithm, as which matcher and reprojection begin: matches between pixels,
-    /// resampled once, err less in less time (README.md).
-    MatchingSettings matching{.matching = Matching::SecondOrder};
-    ReprojectionSettings reprojection{.resampling = Resampling::Once};
+    MatchingSettings matching;  // of Resampling::Twice
+    /// Not the printed algorithm, as which a reprojection begins: a gather errs less in less time
+    /// (README.md).
+    ReprojectionSettings reprojection{.resampling = Resampling::Gather};
     /// The comparator: depth alone, as if reflections were painted on the surface.
     bool isDirect = false;
     /// Outlook of Sec. 5.5.4: samples whose reflected segment, then or now, passes the box of an
@@ -75,8 +75,8 @@ struct ReuseCounts {
 };
 
 /// Passes, named as Table 23: `diffuse`, `pixel_matching`, `reflection_shift`, `reflection_warp`,
-/// `recompute` (around the tracer's own); `composite` is the caller's. Shift and warp at once count
-/// as the warp, the preparation of a key frame for them as the shift.
+/// `recompute` (around the tracer's own); `composite` is the caller's. A gather counts as the warp,
+/// the preparation of a key frame as the shift.
 class ReuseRenderer {
   public:
     /// `objects` and `tracer` outlive this.
@@ -101,7 +101,8 @@ class ReuseRenderer {
     const gl::Texture& recomputed() const { return wanted_; }
     /// Of the last frame that was not a key frame.
     const Offsets& offsets() const { return offsets_[0]; }
-    /// Of the last frame that was not a key frame; null: there is none (Resampling::Once, direct).
+    /// Of the last frame that was not a key frame; null: there is none (gathered, direct), and no
+    /// offsets().
     const ShiftedImage* shifted() const { return shifted_ ? &*shifted_ : nullptr; }
     const ReflectionDepthImage& keyFrame() const { return key_; }
     std::size_t sizeBytes() const;
@@ -112,7 +113,6 @@ class ReuseRenderer {
     void renderKeyFrame(gl::Profiler& profiler);
     void renderReused(gl::Profiler& profiler, gl::Profiler* recomputeTimes);
     void match(gl::Profiler& profiler);
-    void warp(const gl::Texture* doubtful);
     void mendReflections();
 
     const reflections::GpuObjects& objects_;

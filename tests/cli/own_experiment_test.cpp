@@ -111,7 +111,7 @@ const FiveLines kFiveLines[] = {
     {"shadow_mapping", "shapes/torus", "shadow_map_size", "[64, 256]"},
     {"soft_shadows", "shapes/torus", "light_ratio", "[0.25, 1]", {"light_grid=2"}},
     {"clustered_reflections", "indoor/bathroom", "bin_gain", "[1, 4]", {"supersampling=1"}},
-    {"reflection_reuse", "indoor/bathroom", "max_steps", "[1, 4]"},
+    {"reflection_reuse", "indoor/bathroom", "threshold", "[0, 1]"},
     {"terrain_tessellation", "mountain.png", "delta_s", "[2, 8]", {"cache=false"}},
 };
 INSTANTIATE_TEST_SUITE_P(Each, OwnExperimentOf, testing::ValuesIn(kFiveLines),

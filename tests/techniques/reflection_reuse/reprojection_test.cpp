@@ -96,22 +96,6 @@ class ReprojectionTest : public reflections::ReflectionsTest {
     /// The key frame's own colours, to what is seen.
     Moved warped(const Samples& samples, const Seen& seen,
                  const ReprojectionSettings& settings = {}) {
-        return moved(samples, seen, settings, [&](Reprojection& reprojection, auto&... images) {
-            reprojection.warp(*key, key->reflection.radiance, images...);
-        });
-    }
-    Moved warped(const Samples& samples) { return warped(samples, Seen(samples)); }
-    /// The same by the offsets, at once.
-    Moved projected(const Samples& samples, const Seen& seen,
-                    const ReprojectionSettings& settings = {},
-                    const gl::Texture* doubtful = nullptr) {
-        return moved(samples, seen, settings, [&](Reprojection& reprojection, auto&... images) {
-            reprojection.project(*key, *offsets, doubtful, images...);
-        });
-    }
-    template <class Move>
-    Moved moved(const Samples& samples, const Seen& seen, const ReprojectionSettings& settings,
-                Move&& move) {
         upload(samples);
         reflections::GBuffer gbuffer(seen.from);
         gbuffer.surface.upload(GL_RED_INTEGER, GL_UNSIGNED_INT, seen.surface.data());
@@ -120,10 +104,11 @@ class ReprojectionTest : public reflections::ReflectionsTest {
         reflections::ReflectionTarget target(kSize);
         gl::Texture wanted = gl::Texture::make2D(GL_R8UI, kSize);
         reprojection.setKeyFrame(*key);
-        move(reprojection, gbuffer, target, wanted);
+        reprojection.warp(*key, key->reflection.radiance, gbuffer, target, wanted);
         return {target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1),
                 reflections::readMask(wanted), reprojection.reflectiveSamples()};
     }
+    Moved warped(const Samples& samples) { return warped(samples, Seen(samples)); }
 
     static void expectColour(const glm::vec4& found, const glm::vec4& expected, int x, int y) {
         for (int c = 0; c < 4; ++c) {
@@ -149,7 +134,7 @@ TEST_F(ReprojectionTest, AConstantOffsetMovesTheImage) {
 }
 
 /// A reflection that moves by eight pixels onto another one: of both the one with the shorter path
-/// from the eye wins, shifted and at once.
+/// from the eye wins.
 TEST_F(ReprojectionTest, TheNearestReflectionWins) {
     const struct {
         float movedDepthM, movedDistanceM, otherDepthM, otherDistanceM;
@@ -168,14 +153,11 @@ TEST_F(ReprojectionTest, TheNearestReflectionWins) {
             samples.depthM[at(x, y)] = isMoved ? one.movedDepthM : one.otherDepthM;
             samples.distanceM[at(x, y)] = isMoved ? one.movedDistanceM : one.otherDistanceM;
         });
-        const std::vector<glm::vec4> inTwoSteps = shifted(samples);
-        const std::vector<glm::vec4> atOnce = projected(samples, Seen(samples)).radiance;
-        for (const auto* result : {&inTwoSteps, &atOnce}) {
-            for (int y = 0; y < kSize.y; ++y) {
-                for (int x = 13; x < 19; ++x) {  // both are there
-                    const int from = one.movedOneWins ? x - 8 : x;
-                    expectColour((*result)[at(x, y)], samples.radiance[at(from, y)], x, y);
-                }
+        const std::vector<glm::vec4> result = shifted(samples);
+        for (int y = 0; y < kSize.y; ++y) {
+            for (int x = 13; x < 19; ++x) {  // both are there
+                const int from = one.movedOneWins ? x - 8 : x;
+                expectColour(result[at(x, y)], samples.radiance[at(from, y)], x, y);
             }
         }
     }
@@ -411,79 +393,6 @@ TEST_F(ReprojectionTest, AListIsDrawnByOneCommandWhereTheDeviceNeedsNoMore) {
         EXPECT_EQ(count(Flush), 0);                   // short ones share a flush
         EXPECT_EQ(count(Wait), splitsDraws ? 1 : 0);  // how long the lists are
     }
-}
-
-TEST_F(ReprojectionTest, AtOnceOffsetsAndTheEyesMotionAddUp) {
-    Samples samples;
-    for (glm::vec2& offset : samples.offset) offset = {3, -2};
-    const Moved result = projected(samples, Seen(samples, viewToTheRight(4.0F)));
-    forEachPixel([&](int x, int y) {
-        const int fromX = x - 3 + 4, fromY = y + 2;
-        const bool isReused = isInside(fromX, fromY);
-        ASSERT_EQ(result.wanted[at(x, y)], isReused ? 0 : 1) << x << " " << y;
-        if (isReused) {
-            expectColour(result.radiance[at(x, y)], samples.radiance[at(fromX, fromY)], x, y);
-        }
-    });
-    EXPECT_EQ(result.reflectiveSamples, samples.surface.size());
-}
-
-TEST_F(ReprojectionTest, AtOnceFractionsOfAPixelAreResampledOnce) {
-    // Half a pixel there by the offsets and half a pixel back by the eye: nothing moves. In two
-    // steps either half mixes neighbours.
-    Samples samples;
-    for (glm::vec2& offset : samples.offset) offset = {0.5F, 0.0F};
-    const Moved result = projected(samples, Seen(samples, viewToTheRight(0.5F)));
-    for (int y = 1; y + 1 < kSize.y; ++y) {
-        for (int x = 1; x + 1 < kSize.x; ++x) {
-            ASSERT_EQ(result.wanted[at(x, y)], 0) << x << " " << y;
-            // The eye's step is rounded: a thousandth of a pixel times what neighbours differ by.
-            for (int c = 0; c < 3; ++c) {
-                ASSERT_NEAR(result.radiance[at(x, y)][c], samples.radiance[at(x, y)][c], 4e-3F);
-            }
-        }
-    }
-}
-
-TEST_F(ReprojectionTest, AtOnceASlopesDepthLiesBetweenItsSamples) {
-    // A plane that leans back, 1/d linear: matches between its samples lie on it, so that the same
-    // view finds them there to far less than a sample's step in depth, 2 %.
-    Samples samples;
-    forEachPixel([&](int x, int y) {
-        samples.depthM[at(x, y)] = 1.0F / (0.9F - 0.02F * static_cast<float>(x));
-        samples.offset[at(x, y)] = {2.5F, 1.5F};
-    });
-    const Moved result =
-        projected(samples, Seen(samples), {.silhouette = 0.1F, .depthTolerance = 0.0005F});
-    for (int y = 3; y + 1 < kSize.y; ++y) {
-        for (int x = 4; x + 1 < kSize.x; ++x) {
-            ASSERT_EQ(result.wanted[at(x, y)], 0) << x << " " << y;
-        }
-    }
-}
-
-TEST_F(ReprojectionTest, AtOnceGrownTrianglesAreWantedAndHideWhatIsFarther) {
-    const Samples samples = grownPatch();
-    EXPECT_EQ(projected(samples, Seen(samples)).wanted[at(9, 12)], 1);
-    EXPECT_EQ(projected(samples, Seen(samples), {.maxGrowth = 17.0F}).wanted[at(9, 12)], 0);
-}
-
-TEST_F(ReprojectionTest, AtOnceWhatIsDoubtfulUnmatchedHiddenOrAnothersIsWanted) {
-    Samples samples;
-    std::vector<std::uint8_t> doubts(at(0, kSize.y), 0);
-    doubts[at(4, 4)] = 1;
-    samples.offset[at(9, 7)] = glm::vec2(kInvalidOffset);
-    const gl::Texture doubtful = reflections::maskTexture(doubts, kSize);
-    Seen seen(samples);
-    seen.surface[at(20, 3)] = 2;
-    seen.surface[at(21, 3)] = 0;  // nothing to want
-    seen.depthM[at(15, 12)] = 1.5F;
-    const Moved result = projected(samples, seen, {}, &doubtful);
-    EXPECT_EQ(result.wantedCount(), 4U);
-    EXPECT_EQ(result.wanted[at(4, 4)], 1);
-    EXPECT_EQ(result.wanted[at(9, 7)], 1);
-    EXPECT_EQ(result.wanted[at(20, 3)], 1);
-    EXPECT_EQ(result.wanted[at(15, 12)], 1);
 }
 
 }  // namespace

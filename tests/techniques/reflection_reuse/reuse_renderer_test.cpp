@@ -39,17 +39,17 @@ TEST_F(ReuseTest, ACameraThatStandsStillRecomputesNothing) {
     }
 }
 
-TEST_F(ReuseTest, ResampledOnceAMirrorKeepsItsImageToo) {
+TEST_F(ReuseTest, GatheredAMirrorKeepsItsImageToo) {
     ReuseSettings settings{.keyFrameThreshold = 1.0F};
-    World once(shaders, mirrorRoom(), settings);
+    World gathered(shaders, mirrorRoom(), settings);
     settings.reprojection.resampling = Resampling::Twice;
     World twice(shaders, mirrorRoom(), settings);
     twice.render(front());
-    once.render(front());
+    gathered.render(front());
     for (const float x : {0.1F, 0.2F}) {
-        const Frame frame = once.render(front(x));
+        const Frame frame = gathered.render(front(x));
         // Sharp edges that miss by half a pixel cost more of it than blurred ones (27 dB).
-        EXPECT_GT(psnrDb(once, frame), 24.0) << x;
+        EXPECT_GT(psnrDb(gathered, frame), 24.0) << x;
         EXPECT_NEAR(share(frame.counts), share(twice.render(front(x)).counts), 0.02) << x;
     }
 }
@@ -201,13 +201,17 @@ TEST_F(ReuseTest, AKeyFrameWithoutReflectorsHasNothingToReuse) {
 }
 
 TEST_F(ReuseTest, SearchesBeginWhereTheLastOnesEnded) {
-    World world(shaders, mirrorRoom(), {.keyFrameThreshold = 1.0F});
+    ReuseSettings settings{.keyFrameThreshold = 1.0F,
+                           .matching = {.matching = Matching::SecondOrder},
+                           .reprojection = {.resampling = Resampling::Twice}};
+    World world(shaders, mirrorRoom(), settings);
     world.render(front());
     const double first = world.render(front(0.1F)).counts.matchingSteps;
     EXPECT_GT(first, 0.5);
     EXPECT_LT(world.render(front(0.1F)).counts.matchingSteps, 0.5 * first);
     // Offsets of another key frame would send the search astray.
-    World often(shaders, mirrorRoom(), {.keyFrameThreshold = 0.0F});
+    settings.keyFrameThreshold = 0.0F;
+    World often(shaders, mirrorRoom(), settings);
     often.render(front());
     EXPECT_EQ(often.render(front(0.1F)).counts.matchingSteps, first);
     EXPECT_TRUE(often.render(front(0.1F)).counts.isKeyFrame);
