@@ -113,23 +113,6 @@ namespace {
 
 enum Target { kRadianceTarget = 0, kWantedTarget = 1 };
 
-/// Of a search of gather(); a longer one finds nothing.
-constexpr int kMaxGatherSteps = 24;
-/// Samples between a place that is found and where the key frame sees the reflecting surface itself
-/// that are asked for a nearer one.
-constexpr int kMostBetween = 8;
-/// Of a pixel's change: by how much a place may miss the ray. Twice as much recomputes less and
-/// errs more.
-constexpr float kMostMissed = 0.5F;
-/// Share of the distance along the ray by which samples next to a place may differ that show the
-/// same surface. What another one shows, beyond an edge, weighs kAcrossEdge: with 1 edges are
-/// blurred, and the mean error is larger; with 0 those that are off are off by all, and PSNR is
-/// less.
-constexpr float kSameSurface = 0.1F;
-constexpr float kAcrossEdge = 0.5F;
-/// An angle that no R before the ray's origin has.
-constexpr float kBehind = 100.0F;
-
 /// Points mend the rim of the grid: they fall back by this share of their depth, so that they only
 /// show where the grid leaves a gap, and not half a pixel beside their place on a slope. Larger
 /// shares would let what is farther show through.
@@ -140,13 +123,7 @@ gl::Defines reprojectionDefines() {
             {"kWantedTarget", static_cast<int>(kWantedTarget)},
             {"DAMPING", kDamping},
             {"ROUNDING", kRounding},
-            {"LONGEST_STEP", kLongestStep},
-            {"MAX_STEPS", kMaxGatherSteps},
-            {"MOST_BETWEEN", kMostBetween},
-            {"MOST_MISSED", kMostMissed},
-            {"SAME_SURFACE", kSameSurface},
-            {"ACROSS_EDGE", kAcrossEdge},
-            {"BEHIND", kBehind}};
+            {"LONGEST_STEP", kLongestStep}};
 }
 
 /// What vertices carry (grid_vertex.glsl).

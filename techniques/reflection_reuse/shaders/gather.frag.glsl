@@ -13,6 +13,20 @@ uniform mat4 keyClipFromWorld;
 uniform float depthTolerance;  // share of the depth
 uniform bool hasDoubts;
 
+// A search that is longer finds nothing.
+const int kMaxSteps = 24;
+// Places between a found one and the sample's own surface that are asked for a nearer point.
+const float kMostBetween = 8.0;
+// Of a pixel's change: how far a place may miss the ray. Twice as much recomputes less and errs more.
+const float kMostMissed = 0.5;
+// Share of the distance along the ray by which samples next to a place may differ that show the same
+// surface. Beyond an edge they weigh kAcrossEdge: by 1 edges are blurred, and the mean error is
+// larger; by 0 the edges that are off are so by all they can, and PSNR is less.
+const float kSameSurface = 0.1;
+const float kAcrossEdge = 0.5;
+// An angle that no point before the ray's origin has.
+const float kBehind = 100.0;
+
 layout(location = kRadianceTarget) out vec4 radiance;
 layout(location = kWantedTarget) out uint wanted;
 
@@ -47,7 +61,7 @@ bool candidateAt(ivec2 pixel, out Candidate found) {
     float along = dot(to, direction);
     vec2 miss = vec2(dot(to, across), dot(to, upright));
     // Behind the ray's origin any miss is larger than before it.
-    found = Candidate(pixel, along > 0.0 ? miss / along : BEHIND * normalize(miss), along);
+    found = Candidate(pixel, along > 0.0 ? miss / along : kBehind * normalize(miss), along);
     return texel.w == reflector;
 }
 
@@ -82,7 +96,7 @@ vec2 newtonStep(Match match) {
 Match search(Candidate start) {
     Match match = Match(start, vec2(0.0), mat2(0.0), false);
     int steps = 0;
-    for (; steps < MAX_STEPS; ++steps) {
+    for (; steps < kMaxSteps; ++steps) {
         match.change =
             mat2(changeAlong(match.at, ivec2(1, 0)), changeAlong(match.at, ivec2(0, 1)));
         vec2 delta = newtonStep(match);
@@ -97,9 +111,9 @@ Match search(Candidate start) {
         }
         match.at = next;
     }
-    float most = MOST_MISSED * MOST_MISSED * max(squared(match.change[0]), squared(match.change[1]));
+    float most = kMostMissed * kMostMissed * max(squared(match.change[0]), squared(match.change[1]));
     // ROUNDING keeps a sample valid that has no neighbour to measure by.
-    match.isValid = steps < MAX_STEPS && squared(match.at.miss + match.change * match.between) <=
+    match.isValid = steps < kMaxSteps && squared(match.at.miss + match.change * match.between) <=
                                              max(most, ROUNDING * ROUNDING);
     return match;
 }
@@ -125,7 +139,7 @@ bool isSeen(vec2 ownPlace, float depth, out Candidate own) {
 bool findNearer(vec2 ownPlace, Match found, out Candidate nearer) {
     vec2 way = vec2(found.at.pixel) + 0.5 - ownPlace;
     vec2 beyond = -(found.change * way);
-    int count = int(min(max(abs(way.x), abs(way.y)), float(MOST_BETWEEN)));
+    int count = int(min(max(abs(way.x), abs(way.y)), kMostBetween));
     for (int i = 1; i < count; ++i) {
         vec2 place = ownPlace + way * (float(i) / float(count));
         if (candidateAt(ivec2(floor(place)), nearer) && dot(nearer.miss, beyond) < 0.0 &&
@@ -149,7 +163,7 @@ vec4 radianceAt(Match match) {
         Candidate beside;
         if (weight == 0.0 || !candidateAt(low + corner, beside)) continue;
         if (hasDoubts && texelFetch(doubtful, beside.pixel, 0).r != 0u) return vec4(0.0);
-        if (abs(beside.along - match.at.along) > SAME_SURFACE * match.at.along) weight *= ACROSS_EDGE;
+        if (abs(beside.along - match.at.along) > kSameSurface * match.at.along) weight *= kAcrossEdge;
         sum += weight * vec4(texelFetch(keyRadiance, beside.pixel, 0).rgb, 1.0);
     }
     return sum;
