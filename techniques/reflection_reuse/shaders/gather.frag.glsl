@@ -20,10 +20,10 @@ const float kMostBetween = 8.0;
 // Of a pixel's change: how far a place may miss the ray. Twice as much recomputes less and errs more.
 const float kMostMissed = 0.5;
 // Share of the distance along the ray by which samples next to a place may differ that show the same
-// surface. Beyond an edge they weigh kAcrossEdge: by 1 edges are blurred, and the mean error is
-// larger; by 0 the edges that are off are so by all they can, and PSNR is less.
+// surface. Where others, beyond an edge, weigh more than kMostOther of the four, which side the ray
+// meets is not known, and the sample is traced.
 const float kSameSurface = 0.1;
-const float kAcrossEdge = 0.5;
+const float kMostOther = 0.25;
 // An angle that no point before the ray's origin has.
 const float kBehind = 100.0;
 
@@ -150,12 +150,14 @@ bool findNearer(vec2 ownPlace, Match found, out Candidate nearer) {
     return false;
 }
 
-// The radiance at a match, bilinear, and in a the weight. Doubtful: 0.
+// The radiance at a match, bilinear, and in a the weight. Doubtful or at an edge of what is
+// reflected: 0.
 vec4 radianceAt(Match match) {
     vec2 place = vec2(match.at.pixel) + match.between;
     ivec2 low = ivec2(floor(place));
     vec2 fraction = place - vec2(low);
     vec4 sum = vec4(0.0);
+    float other = 0.0;
     for (int i = 0; i < 4; ++i) {
         ivec2 corner = ivec2(i & 1, i >> 1);
         vec2 near = mix(1.0 - fraction, fraction, vec2(corner));
@@ -163,10 +165,13 @@ vec4 radianceAt(Match match) {
         Candidate beside;
         if (weight == 0.0 || !candidateAt(low + corner, beside)) continue;
         if (hasDoubts && texelFetch(doubtful, beside.pixel, 0).r != 0u) return vec4(0.0);
-        if (abs(beside.along - match.at.along) > kSameSurface * match.at.along) weight *= kAcrossEdge;
+        if (abs(beside.along - match.at.along) > kSameSurface * match.at.along) {
+            other += weight;
+            continue;
+        }
         sum += weight * vec4(texelFetch(keyRadiance, beside.pixel, 0).rgb, 1.0);
     }
-    return sum;
+    return other > kMostOther ? vec4(0.0) : sum;
 }
 
 void main() {

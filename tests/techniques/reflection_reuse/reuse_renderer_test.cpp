@@ -40,17 +40,13 @@ TEST_F(ReuseTest, ACameraThatStandsStillRecomputesNothing) {
 }
 
 TEST_F(ReuseTest, GatheredAMirrorKeepsItsImageToo) {
-    ReuseSettings settings{.keyFrameThreshold = 1.0F};
-    World gathered(shaders, mirrorRoom(), settings);
-    settings.reprojection.resampling = Resampling::Twice;
-    World twice(shaders, mirrorRoom(), settings);
-    twice.render(front());
+    World gathered(shaders, mirrorRoom(), {.keyFrameThreshold = 1.0F});
     gathered.render(front());
     for (const float x : {0.1F, 0.2F}) {
         const Frame frame = gathered.render(front(x));
         // Sharp edges that miss by half a pixel cost more of it than blurred ones (27 dB).
         EXPECT_GT(psnrDb(gathered, frame), 24.0) << x;
-        EXPECT_NEAR(share(frame.counts), share(twice.render(front(x)).counts), 0.02) << x;
+        EXPECT_LT(share(frame.counts), 0.35) << x;
     }
 }
 
@@ -171,7 +167,7 @@ TEST_F(ReuseTest, TheThresholdDecidesOnTheNextFrame) {
     EXPECT_EQ(keyFrames(0.0F, 0.05F), "k.k.k.k");
     EXPECT_EQ(keyFrames(0.0F, 0.0F), "k......");  // nothing to recompute
     EXPECT_EQ(keyFrames(1.0F, 0.2F), "k......");
-    const std::string middle = keyFrames(0.055F, 0.1F);
+    const std::string middle = keyFrames(0.24F, 0.1F);
     EXPECT_GT(std::count(middle.begin(), middle.end(), 'k'), 1) << middle;
     EXPECT_LT(std::count(middle.begin(), middle.end(), 'k'), 4) << middle;
 }
