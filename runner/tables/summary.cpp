@@ -147,6 +147,7 @@ namespace {
 
 /// The ends of an interval lie within 0.05 standard deviations of where ever more would put them.
 constexpr int kDraws = 4000;
+constexpr int kReaching = 20;  // more than one in forty of them, which an interval leaves out
 
 /// FNV-1a: the same on every machine.
 std::uint64_t seedOf(std::string_view name) {
@@ -165,6 +166,8 @@ std::map<int, double> shareDraws(double percent, double count, std::string_view 
     for (int i = 0; i < kDraws; ++i) {
         const double a = in(random), b = out(random);
         draws[i] = 100.0 * a / (a + b);
+        // The interval of none or all reaches them (Brown, Cai and DasGupta 2001, Sec. 4.1.1).
+        if (i % kReaching == 0 && (successes == 0.0 || successes == count)) draws[i] = percent;
     }
     return draws;
 }

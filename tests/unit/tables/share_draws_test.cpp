@@ -24,8 +24,11 @@ TEST(ShareDraws, IntervalsAreJeffreys) {
     EXPECT_NEAR(few.low, 0.2575, 0.02);
     EXPECT_NEAR(few.high, 0.8364, 0.04);
     const metrics::Interval none = intervalOf(0.0, 50.0);
-    EXPECT_NEAR(none.low, 0.0, 0.01);
+    EXPECT_EQ(none.low, 0.0) << "what was never seen may not be there";
     EXPECT_NEAR(none.high, 5.015, 0.7);
+    const metrics::Interval all = intervalOf(100.0, 50.0);
+    EXPECT_EQ(all.high, 100.0);
+    EXPECT_NEAR(all.low, 94.985, 0.7);
     const metrics::Interval many = intervalOf(70.0, 200'000.0);
     EXPECT_NEAR(many.high - many.low, 0.402, 0.05);
 }
