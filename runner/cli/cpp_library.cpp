@@ -28,11 +28,21 @@ fs::path folderOfCLibrary() {
 }  // namespace
 
 int releaseOfCppLibrary(const fs::path& library) {
-    std::error_code notThere;
-    const std::string name = fs::canonical(library, notThere).filename().string();
     const std::string prefix = std::string(kName) + ".0.";
-    if (!name.starts_with(prefix)) return 0;
-    return static_cast<int>(parseInteger(name.substr(prefix.size())).value_or(0));
+    const auto releaseIn = [&](const std::string& name) {
+        if (!name.starts_with(prefix)) return 0;
+        return static_cast<int>(parseInteger(name.substr(prefix.size())).value_or(0));
+    };
+    std::error_code notThere;
+    const fs::path file = fs::canonical(library, notThere);
+    if (file.filename() != kName) return releaseIn(file.filename());
+    // A copy of the link, beside one of what it led to: a submission's has no links.
+    const auto size = fs::file_size(file, notThere);
+    for (const auto& other : fs::directory_iterator(file.parent_path(), notThere)) {
+        const int release = releaseIn(other.path().filename());
+        if (release > 0 && other.file_size(notThere) == size) return release;
+    }
+    return 0;
 }
 
 void takeNewerCppLibrary(char** arguments) {

@@ -5,7 +5,7 @@
 
 namespace gfxrepro::cli {
 
-/// 30 of libstdc++.so.6.0.30, also by a link to it; 0 where the name does not say.
+/// 30 of libstdc++.so.6.0.30, also by a link to it, or by a copy beside it; 0 where no name says.
 int releaseOfCppLibrary(const std::filesystem::path& library);
 
 /// Where a C++ library lies in lib/ beside the program, and the node has a newer one beside its C

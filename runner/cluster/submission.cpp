@@ -173,10 +173,8 @@ void copyParts(const fs::path& folder) {
         fs::copy(dataFolder(name), folder / name, kAll);
     }
     const fs::path libraries = fs::read_symlink(kSelf).parent_path() / "lib";  // scripts/bundle
-    // Links stay links: what libstdc++.so.6 leads to says its release.
-    if (fs::is_directory(libraries)) {
-        fs::copy(libraries, folder / "lib", kAll | fs::copy_options::copy_symlinks);
-    }
+    // Of a link what it leads to: the folder becomes a part of a run, which holds none.
+    if (fs::is_directory(libraries)) fs::copy(libraries, folder / "lib", kAll);
 }
 
 void requireBuild(const fs::path& folder, const std::string& buildId) {

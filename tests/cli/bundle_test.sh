@@ -78,6 +78,21 @@ beside_a_newer_cpp_library)
     require_same_tables "$D/run"
     called libstdc++.so.6.0.999
     [[ $(used) == *"$D/bundle/lib/"* ]] || fail "newer, and not its own: $(used)"
+    # So does the copy that a submission makes of it, without the link: no run has one.
+    submitted() {
+        rm -rf "$D/submitted"
+        env -i "$D/bundle/gfxrepro" submit "$D/bundle/configs/smoke/template.yaml" --device software --engine commands --out "$D/submitted" >/dev/null
+        env -i LD_DEBUG=files "$D/submitted/submitted-program/gfxrepro" --version 2>&1 | grep 'calling init: .*libstdc++' | tail -n 1
+    }
+    newer=$(submitted)
+    [[ $newer == *"/submitted-program/lib/"* ]] || fail "newer, and not the copy's own: $newer"
+    called libstdc++.so.6.0.1
+    older=$(submitted)
+    [[ $older == *libstdc++* && $older != *"/submitted-program/lib/"* ]] || fail "older, and still the copy's own: $older"
+    [ -z "$(find "$D/submitted" -type l)" ] || fail "links: $(find "$D/submitted" -type l)"
+    for script in commands.txt merge.sh; do env -i PATH="$PATH" sh "$D/submitted/$script" >/dev/null; done
+    env -i "$D/bundle/gfxrepro" table "$D/submitted"
+    cmp "$D/build-run/tables/sweep-smoke-template.csv" "$D/submitted/tables/sweep-smoke-template.csv" || fail "other tables of the submission"
     ;;
 released)
     python=

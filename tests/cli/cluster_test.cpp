@@ -602,6 +602,31 @@ TEST_F(Submit, WithoutACopyOfTheProgramNothingIsSubmitted) {
     EXPECT_FALSE(fs::exists(out));
 }
 
+/// A bundle has one: its C++ library under the name by which it is asked for.
+TEST_F(Submit, LinksAmongTheProgramsLibrariesAreFollowed) {
+    const std::string config = writeNumbers(folder, 2);
+    const std::string out = folder.path() / "out", program = folder.path() / "bundle/gfxrepro";
+    folder.write("bundle/lib/libsome.so.6.0.30", "a library");
+    fs::create_symlink("libsome.so.6.0.30", folder.path() / "bundle/lib/libsome.so.6");
+    fs::copy_file(GFXREPRO_MOCK_PROGRAM, program);
+    const fs::path shaders = fs::path(GFXREPRO_MOCK_PROGRAM).parent_path() / "../../shaders";
+    fs::copy(shaders, folder.path() / "bundle/shaders", fs::copy_options::recursive);
+    fs::create_directory_symlink(GFXREPRO_SOURCE "/configs", folder.path() / "bundle/configs");
+    const ProcessResult submitted =
+        runProgram({program, "submit", config, "--device", "software", "--out", out, "--engine",
+                    "commands", "--shards", "2"});
+    ASSERT_EQ(submitted.exitCode, 0) << submitted.err;
+    for (const std::string& line : split(submitted.out, '\n')) {
+        EXPECT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0) << line;
+    }
+    EXPECT_EQ(readFile(out + "/submitted-program/lib/libsome.so.6"), "a library");
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"table", out}, {"report", out}, {"run", "--resume", out}}) {
+        const ProcessResult result = mockGfxrepro(command);
+        EXPECT_EQ(result.exitCode, 0) << command.front() << ": " << result.err;
+    }
+}
+
 TEST_F(Submit, DryRunWritesNothing) {
     const std::string config = writeNumbers(folder, 6, "measure: {lane: timing, processes: 1}\n");
     const std::string out = folder.path() / "out";

@@ -128,7 +128,12 @@ TEST(CppLibrary, ReleaseComesFromTheName) {
     EXPECT_EQ(releaseOfCppLibrary(file), 30);
     std::filesystem::create_symlink(file, folder.path() / "libstdc++.so.6");
     EXPECT_EQ(releaseOfCppLibrary(folder.path() / "libstdc++.so.6"), 30);
-    EXPECT_EQ(releaseOfCppLibrary(folder.write("plain/libstdc++.so.6", "")), 0);
+    const auto plain = folder.write("plain/libstdc++.so.6", "copy");
+    EXPECT_EQ(releaseOfCppLibrary(plain), 0);
+    folder.write("plain/libstdc++.so.6.0.29", "another");
+    EXPECT_EQ(releaseOfCppLibrary(plain), 0);
+    folder.write("plain/libstdc++.so.6.0.31", "copy");
+    EXPECT_EQ(releaseOfCppLibrary(plain), 31);
     EXPECT_EQ(releaseOfCppLibrary(folder.path() / "none"), 0);
 }
 
