@@ -266,12 +266,13 @@ void sayAbsent(const std::string& file, const std::vector<config::Case>& cases) 
 
 /// What of the limits of a run is foreseen; what a table is made of is known when it was measured.
 struct Size {
-    double rows = 0.0, pictures = 0.0, units = 0.0;
+    double rows = 0.0, pictures = 0.0, units = 0.0, planBytes = 0.0;
 
     Size& operator+=(const Size& more) {
         rows += more.rows;
         pictures += more.pictures;
         units += more.units;
+        planBytes += more.planBytes;
         return *this;
     }
 };
@@ -334,12 +335,14 @@ void saySize(const std::string& name, const Size& size) {
     };
     say(size.rows, static_cast<double>(records::kMostRecords), "rows of records");
     say(size.pictures, static_cast<double>(records::CsvReader::kMostRows), "pictures");
-    constexpr auto kMostUnits = static_cast<double>(run::kMostUnits);
-    if (size.units <= kMostUnits) return;
-    cli::say(
-        "{}: {:.0f} measurements (cases × processes), of at most {:.0f} in a run: `plan` and "
-        "`run` refuse it\n",
-        name, size.units, kMostUnits);
+    const auto sayRefused = [&](double count, double most, const char* what) {
+        if (count <= most) return;
+        cli::say("{}: {:.0f} {}, of at most {:.0f} in a run: `plan` and `run` refuse it\n", name,
+                 count, what, most);
+    };
+    sayRefused(size.units, static_cast<double>(run::kMostUnits),
+               "measurements (cases × processes)");
+    sayRefused(size.planBytes, static_cast<double>(run::kMostPlanBytes), "bytes of plan.json");
 }
 
 /// A record, another number each, of all that the cases may give: what a table shows that nobody
@@ -377,6 +380,18 @@ std::vector<records::Record> foreseen(std::span<config::Case> cases,
     return all;
 }
 
+/// Throws Error where that is more than is read, and no part alone is asked for.
+double planBytesOf(const config::Experiment& experiment, std::vector<config::Case>& cases,
+                   const Chosen& selection) {
+    run::Plan plan;
+    plan.experiments = {experiment};
+    plan.cases.swap(cases);
+    const std::uintmax_t bytes = run::planBytes(plan);
+    if (selection.only.empty()) run::requirePlanBytes(plan, bytes);
+    plan.cases.swap(cases);
+    return static_cast<double>(bytes);
+}
+
 /// Says what a file comes to, and gives its cases; adds its size.
 std::vector<config::Case> checkFile(const Context& context, const Chosen& selection,
                                     const scene::Catalog& catalog, const std::string& file,
@@ -386,11 +401,12 @@ std::vector<config::Case> checkFile(const Context& context, const Chosen& select
     std::vector<config::Case> cases = run::resolveCases(experiment, catalog, context.techniques, 1);
     run::bindAssumptions(experiment, cases, catalog, context.techniques);
     requireSound(context, catalog, experiment, cases);
+    Size size = sizeOf(context, experiment, cases);
+    size.planBytes = planBytesOf(experiment, cases, selection);
     sayAbsent(file, cases);
     say("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, cases.size(),
         cases.size() == 1 ? "" : "s", experiment.claims.size(),
         experiment.claims.size() == 1 ? "" : "s");
-    const Size size = sizeOf(context, experiment, cases);
     saySize(file, size);
     all += size;
     const bool isReduced =

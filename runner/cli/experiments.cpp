@@ -218,6 +218,7 @@ run::Plan planFor(const Context& context, const run::Request& request, const std
         requireSound(context, catalog, experiment, std::span(first, end));
     }
     run::keepOnly(plan, request.only);
+    run::requirePlanBytes(plan, run::planBytes(plan));
     return plan;
 }
 

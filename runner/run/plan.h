@@ -39,6 +39,9 @@ struct Shard {
     std::string name() const;  // "2/4"
 };
 
+/// Of plan.json: a larger one is neither written nor read.
+inline constexpr std::uintmax_t kMostPlanBytes = std::uintmax_t{1} << 30;
+
 struct Plan {
     Request request;
     std::string profile;
@@ -57,8 +60,9 @@ struct Plan {
 
     /// As JSON, in pieces: of 100,000 cases the whole text would take a fifth of the memory.
     void write(const std::function<void(std::string_view)>& to) const;
-    /// The same to a file, which is there as a whole or not at all. Throws Error.
-    void writeFile(const std::filesystem::path& path) const;
+    /// The same to a file, which is there as a whole or not at all. Throws as requirePlanBytes().
+    void writeFile(const std::filesystem::path& path,
+                   std::uintmax_t mostBytes = kMostPlanBytes) const;
     static Plan fromJsonFile(const std::filesystem::path& path);
     /// The same, but of a shard only what a merge asks of it: of a case its id and its experiment,
     /// of an experiment its file and document.
@@ -75,6 +79,12 @@ inline constexpr std::size_t kMostUnits = 1'000'000;
 std::size_t unitCount(std::span<const Case> cases);
 /// Throws Error(where, …) for more.
 void requireUnitCount(std::size_t count, const SourceLocation& where);
+
+/// Of its plan.json.
+std::uintmax_t planBytes(const Plan& plan);
+/// Throws Error, naming its first config, for more.
+void requirePlanBytes(const Plan& plan, std::uintmax_t bytes,
+                      std::uintmax_t mostBytes = kMostPlanBytes);
 
 /// The cases of one experiment with every parameter resolved; ids are still empty. A case is there
 /// once for each seed of its scene. Throws Error for unknown techniques, parameters and scenes.

@@ -391,10 +391,31 @@ void Plan::write(const std::function<void(std::string_view)>& to) const {
     to("\n ]\n}\n");
 }
 
-void Plan::writeFile(const fs::path& path) const {
+void Plan::writeFile(const fs::path& path, std::uintmax_t mostBytes) const {
     AtomicFile file(path);
-    write([&](std::string_view text) { file.write(text); });
+    std::uintmax_t bytes = 0;
+    write([&](std::string_view text) {
+        file.write(text);
+        bytes += text.size();
+    });
+    requirePlanBytes(*this, bytes, mostBytes);
     file.commit();
+}
+
+std::uintmax_t planBytes(const Plan& plan) {
+    std::uintmax_t bytes = 0;
+    plan.write([&](std::string_view text) { bytes += text.size(); });
+    return bytes;
+}
+
+void requirePlanBytes(const Plan& plan, std::uintmax_t bytes, std::uintmax_t mostBytes) {
+    if (bytes <= mostBytes) return;
+    const std::size_t others = plan.experiments.size() - 1;
+    throw Error(
+        fmt::format("{}{}: plan.json would have {} bytes; at most {} are read. Measure it "
+                    "in parts (--only)",
+                    plan.experiments.front().file.string(),
+                    others == 0 ? "" : fmt::format(" and {} more", others), bytes, mostBytes));
 }
 
 namespace {

@@ -24,6 +24,7 @@
 #include "engine/core/output_files.h"
 #include "runner/records/images.h"
 #include "runner/records/records.h"
+#include "runner/run/plan.h"
 
 namespace gfxrepro::run {
 
@@ -101,10 +102,9 @@ void requirePlain(const fs::directory_entry& entry) {
 }  // namespace
 
 void requireModestFiles(const fs::path& runDir) {
-    constexpr std::uintmax_t kWholeBytes = std::uintmax_t{1} << 30;  // of what is parsed whole
     constexpr std::pair<const char*, std::uintmax_t> kMostBytes[] = {
-        {"plan.json", kWholeBytes},
-        {"manifest.json", kWholeBytes},
+        {"plan.json", kMostPlanBytes},
+        {"manifest.json", kMostPlanBytes},
         {"records.csv", records::kMostRecordBytes},
         {"journal.jsonl", kMostJournalBytes},
         {"images/index.csv", records::kMostIndexBytes}};

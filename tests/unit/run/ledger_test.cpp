@@ -486,5 +486,27 @@ TEST(Plan, KeepsWhatIsAssumed) {
     EXPECT_TRUE(kept.isBound);
 }
 
+/// Before anything is measured: a larger one would be written and never read.
+TEST(Plan, IsNoLargerThanIsRead) {
+    const Ledger ledger;
+    Plan plan = makePlan({ledger.load("")}, ledger.catalog(), kTechniques, "full", "software", 1);
+    const auto file = ledger.folder.path() / "plan.json";
+    const std::uintmax_t bytes = planBytes(plan);
+    plan.writeFile(file, bytes);
+    EXPECT_EQ(std::filesystem::file_size(file), bytes);
+    std::filesystem::remove(file);
+    const std::string config = plan.experiments.front().file.string();
+    const std::string why = ": plan.json would have " + std::to_string(bytes) + " bytes; at most " +
+                            std::to_string(bytes - 1) + " are read. Measure it in parts (--only)";
+    EXPECT_EQ(test::errorText([&] { plan.writeFile(file, bytes - 1); }), config + why);
+    EXPECT_FALSE(std::filesystem::exists(file));
+    requirePlanBytes(plan, kMostPlanBytes);
+    plan.experiments.push_back(plan.experiments.front());
+    EXPECT_EQ(test::errorText([&] { requirePlanBytes(plan, kMostPlanBytes + 1); }),
+              config +
+                  " and 1 more: plan.json would have 1073741825 bytes; at most 1073741824 are "
+                  "read. Measure it in parts (--only)");
+}
+
 }  // namespace
 }  // namespace gfxrepro::run
