@@ -11,6 +11,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/core/output_files.h"
 #include "engine/core/text.h"
 #include "runner/records/images.h"
 #include "runner/run/manifest.h"
@@ -247,13 +248,46 @@ void copyImages(const run::RunDirectory& directory, const std::vector<ShardRun>&
 }
 
 /// The journals of the shards one after another; a torn last line ends.
-std::string mergedJournal(const std::vector<ShardRun>& shards) {
-    std::string text;
+void writeJournal(const fs::path& path, const std::vector<ShardRun>& shards) {
+    AtomicFile file(path);
     for (const ShardRun& shard : shards) {
-        const fs::path file = shard.path / "journal.jsonl";
-        if (fs::exists(file)) text += readFile(file) + '\n';
+        if (!fs::exists(shard.path / "journal.jsonl")) continue;
+        const MappedFile journal(shard.path / "journal.jsonl");
+        file.write(journal.text());
+        file.write("\n");
     }
-    return text;
+    file.commit();
+}
+
+/// Throws Error where what the shards have together would be written and not be read again.
+void requireReadable(const std::vector<ShardRun>& shards) {
+    const auto require = [](const char* file, std::uintmax_t count, std::uintmax_t most,
+                            const char* what) {
+        if (count <= most) return;
+        throw Error(
+            fmt::format("the {} of the shards have {} {} together; at most {} are read of "
+                        "a run. Merge them in parts, or read each by itself",
+                        file, count, what, most));
+    };
+    const auto requireBytes = [&](const char* file, std::uintmax_t most) {
+        std::uintmax_t bytes = 0;
+        for (const ShardRun& shard : shards) {
+            std::error_code isAbsent;
+            const std::uintmax_t size = fs::file_size(shard.path / file, isAbsent);
+            if (!isAbsent) bytes += size + 1;
+        }
+        require(file, bytes, most, "bytes");
+    };
+    requireBytes("journal.jsonl", run::kMostJournalBytes);
+    requireBytes("records.csv", records::kMostRecordBytes);
+    requireBytes("images/index.csv", records::kMostIndexBytes);
+    std::size_t rows = 1, images = 1;  // the headers
+    for (const ShardRun& shard : shards) {
+        rows += shard.run.records.size();
+        images += records::readImages(shard.path).size();
+    }
+    require("records.csv", rows, records::kMostRecords, "rows");
+    require("images/index.csv", images, records::CsvReader::kMostRows, "rows");
 }
 
 }  // namespace
@@ -286,6 +320,7 @@ run::StoredRun mergeRuns(run::Plan whole, const std::vector<ShardRun>& shards,
     GFXREPRO_ASSERT(!shards.empty());
     requireOnePlan(shards);
     requireParts(whole, shards);
+    requireReadable(shards);
     run::StoredRun merged;
     merged.plan = std::move(whole);
     merged.manifest = mergedManifest(shards, commandLine);
@@ -331,7 +366,7 @@ void writeMerged(const run::RunDirectory& directory, const std::vector<ShardRun>
     for (const fs::path& old : {directory.planFile(), directory.recordsFile()}) fs::remove(old);
     records::writeRecords(directory.recordsFile(), merged.records);
     copyImages(directory, shards, merged.plan);
-    writeFileAtomic(directory.path() / "journal.jsonl", mergedJournal(shards));
+    writeJournal(directory.path() / "journal.jsonl", shards);
     run::Json manifest = merged.manifest;
     run::sealRecords(manifest, directory.path());
     run::noteCompleteness(manifest, run::completeness(merged));

@@ -49,8 +49,8 @@ run::Plan wholePlan(const std::vector<ShardRun>& shards);
 
 /// One run of the whole plan: the records in the order of the plan, the manifests together.
 /// `commandLine` is the one invocation of the new manifest. Throws Error for shards of different
-/// plans, for a case that two of them have or the plan has not, and where the times of one table
-/// are from different machines.
+/// plans, for a case that two of them have or the plan has not, where the times of one table are
+/// from different machines, and for more rows or bytes than are read of a run.
 run::StoredRun mergeRuns(run::Plan whole, const std::vector<ShardRun>& shards,
                          const std::string& commandLine);
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
@@ -246,6 +247,36 @@ TEST(Merge, KeepsFurtherRounds) {
     shards[1].run.records.pop_back();  // round 7 was interrupted
     EXPECT_THAT(cluster::missingUnits(mergeRuns(plan, shards, "merge")),
                 ElementsAre("t/1 method=a size=1 process 8"));
+}
+
+/// What would be written and not be read again is refused before anything is.
+TEST(Merge, RefusesMoreThanIsReadOfARun) {
+    const TemporaryFolder folder;
+    const run::Plan plan = makePlan();
+    std::vector<cluster::ShardRun> shards = {makeShard(plan, 1, 2, {0, 1}),
+                                             makeShard(plan, 2, 2, {2, 3})};
+    for (cluster::ShardRun& shard : shards) shard.path = folder.path() / shard.path;
+    const auto merged = [&](const std::string& file, std::uintmax_t bytes) {
+        for (const cluster::ShardRun& shard : shards) {
+            std::filesystem::create_directories((shard.path / file).parent_path());
+            std::ofstream{shard.path / file};
+            std::filesystem::resize_file(shard.path / file, bytes);  // of holes
+        }
+        const std::string problem = errorText([&] { mergeRuns(plan, shards, "merge"); });
+        for (const cluster::ShardRun& shard : shards) std::filesystem::remove(shard.path / file);
+        return problem;
+    };
+    const auto refused = [](const std::string& file, std::uintmax_t bytes, std::uintmax_t most) {
+        return "the " + file + " of the shards have " + std::to_string(bytes) +
+               " bytes together; at most " + std::to_string(most) +
+               " are read of a run. Merge them in parts, or read each by itself";
+    };
+    const std::uintmax_t gib = std::uintmax_t{1} << 30;
+    EXPECT_EQ(merged("journal.jsonl", 2 * gib), refused("journal.jsonl", 4 * gib + 2, 4 * gib));
+    EXPECT_EQ(merged("records.csv", 8 * gib), refused("records.csv", 16 * gib + 2, 16 * gib));
+    EXPECT_EQ(merged("images/index.csv", 2 * gib),
+              refused("images/index.csv", 4 * gib + 2, 4 * gib));
+    EXPECT_EQ(merged("journal.jsonl", 2 * gib - 1), "no error");
 }
 
 TEST(Merge, NamesWhatIsMissing) {
