@@ -23,6 +23,7 @@
 #include "runner/cluster/shards.h"
 #include "runner/cluster/submission.h"
 #include "runner/run/child_process.h"
+#include "runner/run/plan_json.h"
 #include "runner/run/run.h"
 #include "runner/run/twins.h"
 
@@ -259,7 +260,7 @@ cluster::ShardProgress progressOf(const fs::path& folder, int unitCount, Parts* 
     try {
         std::optional<run::Plan> plan;
         if (parts) {
-            plan = run::Plan::outlineFromJsonFile(folder / "plan.json");
+            plan = run::planWithoutExperiments(folder / "plan.json");
             progress.problem = parts->whyNot(plan->shard, folder);
         }
         const run::Completeness counts = run::readCompleteness(folder, plan ? &*plan : nullptr);

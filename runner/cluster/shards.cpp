@@ -127,11 +127,11 @@ void requireParts(const run::Plan& whole, const std::vector<ShardRun>& shards) {
     std::map<std::string_view, std::pair<const config::Case*, const ShardRun*>> owners;
     for (const config::Case& item : whole.cases) owners[item.id] = {&item, nullptr};
     for (const ShardRun& shard : shards) {
-        for (const config::Case& outlined : shard.run.plan.cases) {
-            const auto found = owners.find(outlined.id);
+        for (const config::Case& own : shard.run.plan.cases) {
+            const auto found = owners.find(own.id);
             if (found == owners.end()) {
                 throw Error(fmt::format("{}: its case {} of {} is not in the plan of the shards",
-                                        shard.path.string(), outlined.id, outlined.experiment));
+                                        shard.path.string(), own.id, own.experiment));
             }
             auto& [item, owner] = found->second;
             if (owner) {

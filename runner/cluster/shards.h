@@ -37,7 +37,7 @@ run::Plan shardPlan(const run::Plan& whole, const run::Shard& shard, std::span<c
 inline constexpr const char* kSubmittedPlan = "submitted-plan.json";
 inline constexpr const char* kWholePlan = "whole-plan.json";
 
-/// A shard's run, whose plan may be an outline, and where it lies.
+/// A shard's run, and where it lies.
 struct ShardRun {
     std::filesystem::path path;
     run::StoredRun run;

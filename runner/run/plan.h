@@ -64,9 +64,6 @@ struct Plan {
     void writeFile(const std::filesystem::path& path,
                    std::uintmax_t mostBytes = kMostPlanBytes) const;
     static Plan fromJsonFile(const std::filesystem::path& path);
-    /// The same, but of a shard only what a merge asks of it: of a case its id and its experiment,
-    /// of an experiment its file and document.
-    static Plan outlineFromJsonFile(const std::filesystem::path& path);
 };
 
 /// Of a plan: one of more could be written, and would be refused when it is read.

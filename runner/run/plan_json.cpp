@@ -52,7 +52,6 @@ constexpr JsonMember kShard[] = {{"/index", JsonKind::Int},
                                  {"/count", JsonKind::Int},
                                  {"/whole", JsonKind::Text},
                                  {"/device", JsonKind::Text}};
-constexpr JsonMember kOutlinedCase[] = {{"/id", JsonKind::Text}, {"/experiment", JsonKind::Text}};
 constexpr JsonMember kCase[] = {{"/id", JsonKind::Text},
                                 {"/experiment", JsonKind::Text},
                                 {"/technique", JsonKind::Text},
@@ -221,11 +220,11 @@ class ExperimentReader {
     throw Error(where, what + " planned: " + name + " was changed");
 }
 
-/// Throws Error for a case that is not as it was written.
-void requireCases(const SourceLocation& where, const Json& json, const Plan& plan) {
+/// Takes the cases out of `json`. Throws Error for one that is not as it was written.
+void requireCases(const SourceLocation& where, Json& json, const Plan& plan) {
     for (std::size_t i = 0; i < plan.cases.size(); ++i) {
         const Case& item = plan.cases[i];
-        if (caseId(item, json.at("cases").at(i), plan) == item.id) continue;
+        if (caseId(item, std::move(json.at("cases").at(i)), plan) == item.id) continue;
         failAsChanged(where,
                       "the case " + item.id + ", " + item.title() + ", is not the one that was");
     }
@@ -448,15 +447,8 @@ Plan headFrom(const Json& json, const SourceLocation& where) {
     return plan;
 }
 
-}  // namespace
-
-Plan Plan::fromJsonFile(const fs::path& path) {
-    const SourceLocation where{path.string(), 0, 0};
-    Json json = parseJsonObject(MappedFile(path).text(), where);
-    Plan plan = headFrom(json, where);
-    for (const auto& [place, item] : json.at("experiments").items()) {
-        plan.experiments.push_back(ExperimentReader(item, where, "/experiments/" + place).read());
-    }
+/// The cases, and that all is as it was written.
+void takeCases(Json json, const SourceLocation& where, Plan& plan) {
     for (const auto& [place, item] : json.at("cases").items()) {
         plan.cases.push_back(caseFromJson(item, where, "/cases/" + place));
     }
@@ -467,27 +459,26 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     requireUnitCount(unitCount(plan.cases), where);
     requireCases(where, json, plan);
     requireFrozen(where, std::move(json), plan);
-    return plan;
 }
 
-Plan Plan::outlineFromJsonFile(const fs::path& path) {
+}  // namespace
+
+Plan Plan::fromJsonFile(const fs::path& path) {
     const SourceLocation where{path.string(), 0, 0};
     Json json = parseJsonObject(MappedFile(path).text(), where);
     Plan plan = headFrom(json, where);
-    if (!plan.shard) return fromJsonFile(path);
-    requireEach(json, "/experiments", kExperiment, where);
-    for (const Json& item : json.at("experiments")) {
-        config::Experiment& experiment = plan.experiments.emplace_back();
-        experiment.file = item.at("file").get<std::string>();
-        experiment.document = nodeFromJson(item.at("document"), where);
+    for (const auto& [place, item] : json.at("experiments").items()) {
+        plan.experiments.push_back(ExperimentReader(item, where, "/experiments/" + place).read());
     }
-    requireEach(json, "/cases", kOutlinedCase, where);
-    for (const Json& item : json.at("cases")) {
-        Case& outlined = plan.cases.emplace_back();
-        item.at("id").get_to(outlined.id);
-        item.at("experiment").get_to(outlined.experiment);
-    }
-    requireFrozen(where, std::move(json), plan);
+    takeCases(std::move(json), where, plan);
+    return plan;
+}
+
+Plan planWithoutExperiments(const fs::path& path) {
+    const SourceLocation where{path.string(), 0, 0};
+    Json json = parseJsonObject(MappedFile(path).text(), where);
+    Plan plan = headFrom(json, where);
+    takeCases(std::move(json), where, plan);
     return plan;
 }
 

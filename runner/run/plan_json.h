@@ -15,6 +15,10 @@ nlohmann::ordered_json toJson(const Case& item);
 Case caseFromJson(const nlohmann::ordered_json& json, const SourceLocation& where,
                   const std::string& prefix);
 
+/// The same as Plan::fromJsonFile(), also where it throws for a change, without the experiments: of
+/// a thousand shards' plans these take most of the time.
+Plan planWithoutExperiments(const std::filesystem::path& path);
+
 /// References to the scenes that a case loads: `scene`, and its parameters that are references
 /// (scene::isSceneKey), by their names; none that is empty.
 std::map<std::string, Node> scenesOf(const Case& item);

@@ -140,9 +140,7 @@ bool holdsRun(const fs::path& folder) {
            (fs::exists(folder / "manifest.json") || fs::exists(folder / "records.csv"));
 }
 
-namespace {
-
-StoredRun readWith(Plan (*readPlan)(const fs::path&), const fs::path& runDir) {
+StoredRun readRun(const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
         throw Error(runDir.string() + ": is not a run directory (it has no plan.json)");
     }
@@ -152,7 +150,7 @@ StoredRun readWith(Plan (*readPlan)(const fs::path&), const fs::path& runDir) {
     requirePlainFiles(runDir);
     requireModestFiles(runDir);
     StoredRun run;
-    run.plan = readPlan(runDir / "plan.json");
+    run.plan = Plan::fromJsonFile(runDir / "plan.json");
     run.manifest = readManifest(runDir / "manifest.json");
     requireOfPlan(run.manifest, run.plan, runDir / "manifest.json");
     noteChanges(run.manifest, runDir);
@@ -162,16 +160,6 @@ StoredRun readWith(Plan (*readPlan)(const fs::path&), const fs::path& runDir) {
         requirePlanned(runDir / "records.csv", run.plan, run.records);
     }
     return run;
-}
-
-}  // namespace
-
-StoredRun readRun(const fs::path& runDir) {
-    return readWith(Plan::fromJsonFile, runDir);
-}
-
-StoredRun readOutlined(const fs::path& runDir) {
-    return readWith(Plan::outlineFromJsonFile, runDir);
 }
 
 void noteChangedImages(Json& manifest, const fs::path& runDir, const std::vector<Unit>& again) {
@@ -210,11 +198,11 @@ void noteCompleteness(Json& manifest, const Completeness& counts) {
         {"planned", counts.units}, {"missing", counts.missing}, {"failed", counts.failed}};
 }
 
-Completeness readCompleteness(const fs::path& runDir, const Plan* outline) {
+Completeness readCompleteness(const fs::path& runDir, const Plan* plan) {
     requirePlainFiles(runDir);
     requireModestFiles(runDir);
     const Json manifest = readManifest(runDir / "manifest.json");
-    if (outline) requireOfPlan(manifest, *outline, runDir / "manifest.json");
+    if (plan) requireOfPlan(manifest, *plan, runDir / "manifest.json");
     if (!manifest.contains("units") || !areRecordsSealed(manifest, runDir)) {
         return completeness(readRun(runDir));
     }

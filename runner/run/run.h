@@ -48,9 +48,6 @@ StoredRun readRun(const std::filesystem::path& runDir);
 void noteChangedImages(Json& manifest, const std::filesystem::path& runDir,
                        const std::vector<Unit>& again = {});
 
-/// For a merge: a shard's plan is an outline (Plan::outlineFromJsonFile).
-StoredRun readOutlined(const std::filesystem::path& runDir);
-
 /// Whether something was begun to be measured there. A plan alone is a shard that waits for its
 /// task.
 bool holdsRun(const std::filesystem::path& folder);
@@ -71,9 +68,9 @@ Completeness completeness(const StoredRun& run);
 /// Keeps the sums in the manifest, until breakSeal(): what many shards came to is read from there.
 void noteCompleteness(Json& manifest, const Completeness& counts);
 /// … without `failures`: from the manifest where the run ended and its records are as they were
-/// then, else from the whole run. Throws Error, also where its plan was read, if only its outline,
-/// and the manifest is of another.
-Completeness readCompleteness(const std::filesystem::path& runDir, const Plan* outline = nullptr);
+/// then, else from the whole run. Throws Error, also where its `plan` was read, and the manifest is
+/// of another.
+Completeness readCompleteness(const std::filesystem::path& runDir, const Plan* plan = nullptr);
 
 /// How every case of the run's plan, or of its shard, ended: by its worst process.
 std::vector<records::CaseEnd> caseResults(const StoredRun& run);

@@ -627,6 +627,32 @@ TEST_F(Submit, LinksAmongTheProgramsLibrariesAreFollowed) {
     }
 }
 
+TEST_F(Submit, AShardWhosePlanWasChangedIsNotMerged) {
+    const std::string out = folder.path() / "out";
+    for (const std::string& line : submitPairs(folder, 4, out)) {
+        ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
+    }
+    const std::string file = out + "/shards/1/plan.json", plan = readFile(file);
+    // In its parameters; in what was swept; in what was given.
+    for (const char* member : {"\"params\":{", "\"axes\":{", "\"given\":{"}) {
+        std::string changed = plan;
+        const std::size_t at = changed.find("\"number\":", changed.find(member));
+        ASSERT_NE(at, changed.npos);
+        changed[changed.find_first_of("0123456789", at)] = '9';
+        ASSERT_NE(changed, plan);
+        writeFileAtomic(file, changed);
+        const ProcessResult merge = mockGfxrepro({"merge", out, "--out", folder.path() / "merged"});
+        EXPECT_EQ(merge.exitCode, 2) << member;
+        const std::string problem = "is not the one that was planned: plan.json was changed\n";
+        EXPECT_THAT(merge.err, HasSubstr(file + ": the case "));
+        EXPECT_THAT(merge.err, HasSubstr(problem));
+        EXPECT_FALSE(fs::exists(folder.path() / "merged"));
+        const ProcessResult status = mockGfxrepro({"submit", "--status", out});
+        EXPECT_EQ(status.exitCode, 4);
+        EXPECT_THAT(status.out, ContainsRegex("1/2 .*/shards/1/plan.json: the case .*" + problem));
+    }
+}
+
 TEST_F(Submit, DryRunWritesNothing) {
     const std::string config = writeNumbers(folder, 6, "measure: {lane: timing, processes: 1}\n");
     const std::string out = folder.path() / "out";
