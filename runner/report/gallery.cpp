@@ -103,15 +103,13 @@ fs::path reducedFile(const fs::path& file, const image::Image8& image, int longe
 /// One run's images on their way into a page.
 class Gallery {
   public:
-    explicit Gallery(const GalleryPlace& place) : place_(place), runDir_(place.runDir) {
-        for (records::ImageEntry& entry : records::readImages(runDir_)) {
-            std::error_code isAbsent;
-            if (entry.png.empty() || !fs::is_regular_file(runDir_ / entry.png, isAbsent)) continue;
+    Gallery(const GalleryPlace& place, std::vector<records::ImageEntry> entries)
+        : place_(place), runDir_(place.runDir), entries_(std::move(entries)) {
+        for (const records::ImageEntry& entry : entries_) {
             if (!entry.truthOf.empty()) {
                 truths_.try_emplace({entry.caseId, entry.frame, entry.truthOf}, entry);
             }
             frames_[entry.caseId].insert(entry.frame);
-            entries_.push_back(std::move(entry));
         }
     }
 
@@ -221,6 +219,40 @@ class Gallery {
     std::map<std::string, std::set<int>> frames_;     // of each case
 };
 
+bool isReadable(const fs::path& png) {
+    try {
+        image::readPng8(png);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// The pictures that can be shown, and the digest of each one's file. Not of these is one that is
+/// no longer as it was written and no PNG: as of a missing one, that is all there is to say of it
+/// (run::noteChangedImages).
+std::pair<std::vector<records::ImageEntry>, std::vector<std::string>> picturesOf(
+    const fs::path& runDir) {
+    std::vector<records::ImageEntry> entries = records::readImages(runDir);
+    std::vector<std::string> contents(entries.size());
+    metrics::forEachPicture(
+        entries.size(), [](std::size_t) { return std::int64_t{0}; },
+        [&](std::size_t i) {
+            const fs::path file = runDir / entries[i].png;
+            std::error_code isAbsent;
+            if (entries[i].png.empty() || !fs::is_regular_file(file, isAbsent)) return;
+            const std::string content = sha256OfFile(file), &written = entries[i].pngSha256;
+            if (written.empty() || content == written || isReadable(file)) contents[i] = content;
+        });
+    std::pair<std::vector<records::ImageEntry>, std::vector<std::string>> shown;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        if (contents[i].empty()) continue;
+        shown.first.push_back(std::move(entries[i]));
+        shown.second.push_back(std::move(contents[i]));
+    }
+    return shown;
+}
+
 }  // namespace
 
 int reducedPxOf(std::span<const fs::path> runDirs, std::uintmax_t mostBytes) {
@@ -231,10 +263,9 @@ int reducedPxOf(std::span<const fs::path> runDirs, std::uintmax_t mostBytes) {
     };
     std::vector<Picture> pictures;
     for (const fs::path& runDir : runDirs) {
-        for (const records::ImageEntry& entry : records::readImages(runDir)) {
+        const auto shown = picturesOf(runDir);
+        for (const records::ImageEntry& entry : shown.first) {
             const fs::path file = runDir / entry.png;
-            std::error_code isAbsent;
-            if (entry.png.empty() || !fs::is_regular_file(file, isAbsent)) continue;
             const image::PngRows rows(file, image::kMaxSidePx, image::ImageUse::Picture);
             pictures.push_back(
                 {static_cast<double>(fs::file_size(file)), std::max(rows.width(), rows.height())});
@@ -254,16 +285,6 @@ int reducedPxOf(std::span<const fs::path> runDirs, std::uintmax_t mostBytes) {
 }
 
 namespace {
-
-/// The digest of each picture's file.
-std::vector<std::string> contentsOf(const fs::path& runDir,
-                                    const std::vector<records::ImageEntry>& entries) {
-    std::vector<std::string> contents(entries.size());
-    metrics::forEachPicture(
-        entries.size(), [](std::size_t) { return std::int64_t{0}; },
-        [&](std::size_t i) { contents[i] = sha256OfFile(runDir / entries[i].png); });
-    return contents;
-}
 
 /// Pictures that are shown alike: of one content, as their truths are. Those of one truth are in
 /// one group.
@@ -290,9 +311,10 @@ std::vector<std::vector<std::vector<std::size_t>>> groupsOf(
 }  // namespace
 
 std::vector<Shot> gatherShots(const GalleryPlace& place, const PicturesDone& progress) {
-    const Gallery gallery(place);
+    auto pictures = picturesOf(place.runDir);
+    const Gallery gallery(place, std::move(pictures.first));
     const std::vector<records::ImageEntry>& entries = gallery.entries();
-    const std::vector<std::string> contents = contentsOf(place.runDir, entries);
+    const std::vector<std::string>& contents = pictures.second;
     const std::vector<std::vector<std::vector<std::size_t>>> groups = groupsOf(gallery, contents);
     std::vector<Shot> shots(entries.size());
     std::mutex mutex;

@@ -66,7 +66,8 @@ using PicturesDone = std::function<void(std::size_t done, std::size_t all)>;
 
 /// The images of a run. Makes below `madeDir` what is not there yet: FLIP maps of those that have a
 /// truth of their size (thumbnails/…-flip.png, judged as displayed), and thumbnails; of pictures
-/// that are alike, as their truths are, one for all. Throws Error for an image that is no PNG.
+/// that are alike, as their truths are, one for all. Throws Error for an image that is no PNG
+/// and was written so; one that was damaged since is as one that is missing.
 std::vector<Shot> gatherShots(const GalleryPlace& place, const PicturesDone& progress = {});
 
 /// A shot's picture for the overview, as `thumbnail`; made if it is not there.

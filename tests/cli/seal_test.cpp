@@ -138,6 +138,37 @@ TEST_F(Seal, PicturesThatAreNotAsTheyWereRecordedAreNamed) {
     EXPECT_THAT(manifest(merged)["notes"].dump(), HasSubstr(dir + ": " + said));
 }
 
+/// Nothing but what the page would show of it is lost.
+TEST_F(Seal, DamagedPicturesAreToldAsMissingOnesAre) {
+    const std::string file = config(6);
+    ASSERT_EQ(mockGfxrepro({"run", file, "--device", "software", "--shard", "1/1", "--out", dir})
+                  .exitCode,
+              0);
+    const std::string png = records::readImages(dir).front().png;
+    const std::string whole = readFile(dir + '/' + png);
+    std::string damaged = whole;
+    damaged[whole.size() / 2] ^= 1;
+    const std::string artifact = folder.path() / "artifact", merged = folder.path() / "merged";
+    const std::string embedded = folder.path() / "one.html";
+    for (const std::string& content : {damaged, whole.substr(0, whole.size() / 2), std::string()}) {
+        writeFileAtomic(dir + '/' + png, content);
+        for (const std::vector<std::string>& command :
+             {std::vector<std::string>{"report", dir},
+              {"report", dir, "--embed", "--out", embedded},
+              {"export", dir, "--out", artifact}}) {
+            const ProcessResult result = mockGfxrepro(command);
+            EXPECT_EQ(result.exitCode, 0) << command.front() << ": " << result.err;
+            EXPECT_THAT(result.out, HasSubstr(png + " was changed")) << command.front();
+        }
+        const ProcessResult merge = mockGfxrepro({"merge", "--out", merged, dir});
+        EXPECT_EQ(merge.exitCode, 0) << merge.err;
+        EXPECT_THAT(manifest(merged)["notes"].dump(), HasSubstr(png + " was changed"));
+        fs::remove_all(artifact);
+        fs::remove_all(merged);
+        fs::remove(embedded);
+    }
+}
+
 /// Of what is measured again the old pictures are nothing to be told of.
 TEST_F(Seal, ARunThatGoesOnNamesTheKeptPicturesThatAreNotAsTheyWere) {
     const std::string file = writeMockConfig(folder, "sweep: {number: [3, 4]}\n");
