@@ -157,9 +157,8 @@ std::vector<std::string> askedFor(const SubmitOptions& options, const run::Reque
 }
 
 /// As many as were asked for or as the predicted time fills; not more than can be filled.
-int shardCountOf(const SubmitOptions& options, const run::Plan& plan,
-                 const std::vector<double>& timesS, bool arePredicted) {
-    const auto most = std::max(static_cast<int>(cluster::indivisibleGroups(plan.cases).size()), 1);
+int shardCountOf(const SubmitOptions& options, int most, const std::vector<double>& timesS,
+                 bool arePredicted) {
     if (options.shardCount > 0) return std::min(options.shardCount, most);
     const double totalS = std::accumulate(timesS.begin(), timesS.end(), 0.0);
     const int wanted =
@@ -208,7 +207,9 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
     if (options.jobs > 0)
         s.runArguments.insert(s.runArguments.end(), {"--jobs", std::to_string(options.jobs)});
     s.out = out;
-    s.shardCount = shardCountOf(options, cut.plan, timesS, arePredicted);
+    const auto most =
+        std::max(static_cast<int>(cluster::indivisibleGroups(cut.plan.cases).size()), 1);
+    s.shardCount = shardCountOf(options, most, timesS, arePredicted);
     if (!options.partition.empty()) s.sbatchFlags.push_back("--partition=" + options.partition);
     if (!options.gres.empty()) s.sbatchFlags.push_back("--gres=" + options.gres);
     s.sbatchFlags.insert(s.sbatchFlags.end(), options.sbatchFlags.begin(),
@@ -225,9 +226,12 @@ Cut cutPlan(const Context& context, const SubmitOptions& options) {
         cut.unitCounts[shard] += measure.certainRounds();
         cut.timesS[shard] += timesS[i];
     }
-    tell("{} cases in {} shard{} of {} to {} units{}\n", cut.plan.cases.size(), s.shardCount,
-         s.shardCount == 1 ? "" : "s", *std::ranges::min_element(cut.unitCounts),
-         *std::ranges::max_element(cut.unitCounts),
+    const bool isCut = static_cast<std::size_t>(most) == cut.plan.cases.size();
+    const std::string why = isCut ? "" : " as timing cases of one table and twins stay together,";
+    tell("{} cases in {} shard{}{} of {} to {} units{}\n", cut.plan.cases.size(), s.shardCount,
+         s.shardCount == 1 ? "" : "s",
+         options.shardCount > most ? fmt::format(" and not {},{}", options.shardCount, why) : "",
+         *std::ranges::min_element(cut.unitCounts), *std::ranges::max_element(cut.unitCounts),
          arePredicted ? fmt::format(", the longest of about {}",
                                     durationText(*std::ranges::max_element(cut.timesS)))
                       : "; no earlier run tells their time");

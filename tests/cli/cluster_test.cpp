@@ -661,7 +661,13 @@ TEST_F(Submit, DryRunWritesNothing) {
          "--partition", "gpus", "--gres", "gpu:1", "--sbatch=--account=x", "--sbatch=--mem=8G"});
     EXPECT_EQ(result.exitCode, 0) << result.err;
     // Times of one table: one shard, alone on its node.
-    EXPECT_EQ(result.err, "6 cases in 1 shard of 6 to 6 units; no earlier run tells their time\n");
+    EXPECT_EQ(result.err,
+              "6 cases in 1 shard and not 3, as timing cases of one table and twins stay together, "
+              "of 6 to 6 units; no earlier run tells their time\n");
+    EXPECT_EQ(mockGfxrepro({"submit", writeNumbers(folder, 2), "--device", "software", "--out", out,
+                            "--shards", "5", "--dry-run"})
+                  .err,
+              "2 cases in 2 shards and not 5, of 1 to 1 units; no earlier run tells their time\n");
     EXPECT_THAT(result.out, HasSubstr("#SBATCH --exclusive\n#SBATCH --partition=gpus\n"
                                       "#SBATCH --gres=gpu:1\n#SBATCH --account=x\n"
                                       "#SBATCH --mem=8G\nexec "));
