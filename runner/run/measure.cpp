@@ -1,6 +1,7 @@
 #include "runner/run/measure.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -209,10 +210,36 @@ std::vector<SceneUse> scenesOfCase(const SceneCache& scenes) {
     return used;
 }
 
-bool isTimeOfFrame(const std::string& metric) {
+bool isTime(const std::string& metric) {
     return metric == "wall_time_ms" || metric == "frame_rate" || metric == "gpu_time_ms" ||
-           metric == "cpu_time_ms" || metric == "process_time_ms";
+           metric == "cpu_time_ms" || metric == "process_time_ms" || metric == "load_time_ms" ||
+           metric == "setup_time_ms";
 }
+
+/// Voids the times among the samples from `first` on.
+void voidTimes(CaseResult& result, std::size_t first, const std::string& why) {
+    if (result.voidReason.empty()) result.voidReason = why;
+    for (std::size_t i = first; i < result.samples.size(); ++i) {
+        result.samples[i].isVoid = isTime(result.samples[i].metric);
+    }
+}
+
+/// What a suspended process goes on by. Blocked (noticeSuspensions), it waits to be asked for.
+sigset_t continuation() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGCONT);
+    return signals;
+}
+
+/// Since the last call.
+bool wasSuspended() {
+    const sigset_t signals = continuation();
+    const timespec atOnce{};
+    return ::sigtimedwait(&signals, nullptr, &atOnce) == SIGCONT;
+}
+
+constexpr const char* kWasSuspended = "the process was suspended meanwhile";
 
 /// What tells whether the repeats of a frame did the same; recorded beside their times.
 class WorkGuard {
@@ -220,7 +247,10 @@ class WorkGuard {
     WorkGuard(const gl::Device& device, bool isTiming)
         : isTiming_(isTiming), query_(isTiming && device.info().countsWork) {}
 
-    void beginFrame() { repeats_.clear(); }
+    void beginFrame() {
+        repeats_.clear();
+        wasSuspended();
+    }
     void beginRepeat() const { query_.begin(); }
     /// After the clock has stopped.
     void endRepeat(const technique::Technique& technique, RunRecorder& recorder) {
@@ -242,12 +272,9 @@ class WorkGuard {
     }
     /// Voids the times among the samples from `first` on where the repeats were not alike.
     void endFrame(int frame, std::size_t first, CaseResult& result) const {
-        const std::string why = whyUnequal(repeats_);
-        if (why.empty()) return;
-        if (result.voidReason.empty()) result.voidReason = fmt::format("frame {}: {}", frame, why);
-        for (std::size_t i = first; i < result.samples.size(); ++i) {
-            result.samples[i].isVoid = isTimeOfFrame(result.samples[i].metric);
-        }
+        const bool isLonger = isTiming_ && wasSuspended();
+        const std::string why = isLonger ? kWasSuspended : whyUnequal(repeats_);
+        if (!why.empty()) voidTimes(result, first, fmt::format("frame {}: {}", frame, why));
     }
 
   private:
@@ -450,6 +477,11 @@ std::string workOf(const Case& item, const std::string& scene) {
 
 }  // namespace
 
+void noticeSuspensions() {
+    const sigset_t signals = continuation();
+    ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
 CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
     CaseResult result;
     const SourceLocation nowhere;
@@ -465,6 +497,7 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
     const bool isTiming = item.measure.lane == config::Measure::Lane::Timing;
     context.shared.beginCase(workOf(item, sceneName), item.params);
     resetPeakResident();
+    wasSuspended();
     const std::unique_ptr<technique::Technique> technique =
         technique::makeTechnique(info, item.program, params);
     if (context.device.isNone() && technique::needsDevice(info, item.program)) {
@@ -497,6 +530,9 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
         const std::vector<gl::PassTime> times = profiler.collect();
         for (const gl::PassTime& time : times) requireOfSetup(time.pass, outputs);
         recordPasses(times, context.device.info().isSoftware, recorder);
+    }
+    if (isTiming && wasSuspended()) {
+        voidTimes(result, 0, fmt::format("set-up: {}", kWasSuspended));
     }
     context.awaitTurn();
     const bool isWhole = FrameLoop(item, process, technique::needsDevice(info, item.program),

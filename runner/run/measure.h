@@ -84,6 +84,9 @@ struct MeasureContext {
     technique::SharedResults shared = technique::SharedResults();
 };
 
+/// So that measureCase() voids the times of what was suspended. Before a process has threads.
+void noticeSuspensions();
+
 /// Process `process` of the case: constructor → load → set-up → warm-ups → frames × repeats →
 /// record. A program, which starts anew for each frame, is warmed up in the first process alone.
 /// Technique::recordOnce follows there, and where the picture is another than the first process's

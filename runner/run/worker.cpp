@@ -129,6 +129,7 @@ void runWorker(const WorkerOptions& options, std::span<const technique::Techniqu
     if (::fcntl(kMessageFd, F_SETFD, FD_CLOEXEC) != 0) {
         throw UsageError("the worker command is for the program's own use: descriptor 3 is closed");
     }
+    noticeSuspensions();
     send({{"begin", "device"}});
     const bool isTiming = options.lane == config::Measure::Lane::Timing;
     const gl::DebugOutput debug = isTiming ? gl::DebugOutput::Off : gl::DebugOutput::Log;

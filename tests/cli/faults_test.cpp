@@ -272,16 +272,16 @@ TEST_F(Faults, SideBySideAndInFreshProcesses) {
     EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 12U);
 }
 
-TEST_F(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
+TEST_F(Faults, BlankPicturesUnequalWorkAndSuspensionsVoidTimesAndNothingElse) {
     const std::string config =
         writeMockConfig(folder,
-                        "sweep: {behaviour: [ok, blank, unequal]}\n"
+                        "sweep: {behaviour: [ok, blank, unequal, suspended]}\n"
                         "measure: {lane: timing, processes: 1, repeats: 3}\n"
                         "layout:\n  rows: behaviour\n  columns:\n    fps: {metric: frame_rate}\n"
                         "    n: {metric: number, format: \"{median:.0f}\"}\n");
     const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
     EXPECT_EQ(run.exitCode, 4) << run.err;
-    EXPECT_EQ(run.out, "3 of 3 finished, 2 with void times; records: " + dir + "/records.csv\n");
+    EXPECT_EQ(run.out, "4 of 4 finished, 3 with void times; records: " + dir + "/records.csv\n");
     std::vector<std::string> messages;
     for (const records::Record& row : rowsOf(dir, "frame_rate")) {
         messages.push_back(std::string(records::statusName(row.status)) + ": " + row.message);
@@ -290,15 +290,18 @@ TEST_F(Faults, BlankPicturesAndUnequalWorkVoidTimesAndNothingElse) {
         "ambiguous: frame 0: the picture of repeat 0 is blank: all its pixels are the same";
     const std::string another =
         "ambiguous: frame 0: repeat 1 drew a different picture than repeat 0";
-    EXPECT_THAT(messages, testing::UnorderedElementsAre("ok: ", "ok: ", "ok: ", blank, blank, blank,
-                                                        another, another, another));
+    const std::string suspended = "ambiguous: frame 0: the process was suspended meanwhile";
+    EXPECT_THAT(messages,
+                testing::UnorderedElementsAre("ok: ", "ok: ", "ok: ", blank, blank, blank, another,
+                                              another, another, suspended, suspended, suspended));
     for (const records::Record& row : rowsOf(dir, "number"))
         EXPECT_EQ(row.status, records::Status::Ok);
-    EXPECT_EQ(rowsOf(dir, "work_image_digest").size(), 9U);
+    EXPECT_EQ(rowsOf(dir, "work_image_digest").size(), 12U);
     EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 4);
     const std::string table = readFile(dir + "/tables/sweep-mock.md");
     EXPECT_NE(table.find("| blank | ambiguous | 0 |"), std::string::npos) << table;
     EXPECT_NE(table.find("| unequal | ambiguous | 0 |"), std::string::npos) << table;
+    EXPECT_NE(table.find("| suspended | ambiguous | 0 |"), std::string::npos) << table;
 }
 
 std::vector<std::pair<int, double>> roundsOf(const std::string& dir) {

@@ -41,7 +41,8 @@ enum class Behaviour {
     Twice,
     Flake,
     Blank,
-    Unequal
+    Unequal,
+    Suspended
 };
 
 constexpr Choice<Behaviour> kBehaviours[] = {
@@ -59,6 +60,7 @@ constexpr Choice<Behaviour> kBehaviours[] = {
     {Behaviour::Flake, "flake", "crashes unless `marker` is there, and makes it"},
     {Behaviour::Blank, "blank", "shows nothing"},
     {Behaviour::Unequal, "unequal", "shows something else in every repeat"},
+    {Behaviour::Suspended, "suspended", "goes on as after SIGSTOP"},
 };
 
 /// Tells in a file when something begins and ends, for tests of what runs at once.
@@ -124,6 +126,10 @@ class Mock : public technique::Technique {
                 return;
             case Behaviour::Unequal:
                 show(++shown_);
+                return;
+            case Behaviour::Suspended:
+                std::raise(SIGCONT);
+                show(1);
                 return;
             case Behaviour::Flake:
                 show(1);
