@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -165,5 +166,11 @@ Json jsonTypeOf(const ParamInfo& info);
 /// lane and seeds may be other ones where the section does not name them.
 Measure readMeasure(Params& params, Measure measure = {});
 std::pair<int, int> readOutput(Params& params);
+
+/// A reference with a file extension is a file beside the one that names it, or in `folder`.
+Node withSceneFile(const Node& reference, const std::optional<std::filesystem::path>& folder = {});
+/// Scene files, patterns of them and `all` of a sweep, each replaced by what it stands for. Throws
+/// Error for a pattern without a file.
+void resolveNames(Node& document);
 
 }  // namespace gfxrepro::config
