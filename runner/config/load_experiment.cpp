@@ -9,7 +9,6 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
-#include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
 #include "runner/config/external_program.h"
 #include "runner/config/printed_section.h"
