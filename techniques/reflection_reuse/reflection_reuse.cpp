@@ -434,12 +434,14 @@ class ReflectionReuse final : public technique::Technique {
 
     void warnOfAStill(int frameCount, double time) {
         const double last = time + (frameCount - 1) / static_cast<double>(params_.pathFrames);
-        if (hasWarned_ || frame_->viewAt(last).viewFromWorld != view_.viewFromWorld) return;
+        if (hasWarned_ || params_.method == Method::RayTraced ||
+            frame_->viewAt(last).viewFromWorld != view_.viewFromWorld)
+            return;
         hasWarned_ = true;
         fmt::print(stderr,
-                   "warning: the camera stands still over {} frames: what is saved tells nothing "
-                   "of a path ('view')\n",
-                   frameCount);
+                   "warning: scene '{}': the camera stands still over {} frames: what is saved "
+                   "tells nothing of a path ('view')\n",
+                   frame_->scene.scene().name, frameCount);
     }
 
     // The passes have the names that they have between key frames.

@@ -368,7 +368,8 @@ TEST_F(PointSplattingTest, TakesCamerasAndPathsOfTheScene) {
     EXPECT_EQ(coveredPixels(seen("walk")), covered);
     EXPECT_EQ(errorText([&] { seen("none"); }),
               "the scene has no path or camera 'none'; paths: 'walk'; cameras: 'far'; or 'AZIMUTH "
-              "ELEVATION' in degrees");
+              "ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more such behind ';' a "
+              "path");
 }
 
 TEST(TurntableCamera, HoldsTheBoxFromEverySide) {

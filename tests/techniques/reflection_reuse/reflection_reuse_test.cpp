@@ -382,10 +382,15 @@ TEST_F(ReflectionReuseTest, ViewsWithoutReflectorsRecordNothingReflected) {
         testing::internal::CaptureStderr();
         const auto frames = recorded(
             fmt::format("{{view: ceiling, pictures: true, method: {}}}", method), &room_, 3);
+        const std::string isStill =
+            method == std::string("ray_traced")
+                ? ""
+                : "warning: scene 'room': the camera stands still over 3 frames: what is saved "
+                  "tells nothing of a path ('view')\n";
         EXPECT_EQ(testing::internal::GetCapturedStderr(),
-                  fmt::format("warning: scene '{}': a frame shows no reflector; no errors are "
-                              "measured of it\n",
-                              room_.name));
+                  isStill +
+                      "warning: scene 'room': a frame shows no reflector; no errors are measured "
+                      "of it\n");
         for (const test::MetricRecorder& frame : frames) {
             EXPECT_EQ(frame.metrics.at("reflective_pct"), 0.0);
             // Claims on what there is not are left unmeasured.
