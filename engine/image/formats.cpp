@@ -525,16 +525,27 @@ Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name) {
 
 namespace {
 
-/// TGA 2.0: an extension area, which the file's end names, may have a gamma other than 1.
-bool saysGammaOfTga(Part bytes) {
-    constexpr std::size_t kFooter = 26, kGammaAt = 478;
-    if (bytes.size() < kFooter) return false;
+/// TGA 2.0's extension area, which the file's end names; empty where there is none.
+Part extensionOfTga(Part bytes) {
+    constexpr std::size_t kFooter = 26, kArea = 495;
+    if (bytes.size() < kFooter) return {};
     const Part footer = bytes.last(kFooter);
     const std::size_t area = numberAt(footer, 0, 4, true);
-    if (textOf(footer).substr(8, 16) != "TRUEVISION-XFILE" || area == 0) return false;
-    const std::size_t above = numberAt(bytes, area + kGammaAt, 2, true);
-    const std::size_t below = numberAt(bytes, area + kGammaAt + 2, 2, true);
+    if (textOf(footer).substr(8, 16) != "TRUEVISION-XFILE" || area == 0) return {};
+    if (area > bytes.size() || bytes.size() - area < kArea) return {};
+    return bytes.subspan(area, kArea);
+}
+
+/// Whether it says a gamma other than 1.
+bool saysGamma(Part extension) {
+    const std::size_t above = numberAt(extension, 478, 2, true);
+    const std::size_t below = numberAt(extension, 480, 2, true);
     return below != 0 && above != below;
+}
+
+/// Its type of attributes: up to 2 there is no alpha, 3 is straight, 4 multiplied into the colours.
+int attributesOf(Part extension) {
+    return extension.empty() ? 3 : std::to_integer<int>(extension.back());
 }
 
 }  // namespace
@@ -557,7 +568,9 @@ Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
     }
     file.take(idBytes);
     const std::size_t pixelBytes = static_cast<std::size_t>(bits) / 8;
-    const bool hasAlpha = bits == 32 && (flags & 15) == 8;
+    const Part extension = extensionOfTga(bytes);
+    const int attributes = attributesOf(extension);
+    const bool hasAlpha = bits == 32 && (flags & 15) == 8 && attributes > 2;
     file.checkSize(width, height, 4 * sizeof(float));
     Decoded result{ImageF(width, height, isGrey ? 1 : hasAlpha ? 4 : 3)};
     const auto channels = static_cast<std::size_t>(result.values.channels());
@@ -574,8 +587,13 @@ Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
             }
         }
     }
+    for (std::size_t i = 0; hasAlpha && attributes == 4 && i < values.size(); i += 4) {
+        for (float& value : values.subspan(i, 3)) {  // of sRGB, as in TIFF files
+            if (values[i + 3] > 0.0F) value = std::min(1.0F, value / values[i + 3]);
+        }
+    }
     if ((flags & 0x20) == 0) flipRows(result.values);
-    if (saysGammaOfTga(bytes)) result.notes.emplace_back("left out: its gamma");
+    if (saysGamma(extension)) result.notes.emplace_back("left out: its gamma");
     return result;
 }
 

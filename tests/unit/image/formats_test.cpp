@@ -206,6 +206,32 @@ TEST_F(Formats, TargaIsSrgb) {
         "of 32 bits, columns from the left, are read");
 }
 
+/// One pixel: blue, green, red, alpha of 20, 40, 100, 128.
+TEST_F(Formats, TargasExtensionSaysWhatItsAlphaIs) {
+    const auto valuesOf = [&](int kind) {
+        std::string file(18, '\0');
+        file[2] = 2;
+        file[12] = file[14] = 1;
+        file[16] = 32;
+        file[17] = 0x28;
+        file += "\x14\x28\x64\x80";
+        std::string extension(495, '\0');
+        extension.back() = static_cast<char>(kind);
+        file += extension + std::string("\x16\0\0\0\0\0\0\0TRUEVISION-XFILE.\0", 26);
+        const ImageF values = readPicture(folder_.write("a.tga", file)).stored;
+        return std::vector<float>(values.values().begin(), values.values().end());
+    };
+    const auto part = [](float value) { return value / 255.0F; };
+    const std::vector<float> colours{part(100), part(40), part(20)};
+    for (const int kind : {0, 1, 2}) EXPECT_EQ(valuesOf(kind), colours) << kind;
+    EXPECT_EQ(valuesOf(3), (std::vector<float>{part(100), part(40), part(20), part(128)}));
+    const std::vector<float> divided = valuesOf(4);
+    ASSERT_EQ(divided.size(), 4U);
+    EXPECT_FLOAT_EQ(divided[0], 100.0F / 128.0F);
+    EXPECT_FLOAT_EQ(divided[2], 20.0F / 128.0F);
+    EXPECT_FLOAT_EQ(divided[3], 128.0F / 255.0F);
+}
+
 TEST_F(Formats, JpegIsSrgb) {
     std::vector<std::uint8_t> even(kWidth * kHeight * 3, 100);
     stbi_write_jpg(path("a.jpg").c_str(), kWidth, kHeight, 3, even.data(), 100);
