@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -283,6 +284,25 @@ void takePrimaries(const Imf::Chromaticities& given, const std::string& name, Ex
     image.notes.emplace_back(kConvertedPrimaries);
 }
 
+/// Whether a text of this name says in which space the colours are, and another than Rec. 709's
+/// light.
+bool isOtherSpace(const std::string& name, std::string space) {
+    static constexpr std::string_view kLinear[] = {"lin_rec709",
+                                                   "lin_rec709_scene",
+                                                   "lin_srgb",
+                                                   "linear",
+                                                   "linear srgb",
+                                                   "linear rec.709",
+                                                   "linear rec.709 (srgb)",
+                                                   "utility - linear - srgb",
+                                                   "scene_linear",
+                                                   "data",
+                                                   "raw"};
+    if (name != "colorInteropID" && name != "oiio:ColorSpace" && name != "colorSpace") return false;
+    for (char& c : space) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return std::ranges::find(kLinear, space) == std::end(kLinear);
+}
+
 /// Names what might change how the pixels are seen and is not used here.
 void noteOthers(const Imf::Header& header, ExrImage& image) {
     static constexpr std::string_view kChangeNothing =
@@ -294,7 +314,12 @@ void noteOthers(const Imf::Header& header, ExrImage& image) {
         const std::string name = i.name();
         const std::string type = i.attribute().typeName();
         if (kChangeNothing.find(' ' + name + ' ') != kChangeNothing.npos) continue;
-        if (type == "string" || type == "m44f") continue;  // kept
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute())) {  // kept
+            if (!isOtherSpace(name, text->value())) continue;
+            others += fmt::format("{}{} ('{}')", others.empty() ? "" : ", ", name, text->value());
+            continue;
+        }
+        if (type == "m44f") continue;  // kept
         if (name == "pixelAspectRatio" && header.pixelAspectRatio() == 1.0F) continue;
         others += (others.empty() ? "" : ", ") + name;
     }
@@ -500,8 +525,12 @@ void ExrImage::add(const ImageF& image, const std::vector<std::string>& names, E
 ImageF ExrImage::colour() const {
     std::vector<const ImageF*> planes{find("R"), find("G"), find("B")};
     if (planes[0] == nullptr || planes[1] == nullptr || planes[2] == nullptr) {
-        planes = {find("Y")};
-        if (planes[0] == nullptr && find("Z") != nullptr) return *find("Z");
+        // Beside these Y and Z are no luminance and no depth: a colour (CIE XYZ), a place.
+        const bool isPart = std::ranges::any_of(channels, [](const Channel& channel) {
+            return channel.name.size() == 1 && std::strchr("XRGB", channel.name[0]) != nullptr;
+        });
+        planes = {isPart ? nullptr : find("Y")};
+        if (planes[0] == nullptr && !isPart && find("Z") != nullptr) return *find("Z");
         if (planes[0] == nullptr) {
             std::string names;
             for (const Channel& channel : channels) names += " '" + channel.name + "'";

@@ -9,6 +9,7 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include "engine/image/exr_io.h"
 #include "engine/image/image_file.h"
@@ -199,6 +200,21 @@ TEST_F(ExrMeaning, GreyHasAlphaToo) {
     EXPECT_EQ(readPicture(depths).linear, ImageF(4, 4, 1, 9.0F));
 }
 
+/// CIE XYZ, places and parts of a colour: Y is no luminance, and Z no depth.
+TEST_F(ExrMeaning, YAndZBesideOthersAreNoPicture) {
+    const auto error = [&](std::vector<std::pair<const char*, float>> channels) {
+        writeEven("a.exr", Imf::Header(4, 4), std::move(channels));
+        return errorOf("a.exr");
+    };
+    EXPECT_EQ(error({{"X", 0.4F}, {"Y", 0.2F}, {"Z", 0.1F}}),
+              "the image has the channels 'X' 'Y' 'Z'; R, G, B or Y or Z are needed");
+    EXPECT_EQ(error({{"R", 0.4F}, {"Y", 0.2F}}),
+              "the image has the channels 'R' 'Y'; R, G, B or Y or Z are needed");
+    EXPECT_EQ(error({{"G", 0.4F}, {"Z", 0.2F}}),
+              "the image has the channels 'G' 'Z'; R, G, B or Y or Z are needed");
+    EXPECT_EQ(error({{"Y", 0.4F}, {"Z", 9.0F}}), "no error") << "luminance and depth";
+}
+
 TEST_F(ExrMeaning, WholeNumbersThatFloatsRoundAreSaid) {
     const auto notes = [&](std::uint32_t largest) {
         Imf::Header header(4, 4);
@@ -230,6 +246,24 @@ TEST_F(ExrMeaning, AttributesThatAreNotUsedAreNamed) {
     const ExrImage exr = readExr(writeEven("a.exr", header, {{"Y", 0.5F}}));
     EXPECT_EQ(exr.notes, std::vector<std::string>{
                              "not used of its attributes: exposureOfNobody, pixelAspectRatio"});
+}
+
+TEST_F(ExrMeaning, OtherSpacesOfColourAreNamed) {
+    const auto notes = [&](const char* name, const char* space) {
+        Imf::Header header(4, 4);
+        header.insert(name, Imf::StringAttribute(space));
+        return readExr(writeEven("a.exr", header, {{"R", 1.0F}, {"G", 1.0F}, {"B", 1.0F}})).notes;
+    };
+    using Notes = std::vector<std::string>;
+    EXPECT_EQ(notes("colorInteropID", "lin_ap1_scene"),
+              Notes{"not used of its attributes: colorInteropID ('lin_ap1_scene')"});
+    EXPECT_EQ(notes("oiio:ColorSpace", "ACEScg"),
+              Notes{"not used of its attributes: oiio:ColorSpace ('ACEScg')"});
+    EXPECT_EQ(notes("colorSpace", "sRGB"),
+              Notes{"not used of its attributes: colorSpace ('sRGB')"});
+    EXPECT_EQ(notes("colorInteropID", "lin_rec709_scene"), Notes{});
+    EXPECT_EQ(notes("oiio:ColorSpace", "Linear"), Notes{});
+    EXPECT_EQ(notes("software", "ACEScg"), Notes{});
 }
 
 /// An orange at half cover: a display shows the colour that is covered, and PNG files hold that.
