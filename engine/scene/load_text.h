@@ -146,6 +146,8 @@ void visitPlaces(const Scene& scene, Visit&& visit) {
 
 /// Where most vertices and points lie, within the box of all: around their median along each axis,
 /// to both sides twice as far as half of them stand from it. A stray one far away does not count.
+/// Where more than half share each coordinate, as a triangle's corners do along two axes, half of
+/// the others decide.
 inline Box bulkOf(const Scene& scene) {
     constexpr std::size_t kMostPlaces = std::size_t{1} << 16;  // the others are as these
     const std::size_t step =
@@ -165,17 +167,20 @@ inline Box bulkOf(const Scene& scene) {
         std::nth_element(values.begin(), middle, values.end());
         return *middle;
     };
-    Box bulk;
+    glm::vec3 median(0.0F), half(0.0F), halfOfOthers(0.0F);
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<float> values;
         for (const glm::vec3& place : places) values.push_back(place[axis]);
-        const float median = medianOf(values);
-        for (float& value : values) value = std::abs(value - median);
-        const float half = 2.0F * medianOf(values);
-        bulk.min[axis] = std::max(median - half, whole.min[axis]);
-        bulk.max[axis] = std::min(median + half, whole.max[axis]);
+        median[axis] = medianOf(values);
+        for (float& value : values) value = std::abs(value - median[axis]);
+        half[axis] = 2.0F * medianOf(values);
+        std::erase(values, 0.0F);
+        if (values.empty()) continue;
+        std::ranges::sort(values);
+        halfOfOthers[axis] = 2.0F * values[(values.size() - 1) / 2];
     }
-    return bulk;
+    if (half == glm::vec3(0.0F)) half = halfOfOthers;
+    return {glm::max(median - half, whole.min), glm::min(median + half, whole.max)};
 }
 
 /// The places in the world that vertices and points have, each counted once in an instance.

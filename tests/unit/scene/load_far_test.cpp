@@ -184,6 +184,28 @@ TEST_F(FarFiles, StrayVerticesDecideNothing) {
     EXPECT_NEAR(leastDistance(scene), 0.02F, 1e-6F);
 }
 
+/// More than half of the corners share each coordinate.
+TEST_F(FarFiles, CornersThatShareCoordinatesKeepTheirPlaces) {
+    const auto expectSides = [&](const std::string& content, float sideM, const char* why) {
+        const Scene scene = loadObj(folder.write("a.obj", content));
+        EXPECT_EQ(scene.warnings.size(), 1U) << why;
+        const glm::vec3 size = scene.bounds().size();
+        EXPECT_NEAR(size.x, sideM, 1e-5F * sideM) << why;
+        EXPECT_NEAR(size.y, sideM, 1e-5F * sideM) << why;
+    };
+    const std::string corner = "v 500000.1 4500000.1 0\n";
+    const std::string two = "v 500000.7 4500000.1 0\nv 500000.1 4500000.7 0\n";
+    expectSides(corner + two + "f 1 2 3\n", 0.6F, "triangle");
+    expectSides(corner + two + "v 500000.1 4500000.1 0.6\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n",
+                0.6F, "tetrahedron");
+    expectSides(corner + "v 500010.7 4500000.1 0\nv 500000.1 4500010.7 0\nf 1 2 3\n", 10.6F,
+                "larger");
+    expectSides(
+        "v 5000.0001 3000.0001 0\nv 5000.0003 3000.0001 0\nv 5000.0001 3000.0003 0\n"
+        "f 1 2 3\n",
+        0.0002F, "smaller");
+}
+
 /// Half of a room's vertices in a knob of 1 mm: files that belong together keep their places.
 TEST_F(FarFiles, FinePartsOfARoomMoveNothing) {
     std::string content = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 10 10 3\n";
