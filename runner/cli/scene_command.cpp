@@ -73,6 +73,12 @@ void renderTo(const fs::path& path, const scene::Scene& scene, const SceneOption
         renderTo(path, preview, options);
         return;
     }
+    if (scene.triangleCount() == 0) {
+        throw Error(
+            fmt::format("--render {}: {} has {} points and no triangles; allowed to draw: "
+                        "triangles",
+                        path.string(), options.name, scene.points.positions.size()));
+    }
     const gl::Device device = openDevice(options.device);
     const gl::ShaderLibrary shaders(dataFolder("shaders"));
     const scene::Camera camera =

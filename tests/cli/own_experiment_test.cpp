@@ -327,6 +327,13 @@ TEST_F(OwnExperiment, CheckAsksTheTechniqueWhetherItTakesTheScene) {
         return gfxrepro({"check", folder.write("taken.yaml", head + lines)}).exitCode == 0;
     };
     EXPECT_TRUE(isTaken("technique: point_splatting\nscene: points.obj\n"));
+    const std::string points = (folder.path() / "points.obj").string();
+    const std::string picture = (folder.path() / "points.png").string();
+    const ProcessResult rendered = gfxrepro({"scene", points, "--render", picture});
+    EXPECT_EQ(rendered.exitCode, 2);
+    EXPECT_EQ(rendered.err, "gfxrepro: --render " + picture + ": " + points +
+                                " has 3 points and no triangles; allowed to draw: triangles\n");
+    EXPECT_FALSE(std::filesystem::exists(picture));
     EXPECT_THAT(checked(folder,
                         "technique: voxelization\nscene: shapes/torus\n"
                         "params: {csg: union, scene_b: points.obj, resolution: 32}\n"),
