@@ -247,7 +247,7 @@ constexpr std::size_t kBytesBeside = 64;
 std::size_t powerOfTenBytes(std::string_view behind) {
     static const std::regex kPower(
         "^ ?(?:[xX*]|\u00D7|\u00B7|\u22C5) ?10(?:\\^|\\*\\*|\u00B9|\u00B2|\u00B3|\u2070|"
-        "\u2074|\u2075|\u2076|\u2077|\u2078|\u2079|\u207A|\u207B)[-+0-9]*");
+        "\u2074|\u2075|\u2076|\u2077|\u2078|\u2079|\u207A|\u207B|[-+](?=[0-9]))[-+0-9]*");
     std::cmatch match;
     behind = behind.substr(0, kBytesBeside);
     const bool isPower =
@@ -255,9 +255,90 @@ std::size_t powerOfTenBytes(std::string_view behind) {
     return isPower ? static_cast<std::size_t>(match.length()) : 0;
 }
 
+/// What the pattern has directly before its first group, or behind it, but for blanks.
+std::pair<std::string, std::string> besideGroup(std::string_view regex) {
+    std::size_t begin = regex.npos, end = regex.npos;
+    std::vector<std::size_t> open;
+    bool isClass = false;
+    for (std::size_t i = 0; i < regex.size() && end == regex.npos; ++i) {
+        if (regex[i] == '\\') {
+            ++i;
+        } else if (isClass || regex[i] == '[') {
+            isClass = regex[i] != ']';
+        } else if (regex[i] == '(') {
+            if (begin == regex.npos && regex.substr(i + 1, 1) != "?") begin = i;
+            open.push_back(i);
+        } else if (regex[i] == ')' && !open.empty()) {
+            if (open.back() == begin) end = i;
+            open.pop_back();
+        }
+    }
+    if (end == regex.npos) return {};
+    std::string before(regex.substr(0, begin)), behind(regex.substr(end + 1));
+    const auto drop = [](std::string& text, bool isAtEnd) {
+        for (const std::string_view blank : {"\\s*", "\\s?", " *", " ?"}) {
+            if (isAtEnd && text.ends_with(blank)) text.resize(text.size() - blank.size());
+            if (!isAtEnd && text.starts_with(blank)) text.erase(0, blank.size());
+        }
+    };
+    drop(before, true);
+    drop(behind, false);
+    if (behind.starts_with('\\')) behind.erase(0, 1);
+    return {before, behind};
+}
+
+/// Whether a time, a fraction, a power or digits among letters go on before or behind the group:
+/// 1:23.4, 1/2, 2^10, 1.#QNAN, 0m1.2s, 0b11, 5k. What the pattern names there is a separator, and
+/// where it scales the number a k or M is its unit.
+bool isPartOfToken(std::string_view left, std::string_view right,
+                   const config::ProgramPattern& pattern) {
+    static constexpr std::string_view kMarks[] = {
+        ":", "/", "#", "^", "**", "\u00B7", "\u22C5", "\u00D7", "\u066B", "\u066C", "\u2044"};
+    static constexpr std::string_view kTails[] = {
+        ".#",     "\u00BC", "\u00BD", "\u00BE", "\u2153", "\u2154", "\u215B", "\u00B2",
+        "\u00B3", "\u00B9", "\u2070", "\u2074", "\u2075", "\u2076", "\u207A", "\u207B"};
+    const auto [named, namedBehind] = besideGroup(pattern.regex);
+    // Behind: a mark, or letters, and a digit.
+    const auto startsRight = [&](std::string_view mark) { return right.starts_with(mark); };
+    const auto lettersRight =
+        static_cast<std::size_t>(std::ranges::find_if_not(right, isLetter) - right.begin());
+    const auto markRight = std::ranges::find_if(kMarks, startsRight);
+    const std::string_view between =
+        markRight != std::end(kMarks) ? *markRight : right.substr(0, lettersRight);
+    const std::string_view next = right.substr(between.size());
+    const bool isNamed = !between.empty() && namedBehind.starts_with(between);
+    const bool isPower = (between == "^" || between == "**") && !next.empty() && next[0] == '-';
+    const bool isSpecial = between == "#" && !next.empty() && isLetter(next[0]);
+    bool goesOn = !between.empty() && !next.empty() && (isDigit(next[0]) || isPower || isSpecial);
+    if (lettersRight > 0 && (next.starts_with('2') || next.starts_with('3'))) {  // cm2, ft3
+        const char unit = between.back(), end = next.size() > 1 ? next[1] : ' ';
+        if ((unit == 'm' || unit == 't') && !isDigit(end) && !isLetter(end) && end != '.') {
+            goesOn = false;
+        }
+    }
+    const bool isThousands = lettersRight == 1 && pattern.scale == 1.0 &&
+                             std::string_view("kKMGT").find(between[0]) != std::string_view::npos;
+    if ((goesOn || isThousands) && !isNamed) return true;
+    if (std::ranges::any_of(kTails, startsRight)) return true;
+    // Before: a word that begins with a digit, and a mark or letters. Names have digits, too.
+    const auto markLeft =
+        std::ranges::find_if(kMarks, [&](std::string_view mark) { return left.ends_with(mark); });
+    std::size_t begin = left.size();
+    if (markLeft != std::end(kMarks)) begin -= markLeft->size();
+    while (markLeft == std::end(kMarks) && begin > 0 && isLetter(left[begin - 1])) --begin;
+    const std::string_view ownMark = left.substr(begin);
+    if (ownMark.empty() || begin == 0 || !isDigit(left[begin - 1])) return false;
+    if (named.ends_with(ownMark)) return false;
+    const auto isOfWord = [](char c) { return isDigit(c) || isLetter(c) || c == '.' || c == '_'; };
+    std::size_t word = begin;
+    while (word > 0 && isOfWord(left[word - 1])) --word;
+    return isDigit(left[word]) || left[word] == '.';
+}
+
 /// Whether the number goes on before or behind the group. A comma that the pattern names and
 /// matches is a separator.
-bool isPartOfNumber(const Found& found, std::string_view regex) {
+bool isPartOfNumber(const Found& found, const config::ProgramPattern& pattern) {
+    const std::string_view regex = pattern.regex;
     const std::size_t from = found.begin - std::min(found.begin, kBytesBeside);
     const std::string left = plain(found.line.substr(from, found.begin - from));
     const std::string right = plain(found.line.substr(found.end, kBytesBeside));
@@ -313,14 +394,14 @@ bool isPartOfNumber(const Found& found, std::string_view regex) {
            (next == '.' && (isDigit(behind(2)) || exponentAt(2))) ||
            (groups(next, found.matchEnd > found.end) && isDigit(behind(2))) ||
            (found.number() == "0" && (next == 'x' || next == 'X')) ||
-           powerOfTenBytes(found.line.substr(found.end)) > 0;
+           powerOfTenBytes(found.line.substr(found.end)) > 0 || isPartOfToken(left, right, pattern);
 }
 
 /// The word that the group is a part of.
 std::string_view wordAround(const Found& found) {
     const auto isOfWord = [](char c) {
         return isDigit(c) || isLetter(c) || static_cast<unsigned char>(c) >= 0x80 ||
-               std::string_view(".,'_+-").find(c) != std::string_view::npos;
+               std::string_view(".,'_+-:/#^*").find(c) != std::string_view::npos;
     };
     std::size_t begin = found.begin, end = found.end;
     while (begin > 0 && isOfWord(found.line[begin - 1])) --begin;
@@ -356,7 +437,7 @@ std::optional<double> numberIn(std::string_view output, const config::ProgramPat
         throw Error(fmt::format("metric '{}': its pattern finds '{}'; allowed: a number",
                                 pattern.metric, shown(last->number())));
     }
-    if (isPartOfNumber(*last, pattern.regex)) {
+    if (isPartOfNumber(*last, pattern)) {
         throw Error(
             fmt::format("metric '{}': its pattern finds '{}' of '{}'; allowed: a whole "
                         "number",

@@ -236,6 +236,47 @@ TEST(MetricLines, APatternTakesNoPartOfWhatFortranAndTypesettersWrite) {
     EXPECT_EQ(numberOf("m=([0-9]+)", "m=4 \u00B1 1"), 4.0);
 }
 
+TEST(MetricLines, APatternTakesNoPartOfATimeOrAFraction) {
+    const auto errorOf = [](const std::string& regex, const std::string& line, double scale = 1.0) {
+        return errorText([&] { numberIn(line, {"m", regex, scale}); });
+    };
+    const auto partOf = [](const std::string& part, const std::string& whole) {
+        return "metric 'm': its pattern finds '" + part + "' of '" + whole +
+               "'; allowed: a whole number";
+    };
+    const std::string digits = "m=([0-9]+)", decimal = "m=([0-9.]+)";
+    for (const char* whole :
+         {"1:23.45", "1/2", "2^10", "2^-3", "2**10", "12\u00B75", "12\u066B5", "12\u00BD",
+          "10\u00B2", "0m1.234s", "0b11", "0o17", "1h30", "1x2", "1.#QNAN", "5k", "5M", "16#FF"}) {
+        const std::string token(whole);
+        const std::string part = token.substr(0, token.find_first_not_of("0123456789"));
+        EXPECT_EQ(errorOf(digits, "m=" + token + " s"), partOf(part, token));
+    }
+    EXPECT_EQ(errorOf(decimal, "m=1.#INF"), partOf("1.", "1.#INF"));
+    EXPECT_EQ(errorOf(decimal, "m=1.5x10-3"), partOf("1.5", "1.5x10-3"));
+    EXPECT_EQ(errorOf(decimal, "m=1.5\u00D710-3"), partOf("1.5", "1.5\u00D710-3"));
+    EXPECT_EQ(errorOf("real ([0-9.]+)", "real 0m1.234s"), partOf("0", "0m1.234s"));
+    EXPECT_EQ(errorOf("took: .*?([0-9.]+)$", "took: 00:01:23.45"), partOf("23.45", "00:01:23.45"));
+    EXPECT_EQ(errorOf("([0-9.]+)s?$", "took 1:23.45"), partOf("23.45", "1:23.45"));
+    EXPECT_EQ(errorOf("([0-9.]+)s$", "took 0m1.234s"), partOf("1.234", "0m1.234s"));
+    EXPECT_EQ(errorOf("([0-9]+)$", "m= 1/2"), partOf("2", "1/2"));
+    EXPECT_EQ(errorOf("([0-9]+)$", "m= 2^10"), partOf("10", "2^10"));
+    // Whole ones: units, names, and what the pattern names.
+    for (const char* unit :
+         {"ms", "s", "MB", "m", "GiB", "/s", " k", "m2", "cm3", "%", ":", "#", "/", "kHz", "f"}) {
+        EXPECT_EQ(numberOf(decimal, std::string("m=2.5") + unit), 2.5) << unit;
+    }
+    EXPECT_EQ(numberOf("#([0-9]+)", "frame #12"), 12.0);
+    EXPECT_EQ(numberOf("([0-9.]+) ms", "GPU0:12.5 ms"), 12.5);
+    EXPECT_EQ(numberOf("([0-9.]+) ms", "frame:12.5 ms"), 12.5);
+    EXPECT_EQ(numberOf("[0-9]+: ?([0-9.]+) ms", "3:12.5 ms"), 12.5);
+    EXPECT_EQ(numberOf("([0-9]+)/[0-9]+", "tile 3/10"), 3.0);
+    EXPECT_EQ(numberOf("([0-9]+)\\/", "tile 3/10"), 3.0);
+    EXPECT_EQ(numberOf("m([0-9.]+)s", "0m1.234s"), 1.234);
+    EXPECT_EQ(numberOf("m=([0-9]+)k", "m=5k"), 5.0);
+    EXPECT_EQ(numberIn("m=5M rays", {"m", digits, 1e6}), 5e6);
+}
+
 using image::ImageF;
 using test::errorText;
 using test::TemporaryFolder;
