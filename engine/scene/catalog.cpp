@@ -509,7 +509,8 @@ Scene Catalog::load(const Node& reference) const {
         sha256 = sha256OfFile(assetsFolder_ / source.file);
         if (isSceneFile(SceneReference::from(reference).name)) {
             for (const std::string& warning :
-                 {steepnessWarning(*scene.heights), scene.heights->spacingWarning}) {
+                 {steepnessWarning(*scene.heights), scene.heights->spacingWarning,
+                  scene.heights->unitWarning}) {
                 if (!warning.empty()) scene.warnings.push_back(warning);
             }
         }

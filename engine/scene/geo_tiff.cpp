@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <initializer_list>
 #include <string_view>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
@@ -16,6 +19,7 @@ namespace {
 
 constexpr std::uint16_t kModelType = 1024, kGeographic = 2;
 constexpr std::uint16_t kAngularUnit = 2054, kDegree = 9102, kDegreeOfSupplier = 9122;
+constexpr std::uint16_t kProjected = 3072, kVertical = 4096;
 constexpr std::uint16_t kLinearUnit = 3076, kLinearUnitSize = 3077, kVerticalUnit = 4099;
 constexpr std::uint16_t kUserDefined = 32767, kDoubleParams = 34736;
 
@@ -70,12 +74,77 @@ class Keys {
     const std::string& file_;
 };
 
-/// The text of the item with this role; empty where there is none.
-std::string itemOf(const std::string& metadata, std::string_view role) {
-    const std::size_t at = metadata.find(fmt::format("role=\"{}\"", role));
-    const std::size_t begin = at == metadata.npos ? at : metadata.find('>', at);
-    if (begin == metadata.npos) return "";
-    return std::string(trimmed(metadata.substr(begin + 1, metadata.find('<', begin) - begin - 1)));
+/// The value of an attribute of a tag, `<Item name="SCALE" role='scale'`; empty without it.
+std::string_view attributeOf(std::string_view tag, std::string_view name) {
+    for (std::size_t at = tag.find(name); at != tag.npos; at = tag.find(name, at + 1)) {
+        const std::string_view behind = trimmed(tag.substr(at + name.size()));
+        const bool isWord = at > 0 && std::isspace(static_cast<unsigned char>(tag[at - 1])) != 0;
+        if (!isWord || !behind.starts_with('=')) continue;
+        const std::string_view value = trimmed(behind.substr(1));
+        if (value.empty() || (value[0] != '"' && value[0] != '\'')) continue;
+        return value.substr(1, value.find(value[0], 1) - 1);
+    }
+    return {};
+}
+
+/// The text of the item with this role that is of the first sample; empty where there is none.
+std::string itemOf(std::string_view metadata, std::string_view role) {
+    constexpr std::string_view kComment = "<!--", kCommentEnd = "-->";
+    while (!metadata.empty()) {
+        metadata.remove_prefix(std::min(metadata.find('<'), metadata.size()));
+        const bool isComment = metadata.starts_with(kComment);
+        const std::size_t end = isComment ? metadata.find(kCommentEnd) : metadata.find('>');
+        if (end == metadata.npos) return "";
+        const std::string_view tag = metadata.substr(0, end);
+        metadata.remove_prefix(end + 1);
+        if (isComment || attributeOf(tag, "role") != role) continue;
+        const std::string_view sample = attributeOf(tag, "sample");
+        if (sample.empty() || sample == "0") {
+            return std::string(trimmed(metadata.substr(0, metadata.find('<'))));
+        }
+    }
+    return "";
+}
+
+bool isOneOf(std::uint16_t code, std::initializer_list<std::pair<int, int>> ranges) {
+    return std::ranges::any_of(
+        ranges, [&](const auto& range) { return code >= range.first && code <= range.second; });
+}
+
+/// What to say of a projected system that may have another unit than metres, where the file does
+/// not say its unit itself. Known are EPSG's codes for UTM of ETRS89, NAD83 and WGS 84, Lambert of
+/// Europe and France, and Mercator of the world.
+std::string takenAsMetres(const Keys& keys) {
+    const std::uint16_t code = keys.find(kProjected).value_or(kUserDefined);
+    const bool isKnown = isOneOf(code, {{kUserDefined, kUserDefined},
+                                        {25828, 25838},
+                                        {26901, 26923},
+                                        {32601, 32660},
+                                        {32701, 32760},
+                                        {3034, 3035},
+                                        {2154, 2154},
+                                        {3395, 3395},
+                                        {3857, 3857}});
+    if (keys.find(kLinearUnit) || isKnown) return "";
+    return fmt::format("its coordinates, of EPSG {} and without a unit, are taken as metres", code);
+}
+
+/// Likewise of heights: above the ellipsoid, EGM96, EGM2008, mean seas, Newlyn, NAVD88, EVRF.
+std::string heightsTakenAsMetres(const GeoTags& tags, const Keys& keys) {
+    const std::uint16_t code = keys.find(kVertical).value_or(kUserDefined);
+    const bool isKnown = isOneOf(code, {{kUserDefined, kUserDefined},
+                                        {5030, 5030},
+                                        {5773, 5773},
+                                        {3855, 3855},
+                                        {5714, 5714},
+                                        {5701, 5701},
+                                        {5703, 5703},
+                                        {5621, 5621},
+                                        {5730, 5730}});
+    if (keys.find(kVerticalUnit) || isKnown || !itemOf(tags.metadata, "unittype").empty()) {
+        return "";
+    }
+    return fmt::format("its heights, of EPSG {} and without a unit, are taken as metres", code);
 }
 
 /// Metres of the unit of heights.
@@ -152,17 +221,20 @@ double latitudeDeg(const GeoTags& tags, double step) {
 
 }  // namespace
 
-std::optional<float> floatIn(const std::string& text) {
+std::optional<float> floatIn(const std::string& text, const std::string& what) {
+    const std::string number(trimmed(text));
+    if (number.empty()) return std::nullopt;
     char* end = nullptr;
-    const float value = std::strtof(text.c_str(), &end);
-    return end != text.c_str() ? std::optional(value) : std::nullopt;
+    const float value = std::strtof(number.c_str(), &end);
+    if (*end == '\0') return value;
+    throw Error(fmt::format("{} is '{}'; allowed: a number", what, number));
 }
 
 GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
     const Keys keys(tags, file);
     GeoUnits units;
-    const auto scale = floatIn(itemOf(tags.metadata, "scale"));
-    const auto offset = floatIn(itemOf(tags.metadata, "offset"));
+    const auto scale = floatIn(itemOf(tags.metadata, "scale"), file + ": its scale");
+    const auto offset = floatIn(itemOf(tags.metadata, "offset"), file + ": its offset");
     const glm::vec2 ofModel(verticalOf(tags, file));  // GDAL writes both, and both alike
     const bool isGiven = scale || offset;
     const glm::vec2 given =
@@ -183,14 +255,20 @@ GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
     units.scale = static_cast<float>(units.scale * heightM);
     units.offset = static_cast<float>(units.offset * heightM);
     const bool isGeographic = keys.find(kModelType) == kGeographic;
+    units.unitWarning = heightsTakenAsMetres(tags, keys);
     if (const std::optional<glm::dvec2> step = stepOf(tags, isGeographic, file)) {
         const double unitM = isGeographic ? keys.metresOfDegrees() : keys.metresOf(kLinearUnit);
         if (isGeographic) {
             const double east = std::cos(glm::radians(latitudeDeg(tags, step->y)));
             units.warning = unevenSpacing(step->x * unitM * east, step->y * unitM);
+        } else {
+            units.warning = takenAsMetres(keys);
         }
         const auto spacing = static_cast<float>(step->y * unitM);
         if (spacing > 0.0F && std::isfinite(spacing)) units.spacingM = spacing;
+    } else if (tags.tiepoint.size() > 6) {
+        units.warning =
+            "its points on the ground (ModelTiepoint) are not used: they say no spacing";
     }
     return units;
 }

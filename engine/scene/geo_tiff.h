@@ -28,11 +28,13 @@ struct GeoUnits {
     float scale = 1.0F;
     float offset = 0.0F;
     std::optional<float> spacingM;
-    std::string warning;  // of degrees that are no squares on the ground
+    std::string warning;      // of degrees that are no squares, and of what else spaces samples
+    std::string unitWarning;  // of heights that are taken as metres
 };
 
-/// The number that a text begins with.
-std::optional<float> floatIn(const std::string& text);
+/// The whole text, but for blanks around it, as a number; none of an empty one. Throws Error, which
+/// begins with `what`, for others.
+std::optional<float> floatIn(const std::string& text, const std::string& what);
 
 /// Feet and kilometres become metres, degrees those along a meridian. Throws Error, which names the
 /// file, for other units, and where samples on the ground do not stand on squares.

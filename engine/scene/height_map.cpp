@@ -150,7 +150,8 @@ HeightMap withoutHeights(const HeightRows& source, const HeightMapUnits& units) 
     map.sizeSamples = source.sizeSamples;
     map.spacingM = units.spacingM.value_or(source.spacingM.value_or(1.0F));
     map.isSpacingOfFile = !units.spacingM && source.spacingM;
-    if (map.isSpacingOfFile) map.spacingWarning = source.spacingWarning;
+    if (!units.spacingM) map.spacingWarning = source.spacingWarning;
+    map.unitWarning = source.unitWarning;
     map.isEightBit = source.isEightBit;
     return map;
 }

@@ -24,7 +24,8 @@ struct HeightMap {
     glm::ivec2 sizeSamples{0};  // x: columns from west to east, y: rows from north to south
     float spacingM = 1.0F;
     bool isSpacingOfFile = false;  // the file's own, as nobody else said it
-    std::string spacingWarning;    // where that is not the same along x and z; for the log
+    std::string spacingWarning;    // where that is uneven or a guess; for the log
+    std::string unitWarning;       // of heights that are taken as metres; likewise
     std::vector<float> heightsM;   // row by row, the northernmost first; empty with a file
     // Shared, against the house's rule: copies of a scene look at one file.
     std::shared_ptr<const HeightFile> file;

@@ -299,6 +299,11 @@ class TiffRows : public HeightRows {
                             name_, channels, bits, format));
         }
         type_ = kind->type;
+        std::uint16_t colours = PHOTOMETRIC_MINISBLACK;
+        TIFFGetField(tiff_.get(), TIFFTAG_PHOTOMETRIC, &colours);
+        if (colours == PHOTOMETRIC_PALETTE) {
+            throw Error(name_ + ": a palette of colours; a height map is grey");
+        }
         std::uint16_t orientation = ORIENTATION_TOPLEFT;
         TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_ORIENTATION, &orientation);
         if (orientation != ORIENTATION_TOPLEFT) {
@@ -347,7 +352,9 @@ class TiffRows : public HeightRows {
 
     void findNoData() {
         if (type_ != ValueType::U8 && type_ != ValueType::U16) noData.push_back(kSrtmVoid);
-        if (const auto value = floatIn(textOf(kGdalNoData))) noData.push_back(*value);
+        if (const auto value = floatIn(textOf(kGdalNoData), name_ + ": its GDAL_NODATA")) {
+            noData.push_back(*value);
+        }
     }
 
     void findUnits() {
@@ -363,6 +370,7 @@ class TiffRows : public HeightRows {
         offset = units.offset;
         spacingM = units.spacingM;
         spacingWarning = units.warning;
+        unitWarning = units.unitWarning;
     }
 
     /// Of a tag that libtiff itself does not know; empty where there is none.

@@ -25,7 +25,8 @@ class HeightRows {
     float scale = 1.0F;         // as the file says: height = value · scale + offset
     float offset = 0.0F;
     std::optional<float> spacingM;  // as the file says
-    std::string spacingWarning;     // of a spacing that is not the same along x and z
+    std::string spacingWarning;     // of one that is not the same along x and z, or not known
+    std::string unitWarning;        // of heights that are taken as metres
     bool canBeNan = false;
     bool isEightBit = false;
 };

@@ -19,7 +19,8 @@ using test::TemporaryFolder;
 /// 2 x 2 values 0, 10, 20, 30 with tags of GDAL and GeoTIFF.
 fs::path writeGeoTiff(const fs::path& path, const char* metadata, std::vector<double> scale,
                       std::vector<std::uint16_t> keys, std::vector<double> transform = {},
-                      std::vector<double> keyDoubles = {}, std::vector<double> tiepoint = {}) {
+                      std::vector<double> keyDoubles = {}, std::vector<double> tiepoint = {},
+                      const char* noData = nullptr) {
     TIFF* tiff = TIFFOpen(path.c_str(), "w");
     static const TIFFFieldInfo kInfo[] = {
         {33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("PixelScale")},
@@ -27,14 +28,16 @@ fs::path writeGeoTiff(const fs::path& path, const char* metadata, std::vector<do
         {34264, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("Transform")},
         {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("Keys")},
         {34736, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("KeyDoubles")},
-        {42112, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("Metadata")}};
-    TIFFMergeFieldInfo(tiff, kInfo, 6);
+        {42112, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("Metadata")},
+        {42113, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("NoData")}};
+    TIFFMergeFieldInfo(tiff, kInfo, 7);
     for (const int tag : {TIFFTAG_IMAGEWIDTH, TIFFTAG_IMAGELENGTH}) TIFFSetField(tiff, tag, 2);
     TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
     TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_INT);
     TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
     TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
     if (metadata != nullptr) TIFFSetField(tiff, 42112, metadata);
+    if (noData != nullptr) TIFFSetField(tiff, 42113, noData);
     const auto setDoubles = [&](int tag, const std::vector<double>& values) {
         if (values.empty()) return;
         TIFFSetField(tiff, static_cast<std::uint32_t>(tag), static_cast<int>(values.size()),
@@ -67,6 +70,71 @@ TEST_F(HeightUnits, ScaleAndOffsetOfAGeoTiffAreApplied) {
     EXPECT_FLOAT_EQ(loadHeightMap(path, {1.0F, 2.0F, 10.0F}).heightM(1, 1), 206.0F);
     EXPECT_EQ(map.spacingM, 1.0F);
     EXPECT_FALSE(map.isSpacingOfFile);
+}
+
+TEST_F(HeightUnits, ItemsOfMetadataAreReadAsXml) {
+    const fs::path path = folder.path() / "a.tif";
+    const auto highest = [&](const std::string& items) {  // 30 is stored
+        writeGeoTiff(path, ("<GDALMetadata>" + items + "</GDALMetadata>").c_str(), {}, {});
+        return loadHeightMap(path, {}).heightM(1, 1);
+    };
+    EXPECT_FLOAT_EQ(highest("<Item name='SCALE' sample='0' role='scale'>0.1</Item>"), 3.0F);
+    EXPECT_FLOAT_EQ(highest("<Item role = \"scale\"\nname=\"SCALE\"> 1e-1 </Item>"), 3.0F);
+    EXPECT_FLOAT_EQ(highest("<!-- <Item sample=\"0\" role=\"scale\">0.5</Item> -->"
+                            "<Item sample=\"0\" role=\"scale\">0.1</Item>"),
+                    3.0F);
+    EXPECT_FLOAT_EQ(highest("<Item sample=\"1\" role=\"scale\">0.5</Item>"
+                            "<Item sample=\"0\" role=\"scale\">0.1</Item>"),
+                    3.0F);
+    EXPECT_EQ(highest("<Item sample=\"1\" role=\"scale\">0.5</Item>"), 30.0F);
+    EXPECT_EQ(highest("<Item name=\"role\" unrole=\"scale\">0.5</Item>"), 30.0F);
+    const auto error = [&](const char* item) {
+        return test::errorText([&] { highest(item); }, folder.path());
+    };
+    EXPECT_EQ(error("<Item role=\"scale\">0,1</Item>"),
+              "DIR/a.tif: its scale is '0,1'; allowed: a number");
+    EXPECT_EQ(error("<Item role=\"offset\">5 m</Item>"),
+              "DIR/a.tif: its offset is '5 m'; allowed: a number");
+}
+
+TEST_F(HeightUnits, NoDataIsAWholeNumber) {
+    const fs::path path = folder.path() / "a.tif";
+    const auto filled = [&](const char* noData) {
+        writeGeoTiff(path, nullptr, {}, {}, {}, {}, {}, noData);
+        return loadHeightMap(path, {}).filledCount;
+    };
+    EXPECT_EQ(filled("10"), 1U);
+    EXPECT_EQ(filled(" 2e1 "), 1U);
+    EXPECT_EQ(filled("nan"), 0U);
+    EXPECT_EQ(test::errorText([&] { filled("10,5"); }, folder.path()),
+              "DIR/a.tif: its GDAL_NODATA is '10,5'; allowed: a number");
+}
+
+TEST_F(HeightUnits, UnitsThatAreNotKnownAreSaid) {
+    const fs::path path = folder.path() / "a.tif";
+    const auto warnings = [&](std::vector<std::uint16_t> keys,
+                              std::vector<double> scale = {30, 30, 0},
+                              std::vector<double> tiepoint = {}, const HeightMapUnits& units = {}) {
+        writeGeoTiff(path, nullptr, std::move(scale), std::move(keys), {}, {}, std::move(tiepoint));
+        const HeightMap map = loadHeightMap(path, units);
+        return std::pair(map.spacingWarning, map.unitWarning);
+    };
+    using Pair = std::pair<std::string, std::string>;
+    const std::string feet =
+        "its coordinates, of EPSG 2263 and without a unit, are taken as metres";
+    EXPECT_EQ(warnings({1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 2263}), Pair(feet, ""));
+    EXPECT_EQ(warnings({1, 1, 0, 1, 3072, 0, 1, 2263}, {30, 30, 0}, {}, {30.0F, 1.0F, {}}),
+              Pair("", ""))
+        << "given";
+    EXPECT_EQ(warnings({1, 1, 0, 2, 3072, 0, 1, 2263, 3076, 0, 1, 9003}), Pair("", ""));
+    EXPECT_EQ(warnings({1, 1, 0, 1, 3072, 0, 1, 32632}), Pair("", "")) << "UTM";
+    EXPECT_EQ(warnings({1, 1, 0, 1, 4096, 0, 1, 6360}),
+              Pair("", "its heights, of EPSG 6360 and without a unit, are taken as metres"));
+    EXPECT_EQ(warnings({1, 1, 0, 2, 4096, 0, 1, 6360, 4099, 0, 1, 9003}), Pair("", ""));
+    EXPECT_EQ(warnings({1, 1, 0, 1, 4096, 0, 1, 5703}), Pair("", ""));
+    EXPECT_EQ(
+        warnings({}, {}, {0, 0, 0, 0, 0, 0, 8, 0, 0, 240, 0, 0}),
+        Pair("its points on the ground (ModelTiepoint) are not used: they say no spacing", ""));
 }
 
 /// By ModelPixelScale and ModelTiepoint, or by ModelTransformation: 0, 10, 20, 30 are stored.
@@ -183,7 +251,8 @@ TEST_F(HeightUnits, SamplesThatStandOnNoSquaresAreRefused) {
 
 TEST_F(HeightUnits, OfSeveralPagesAndTurnedRowsNoneIsTaken) {
     const fs::path path = folder.path() / "a.tif";
-    const auto error = [&](int pages, std::uint32_t kind, int orientation) {
+    const auto error = [&](int pages, std::uint32_t kind, int orientation,
+                           int colours = PHOTOMETRIC_MINISBLACK) {
         TIFF* tiff = TIFFOpen(path.c_str(), "w");
         for (int page = 0; page < pages; ++page) {
             for (const int tag : {TIFFTAG_IMAGEWIDTH, TIFFTAG_IMAGELENGTH}) {
@@ -191,7 +260,11 @@ TEST_F(HeightUnits, OfSeveralPagesAndTurnedRowsNoneIsTaken) {
             }
             TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
             TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
-            TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+            TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, colours);
+            if (colours == PHOTOMETRIC_PALETTE) {
+                std::uint16_t palette[256] = {};
+                TIFFSetField(tiff, TIFFTAG_COLORMAP, palette, palette, palette);
+            }
             TIFFSetField(tiff, TIFFTAG_ORIENTATION, orientation);
             if (page > 0) TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, kind);
             std::uint8_t row[2] = {1, 2};
@@ -204,6 +277,8 @@ TEST_F(HeightUnits, OfSeveralPagesAndTurnedRowsNoneIsTaken) {
     EXPECT_EQ(error(2, FILETYPE_REDUCEDIMAGE, 1), "no error");
     EXPECT_EQ(error(2, 0, 1), "DIR/a.tif: has 2 pages; one is allowed");
     EXPECT_EQ(error(1, 0, 4), "DIR/a.tif: orientation 4; allowed: 1 (rows from the top)");
+    EXPECT_EQ(error(1, 0, 1, PHOTOMETRIC_PALETTE),
+              "DIR/a.tif: a palette of colours; a height map is grey");
 }
 
 TEST_F(HeightUnits, DegreesThatAreNoSquaresOnTheGroundAreSaid) {
