@@ -167,19 +167,22 @@ inline Box bulkOf(const Scene& scene) {
         std::nth_element(values.begin(), middle, values.end());
         return *middle;
     };
-    glm::vec3 median(0.0F), half(0.0F), halfOfOthers(0.0F);
+    glm::vec3 median(0.0F), half(0.0F);
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<float> values;
         for (const glm::vec3& place : places) values.push_back(place[axis]);
         median[axis] = medianOf(values);
         for (float& value : values) value = std::abs(value - median[axis]);
         half[axis] = 2.0F * medianOf(values);
-        std::erase(values, 0.0F);
-        if (values.empty()) continue;
-        std::ranges::sort(values);
-        halfOfOthers[axis] = 2.0F * values[(values.size() - 1) / 2];
     }
-    if (half == glm::vec3(0.0F)) half = halfOfOthers;
+    if (half == glm::vec3(0.0F)) {
+        std::vector<float> distances;
+        for (const glm::vec3& place : places) {
+            if (place != median) distances.push_back(glm::length(place - median));
+        }
+        std::ranges::sort(distances);
+        if (!distances.empty()) half = glm::vec3(2.0F * distances[(distances.size() - 1) / 2]);
+    }
     return {glm::max(median - half, whole.min), glm::min(median + half, whole.max)};
 }
 
