@@ -181,7 +181,7 @@ inline Box bulkOf(const Scene& scene) {
             if (place != median) distances.push_back(glm::length(place - median));
         }
         std::ranges::sort(distances);
-        if (!distances.empty()) half = glm::vec3(2.0F * distances[(distances.size() - 1) / 2]);
+        if (!distances.empty()) half = glm::vec3(2.0F * distances[distances.size() / 2]);
     }
     return {glm::max(median - half, whole.min), glm::min(median + half, whole.max)};
 }
