@@ -154,10 +154,14 @@ TEST_F(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
     const std::string file = folder.write("merged.yaml", merged.out);
     std::vector<std::string> tables, files;
     for (const std::string& line : split(gfxrepro({"list", "tables"}).out, '\n')) {
-        if (line.empty()) continue;
-        tables.push_back(line.substr(0, line.find(' ')));
-        files.push_back(folder.write("merged" + std::to_string(files.size()) + ".yaml",
-                                     gfxrepro({"describe", tables.back(), "--merged"}).out));
+        const std::string table = line.substr(0, line.find(' '));
+        // Its quick profile sweeps the size that the other profiles fix: one file has no place for
+        // both.
+        if (table.empty() || table == "xie2017/figure-33") continue;
+        const std::string out = gfxrepro({"describe", table, "--merged"}).out;
+        const std::string name = out.substr(2, out.find(' ', 2) - 2);  // "# table-10.yaml with …"
+        tables.push_back(GFXREPRO_CONFIGS "/" + table.substr(0, table.find('/') + 1) + name);
+        files.push_back(folder.write("merged" + std::to_string(files.size()) + ".yaml", out));
     }
     ASSERT_GT(tables.size(), 100U);
     std::vector<std::string> check = files;
