@@ -323,7 +323,10 @@ TEST(MeanCoverage, OfProcessesIsNotToBeHad) {
                                     std::sqrt(processes);
                 return holds({mean - half, mean + half}, truth);
             });
-            EXPECT_LT(students, kRequired) << "then a mean could have an interval";
+            // Sanitized, too few trials tell one from the other.
+            if (!test::kIsSanitized) {
+                EXPECT_LT(students, kRequired) << "then a mean could have an interval";
+            }
             const double told = shareOf("a mean decides", processes, [&](Random& random) {
                 tables::Samples samples;
                 int process = 0;
