@@ -296,16 +296,24 @@ std::string whyNoInterval(const Group& group) {
             over->overProcesses);
     }
     std::optional<std::size_t> fewest;
+    bool isDeclared = true;
     const auto count = [&](const std::vector<Sampled>& values) {
         for (const Sampled& value : values) {
             if (!value.isRandom) continue;
             const std::size_t seeds = std::max<std::size_t>(value.rounds.size(), 1);
+            if (!fewest || seeds < *fewest) isDeclared = !value.scatters;
             fewest = std::min(fewest.value_or(seeds), seeds);
         }
     };
     std::ranges::for_each(group.operands, count);
     count(group.x);
     if (!fewest || *fewest >= metrics::kFewestForInterval) return "";
+    if (!isDeclared) {
+        return fmt::format(
+            "{} came to different numbers; an interval needs {} processes",
+            *fewest == 1 ? "repeats of one process" : fmt::format("{} processes", *fewest),
+            metrics::kFewestForInterval);
+    }
     return fmt::format(
         "{} of random numbers; an interval needs {}: `measure: {{seeds: process, "
         "processes: {}}}`",

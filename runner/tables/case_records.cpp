@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "runner/config/experiment.h"
@@ -121,6 +122,21 @@ std::vector<const records::Record*> CaseRecords::Attempt::values(std::string_vie
         values.push_back(*row);
     }
     return values;
+}
+
+bool CaseRecords::scatters(std::string_view metric, std::string_view pass) const {
+    constexpr double kRounding = 1e-6;            // of sums that threads take in any order
+    std::map<std::pair<int, int>, double> first;  // by the scene's seed and the frame
+    for (const auto& [number, attempt] : processes) {
+        if (attempt.failure) continue;
+        for (const records::Record* row : attempt.values(metric, pass)) {
+            const auto [found, isNew] =
+                first.try_emplace({number / records::kMostProcesses, row->frame}, row->value);
+            const double largest = std::max(std::abs(found->second), std::abs(row->value));
+            if (std::abs(row->value - found->second) > kRounding * largest) return true;
+        }
+    }
+    return false;
 }
 
 std::vector<CaseRecords> groupByCase(std::span<const config::Case> planned,

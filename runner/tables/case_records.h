@@ -50,6 +50,10 @@ struct CaseRecords {
         return {row->metric, row->pass, row->frame, row->repeat};
     }
 
+    /// Whether repeats or processes of one scene and frame came to values of it that differ by more
+    /// than rounding. Where no random numbers are declared, it was measured more than once.
+    bool scatters(std::string_view metric, std::string_view pass) const;
+
     std::string id;
     AxisValues axes;
     std::map<int, Attempt> processes;

@@ -144,6 +144,7 @@ struct Gathered {  // what the records of a cell came to
     std::vector<std::string> caseIds;
     std::set<std::uint64_t> seeds;  // of random numbers that the values hang on
     std::size_t fewestSeeds = 0;    // of a curve's cases
+    bool scatters = false;          // as Cell::scatters
     std::size_t notRun = 0;         // further cases
     std::set<int> frames;
     std::vector<double> shareCounts;  // of shares that say so: how many samples each is a share of
@@ -184,6 +185,8 @@ bool isOfItsSeed(const std::string& metric) {
 
 void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>& unitOfFrame,
               int& unitCount, Gathered& gathered) {
+    const bool isUnseeded = run.seeds == config::Measure::Seeds::None && isOfItsSeed(query.metric);
+    gathered.scatters |= isUnseeded && run.scatters(query.metric, query.pass);
     for (const auto& [number, attempt] : run.processes) {
         if (attempt.failure) {
             gathered.note(attempt.failure->status, attempt.failure->message);
@@ -309,6 +312,7 @@ void takeAsOne(Measured& measured) {
 void countSeeds(const Gathered& gathered, Cell& cell) {
     if (std::ranges::any_of(cell.values, &Measured::areDraws)) return;
     cell.seedCount = gathered.seeds.size();
+    cell.scatters = gathered.scatters;
     if (cell.isOfOneSeed()) std::ranges::for_each(cell.values, takeAsOne);
 }
 
@@ -401,6 +405,7 @@ std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRe
         for (const Gathered* one : {&x, &y}) {
             gathered.note(one->worst, one->message);
             gathered.fewestSeeds = fewerSeeds(gathered.fewestSeeds, one->seeds.size());
+            gathered.scatters |= one->scatters;
         }
         gathered.units.merge(y.units);
         gathered.frames.merge(y.frames);
@@ -473,6 +478,7 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
             cell.byProcess = equalValues(*other, along, beside);
         }
         cell.seedCount = gathered.fewestSeeds;
+        cell.scatters = gathered.scatters;
         for (Measured& measured : cell.values) {
             if (cell.seedCount > 0 && cell.seedCount < measured.rounds.size()) takeAsOne(measured);
         }

@@ -87,6 +87,9 @@ struct Cell {
     /// Of random numbers, other ones of which would give another value: how many different seeds it
     /// is of. 0 of what has none, as a time.
     std::size_t seedCount = 0;
+    /// No time, and of no declared seed, but repeats or processes came to different values: an
+    /// unseeded program, an import.
+    bool scatters = false;
     /// An input was fitted so that it comes out (config::isCalibrated).
     bool isCalibrated = false;
     /// Of a frame's or a pass's time or rate: the same by the process's CPU time, and as

@@ -24,8 +24,8 @@ bool keepRoundsOrDraws(std::span<Sampled* const> values) {
     if (!hasRounds) return std::ranges::any_of(values, &Sampled::areDraws);
     for (Sampled* value : values) {
         if (value->areDraws) {
-            *value = {value->point,        {}, false, value->isRandom, value->seedCount,
-                      value->overProcesses};
+            value->rounds.clear();
+            value->areDraws = false;
         }
     }
     return false;
@@ -101,8 +101,8 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
         // A single round tells no more than the value.
         const bool hasRounds = measured.rounds.size() > 1;
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
-                         measured.areDraws, cell.seedCount > 0, cell.seedCount,
-                         measured.isOverProcesses ? measured.statistic : ""});
+                         measured.areDraws, cell.seedCount > 0 || cell.scatters, cell.seedCount,
+                         cell.scatters, measured.isOverProcesses ? measured.statistic : ""});
         values.push_back(measured.value);
         result.seedCount = fewerSeeds(result.seedCount, cell.seedCount);
     }
@@ -111,6 +111,7 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     result.point = evaluate(values);
     result.areDraws = keepRoundsOrDraws(all);
     result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
+    result.scatters = std::ranges::any_of(cells, &Sampled::scatters);
     for (const Sampled& cell : cells) {
         if (result.overProcesses.empty()) result.overProcesses = cell.overProcesses;
     }
@@ -230,6 +231,7 @@ void gatherFrom(const Cell& from, Cell& cell) {
         cell.message = from.message;
     }
     cell.isCalibrated |= from.isCalibrated;
+    cell.scatters |= from.scatters;
     cell.isAtPrintedParameters &= from.isAtPrintedParameters;
     const auto add = [](const auto& items, auto& all) {
         for (const auto& item : items) {

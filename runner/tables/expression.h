@@ -22,6 +22,7 @@ struct Sampled {
     bool areDraws = false;  // they are of shares that were counted once (shareDraws)
     bool isRandom = false;  // another seed would give another value: it has no rounds of one seed
     std::size_t seedCount = 0;       // as Cell::seedCount
+    bool scatters = false;           // as Cell::scatters; it is random, too
     std::string overProcesses = {};  // of "mean", "max", …: Summary::isOverProcesses
 
     double at(int round) const { return rounds.empty() ? point : rounds.at(round); }

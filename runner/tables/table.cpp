@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -97,17 +98,28 @@ void addTimes(const config::Experiment& experiment, const std::vector<records::R
 }  // namespace
 
 std::string seedNote(const Table& table) {
-    std::vector<std::string> columns;
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        const bool isOfOne = std::ranges::any_of(
-            table.rows, [&](const TableRow& row) { return row.cells[i].isOfOneSeed(); });
-        if (isOfOne) columns.push_back(quantityOf(table.columns[i], table.words).words);
+    const auto columnsWith = [&](const std::function<bool(const Cell&)>& isSuch) {
+        std::vector<std::string> columns;
+        for (std::size_t i = 0; i < table.columns.size(); ++i) {
+            const bool hasSome = std::ranges::any_of(
+                table.rows, [&](const TableRow& row) { return isSuch(row.cells[i]); });
+            if (hasSome) columns.push_back(quantityOf(table.columns[i], table.words).words);
+        }
+        return joined(columns);
+    };
+    std::string note;
+    if (const std::string columns = columnsWith(&Cell::isOfOneSeed); !columns.empty()) {
+        note = fmt::format(
+            "One seed, and another would give other numbers: {}. How far apart they are `measure: "
+            "{{seeds: process, processes: 6}}` tells.",
+            columns);
     }
-    if (columns.empty()) return "";
-    return fmt::format(
-        "One seed, and another would give other numbers: {}. How far apart they are `measure: "
-        "{{seeds: process, processes: 6}}` tells.",
-        joined(columns));
+    if (const std::string columns = columnsWith(&Cell::scatters); !columns.empty()) {
+        note += fmt::format(
+            "{}Repeats or processes came to different numbers, and no seed is declared: {}.",
+            note.empty() ? "" : " ", columns);
+    }
+    return note;
 }
 
 namespace {

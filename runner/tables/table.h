@@ -86,7 +86,8 @@ struct Table {
     std::string rowName(std::size_t row) const;
 };
 
-/// What to know of columns of random numbers of one seed; empty where there is none.
+/// What to know of columns of random numbers of one seed, and of such as scatter without any
+/// (Cell::scatters); empty where there is none.
 std::string seedNote(const Table& table);
 
 /// Numbers compare as numbers: "64.0" is 64. As labels of rows are.

@@ -972,8 +972,8 @@ TEST(Claims, OtherValuesAreJudgedByTheirRounds) {
     EXPECT_EQ(judge({5, 5}, "bound: a, at_most: 6").measured, "5");
     EXPECT_EQ(judge({5, 5}, "bound: a, at_most: 6").reason, "") << "not one sample";
     EXPECT_EQ(judge({5, 7, 6}, "bound: a, at_most: 7").measured, "6 (5 … 7)");
-    EXPECT_EQ(judge({5, 7, 6}, "bound: a, at_most: 7").verdict, Verdict::Holds);
-    EXPECT_EQ(judge({5, 7, 6}, "bound: a, at_most: 6").verdict, Verdict::Ambiguous);
+    EXPECT_EQ(judge({5, 7, 6}, "bound: a, at_most: 9").verdict, Verdict::Ambiguous) << "too few";
+    EXPECT_EQ(judge({5, 7, 6, 6, 6, 6}, "bound: a, at_most: 9").verdict, Verdict::Holds);
     EXPECT_EQ(judge({5, 7, 6, 6, 6, 6}, "bound: a, at_most: 6").measured, "6 [5, 7]");
 }
 
@@ -1042,6 +1042,11 @@ TEST(Claims, RandomNumbersOfOneSeedDecideNothing) {
         result = judge(twoSamplers(Seeds::Process, 5, 1, 1.3));
         EXPECT_EQ(result.verdict, Verdict::Ambiguous) << claim;
         EXPECT_EQ(result.reason, "5 seeds of random numbers" + more);
+        // Nobody declares a seed, but the numbers tell that they are random.
+        result = judge(twoSamplers(Seeds::None, 5, 1, 1.3));
+        EXPECT_EQ(result.verdict, Verdict::Ambiguous) << claim;
+        EXPECT_EQ(result.reason,
+                  "5 processes came to different numbers; an interval needs 6 processes");
         // What draws none is as it is.
         EXPECT_NE(judge(twoSamplers(Seeds::None, 1, 1, 1.3)).verdict, Verdict::Ambiguous) << claim;
     }
@@ -1056,21 +1061,53 @@ TEST(Claims, RandomNumbersOfOneSeedDecideNothing) {
         Verdict::Fails);
 }
 
+TEST(Claims, NumbersThatScatterWithoutASeedAreNotCertain) {
+    const auto judge = [](const std::string& claim, double hair, int processes, int repeats) {
+        tables::RecordMaker maker;
+        for (const int n : {1, 2, 4, 8}) {
+            maker.beginCase("", fmt::format(R"({{"n":{}}})", n));
+            for (int process = 0; process < processes; ++process) {
+                std::vector<double> values;
+                for (int i = 0; i < repeats; ++i)
+                    values.push_back((1.0 + hair * (process + i)) / n);
+                maker.process(process).add("a", values, "", "1").add("b", {1.0}, "", "1");
+            }
+        }
+        return judgePowers(claim, maker.records());
+    };
+    const std::string falls = "trend: a, over: n, direction: decreasing";
+    EXPECT_EQ(judge(falls, 1e-9, 3, 1).verdict, Verdict::Holds) << "the order of a sum";
+    EXPECT_EQ(judge(falls, 1e-9, 1, 3).verdict, Verdict::Holds);
+    EXPECT_EQ(judge(falls, 1e-3, 6, 1).verdict, Verdict::Holds);
+    EXPECT_EQ(judge(falls, 1e-3, 6, 1).reason, "");
+    EXPECT_EQ(judge(falls, 1e-3, 3, 1).verdict, Verdict::Ambiguous);
+    EXPECT_EQ(judge(falls, 1e-3, 3, 1).reason,
+              "3 processes came to different numbers; an interval needs 6 processes");
+    EXPECT_EQ(judge(falls, 1e-3, 1, 3).verdict, Verdict::Ambiguous);
+    EXPECT_EQ(judge(falls, 1e-3, 1, 3).reason,
+              "repeats of one process came to different numbers; an interval needs 6 processes");
+    EXPECT_EQ(judge("bound: b, at_most: 1", 1e-3, 1, 3).verdict, Verdict::Holds) << "is of b alone";
+}
+
 /// Of two samplers that are alike six seeds say in one case of twenty that one is better; a
 /// difference of three standard deviations they find.
 TEST(Claims, OfRandomNumbersSixSeedsRarelyTellWhatIsNotThere) {
     using Seeds = config::Measure::Seeds;
-    std::map<Verdict, int> alike, apart;
     constexpr int kTrials = test::kIsSanitized ? 100 : 1000;
-    for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
-        ++alike[judgePowers("order: a < b, at: {n: 1}", twoSamplers(Seeds::Process, 6, seed))
-                    .verdict];
-        ++apart[judgePowers("order: a < b, at: {n: 1}", twoSamplers(Seeds::Process, 6, seed, 1.2))
-                    .verdict];
+    for (const Seeds seeds : {Seeds::Process, Seeds::None}) {  // declared or not
+        std::map<Verdict, int> alike, apart;
+        for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
+            const auto judge = [&](double ratio) {
+                return judgePowers("order: a < b, at: {n: 1}", twoSamplers(seeds, 6, seed, ratio))
+                    .verdict;
+            };
+            ++alike[judge(1.0)];
+            ++apart[judge(1.2)];
+        }
+        EXPECT_LE(alike[Verdict::Holds] + alike[Verdict::Fails], 0.07 * kTrials);
+        EXPECT_GE(apart[Verdict::Holds], 0.9 * kTrials);
+        EXPECT_EQ(apart[Verdict::Fails], 0);
     }
-    EXPECT_LE(alike[Verdict::Holds] + alike[Verdict::Fails], 0.07 * kTrials);
-    EXPECT_GE(apart[Verdict::Holds], 0.9 * kTrials);
-    EXPECT_EQ(apart[Verdict::Fails], 0);
 }
 
 /// Shown with one digit, a and b are the same number, and a is 2 as asked; as measured they are

@@ -57,6 +57,13 @@ TEST(SceneSeeds, AreOneCellWithTheRange) {
     EXPECT_EQ(table.rows[1].cells[0].measured, "6.0");
 }
 
+/// Other scenes have other numbers: these are no random ones.
+TEST(SceneSeeds, AreNoScatter) {
+    const config::Experiment experiment = tables::experimentFrom(kBody);
+    const tables::Table table = tables::buildTable(experiment, records({9, 8, 7, 10, 11}));
+    EXPECT_FALSE(table.rows[0].cells[0].scatters);
+}
+
 TEST(SceneSeeds, AVerdictTakesAllOfThem) {
     EXPECT_EQ(verdictOnShares("bound", {9, 8, 7, 10, 11}), Verdict::Holds);
     EXPECT_EQ(verdictOnShares("bound", {9, 8, 3, 10, 11}), Verdict::Ambiguous);

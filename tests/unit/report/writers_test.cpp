@@ -89,8 +89,11 @@ TEST(Writers, TableFiles) {
     EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{llrrrr}\n\\toprule\n"));
     EXPECT_THAT(latex,
                 HasSubstr("\\gfxreproset{zju2005/9.9}{Measured at the printed parameters.}\n"));
-    EXPECT_THAT(latex, testing::EndsWith("\\end{tabular}\n"
-                                         "\\par{\\footnotesize \\gfxrepro{zju2005/9.9}\\par}\n"));
+    EXPECT_THAT(latex,
+                testing::EndsWith("\\end{tabular}\n"
+                                  "\\par{\\footnotesize \\gfxrepro{zju2005/9.9}\\par}\n"
+                                  "\\par{\\footnotesize Repeats or processes came to different "
+                                  "numbers, and no seed is declared: error.\\par}\n"));
     EXPECT_THAT(latex, HasSubstr("\\textless{}b\\textgreater{}\\&\\textbar{}\\_\\%"));
 }
 

@@ -570,13 +570,16 @@ layout:
 }
 
 /// Six processes; the errors of the last case have the seeds `last`, those before it `others`.
-Table tableOfSeeds(config::Measure::Seeds others, config::Measure::Seeds last) {
+/// `scatters`: they differ whatever is declared.
+Table tableOfSeeds(config::Measure::Seeds others, config::Measure::Seeds last,
+                   bool scatters = false) {
     RecordMaker maker;
     for (const int samples : {1, 4, 16}) {
         const config::Measure::Seeds seeds = samples == 16 ? last : others;
         maker.beginCase("models/duck", fmt::format(R"({{"samples": {}}})", samples)).seeds(seeds);
         for (int process = 0; process < 6; ++process) {
-            const double noise = seeds == config::Measure::Seeds::Process ? 0.01 * process : 0.0;
+            const bool isOther = scatters || seeds == config::Measure::Seeds::Process;
+            const double noise = isOther ? 0.01 * process : 0.0;
             maker.process(process).add("wall_time_ms", {samples * (1.0 + 0.01 * process)});
             maker.add("rmse", {(1.0 + noise) / std::sqrt(samples)}, "", "1");
         }
@@ -643,8 +646,25 @@ TEST(Table, OneSeedIsOneSampleHoweverItsPicturesDiffer) {
     EXPECT_EQ(cellOf(Seeds::Case, 0).bounds(), Bounds::None);
     EXPECT_EQ(cellOf(Seeds::Case, 1).bounds(), Bounds::Interval) << "a time is of its processes";
     EXPECT_EQ(cellOf(Seeds::None, 0).bounds(), Bounds::Interval);
+    EXPECT_TRUE(cellOf(Seeds::None, 0).scatters);
+    EXPECT_FALSE(cellOf(Seeds::None, 1).scatters) << "a time is known to";
     EXPECT_EQ(cellOf(Seeds::Process, 0).seedCount, 6U);
+    EXPECT_FALSE(cellOf(Seeds::Process, 0).scatters);
     EXPECT_EQ(cellOf(Seeds::Process, 0).bounds(), Bounds::Interval);
+}
+
+/// Of an import, or a program that seeds itself: what is computed of it, and read off its curve,
+/// too.
+TEST(Table, WhatScattersWithoutASeedIsSaid) {
+    const Table table =
+        tableOfSeeds(config::Measure::Seeds::Process, config::Measure::Seeds::Process);
+    EXPECT_THAT(table.notes, Not(Contains(HasSubstr("no seed is declared"))));
+    using Seeds = config::Measure::Seeds;
+    const Table unseeded = tableOfSeeds(Seeds::None, Seeds::None, true);
+    EXPECT_THAT(unseeded.notes,
+                Contains("Repeats or processes came to different numbers, and no seed is declared: "
+                         "error, last error, pooled error, ms at half, cost, errors, of pooled, "
+                         "speedup."));
 }
 
 /// Six of eight processes took 100 ms, two took 800.
