@@ -64,16 +64,37 @@ void requireKnownAt(const config::Printed& printed, const Case& item,
 
 using Of = config::MetricInfo::Of;
 
-/// What the runner takes of a whole frame or process has no pass.
-void requireOfPasses(const config::MetricInfo& metric, const SourceLocation& where) {
-    if (metric.of != Of::Whole) return;
-    std::vector<std::string> ofPasses;
-    for (const config::MetricInfo& info : technique::commonMetrics()) {
-        if (info.of != Of::Whole) ofPasses.push_back(info.name);
+/// The passes that a metric may be of: errors are of pictures, the runner's times of steps.
+std::vector<std::string> passesOf(const config::MetricInfo& metric,
+                                  const config::Outputs& outputs) {
+    const bool isError = config::isPictureError(metric.name);
+    const bool isCommon =
+        std::ranges::count(technique::commonMetrics(), metric.name, &config::MetricInfo::name) > 0;
+    std::vector<std::string> names;
+    for (const config::PassInfo& pass : outputs.passes) {
+        const bool isPicture = std::ranges::count(outputs.withTruth, pass.name) > 0;
+        if (isError ? isPicture : !isPicture || !isCommon) names.push_back(pass.name);
     }
-    throw Error(where, fmt::format("metric '{}' is not taken of a pass; those that are: {}, and "
-                                   "metrics of the technique",
-                                   metric.name, joined(ofPasses)));
+    return names;
+}
+
+/// What the runner takes of a whole frame or process has no pass, and not every pass has all.
+void requireOfPass(const config::MetricInfo& metric, const std::string& pass,
+                   const config::Outputs& outputs, const SourceLocation& where) {
+    if (metric.of == Of::Whole) {
+        std::vector<std::string> ofPasses;
+        for (const config::MetricInfo& info : technique::commonMetrics()) {
+            if (info.of != Of::Whole) ofPasses.push_back(info.name);
+        }
+        throw Error(where, fmt::format("metric '{}' is not taken of a pass; those that are: {}, "
+                                       "and metrics of the technique",
+                                       metric.name, joined(ofPasses)));
+    }
+    const std::vector<std::string> passes = passesOf(metric, outputs);
+    const bool isOne = std::ranges::count(outputs.passes, pass, &config::PassInfo::name) > 0;
+    if (!isOne || std::ranges::count(passes, pass) > 0) return;
+    throw Error(where, fmt::format("metric '{}' is not taken of '{}'; allowed: {}", metric.name,
+                                   pass, passes.empty() ? "no pass" : joined(passes, " | ")));
 }
 
 /// What there is of passes alone has one.
@@ -81,11 +102,9 @@ void requireNoWhole(const std::string& metric, const std::string& pass,
                     const config::Outputs& outputs, const SourceLocation& where) {
     const config::MetricInfo* info = outputs.find(metric);
     if (!info || info->of != Of::Pass || !pass.empty()) return;
-    std::vector<std::string> passes;
-    for (const config::PassInfo& known : outputs.passes) passes.push_back(known.name);
     throw Error(where, fmt::format("metric '{}' is of a pass, and the cell names none; allowed: "
                                    "with pass: {}",
-                                   metric, joined(passes, " | ")));
+                                   metric, joined(passesOf(*info, outputs), " | ")));
 }
 
 /// The keys of rows or columns, a swept axis without a value.
@@ -134,7 +153,9 @@ void requireOutputs(const config::Experiment& experiment,
         if (selection.equal) outputs.requireMetric(selection.equal->metric, owner, where);
         if (selection.pass && !selection.pass->empty()) {
             outputs.requirePass(*selection.pass, owner, where);
-            if (selection.metric) requireOfPasses(*outputs.find(*selection.metric), where);
+            if (selection.metric) {
+                requireOfPass(*outputs.find(*selection.metric), *selection.pass, outputs, where);
+            }
         }
     };
     require(experiment.layout.cell);

@@ -440,6 +440,29 @@ TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
     EXPECT_THAT(laidOut("{metric: gpu_time_ms}"),
                 HasSubstr("DIR/mine.yaml:5:36: metric 'gpu_time_ms' is of a pass, and the cell "
                           "names none; allowed: with pass: preprocess | "));
+    // A picture is no step that takes time, and a step is no picture.
+    const auto ofTemplate = [&](const std::string& column) {
+        return checked(
+            folder, "technique: template\nparams: {errors: true}\nlayout: {columns: {a: " + column +
+                        "}}\n");
+    };
+    EXPECT_EQ(ofTemplate("{metric: cpu_time_ms, pass: result}"),
+              "gfxrepro: DIR/mine.yaml:5:23: metric 'cpu_time_ms' is not taken of 'result'; "
+              "allowed: draw\n");
+    EXPECT_EQ(
+        ofTemplate("{metric: rmse, pass: draw}"),
+        "gfxrepro: DIR/mine.yaml:5:23: metric 'rmse' is not taken of 'draw'; allowed: result\n");
+    EXPECT_EQ(ofTemplate("{metric: cpu_time_ms}"),
+              "gfxrepro: DIR/mine.yaml:5:23: metric 'cpu_time_ms' is of a pass, and the cell names "
+              "none; allowed: with pass: draw\n");
+    for (const char* column : {"{metric: cpu_time_ms, pass: draw}", "{metric: rmse, pass: result}",
+                               "{metric: wrong_pct, pass: result}"}) {
+        const auto good = folder.write(
+            "good.yaml", std::string("sweep_of: good\ntitle: Good\ntechnique: template\nlayout: "
+                                     "{columns: {a: ") +
+                             column + "}}\n");
+        EXPECT_EQ(gfxrepro({"check", good}).err, "") << column;
+    }
     // What a technique gives of passes alone is known of it.
     for (const auto& [technique, metric] :
          {std::pair("depth_sampling", "coverage_pct"), std::pair("soft_shadows", "missing_pct"),
