@@ -38,8 +38,8 @@ void addImport(CLI::App& app, const Context& context, ImportOptions& o,
     importApp
         ->add_option(
             "file", o.file,
-            "CSV with columns metric and value, optionally unit, pass, frame, repeat, process, "
-            "lane, status, message; every other column is a parameter")
+            "CSV with columns metric and value, optionally unit, pass, frame, repeat, process or "
+            "seed, lane, status, message; every other column is a parameter")
         ->required()
         ->option_text("FILE");
     importApp->add_option("--config", o.configs, "layout, claims and plots for the numbers")

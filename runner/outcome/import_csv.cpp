@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -27,9 +28,10 @@ constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
 constexpr std::size_t kMostCellBytes = 1024;
 constexpr const char* kCaseId = "case_id";
 constexpr const char* kMessage = "message";
+constexpr const char* kSeed = "seed";
 constexpr std::string_view kLongColumns[] = {"metric", "value", "unit"};
 constexpr std::string_view kRecordColumns[] = {"pass", "frame",  "repeat", "process",
-                                               "lane", "status", kMessage};
+                                               "lane", "status", kMessage, kSeed};
 
 bool isOneOf(std::string_view name, std::span<const std::string_view> names) {
     return std::ranges::find(names, name) != names.end();
@@ -211,7 +213,7 @@ class Rows {
         if (!isNew) {
             throw Error(csv.where(),
                         fmt::format("'{}' of this case stands in line {} already; columns "
-                                    "process, frame and repeat tell measurements apart",
+                                    "process, seed, frame and repeat tell measurements apart",
                                     column, known->second));
         }
         rows.push_back({caseIndex, std::move(record), line});
@@ -305,11 +307,16 @@ void requireColumns(const NamedCsv& csv, const ImportFiles& files) {
         csv.require("value", "metric, value");
     }
     if (!files.cases.empty()) csv.require(kCaseId, "case_id, as --cases is given");
+    if (csv.has(kSeed) && csv.has("process")) {
+        throw Error(csv.where(),
+                    "columns 'seed' and 'process': a seed is of a process of its own; allowed: one "
+                    "of the two, or the column 'params.seed' for a parameter");
+    }
 }
 
 /// The records of one row of the file.
-void addRow(const NamedCsv& csv, const ImportFiles& files, std::size_t caseIndex, Rows& rows) {
-    Record record = recordOf(csv);
+void addRow(const NamedCsv& csv, const ImportFiles& files, std::size_t caseIndex, Record record,
+            Rows& rows) {
     if (files.metrics.empty()) {
         record.metric = csv.cell("metric");
         record.unit = csv.cell("unit");
@@ -340,6 +347,18 @@ void addRow(const NamedCsv& csv, const ImportFiles& files, std::size_t caseIndex
     rows.add(csv, caseIndex, std::move(record), "status");
 }
 
+/// The processes of a case with seeds are counted without gaps, in the order of all seeds.
+void closeGaps(ImportedNumbers& numbers) {
+    std::vector<std::set<int>> seeds(numbers.cases.size());
+    for (const ImportedRow& row : numbers.rows) seeds[row.caseIndex].insert(row.record.process);
+    for (ImportedRow& row : numbers.rows) {
+        const std::set<int>& own = seeds[row.caseIndex];
+        if (!numbers.cases[row.caseIndex].hasSeeds) continue;
+        row.record.process =
+            static_cast<int>(std::distance(own.begin(), own.find(row.record.process)));
+    }
+}
+
 }  // namespace
 
 std::string ImportedCase::cell(std::string_view column) const {
@@ -359,6 +378,7 @@ ImportedNumbers readImport(const ImportFiles& files) {
     requireNoParts(csv, columns);
     if (files.cases.empty()) numbers.columns = columns;
     Rows rows;
+    std::map<std::string, int> seeds;  // in the order of the file
     while (csv.next()) {
         std::string key = csv.cell(kCaseId);
         if (files.cases.empty()) {
@@ -369,10 +389,17 @@ ImportedNumbers readImport(const ImportFiles& files) {
             throw Error(csv.where(), fmt::format("column 'case_id': '{}' is not in {}", key,
                                                  files.cases.string()));
         }
-        addRow(csv, files, places.at(key), rows);
+        const std::size_t place = places.at(key);
+        Record record = recordOf(csv);
+        if (const std::string seed = csv.cell(kSeed); !seed.empty()) {
+            record.process = seeds.try_emplace(seed, static_cast<int>(seeds.size())).first->second;
+            numbers.cases[place].hasSeeds = true;
+        }
+        addRow(csv, files, place, std::move(record), rows);
     }
     if (rows.rows.empty()) throw Error({files.file.string(), 0, 0}, "has a header and no row");
     numbers.rows = std::move(rows.rows);
+    closeGaps(numbers);
     return numbers;
 }
 

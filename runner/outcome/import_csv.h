@@ -13,10 +13,11 @@
 namespace gfxrepro::outcome {
 
 /// What is imported. The file has a number a row: columns `metric` and `value`, perhaps `unit`,
-/// `pass`, `frame`, `repeat`, `process`, `lane`, `status`, `message`; every other column is a
-/// parameter of the case, or `experiment`, `technique`, `scene`. With `metrics` it has a column for
-/// each of these instead of `metric`, `value` and `unit`. With `cases` it has `case_id`, and what a
-/// case is stands in that file (as `gfxrepro export --tidy` writes both).
+/// `pass`, `frame`, `repeat`, `process`, `lane`, `status`, `message`, or in the place of `process`
+/// the `seed` of random numbers; every other column is a parameter of the case, or `experiment`,
+/// `technique`, `scene`. With `metrics` it has a column for each of these instead of `metric`,
+/// `value` and `unit`. With `cases` it has `case_id`, and what a case is stands in that file (as
+/// `gfxrepro export --tidy` writes both).
 struct ImportFiles {
     std::filesystem::path file;
     std::filesystem::path cases = {};                               // empty: none
@@ -26,7 +27,8 @@ struct ImportFiles {
 /// The cells of a case that are not empty, by column, in the order of the columns.
 struct ImportedCase {
     std::vector<std::pair<std::string, std::string>> cells;
-    SourceLocation where;  // the row that has it first
+    SourceLocation where;   // the row that has it first
+    bool hasSeeds = false;  // its processes are of one seed each
 
     /// The cell of that column, or "".
     std::string cell(std::string_view column) const;

@@ -137,7 +137,8 @@ config::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
     item.measure.processes = 1;
     item.measure.relativeError = 0.0;
     item.measure.isWithinBudget = false;
-    item.measure.seeds = config::Measure::Seeds::None;
+    item.measure.seeds =
+        given.hasSeeds ? config::Measure::Seeds::Process : config::Measure::Seeds::None;
     return item;
 }
 

@@ -1,4 +1,5 @@
 // Numbers that leave and come in: export --tidy, import, history.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -193,6 +194,33 @@ TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
         folder_.write("flat.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.5\n64,mse,0.5\n");
     EXPECT_EQ(mockGfxrepro({"import", flat, "--config", config, "--out", dir("flat")}).exitCode, 1);
     EXPECT_THAT(verdicts("flat"), testing::Contains("slope fails"));
+}
+
+/// Errors of two samplers that are alike, over seeds: one of them is nearer by chance.
+TEST_F(Data, SeedsOfImportedNumbersAreRounds) {
+    const std::string config =
+        folder_.write("s.yaml",
+                      "sweep_of: s\ntitle: S\ntechnique: imported\nsweep: {method: [a, b]}\n"
+                      "layout: {rows: method, columns: {e: {metric: rmse}}}\n"
+                      "claims: {nearer: {says: a is nearer to its truth, order: [a, b], of: e}}\n");
+    const auto verdictOf = [&](const std::string& column, int count, double apart) {
+        std::string text = "method,metric,value," + column + "\n";
+        for (int i = 0; i < count; ++i) {
+            text += fmt::format("a,rmse,{},{}\nb,rmse,{},{}\n", 1.0 + 0.1 * (i % 3), 10 * i,
+                                apart + 0.1 * ((i + 1) % 4), 10 * i);
+        }
+        std::filesystem::remove_all(dir("s"));
+        const std::string csv = folder_.write("s.csv", text);
+        mockGfxrepro({"import", csv, "--config", config, "--out", dir("s")});
+        return verdicts("s");
+    };
+    for (const char* column : {"seed", "repeat"}) {
+        EXPECT_THAT(verdictOf(column, 8, 1.0), testing::Contains("nearer ambiguous")) << column;
+    }
+    EXPECT_THAT(verdictOf("seed", 8, 1.5), testing::Contains("nearer holds"));
+    EXPECT_THAT(verdictOf("seed", 8, 0.5), testing::Contains("nearer fails"));
+    EXPECT_THAT(verdictOf("seed", 5, 1.5), testing::Contains("nearer ambiguous"));
+    EXPECT_THAT(verdictOf("repeat", 8, 1.5), testing::Contains("nearer ambiguous"));
 }
 
 TEST_F(Data, WhatCheckRefusesIsNotImported) {

@@ -33,6 +33,23 @@ class ImportCsv : public testing::Test {
     const TemporaryFolder folder_;
 };
 
+/// In one order in all cases, so that one seed is one round; what has none draws no random numbers.
+TEST_F(ImportCsv, ASeedNumbersProcesses) {
+    const ImportedNumbers numbers = read(
+        "method,seed,metric,value\na,7,rmse,1\na,3,rmse,2\nb,3,rmse,3\nb,7,rmse,4\nc,,rmse,5\n"
+        "d,9,rmse,6\nd,3,rmse,7\n");
+    ASSERT_EQ(numbers.cases.size(), 4U);
+    std::vector<int> processes;
+    for (const ImportedRow& row : numbers.rows) processes.push_back(row.record.process);
+    EXPECT_EQ(processes, (std::vector<int>{0, 1, 1, 0, 0, 1, 0}));
+    EXPECT_TRUE(numbers.cases[0].hasSeeds);
+    EXPECT_TRUE(numbers.cases[1].hasSeeds);
+    EXPECT_FALSE(numbers.cases[2].hasSeeds);
+    EXPECT_EQ(refusal("seed,process,metric,value\n1,0,rmse,1\n"),
+              "DIR/a.csv:1: columns 'seed' and 'process': a seed is of a process of its own; "
+              "allowed: one of the two, or the column 'params.seed' for a parameter");
+}
+
 TEST_F(ImportCsv, ANumberARow) {
     const ImportedNumbers numbers = read(
         "samples,metric,value,unit,pass,frame,repeat,process,lane,status,message,scene\n"
@@ -152,8 +169,8 @@ TEST_F(ImportCsv, WhatIsWrongIsNamedWithItsLine) {
     EXPECT_EQ(refusal(head + "1,a,2,ms,,,timing,\n1,b,2,ms,,,quality,\n"),
               "DIR/a.csv:3: column 'lane': 'quality'; the same case has 'timing' in line 2");
     EXPECT_EQ(refusal(head + "1,a,2,ms,,,,\n1,a,3,ms,,,,\n"),
-              "DIR/a.csv:3: 'a' of this case stands in line 2 already; columns process, frame and "
-              "repeat tell measurements apart");
+              "DIR/a.csv:3: 'a' of this case stands in line 2 already; columns process, seed, "
+              "frame and repeat tell measurements apart");
     EXPECT_EQ(refusal(head + "1,\"a,2,ms,,,,\n"), "DIR/a.csv:2: a quote that is not closed");
     EXPECT_EQ(refusal(head + "\x01,a,2,ms,,,,\n"),
               "DIR/a.csv:2: column 'n': a control character; allowed: text of one line");
