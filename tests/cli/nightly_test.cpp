@@ -42,14 +42,14 @@ class Nightly : public ::testing::Test {
                          {"--rounds", "8", "--cases", "1", "--program", bundle(extraUs), config});
         return runProgram(arguments);
     }
-    /// A night of a bundle whose program is this script, of three cases and those of `second`.
+    /// A night of a bundle whose program is this script, of two cases and those of `second`.
     ProcessResult nightOf(const std::string& script,
-                          const std::vector<std::string>& options = {"--cases", "3"}) const {
+                          const std::vector<std::string>& options = {"--cases", "2"}) const {
         const fs::path program = folder.write("broken/gfxrepro", "#!/bin/sh\n" + script);
         fs::permissions(program, fs::perms::owner_all);
         const fs::path config =
             writeMockConfig(folder,
-                            "sweep: {busy_ms: [18, 20, 22]}\n"
+                            "sweep: {busy_ms: [18, 22]}\n"
                             "measure: {lane: timing, processes: 1, repeats: 2}\n");
         std::vector<std::string> arguments = {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
                                               GFXREPRO_SOURCE "/scripts/nightly"};
@@ -107,7 +107,7 @@ const std::string kBlind[] = {
     "[ $1 != compare ] || { " + kMock + "; exit 0; }\nexec " + kMock + '\n',
     "case \"$*\" in *--binaries*) exit 0;; esac\nexec " + kMock + '\n',
     "case \"$*\" in *--binaries*) while [ $1 != --out ]; do shift; done; mkdir -p \"$2\"\n"
-    "echo '<testsuite name=\"\" tests=\"6\" failures=\"1\">' >\"$2/junit.xml\"; exit 1;; "
+    "echo '<testsuite name=\"\" tests=\"4\" failures=\"1\">' >\"$2/junit.xml\"; exit 1;; "
     "esac\nexec " +
         kMock + '\n',
     "case \"$*\" in *--binaries*) " + kMock + "; exit 0;; esac\nexec " + kMock + '\n'};
@@ -115,7 +115,7 @@ const std::string kBlind[] = {
 TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
     const ProcessResult first = nightOf("exit 0\n");
     EXPECT_EQ(first.exitCode, 2) << first.out << first.err;
-    EXPECT_NE(first.err.find("/first has no record of some case; the configs ask for 3\n"),
+    EXPECT_NE(first.err.find("/first has no record of some case; the configs ask for 2\n"),
               std::string::npos)
         << first.err;
     for (const std::string& blind : kBlind) {
@@ -159,28 +159,28 @@ TEST_F(Nightly, AJudgeOfTheFirstConfigAloneIsNone) {
                           "measure: {lane: timing, processes: 1, repeats: 2}\n");
     const std::string half =
         "case \"$*\" in *--binaries*second.yaml*) exit 0;; esac\nexec " + kMock + '\n';
-    EXPECT_EQ(nightOf(half, {"--cases", "4"}).exitCode, 2);
+    EXPECT_EQ(nightOf(half, {"--cases", "3"}).exitCode, 2);
     EXPECT_FALSE(fs::exists(state + "/landed"));
-    ASSERT_EQ(nightOf("exec " + kMock + '\n', {"--cases", "4"}).exitCode, 0);
+    ASSERT_EQ(nightOf("exec " + kMock + '\n', {"--cases", "3"}).exitCode, 0);
     EXPECT_EQ(nightOf(half, {}).exitCode, 2);
     EXPECT_EQ(landed(), "#!/bin/sh\nexec " + kMock + '\n');
 }
 
 TEST_F(Nightly, WhatTheConfigsAskForIsCountedByAnotherBuild) {
     const std::string mock = "exec " + kMock;
-    const std::string fewer = "[ $1 != run ] || " + mock + " --only busy_ms=20\n" + mock + '\n';
+    const std::string fewer = "[ $1 != run ] || " + mock + " --only busy_ms=22\n" + mock + '\n';
     EXPECT_EQ(nightOf(fewer).exitCode, 2);
     EXPECT_EQ(nightOf(fewer, {}).exitCode, 2);
     EXPECT_FALSE(fs::exists(state + "/landed"));
     const ProcessResult first = nightOf(mock + '\n', {});
     ASSERT_EQ(first.exitCode, 0);
     EXPECT_EQ(first.err.find("nightly: no other build has counted the cases of the configs: "
-                             "tonight's says 3; --cases N says it otherwise\n"),
+                             "tonight's says 2; --cases N says it otherwise\n"),
               0U)
         << first.err;
     const ProcessResult fix = nightOf(fewer, {"--fix"});
     EXPECT_EQ(fix.exitCode, 2);
-    EXPECT_NE(fix.err.find("/first has no record of some case; the configs ask for 3\n"),
+    EXPECT_NE(fix.err.find("/first has no record of some case; the configs ask for 2\n"),
               std::string::npos)
         << fix.err;
     EXPECT_EQ(nightOf(fewer).exitCode, 1) << "lost, compared with the last build";
