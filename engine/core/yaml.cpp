@@ -309,6 +309,9 @@ std::optional<YAML::Mark> unclosedBracket(const std::vector<std::string>& lines)
                 lines[static_cast<std::size_t>(mark->line)][static_cast<std::size_t>(mark->column)];
             throw Error(where, std::string("'") + bracket + "' is not closed");
         }
+        throw Error(where,
+                    "within brackets and braces a text with some of its own, as {here}/program or "
+                    "error[n=4], stands in quotes");
     }
     const bool isInLine = where.line <= static_cast<int>(lines.size());
     if (isInLine && error.msg == YAML::ErrorMsg::MAP_VALUE) {

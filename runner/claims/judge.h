@@ -51,9 +51,9 @@ struct Judgement {
     double margin = 0.0;  // to the nearest bound, negative outside
     std::string marginText;
     bool isSingleSample = false;
-    bool isAbsent = false;      // a crossing that is not there
-    bool isRefutation = false;  // of a contrast that can only fail
-    std::string why;            // of an ambiguous verdict on times; empty: the interval tells
+    bool isAbsent = false;  // a crossing that is not there
+    bool isBeside = false;  // of a contrast that is told only where it is worse
+    std::string why;        // of an ambiguous verdict on times; empty: the interval tells
     /// Of what has an interval that is not wholly within the range: how far beyond the nearer bound
     /// each round lies; of draws, the share of them that lies within.
     std::map<int, double> beyond = {};

@@ -177,15 +177,22 @@ void requireTimed(const Experiment& experiment) {
     const Node* measure = experiment.document.find("measure");
     const Node* lane = measure && measure->isMap() ? measure->find("lane") : nullptr;
     const bool isOwn = lane && lane->location().file.text() == experiment.file;
+    const bool hasSeeds = experiment.measure.sceneSeeds > 1;
     const auto refuse = [&](const SourceLocation& where, const std::string& what) {
-        throw Error(
-            where,
-            fmt::format("'lane: quality' takes no times, and {}; allowed: lane: timing", what));
+        throw Error(where, fmt::format("'{}' takes no times, and {}; allowed: {}",
+                                       hasSeeds ? "scene_seeds" : "lane: quality", what,
+                                       hasSeeds ? "scene_seeds: 1" : "lane: timing"));
     };
     if (isOwn && showsTimes(experiment.layout)) refuse(lane->location(), "the layout shows some");
     if (!experiment.hasDefaultLayout() || (lane && !isOwn)) return;
     for (const ClaimSpec& claim : experiment.claims) {
-        for (const std::string& operand : claim.operands) {
+        std::vector<std::string> read = claim.operands;
+        for (const auto& [axis, columns] : claim.at) {
+            for (const Node& column : columns) {
+                if (axis == claims::kColumnAxis) read.push_back(column.text());
+            }
+        }
+        for (const std::string& operand : read) {
             std::string name;
             for (const char c : operand + ' ') {
                 if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') {

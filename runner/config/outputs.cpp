@@ -98,6 +98,12 @@ int timePower(std::string_view metric) {
     return isTime ? 1 : 0;
 }
 
+bool isOfDevice(std::string_view metric) {
+    static constexpr std::string_view kNames[] = {"work_primitives", "work_fragments",
+                                                  "work_compute_invocations", "work_image_digest"};
+    return std::ranges::find(kNames, metric) != std::end(kNames);
+}
+
 bool isTimeMetric(std::string_view metric) {
     return timePower(metric) != 0;
 }

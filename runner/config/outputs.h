@@ -73,6 +73,8 @@ std::string_view betterText(Better better);
 int timePower(std::string_view metric);
 /// Whether a metric is a time or a number per time: what claims of a `kind` are about.
 bool isTimeMetric(std::string_view metric);
+/// What the device counts of each repeat.
+bool isOfDevice(std::string_view metric);
 
 /// Claims know times and rates by their names (timePower) and judge everything else from
 /// one sample. Why a metric of that name and unit would be taken for what it is not, as a sentence;

@@ -234,7 +234,8 @@ Names caseColumns(const NamedCsv& csv, const ImportFiles& files) {
     for (const std::string& name : csv.header()) {
         const bool isMetric =
             std::ranges::any_of(files.metrics, [&](const auto& m) { return m.first == name; });
-        if (isMetric || isOneOf(name, kRecordColumns)) continue;
+        const bool isParameter = files.isSeedSwept && name == kSeed;
+        if (isMetric || (isOneOf(name, kRecordColumns) && !isParameter)) continue;
         if (isOneOf(name, kLongColumns)) {
             if (files.metrics.empty()) continue;
             throw Error(csv.where(), fmt::format("column '{}' beside --metric; allowed: one of "
@@ -307,7 +308,7 @@ void requireColumns(const NamedCsv& csv, const ImportFiles& files) {
         csv.require("value", "metric, value");
     }
     if (!files.cases.empty()) csv.require(kCaseId, "case_id, as --cases is given");
-    if (csv.has(kSeed) && csv.has("process")) {
+    if (!files.isSeedSwept && csv.has(kSeed) && csv.has("process")) {
         throw Error(csv.where(),
                     "columns 'seed' and 'process': a seed is of a process of its own; allowed: one "
                     "of the two, or the column 'params.seed' for a parameter");
@@ -347,13 +348,22 @@ void addRow(const NamedCsv& csv, const ImportFiles& files, std::size_t caseIndex
     rows.add(csv, caseIndex, std::move(record), "status");
 }
 
-/// The processes of a case with seeds are counted without gaps, in the order of all seeds.
-void closeGaps(ImportedNumbers& numbers) {
+/// Where no two cases share a seed but share all, the processes of each are counted from 0; else a
+/// case lacks those of the seeds that others have.
+void countSeeds(ImportedNumbers& numbers) {
     std::vector<std::set<int>> seeds(numbers.cases.size());
-    for (const ImportedRow& row : numbers.rows) seeds[row.caseIndex].insert(row.record.process);
+    for (const ImportedRow& row : numbers.rows) {
+        if (numbers.cases[row.caseIndex].hasSeeds) seeds[row.caseIndex].insert(row.record.process);
+    }
+    std::map<int, const std::set<int>*> first;
+    for (const std::set<int>& own : seeds) {
+        for (const int seed : own) {
+            if (*first.try_emplace(seed, &own).first->second != own) return;
+        }
+    }
     for (ImportedRow& row : numbers.rows) {
         const std::set<int>& own = seeds[row.caseIndex];
-        if (!numbers.cases[row.caseIndex].hasSeeds) continue;
+        if (own.empty()) continue;
         row.record.process =
             static_cast<int>(std::distance(own.begin(), own.find(row.record.process)));
     }
@@ -391,7 +401,7 @@ ImportedNumbers readImport(const ImportFiles& files) {
         }
         const std::size_t place = places.at(key);
         Record record = recordOf(csv);
-        if (const std::string seed = csv.cell(kSeed); !seed.empty()) {
+        if (const std::string seed = csv.cell(kSeed); !files.isSeedSwept && !seed.empty()) {
             record.process = seeds.try_emplace(seed, static_cast<int>(seeds.size())).first->second;
             numbers.cases[place].hasSeeds = true;
         }
@@ -399,7 +409,7 @@ ImportedNumbers readImport(const ImportFiles& files) {
     }
     if (rows.rows.empty()) throw Error({files.file.string(), 0, 0}, "has a header and no row");
     numbers.rows = std::move(rows.rows);
-    closeGaps(numbers);
+    countSeeds(numbers);
     return numbers;
 }
 

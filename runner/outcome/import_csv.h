@@ -22,6 +22,7 @@ struct ImportFiles {
     std::filesystem::path file;
     std::filesystem::path cases = {};                               // empty: none
     std::vector<std::pair<std::string, std::string>> metrics = {};  // column, unit
+    bool isSeedSwept = false;  // `seed` is an axis of the config, and so a parameter
 };
 
 /// The cells of a case that are not empty, by column, in the order of the columns.

@@ -87,6 +87,17 @@ std::optional<int> sampleOf(const ImportedCase& given) {
                                          config::kSceneSample, text, config::kMostSceneSample));
 }
 
+/// Of an exported run.
+config::Measure::Seeds seedsOf(const ImportedCase& given) {
+    using Seeds = config::Measure::Seeds;
+    const std::string text = given.cell("seeds");
+    for (const Seeds seeds : {Seeds::None, Seeds::Case, Seeds::Process}) {
+        if (seedsName(seeds) == text) return seeds;
+    }
+    throw Error(given.where,
+                fmt::format("column 'seeds': '{}'; allowed: case, process, or nothing", text));
+}
+
 /// Cases have an output beside their parameters; a parameter of that name would be lost.
 void requireKnownOutput(const std::string& name, const ImportedCase& given) {
     if (name != "output" && !name.starts_with("output.")) return;
@@ -137,9 +148,15 @@ config::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
     item.measure.processes = 1;
     item.measure.relativeError = 0.0;
     item.measure.isWithinBudget = false;
-    item.measure.seeds =
-        given.hasSeeds ? config::Measure::Seeds::Process : config::Measure::Seeds::None;
+    item.measure.seeds = given.hasSeeds ? config::Measure::Seeds::Process : seedsOf(given);
     return item;
+}
+
+bool isSeedSwept(const Experiment& experiment) {
+    const auto isSeed = [](const config::LayoutAxis& axis) { return axis.name == "seed"; };
+    const config::Layout& layout = experiment.layout;
+    return (experiment.sweep.isMap() && experiment.sweep.find("seed")) ||
+           std::ranges::any_of(layout.rows, isSeed) || std::ranges::any_of(layout.columns, isSeed);
 }
 
 /// The value of an axis; null where the case has none.
@@ -293,7 +310,9 @@ run::Json manifestOf(const run::Plan& plan, const ImportRequest& request, const 
 
 run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& catalog,
                          std::span<const technique::TechniqueInfo> techniques) {
-    const ImportedNumbers numbers = readImport(request.files);
+    ImportFiles files = request.files;
+    files.isSeedSwept = std::ranges::any_of(request.experiments, isSeedSwept);
+    const ImportedNumbers numbers = readImport(files);
     run::StoredRun run;
     run::Plan& plan = run.plan;
     plan.profile = request.profile;

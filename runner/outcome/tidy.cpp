@@ -121,6 +121,11 @@ void writePrograms(const fs::path& file, const run::Json& manifest) {
 
 }  // namespace
 
+std::string_view seedsName(config::Measure::Seeds seeds) {
+    using Seeds = config::Measure::Seeds;
+    return seeds == Seeds::Process ? "process" : seeds == Seeds::Case ? "case" : "";
+}
+
 void writeCases(const fs::path& file, std::span<const config::Case> cases) {
     std::vector<std::string> params;
     std::set<std::string> known;
@@ -139,6 +144,7 @@ void writeCases(const fs::path& file, std::span<const config::Case> cases) {
             row.text(item.id).text(item.experiment).text(item.technique);
             row.text(item.recordedScene()).text(isTiming ? "timing" : "quality");
             row.integer(static_cast<long long>(item.seed));
+            row.text(seedsName(item.measure.seeds));
             for (const std::string& param : params) row.text(fields[param]);
         });
     }

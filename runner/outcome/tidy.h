@@ -12,10 +12,13 @@
 namespace gfxrepro::outcome {
 
 /// The columns of cases.csv before the parameters. None is a word of SQL.
-inline constexpr std::string_view kCaseColumns[] = {"case_id", "experiment", "technique",
-                                                    "scene",   "lane",       "run_seed"};
+inline constexpr std::string_view kCaseColumns[] = {"case_id", "experiment", "technique", "scene",
+                                                    "lane",    "run_seed",   "seeds"};
 /// Begins the column of a parameter that has the name of one of these.
 inline constexpr std::string_view kParamPrefix = "params.";
+
+/// As `measure.seeds` has them; empty of none.
+std::string_view seedsName(config::Measure::Seeds seeds);
 
 /// A case a row: kCaseColumns, then a column for each parameter of any case, empty where a case has
 /// not got it. What has parts is a column a part: "output.width", "offset.0".

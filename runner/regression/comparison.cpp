@@ -43,20 +43,46 @@ bool areWhole(const Series& values) {
     return std::ranges::all_of(values, [](double value) { return value == std::floor(value); });
 }
 
+/// Of numbers that differ between the processes of a side, as of a program that seeds itself: the
+/// chance that all of one side lie beyond all of the other where nothing changed; 1 where they do
+/// not.
+double chanceApart(const Series& before, const Series& after) {
+    const auto [low, high] = std::ranges::minmax(before);
+    const auto [otherLow, otherHigh] = std::ranges::minmax(after);
+    if (low <= otherHigh && otherLow <= high) return 1.0;
+    double ways = 1.0;  // to choose the processes of one side of all
+    for (std::size_t i = 1; i <= before.size(); ++i) {
+        ways *= static_cast<double>(after.size() + i) / static_cast<double>(i);
+    }
+    return 2.0 / ways;
+}
+
+/// `count`: of how many series each may raise an alarm.
 Difference compareValues(const SeriesKey& key, const Series& before, const Series& after,
-                         const Rules& rules) {
+                         const Rules& rules, std::size_t count) {
     Difference result{
         .key = key, .before = metrics::median(before), .after = metrics::median(after)};
     const bool isRatio = result.before != 0.0 && std::isfinite(result.before);
     result.ratio = isRatio ? result.after / result.before : 1.0;
     result.interval = {result.ratio, result.ratio};
     result.floor = areWhole(before) && areWhole(after) ? 0.0 : rules.valueTolerance;
-    const double scale = std::max(std::abs(result.before), std::abs(result.after));
     // Two infinities are the same; their difference is not a number.
-    const bool isSame =
-        result.after == result.before ||
-        (std::isfinite(scale) && std::abs(result.after - result.before) <= result.floor * scale);
+    const auto areSame = [&](double a, double b) {
+        const double scale = std::max(std::abs(a), std::abs(b));
+        return a == b || (std::isfinite(scale) && std::abs(a - b) <= result.floor * scale);
+    };
+    const auto differ = [&](const Series& values) {
+        return std::ranges::any_of(values,
+                                   [&](double value) { return !areSame(value, values.front()); });
+    };
+    const bool isSame = areSame(result.before, result.after);
+    const bool isAlike = std::ranges::equal(before, after, areSame);
     result.verdict = isSame ? Verdict::Same : Verdict::Changed;
+    if (!isAlike && (differ(before) || differ(after)) &&
+        chanceApart(before, after) > rules.familyError / static_cast<double>(count)) {
+        result.verdict = Verdict::CannotTell;
+        result.reason = "numbers that differ between processes of one side";
+    }
     return result;
 }
 
@@ -301,7 +327,7 @@ std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& all
         } else if (key.isTime()) {
             times.push_back(testTime(key, values, found->second, pairing, rules));
         } else {
-            differences.push_back(compareValues(key, values, found->second, rules));
+            differences.push_back(compareValues(key, values, found->second, rules, before.size()));
         }
     }
     judgeTimes(times, pairing, rules);

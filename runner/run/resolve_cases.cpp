@@ -67,7 +67,8 @@ using Of = config::MetricInfo::Of;
 /// The passes that a metric may be of: errors are of pictures, the runner's times of steps.
 std::vector<std::string> passesOf(const config::MetricInfo& metric,
                                   const config::Outputs& outputs) {
-    const bool isError = config::isPictureError(metric.name);
+    const bool isTest = metric.name == "same_mean_p" || metric.name == "bias_seen";
+    const bool isError = isTest || config::isPictureError(metric.name);
     const bool isCommon =
         std::ranges::count(technique::commonMetrics(), metric.name, &config::MetricInfo::name) > 0;
     std::vector<std::string> names;
@@ -133,6 +134,10 @@ void requireCells(const config::Layout& layout, const config::Outputs& outputs) 
             if (column.size() == 1 && layout.computed(column[0])) continue;  // of what is recorded
             const tables::CellQuery cell = tables::makeQuery(layout, row, column);
             requireNoWhole(cell.metric, cell.pass, outputs, cell.location);
+            const config::MetricInfo* info = outputs.find(cell.metric);
+            if (info && !cell.pass.empty()) {
+                requireOfPass(*info, cell.pass, outputs, cell.location);
+            }
             if (!cell.equal) continue;
             requireNoWhole(cell.equal->metric, "", outputs, cell.location);
         }

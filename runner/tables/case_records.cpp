@@ -125,15 +125,19 @@ std::vector<const records::Record*> CaseRecords::Attempt::values(std::string_vie
 }
 
 bool CaseRecords::scatters(std::string_view metric, std::string_view pass) const {
-    constexpr double kRounding = 1e-6;            // of sums that threads take in any order
+    constexpr double kRounding = 1e-12;  // of a sum of doubles in another order
+    const auto differ = [](double a, double b) {
+        if (a == b) return false;
+        const double largest = std::max(std::abs(a), std::abs(b));
+        return std::isinf(largest) || std::abs(a - b) > kRounding * largest;
+    };
     std::map<std::pair<int, int>, double> first;  // by the scene's seed and the frame
     for (const auto& [number, attempt] : processes) {
         if (attempt.failure) continue;
         for (const records::Record* row : attempt.values(metric, pass)) {
             const auto [found, isNew] =
                 first.try_emplace({number / records::kMostProcesses, row->frame}, row->value);
-            const double largest = std::max(std::abs(found->second), std::abs(row->value));
-            if (std::abs(row->value - found->second) > kRounding * largest) return true;
+            if (differ(found->second, row->value)) return true;
         }
     }
     return false;
@@ -194,6 +198,7 @@ std::vector<CaseRecords> groupByCase(std::span<const config::Case> planned,
     for (std::size_t i = 0; i < cases.size(); ++i) {
         if (isSeeded[i]) continue;
         const auto once = cases[i].processes;
+        cases[i].isRepeated = seedCount > 1 && once.size() > 1;
         for (int seed = 1; seed < seedCount; ++seed) {
             for (const auto& [process, attempt] : once) {
                 cases[i].processes[seed * records::kMostProcesses + process] = attempt;

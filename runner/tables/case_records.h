@@ -62,6 +62,8 @@ struct CaseRecords {
     config::Measure::Seeds seeds = config::Measure::Seeds::None;
     std::uint64_t seed = 0;  // of its first process
     int sceneSeeds = 1;      // at how many its scene is taken
+    /// Its scene has no seeds, where others have: its processes stand there once for each of these.
+    bool isRepeated = false;
 
     std::uint64_t seedOf(int process) const {
         const bool isOther = seeds == config::Measure::Seeds::Process;

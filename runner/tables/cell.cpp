@@ -179,15 +179,18 @@ void takeRow(const records::Record& record, const CellQuery& query, int unit,
 
 /// Neither a time, nor what the device counted, nor a test of several seeds.
 bool isOfItsSeed(const std::string& metric) {
-    return !config::isTimeMetric(metric) && !metric.starts_with("work_") &&
+    return !config::isTimeMetric(metric) && !config::isOfDevice(metric) &&
            metric != "same_mean_p" && metric != "bias_seen";
 }
 
 void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>& unitOfFrame,
               int& unitCount, Gathered& gathered) {
-    const bool isUnseeded = run.seeds == config::Measure::Seeds::None && isOfItsSeed(query.metric);
-    gathered.scatters |= isUnseeded && run.scatters(query.metric, query.pass);
+    const bool differs = run.scatters(query.metric, query.pass);
+    gathered.scatters |= differs && run.seeds == config::Measure::Seeds::None &&
+                         !config::isTimeMetric(query.metric) && !config::isOfDevice(query.metric);
     for (const auto& [number, attempt] : run.processes) {
+        // What differs between processes is no new number for each seed of another scene.
+        if (run.isRepeated && differs && number >= records::kMostProcesses) break;
         if (attempt.failure) {
             gathered.note(attempt.failure->status, attempt.failure->message);
             continue;
@@ -415,18 +418,6 @@ std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRe
     return cases;
 }
 
-/// Why the curve has no value there.
-std::string whyNotOn(std::span<const CurvePoint> curve, const config::Equal& equal) {
-    const auto [low, high] =
-        std::ranges::minmax(curve, {}, [](const CurvePoint& point) { return point.x.point; });
-    if (low.x.point <= equal.is && equal.is <= high.x.point) {
-        return fmt::format("'{}' passes {:.4g} more than once, or not in every process",
-                           equal.metric, equal.is);
-    }
-    return fmt::format("'{}' goes from {:.4g} to {:.4g} and does not reach {:.4g}", equal.metric,
-                       low.x.point, high.x.point, equal.is);
-}
-
 std::vector<Measured> equalValues(const CellQuery& query, std::span<const CaseRecords* const> along,
                                   Gathered& gathered) {
     const std::vector<CurveCase> cases = curveCases(query, along, gathered);
@@ -436,6 +427,14 @@ std::vector<Measured> equalValues(const CellQuery& query, std::span<const CaseRe
                                   query.metric));
         return {};
     }
+    // Of what differs between processes one of them is one sample.
+    const bool isOnce = std::ranges::any_of(cases, [&](const CurveCase& one) {
+        const auto isOne = [&](const Samples& samples, const std::string& metric) {
+            const bool differs = gathered.scatters || config::isTimeMetric(metric);
+            return differs && samples.processes.size() < 2;
+        };
+        return isOne(one.x, query.equal->metric) || isOne(one.y, query.metric);
+    });
     std::vector<Measured> values;
     for (const auto& placeholder : query.format.placeholders()) {
         std::vector<CurvePoint> curve;
@@ -444,9 +443,11 @@ std::vector<Measured> equalValues(const CellQuery& query, std::span<const CaseRe
         }
         Measured& measured = values.emplace_back();
         static_cast<Summary&>(measured) = readCurve(curve, query.equal->is);
+        if (isOnce) takeAsOne(measured);
         measured.statistic = placeholder.name;
         if (std::isfinite(measured.value)) continue;
-        gathered.note(records::Status::Missing, whyNotOn(curve, *query.equal));
+        gathered.note(records::Status::Missing,
+                      whyNoValue(curve, query.equal->metric, query.equal->is));
         return {};
     }
     return values;

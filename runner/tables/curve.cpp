@@ -1,5 +1,7 @@
 #include "runner/tables/curve.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -70,6 +72,17 @@ Summary readCurve(std::span<const CurvePoint> curve, double at) {
     Summary summary = summaryOf(value, std::move(rounds), false);
     summary.isOverProcesses = isOver;
     return summary;
+}
+
+std::string whyNoValue(std::span<const CurvePoint> curve, const std::string& metric, double at) {
+    const auto [low, high] =
+        std::ranges::minmax(curve, {}, [](const CurvePoint& point) { return point.x.point; });
+    if (low.x.point <= at && at <= high.x.point) {
+        return fmt::format("'{}' passes {:.4g} more than once, or not in every process", metric,
+                           at);
+    }
+    return fmt::format("'{}' goes from {:.4g} to {:.4g} and does not reach {:.4g}", metric,
+                       low.x.point, high.x.point, at);
 }
 
 }  // namespace gfxrepro::tables

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "runner/tables/expression.h"
 #include "runner/tables/summary.h"
@@ -18,5 +19,8 @@ struct CurvePoint {
 /// where the curve does not come by in each round, or does so at several places, as which is meant
 /// nobody can tell.
 Summary readCurve(std::span<const CurvePoint> curve, double at);
+
+/// Why it has none there; `metric` is that of x.
+std::string whyNoValue(std::span<const CurvePoint> curve, const std::string& metric, double at);
 
 }  // namespace gfxrepro::tables

@@ -102,7 +102,8 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
         const bool hasRounds = measured.rounds.size() > 1;
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
                          measured.areDraws, cell.seedCount > 0 || cell.scatters, cell.seedCount,
-                         cell.scatters, measured.isOverProcesses ? measured.statistic : ""});
+                         cell.scatters, cell.isTime && !hasRounds,
+                         measured.isOverProcesses ? measured.statistic : ""});
         values.push_back(measured.value);
         result.seedCount = fewerSeeds(result.seedCount, cell.seedCount);
     }
@@ -112,11 +113,14 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     result.areDraws = keepRoundsOrDraws(all);
     result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
     result.scatters = std::ranges::any_of(cells, &Sampled::scatters);
+    result.isOnce = std::ranges::any_of(cells, &Sampled::isOnce);
     for (const Sampled& cell : cells) {
         if (result.overProcesses.empty()) result.overProcesses = cell.overProcesses;
     }
     // One sample of a part is one of the whole, however often the rest was measured.
-    const auto isOne = [](const Sampled& cell) { return cell.isRandom && cell.rounds.empty(); };
+    const auto isOne = [](const Sampled& cell) {
+        return (cell.isRandom || cell.isOnce) && cell.rounds.empty();
+    };
     if (!result.overProcesses.empty() || std::ranges::any_of(cells, isOne)) return result;
     for (const int round : commonRounds(cells)) {
         for (std::size_t i = 0; i < cells.size(); ++i) values[i] = cells[i].at(round);

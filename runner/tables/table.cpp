@@ -129,6 +129,27 @@ bool isRecorded(const Cell& cell) {
     return !cell.values.empty() || cell.status == records::Status::Ambiguous;
 }
 
+/// What differs when it is taken again did so by chance where it was taken once: of one column, and
+/// of one metric.
+void spreadScatter(Table& table) {
+    std::set<std::string> metrics;
+    std::set<std::size_t> columns;
+    const auto visit = [&](const auto& take) {
+        for (TableRow& row : table.rows) {
+            for (std::size_t i = 0; i < row.cells.size(); ++i) take(row.cells[i], i);
+        }
+    };
+    visit([&](const Cell& cell, std::size_t column) {
+        if (!cell.scatters) return;
+        columns.insert(column);
+        if (!cell.metric.empty()) metrics.insert(cell.metric);
+    });
+    visit([&](Cell& cell, std::size_t column) {
+        const bool isSuch = columns.contains(column) || metrics.contains(cell.metric);
+        cell.scatters |= isSuch && !cell.isTime && cell.seedCount == 0 && !cell.values.empty();
+    });
+}
+
 /// What the cases of a cell did not record is blank where others of its row and of its column were
 /// recorded: other methods, or more images, have it. A whole row or column without a value is
 /// missing, as one of a misspelt metric, and so is what is printed.
@@ -282,6 +303,7 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     table.notes.insert(table.notes.end(), notes.begin(), notes.end());
     layPrintedBeside(experiment, table);
     blankWhatOthersHave(table);
+    spreadScatter(table);
     fillComputed(layout, table);
     if (std::string note = seedNote(table); !note.empty()) table.notes.push_back(std::move(note));
     compareRivals(rivals, against, table);

@@ -223,6 +223,16 @@ TEST_F(Data, SeedsOfImportedNumbersAreRounds) {
     EXPECT_THAT(verdictOf("repeat", 8, 1.5), testing::Contains("nearer ambiguous"));
 }
 
+TEST_F(Data, ASweptSeedIsAParameter) {
+    const std::string csv = folder_.write("s.csv", "seed,metric,value\n1,rmse,2\n2,rmse,3\n");
+    const std::string config =
+        folder_.write("s.yaml",
+                      "sweep_of: s\ntitle: S\ntechnique: imported\nsweep: {seed: [1, 2]}\n"
+                      "layout: {rows: seed, columns: {e: {metric: rmse}}}\n");
+    EXPECT_EQ(mockGfxrepro({"import", csv, "--config", config, "--out", dir("s")}).exitCode, 0);
+    EXPECT_THAT(readFile(dir("s") + "/tables/sweep-s.csv"), HasSubstr("\n2,"));
+}
+
 TEST_F(Data, WhatCheckRefusesIsNotImported) {
     const std::string csv = folder_.write("t.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.1\n");
     const std::string head =

@@ -455,6 +455,15 @@ TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
     EXPECT_EQ(ofTemplate("{metric: cpu_time_ms}"),
               "gfxrepro: DIR/mine.yaml:5:23: metric 'cpu_time_ms' is of a pass, and the cell names "
               "none; allowed: with pass: draw\n");
+    EXPECT_EQ(checked(folder,
+                      "technique: template\nparams: {errors: true}\nlayout: {columns: {a: {metric: "
+                      "cpu_time_ms}}, cell: {pass: result}}\n"),
+              "gfxrepro: DIR/mine.yaml:5:23: metric 'cpu_time_ms' is not taken of 'result'; "
+              "allowed: draw\n");
+    EXPECT_THAT(checked(folder,
+                        "technique: template\nparams: {errors: true}\nlayout: {rows: {x: {pass: "
+                        "draw}}, columns: {a: {metric: rmse}}}\n"),
+                HasSubstr("metric 'rmse' is not taken of 'draw'; allowed: result\n"));
     for (const char* column : {"{metric: cpu_time_ms, pass: draw}", "{metric: rmse, pass: result}",
                                "{metric: wrong_pct, pass: result}"}) {
         const auto good = folder.write(

@@ -40,6 +40,32 @@ double crossing(const GroupPoint& group) {
     return isNearer ? kInfinity : -kInfinity;
 }
 
+/// Where both vary, lines that are one cross somewhere by chance: so one of them has to be surely
+/// the larger in the first row, and the other one in the last.
+Contrasts changesPlaces(Contrasts crossings) {
+    return [crossings](const GroupPoint& group) {
+        std::vector<Contrast> contrasts = crossings(group);
+        const std::vector<std::size_t> rows = rowsByX(group);
+        if (std::isnan(crossing(group))) return contrasts;
+        const auto& a = group.operands[0];
+        const auto& b = group.operands[1];
+        const bool isFirst = a[rows.front()] > b[rows.front()];
+        for (const bool isAtEnd : {false, true}) {
+            const std::size_t row = isAtEnd ? rows.back() : rows.front();
+            Requirement beyond;
+            (isFirst != isAtEnd ? beyond.low : beyond.high) = 1.0;
+            beyond.isLowExcluded = beyond.isHighExcluded = true;
+            const GroupNumber ratio = [row](const GroupPoint& one) {
+                return one.operands[0][row] / one.operands[1][row];
+            };
+            contrasts.push_back(
+                {isAtEnd ? "ratio in the last row" : "ratio in the first row", ratio, beyond});
+            contrasts.back().isCondition = true;
+        }
+        return contrasts;
+    };
+}
+
 std::vector<ClaimPart> crossoverParts(const ClaimSpec& claim) {
     const std::string name =
         "crossing of " + joined(claim.operands, " and ") + " at " + claim.over.value_or("");
@@ -47,6 +73,8 @@ std::vector<ClaimPart> crossoverParts(const ClaimSpec& claim) {
     part.requirement.isInfinityAbsence = true;
     part.needsX = true;
     part.minRows = 2;
+    part.onTimes =
+        changesPlaces(asItself(part.measuredName, crossing, part.requirement, Scale::Ranks));
     return {part};
 }
 

@@ -59,6 +59,7 @@ struct Contrast {
     std::function<double(const GroupPoint&, double quantity)> distance = {};
     /// It can only fail: not to be told from its bound is as good as to hold.
     bool isRefutation = false;
+    bool isCondition = false;  // of what the claim asks for: told only where it is worse
 };
 /// The contrasts of a group with these values.
 using Contrasts = std::function<std::vector<Contrast>(const GroupPoint&)>;

@@ -1076,8 +1076,8 @@ TEST(Claims, NumbersThatScatterWithoutASeedAreNotCertain) {
         return judgePowers(claim, maker.records());
     };
     const std::string falls = "trend: a, over: n, direction: decreasing";
-    EXPECT_EQ(judge(falls, 1e-9, 3, 1).verdict, Verdict::Holds) << "the order of a sum";
-    EXPECT_EQ(judge(falls, 1e-9, 1, 3).verdict, Verdict::Holds);
+    EXPECT_EQ(judge(falls, 1e-15, 3, 1).verdict, Verdict::Holds) << "the order of a sum";
+    EXPECT_EQ(judge(falls, 1e-15, 1, 3).verdict, Verdict::Holds);
     EXPECT_EQ(judge(falls, 1e-3, 6, 1).verdict, Verdict::Holds);
     EXPECT_EQ(judge(falls, 1e-3, 6, 1).reason, "");
     EXPECT_EQ(judge(falls, 1e-3, 3, 1).verdict, Verdict::Ambiguous);
@@ -1085,8 +1085,45 @@ TEST(Claims, NumbersThatScatterWithoutASeedAreNotCertain) {
               "3 processes came to different numbers; an interval needs 6 processes");
     EXPECT_EQ(judge(falls, 1e-3, 1, 3).verdict, Verdict::Ambiguous);
     EXPECT_EQ(judge(falls, 1e-3, 1, 3).reason,
-              "repeats of one process came to different numbers; an interval needs 6 processes");
+              "one process of numbers that differ when they are taken again; an interval needs 6 "
+              "processes");
+    EXPECT_EQ(judge(falls, 1e-8, 3, 1).verdict, Verdict::Ambiguous) << "however little";
     EXPECT_EQ(judge("bound: b, at_most: 1", 1e-3, 1, 3).verdict, Verdict::Holds) << "is of b alone";
+}
+
+/// One of them may lie anywhere where the others scatter.
+TEST(Claims, OneProcessBesideManyDecidesNothing) {
+    for (const char* metric : {"rmse", "wall_time_ms"}) {
+        tables::RecordMaker maker;
+        for (const int n : {1, 2}) {
+            maker.beginCase("", fmt::format(R"({{"n":{}}})", n));
+            for (int process = 0; process < (n == 1 ? 1 : 8); ++process) {
+                maker.process(process).add(metric, {(1.0 + 0.01 * process) * n}, "", "ms");
+            }
+        }
+        const ClaimResult result = judgeOne(
+            fmt::format(
+                "sweep: {{n: [1, 2]}}\nlayout: {{rows: n, columns: {{a: {{metric: {}}}}}}}\n"
+                "claims: {{C: {{says: so, order: [n=1, n=2]{}}}}}\n",
+                metric, metric[0] == 'w' ? ", kind: algorithmic" : ""),
+            maker.records());
+        EXPECT_EQ(result.verdict, Verdict::Ambiguous) << metric;
+    }
+}
+
+TEST(Claims, WhatIsExactIsSoInEachProcess) {
+    const auto judge = [](std::initializer_list<double> values) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})");
+        int process = 0;
+        for (const double value : values) maker.process(process++).add("a", {value}, "", "1");
+        return judgePowers("exact: a, equals: 5, at: {n: 1}", maker.records()).verdict;
+    };
+    EXPECT_EQ(judge({5, 5, 5, 5, 5, 5}), Verdict::Holds);
+    EXPECT_EQ(judge({5, 5, 5, 5, 5, 5, 5, 5, 5, 6}), Verdict::Ambiguous);
+    EXPECT_EQ(judge({5, 6}), Verdict::Ambiguous);
+    EXPECT_EQ(judge({4, 6}), Verdict::Fails) << "in neither";
+    EXPECT_EQ(judge({6, 6}), Verdict::Fails);
 }
 
 /// Of two samplers that are alike six seeds say in one case of twenty that one is better; a

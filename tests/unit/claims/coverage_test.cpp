@@ -159,6 +159,27 @@ TEST_P(Coverage, OfAnExponent) {
     EXPECT_GE(share, kRequired);
 }
 
+/// Lines that are one, or nowhere meet, cross by chance; those that do are found.
+TEST_P(Coverage, OfACrossing) {
+    ClaimSpec crosses = claimOf("crossover");
+    crosses.low = 1.0;
+    crosses.high = 16.0;
+    const std::vector<double> x = {1, 2, 4, 8, 16};
+    for (const double apart : {1.0, 1.02}) {
+        const double silent = shareOf("no crossing", GetParam(), [&](Random& random) {
+            const std::vector<double> a(5, 10.0), b(5, 10.0 * apart);
+            return verdictOn(groupOf({a, b}, x, GetParam(), random), crosses) != Verdict::Holds;
+        });
+        EXPECT_GE(silent, atLeast(0.97)) << apart;
+    }
+    const double found = shareOf("crossing", GetParam(), [&](Random& random) {
+        const Group group =
+            groupOf({{5, 8, 10, 16, 30}, {10, 10, 10, 10, 10}}, x, GetParam(), random);
+        return verdictOn(group, crosses) == Verdict::Holds;
+    });
+    EXPECT_GE(found, atLeast(0.95));
+}
+
 /// Equal times are not said to differ, nor different ones to be equal.
 TEST_P(Coverage, OfWhatIsAlike) {
     ClaimSpec alike = claimOf("independent");

@@ -64,6 +64,37 @@ TEST(SceneSeeds, AreNoScatter) {
     EXPECT_FALSE(table.rows[0].cells[0].scatters);
 }
 
+TEST(SceneSeeds, FewDecideNothing) {
+    EXPECT_EQ(verdictOnShares("bound", {9, 8}), Verdict::Ambiguous);
+    EXPECT_EQ(verdictOnShares("bound", {9, 8, 7, 10}), Verdict::Ambiguous);
+    EXPECT_EQ(verdictOnShares("bound", {9, 9}), Verdict::Holds) << "they do not differ";
+}
+
+/// Two processes of a scan are two however many seeds the meadow has.
+TEST(SceneSeeds, ProcessesOfOtherScenesAreNoSeeds) {
+    tables::RecordMaker maker;
+    for (int seed = 0; seed < 5; ++seed) {
+        const std::string sample = "\"scene_sample\":" + std::to_string(seed);
+        maker.beginCase(
+            seed == 0 ? "grass" : "grass@" + std::to_string(seed + 1),
+            seed == 0 ? "{" + sample + "}" : "{" + sample + ",\"stands_for\":\"grass\"}");
+        maker.lane("quality").add("share", {9.0}, "", "%");
+    }
+    maker.beginCase("scan").lane("quality");
+    for (const int process : {0, 1}) {
+        maker.process(process).add("share", {process == 0 ? 6.0 : 7.0}, "", "%");
+    }
+    const config::Experiment experiment = tables::experimentFrom(kBody);
+    const tables::Table table = tables::buildTable(experiment, maker.records());
+    const tables::Cell& scan = table.rows[1].cells[0];
+    EXPECT_EQ(scan.values[0].rounds.size(), 2U);
+    EXPECT_EQ(scan.bounds(), tables::Bounds::Range);
+    for (const ClaimResult& result :
+         evaluateClaims(experiment, table, {"llvmpipe", "software", "paper", "abc", ""})) {
+        if (result.id == "order") EXPECT_EQ(result.verdict, Verdict::Ambiguous);
+    }
+}
+
 TEST(SceneSeeds, AVerdictTakesAllOfThem) {
     EXPECT_EQ(verdictOnShares("bound", {9, 8, 7, 10, 11}), Verdict::Holds);
     EXPECT_EQ(verdictOnShares("bound", {9, 8, 3, 10, 11}), Verdict::Ambiguous);

@@ -12,6 +12,8 @@
 namespace gfxrepro::config {
 namespace {
 
+using testing::HasSubstr;
+
 using test::errorText;
 
 std::string parseError(std::string_view text) {
@@ -92,6 +94,13 @@ TEST(Node, ParseErrorsSayWhere) {
     EXPECT_EQ(parseError("x: 1\na: {b: \"[\", c: [1, 2]  # ]\nd: 2\n"),
               "a.yaml:2:4: '{' is not closed");
     EXPECT_EQ(parseError("a: {b: [1, 2}\n"), "a.yaml:1:8: '[' is not closed");
+    for (const char* text : {"a: {b: python3 {here}/p.py {n}}\n", "a: {b: e[n=4] / e}\n"}) {
+        EXPECT_THAT(parseError(text),
+                    HasSubstr("within brackets and braces a text with some of its "
+                              "own, as {here}/program or error[n=4], stands in "
+                              "quotes"))
+            << text;
+    }
     EXPECT_EQ(parseError("a: 1\nb: \"x\nc: \\\"y\n"), "a.yaml:2:4: \" is not closed");
     EXPECT_EQ(parseError("a: 'it''s\nb: 1\n"), "a.yaml:1:4: ' is not closed");
     EXPECT_EQ(parseError("{é: \"\\\" 'x\\\\\", b: 'it''s \"', \"c\": \"y\n  z\", d: &d 'z'}"),

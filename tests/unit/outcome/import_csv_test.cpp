@@ -37,14 +37,18 @@ class ImportCsv : public testing::Test {
 TEST_F(ImportCsv, ASeedNumbersProcesses) {
     const ImportedNumbers numbers = read(
         "method,seed,metric,value\na,7,rmse,1\na,3,rmse,2\nb,3,rmse,3\nb,7,rmse,4\nc,,rmse,5\n"
-        "d,9,rmse,6\nd,3,rmse,7\n");
+        "d,9,rmse,6\nd,8,rmse,7\n");
     ASSERT_EQ(numbers.cases.size(), 4U);
     std::vector<int> processes;
     for (const ImportedRow& row : numbers.rows) processes.push_back(row.record.process);
-    EXPECT_EQ(processes, (std::vector<int>{0, 1, 1, 0, 0, 1, 0}));
+    EXPECT_EQ(processes, (std::vector<int>{0, 1, 1, 0, 0, 0, 1}));
     EXPECT_TRUE(numbers.cases[0].hasSeeds);
     EXPECT_TRUE(numbers.cases[1].hasSeeds);
     EXPECT_FALSE(numbers.cases[2].hasSeeds);
+    const ImportedNumbers parts = read(
+        "method,seed,metric,value\na,1,rmse,1\na,2,rmse,2\na,3,rmse,3\nb,2,rmse,4\nb,3,rmse,5\n");
+    EXPECT_EQ(parts.rows[3].record.process, 1) << "as of the same seed elsewhere";
+    EXPECT_EQ(parts.rows[4].record.process, 2);
     EXPECT_EQ(refusal("seed,process,metric,value\n1,0,rmse,1\n"),
               "DIR/a.csv:1: columns 'seed' and 'process': a seed is of a process of its own; "
               "allowed: one of the two, or the column 'params.seed' for a parameter");

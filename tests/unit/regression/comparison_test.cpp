@@ -266,6 +266,23 @@ TEST(Comparison, ADriftOfTheMachineIsSeldomAnAlarm) {
     }
 }
 
+/// As of a program that seeds itself: what differs by as much within one side is no change.
+TEST(Comparison, NumbersThatScatterAreNotChangedByChance) {
+    SeriesKey key = test::timeOf("m");
+    key.metric = "rmse";
+    key.unit = "1";
+    const auto told = [&](const Series& before, const Series& after) {
+        return compare({{key, before}}, {{key, after}}, Pairing::Apart).front();
+    };
+    const Difference alike = told({1, 2, 3, 4, 5, 6}, {1.5, 2.5, 3.5, 4.5, 5.5, 6.5});
+    EXPECT_EQ(alike.verdict, Verdict::CannotTell);
+    EXPECT_EQ(alike.reason, "numbers that differ between processes of one side");
+    EXPECT_EQ(told({1, 2}, {3, 4}).verdict, Verdict::CannotTell) << "by chance in a third";
+    EXPECT_EQ(told({1, 2, 3, 4, 5, 6}, {7, 8, 9, 10, 11, 12}).verdict, Verdict::Changed);
+    EXPECT_EQ(told({1, 2, 3}, {1, 2, 3}).verdict, Verdict::Same) << "of the same seeds";
+    EXPECT_EQ(told({1, 1, 1}, {2, 2, 2}).verdict, Verdict::Changed);
+}
+
 TEST(Comparison, TellsWhyRunsMeasuredApartCannotDecide) {
     const auto reason = [](const Series& after) {
         SeriesMap before, later;
