@@ -10,102 +10,25 @@
 namespace gfxrepro::scene {
 namespace {
 
-enum class ModelShape {
-    Blade,
-    Brain,
-    Buddha,
-    Bunny,
-    Cube,
-    Dragon,
-    Duck,
-    Hand,
-    Head,
-    Hip,
-    Hugo,
-    LinkedTori,
-    Lion,
-    Sphere,
-    Torus,
-    Wagner
+using ShapeOf = sdf::Shape (*)(std::uint32_t seed);
+
+constexpr Choice<ShapeOf> kModelShapes[] = {
+    {shapes::blade, "blade", "turbine blade: twisted airfoil on a root block"},
+    {shapes::brain, "brain", "two hemispheres with gyri, cerebellum and stem"},
+    {shapes::buddha, "buddha", "sitting figure on a lotus"},
+    {shapes::bunny, "bunny", "sitting rabbit"},
+    {shapes::dragon, "dragon", "long body with crest, legs and horns"},
+    {shapes::duck, "duck", "rubber duck"},
+    {shapes::hand, "hand", "open hand, palm to the front"},
+    {shapes::head, "head", "human head with neck"},
+    {shapes::hip, "hip", "hip bone with socket and foramen"},
+    {shapes::hugo, "hugo", "standing man"},
+    {shapes::linkedTori, "linked_tori", "two rings through each other"},
+    {shapes::lion, "lion", "sitting lion on a plinth"},
+    {shapes::sphere, "sphere", "radius 1"},
+    {shapes::torus, "torus", "radius 0.7, tube 0.3"},
+    {shapes::wagner, "wagner", "bust with beret"},
 };
-
-constexpr Choice<ModelShape> kModelShapes[] = {
-    {ModelShape::Blade, "blade", "turbine blade: twisted airfoil on a root block"},
-    {ModelShape::Brain, "brain", "two hemispheres with gyri, cerebellum and stem"},
-    {ModelShape::Buddha, "buddha", "sitting figure on a lotus"},
-    {ModelShape::Bunny, "bunny", "sitting rabbit"},
-    {ModelShape::Cube, "cube", "[-1, 1]³ with sharp edges"},
-    {ModelShape::Dragon, "dragon", "long body with crest, legs and horns"},
-    {ModelShape::Duck, "duck", "rubber duck"},
-    {ModelShape::Hand, "hand", "open hand, palm to the front"},
-    {ModelShape::Head, "head", "human head with neck"},
-    {ModelShape::Hip, "hip", "hip bone with socket and foramen"},
-    {ModelShape::Hugo, "hugo", "standing man"},
-    {ModelShape::LinkedTori, "linked_tori", "two rings through each other"},
-    {ModelShape::Lion, "lion", "sitting lion on a plinth"},
-    {ModelShape::Sphere, "sphere", "radius 1"},
-    {ModelShape::Torus, "torus", "radius 0.7, tube 0.3"},
-    {ModelShape::Wagner, "wagner", "bust with beret"},
-};
-
-sdf::Shape shapeOf(ModelShape shape, std::uint32_t seed) {
-    switch (shape) {
-        case ModelShape::Blade:
-            return shapes::blade(seed);
-        case ModelShape::Brain:
-            return shapes::brain(seed);
-        case ModelShape::Buddha:
-            return shapes::buddha(seed);
-        case ModelShape::Bunny:
-            return shapes::bunny(seed);
-        case ModelShape::Dragon:
-            return shapes::dragon(seed);
-        case ModelShape::Duck:
-            return shapes::duck(seed);
-        case ModelShape::Hand:
-            return shapes::hand(seed);
-        case ModelShape::Head:
-            return shapes::head(seed);
-        case ModelShape::Hip:
-            return shapes::hip(seed);
-        case ModelShape::Hugo:
-            return shapes::hugo(seed);
-        case ModelShape::LinkedTori:
-            return shapes::linkedTori(seed);
-        case ModelShape::Lion:
-            return shapes::lion(seed);
-        case ModelShape::Torus:
-            return shapes::torus(seed);
-        case ModelShape::Wagner:
-            return shapes::wagner(seed);
-        case ModelShape::Cube:
-        case ModelShape::Sphere:
-            break;
-    }
-    return shapes::sphere(seed);
-}
-
-/// 12 triangles, 24 vertices: each face has its own normal.
-Mesh cube() {
-    Mesh mesh;
-    for (int axis = 0; axis < 3; ++axis) {
-        for (const float side : {-1.0F, 1.0F}) {
-            glm::vec3 normal(0.0F);
-            normal[axis] = side;
-            glm::vec3 u(0.0F);
-            u[(axis + 1) % 3] = 1.0F;
-            const glm::vec3 v = glm::cross(normal, u);
-            const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-            for (const glm::vec2 corner : {glm::vec2(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
-                mesh.positions.push_back(normal + corner.x * u + corner.y * v);
-                mesh.normals.push_back(normal);
-            }
-            mesh.triangles.emplace_back(first, first + 1, first + 2);
-            mesh.triangles.emplace_back(first, first + 2, first + 3);
-        }
-    }
-    return mesh;
-}
 
 /// Half the side of the grid's cube; every shape lies inside.
 constexpr float kExtent = 1.3F;
@@ -154,8 +77,8 @@ void addSeams(Mesh& mesh, std::size_t vertexCount, std::uint64_t seed) {
 }  // namespace
 
 Scene sdfModel(Params& params, std::uint64_t seed) {
-    const ModelShape shape =
-        params.getEnum("shape", ModelShape::Sphere, kModelShapes, {"what is modelled"});
+    const ShapeOf shapeOf =
+        params.getEnum("shape", shapes::sphere, kModelShapes, {"what is modelled"});
     const int triangles = params.getInt(
         "triangles", 10'000, {"exact count; even, for the surface is closed", "", 500, 20e6});
     const int vertices = params.getInt(
@@ -173,15 +96,10 @@ Scene sdfModel(Params& params, std::uint64_t seed) {
     }
 
     const auto triangleCount = static_cast<std::size_t>(triangles);
-    Mesh mesh;
-    if (shape == ModelShape::Cube) {
-        mesh = cube();
-    } else {
-        mesh = polygonizedBelow(shapeOf(shape, static_cast<std::uint32_t>(seed)), triangleCount);
-    }
+    Mesh mesh = polygonizedBelow(shapeOf(static_cast<std::uint32_t>(seed)), triangleCount);
     const glm::vec3 factors(stretch[0], stretch[1], stretch[2]);
     for (glm::vec3& position : mesh.positions) position *= factors;
-    if (shape != ModelShape::Cube) mesh.normals = vertexNormals(mesh);
+    mesh.normals = vertexNormals(mesh);
     mesh = refinedTo(std::move(mesh), triangles);
     const std::size_t least = mesh.positions.size();
     if (vertices != 0) {

@@ -6,28 +6,14 @@ namespace gfxrepro::scene {
 
 namespace {
 
-enum class StandingShape { Bunny, Dragon, Hugo, Torus };
+using StandingShape = sdf::Shape (*)(std::uint32_t seed);
 
 constexpr Choice<StandingShape> kStandingShapes[] = {
-    {StandingShape::Bunny, "bunny", "sitting rabbit"},
-    {StandingShape::Dragon, "dragon", "long body with crest, legs and horns"},
-    {StandingShape::Hugo, "hugo", "standing man"},
-    {StandingShape::Torus, "torus", "a ring that lies"},
+    {shapes::bunny, "bunny", "sitting rabbit"},
+    {shapes::dragon, "dragon", "long body with crest, legs and horns"},
+    {shapes::hugo, "hugo", "standing man"},
+    {shapes::torus, "torus", "a ring that lies"},
 };
-
-sdf::Shape shapeOf(StandingShape shape, std::uint32_t seed) {
-    switch (shape) {
-        case StandingShape::Bunny:
-            return shapes::bunny(seed);
-        case StandingShape::Dragon:
-            return shapes::dragon(seed);
-        case StandingShape::Hugo:
-            return shapes::hugo(seed);
-        case StandingShape::Torus:
-            break;
-    }
-    return shapes::torus(seed);
-}
 
 void addPart(Scene& scene, Mesh mesh, const glm::vec4& baseColor, bool isDoubleSided = false) {
     const int index = static_cast<int>(scene.meshes.size());
@@ -44,15 +30,14 @@ void addPart(Scene& scene, Mesh mesh, const glm::vec4& baseColor, bool isDoubleS
 }  // namespace
 
 Scene objectOnPlane(Params& params, std::uint64_t seed) {
-    const StandingShape shape =
-        params.getEnum("shape", StandingShape::Hugo, kStandingShapes, {"what stands on the plane"});
+    const StandingShape shapeOf =
+        params.getEnum("shape", shapes::hugo, kStandingShapes, {"what stands on the plane"});
     params.finish();
 
     constexpr float kExtent = 1.3F;     // holds every shape
     constexpr float kSpacingM = 0.02F;  // of the grid that the shape is sampled on
     Scene scene;
-    Mesh object =
-        sdf::polygonized(shapeOf(shape, static_cast<std::uint32_t>(seed)), kExtent, kSpacingM);
+    Mesh object = sdf::polygonized(shapeOf(static_cast<std::uint32_t>(seed)), kExtent, kSpacingM);
     object.normals = vertexNormals(object);
     object.name = "object";
     const float floor = object.bounds().min.y;

@@ -10,6 +10,7 @@
 #include "engine/core/random.h"
 #include "engine/raycast/ray_tracer.h"
 #include "scenes/registry.h"
+#include "scenes/shared/mesh_builder.h"
 #include "tests/support/crossings.h"
 #include "tests/support/support.h"
 
@@ -113,7 +114,9 @@ TEST(RayTracer, InstancesKeepTheirNumbersAndTheirOutside) {
 }
 
 TEST(RayTracer, AllHitsCountEveryTriangleAndCrossingsEverySurface) {
-    const RayTracer cube(body("cube", 3072));
+    scene::MeshBuilder box;
+    box.addBox(glm::vec3(0.0F), glm::vec3(1.0F));
+    const RayTracer cube(scene::sceneOf(box.take("cube", -1)));
     EXPECT_THAT(test::crossings(cube, {-3, 0.123F, 0.231F}, {1, 0, 0}), areDistances({2, 4}));
     EXPECT_EQ(test::allHits(cube, {-3, 0.123F, 0.231F}, {1, 0, 0}).size(), 2U);
     EXPECT_TRUE(test::allHits(cube, {-3, 3, 0}, {1, 0, 0}).empty());

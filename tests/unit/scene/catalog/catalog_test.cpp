@@ -156,7 +156,7 @@ TEST(Catalog, TakesTheFirstSourceAtHand) {
         "scene: m/x\ndoc: an x\nsources:\n"
         "  - file: x/full.obj\n"
         "  - {file: x/small.obj, refine_to: 9}\n"
-        "  - {generator: sdf_model, params: {shape: cube, triangles: 600}, seed: 4}\n");
+        "  - {generator: sdf_model, params: {shape: sphere, triangles: 600}, seed: 4}\n");
     const Catalog catalog = folders.catalog();
     EXPECT_EQ(catalog.entries().at("m/x").doc, "an x");
 
@@ -165,7 +165,7 @@ TEST(Catalog, TakesTheFirstSourceAtHand) {
     EXPECT_EQ(last.triangleCount(), 600U);
     EXPECT_EQ(last.origin.kind, Origin::Kind::StandIn);
     EXPECT_EQ(last.origin.description,
-              "generator sdf_model, seed 4: {shape: cube, triangles: 600}");
+              "generator sdf_model, seed 4: {shape: sphere, triangles: 600}");
     EXPECT_EQ(last.origin.sha256, "");
 
     folders.folder.write("assets/x/small.obj", kTriangle);
@@ -192,7 +192,7 @@ TEST(Catalog, ContentKeyFollowsTheContent) {
     folders.folder.write("assets/b.obj", kTriangle);
     EXPECT_EQ(keyWith("{file: a.obj}"), keyWith("{file: b.obj}"));
     EXPECT_NE(keyWith("{file: a.obj}"), keyWith("{file: a.obj, refine_to: 5}"));
-    const std::string one = "{generator: sdf_model, params: {shape: cube}";
+    const std::string one = "{generator: sdf_model, params: {shape: sphere}";
     EXPECT_EQ(keyWith(one + "}"), keyWith(one + ", seed: 1}"));
     EXPECT_NE(keyWith(one + "}"), keyWith(one + ", seed: 2}"));
     EXPECT_NE(keyWith(one + "}"), keyWith("{generator: sdf_model, params: {shape: torus}}"));
