@@ -125,7 +125,6 @@ ReconstructedMesh Reconstructor::reconstruct(const kit::DepthImage& image,
             fmt::format("a depth image of {} × {} pixels cannot be made a mesh; at most {} a side",
                         view.sizePx.x, view.sizePx.y, kMaxSizePx));
     }
-    const bool isHybrid = settings_.method == Reconstruction::Hybrid;
     resizeScratch(view.sizePx);
     gl::Resources images = gl::Resources{}.with({{"depthOfI", image.depth},
                                                  {"idOfI", image.triangleId},
@@ -133,7 +132,7 @@ ReconstructedMesh Reconstructor::reconstruct(const kit::DepthImage& image,
                                                  {"flags", flags_},
                                                  {"places", places_},
                                                  {"Runs", runs_}});
-    if (isHybrid) {
+    if (settings_.method == Reconstruction::Hybrid) {
         GFXREPRO_ASSERT(offsetImage != nullptr && isHalfPixelToLowerLeft(offsetImage->view, view));
         images =
             images.with({{"depthOfH", offsetImage->depth}, {"idOfH", offsetImage->triangleId}});
@@ -145,8 +144,6 @@ ReconstructedMesh Reconstructor::reconstruct(const kit::DepthImage& image,
     mesh.vertexCount = totals.x;
     mesh.triangleCount = totals.y;
     mesh.sampleCount = totals.z;
-    mesh.fittedCorners = totals.w;
-    mesh.sharedCorners = isHybrid ? 4 * totals.z - totals.w : 0;
     mesh.vertices = gl::Buffer(mesh.vertexCount * sizeof(CornerVertex));
     mesh.indices = gl::Buffer(mesh.triangleCount * sizeof(glm::uvec3));
     if (mesh.triangleCount > 0) emit(mesh, images);

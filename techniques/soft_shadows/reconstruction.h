@@ -50,9 +50,7 @@ struct ReconstructedMesh {
     gl::Buffer indices;
     std::uint32_t vertexCount = 0;
     std::uint32_t triangleCount = 0;
-    std::uint32_t sampleCount = 0;    // samples of the image
-    std::uint32_t sharedCorners = 0;  // corners of samples' quads taken from H (hybrid)
-    std::uint32_t fittedCorners = 0;  // corners of samples' quads from planes (hybrid)
+    std::uint32_t sampleCount = 0;  // samples of the image
 
     std::size_t sizeBytes() const;
 };
@@ -77,7 +75,7 @@ class Reconstructor {
   private:
     void resizeScratch(glm::ivec2 imageSizePx);
     void setGeometry(const gl::Program& program, const kit::View& view) const;
-    /// Vertices, triangles, samples and plane-fitted corners of the mesh.
+    /// Vertices, triangles and samples of the mesh.
     glm::uvec4 countElements(const kit::View& view, const gl::Resources& images);
     void emit(const ReconstructedMesh& mesh, const gl::Resources& images);
 

@@ -15,7 +15,7 @@ bool isUsed(ivec2 pixel) {
     return false;
 }
 
-/// Vertices, triangles, samples, plane-fitted corners.
+/// Vertices, triangles, samples.
 uvec4 countsAt(ivec2 corner) {
     uint bits = imageLoad(flags, corner).r;
     return uvec4(isUsed(corner) ? 1u : 0u, bitCount(trianglesOf(bits)), bits >> 4, 0u);

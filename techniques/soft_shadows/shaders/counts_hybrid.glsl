@@ -28,11 +28,10 @@ bool joinsLeft(ivec2 pixel) {
 bool joinsLeft(ivec2 pixel) { return false; }
 #endif
 
-/// Vertices, triangles, samples, plane-fitted corners.
+/// Vertices, triangles, samples.
 uvec4 countsAt(ivec2 corner) {
     uint bits = imageLoad(flags, corner).r;
-    uint fitted = bitCount(fittedOf(bits));
     uint samples = samplesAround(bits) & 1u;
     uint quads = samples == 1u && !joinsLeft(corner) ? 1u : 0u;
-    return uvec4(sharedVertices(bits) + fitted, 2u * quads, samples, fitted);
+    return uvec4(sharedVertices(bits) + bitCount(fittedOf(bits)), 2u * quads, samples, 0u);
 }

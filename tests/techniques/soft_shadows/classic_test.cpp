@@ -121,8 +121,6 @@ TEST_F(ClassicTest, APlaneIsTwoTrianglesACell) {
     EXPECT_EQ(measured.mesh.sampleCount, 35U);
     EXPECT_EQ(measured.vertices.size(), 35U);
     EXPECT_EQ(measured.triangles.size(), 2U * 4 * 6);
-    EXPECT_EQ(measured.mesh.sharedCorners, 0U);
-    EXPECT_EQ(measured.mesh.fittedCorners, 0U);
     const reference::Shape shape = reference::shapeOf(measured.triangles, measured.vertices.size());
     EXPECT_EQ(shape.euler, 1);
     EXPECT_EQ(shape.parts, 1);
