@@ -1,7 +1,6 @@
 #include "runner/tables/cell.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -13,7 +12,6 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
-#include "runner/tables/curve.h"
 #include "runner/tables/expression.h"
 
 namespace gfxrepro::tables {

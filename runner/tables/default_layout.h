@@ -7,10 +7,17 @@
 
 #include "runner/config/experiment.h"
 #include "runner/records/records.h"
-#include "runner/tables/against_first.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::tables {
+
+/// An axis whose values are methods, patterns, variants: words, of which there are two or more. The
+/// first is what the others are held against. Scenes and truth values are none.
+struct Rivals {
+    std::string axis;
+    std::vector<std::string> values;
+    bool isThere() const { return !axis.empty(); }
+};
 
 struct DefaultLayout {
     config::Layout layout;               // not given where nothing was recorded
@@ -33,5 +40,13 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
 /// What the technique declares of each metric, beside the table's columns.
 void describeColumns(const config::Experiment& experiment, const config::Layout& layout,
                      Table& table);
+
+/// Puts before the notes which rivals are faster or slower, nearer to their truth or farther from
+/// it, than the first, in how many rows and by how much: by the intervals of those columns, all
+/// rows together (metrics::jointChances), a time only beyond the noise of what is divided, and by
+/// the CPU time of the process where that was recorded (Table::judgedByProcess). Behind what is
+/// told (Table::toldNotes) stands what cannot be. Marks the cells that are not apart. Nothing where
+/// a column has no intervals.
+void compareRivals(const Rivals& rivals, const std::vector<std::string>& columns, Table& table);
 
 }  // namespace gfxrepro::tables

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <muParser.h>
-
 #include <map>
 #include <span>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "runner/config/experiment.h"
+#include "runner/tables/summary.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::tables {
@@ -92,5 +92,19 @@ class Operand {
 /// are of these values: what slows a whole process falls out of a ratio. A cell is as good as the
 /// worst that it reads. Throws ExpressionError at the column's place for bad syntax.
 void fillComputed(const config::Layout& layout, Table& table);
+
+/// A case on the curve: the other metric, and the cell's own.
+struct CurvePoint {
+    Sampled x, y;
+};
+
+/// The curve's value where x is `at`, in the order of the points: interpolated between the two
+/// beside it, on logarithmic scales where all are positive, and so in each round. Not-a-number
+/// where the curve does not come by in each round, or does so at several places, as which is meant
+/// nobody can tell.
+Summary readCurve(std::span<const CurvePoint> curve, double at);
+
+/// Why it has none there; `metric` is that of x.
+std::string whyNoValue(std::span<const CurvePoint> curve, const std::string& metric, double at);
 
 }  // namespace gfxrepro::tables
