@@ -1,7 +1,6 @@
 // glTF 2.0. tinygltf parses the file; what it leaves unchecked (every index, every range, the node
 // tree) is checked here and in load_gltf_accessor.
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -19,8 +18,7 @@
 #include "engine/scene/left_out.h"
 #include "engine/scene/load.h"
 #include "engine/scene/load_gltf_file.h"
-#include "engine/scene/load_gltf_material.h"
-#include "engine/scene/load_gltf_pose.h"
+#include "engine/scene/load_gltf_parts.h"
 #include "engine/scene/load_text.h"
 #include "engine/scene/topology.h"
 
