@@ -1,6 +1,6 @@
-// The schema of files that people write, as data: every key with its type, default and meaning. The
-// readers take the keys that they allow from here; so do `gfxrepro describe config`, the JSON
-// schema for editors and configs/README.md.
+// The schema of files that people write, as data: every key with its type, default and meaning, in
+// one table with the place that its reader finds it at. `gfxrepro describe config`, the JSON schema
+// for editors and configs/README.md are made from the same tables.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/checks.h"
 #include "engine/core/json_shape.h"
+#include "engine/core/node.h"
 #include "engine/core/number_range.h"
 
 namespace gfxrepro {
@@ -29,19 +31,85 @@ struct SchemaKey {
 
 /// The keys of one kind of map.
 struct SchemaSection {
-    std::string name;  // "layout": for keysOf, and in the JSON schema
-    std::string path;  // what stands before its keys: "layout.", "claims.ID."
-    std::string doc;   // begins its table
-    std::vector<SchemaKey> keys;
+    std::string name;           // "layout": for schemaSection, and in the JSON schema
+    std::string path;           // what stands before its keys: "layout.", "claims.ID."
+    std::string doc;            // begins its table
     bool isRemovable = true;    // a key may be null, which removes what an extended file has set
     Json others = nullptr;      // the type of all further keys; null: there are none
     Json conditions = nullptr;  // further JSON schema: which keys go together
+    std::vector<SchemaKey> keys = {};
 
     std::vector<std::string> keyNames() const {
         std::vector<std::string> names;
         for (const SchemaKey& key : keys) names.push_back(key.name);
         return names;
     }
+};
+
+/// The keys of one kind of map, each declared beside the member of `Given` that it is read from: no
+/// other can be read, and none is without a reader.
+///
+///     struct EqualKeys { const Node *metric, *is; };  // null where they are not there
+///     const KeyTable<EqualKeys> table{{"equal", "equal.", "…"},
+///                                     {{&EqualKeys::metric, "metric", …}, …}};
+///     const EqualKeys given = table.read(node, "equal");
+template <class Given>
+class KeyTable {
+  public:
+    struct Key {
+        Key(const Node* Given::*whose, SchemaKey key) : place(whose), declared(std::move(key)) {}
+        Key(const Node* Given::*whose, std::string name, std::string type, std::string absent,
+            std::string doc, Json json)
+            : place(whose),
+              declared{std::move(name), std::move(type), std::move(absent), std::move(doc),
+                       std::move(json)} {}
+
+        const Node* Given::*place;
+        SchemaKey declared;
+    };
+    /// `section` has no keys yet.
+    KeyTable(SchemaSection section, const std::vector<Key>& keys) : section_(std::move(section)) {
+        for (const Key& key : keys) {
+            section_.keys.push_back(key.declared);
+            names_.push_back(key.declared.name);
+            places_.push_back(key.place);
+        }
+    }
+
+    const SchemaSection& section() const { return section_; }
+    const std::vector<std::string>& names() const { return names_; }
+
+    /// What the map has at these keys, whatever else it has.
+    Given find(const Node& map) const {
+        Given given{};
+        for (std::size_t i = 0; i < names_.size(); ++i) given.*places_[i] = map.find(names_[i]);
+        return given;
+    }
+    /// Throws Error for a key that is none of these; `what` begins the message.
+    Given readKnown(const Node& map, std::string_view what) const {
+        requireKeys(map, what, names_);
+        return find(map);
+    }
+    /// Throws Error "BEFORE'KEY'AFTER" at `where` for a required key that is not there.
+    void require(const Given& given, const SourceLocation& where, const std::string& before,
+                 std::string_view after = "") const {
+        for (std::size_t i = 0; i < names_.size(); ++i) {
+            if (!section_.keys[i].isRequired() || given.*places_[i]) continue;
+            throw Error(where, before + "'" + names_[i] + "'" + std::string(after));
+        }
+    }
+    /// Both: "WHAT needs 'KEY'" at `where`, or else in the map.
+    Given read(const Node& map, const std::string& what,
+               const SourceLocation* where = nullptr) const {
+        const Given given = readKnown(map, what);
+        require(given, where ? *where : map.location(), what + " needs ");
+        return given;
+    }
+
+  private:
+    SchemaSection section_;
+    std::vector<std::string> names_;
+    std::vector<const Node * Given::*> places_;
 };
 
 /// A kind of file and its sections, the top of the file first.

@@ -212,7 +212,7 @@ namespace {
 
 /// What a reader declares.
 SchemaSection declared(const std::string& name, const Params& params) {
-    SchemaSection section{name, name + ".", "", {}};
+    SchemaSection section{name, name + ".", ""};
     for (const ParamInfo& info : params.declared()) {
         std::string type = info.range.empty() ? info.type : info.range;
         if (!info.unit.empty()) type += " " + info.unit;

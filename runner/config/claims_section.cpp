@@ -22,54 +22,99 @@ using Origin = ClaimSpec::Origin;
 using BoundSource = ClaimSpec::BoundSource;
 using TimeKind = ClaimSpec::TimeKind;
 
-/// Which of `names` the key has; none without it.
-std::optional<std::size_t> choiceIn(const Node& map, const char* key, const std::string& what,
-                                    std::span<const std::string_view> names) {
-    const Node* node = map.find(key);
-    if (!node) return std::nullopt;
-    return choiceOf(*node, names, what + ": " + key);
+struct CommonKeys {
+    const Node *says, *at, *across, *of, *profile, *origin, *sameAs, *boundFrom, *kind, *because;
+};
+const KeyTable<CommonKeys>& commonTable() {
+    using C = CommonKeys;
+    static const KeyTable<C> table{
+        {"claim", "claims.ID.",
+         fmt::format(
+             "Every claim has these, and exactly one of the keys in the tables below with what "
+             "belongs to it; a, b and c are expressions over columns ('gfxrepro describe TABLE' "
+             "lists them), with + - * / ^, comparisons, which are 1 or 0, and the functions {}. "
+             "Where columns are numbers, a number alone is a column, and within an expression '8' "
+             "in quotes is.",
+             fmt::join(claims::kFunctions, ", ")),
+         false},
+        {{&C::says, "says", "line", "required", "the claim in the paper's sense", text()},
+         {&C::at, "at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
+         {&C::across, "across", "row axis", "none",
+          "a, b are its values instead of columns: so rows are compared, column by column", text()},
+         {&C::of, "of", "column | [columns]", "all columns",
+          "of a claim that compares rows, but independent: the columns that are read",
+          oneOrMore(text())},
+         {&C::profile, choiceKey("profile", kProfiles, "all", "the only profile it is judged in")},
+         {&C::origin,
+          choiceKey(
+              "origin", kOrigins, "document, in a sweep ours",
+              "a statement of the document; read off its numbers; our aim; true by construction; "
+              "of an input fitted to it; or a statement that there is such a thing at all, which "
+              "can hardly fail. Only the first is counted")},
+         {&C::sameAs, "same_as", "TABLE CLAIM", "none",
+          "another claim, of this table or another, that says the same truth: where both have one "
+          "verdict, one is counted",
+          text()},
+         {&C::boundFrom,
+          choiceKey(
+              "bound_from", kBoundSources, "ours, in a sweep none",
+              "where the number that it requires comes from; print: it is a printed value, or two "
+              "numbers about one, at most its half and its double, and met by all, unless it is an "
+              "aim of ours")},
+         {&C::kind,
+          choiceKey("kind", kTimeKinds, "absolute; in a sweep algorithmic; or required",
+                    "of a claim about time: counts of work decide; a GPU's units do; or times as "
+                    "such, at the printed parameters, as where one is held against a number, which "
+                    "need not say so. The last two are judged on a GPU only")},
+         {&C::because, "because", "known | [known]", "none",
+          "where it is known not to hold, and why, one for each device, profile and kind of "
+          "scenes, what is of more behind what is of less; another verdict than the known is "
+          "news, but for ambiguous; where ambiguous is known, failing is",
+          oneOrMore(refTo("because"))}}};
+    return table;
 }
 
-std::optional<std::string> nameIn(const Node& map, const char* key, const std::string& what,
+struct KnownKeys {
+    const Node *verdict, *reason, *shownBy, *device, *profile, *scenes;
+};
+const KeyTable<KnownKeys>& knownTable() {
+    using K = KnownKeys;
+    static const KeyTable<K> table{
+        {"because", "claims.ID.because.", "", false},
+        {{&K::verdict, choiceKey("verdict", kKnownVerdicts, "required", "what it comes to")},
+         {&K::reason, "reason", "line", "required",
+          "the cause, in a sentence or two that a reader of the document understands", text()},
+         {&K::shownBy, "shown_by", "PAGE.md#ANCHOR", "none",
+          "the place in results/findings that has the numbers which prove it", text()},
+         {&K::device, choiceKey("device", kDeviceClasses, "any", "on this class of devices")},
+         {&K::profile, choiceKey("profile", kProfiles, "any", "in this profile")},
+         {&K::scenes, choiceKey("scenes", kSceneClasses, "any",
+                                "where all scenes were made of files, or none, as where a real "
+                                "model is not at hand")}}};
+    return table;
+}
+
+/// Which of `names` it is; none where it is not there.
+std::optional<std::size_t> choiceIn(const Node* node, const std::string& what,
+                                    std::span<const std::string_view> names) {
+    return node ? std::optional(choiceOf(*node, names, what)) : std::nullopt;
+}
+
+std::optional<std::string> nameIn(const Node* node, const std::string& what,
                                   std::span<const std::string_view> names) {
-    const auto choice = choiceIn(map, key, what, names);
+    const auto choice = choiceIn(node, what, names);
     return choice ? std::optional<std::string>(names[*choice]) : std::nullopt;
 }
 
-/// The keys of an entry of `because`.
-const std::vector<ReadKey<ClaimSpec::Known>>& knownKeys() {
-    using K = ClaimSpec::Known;
-    using Text = const std::string&;
-    static const auto named = [](const Node& node, std::span<const std::string_view> names,
-                                 Text what) {
-        return std::string(names[choiceOf(node, names, what)]);
-    };
-    static const std::vector<ReadKey<K>> all = {
-        {choiceKey("verdict", kKnownVerdicts, "required", "what it comes to"),
-         [](K& known, const Node& node, Text what) {
-             known.verdict = named(node, kKnownVerdicts, what);
-         }},
-        {{"reason", "line", "required",
-          "the cause, in a sentence or two that a reader of the document understands", text()},
-         [](K& known, const Node& node, Text what) { known.reason = lineOf(node, what); }},
-        {{"shown_by", "PAGE.md#ANCHOR", "none",
-          "the place in results/findings that has the numbers which prove it", text()},
-         [](K& known, const Node& node, Text what) { known.shownBy = lineOf(node, what); }},
-        {choiceKey("device", kDeviceClasses, "any", "on this class of devices"),
-         [](K& known, const Node& node, Text what) {
-             known.device = named(node, kDeviceClasses, what);
-         }},
-        {choiceKey("profile", kProfiles, "any", "in this profile"),
-         [](K& known, const Node& node, Text what) {
-             known.profile = named(node, kProfiles, what);
-         }},
-        {choiceKey(
-             "scenes", kSceneClasses, "any",
-             "where all scenes were made of files, or none, as where a real model is not at hand"),
-         [](K& known, const Node& node, Text what) {
-             known.scenes = named(node, kSceneClasses, what);
-         }}};
-    return all;
+/// An entry of `because`; `what` begins the messages.
+ClaimSpec::Known readKnown(const Node& entry, const std::string& what) {
+    const KnownKeys given = knownTable().read(entry, what);
+    return {*nameIn(given.verdict, what + ": verdict", kKnownVerdicts),
+            nameIn(given.device, what + ": device", kDeviceClasses),
+            nameIn(given.profile, what + ": profile", kProfiles),
+            nameIn(given.scenes, what + ": scenes", kSceneClasses),
+            lineOf(*given.reason, what + ": reason"),
+            optionalLine(given.shownBy, what + ": shown_by")};
 }
 
 std::string knownPlace(const ClaimSpec::Known& known) {
@@ -117,18 +162,20 @@ class ClaimParser {
     ClaimSpec read(bool isOfDocument) {
         claim_.kind = &kindOf();
         const std::string& name = claim_.kind->name();
-        Names allowed = keysOf("claim");
-        for (std::string& key : claim_.kind->section.keyNames()) allowed.push_back(std::move(key));
+        const Names own = claim_.kind->section.keyNames();
+        Names allowed = commonTable().names();
+        allowed.insert(allowed.end(), own.begin(), own.end());
         requireBounds(allowed);
         requireKeys(node_, what_, allowed);
+        given_ = commonTable().find(node_);
+        commonTable().require(given_, claim_.location, what_ + " needs ");
         readCommon();
-        if (const Node* at = node_.find("at")) readAt(*at);
-        const bool isItsOwn = contains(claim_.kind->section.keyNames(), "of");
-        if (const Node* of = node_.find("of"); of && !isItsOwn) readOf(*of);
+        if (given_.at) readAt(*given_.at);
+        if (given_.of && !contains(own, "of")) readOf(*given_.of);
         claim_.keys = node_;
         claim_.kind->read(
-            {node_, *node_.find(name), names_.rowAxes, names_.rowValues, names_.columns,
-             names_.hasAllColumns, hasPrinted_, what_, claim_.location},
+            {*claim_.kind, node_, *node_.find(name), names_.rowAxes, names_.rowValues,
+             names_.columns, names_.hasAllColumns, hasPrinted_, what_, claim_.location},
             claim_);
         readProvenance(isOfDocument);
         return std::move(claim_);
@@ -191,11 +238,9 @@ class ClaimParser {
     }
 
     void readCommon() {
-        const Node* says = node_.find("says");
-        if (!says) throw Error(claim_.location, what_ + " needs 'says'");
-        claim_.text = lineOf(*says, what_ + ": says");
-        claim_.profile = nameIn(node_, "profile", what_, kProfiles);
-        if (const Node* same = node_.find("same_as")) {
+        claim_.text = lineOf(*given_.says, what_ + ": says");
+        claim_.profile = nameIn(given_.profile, what_ + ": profile", kProfiles);
+        if (const Node* same = given_.sameAs) {
             claim_.sameAs = lineOf(*same, what_ + ": same_as");
             const std::size_t blank = claim_.sameAs.find(' ');
             if (blank == std::string::npos ||
@@ -207,7 +252,7 @@ class ClaimParser {
         const Node& operands = *node_.find(name);
         const auto axis =
             claim_.kind->axisOf ? claim_.kind->axisOf(operands, what_ + ": " + name) : std::nullopt;
-        const Node* across = node_.find("across");
+        const Node* across = given_.across;
         if (axis && across) {
             throw Error(across->location(),
                         fmt::format("{}: across, and {} names its axis", what_, name));
@@ -261,28 +306,27 @@ class ClaimParser {
     }
 
     void readProvenance(bool isOfDocument) {
-        const auto origin = choiceIn(node_, "origin", what_, kOrigins);
+        const auto origin = choiceIn(given_.origin, what_ + ": origin", kOrigins);
         claim_.origin = origin         ? static_cast<Origin>(*origin)
                         : isOfDocument ? Origin::Document
                                        : Origin::Ours;
-        const Node* source = node_.find("bound_from");
-        if (source && !claim_.hasBound()) {
-            throw Error(source->location(),
+        if (given_.boundFrom && !claim_.hasBound()) {
+            throw Error(given_.boundFrom->location(),
                         what_ + ": bound_from, and there is no number in what it requires");
         }
         if (isOfDocument && claim_.hasBound()) claim_.boundFrom = BoundSource::Ours;
-        if (const auto from = choiceIn(node_, "bound_from", what_, kBoundSources)) {
+        if (const auto from = choiceIn(given_.boundFrom, what_ + ": bound_from", kBoundSources)) {
             claim_.boundFrom = static_cast<BoundSource>(*from);
         }
-        if (const auto kind = choiceIn(node_, "kind", what_, kTimeKinds)) {
+        if (const auto kind = choiceIn(given_.kind, what_ + ": kind", kTimeKinds)) {
             claim_.timeKind = static_cast<TimeKind>(*kind);
         }
-        const Node* because = node_.find("because");
+        const Node* because = given_.because;
         if (!because) return;
         const Node::Sequence entries =
             because->isSequence() ? because->items() : Node::Sequence{*because};
         for (const Node& entry : entries) {
-            readKeys(knownKeys(), entry, what_ + ": because", claim_.because.emplace_back());
+            claim_.because.push_back(readKnown(entry, what_ + ": because"));
         }
         requireApart(claim_.because, entries, what_ + ": because");
     }
@@ -291,59 +335,14 @@ class ClaimParser {
     TableNames names_;
     bool hasPrinted_;
     std::string what_;
+    CommonKeys given_ = {};
     ClaimSpec claim_;
 };
-
-SchemaSection common() {
-    return {
-        "claim",
-        "claims.ID.",
-        fmt::format(
-            "Every claim has these, and exactly one of the keys in the tables below with what "
-            "belongs to it; a, b and c are expressions over columns ('gfxrepro describe TABLE' "
-            "lists them), with + - * / ^, comparisons, which are 1 or 0, and the functions {}. "
-            "Where columns are numbers, a number alone is a column, and within an expression '8' "
-            "in quotes is.",
-            fmt::join(claims::kFunctions, ", ")),
-        {{"says", "line", "required", "the claim in the paper's sense", text()},
-         {"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
-         {"across", "row axis", "none",
-          "a, b are its values instead of columns: so rows are compared, column by column", text()},
-         {"of", "column | [columns]", "all columns",
-          "of a claim that compares rows, but independent: the columns that are read",
-          oneOrMore(text())},
-         choiceKey("profile", kProfiles, "all", "the only profile it is judged in"),
-         choiceKey(
-             "origin", kOrigins, "document, in a sweep ours",
-             "a statement of the document; read off its numbers; our aim; true by construction; "
-             "of an input fitted to it; or a statement that there is such a thing at all, which "
-             "can hardly fail. Only the first is counted"),
-         {"same_as", "TABLE CLAIM", "none",
-          "another claim, of this table or another, that says the same truth: where both have one "
-          "verdict, one is counted",
-          text()},
-         choiceKey(
-             "bound_from", kBoundSources, "ours, in a sweep none",
-             "where the number that it requires comes from; print: it is a printed value, or two "
-             "numbers about one, at most its half and its double, and met by all, unless it is an "
-             "aim of ours"),
-         choiceKey("kind", kTimeKinds, "absolute; in a sweep algorithmic; or required",
-                   "of a claim about time: counts of work decide; a GPU's units do; or times as "
-                   "such, at the printed parameters, as where one is held against a number, which "
-                   "need not say so. The last two are judged on a GPU only"),
-         {"because", "known | [known]", "none",
-          "where it is known not to hold, and why, one for each device, profile and kind of "
-          "scenes, what is of more behind what is of less; another verdict than the known is "
-          "news, but for ambiguous; where ambiguous is known, failing is",
-          oneOrMore(refTo("because"))}},
-        false};
-}
 
 }  // namespace
 
 std::vector<SchemaSection> claimSections() {
-    std::vector<SchemaSection> sections = {common(),
-                                           sectionOf("because", "claims.ID.because.", knownKeys())};
+    std::vector<SchemaSection> sections = {commonTable().section(), knownTable().section()};
     for (const claims::Kind& kind : claims::kinds()) sections.push_back(kind.section);
     return sections;
 }

@@ -6,33 +6,61 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/node.h"
-#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {
 
 namespace {
 
-const Node& required(const Node& map, const char* key, const std::string& what) {
-    const Node* value = map.find(key);
-    if (!value) throw Error(map.location(), fmt::format("{}: '{}' is missing", what, key));
-    return *value;
+using namespace types;
+
+/// As KeyTable::read(), of a key that "is missing".
+template <class Given>
+Given readComplete(const KeyTable<Given>& table, const Node& map, const std::string& what) {
+    const Given given = table.readKnown(map, what);
+    table.require(given, map.location(), what + ": ", " is missing");
+    return given;
+}
+
+struct ChapterKeys {
+    const Node *title, *has;
+};
+const KeyTable<ChapterKeys>& chapterTable() {
+    static const KeyTable<ChapterKeys> table{
+        {"chapter", "ID.chapters[].", "", false},
+        {{&ChapterKeys::title, "title", "line", "required", "its number and subject, for reports",
+          text()},
+         {&ChapterKeys::has, "has", "[name]", "required",
+          "its tables, figures and sections, as in their ids: 2.1, figure-2.6, 2.5.3",
+          listOf(text())}}};
+    return table;
 }
 
 Chapter readChapter(const Node& node, const std::string& what) {
-    requireKeys(node, what, keysOf("chapter"));
-    Chapter chapter{required(node, "title", what).text(), {}};
-    for (const Node& item : required(node, "has", what).items()) {
-        chapter.experiments.push_back(item.text());
-    }
+    const ChapterKeys given = readComplete(chapterTable(), node, what);
+    Chapter chapter{given.title->text(), {}};
+    for (const Node& item : given.has->items()) chapter.experiments.push_back(item.text());
     return chapter;
 }
 
+struct DocumentKeys {
+    const Node *title, *chapters;
+};
+const KeyTable<DocumentKeys>& documentTable() {
+    static const KeyTable<DocumentKeys> table{
+        {"document", "ID.", "", false},
+        {{&DocumentKeys::title, "title", "line", "required", "what it is about, for reports",
+          text()},
+         {&DocumentKeys::chapters, "chapters", "[chapter]", "required", "in the document's order",
+          listOf(refTo("chapter"))}}};
+    return table;
+}
+
 Document readDocument(const std::string& id, const Node& node) {
-    requireKeys(node, id, keysOf("document"));
-    Document document{id, required(node, "title", id).text(), {}};
+    const DocumentKeys given = readComplete(documentTable(), node, id);
+    Document document{id, given.title->text(), {}};
     std::map<std::string, std::string> chapterOf;
-    for (const Node& item : required(node, "chapters", id).items()) {
+    for (const Node& item : given.chapters->items()) {
         Chapter chapter = readChapter(item, id + ".chapters");
         for (const std::string& experiment : chapter.experiments) {
             const auto [known, isNew] = chapterOf.try_emplace(experiment, chapter.title);
@@ -58,29 +86,12 @@ std::vector<Document> readDocuments(const std::filesystem::path& file) {
 }
 
 SchemaFile documentsSchema() {
-    using namespace types;
-    SchemaSection documents{
-        "documents", "", "A key is a document: the folder of its configs.", {}, false};
+    SchemaSection documents{"documents", "", "A key is a document: the folder of its configs.",
+                            false};
     documents.others = refTo("document");
     return {"documents",
             "`documents.yaml`: which table belongs to which chapter",
-            {std::move(documents),
-             SchemaSection{"document",
-                           "ID.",
-                           "",
-                           {{"title", "line", "required", "what it is about, for reports", text()},
-                            {"chapters", "[chapter]", "required", "in the document's order",
-                             listOf(refTo("chapter"))}},
-                           false},
-             SchemaSection{
-                 "chapter",
-                 "ID.chapters[].",
-                 "",
-                 {{"title", "line", "required", "its number and subject, for reports", text()},
-                  {"has", "[name]", "required",
-                   "its tables, figures and sections, as in their ids: 2.1, figure-2.6, 2.5.3",
-                   listOf(text())}},
-                 false}}};
+            {std::move(documents), documentTable().section(), chapterTable().section()}};
 }
 
 }  // namespace gfxrepro::config

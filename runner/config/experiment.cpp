@@ -19,19 +19,120 @@ namespace gfxrepro::config {
 
 namespace {
 
+using namespace types;
 using Kind = Experiment::Kind;
 
+/// Begins the number in the id of a figure: papers count tables and figures apart.
+constexpr std::string_view kFigurePrefix = "figure-";
+
+/// A key that names the experiment.
 struct Identity {
-    std::string_view key;
+    SchemaKey key;
     Kind kind;
     std::string_view label;
 };
-/// Begins the number in the id of a figure: papers count tables and figures apart.
-constexpr std::string_view kFigurePrefix = "figure-";
-constexpr Identity kIdentities[] = {{"table", Kind::Table, "Table"},
-                                    {"figure", Kind::Figure, "Figure"},
-                                    {"section", Kind::Section, "Section"},
-                                    {"sweep_of", Kind::Sweep, "Sweep"}};
+const std::vector<Identity>& identities() {
+    static const std::vector<Identity> all = {
+        {{"table", "PAPER/NUMBER", "none", "a table, as zju2005/2.1", text()},
+         Kind::Table,
+         "Table"},
+        {{"figure", "PAPER/NUMBER", "none", "a figure", text()}, Kind::Figure, "Figure"},
+        {{"section", "PAPER/NUMBER", "none", "numbers in running text", text()},
+         Kind::Section,
+         "Section"},
+        {{"sweep_of", "NAME", "none", "an experiment of one's own; its id is sweep/NAME", text()},
+         Kind::Sweep,
+         "Sweep"}};
+    return all;
+}
+
+struct ContentKeys {
+    const Node *title, *technique, *program, *scene, *sceneParams, *sceneInstead, *params,
+        *paramsByScene, *paramsInstead, *output, *sweep, *measure, *shows, *labels, *layout,
+        *printed, *claims, *plots, *fit, *assumptions;
+};
+const KeyTable<ContentKeys>& contentTable() {
+    using C = ContentKeys;
+    static const KeyTable<C> table{
+        {"content", "", "What is measured and shown."},
+        {{&C::title, "title", "line", "required", "what is shown, in the paper's words", text()},
+         {&C::technique, "technique", "name",
+          fmt::format("none, with program {}", kProgramTechnique),
+          "what measures; `imported`: numbers that `gfxrepro import` takes; without it the file is "
+          "only `printed`",
+          text()},
+         {&C::program, "program", "map", "none",
+          "what a technique measures that takes one: `gfxrepro list techniques`", refTo("program")},
+         {&C::scene, "scene", "reference", "none", "a catalogued name, or a file beside this one",
+          text()},
+         {&C::sceneParams, "scene_params", "{name: value}", "{}",
+          "of the generated scenes, laid over the catalogue's: `gfxrepro describe GENERATOR`; of a "
+          "height map beside this file: spacing_m, height_scale_m, no_data",
+          mapOf(anything())},
+         {&C::sceneInstead, "scene_instead", "{scene: scene}", "{}",
+          "takes the place of a scene, whose rows it fills: another catalogued one, or NAME@SEED",
+          mapOf(text())},
+         {&C::params, "params", "{name: value}", "{}",
+          "of the technique: `gfxrepro describe TECHNIQUE`", mapOf(anything())},
+         {&C::paramsByScene, "params_by_scene", "{scene: {name: value}}", "{}",
+          "laid over `params` in the cases of a scene, whatever its seed; a swept axis wins",
+          mapOf(mapOf(anything()))},
+         {&C::paramsInstead, "params_instead", "{name: value}", "{}",
+          "takes the place of a parameter's value or default in the cases that take it",
+          mapOf(anything())},
+         {&C::output, "output", "map", fmt::format("{0} × {0}", kDefaultOutputPx),
+          "size of the image", refTo("output")},
+         {&C::sweep, "sweep", "{axis: values}", "{}", "axes multiply: each point is a case",
+          refTo("sweep")},
+         {&C::measure, "measure", "map",
+          "once; where times are shown, and of sweep_of without layout: six rounds, or a minute",
+          "lane, warm-up, repeats and processes", refTo("measure")},
+         {&C::shows, "shows", "[name]", "those with a truth",
+          "pictures that the document shows, by the names that the technique gives them (`classes` "
+          "is also classes_0, …): the report folds the others",
+          listOf(text())},
+         {&C::labels, "labels", "{name: words}", "{}",
+          "what the report says for a parameter, a scene, a row or a column; a preset may have "
+          "names that a file lacks",
+          mapOf(text())},
+         {&C::layout, "layout", "map", "none", "what the table looks like", refTo("layout")},
+         {&C::printed, "printed", "map", "none", "what the paper printed; never reaches a worker",
+          refTo("printed")},
+         {&C::claims, "claims", "{ID: claim}", "{}",
+          "what must follow from the numbers; of sweep_of without layout, too, whose table has the "
+          "columns that it shows",
+          mapOf(refTo("claim_part"))},
+         {&C::plots, "plots", "[plot]", "[]", "curves of the table's numbers, with their intervals",
+          listOf(refTo("plot"))},
+         {&C::fit, "fit", "{column: printed cell}", "{}",
+          "columns held against printed cells of other tables, all of the method of `params`: the "
+          "best row is shown",
+          mapOf(refTo("fit"))},
+         {&C::assumptions, "assumptions", "{NAME: assumption}", "{}",
+          "what the paper left open: a parameter, `output`, `scene`, `scene_seed`, "
+          "`measure.frames`, or free text",
+          mapOf(refTo("assumption_part"))}}};
+    return table;
+}
+
+struct AssumptionKeys {
+    const Node *value, *range, *unit, *why;
+};
+const KeyTable<AssumptionKeys>& assumptionTable() {
+    using A = AssumptionKeys;
+    static const KeyTable<A> table{
+        {"assumption", "assumptions.NAME.", "", false},
+        {{&A::value, "value", "value", "the cases'",
+          "what is taken: of free text alone, a parameter's is filled in", anything()},
+         {&A::range, "range", "[values] | [first, last] | {NAME: [names]}", "none",
+          "what `gfxrepro sensitivity` tries instead: of a parameter as it allows; of scenes, "
+          "for each NAME what takes its place",
+          anything()},
+         {&A::unit, "unit", "line", "the parameter's", "of value and range: of free text alone",
+          text()},
+         {&A::why, "why", "line", "required", "why this value", text()}}};
+    return table;
+}
 
 constexpr std::size_t kLongestName = 80;  // two, a suffix and a date fit into the name of a file
 
@@ -44,11 +145,11 @@ bool isName(std::string_view text) {
 /// Sets kind and id from the one key that names the experiment.
 void readIdentity(const Node& document, Experiment& experiment) {
     const Identity* found = nullptr;
-    for (const Identity& identity : kIdentities) {
-        if (!document.find(identity.key)) continue;
+    for (const Identity& identity : identities()) {
+        if (!document.find(identity.key.name)) continue;
         if (found) {
-            throw Error(document.keyLocation(identity.key),
-                        "both '" + std::string(found->key) + "' and '" + std::string(identity.key) +
+            throw Error(document.keyLocation(identity.key.name),
+                        "both '" + found->key.name + "' and '" + identity.key.name +
                             "' name the experiment; allowed: one");
         }
         found = &identity;
@@ -57,24 +158,24 @@ void readIdentity(const Node& document, Experiment& experiment) {
         throw Error(document.location(),
                     "nothing names the experiment; allowed: one of " + joined(identityKeys()));
     }
-    const Node& name = *document.find(found->key);
-    const std::string& text = lineOf(name, found->key);
+    const std::string& key = found->key.name;
+    const Node& name = *document.find(key);
+    const std::string& text = lineOf(name, key);
     const Names parts = split(text, '/');
     for (const std::string& part : parts) {
         if (part.size() <= kLongestName) continue;
-        throw Error(name.location(), std::string(found->key) + ": a name of " +
-                                         std::to_string(part.size()) + " letters; at most " +
-                                         std::to_string(kLongestName) +
+        throw Error(name.location(), key + ": a name of " + std::to_string(part.size()) +
+                                         " letters; at most " + std::to_string(kLongestName) +
                                          ", for files are named after it");
     }
     experiment.kind = found->kind;
     if (found->kind == Kind::Sweep) {
-        if (!isName(text)) throwNotAllowed(name, found->key, "letters, digits, - _ .");
+        if (!isName(text)) throwNotAllowed(name, key, "letters, digits, - _ .");
         experiment.id = "sweep/" + text;
         return;
     }
     if (parts.size() != 2 || !isName(parts[0]) || !isName(parts[1])) {
-        throwNotAllowed(name, found->key, "PAPER/NUMBER, such as zju2005/2.1");
+        throwNotAllowed(name, key, "PAPER/NUMBER, such as zju2005/2.1");
     }
     experiment.id =
         found->kind == Kind::Figure ? parts[0] + "/" + std::string(kFigurePrefix) + parts[1] : text;
@@ -132,45 +233,42 @@ std::vector<Assumption> readAssumptions(const Node& node) {
     std::vector<Assumption> assumptions;
     for (const auto& [name, entry] : node.entries()) {
         const std::string what = "assumption '" + name + "'";
-        requireKeys(entry, what, keysOf("assumption"));
-        const Node* why = entry.find("why");
-        if (!why) throw Error(node.keyLocation(name), what + " needs 'why'");
+        const AssumptionKeys given = assumptionTable().read(entry, what, &node.keyLocation(name));
         Assumption assumption;
         assumption.name = name;
-        assumption.why = lineOf(*why, what + ": why");
+        assumption.why = lineOf(*given.why, what + ": why");
         assumption.location = node.keyLocation(name);
-        if (const Node* value = entry.find("value")) assumption.value = *value;
-        if (const Node* range = entry.find("range")) assumption.range = *range;
-        assumption.unit = optionalLine(entry, "unit", what);
+        if (given.value) assumption.value = *given.value;
+        if (given.range) assumption.range = *given.range;
+        assumption.unit = optionalLine(given.unit, what + ": unit");
         assumptions.push_back(std::move(assumption));
     }
     return assumptions;
 }
 
 /// A file without a technique measures nothing: it holds what the paper printed.
-void requireOnlyPrinted(const Node& document) {
+void requireOnlyPrinted(const Node& document, bool hasPrinted) {
     for (const std::string& key : sectionKeys()) {
         const bool isOfPrint =
             key == "title" || key == "labels" || key == "printed" || key == "assumptions";
         if (isOfPrint || !document.find(key)) continue;
         throw Error(document.keyLocation(key), "'" + key + "' without 'technique'");
     }
-    if (!document.find("printed")) {
+    if (!hasPrinted) {
         throw Error(document.location(),
                     "neither 'technique' nor 'printed'; allowed: either or both");
     }
 }
 
 /// A map, empty where the section is not there.
-Node mapAt(const Node& document, std::string_view key) {
-    const Node* node = document.find(key);
+Node mapIn(const Node* node, std::string_view key, const Node& document) {
     if (!node || node->isNull()) return Node::map({}, document.location());
     if (!node->isMap()) throwNotAllowed(*node, key, "a map");
     return *node;
 }
 
-Node paramsByScene(const Node& document) {
-    Node scenes = mapAt(document, "params_by_scene");
+Node paramsByScene(const Node* given, const Node& document) {
+    Node scenes = mapIn(given, "params_by_scene", document);
     for (const auto& [scene, params] : scenes.entries()) {
         if (!params.isMap()) {
             throwNotAllowed(params, "params_by_scene: '" + scene + "'", "a map {name: value}");
@@ -186,22 +284,20 @@ Node paramsByScene(const Node& document) {
 }
 
 /// What a program is not told of it cannot follow.
-void requireTold(const Node& document, const Experiment& experiment) {
+void requireTold(const Node& document, const ContentKeys& given, const Experiment& experiment) {
     if (programOf(experiment).isNull()) return;
     const ExternalProgram program = readProgram(programOf(experiment));
     const auto require = [&](const char* key, bool isGiven, const std::string& names, bool isTold) {
         if (!isGiven || isTold) return;
-        const Node* node = document.find(key);
-        throw Error(node ? document.keyLocation(key) : document.location(),
+        throw Error(document.keyLocation(key),
                     std::string("'") + key + "': the program's command has no " + names);
     };
     const auto isSwept = [&](std::string_view axis) {
         return experiment.sweep.isMap() && experiment.sweep.find(axis);
     };
     const bool hasScene = !experiment.scene.isNull() || isSwept("scene");
-    const Node measure = mapAt(document, "measure");
-    const bool hasSize =
-        document.find("output") || isSwept("output.width") || isSwept("output.height");
+    const Node measure = mapIn(given.measure, "measure", document);
+    const bool hasSize = given.output || isSwept("output.width") || isSwept("output.height");
     require("scene", hasScene, "{scene}", program.uses(placeholder::kScene));
     require("output", hasSize, "{width} or {height}",
             program.uses(placeholder::kWidth) || program.uses(placeholder::kHeight));
@@ -244,37 +340,35 @@ void requirePicture(const Node& name, const Experiment& experiment) {
                     known.empty() ? "none, as the program leaves no images" : joined(known, " | "));
 }
 
-void readMeasurement(const Node& document, Experiment& experiment) {
-    const auto section = [&](const char* key) {
-        const Node* node = document.find(key);
-        return node ? *node : Node();
-    };
-    experiment.technique = lineOf(*document.find("technique"), "technique");
-    experiment.params = mapAt(document, "params");
-    experiment.paramsByScene = paramsByScene(document);
-    experiment.paramsInstead = mapAt(document, "params_instead");
+void readMeasurement(const Node& document, const ContentKeys& given, Experiment& experiment) {
+    const auto valueOf = [](const Node* node) { return node ? *node : Node(); };
+    experiment.technique = lineOf(*given.technique, "technique");
+    experiment.params = mapIn(given.params, "params", document);
+    experiment.paramsByScene = paramsByScene(given.paramsByScene, document);
+    experiment.paramsInstead = mapIn(given.paramsInstead, "params_instead", document);
     for (const auto& [name, value] : experiment.paramsInstead.entries()) {
-        if (Node* given = experiment.params.find(name)) *given = value;
+        if (Node* replaced = experiment.params.find(name)) *replaced = value;
     }
-    experiment.scene = section("scene");
-    experiment.sceneParams = mapAt(document, "scene_params");
-    experiment.sceneInstead = mapAt(document, "scene_instead");
-    experiment.sweep = section("sweep");
-    Params output(section("output"), "output");
+    experiment.scene = valueOf(given.scene);
+    experiment.sceneParams = mapIn(given.sceneParams, "scene_params", document);
+    experiment.sceneInstead = mapIn(given.sceneInstead, "scene_instead", document);
+    experiment.sweep = valueOf(given.sweep);
+    Params output(valueOf(given.output), "output");
     std::tie(experiment.outputWidthPx, experiment.outputHeightPx) = readOutput(output);
-    if (const Node* shows = document.find("shows")) {
-        if (!shows->isSequence()) throwNotAllowed(*shows, "shows", "a list of names of pictures");
-        for (const Node& name : shows->items()) {
-            experiment.shows.push_back(lineOf(name, "shows"));
-            requirePicture(name, experiment);
-        }
+    if (!given.shows) return;
+    if (!given.shows->isSequence()) {
+        throwNotAllowed(*given.shows, "shows", "a list of names of pictures");
+    }
+    for (const Node& name : given.shows->items()) {
+        experiment.shows.push_back(lineOf(name, "shows"));
+        requirePicture(name, experiment);
     }
 }
 
 /// How it is measured, which depends on what is shown: who shows times, or anything that there is,
 /// of one scene, wants times.
-void readLane(const Node& document, Experiment& experiment) {
-    const Node* node = document.find("measure");
+void readLane(const Node& document, const ContentKeys& keys, Experiment& experiment) {
+    const Node* node = keys.measure;
     const Node* seeds = node && node->isMap() ? node->find("scene_seeds") : nullptr;
     const bool hasSeveral = seeds && seeds->tryInteger().value_or(1) > 1;
     const bool isTimed =
@@ -289,7 +383,7 @@ void readLane(const Node& document, Experiment& experiment) {
     if (isByProcess) defaults.processes = kFewestRounds;
     Params params(node ? *node : Node(), "measure");
     experiment.measure = readMeasure(params, defaults);
-    requireTold(document, experiment);
+    requireTold(document, keys, experiment);
 }
 
 /// `printed.at` is of all cases alike.
@@ -317,9 +411,8 @@ void requireColumns(const Node& fit, const TableNames& names) {
     }
 }
 
-std::map<std::string, std::string> labelsOf(const Node& document) {
+std::map<std::string, std::string> labelsOf(const Node& given) {
     std::map<std::string, std::string> labels;
-    const Node given = mapAt(document, "labels");
     for (const auto& [name, words] : given.entries()) {
         labels[name] = lineOf(words, "labels: '" + name + "'");
     }
@@ -341,11 +434,9 @@ TableNames sweptNames(const std::vector<AxisPoint>& points, const Vocabulary& vo
 }
 
 /// Layout, and what is checked against it: printed values, claims, plots.
-void readTable(const Node& document, bool isComplete, Experiment& experiment) {
-    const Node* printed = document.find("printed");
-    const Node* layout = document.find("layout");
-    const Node* claims = document.find("claims");
-    const Node* plots = document.find("plots");
+void readTable(const Node& document, const ContentKeys& given, bool isComplete,
+               Experiment& experiment) {
+    const Node *printed = given.printed, *layout = given.layout, *claims = given.claims;
     if (experiment.technique.empty()) {
         experiment.printed = readPrinted(*printed, nullptr, nullptr);
         return;
@@ -376,24 +467,27 @@ void readTable(const Node& document, bool isComplete, Experiment& experiment) {
     const TableNames names = tableNames(experiment.layout, vocabulary);
     if (printed) experiment.printed = readPrinted(*printed, &experiment.layout, &names);
     if (isComplete) requireNotSwept(experiment.printed, points);
-    if (const Node* fit = document.find("fit")) requireColumns(*fit, names);
+    if (given.fit) requireColumns(*given.fit, names);
     if (claims) {
         experiment.claims = readClaims(*claims, names, !experiment.printed.rows.empty(),
                                        experiment.kind != Experiment::Kind::Sweep);
     }
-    if (plots) experiment.plots = readPlots(*plots, names);
+    if (given.plots) experiment.plots = readPlots(*given.plots, names);
 }
 
 }  // namespace
 
 const Names& identityKeys() {
-    static const Names keys = keysOf("identity");
+    static const Names keys = [] {
+        Names names;
+        for (const Identity& identity : identities()) names.push_back(identity.key.name);
+        return names;
+    }();
     return keys;
 }
 
 const Names& sectionKeys() {
-    static const Names keys = keysOf("content");
-    return keys;
+    return contentTable().names();
 }
 
 Experiment readExperiment(const Node& document, const std::filesystem::path& file,
@@ -402,25 +496,23 @@ Experiment readExperiment(const Node& document, const std::filesystem::path& fil
     allowed.insert(allowed.end(), sectionKeys().begin(), sectionKeys().end());
     allowed.emplace_back("profiles");
     requireKeys(document, "config", allowed);
+    const ContentKeys given = contentTable().find(document);
     Experiment experiment;
     experiment.file = file;
     experiment.document = document;
     experiment.params = Node::map({});
     readIdentity(document, experiment);
-    const Node* title = document.find("title");
-    if (!title) throw Error(document.location(), "'title' is missing");
-    experiment.title = lineOf(*title, "title");
-    experiment.labels = labelsOf(document);
-    if (document.find("technique")) {
-        readMeasurement(document, experiment);
+    contentTable().require(given, document.location(), "", " is missing");
+    experiment.title = lineOf(*given.title, "title");
+    experiment.labels = labelsOf(mapIn(given.labels, "labels", document));
+    if (given.technique) {
+        readMeasurement(document, given, experiment);
     } else {
-        requireOnlyPrinted(document);
+        requireOnlyPrinted(document, given.printed);
     }
-    readTable(document, isComplete, experiment);
-    if (document.find("technique")) readLane(document, experiment);
-    if (const Node* node = document.find("assumptions")) {
-        experiment.assumptions = readAssumptions(*node);
-    }
+    readTable(document, given, isComplete, experiment);
+    if (given.technique) readLane(document, given, experiment);
+    if (given.assumptions) experiment.assumptions = readAssumptions(*given.assumptions);
     if (const Node* profiles = document.find("profiles")) {
         for (const Node& name : profiles->items()) experiment.profiles.push_back(name.text());
     }
@@ -446,144 +538,30 @@ std::string Experiment::slug() const {
 }
 
 std::string Experiment::label() const {
-    const auto identity = std::find_if(std::begin(kIdentities), std::end(kIdentities),
-                                       [&](const Identity& one) { return one.kind == kind; });
+    const auto identity = std::ranges::find(identities(), kind, &Identity::kind);
     std::string number = id.substr(id.find('/') + 1);
     if (kind == Kind::Figure) number.erase(0, kFigurePrefix.size());
     return std::string(identity->label) + " " + number;
 }
 
-namespace {
-
-SchemaSection identity() {
-    using namespace types;
-    return {
-        "identity",
-        "",
-        "Exactly one key names the experiment; a file that others extend has none.",
-        {{"table", "PAPER/NUMBER", "none", "a table, as zju2005/2.1", text()},
-         {"figure", "PAPER/NUMBER", "none", "a figure", text()},
-         {"section", "PAPER/NUMBER", "none", "numbers in running text", text()},
-         {"sweep_of", "NAME", "none", "an experiment of one's own; its id is sweep/NAME", text()}},
-        false};
-}
-
-SchemaSection composition() {
-    using namespace types;
-    return {"composition",
-            "",
-            "What the file is put together from.",
-            {{"extends", "file | [files]", "[]",
-              "files laid under this one, later over earlier; in configs/, then beside this file",
-              oneOrMore(text())},
-             {"profiles", "{quick, paper}", "none", "parts laid over the file by --profile",
-              refTo("profiles")}}};
-}
-
-SchemaSection content() {
-    using namespace types;
-    return {
-        "content",
-        "",
-        "What is measured and shown.",
-        {{"title", "line", "required", "what is shown, in the paper's words", text()},
-         {"technique", "name", fmt::format("none, with program {}", kProgramTechnique),
-          "what measures; `imported`: numbers that `gfxrepro import` takes; without it the file is "
-          "only `printed`",
-          text()},
-         {"program", "map", "none",
-          "what a technique measures that takes one: `gfxrepro list techniques`", refTo("program")},
-         {"scene", "reference", "none", "a catalogued name, or a file beside this one", text()},
-         {"scene_params", "{name: value}", "{}",
-          "of the generated scenes, laid over the catalogue's: `gfxrepro describe GENERATOR`; of a "
-          "height map beside this file: spacing_m, height_scale_m, no_data",
-          mapOf(anything())},
-         {"scene_instead", "{scene: scene}", "{}",
-          "takes the place of a scene, whose rows it fills: another catalogued one, or NAME@SEED",
-          mapOf(text())},
-         {"params", "{name: value}", "{}", "of the technique: `gfxrepro describe TECHNIQUE`",
-          mapOf(anything())},
-         {"params_by_scene", "{scene: {name: value}}", "{}",
-          "laid over `params` in the cases of a scene, whatever its seed; a swept axis wins",
-          mapOf(mapOf(anything()))},
-         {"params_instead", "{name: value}", "{}",
-          "takes the place of a parameter's value or default in the cases that take it",
-          mapOf(anything())},
-         {"output", "map", fmt::format("{0} × {0}", kDefaultOutputPx), "size of the image",
-          refTo("output")},
-         {"sweep", "{axis: values}", "{}", "axes multiply: each point is a case", refTo("sweep")},
-         {"measure", "map",
-          "once; where times are shown, and of sweep_of without layout: six rounds, or a minute",
-          "lane, warm-up, repeats and processes", refTo("measure")},
-         {"shows", "[name]", "those with a truth",
-          "pictures that the document shows, by the names that the technique gives them (`classes` "
-          "is also classes_0, …): the report folds the others",
-          listOf(text())},
-         {"labels", "{name: words}", "{}",
-          "what the report says for a parameter, a scene, a row or a column; a preset may have "
-          "names that a file lacks",
-          mapOf(text())},
-         {"layout", "map", "none", "what the table looks like", refTo("layout")},
-         {"printed", "map", "none", "what the paper printed; never reaches a worker",
-          refTo("printed")},
-         {"claims", "{ID: claim}", "{}",
-          "what must follow from the numbers; of sweep_of without layout, too, whose table has the "
-          "columns that it shows",
-          mapOf(refTo("claim_part"))},
-         {"plots", "[plot]", "[]", "curves of the table's numbers, with their intervals",
-          listOf(refTo("plot"))},
-         {"fit", "{column: printed cell}", "{}",
-          "columns held against printed cells of other tables, all of the method of `params`: the "
-          "best row is shown",
-          mapOf(refTo("fit"))},
-         {"assumptions", "{NAME: assumption}", "{}",
-          "what the paper left open: a parameter, `output`, `scene`, `scene_seed`, "
-          "`measure.frames`, or free text",
-          mapOf(refTo("assumption_part"))}}};
-}
-
-SchemaSection profiles() {
-    using namespace types;
-    return {"profiles",
-            "profiles.",
-            "",
-            {{"quick", "part of a config", "none", "laid over the file by --profile quick",
-              refTo("content")},
-             {"paper", "part of a config", "none", "laid over the file by --profile paper",
-              refTo("content")}}};
-}
-
-SchemaSection assumption() {
-    using namespace types;
-    return {"assumption",
-            "assumptions.NAME.",
-            "",
-            {{"value", "value", "the cases'",
-              "what is taken: of free text alone, a parameter's is filled in", anything()},
-             {"range", "[values] | [first, last] | {NAME: [names]}", "none",
-              "what `gfxrepro sensitivity` tries instead: of a parameter as it allows; of scenes, "
-              "for each NAME what takes its place",
-              anything()},
-             {"unit", "line", "the parameter's", "of value and range: of free text alone", text()},
-             {"why", "line", "required", "why this value", text()}},
-            false};
-}
-
-}  // namespace
-
 SchemaFile experimentSchema() {
-    SchemaFile file{
-        "experiment", "A table, figure, section or sweep", {identity(), composition(), content()}};
+    SchemaSection identity{
+        "identity", "", "Exactly one key names the experiment; a file that others extend has none.",
+        false};
+    for (const Identity& one : identities()) identity.keys.push_back(one.key);
+    SchemaFile file{"experiment",
+                    "A table, figure, section or sweep",
+                    {std::move(identity), compositionKeys(), contentTable().section()}};
     const auto add = [&](std::vector<SchemaSection> sections) {
         for (SchemaSection& section : sections) file.sections.push_back(std::move(section));
     };
     add(programKeys());
     add({outputKeys()});
     add(sweepKeys());
-    add({measureKeys(), profiles()});
+    add({measureKeys(), profileKeys()});
     add(layoutKeys());
     add(printedKeys());
-    add({plotKeys(), assumption()});
+    add({plotKeys(), assumptionTable().section()});
     add(claimSections());
     return file;
 }

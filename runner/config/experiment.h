@@ -96,6 +96,10 @@ struct Printed {
     Node::Map at;
     /// Scenes of ours that could not be fitted to what is printed: they judge nothing of the paper.
     std::vector<std::string> unfit;
+    /// Methods that the paper compares with a usual one.
+    std::vector<std::string> compared;
+    /// Cells for which an input was fitted: {row axis or `column`: value or values}, all of these.
+    std::vector<Node> calibrated;
     SourceLocation location;
 };
 

@@ -12,14 +12,128 @@
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
 #include "engine/image/image_file.h"
-#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {
 
 namespace {
 
+using namespace types;
 using ParamType = ProgramParam::Type;
+
+using Two = std::array<std::string_view, 2>;
+constexpr Two kFramesOfARun = {"one", "all"}, kSeedsOf = {"case", "process"};
+constexpr Two kBetter = {"lower", "higher"};
+
+struct ProgramKeys {
+    const Node *command, *params, *metrics, *passes, *images, *env, *version, *starts, *files,
+        *frames, *seeds, *gpu, *here;
+};
+const KeyTable<ProgramKeys>& programTable() {
+    using P = ProgramKeys;
+    static const KeyTable<P> table{
+        {"program", "program.",
+         "Texts may have placeholders: {NAME} of a parameter, {here} (folder of this file), {out} "
+         "(an empty folder, in which the program runs), {scene} (the case's scene as a .glb file), "
+         "{width}, {height}, {seed} (a parameter of every program that takes it), {frame} (from "
+         "0), {frames} (how many). No shell sees them. The program says what it measured by lines "
+         "of JSON, {\"metric\": …, \"value\": …, \"unit\": …} with \"pass\" and \"frame\" where "
+         "there are such, on the descriptor whose number is in GFXREPRO_METRICS_FD, or in the file "
+         "that GFXREPRO_METRICS_FILE names."},
+        {{&P::command, "command", "line | [arguments]", "required",
+          "the program and its arguments; a line is cut at its blanks", oneOrMore(text())},
+         {&P::params, "params", "{name: default | [values] | parameter}", "{}",
+          "what `params` and `sweep` may have",
+          mapOf(anyOf({text(), listOf(text(), 1), refTo("program_param")}))},
+         {&P::metrics, "metrics", "{name: unit | metric}", "{}", "what it says of itself",
+          mapOf(anyOf({text(), refTo("program_metric")}))},
+         {&P::passes, "passes", "{name: meaning}", "{}", "what tells values of a metric apart",
+          mapOf(text())},
+         {&P::images, "images", "{name: file | image}", "{}",
+          "pictures that it leaves in {out}: " + image::readEndings(),
+          mapOf(anyOf({text(), refTo("program_image")}))},
+         {&P::env, "env", "{NAME: text}", "{}", "variables of its environment", mapOf(text())},
+         {&P::version, "version", "line | [arguments]", "none", "what prints its version",
+          oneOrMore(text())},
+         {&P::starts, "starts", "[program]", "[]", "programs that it starts in turn",
+          listOf(text())},
+         {&P::files, "files", "[file]", "[]",
+          "what else its outcome depends on, beside what arguments name from {here} on",
+          listOf(text())},
+         {&P::frames,
+          choiceKey("frames", kFramesOfARun, "one",
+                    "what a run of it gives: one frame, {frame}; or all {frames} of the case, each "
+                    "line and picture with its own; the run's time is then shared out among them")},
+         {&P::seeds,
+          choiceKey("seeds", kSeedsOf, "process of one with {seed} and truths of other seeds",
+                    "what `measure.seeds` is where it is not given")},
+         {&P::gpu, "gpu", "boolean", "false",
+          "whether it works on the GPU: then a run asks which that is", boolean()},
+         {&P::here, "here", "folder", "that of this file", "what {here} is", text()}}};
+    return table;
+}
+
+struct ParamKeys {
+    const Node *fallback, *unit, *min, *max, *choices, *doc;
+};
+const KeyTable<ParamKeys>& paramTable() {
+    using P = ParamKeys;
+    static const KeyTable<P> table{
+        {"program_param", "program.params.NAME.",
+         "A value alone is the default, a list all that is allowed, the default first."},
+        {{&P::fallback, "default", "value", "required",
+          "in cases that do not say: 4 is a whole number, 4.0 any number, \"4\" text", text()},
+         {&P::unit, "unit", "text", "\"\"", "spelt out", text()},
+         {&P::min, numberKey("min", {}, "none", "the least that is allowed")},
+         {&P::max, numberKey("max", {}, "none", "the most that is allowed")},
+         {&P::choices, "choices", "[values]", "none", "all that is allowed", listOf(text(), 1)},
+         {&P::doc, "doc", "line", "\"\"", "what it means", text()}}};
+    return table;
+}
+
+struct MetricKeys {
+    const Node *unit, *better, *pattern, *scale, *optional, *doc;
+};
+const KeyTable<MetricKeys>& metricTable() {
+    using M = MetricKeys;
+    static const KeyTable<M> table{
+        {"program_metric", "program.metrics.NAME.",
+         "A text alone is the unit. A value is given once a pass in each run of the program."},
+        {{&M::unit, "unit", "text", "required", "spelt out: byte, ms, triangle; 1 for none",
+          text()},
+         {&M::better, choiceKey("better", kBetter, "none", "which way is better")},
+         {&M::pattern, "pattern", "regular expression", "none",
+          "reads it off what the program prints: the number is its first group, as a whole; the "
+          "last match counts",
+          text()},
+         {&M::scale,
+          numberKey("scale", kScales, "1",
+                    "multiplies that number: 1000 for ms of what is printed in seconds")},
+         {&M::optional, "optional", "boolean", "false", "whether a run may be without it",
+          boolean()},
+         {&M::doc, "doc", "line", "\"\"", "what it means", text()}}};
+    return table;
+}
+
+struct ImageKeys {
+    const Node *file, *truth;
+};
+const KeyTable<ImageKeys>& imageTable() {
+    using I = ImageKeys;
+    static const KeyTable<I> table{
+        {"program_image", "program.images.NAME.",
+         "With a truth its errors are recorded, under the image's name as pass: `gfxrepro "
+         "describe` of the technique lists them. EXR, PFM, HDR and TIFF of floats are linear, the "
+         "others sRGB, as is their truth."},
+        {{&I::file, "file", "file", "required", "in {out}", text()},
+         {&I::truth, "truth", "file | {parameter: value}", "none",
+          "a file, or parameters (seed and frame, too) laid over the case's, with which the "
+          "program makes it: once for all cases that agree on the others. With frames (2 or more) "
+          "it is made of so many seeds, from frame on, and same_mean_p says whether the case's "
+          "frames have its expectation",
+          anyOf({text(), mapOf(anything())})}}};
+    return table;
+}
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
@@ -30,14 +144,10 @@ bool isSnakeCase(std::string_view name) {
            });
 }
 
-double optionalNumber(const Node& map, const char* key, const std::string& what, double fallback) {
-    const Node* node = map.find(key);
-    return node ? numberIn(*node, {}, what + ": " + key) : fallback;
-}
-
 /// As the default looks.
-ParamType typeOf(const Node& map, const Node& fallback) {
-    if (map.find("choices")) return ParamType::Choice;
+ParamType typeOf(const ParamKeys& given) {
+    const Node& fallback = *given.fallback;
+    if (given.choices) return ParamType::Choice;
     if (fallback.tryBool()) return ParamType::Boolean;
     if (fallback.tryInteger()) return ParamType::Integer;
     return fallback.tryDouble() ? ParamType::Number : ParamType::Text;
@@ -80,26 +190,24 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
     } else if (!given.isMap()) {
         map = Node::map({{"default", given}}, given.location());
     }
-    requireKeys(map, what, keysOf("program_param"));
-    const Node* fallback = map.find("default");
+    const ParamKeys keys = paramTable().readKnown(map, what);
+    const Node* fallback = keys.fallback;
     if (!fallback || !fallback->isScalar()) {
         throw Error(given.location(), what + " needs 'default', a number, a boolean or text");
     }
     ProgramParam param;
     param.name = name;
     param.fallback = *fallback;
-    param.doc = optionalLine(map, "doc", what);
-    param.unit = optionalLine(map, "unit", what);
-    param.type = typeOf(map, *fallback);
-    param.min = optionalNumber(map, "min", what, -kNoLimit);
-    param.max = optionalNumber(map, "max", what, kNoLimit);
+    param.doc = optionalLine(keys.doc, what + ": doc");
+    param.unit = optionalLine(keys.unit, what + ": unit");
+    param.type = typeOf(keys);
+    param.min = keys.min ? numberIn(*keys.min, {}, what + ": min") : -kNoLimit;
+    param.max = keys.max ? numberIn(*keys.max, {}, what + ": max") : kNoLimit;
     const bool isNumber = param.type == ParamType::Integer || param.type == ParamType::Number;
-    for (const char* key : {"min", "max"}) {
-        if (map.find(key) && !isNumber) {
-            throw Error(map.keyLocation(key), what + ": '" + key + "' is of numbers alone");
-        }
+    if (const char* end = keys.min ? "min" : "max"; (keys.min || keys.max) && !isNumber) {
+        throw Error(map.keyLocation(end), fmt::format("{}: '{}' is of numbers alone", what, end));
     }
-    if (const Node* choices = map.find("choices")) {
+    if (const Node* choices = keys.choices) {
         if (!choices->isSequence() || choices->items().empty()) {
             throwNotAllowed(*choices, what + ": choices", "a list of values");
         }
@@ -203,20 +311,46 @@ Names argumentsOf(const Node& node, std::string_view what, const Names& known) {
     return arguments;
 }
 
-using Two = std::array<std::string_view, 2>;
-constexpr Two kFramesOfARun = {"one", "all"}, kSeedsOf = {"case", "process"};
-constexpr Two kBetter = {"lower", "higher"};
-
-/// Whether the text at `key` is the second of the two; where it is not there the first counts.
-bool isSecond(const Node& map, const char* key, const Two& names) {
-    const Node* node = map.find(key);
-    return node && choiceOf(*node, names, std::string("program: ") + key) == 1;
+/// Whether it is the second of the two; where it is not there the first counts.
+bool isSecond(const Node* node, const std::string& what, const Two& names) {
+    return node && choiceOf(*node, names, what) == 1;
 }
 
-Better betterOf(const Node& metric, const std::string& what) {
-    const Node* better = metric.find("better");
-    if (!better) return Better::Neither;
-    return choiceOf(*better, kBetter, what + ": better") == 0 ? Better::Lower : Better::Higher;
+Better betterOf(const Node* node, const std::string& what) {
+    if (!node) return Better::Neither;
+    return choiceOf(*node, kBetter, what) == 0 ? Better::Lower : Better::Higher;
+}
+
+void readParams(const Node& params, ExternalProgram& program, Names& known) {
+    if (!params.isMap()) throwNotAllowed(params, "program: params", "a map {name: parameter}");
+    for (const auto& [name, param] : params.entries()) {
+        program.params.push_back(readProgramParam(params, name));
+        known.push_back(name);
+    }
+}
+
+void readEnvironment(const Node& variables, const Names& known, ExternalProgram& program) {
+    if (!variables.isMap()) throwNotAllowed(variables, "program: env", "a map {NAME: text}");
+    for (const auto& [name, text] : variables.entries()) {
+        if (name.empty() || name.find('=') != std::string::npos) {
+            throw Error(variables.keyLocation(name),
+                        fmt::format("program: env: '{}' is no name of a variable; allowed: one "
+                                    "without '='",
+                                    name));
+        }
+        program.environment.emplace_back(name, templateOf(text, "program: env", known));
+    }
+}
+
+/// Of which {here} may be a part.
+Names filesIn(const Node* list, const std::string& what) {
+    Names names;
+    if (!list) return names;
+    if (!list->isSequence()) throwNotAllowed(*list, what, "a list of names");
+    for (const Node& name : list->items()) {
+        names.push_back(templateOf(name, what, {placeholder::kHere}));
+    }
+    return names;
 }
 
 void readMetrics(const Node& metrics, ExternalProgram& program) {
@@ -226,21 +360,18 @@ void readMetrics(const Node& metrics, ExternalProgram& program) {
         requireSnakeCase(metrics, name, "metric");
         // A unit alone is all that a metric needs.
         const Node map = given.isMap() ? given : Node::map({{"unit", given}}, given.location());
-        requireKeys(map, what, keysOf("program_metric"));
-        const Node* unit = map.find("unit");
-        if (!unit || unit->isNull())
+        const MetricKeys keys = metricTable().readKnown(map, what);
+        if (!keys.unit || keys.unit->isNull())
             throw Error(metrics.keyLocation(name), what + " needs 'unit'; \"1\" for none");
-        if (const std::string why = whyNoTimeName(name, lineOf(*unit, what + ": unit"));
-            !why.empty()) {
-            throw Error(unit->location(), "program: metric " + why);
+        const std::string& unit = lineOf(*keys.unit, what + ": unit");
+        if (const std::string why = whyNoTimeName(name, unit); !why.empty()) {
+            throw Error(keys.unit->location(), "program: metric " + why);
         }
-        program.outputs.metrics.push_back({name, lineOf(*unit, what + ": unit"),
-                                           optionalLine(map, "doc", what), betterOf(map, what)});
-        const Node* optional = map.find("optional");
-        if (optional && flagOf(*optional, what + ": optional"))
+        program.outputs.metrics.push_back({name, unit, optionalLine(keys.doc, what + ": doc"),
+                                           betterOf(keys.better, what + ": better")});
+        if (keys.optional && flagOf(*keys.optional, what + ": optional"))
             program.optionalMetrics.push_back(name);
-        const Node* pattern = map.find("pattern");
-        const Node* scale = map.find("scale");
+        const Node *pattern = keys.pattern, *scale = keys.scale;
         if (scale && !pattern) {
             throw Error(map.keyLocation("scale"),
                         what + ": 'scale' is of a pattern's number alone");
@@ -339,20 +470,16 @@ void readPictures(const Node& pictures, const Names& known, ExternalProgram& pro
         const std::string what = "program: image '" + name + "'";
         requireSnakeCase(pictures, name, "image");
         const Node map = given.isMap() ? given : Node::map({{"file", given}}, given.location());
-        requireKeys(map, what, keysOf("program_image"));
-        const Node* file = map.find("file");
-        if (!file) throw Error(pictures.keyLocation(name), what + " needs 'file'");
+        const ImageKeys keys = imageTable().read(map, what, &pictures.keyLocation(name));
         ProgramPicture picture;
         picture.name = name;
-        picture.file = templateOf(*file, what + ": file", known);
-        requirePictureType(*file, what + ": file");
+        picture.file = templateOf(*keys.file, what + ": file", known);
+        requirePictureType(*keys.file, what + ": file");
         if (program.givesAllFrames && !hasPlaceholder(picture.file, placeholder::kFrame)) {
-            throwNotAllowed(*file, what + ": file",
+            throwNotAllowed(*keys.file, what + ": file",
                             "one with {frame}, as one run leaves the pictures of all frames");
         }
-        if (const Node* truth = map.find("truth")) {
-            readTruth(*truth, what + ": truth", known, program, picture);
-        }
+        if (keys.truth) readTruth(*keys.truth, what + ": truth", known, program, picture);
         program.pictures.push_back(picture);
         if (!picture.hasTruth()) continue;
         program.outputs.withTruth.push_back(name);
@@ -401,65 +528,34 @@ bool hasRandomErrors(const ExternalProgram& program) {
 }  // namespace
 
 ExternalProgram readProgram(const Node& node) {
-    requireKeys(node, "program", keysOf("program"));
+    const ProgramKeys given = programTable().readKnown(node, "program");
     ExternalProgram program;
-    const auto section = [&](const char* key, auto&& read) {
-        if (const Node* found = node.find(key)) read(*found);
-    };
-    section("here", [&](const Node& here) { program.here = lineOf(here, "program: here"); });
-    section("gpu", [&](const Node& gpu) { program.usesGpu = flagOf(gpu, "program: gpu"); });
-    program.givesAllFrames = isSecond(node, "frames", kFramesOfARun);
+    if (given.here) program.here = lineOf(*given.here, "program: here");
+    if (given.gpu) program.usesGpu = flagOf(*given.gpu, "program: gpu");
+    program.givesAllFrames = isSecond(given.frames, "program: frames", kFramesOfARun);
     Names known = reservedNames();
-    section("params", [&](const Node& params) {
-        if (!params.isMap()) throwNotAllowed(params, "program: params", "a map {name: parameter}");
-        for (const auto& [name, param] : params.entries()) {
-            program.params.push_back(readProgramParam(params, name));
-            known.push_back(name);
-        }
-    });
-    const Node* command = node.find("command");
-    if (!command) throw Error(node.location(), "program: 'command' is missing");
-    program.command = argumentsOf(*command, "program: command", known);
-    section("env", [&](const Node& variables) {
-        if (!variables.isMap()) throwNotAllowed(variables, "program: env", "a map {NAME: text}");
-        for (const auto& [name, text] : variables.entries()) {
-            const std::string& variable = name;
-            if (variable.empty() || variable.find('=') != std::string::npos) {
-                throw Error(variables.keyLocation(name),
-                            fmt::format("program: env: '{}' is no name of a variable; allowed: one "
-                                        "without '='",
-                                        variable));
-            }
-            program.environment.emplace_back(name, templateOf(text, "program: env", known));
-        }
-    });
+    if (given.params) readParams(*given.params, program, known);
+    programTable().require(given, node.location(), "program: ", " is missing");
+    program.command = argumentsOf(*given.command, "program: command", known);
+    if (given.env) readEnvironment(*given.env, known, program);
     if (program.givesAllFrames && program.uses(placeholder::kFrame)) {
-        throw Error(command->location(),
+        throw Error(given.command->location(),
                     "program: {frame}, and one run gives all frames; allowed: "
                     "{frames}, their number");
     }
-    if (node.find("seeds") && !program.uses(placeholder::kSeed)) {
+    if (given.seeds && !program.uses(placeholder::kSeed)) {
         throw Error(node.keyLocation("seeds"), "program: seeds: the command has no {seed}");
     }
-    section("version", [&](const Node& version) {
-        program.version = argumentsOf(version, "program: version", {placeholder::kHere});
-    });
-    const auto listOf = [&](const char* key, Names& names) {
-        const Node* list = node.find(key);
-        if (!list) return;
-        const std::string what = std::string("program: ") + key;
-        if (!list->isSequence()) throwNotAllowed(*list, what, "a list of names");
-        for (const Node& name : list->items()) {
-            names.push_back(templateOf(name, what, {placeholder::kHere}));
-        }
-    };
-    listOf("starts", program.starts);
-    listOf("files", program.files);
-    section("metrics", [&](const Node& metrics) { readMetrics(metrics, program); });
-    section("passes", [&](const Node& passes) { readPasses(passes, program); });
-    section("images", [&](const Node& images) { readPictures(images, known, program); });
+    if (given.version) {
+        program.version = argumentsOf(*given.version, "program: version", {placeholder::kHere});
+    }
+    program.starts = filesIn(given.starts, "program: starts");
+    program.files = filesIn(given.files, "program: files");
+    if (given.metrics) readMetrics(*given.metrics, program);
+    if (given.passes) readPasses(*given.passes, program);
+    if (given.images) readPictures(*given.images, known, program);
     program.seedsByProcess =
-        node.find("seeds") ? isSecond(node, "seeds", kSeedsOf) : hasRandomErrors(program);
+        given.seeds ? isSecond(given.seeds, "program: seeds", kSeedsOf) : hasRandomErrors(program);
     program.framesAreSeeds =
         !program.uses(placeholder::kSeed) &&
         std::ranges::any_of(program.pictures, [](const ProgramPicture& picture) {
@@ -469,7 +565,7 @@ ExternalProgram readProgram(const Node& node) {
     for (const ProgramParam& param : program.params) {
         if (program.uses(param.name)) continue;
         throw Error(
-            node.find("params")->keyLocation(param.name),
+            given.params->keyLocation(param.name),
             fmt::format("program: parameter '{0}': no argument and no variable has '{{{0}}}'",
                         param.name));
     }
@@ -477,77 +573,8 @@ ExternalProgram readProgram(const Node& node) {
 }
 
 std::vector<SchemaSection> programKeys() {
-    using namespace types;
-    return {
-        {"program",
-         "program.",
-         "Texts may have placeholders: {NAME} of a parameter, {here} (folder of this file), {out} "
-         "(an empty folder, in which the program runs), {scene} (the case's scene as a .glb file), "
-         "{width}, {height}, {seed} (a parameter of every program that takes it), {frame} (from "
-         "0), {frames} (how many). No shell sees them. The program says what it measured by lines "
-         "of JSON, {\"metric\": …, \"value\": …, \"unit\": …} with \"pass\" and \"frame\" where "
-         "there are such, on the descriptor whose number is in GFXREPRO_METRICS_FD, or in the file "
-         "that GFXREPRO_METRICS_FILE names.",
-         {{"command", "line | [arguments]", "required",
-           "the program and its arguments; a line is cut at its blanks", oneOrMore(text())},
-          {"params", "{name: default | [values] | parameter}", "{}",
-           "what `params` and `sweep` may have",
-           mapOf(anyOf({text(), listOf(text(), 1), refTo("program_param")}))},
-          {"metrics", "{name: unit | metric}", "{}", "what it says of itself",
-           mapOf(anyOf({text(), refTo("program_metric")}))},
-          {"passes", "{name: meaning}", "{}", "what tells values of a metric apart", mapOf(text())},
-          {"images", "{name: file | image}", "{}",
-           "pictures that it leaves in {out}: " + image::readEndings(),
-           mapOf(anyOf({text(), refTo("program_image")}))},
-          {"env", "{NAME: text}", "{}", "variables of its environment", mapOf(text())},
-          {"version", "line | [arguments]", "none", "what prints its version", oneOrMore(text())},
-          {"starts", "[program]", "[]", "programs that it starts in turn", listOf(text())},
-          {"files", "[file]", "[]",
-           "what else its outcome depends on, beside what arguments name from {here} on",
-           listOf(text())},
-          choiceKey("frames", kFramesOfARun, "one",
-                    "what a run of it gives: one frame, {frame}; or all {frames} of the case, each "
-                    "line and picture with its own; the run's time is then shared out among them"),
-          choiceKey("seeds", kSeedsOf, "process of one with {seed} and truths of other seeds",
-                    "what `measure.seeds` is where it is not given"),
-          {"gpu", "boolean", "false", "whether it works on the GPU: then a run asks which that is",
-           boolean()},
-          {"here", "folder", "that of this file", "what {here} is", text()}}},
-        {"program_param",
-         "program.params.NAME.",
-         "A value alone is the default, a list all that is allowed, the default first.",
-         {{"default", "value", "required",
-           "in cases that do not say: 4 is a whole number, 4.0 any number, \"4\" text", text()},
-          {"unit", "text", "\"\"", "spelt out", text()},
-          numberKey("min", {}, "none", "the least that is allowed"),
-          numberKey("max", {}, "none", "the most that is allowed"),
-          {"choices", "[values]", "none", "all that is allowed", listOf(text(), 1)},
-          {"doc", "line", "\"\"", "what it means", text()}}},
-        {"program_metric",
-         "program.metrics.NAME.",
-         "A text alone is the unit. A value is given once a pass in each run of the program.",
-         {{"unit", "text", "required", "spelt out: byte, ms, triangle; 1 for none", text()},
-          choiceKey("better", kBetter, "none", "which way is better"),
-          {"pattern", "regular expression", "none",
-           "reads it off what the program prints: the number is its first group, as a whole; the "
-           "last match counts",
-           text()},
-          numberKey("scale", kScales, "1",
-                    "multiplies that number: 1000 for ms of what is printed in seconds"),
-          {"optional", "boolean", "false", "whether a run may be without it", boolean()},
-          {"doc", "line", "\"\"", "what it means", text()}}},
-        {"program_image",
-         "program.images.NAME.",
-         "With a truth its errors are recorded, under the image's name as pass: `gfxrepro "
-         "describe` of the technique lists them. EXR, PFM, HDR and TIFF of floats are linear, the "
-         "others sRGB, as is their truth.",
-         {{"file", "file", "required", "in {out}", text()},
-          {"truth", "file | {parameter: value}", "none",
-           "a file, or parameters (seed and frame, too) laid over the case's, with which the "
-           "program makes it: once for all cases that agree on the others. With frames (2 or more) "
-           "it is made of so many seeds, from frame on, and same_mean_p says whether the case's "
-           "frames have its expectation",
-           anyOf({text(), mapOf(anything())})}}}};
+    return {programTable().section(), paramTable().section(), metricTable().section(),
+            imageTable().section()};
 }
 
 }  // namespace gfxrepro::config

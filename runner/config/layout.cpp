@@ -6,18 +6,79 @@
 #include "engine/core/text.h"
 #include "engine/metrics/statistics.h"
 #include "runner/claims/kinds/operands.h"
-#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {
 
 namespace {
 
+using namespace types;
+
 /// Case axes, and `frame`: the frames of a path.
 Names referableAxes(const Vocabulary& vocabulary) {
     Names names = vocabulary.axisNames();
     names.emplace_back("frame");
     return names;
+}
+
+/// The text of a cell, or what it shows.
+Json selectionType() {
+    return anyOf({text(), refTo("selection")});
+}
+
+struct LayoutKeys {
+    const Node *axes, *rows, *columns, *cell;
+};
+const KeyTable<LayoutKeys>& layoutTable() {
+    static const Json axesType = anyOf({text(), listOf(text()), mapOf(selectionType())});
+    static const KeyTable<LayoutKeys> table{
+        {"layout", "layout.", ""},
+        {{&LayoutKeys::axes, "axes", "{axis: {label: selection}}", "{}",
+          "axes of labels, for rows and columns", mapOf(mapOf(selectionType()))},
+         {&LayoutKeys::rows, "rows", "axis | [axes] | {label: selection}", "one row",
+          "what the rows stand for", axesType},
+         {&LayoutKeys::columns, "columns", "axis | [axes] | {label: selection}", "one column",
+          "axes: declared above, or swept, a parameter, scene, frame", axesType},
+         {&LayoutKeys::cell, "cell", "format | selection", kDefaultCellFormat,
+          "what every cell shows", selectionType()}}};
+    return table;
+}
+
+struct SelectionKeys {
+    const Node *metric, *pass, *format, *scale, *of, *equal, *where;
+};
+const KeyTable<SelectionKeys>& selectionTable() {
+    using S = SelectionKeys;
+    static const KeyTable<S> table{
+        {"selection", "selection.",
+         "A selection is a metric, or a map of these; the column's part wins over the row's, the "
+         "row's over the cell's."},
+        {{&S::metric, "metric", "name", "none", "of the technique's metrics", text()},
+         {&S::pass, "pass", "name", "whole case", "step of the algorithm", text()},
+         {&S::format, "format", "text", "none",
+          fmt::format("{} in braces: {{mean:.2f}}", fmt::join(metrics::kStatistics, " ")), text()},
+         {&S::scale, numberKey("scale", kScales, "1", "multiplies every value")},
+         {&S::of, "of", "expression", "none",
+          "of a column: computed, in each process, of columns before it; time[threads=1] / time "
+          "reads the first of the row with that value",
+          text()},
+         {&S::equal, "equal", "equal", "none", "at equal time, or at equal error", refTo("equal")},
+         {&S::where, "where", "{axis: value}", "{}", "only these cases", pairs()}}};
+    return table;
+}
+
+struct EqualKeys {
+    const Node *metric, *is;
+};
+const KeyTable<EqualKeys>& equalTable() {
+    static const KeyTable<EqualKeys> table{
+        {"equal", "equal.",
+         "The cell takes the cases of a swept axis, and shows its metric where another one has a "
+         "value: interpolated between the two nearest cases, on logarithmic scales.",
+         false},
+        {{&EqualKeys::metric, "metric", "name", "required", "the other metric", text()},
+         {&EqualKeys::is, "is", "number", "required", "its value", number()}}};
+    return table;
 }
 
 Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
@@ -27,29 +88,26 @@ Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
         selection.metric = lineOf(node, "metric");
         return selection;
     }
-    requireKeys(node, "a cell's selection", keysOf("selection"));
-    if (const Node* metric = node.find("metric")) selection.metric = lineOf(*metric, "metric");
-    if (const Node* pass = node.find("pass")) selection.pass = lineOf(*pass, "pass");
-    if (const Node* format = node.find("format")) {
-        requireCellFormat(*format);
-        selection.format = format->text();
+    const SelectionKeys given = selectionTable().read(node, "a cell's selection");
+    if (given.metric) selection.metric = lineOf(*given.metric, "metric");
+    if (given.pass) selection.pass = lineOf(*given.pass, "pass");
+    if (given.format) {
+        requireCellFormat(*given.format);
+        selection.format = given.format->text();
     }
-    if (const Node* scale = node.find("scale")) {
-        selection.scale = numberIn(*scale, kScales, "scale");
+    if (given.scale) selection.scale = numberIn(*given.scale, kScales, "scale");
+    if (given.equal) {
+        const EqualKeys equal = equalTable().read(*given.equal, "equal");
+        selection.equal =
+            Equal{lineOf(*equal.metric, "metric"), numberIn(*equal.is, {}, "equal: is")};
     }
-    if (const Node* equal = node.find("equal")) {
-        requireKeys(*equal, "equal", keysOf("equal"));
-        const std::string what = "equal";
-        selection.equal = Equal{lineOf(requiredAt(*equal, "metric", what), "metric"),
-                                numberIn(requiredAt(*equal, "is", what), {}, "equal: is")};
-    }
-    if (const Node* of = node.find("of")) {
-        selection.of = lineOf(*of, "of");
+    if (given.of) {
+        selection.of = lineOf(*given.of, "of");
         requireKeys(node, "a computed column", Names{"of", "format"});
     }
-    if (const Node* where = node.find("where")) {
-        requireKeys(*where, "where", referableAxes(vocabulary));
-        selection.where.assign(where->entries().begin(), where->entries().end());
+    if (given.where) {
+        requireKeys(*given.where, "where", referableAxes(vocabulary));
+        selection.where.assign(given.where->entries().begin(), given.where->entries().end());
     }
     return selection;
 }
@@ -277,18 +335,18 @@ Names Vocabulary::axisNames() const {
 }
 
 Layout readLayout(const Node& node, const Vocabulary& vocabulary) {
-    requireKeys(node, "layout", keysOf("layout"));
+    const LayoutKeys given = layoutTable().read(node, "layout");
     Layout layout;
     layout.isGiven = true;
     layout.cell.location = node.location();
-    AxisReader reader(node.find("axes"), vocabulary);
-    if (const Node* rows = node.find("rows")) layout.rows = reader.read(*rows);
-    if (const Node* columns = node.find("columns")) layout.columns = reader.read(*columns);
+    AxisReader reader(given.axes, vocabulary);
+    if (given.rows) layout.rows = reader.read(*given.rows);
+    if (given.columns) layout.columns = reader.read(*given.columns);
     reader.requireAllUsed();
     if (layout.rows.empty() && layout.columns.empty()) {
         throw Error(node.location(), "layout has neither rows nor columns");
     }
-    if (const Node* cell = node.find("cell")) layout.cell = readCell(*cell, vocabulary);
+    if (given.cell) layout.cell = readCell(*given.cell, vocabulary);
     if (!layout.cell.format) layout.cell.format = kDefaultCellFormat;
     if (!hasMetricEverywhere(layout)) {
         throw Error(layout.cell.location,
@@ -397,9 +455,8 @@ void requireCellFormat(const Node& format) {
     if (count == 0) throwNotAllowed(format, "format", "a statistic in braces, as {median:.4g}");
 }
 
-std::string optionalLine(const Node& map, std::string_view key, const std::string& what) {
-    const Node* node = map.find(key);
-    return node ? lineOf(*node, fmt::format("{}: {}", what, key)) : "";
+std::string optionalLine(const Node* node, const std::string& what) {
+    return node ? lineOf(*node, what) : "";
 }
 
 const Node& requiredAt(const Node& map, std::string_view key, std::string_view what) {
@@ -409,44 +466,7 @@ const Node& requiredAt(const Node& map, std::string_view key, std::string_view w
 }
 
 std::vector<SchemaSection> layoutKeys() {
-    using namespace types;
-    const Json selectionType =
-        anyOf({text(), refTo("selection")});  // the text of a cell, or what it shows
-    const Json axesType = anyOf({text(), listOf(text()), mapOf(selectionType)});
-    return {
-        {"layout",
-         "layout.",
-         "",
-         {{"axes", "{axis: {label: selection}}", "{}", "axes of labels, for rows and columns",
-           mapOf(mapOf(selectionType))},
-          {"rows", "axis | [axes] | {label: selection}", "one row", "what the rows stand for",
-           axesType},
-          {"columns", "axis | [axes] | {label: selection}", "one column",
-           "axes: declared above, or swept, a parameter, scene, frame", axesType},
-          {"cell", "format | selection", kDefaultCellFormat, "what every cell shows",
-           selectionType}}},
-        {"selection",
-         "selection.",
-         "A selection is a metric, or a map of these; the column's part wins over the row's, the "
-         "row's over the cell's.",
-         {{"metric", "name", "none", "of the technique's metrics", text()},
-          {"pass", "name", "whole case", "step of the algorithm", text()},
-          {"format", "text", "none",
-           fmt::format("{} in braces: {{mean:.2f}}", fmt::join(metrics::kStatistics, " ")), text()},
-          numberKey("scale", kScales, "1", "multiplies every value"),
-          {"of", "expression", "none",
-           "of a column: computed, in each process, of columns before it; time[threads=1] / time "
-           "reads the first of the row with that value",
-           text()},
-          {"equal", "equal", "none", "at equal time, or at equal error", refTo("equal")},
-          {"where", "{axis: value}", "{}", "only these cases", pairs()}}},
-        {"equal",
-         "equal.",
-         "The cell takes the cases of a swept axis, and shows its metric where another one has a "
-         "value: interpolated between the two nearest cases, on logarithmic scales.",
-         {{"metric", "name", "required", "the other metric", text()},
-          {"is", "number", "required", "its value", number()}},
-         false}};
+    return {layoutTable().section(), selectionTable().section(), equalTable().section()};
 }
 
 }  // namespace gfxrepro::config

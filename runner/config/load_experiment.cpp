@@ -21,6 +21,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
+using namespace types;
+
+struct CompositionKeys {
+    const Node *extends, *profiles;
+};
+const KeyTable<CompositionKeys>& compositionTable() {
+    static const KeyTable<CompositionKeys> table{
+        {"composition", "", "What the file is put together from."},
+        {{&CompositionKeys::extends, "extends", "file | [files]", "[]",
+          "files laid under this one, later over earlier; in configs/, then beside this file",
+          oneOrMore(text())},
+         {&CompositionKeys::profiles, "profiles", "{quick, paper}", "none",
+          "parts laid over the file by --profile", refTo("profiles")}}};
+    return table;
+}
+
 /// A file with what it extends. Profiles stay apart: their nulls remove keys only once the profile
 /// is laid over the whole.
 struct Merged {
@@ -69,9 +85,11 @@ class FileReader {
                 "extends: more than 1000 files, those that are extended twice counted twice");
         }
         Merged result{Node::map({}, whole.location()), {}};
-        if (const Node* extends = whole.find("extends")) {
-            const Node::Sequence names =
-                extends->isSequence() ? extends->items() : Node::Sequence{*extends};
+        const CompositionKeys given = compositionTable().find(whole);
+        if (given.extends) {
+            const Node::Sequence names = given.extends->isSequence()
+                                             ? given.extends->items()
+                                             : Node::Sequence{*given.extends};
             for (const Node& name : names) {
                 Merged preset = read(find(name, file));
                 result.document = merged(result.document, preset.document);
@@ -79,10 +97,9 @@ class FileReader {
                           std::back_inserter(result.profiles));
             }
         }
-        addProfiles(whole, result);
+        if (given.profiles) addProfiles(*given.profiles, result);
         Node own = whole;
-        own.erase("extends");
-        own.erase("profiles");
+        for (const std::string& key : compositionTable().names()) own.erase(key);
         result.document = merged(result.document, own);
         open_.pop_back();
         return result;
@@ -92,7 +109,7 @@ class FileReader {
     void requireFileKeys(const Node& whole) const {
         Names allowed = sectionKeys();
         allowed.insert(allowed.end(), identityKeys().begin(), identityKeys().end());
-        for (std::string& key : keysOf("composition")) allowed.push_back(std::move(key));
+        for (const std::string& key : compositionTable().names()) allowed.push_back(key);
         requireInSections(whole, allowed);
         for (const auto& [key, value] : whole.entries()) {
             const bool isKnown = contains(allowed, key);
@@ -131,11 +148,9 @@ class FileReader {
                                          configsFolder_.string() + " or " + beside.string());
     }
 
-    static void addProfiles(const Node& whole, Merged& result) {
-        const Node* profiles = whole.find("profiles");
-        if (!profiles) return;
-        requireKeys(*profiles, "profiles", keysOf("profiles"));
-        for (const auto& [name, overlay] : profiles->entries()) {
+    static void addProfiles(const Node& profiles, Merged& result) {
+        requireKeys(profiles, "profiles", profileKeys().keyNames());
+        for (const auto& [name, overlay] : profiles.entries()) {
             if (!overlay.isNull()) requireKeys(overlay, "profile '" + name + "'", sectionKeys());
             result.profiles.emplace_back(name, overlay.isNull() ? Node::map({}) : overlay);
         }
@@ -319,10 +334,8 @@ Experiment readWhole(const Node& document, const fs::path& file, bool isComplete
     Node cells = *fit;
     for (auto& [column, cell] : cells.entries()) {
         const std::string what = "fit: '" + column + "'";
-        requireKeys(cell, what, keysOf("fit"));
-        const Node* table = cell.find("table");
-        if (!table) throw Error(fit->keyLocation(column), what + " needs 'table'");
-        const fs::path place = configNamed(*table, file, configsFolder, what);
+        const Node& table = tableOfFit(cell, fit->keyLocation(column), column);
+        const fs::path place = configNamed(table, file, configsFolder, what);
         cell = withPrintedCell(cell, column, experiment, loadExperiment(place, {}, configsFolder));
     }
     Node whole = document;
@@ -437,6 +450,19 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
     Experiment changed = readWhole(document, file, false, configsFolder);
     changed.paperDocument = std::move(experiment.paperDocument);
     return changed;
+}
+
+SchemaSection compositionKeys() {
+    return compositionTable().section();
+}
+
+SchemaSection profileKeys() {
+    SchemaSection section{"profiles", "profiles.", ""};
+    for (const std::string name : {"quick", "paper"}) {
+        section.keys.push_back({name, "part of a config", "none",
+                                "laid over the file by --profile " + name, refTo("content")});
+    }
+    return section;
 }
 
 }  // namespace gfxrepro::config

@@ -22,6 +22,31 @@ const Node* firstText(const std::string& axis, const TableNames& names) {
     return nullptr;
 }
 
+struct PlotKeys {
+    const Node *x, *y, *by, *panels, *at, *log, *slope, *title;
+};
+const KeyTable<PlotKeys>& plotTable() {
+    using namespace types;
+    using P = PlotKeys;
+    static const KeyTable<P> table{
+        {"plot", "plot.", "", false},
+        {{&P::x, "x", "row axis | column", "required", "a row axis has to be of numbers", text()},
+         {&P::y, "y", "column | [columns]", "required",
+          "a curve each; the first statistic of a cell", oneOrMore(text())},
+         {&P::by, "by", "row axis", "none", "of each y a curve a value", text()},
+         {&P::panels, "panels", "row axis | [axes]", "none",
+          "a panel for each combination of values", oneOrMore(text())},
+         {&P::at, "at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
+         {&P::log, "log", "x | y | [x, y]", "[]", "axes that are logarithmic",
+          anyOf({choice(kPlotAxes), setOf(choice(kPlotAxes))})},
+         {&P::slope, "slope", "number", "none",
+          "exponent of x that is expected: a dashed line through the mean of each curve's "
+          "points, on two logarithmic axes",
+          number()},
+         {&P::title, "title", "line", "the file's", "above the curves", text()}}};
+    return table;
+}
+
 /// Reads one plot. `what_` begins the messages: "plot 1".
 class PlotReader {
   public:
@@ -30,51 +55,28 @@ class PlotReader {
 
     PlotSpec read() {
         plot_.location = node_.location();
-        readKeys(keys(), node_, what_, *this);
+        const PlotKeys given = plotTable().read(node_, what_);
+        const auto what = [&](const char* key) { return fmt::format("{}: {}", what_, key); };
+        readX(*given.x, what("x"));
+        readY(*given.y, what("y"));
+        if (given.by) plot_.by = readAxis(*given.by, what("by"));
+        for (const Node& axis : given.panels ? listed(*given.panels) : Node::Sequence()) {
+            plot_.panels.push_back(readAxis(axis, what("panels")));
+        }
+        if (given.at) plot_.at = readRowFilter(*given.at, what("at"), names_);
+        if (given.log) readLog(*given.log, what("log"));
+        if (given.slope) {
+            plot_.slope = numberIn(*given.slope, {}, what("slope"));
+            if (!plot_.isLogX || !plot_.isLogY) {
+                throw Error(given.slope->location(),
+                            what("slope") +
+                                " is a straight line on logarithmic axes alone; "
+                                "allowed: with log: [x, y]");
+            }
+        }
+        if (given.title) plot_.title = lineOf(*given.title, what("title"));
         requirePlaces();
         return std::move(plot_);
-    }
-
-    static const std::vector<ReadKey<PlotReader>>& keys() {
-        using namespace types;
-        using R = PlotReader;
-        using Text = const std::string&;
-        static const std::vector<ReadKey<R>> all = {
-            {{"x", "row axis | column", "required", "a row axis has to be of numbers", text()},
-             [](R& r, const Node& node, Text what) { r.readX(node, what); }},
-            {{"y", "column | [columns]", "required", "a curve each; the first statistic of a cell",
-              oneOrMore(text())},
-             [](R& r, const Node& node, Text what) { r.readY(node, what); }},
-            {{"by", "row axis", "none", "of each y a curve a value", text()},
-             [](R& r, const Node& node, Text what) { r.plot_.by = r.readAxis(node, what); }},
-            {{"panels", "row axis | [axes]", "none", "a panel for each combination of values",
-              oneOrMore(text())},
-             [](R& r, const Node& node, Text what) {
-                 for (const Node& axis : listed(node)) {
-                     r.plot_.panels.push_back(r.readAxis(axis, what));
-                 }
-             }},
-            {{"at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
-             [](R& r, const Node& node, Text what) {
-                 r.plot_.at = readRowFilter(node, what, r.names_);
-             }},
-            {{"log", "x | y | [x, y]", "[]", "axes that are logarithmic",
-              anyOf({choice(kPlotAxes), setOf(choice(kPlotAxes))})},
-             [](R& r, const Node& node, Text what) { r.readLog(node, what); }},
-            {{"slope", "number", "none",
-              "exponent of x that is expected: a dashed line through the mean of each curve's "
-              "points, on two logarithmic axes",
-              number()},
-             [](R& r, const Node& node, Text what) {
-                 r.plot_.slope = numberIn(node, {}, what);
-                 if (r.plot_.isLogX && r.plot_.isLogY) return;
-                 throw Error(node.location(), what +
-                                                  " is a straight line on logarithmic axes alone; "
-                                                  "allowed: with log: [x, y]");
-             }},
-            {{"title", "line", "the file's", "above the curves", text()},
-             [](R& r, const Node& node, Text what) { r.plot_.title = lineOf(node, what); }}};
-        return all;
     }
 
   private:
@@ -193,7 +195,7 @@ std::vector<PlotSpec> readPlots(const Node& node, const TableNames& names) {
 }
 
 SchemaSection plotKeys() {
-    return sectionOf("plot", "plot.", PlotReader::keys());
+    return plotTable().section();
 }
 
 }  // namespace gfxrepro::config

@@ -9,12 +9,61 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
-#include "runner/config/schema.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {
 
 namespace {
+
+using namespace types;
+
+struct PrintedKeys {
+    const Node *hardware, *remark, *values, *compared, *calibrated, *unfit, *at;
+};
+const KeyTable<PrintedKeys>& printedTable() {
+    using P = PrintedKeys;
+    static const KeyTable<P> table{
+        {"printed", "printed.", ""},
+        {{&P::hardware, "hardware", "text", "\"\"", "what the paper measured on", text()},
+         {&P::remark, "remark", "text", "\"\"", "misprints and the like", text()},
+         {&P::values,
+          "values",
+          "CSV block",
+          "none",
+          "a header of row axes and columns, which goes on behind a comma at the end of its line; "
+          "then the rows",
+          {{"type", "string"}}},
+         {&P::compared, "compared", "[method]", "[]",
+          "methods that the paper compares with a usual one: no fit reads their cells",
+          listOf(text())},
+         {&P::calibrated, "calibrated", "[{row axis: value, column: name}]", "[]",
+          "cells for which an input of ours was fitted, so that they come out: marked in "
+          "every form of the table. Each value may be a list; what is left out is any",
+          listOf(pairs())},
+         {&P::unfit, "unfit", "[scene]", "[]",
+          "scenes of ours that could not be fitted to what the paper prints of its own: they "
+          "judge none of its claims",
+          listOf(text())},
+         {&P::at, "at", "{parameter: value}", "{}",
+          "what the paper measured at, where the profile paper departs from it: a parameter, "
+          "scene, output.width, output.height, measure.frames",
+          pairs()}}};
+    return table;
+}
+
+struct FitKeys {
+    const Node *table, *row, *column;
+};
+const KeyTable<FitKeys>& fitTable() {
+    static const KeyTable<FitKeys> table{
+        {"fit", "fit.COLUMN.",
+         "Only the cells that are named are read, and none of another method.", false},
+        {{&FitKeys::table, "table", "file", "required", "of the table, in configs/", text()},
+         {&FitKeys::row, "row", "{row axis: value}", "required", "all row axes of that table",
+          pairs()},
+         {&FitKeys::column, "column", "name", "required", "of that table", text()}}};
+    return table;
+}
 
 /// The trimmed cells of one line.
 Names cellsOf(const std::string& line) {
@@ -88,8 +137,16 @@ Node::Map readAt(const Node& at) {
     return values;
 }
 
+Names namesIn(const Node& list, const std::string& key, std::string_view allowed) {
+    const std::string what = "printed: " + key;
+    if (!list.isSequence()) throwNotAllowed(list, what, allowed);
+    Names names;
+    for (const Node& name : list.items()) names.push_back(lineOf(name, what));
+    return names;
+}
+
 /// Cells go by row axes and, as a claim across rows calls it, `column`.
-void requireCells(const Node& calibrated, const TableNames& names) {
+Node::Sequence cellsIn(const Node& calibrated, const TableNames& names) {
     const std::string what = "printed.calibrated";
     if (!calibrated.isSequence())
         throwNotAllowed(calibrated, what, "[{row axis: value, column: name}]");
@@ -101,38 +158,31 @@ void requireCells(const Node& calibrated, const TableNames& names) {
         }
     }
     for (const Node& cells : calibrated.items()) readRowFilter(cells, what, all);
+    return calibrated.items();
 }
 
 }  // namespace
 
 Printed readPrinted(const Node& node, const Layout* layout, const TableNames* names) {
-    requireKeys(node, "printed", keysOf("printed"));
+    const PrintedKeys given = printedTable().read(node, "printed");
     Printed printed;
     printed.location = node.location();
-    if (const Node* hardware = node.find("hardware")) printed.hardware = hardware->text();
-    if (const Node* remark = node.find("remark")) printed.remark = trimmed(remark->text());
-    if (const Node* compared = node.find("compared")) {
-        if (!compared->isSequence()) throwNotAllowed(*compared, "printed: compared", "[methods]");
-        for (const Node& method : compared->items()) lineOf(method, "printed: compared");
-    }
-    if (const Node* unfit = node.find("unfit")) {
-        if (!unfit->isSequence()) throwNotAllowed(*unfit, "printed: unfit", "[scenes]");
-        for (const Node& scene : unfit->items()) {
-            printed.unfit.push_back(lineOf(scene, "printed: unfit"));
-        }
-    }
-    if (const Node* calibrated = node.find("calibrated")) {
+    if (given.hardware) printed.hardware = given.hardware->text();
+    if (given.remark) printed.remark = trimmed(given.remark->text());
+    if (given.compared) printed.compared = namesIn(*given.compared, "compared", "[methods]");
+    if (given.unfit) printed.unfit = namesIn(*given.unfit, "unfit", "[scenes]");
+    if (given.calibrated) {
         if (!names) {
             throw Error(node.keyLocation("calibrated"),
                         "printed: 'calibrated' without 'technique'");
         }
-        requireCells(*calibrated, *names);
+        printed.calibrated = cellsIn(*given.calibrated, *names);
     }
-    if (const Node* at = node.find("at")) {
+    if (given.at) {
         if (!layout) throw Error(node.keyLocation("at"), "printed: 'at' without 'technique'");
-        printed.at = readAt(*at);
+        printed.at = readAt(*given.at);
     }
-    const Node* values = node.find("values");
+    const Node* values = given.values;
     if (!values) return printed;
     printed.location = values->location();
     const Names lines = split(values->text(), '\n');
@@ -246,15 +296,6 @@ bool isLabel(const Node& value, const std::string& label) {
     return text == label || (number && other && *number == *other);
 }
 
-/// Whether the paper holds the method against a usual one, as the table says.
-bool isCompared(const Experiment& table, const std::string& method) {
-    const Node* printed = table.document.find("printed");
-    const Node* compared = printed ? printed->find("compared") : nullptr;
-    if (!compared) return false;
-    return std::ranges::any_of(compared->items(),
-                               [&](const Node& name) { return name.text() == method; });
-}
-
 /// The labels of `row` beside the table's row axes.
 Names rowLabels(const Node& row, const Layout& layout, const std::string& what) {
     Names axes, labels;
@@ -301,16 +342,13 @@ void requireSameMeasure(const Selection& ours, const Selection& theirs, const st
 }  // namespace
 
 bool isCalibrated(const Experiment& table, const Names& row, const std::string& column) {
-    const Node* printed = table.document.find("printed");
-    const Node* calibrated = printed ? printed->find("calibrated") : nullptr;
-    if (!calibrated) return false;
     const auto labelOf = [&](const std::string& axis) -> const std::string* {
         for (std::size_t i = 0; i < table.layout.rows.size(); ++i) {
             if (table.layout.rows[i].name == axis) return &row[i];
         }
         return axis == kColumnAxis ? &column : nullptr;
     };
-    return std::ranges::any_of(calibrated->items(), [&](const Node& cells) {
+    return std::ranges::any_of(table.printed.calibrated, [&](const Node& cells) {
         return std::ranges::all_of(cells.entries(), [&](const auto& entry) {
             const std::string* label = labelOf(entry.key());
             if (!label) return false;
@@ -322,16 +360,20 @@ bool isCalibrated(const Experiment& table, const Names& row, const std::string& 
     });
 }
 
+const Node& tableOfFit(const Node& entry, const SourceLocation& where, const std::string& column) {
+    return *fitTable().read(entry, "fit: '" + column + "'", &where).table;
+}
+
 Node withPrintedCell(const Node& entry, const std::string& column, const Experiment& fit,
                      const Experiment& table) {
     const std::string what = "fit: '" + column + "'";
-    const Node& place = requiredAt(entry, "table", what);
+    const FitKeys given = fitTable().find(entry);
+    const Node &place = *given.table, &theirs = *given.column;
     if (table.technique != fit.technique || !table.layout.isGiven) {
         throw Error(place.location(), fmt::format("{}: {} is not measured by technique '{}'", what,
                                                   table.id, fit.technique));
     }
-    const Names row = rowLabels(requiredAt(entry, "row", what), table.layout, what);
-    const Node& theirs = requiredAt(entry, "column", what);
+    const Names row = rowLabels(*given.row, table.layout, what);
     const Selection cell = cellSelection(table, row, lineOf(theirs, what + ": column"));
     const Selection own = cellSelection(fit, Names(fit.layout.rows.size()), column);
     // What a fit may read compares no methods: that is how the other rows stay blind.
@@ -345,7 +387,7 @@ Node withPrintedCell(const Node& entry, const std::string& column, const Experim
                                 "sees what compares no methods",
                                 what, printedMethod, method));
     }
-    if (isCompared(table, method)) {
+    if (contains(table.printed.compared, method)) {
         throw Error(theirs.location(),
                     fmt::format("{}: {} compares method '{}' with a usual one ('compared'); a fit "
                                 "sees what compares no methods",
@@ -377,42 +419,7 @@ std::vector<FitTarget> fitTargets(const Experiment& experiment) {
 }
 
 std::vector<SchemaSection> printedKeys() {
-    using namespace types;
-    return {
-        {"printed",
-         "printed.",
-         "",
-         {{"hardware", "text", "\"\"", "what the paper measured on", text()},
-          {"remark", "text", "\"\"", "misprints and the like", text()},
-          {"values",
-           "CSV block",
-           "none",
-           "a header of row axes and columns, which goes on behind a comma at the end of its line; "
-           "then the rows",
-           {{"type", "string"}}},
-          {"compared", "[method]", "[]",
-           "methods that the paper compares with a usual one: no fit reads their cells",
-           listOf(text())},
-          {"calibrated", "[{row axis: value, column: name}]", "[]",
-           "cells for which an input of ours was fitted, so that they come out: marked in "
-           "every form of the table. Each value may be a list; what is left out is any",
-           listOf(pairs())},
-          {"unfit", "[scene]", "[]",
-           "scenes of ours that could not be fitted to what the paper prints of its own: they "
-           "judge "
-           "none of its claims",
-           listOf(text())},
-          {"at", "{parameter: value}", "{}",
-           "what the paper measured at, where the profile paper departs from it: a parameter, "
-           "scene, output.width, output.height, measure.frames",
-           pairs()}}},
-        {"fit",
-         "fit.COLUMN.",
-         "Only the cells that are named are read, and none of another method.",
-         {{"table", "file", "required", "of the table, in configs/", text()},
-          {"row", "{row axis: value}", "required", "all row axes of that table", pairs()},
-          {"column", "name", "required", "of that table", text()}},
-         false}};
+    return {printedTable().section(), fitTable().section()};
 }
 
 }  // namespace gfxrepro::config

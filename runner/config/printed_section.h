@@ -24,7 +24,11 @@ std::vector<FitTarget> fitTargets(const Experiment& experiment);
 bool isCalibrated(const Experiment& table, const std::vector<std::string>& row,
                   const std::string& column);
 
-/// An entry of `fit` with the printed number that it names, of `table`. So no other number of the
+/// The file of the table that the entry of `fit` at a column names; `where` that column stands.
+/// Throws Error for an entry with other keys, or without one of its own.
+const Node& tableOfFit(const Node& entry, const SourceLocation& where, const std::string& column);
+
+/// Such an entry with the printed number that it names, of `table`. So no other number of the
 /// table reaches the experiment. Throws Error for a cell that is not there, is of another measure
 /// than the column, or of another method than the fit's cases: what compares methods is not seen;
 /// and for one that its table does not mark as calibrated.

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "engine/core/text.h"
-#include "engine/scene/catalog_schema.h"
+#include "engine/scene/catalog_entry.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {

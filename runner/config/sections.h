@@ -75,8 +75,8 @@ RowFilter readRowFilter(const Node& at, const std::string& what, const TableName
 
 /// Throws Error unless `format` is text with at least one statistic in braces, as "{mean:.2f}".
 void requireCellFormat(const Node& format);
-/// lineOf() of a key of `map`; "" where it is not there.
-std::string optionalLine(const Node& map, std::string_view key, const std::string& what);
+/// lineOf() it; "" where it is not there.
+std::string optionalLine(const Node* node, const std::string& what);
 /// Throws Error "WHAT needs 'KEY'" where it is not there.
 const Node& requiredAt(const Node& map, std::string_view key, std::string_view what);
 
@@ -115,39 +115,10 @@ Experiment readExperiment(const Node& document, const std::filesystem::path& fil
 /// Throws Error unless `value` is a side of the image; `axis` begins the message.
 int outputSize(const Node& value, std::string_view axis);
 
-/// A key and how it is read: declared once. `what` begins messages: "plot 1: x".
-template <class Reader>
-struct ReadKey {
-    SchemaKey declared;
-    void (*read)(Reader& reader, const Node& value, const std::string& what);
-};
-
-/// Reads those that the map has, in the order of `keys`. Throws Error for a key that is none of
-/// them, and for a required one that is not there; `what` begins the messages.
-template <class Reader>
-void readKeys(const std::vector<ReadKey<Reader>>& keys, const Node& map, const std::string& what,
-              Reader& reader) {
-    Names names;
-    for (const auto& key : keys) names.push_back(key.declared.name);
-    requireKeys(map, what, names);
-    for (const auto& [declared, read] : keys) {
-        const bool isRequired = declared.isRequired();
-        const Node* value =
-            isRequired ? &requiredAt(map, declared.name, what) : map.find(declared.name);
-        if (value) read(reader, *value, what + ": " + declared.name);
-    }
-}
-
-template <class Reader>
-SchemaSection sectionOf(std::string name, std::string path,
-                        const std::vector<ReadKey<Reader>>& keys) {
-    SchemaSection section{std::move(name), std::move(path), "", {}, false};
-    for (const auto& key : keys) section.keys.push_back(key.declared);
-    return section;
-}
-
 // The keys of the sections, each declared where it is read.
 std::vector<SchemaSection> programKeys();
+SchemaSection compositionKeys();
+SchemaSection profileKeys();
 SchemaSection outputKeys();
 std::vector<SchemaSection> sweepKeys();
 SchemaSection measureKeys();

@@ -14,6 +14,59 @@ namespace gfxrepro::config {
 
 namespace {
 
+using namespace types;
+
+/// `axes`: keys that are as any other, but of every technique.
+struct SweepKeys {
+    const Node *axes, *zip, *list, *exclude, *when;
+};
+const KeyTable<SweepKeys>& sweepTable() {
+    using S = SweepKeys;
+    static const Json axisType = anyOf({listOf(anything(), 1), refTo("axis")});
+    static const KeyTable<S> table{
+        {"sweep", "sweep.",
+         "Any other key is a parameter of the technique, or as `scene.NAME` one of the generated "
+         "scenes: it is an axis too. A condition's value may be a list: any of these.",
+         true, anyOf({listOf(anything(), 1), refTo("axis"), {{"const", "all"}}})},
+        {{&S::axes, "scene", "values", "none",
+          "scenes; \"models/*.ply\" is all files of such a name",
+          anyOf({text(), listOf(anything(), 1), refTo("axis")})},
+         {&S::axes, "output.width", "values", "none", "widths of the image", axisType},
+         {&S::axes, "output.height", "values", "none", "heights of the image", axisType},
+         {&S::zip, "zip", "[{axis: values}]", "[]", "each block: axes that go together",
+          listOf(mapOf(axisType))},
+         {&S::list, "list", "[[{axis: value}]]", "[]",
+          "each block: points spelt out; keys may differ", listOf(listOf(pairs(), 1))},
+         {&S::exclude, "exclude", "[{axis: value}]", "[]", "drops points that match all pairs",
+          listOf(pairs())},
+         {&S::when, "when", "{axis: {other: value}}", "{}",
+          "the axis applies only there: elsewhere tables show no value of it", mapOf(pairs())}}};
+    return table;
+}
+
+struct AxisKeys {
+    const Node *range, *log2;
+};
+const KeyTable<AxisKeys>& axisTable() {
+    static const KeyTable<AxisKeys> table{
+        {"axis",
+         "values.",
+         "Values are a list, or a map with one of these keys; `all` is what a program's parameter "
+         "lists.",
+         false,
+         nullptr,
+         {{"minProperties", 1}, {"maxProperties", 1}}},
+        {{&AxisKeys::range,
+          "range",
+          "[first, last, step]",
+          "none",
+          "both ends included; step 1 may be left out",
+          {{"type", "array"}, {"items", number()}, {"minItems", 2}, {"maxItems", 3}}},
+         {&AxisKeys::log2, "log2", "[first, last]", "none", "powers of two, both ends included",
+          tupleOf(number(), 2)}}};
+    return table;
+}
+
 constexpr double kMaxPoints = 1'000'000;
 
 /// Points that are chosen together: the values of one axis, or a zip or list block. A sweep is the
@@ -76,13 +129,15 @@ Node::Sequence valuesOfLog2(const Node& ends) {
 /// The values of one axis: a list, {range: …} or {log2: …}; `all` is a list when the file is read.
 Node::Sequence valuesOfAxis(const std::string& axis, const Node& node) {
     const std::string what = "axis '" + axis + "'";
+    const bool isOne = node.isMap() && node.entries().size() == 1;
+    const AxisKeys given = isOne ? axisTable().find(node) : AxisKeys{};
     Node::Sequence values;
     if (node.isSequence()) {
         values = node.items();
-    } else if (node.isMap() && node.entries().size() == 1 && node.find("range")) {
-        values = valuesOfRange(*node.find("range"), axis);
-    } else if (node.isMap() && node.entries().size() == 1 && node.find("log2")) {
-        values = valuesOfLog2(*node.find("log2"));
+    } else if (given.range) {
+        values = valuesOfRange(*given.range, axis);
+    } else if (given.log2) {
+        values = valuesOfLog2(*given.log2);
     } else {
         throwNotAllowed(node, what,
                         "a list, {range: [first, last, step]}, {log2: [first, last]}, or all, of "
@@ -235,12 +290,13 @@ void dropDuplicates(std::vector<AxisPoint>& points) {
 
 Factors factorsOf(const Node& sweep) {
     Factors factors;
+    const SweepKeys given = sweepTable().find(sweep);
     for (const auto& [key, node] : sweep.entries()) {
-        if (key == "zip") {
+        if (&node == given.zip) {
             factors.addZips(node);
-        } else if (key == "list") {
+        } else if (&node == given.list) {
             factors.addLists(node);
-        } else if (key != "exclude" && key != "when") {
+        } else if (&node != given.exclude && &node != given.when) {
             factors.addAxis(key, node, sweep.keyLocation(key));
         }
     }
@@ -332,7 +388,8 @@ std::vector<NoEffect> valuesInVain(const Experiment& experiment) {
 }
 
 std::vector<NoEffect> excludedInVain(const Experiment& experiment) {
-    const Node* exclude = experiment.sweep.isMap() ? experiment.sweep.find("exclude") : nullptr;
+    const Node* exclude =
+        experiment.sweep.isMap() ? sweepTable().find(experiment.sweep).exclude : nullptr;
     if (!exclude) return {};
     Node whole = experiment.sweep;
     whole.erase("exclude");
@@ -351,8 +408,8 @@ std::vector<AxisPoint> expandSweep(const Node& sweep) {
     if (sweep.isNull()) return {{}};
     if (!sweep.isMap()) throwNotAllowed(sweep, "sweep", "a map, axis: values");
     const Factors factors = factorsOf(sweep);
-    const Node* when = sweep.find("when");
-    const Node* exclude = sweep.find("exclude");
+    const SweepKeys given = sweepTable().find(sweep);
+    const Node *when = given.when, *exclude = given.exclude;
     if (when) {
         requireKeys(*when, "when", factors.axes());
         for (const auto& [axis, conditions] : when->entries()) {
@@ -381,43 +438,7 @@ std::vector<AxisPoint> expandSweep(const Node& sweep) {
 }
 
 std::vector<SchemaSection> sweepKeys() {
-    using namespace types;
-    const Json axisType = anyOf({listOf(anything(), 1), refTo("axis")});
-    const Json paramType = anyOf({listOf(anything(), 1), refTo("axis"), {{"const", "all"}}});
-    const Json scenesType = anyOf({text(), listOf(anything(), 1), refTo("axis")});
-    return {
-        {"sweep",
-         "sweep.",
-         "Any other key is a parameter of the technique, or as `scene.NAME` one of the generated "
-         "scenes: it is an axis too. A condition's value may be a list: any of these.",
-         {{"scene", "values", "none", "scenes; \"models/*.ply\" is all files of such a name",
-           scenesType},
-          {"output.width", "values", "none", "widths of the image", axisType},
-          {"output.height", "values", "none", "heights of the image", axisType},
-          {"zip", "[{axis: values}]", "[]", "each block: axes that go together",
-           listOf(mapOf(axisType))},
-          {"list", "[[{axis: value}]]", "[]", "each block: points spelt out; keys may differ",
-           listOf(listOf(pairs(), 1))},
-          {"exclude", "[{axis: value}]", "[]", "drops points that match all pairs",
-           listOf(pairs())},
-          {"when", "{axis: {other: value}}", "{}",
-           "the axis applies only there: elsewhere tables show no value of it", mapOf(pairs())}},
-         true,
-         paramType},
-        {"axis",
-         "values.",
-         "Values are a list, or a map with one of these keys; `all` is what a program's parameter "
-         "lists.",
-         {{"range",
-           "[first, last, step]",
-           "none",
-           "both ends included; step 1 may be left out",
-           {{"type", "array"}, {"items", number()}, {"minItems", 2}, {"maxItems", 3}}},
-          {"log2", "[first, last]", "none", "powers of two, both ends included",
-           tupleOf(number(), 2)}},
-         false,
-         nullptr,
-         {{"minProperties", 1}, {"maxProperties", 1}}}};
+    return {sweepTable().section(), axisTable().section()};
 }
 
 }  // namespace gfxrepro::config

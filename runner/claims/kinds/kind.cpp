@@ -47,8 +47,17 @@ NumberRange asFraction(NumberRange range) {
 
 }  // namespace
 
+const Node* Kind::find(const Node& claim, std::string_view key) const {
+    GFXREPRO_ASSERT(std::ranges::find(section.keys, key, &SchemaKey::name) != section.keys.end());
+    return claim.find(key);
+}
+
+const Node* ClaimKeys::find(std::string_view key) const {
+    return kind.find(node, key);
+}
+
 const Node& ClaimKeys::require(std::string_view key) const {
-    const Node* value = node.find(key);
+    const Node* value = find(key);
     if (!value) throw Error(where, fmt::format("{} needs '{}'", what, key));
     return *value;
 }
@@ -160,7 +169,7 @@ void ClaimKeys::readOver(std::string_view key, ClaimSpec& claim) const {
 void ClaimKeys::readBounds(ClaimSpec& claim, const char* other) const {
     // True for the second key, which excludes the bound itself.
     const auto readBound = [&](const char* including, const char* excluding, auto& bound) {
-        const Node *included = node.find(including), *excluded = node.find(excluding);
+        const Node *included = find(including), *excluded = find(excluding);
         if (included && excluded) {
             fail(*excluded, fmt::format("'{}' and '{}'; one is allowed", including, excluding));
         }
@@ -176,7 +185,7 @@ void ClaimKeys::readBounds(ClaimSpec& claim, const char* other) const {
     };
     claim.isLowExcluded = readBound("at_least", "more_than", claim.low);
     claim.isHighExcluded = readBound("at_most", "less_than", claim.high);
-    if (!claim.hasBound() && !(other && node.find(other))) {
+    if (!claim.hasBound() && !(other && find(other))) {
         throw Error(where,
                     fmt::format("{} needs at_least, more_than, at_most{}{}", what,
                                 other ? ", less_than or " : " or less_than", other ? other : ""));
@@ -185,7 +194,7 @@ void ClaimKeys::readBounds(ClaimSpec& claim, const char* other) const {
     const bool isOpen = claim.isLowExcluded || claim.isHighExcluded;
     if (!isOpen || !claim.low || !claim.high || *claim.low < *claim.high) return;
     const char* key = claim.isHighExcluded ? "less_than" : "more_than";
-    refuse(*node.find(key), key, "bounds with a number between them");
+    refuse(*find(key), key, "bounds with a number between them");
 }
 
 double ClaimKeys::readShare(std::string_view key, const NumberRange& range) const {
@@ -199,7 +208,8 @@ double ClaimKeys::readShare(std::string_view key, const NumberRange& range) cons
 
 SchemaSection sectionOf(SchemaKey first, std::vector<SchemaKey> further, Json conditions) {
     first.absent = "required";
-    SchemaSection section{"claim." + first.name, "claims.ID.", "", {first}, false};
+    SchemaSection section{"claim." + first.name, "claims.ID.", "", false};
+    section.keys.push_back(first);
     for (SchemaKey& key : further) section.keys.push_back(std::move(key));
     section.conditions = std::move(conditions);
     return section;

@@ -84,6 +84,7 @@ std::string acrossHint(const std::string& value, const std::string& axis);
 
 /// The keys of a claim, as its kind reads them. What is wrong is an Error at its place.
 struct ClaimKeys {
+    const Kind& kind;
     const Node& node;
     const Node& operands;  // the value of the key that names the kind
     const std::vector<std::string>& rowAxes;
@@ -94,6 +95,7 @@ struct ClaimKeys {
     const std::string& what;  // begins the messages: "claim 'C'"
     const SourceLocation& where;
 
+    const Node* find(std::string_view key) const;
     const Node& require(std::string_view key) const;
     void requirePrinted() const;
     /// "claim 'C': KEY is VALUE; allowed: …"; an empty key is of the whole claim.
@@ -146,6 +148,8 @@ struct Kind {
     std::optional<std::string> (*axisOf)(const Node& operands, const std::string& what) = nullptr;
 
     const std::string& name() const { return section.keys.front().name; }
+    /// What the claim has at a key, or null. Only a key that `section` declares can be read.
+    const Node* find(const Node& claim, std::string_view key) const;
 };
 
 /// All of them, in the order in which people are told of them.

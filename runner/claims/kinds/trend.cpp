@@ -17,14 +17,14 @@ constexpr std::array<std::string_view, 2> kDirections = {"increasing", "decreasi
 
 /// 1 increasing, −1 decreasing, 0 by its exponent alone.
 int directionOf(const ClaimSpec& claim) {
-    const Node* direction = claim.keys.find("direction");
+    const Node* direction = claim.kind->find(claim.keys, "direction");
     if (!direction) return 0;
     const std::string what = "claim '" + claim.id + "': direction";
     return choiceOf(*direction, kDirections, what) == 0 ? 1 : -1;
 }
 
 bool isStrict(const ClaimSpec& claim) {
-    const Node* strictly = claim.keys.find("strictly");
+    const Node* strictly = claim.kind->find(claim.keys, "strictly");
     return strictly && strictly->asBool();
 }
 
@@ -33,7 +33,7 @@ void readTrend(const ClaimKeys& keys, ClaimSpec& claim) {
     keys.readOver("over", claim);
     keys.readBounds(claim, "direction");
     (void)directionOf(claim);
-    const Node* strictly = keys.node.find("strictly");
+    const Node* strictly = keys.find("strictly");
     if (!strictly) return;
     (void)flagOf(*strictly, keys.what + ": strictly");
     if (directionOf(claim) == 0) keys.fail(*strictly, "strictly needs 'direction'");
