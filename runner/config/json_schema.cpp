@@ -36,17 +36,26 @@ Json propertyOf(const SchemaKey& key, bool isRemovable) {
     return property;
 }
 
+/// A section; where its keys are defined already, the definition, to which its own refer.
+struct Part {
+    const SchemaSection* section;
+    std::string definition = {};
+};
+
 /// A map with the keys of these sections; the first says what else holds.
-Json mapOfSections(const std::vector<const SchemaSection*>& sections) {
+Json mapOfSections(const std::vector<Part>& parts) {
     Json properties = Json::object();
     Json required = Json::array();
     Json types = Json::object();  // kinds of claims may give a key of one name several
-    for (const SchemaSection* section : sections) {
+    for (const auto& [section, definition] : parts) {
         for (const SchemaKey& key : section->keys) {
             Json& known = types[key.name];
             if (std::find(known.begin(), known.end(), key.json) == known.end()) {
                 known.push_back(key.json);
-                const Json property = propertyOf(key, section->isRemovable);
+                const Json property =
+                    definition.empty()
+                        ? propertyOf(key, section->isRemovable)
+                        : Json{{"$ref", fmt::format("{}/properties/{}", definition, key.name)}};
                 Json& whole = properties[key.name];
                 whole = whole.is_null() ? property : anyOf({whole, property});
             }
@@ -55,11 +64,11 @@ Json mapOfSections(const std::vector<const SchemaSection*>& sections) {
         }
     }
     Json map = {{"type", "object"}, {"properties", std::move(properties)}};
-    const Json& others = sections.front()->others;
+    const Json& others = parts.front().section->others;
     map["additionalProperties"] = others.is_null() ? Json(false) : orNull(others);
     if (!required.empty()) map["required"] = std::move(required);
-    for (const SchemaSection* section : sections) {
-        if (section->conditions.is_object()) map.update(section->conditions);
+    for (const Part& part : parts) {
+        if (part.section->conditions.is_object()) map.update(part.section->conditions);
     }
     return map;
 }
@@ -68,12 +77,17 @@ bool isClaimType(const SchemaSection& section) {
     return section.name.starts_with("claim.");
 }
 
+/// What all claims have.
+Part commonPart() {
+    return {&schemaSection("claim"), "#/definitions/claim_common"};
+}
+
 /// One of the types, each with what all claims have.
 Json claimType(const SchemaFile& file) {
     Json types = Json::array();
     for (const SchemaSection& section : file.sections) {
         if (!isClaimType(section)) continue;
-        Json type = mapOfSections({&section, &schemaSection("claim")});
+        Json type = mapOfSections({{&section}, commonPart()});
         type["title"] = section.keys.front().name;
         types.push_back(std::move(type));
     }
@@ -81,19 +95,20 @@ Json claimType(const SchemaFile& file) {
 }
 
 /// What a file may say that extends one which says the rest.
-Json partOf(const std::vector<const SchemaSection*>& sections) {
-    Json part = mapOfSections(sections);
+Json partOf(const std::vector<Part>& parts) {
+    Json part = mapOfSections(parts);
     for (const char* key : {"required", "anyOf"}) part.erase(key);
     return part;
 }
 
 void addParts(const SchemaFile& file, Json& definitions) {
-    std::vector<const SchemaSection*> claims;
+    std::vector<Part> claims = {commonPart()};
     for (const SchemaSection& section : file.sections) {
-        if (section.name == "claim" || isClaimType(section)) claims.push_back(&section);
+        if (isClaimType(section)) claims.push_back({&section});
     }
+    definitions["claim_common"] = mapOfSections({{&schemaSection("claim")}});
     definitions["claim_part"] = partOf(claims);
-    definitions["assumption_part"] = partOf({&schemaSection("assumption")});
+    definitions["assumption_part"] = partOf({{&schemaSection("assumption")}});
 }
 
 /// Where nothing is extended, everything must be there.
@@ -109,7 +124,7 @@ Json definitionsOf(const SchemaFile& file) {
     for (const SchemaSection& section : file.sections) {
         if (isClaimType(section)) continue;
         definitions[section.name] =
-            section.name == "claim" ? claimType(file) : mapOfSections({&section});
+            section.name == "claim" ? claimType(file) : mapOfSections({{&section}});
     }
     if (file.name == "experiment") addParts(file, definitions);
     return definitions;
@@ -189,52 +204,59 @@ Json conditionOf(const SchemaNames::Technique& technique) {
             {"then", {{"properties", std::move(properties)}}}};
 }
 
-void addNames(const SchemaNames& names, Json& root) {
-    if (names.techniques.empty()) return;
-    Json& definitions = root["definitions"];
-    Json techniques = Json::array();
+/// What holds of the names of a technique, and of which techniques there are.
+void addNames(const SchemaNames& names, Json& definitions) {
+    Json measured = Json::array(), techniques = Json::array();
     for (const SchemaNames::Technique& technique : names.techniques) {
         techniques.push_back(technique.name);
         if (technique.isOpen) continue;
         defineTechnique(technique, definitions);
         defineLayout(technique, definitions);
-        root["allOf"].push_back(conditionOf(technique));
+        measured.push_back(conditionOf(technique));
     }
-    for (Json* map : {&root, &definitions["content"]}) {
-        Json& technique = (*map)["properties"]["technique"];
-        technique.erase("type");
-        technique["enum"] = techniques;
-        technique["enum"].push_back(kImported);
-        technique["enum"].push_back(nullptr);
-    }
+    definitions["measured"] = {{"allOf", std::move(measured)}};
+    Json& technique = definitions["content"]["properties"]["technique"];
+    technique.erase("type");
+    technique["enum"] = techniques;
+    technique["enum"].push_back(kImported);
+    technique["enum"].push_back(nullptr);
 }
 
-Json experimentOrPreset(bool isPreset, const SchemaNames& names) {
-    const SchemaFile& file = schema().front();
-    const std::vector<const SchemaSection*> extended = {&schemaSection("composition"),
-                                                        &schemaSection("content")};
-    Json root = mapOfSections(extended);
-    if (!isPreset) {
-        root = mapOfSections({&schemaSection("identity"), extended[0], extended[1]});
-        Json identities = Json::array();
-        for (const std::string& key : keysOf("identity")) {
-            identities.push_back({{"required", Json::array({key})}});
-        }
-        root["oneOf"] = std::move(identities);
-        root.update(needsOneOf(
-            {{"title", "technique"}, {"title", "program"}, {"title", "printed"}, {"extends"}}));
+/// The keys of every config, which `file` defines ("" this one).
+std::vector<Part> extendedParts(const std::string& file) {
+    return {{&schemaSection("composition"), file + "#/definitions/composition"},
+            {&schemaSection("content"), file + "#/definitions/content"}};
+}
+
+/// What experiments extend: a part of what they may have.
+Json presetSchema() {
+    const std::string file = "experiment.json";
+    Json root = mapOfSections(extendedParts(file));
+    root["allOf"] = Json::array({{{"$ref", file + "#/definitions/measured"}}});
+    return root;
+}
+
+Json experimentSchemaOf(const SchemaNames& names) {
+    std::vector<Part> parts = extendedParts("");
+    parts.insert(parts.begin(), Part{&schemaSection("identity")});
+    Json root = mapOfSections(parts);
+    Json identities = Json::array();
+    for (const std::string& key : identityKeys()) {
+        identities.push_back({{"required", Json::array({key})}});
     }
-    root["definitions"] = definitionsOf(file);
-    root["allOf"] = Json::array();
-    if (!isPreset) root["allOf"].push_back(wholeUnlessExtended());
-    addNames(names, root);
+    root["oneOf"] = std::move(identities);
+    root.update(needsOneOf(
+        {{"title", "technique"}, {"title", "program"}, {"title", "printed"}, {"extends"}}));
+    root["definitions"] = definitionsOf(schema().front());
+    root["allOf"] = Json::array({wholeUnlessExtended(), refTo("measured")});
+    addNames(names, root["definitions"]);
     return root;
 }
 
 Json sceneOrDocuments(std::string_view kind, const SchemaNames& names) {
     for (const SchemaFile& file : schema()) {
         if (file.name != kind) continue;
-        Json root = mapOfSections({&file.sections.front()});
+        Json root = mapOfSections({{&file.sections.front()}});
         root["definitions"] = definitionsOf(file);
         if (kind == "scene" && !names.generators.empty()) {
             Json& source = root["definitions"]["generator_source"]["properties"];
@@ -285,9 +307,9 @@ Json jsonTypeOf(const ParamInfo& info) {
 std::string jsonSchema(std::string_view kind, const SchemaNames& names) {
     Json root = {{"$schema", "http://json-schema.org/draft-07/schema#"},
                  {"title", fmt::format("gfxrepro {}", kind)}};
-    const bool isPreset = kind == "preset";
-    root.update(isPreset || kind == "experiment" ? experimentOrPreset(isPreset, names)
-                                                 : sceneOrDocuments(kind, names));
+    root.update(kind == "experiment" ? experimentSchemaOf(names)
+                : kind == "preset"   ? presetSchema()
+                                     : sceneOrDocuments(kind, names));
     return dumped(root, 0) + "\n";
 }
 

@@ -25,11 +25,24 @@ nlohmann::json plainJson(const Node& node) {
     return nlohmann::json::parse(node.toJson().dump());
 }
 
+/// The schema of a kind; what it takes from experiment.json stands in it, for a validator that
+/// knows no other files.
+nlohmann::json schemaText(const std::string& kind) {
+    std::string text = readFile(kConfigs / "schema" / (kind + ".json"));
+    const std::string other = "experiment.json#";
+    bool isOther = false;
+    for (std::size_t at = 0; (at = text.find(other, at)) != text.npos; isOther = true) {
+        text.replace(at, other.size(), "#");
+    }
+    nlohmann::json schema = nlohmann::json::parse(text);
+    if (isOther) schema["definitions"] = schemaText("experiment").at("definitions");
+    return schema;
+}
+
 /// A committed schema.
 class JsonSchema {
   public:
-    explicit JsonSchema(const std::string& kind)
-        : text_(nlohmann::json::parse(readFile(kConfigs / "schema" / (kind + ".json")))) {
+    explicit JsonSchema(const std::string& kind) : text_(schemaText(kind)) {
         valijson::SchemaParser parser(valijson::SchemaParser::kDraft7);
         parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(text_), schema_);
     }
@@ -335,6 +348,16 @@ TEST(JsonSchema, KnowsTheParametersOfEachTechnique) {
     EXPECT_NE(schema.complaintAbout("table: p/1\ntitle: t\ntechnique: voxelisation\n"), "");
     // Where the technique comes from a file that is extended, nothing is known of parameters.
     EXPECT_EQ(schema.complaintAbout("table: p/1\nextends: x.yaml\nparams: {resolutoin: 1}"), "");
+}
+
+TEST(JsonSchema, OfAPresetIsAPartOfTheExperiments) {
+    const JsonSchema schema("preset");
+    const std::string head = "technique: voxelization\n";
+    EXPECT_EQ(schema.complaintAbout(head + "params: {resolution: 64}"), "");
+    for (const char* bad : {"table: p/1", "titel: t", "measure: {laps: 3}", "extends: {a: b}",
+                            "params: {resolution: some}", "sweep: {resolutoin: [64]}"}) {
+        EXPECT_NE(schema.complaintAbout(head + bad), "") << bad;
+    }
 }
 
 TEST(JsonSchema, RefusesWrongScenes) {
