@@ -1,6 +1,7 @@
 // Two builds measured alternately, and two runs compared.
 #include <gmock/gmock.h>
 
+#include <array>
 #include <filesystem>
 
 #include "engine/core/files.h"
@@ -11,6 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::EndsWith;
+using testing::HasSubstr;
 using testing::StartsWith;
 
 class Compare : public ::testing::Test {
@@ -34,6 +36,22 @@ class Compare : public ::testing::Test {
                              "--device", "software", "--history", history, "--out", out,
                              program("old", 0), program("new", extraMs), config});
     }
+    /// Two rounds, in a new folder.
+    ProcessResult compared(const std::string& older, const std::string& newer,
+                           const fs::path& config) const {
+        fs::remove_all(out);
+        return mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software",
+                             "--out", out, older, newer, config});
+    }
+    /// Runs of the config in folders a and b.
+    std::array<std::string, 2> twoRuns(const fs::path& config, int exitCode = 0) const {
+        std::array<std::string, 2> dirs{folder.path() / "a", folder.path() / "b"};
+        for (const std::string& dir : dirs) {
+            EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode,
+                      exitCode);
+        }
+        return dirs;
+    }
 
     TemporaryFolder folder;
     std::string out = folder.path() / "out";
@@ -44,12 +62,12 @@ TEST_F(Compare, FindsASlowerBuildAndConfirmsIt) {
     const ProcessResult result = byTurns(40);
     EXPECT_EQ(result.exitCode, 1) << result.err;
     EXPECT_EQ(result.out.find("alarm; measuring again\n"), 0U) << result.out;
-    EXPECT_NE(result.out.find("_time_ms: slower"), std::string::npos) << result.out;
-    EXPECT_NE(readFile(out + "/comparison.md").find("| slower |"), std::string::npos);
-    EXPECT_NE(readFile(out + "/junit.xml").find("<failure message=\"slower"), std::string::npos);
-    EXPECT_NE(readFile(out + "/benchmark.json").find("_time_ms"), std::string::npos);
+    EXPECT_THAT(result.out, HasSubstr("_time_ms: slower"));
+    EXPECT_THAT(readFile(out + "/comparison.md"), HasSubstr("| slower |"));
+    EXPECT_THAT(readFile(out + "/junit.xml"), HasSubstr("<failure message=\"slower"));
+    EXPECT_THAT(readFile(out + "/benchmark.json"), HasSubstr("_time_ms"));
     EXPECT_TRUE(fs::exists(out + "/old-15/records.csv")) << "confirmed in fresh processes";
-    EXPECT_NE(readFile(history).find("_time_ms"), std::string::npos);
+    EXPECT_THAT(readFile(history), HasSubstr("_time_ms"));
 }
 
 TEST_F(Compare, TheSameBuildRaisesNoAlarm) {
@@ -60,14 +78,10 @@ TEST_F(Compare, TheSameBuildRaisesNoAlarm) {
 TEST_F(Compare, RunsOfOneProcessCannotTellTimes) {
     const fs::path config =
         writeMockConfig(folder, "measure: {lane: timing, processes: 1, repeats: 2}\n");
-    const std::string a = folder.path() / "a", b = folder.path() / "b";
-    for (const std::string& dir : {a, b}) {
-        ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
-    }
+    const auto [a, b] = twoRuns(config);
     const ProcessResult result = mockGfxrepro({"compare", a, b, "--out", out});
     EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
-    EXPECT_NE(readFile(out + "/comparison.md").find("1 and 1 processes cannot decide"),
-              std::string::npos);
+    EXPECT_THAT(readFile(out + "/comparison.md"), HasSubstr("1 and 1 processes cannot decide"));
 }
 
 TEST_F(Compare, ABuildThatCrashesIsAnAlarm) {
@@ -75,24 +89,16 @@ TEST_F(Compare, ABuildThatCrashesIsAnAlarm) {
     const fs::path crashing = folder.write(
         "crashing", "#!/bin/sh\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\" --set behaviour=crash\n");
     fs::permissions(crashing, fs::perms::owner_all);
-    const auto compared = [&](const std::string& older, const std::string& newer) {
-        fs::remove_all(out);
-        return mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software",
-                             "--out", out, older, newer, config});
-    };
-    const ProcessResult lost = compared(program("old", 0), crashing);
+    const ProcessResult lost = compared(program("old", 0), crashing, config);
     EXPECT_EQ(lost.exitCode, 1) << lost.out << lost.err;
-    EXPECT_NE(lost.out.find(": lost: crash: "), std::string::npos) << lost.out;
-    EXPECT_NE(readFile(out + "/junit.xml").find("<failure message=\"lost: crash: "),
-              std::string::npos);
-    const ProcessResult both = compared(crashing, crashing);
+    EXPECT_THAT(lost.out, HasSubstr(": lost: crash: "));
+    EXPECT_THAT(readFile(out + "/junit.xml"), HasSubstr("<failure message=\"lost: crash: "));
+    const ProcessResult both = compared(crashing, crashing, config);
     EXPECT_EQ(both.exitCode, 4) << both.out << both.err;
-    EXPECT_NE(both.out.find("sweep/mock mock status: failed on both sides: crash: "),
-              std::string::npos)
-        << both.out;
-    EXPECT_NE(both.out.find("\n1 failed on both sides; "), std::string::npos) << both.out;
-    EXPECT_NE(readFile(out + "/junit.xml").find("<skipped message=\"failed on both sides: crash: "),
-              std::string::npos);
+    EXPECT_THAT(both.out, HasSubstr("sweep/mock mock status: failed on both sides: crash: "));
+    EXPECT_THAT(both.out, HasSubstr("\n1 failed on both sides; "));
+    EXPECT_THAT(readFile(out + "/junit.xml"),
+                HasSubstr("<skipped message=\"failed on both sides: crash: "));
 }
 
 /// To confirm it only what is lost is measured again, of which that build knows nothing.
@@ -110,38 +116,28 @@ TEST_F(Compare, ATableThatABuildLeavesOutIsAnErrorWithAName) {
         mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software", "--out",
                       folder.path() / "turns", GFXREPRO_MOCK_PROGRAM, program, one, two});
     EXPECT_EQ(result.exitCode, 2);
-    EXPECT_NE(result.err.find("/fewer: exit code 2: gfxrepro: run: give PAPER"), std::string::npos)
-        << result.err;
+    EXPECT_THAT(result.err, HasSubstr("/fewer: exit code 2: gfxrepro: run: give PAPER"));
 }
 
 TEST_F(Compare, ACaseThatNeitherSideMeasuredWeighsMoreThanAnAlarm) {
     const fs::path config =
         writeMockConfig(folder, "sweep: {behaviour: [ok, throw]}\nmeasure: {lane: quality}\n");
-    const auto compared = [&](const std::string& set) {
-        fs::remove_all(out);
-        return mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software",
-                             "--out", out, program("old", 0), program("new", 0, set), config});
-    };
-    const ProcessResult both = compared("0.75");
+    const ProcessResult both = compared(program("old", 0), program("new", 0, "0.75"), config);
     EXPECT_EQ(both.exitCode, 4) << both.out << both.err;
-    EXPECT_NE(both.out.find("picture/flat: changed: "), std::string::npos) << both.out;
-    EXPECT_NE(both.out.find("status: failed on both sides: "), std::string::npos) << both.out;
+    EXPECT_THAT(both.out, HasSubstr("picture/flat: changed: "));
+    EXPECT_THAT(both.out, HasSubstr("status: failed on both sides: "));
 }
 
 TEST_F(Compare, TimesThatAreVoidOnBothSidesAreNamed) {
     const fs::path config = writeMockConfig(
         folder, "params: {behaviour: blank}\nmeasure: {lane: timing, processes: 1, repeats: 2}\n");
-    const std::string a = folder.path() / "a", b = folder.path() / "b";
-    for (const std::string& dir : {a, b}) {
-        ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
-    }
+    const auto [a, b] = twoRuns(config, 4);
     const ProcessResult result = mockGfxrepro({"compare", a, b, "--out", out});
     EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
-    EXPECT_NE(result.out.find("_time_ms: void on both sides: frame 0: the picture of repeat 0 is "
-                              "blank: all its pixels are the same\n"),
-              std::string::npos)
-        << result.out;
-    EXPECT_NE(result.out.find("1 void on both sides; "), std::string::npos) << result.out;
+    EXPECT_THAT(result.out,
+                HasSubstr("_time_ms: void on both sides: frame 0: the picture of repeat 0 is "
+                          "blank: all its pixels are the same\n"));
+    EXPECT_THAT(result.out, HasSubstr("1 void on both sides; "));
 }
 
 TEST_F(Compare, SaysThatTimesOfTheQualityLaneAreNotCompared) {
@@ -150,68 +146,52 @@ TEST_F(Compare, SaysThatTimesOfTheQualityLaneAreNotCompared) {
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", a}).exitCode, 0);
     const ProcessResult result = mockGfxrepro({"compare", a, a, "--out", out});
     EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
-    EXPECT_NE(result.out.find("one case is of the quality lane: times that are not compared\n"),
-              std::string::npos)
-        << result.out;
+    EXPECT_THAT(result.out,
+                HasSubstr("one case is of the quality lane: times that are not compared\n"));
 }
 
 TEST_F(Compare, APictureThatChangedIsAnAlarmAndIsKept) {
     const fs::path config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
-    const ProcessResult result =
-        mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software", "--out",
-                      out, program("old", 0), program("new", 0, "0.75"), config});
+    const ProcessResult result = compared(program("old", 0), program("new", 0, "0.75"), config);
     EXPECT_EQ(result.exitCode, 1) << result.err;
-    EXPECT_NE(result.out.find("alarm; measuring again\n"), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find("sweep/mock mock picture/flat, number=1: changed: FLIP "),
-              std::string::npos)
-        << result.out;
-    EXPECT_NE(result.out.find("largest difference 0.25 (0 allowed)"), std::string::npos)
-        << result.out;
-    EXPECT_EQ(result.out.find("picture/truth: changed"), std::string::npos) << "it is the same";
+    EXPECT_THAT(result.out, HasSubstr("alarm; measuring again\n"));
+    EXPECT_THAT(result.out, HasSubstr("sweep/mock mock picture/flat, number=1: changed: FLIP "));
+    EXPECT_THAT(result.out, HasSubstr("largest difference 0.25 (0 allowed)"));
+    EXPECT_THAT(result.out, testing::Not(HasSubstr("picture/truth: changed"))) << "it is the same";
     std::size_t kept = 0;
     for (const auto& entry : fs::directory_iterator(out + "/pictures/sweep-mock")) {
         kept += entry.path().string().ends_with("-flat-flip.png") ? 1 : 0;
     }
     EXPECT_EQ(kept, 2U) << "a map a case";
     const std::string junit = readFile(out + "/junit.xml");
-    EXPECT_NE(junit.find("<failure message=\"changed: FLIP "), std::string::npos);
-    EXPECT_NE(junit.find("number&quot;:2"), std::string::npos) << "cases with names of their own";
-    EXPECT_NE(readFile(out + "/comparison.md").find("[difference](pictures/sweep-mock/"),
-              std::string::npos);
-    EXPECT_NE(readFile(out + "/benchmark.json").find("\"unit\": \"FLIP\""), std::string::npos);
+    EXPECT_THAT(junit, HasSubstr("<failure message=\"changed: FLIP "));
+    EXPECT_THAT(junit, HasSubstr("number&quot;:2")) << "cases with names of their own";
+    EXPECT_THAT(readFile(out + "/comparison.md"), HasSubstr("[difference](pictures/sweep-mock/"));
+    EXPECT_THAT(readFile(out + "/benchmark.json"), HasSubstr("\"unit\": \"FLIP\""));
 }
 
 TEST_F(Compare, PicturesThatABuildNoLongerRecordsAreAnAlarm) {
     const fs::path config = writeMockConfig(folder, "params: {number: 1}\n");
-    const ProcessResult result =
-        mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software", "--out",
-                      out, program("old", 0), program("new", 0, "none"), config});
+    const ProcessResult result = compared(program("old", 0), program("new", 0, "none"), config);
     EXPECT_EQ(result.exitCode, 1) << result.out << result.err;
-    EXPECT_NE(result.out.find("sweep/mock mock picture/flat: lost: recorded before only\n"),
-              std::string::npos)
-        << result.out;
+    EXPECT_THAT(result.out,
+                HasSubstr("sweep/mock mock picture/flat: lost: recorded before only\n"));
 }
 
 TEST_F(Compare, ARunThatLostItsPicturesIsAnAlarmAndOneThatNeverHadThemIsNot) {
     const fs::path config = writeMockConfig(folder, "params: {number: 1}\n");
-    const std::string a = folder.path() / "a", b = folder.path() / "b";
-    for (const std::string& dir : {a, b}) {
-        ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
-    }
+    const auto [a, b] = twoRuns(config);
     fs::remove_all(b + "/images");
     const ProcessResult lost = mockGfxrepro({"compare", a, b, "--out", out});
     EXPECT_EQ(lost.exitCode, 1) << lost.out << lost.err;
-    EXPECT_NE(lost.out.find("sweep/mock mock picture/flat: lost: recorded before only\n"),
-              std::string::npos)
-        << lost.out;
-    EXPECT_NE(readFile(out + "/junit.xml").find("<failure message=\"lost: recorded before only"),
-              std::string::npos);
+    EXPECT_THAT(lost.out, HasSubstr("sweep/mock mock picture/flat: lost: recorded before only\n"));
+    EXPECT_THAT(readFile(out + "/junit.xml"),
+                HasSubstr("<failure message=\"lost: recorded before only"));
     const ProcessResult never =
         mockGfxrepro({"compare", b, a, "--out", out + "2"});  // kept results
     EXPECT_EQ(never.exitCode, 0) << never.out << never.err;
-    EXPECT_NE(never.out.find("warning: the older run has no pictures: none are compared\n"),
-              std::string::npos)
-        << never.out;
+    EXPECT_THAT(never.out,
+                HasSubstr("warning: the older run has no pictures: none are compared\n"));
     EXPECT_EQ(mockGfxrepro({"compare", b, b, "--out", out + "3"}).exitCode, 0);
 }
 

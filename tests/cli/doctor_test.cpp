@@ -217,10 +217,11 @@ TEST(Doctor, Assets) {
               "where those come from that it cannot get.\n");
     facts.standInCount = 0;
     facts.missingSceneCount = 2;
-    EXPECT_NE(linesOf(facts).find(
-                  "results missing_scenes: 2 scenes have not even a stand-in: their cases will not "
-                  "run. → `gfxrepro describe SCENE` says which file each needs.\n"),
-              std::string::npos);
+    EXPECT_THAT(
+        linesOf(facts),
+        testing::HasSubstr(
+            "results missing_scenes: 2 scenes have not even a stand-in: their cases will not "
+            "run. → `gfxrepro describe SCENE` says which file each needs.\n"));
 }
 
 TEST(Doctor, Disk) {

@@ -13,6 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 using Faults = test::RunTest;
 
@@ -79,8 +80,7 @@ TEST_F(Faults, WhatPassesAtTheSecondTryIsFlaky) {
                             "flaking)",
                             "flake: ok"));
     EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
-    EXPECT_NE(readFile(dir + "/tables/sweep-mock.md").find("| 1 | 1 (flaky) |"), std::string::npos)
-        << readFile(dir + "/tables/sweep-mock.md");
+    EXPECT_THAT(readFile(dir + "/tables/sweep-mock.md"), HasSubstr("| 1 | 1 (flaky) |"));
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
               "0 of 0 finished; records: " + dir + "/records.csv\n");
 }
@@ -104,7 +104,7 @@ TEST_F(Faults, WhatALibraryThrowsNamesTheFile) {
     EXPECT_EQ(check.exitCode, 2);
     EXPECT_THAT(check.err, HasSubstr(name));
     EXPECT_THAT(check.err, HasSubstr("File name too long"));
-    EXPECT_THAT(check.err, testing::Not(HasSubstr("filesystem error")));
+    EXPECT_THAT(check.err, Not(HasSubstr("filesystem error")));
 }
 
 TEST_F(Faults, MeasurementsAreCountedAsCasesAre) {
@@ -119,7 +119,7 @@ TEST_F(Faults, MeasurementsAreCountedAsCasesAre) {
     ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
     std::string plan = readFile(dir + "/plan.json");
     const std::string one = "\"processes\":1,";
-    ASSERT_NE(plan.find(one), plan.npos);
+    ASSERT_THAT(plan, HasSubstr(one));
     writeFileAtomic(dir + "/plan.json",
                     plan.replace(plan.find(one), one.size(), "\"processes\":2147483647,"));
     for (const char* command : {"table", "report", "export"}) {
@@ -136,7 +136,7 @@ TEST_F(Faults, CheckTellsOfARunWithVeryManyRows) {
         return mockGfxrepro({"check", config}).out;
     };
     const std::string many = "measure: {lane: quality, frames: 500, processes: ";
-    EXPECT_EQ(rows(many + "10}\n").find("million"), std::string::npos);
+    EXPECT_THAT(rows(many + "10}\n"), Not(HasSubstr("million")));
     EXPECT_THAT(rows(many + "1000}\n"),
                 HasSubstr("about 3.5 million rows of records, of at most 64 million in a run\n"));
     EXPECT_THAT(rows(many + "100000}\n"),
@@ -166,7 +166,7 @@ TEST_F(Faults, CheckTellsOfAPlanThatIsTooLarge) {
     for (int i = 0; i < 50; ++i) passes += (i ? ", p" : "p") + std::to_string(i) + ": a pass";
     const std::string metrics = "  metrics: {rays: ray, hits: ray}\n";
     const std::string some = program("a.yaml", metrics, "processes: 1, frames: 100000");
-    EXPECT_EQ(said({some}).find("million"), std::string::npos);
+    EXPECT_THAT(said({some}), Not(HasSubstr("million")));
     // 2 × 50 values and the times of 50 passes, of each frame.
     EXPECT_THAT(said({program("b.yaml", metrics + passes + "}\n", "processes: 1, frames: 100000")}),
                 HasSubstr("about 20 million rows of records, of at most 64 million in a run\n"));
@@ -175,7 +175,7 @@ TEST_F(Faults, CheckTellsOfAPlanThatIsTooLarge) {
                 HasSubstr("about 1 million pictures, of at most 4 million in a run\n"));
     const std::string half = program("d.yaml", metrics, "processes: 8, frames: 1000000");
     const std::string other = program("e.yaml", metrics, "processes: 8, frames: 1000000");
-    EXPECT_EQ(said({half}).find("it will stop"), std::string::npos);
+    EXPECT_THAT(said({half}), Not(HasSubstr("it will stop")));
     EXPECT_THAT(said({half, other}),
                 HasSubstr("all in one run: about 80 million rows of records, of at most 64 million "
                           "in a run: it will stop before its end; measure it in parts"));
@@ -208,13 +208,9 @@ TEST_F(Faults, APerfectPictureIsInfinitelyGood) {
     ASSERT_EQ(ofPicture.size(), 1U);
     EXPECT_EQ(ofPicture[0].pass, "flat");
     EXPECT_NEAR(ofPicture[0].value, 12.04, 0.01);
-    EXPECT_NE(readFile(dir + "/tables/sweep-mock.md").find("| infinite | ∞ dB |"),
-              std::string::npos)
-        << readFile(dir + "/tables/sweep-mock.md");
-    EXPECT_NE(readFile(dir + "/tables/sweep-mock.csv").find("infinite,inf,inf,inf,,ok"),
-              std::string::npos)
-        << readFile(dir + "/tables/sweep-mock.csv");
-    EXPECT_NE(readFile(dir + "/claims.csv").find(",holds,"), std::string::npos);
+    EXPECT_THAT(readFile(dir + "/tables/sweep-mock.md"), HasSubstr("| infinite | ∞ dB |"));
+    EXPECT_THAT(readFile(dir + "/tables/sweep-mock.csv"), HasSubstr("infinite,inf,inf,inf,,ok"));
+    EXPECT_THAT(readFile(dir + "/claims.csv"), HasSubstr(",holds,"));
 }
 
 TEST_F(Faults, WhatSetUpMeasuredIsNoFrame) {
@@ -243,13 +239,13 @@ TEST_F(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
     const std::string warning =
         "warning: the machine was not quiet: while sweep/mock was timed it was hot, 97 °C of 95 °C "
         "at which it is slowed\n";
-    ASSERT_NE(hot.err.find(warning), std::string::npos) << hot.err;
+    ASSERT_THAT(hot.err, HasSubstr(warning));
     EXPECT_EQ(hot.err.find(warning), hot.err.rfind(warning)) << "once";
     const auto manifest = nlohmann::json::parse(readFile(dir + "/manifest.json"));
     EXPECT_EQ(manifest["machine_states"]["sweep/mock"]["hottest_c"], 97.0);
     const std::string note = "The machine was not quiet while this was timed: it was hot, 97 °C";
-    EXPECT_NE(readFile(dir + "/tables/sweep-mock.md").find(note), std::string::npos);
-    EXPECT_NE(readFile(dir + "/report.html").find(note), std::string::npos);
+    EXPECT_THAT(readFile(dir + "/tables/sweep-mock.md"), HasSubstr(note));
+    EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr(note));
     // A run that goes on keeps what it saw.
     folder.write(zone + "temp", "40000\n");
     run({"--resume", dir});
@@ -258,7 +254,7 @@ TEST_F(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
     // Nothing is told of a machine that tells nothing, nor said of one that is cool.
     const ProcessResult cool =
         run({config, "--device", "software", "--out", folder.path() / "cool"});
-    EXPECT_EQ(cool.err.find("not quiet"), std::string::npos) << cool.err;
+    EXPECT_THAT(cool.err, Not(HasSubstr("not quiet")));
 }
 
 TEST_F(Faults, SideBySideAndInFreshProcesses) {
@@ -299,9 +295,9 @@ TEST_F(Faults, BlankPicturesUnequalWorkAndSuspensionsVoidTimesAndNothingElse) {
     EXPECT_EQ(rowsOf(dir, "work_image_digest").size(), 12U);
     EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 4);
     const std::string table = readFile(dir + "/tables/sweep-mock.md");
-    EXPECT_NE(table.find("| blank | ambiguous | 0 |"), std::string::npos) << table;
-    EXPECT_NE(table.find("| unequal | ambiguous | 0 |"), std::string::npos) << table;
-    EXPECT_NE(table.find("| suspended | ambiguous | 0 |"), std::string::npos) << table;
+    EXPECT_THAT(table, HasSubstr("| blank | ambiguous | 0 |"));
+    EXPECT_THAT(table, HasSubstr("| unequal | ambiguous | 0 |"));
+    EXPECT_THAT(table, HasSubstr("| suspended | ambiguous | 0 |"));
 }
 
 std::vector<std::pair<int, double>> roundsOf(const std::string& dir) {
@@ -329,20 +325,19 @@ TEST_F(Faults, TimesAreMeasuredInRounds) {
         return readFile(into + "/tables/sweep-mock.md");
     };
     const std::string fixed = folder.path() / "fixed";
-    EXPECT_NE(measure("processes: 3", fixed).find("bounds are a range"), std::string::npos);
+    EXPECT_THAT(measure("processes: 3", fixed), HasSubstr("bounds are a range"));
     EXPECT_THAT(roundsOf(fixed),
                 ElementsAre(std::pair(0, 1.0), std::pair(0, 2.0), std::pair(1, 2.0),
                             std::pair(1, 1.0), std::pair(2, 1.0), std::pair(2, 2.0)));
     // No time is ever known to a millionth: rounds go on until they are as many as allowed.
     const std::string table =
         measure("processes: 6, relative_error: 0.000001, processes_at_most: 8", dir);
-    EXPECT_NE(table.find("Times of 8 rounds, the most that are allowed"), std::string::npos)
-        << table;
-    EXPECT_NE(table.find("Noise of this table"), std::string::npos) << table;
+    EXPECT_THAT(table, HasSubstr("Times of 8 rounds, the most that are allowed"));
+    EXPECT_THAT(table, HasSubstr("Noise of this table"));
     EXPECT_EQ(roundsOf(dir).size(), 16U);
     EXPECT_GT(rowsOf(dir, "process_time_ms").size(), 0U);
     const std::string manifest = readFile(dir + "/manifest.json");
-    EXPECT_NE(manifest.find("\"ended_by\": \"processes_at_most\""), std::string::npos) << manifest;
+    EXPECT_THAT(manifest, HasSubstr("\"ended_by\": \"processes_at_most\""));
     // What was decided stays; a unit that is lost is measured again.
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
               "0 of 0 finished; records: " + dir + "/records.csv\n");
@@ -407,8 +402,8 @@ TEST_F(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
     const ProcessResult run = mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--device",
                                             "software", "--quiet", "--out", dir});
     EXPECT_EQ(run.exitCode, 0) << run.err;
-    EXPECT_NE(readFile(dir + "/claims.csv").find("not among what was measured: 'y' is no column"),
-              std::string::npos);
+    EXPECT_THAT(readFile(dir + "/claims.csv"),
+                HasSubstr("not among what was measured: 'y' is no column"));
     EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
 }
 

@@ -404,7 +404,7 @@ TEST_F(OwnExperiment, NoTableIsNamedWhereNoCaseHasAResult) {
         gfxrepro({"reproduce", config, "--device", "software", "--quiet", "--out", dir});
     EXPECT_EQ(run.exitCode, 4) << run.err;
     EXPECT_FALSE(fs::exists(dir + "/tables"));
-    EXPECT_EQ(run.out.find("tables: "), std::string::npos) << run.out;
+    EXPECT_THAT(run.out, Not(HasSubstr("tables: ")));
     EXPECT_THAT(gfxrepro({"table", dir}).out,
                 HasSubstr("sweep/mine: no table, for no case has a result\n"));
 }

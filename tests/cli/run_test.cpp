@@ -14,6 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::EndsWith;
+using testing::HasSubstr;
 
 std::string smokeConfig() {
     return (fs::path(GFXREPRO_CONFIGS) / "smoke/template.yaml").string();
@@ -42,7 +43,7 @@ TEST_F(RunCommand, SmokeFromConfigToReport) {
     EXPECT_TRUE(fs::exists(dir + "/tables/sweep-smoke-template.csv"));
     const ProcessResult claims = gfxrepro({"claims", dir});
     EXPECT_EQ(claims.exitCode, 0) << claims.err;
-    EXPECT_NE(claims.out.find("1 holds"), std::string::npos) << claims.out;
+    EXPECT_THAT(claims.out, HasSubstr("1 holds"));
     const ProcessResult report = gfxrepro({"report", dir});
     EXPECT_EQ(report.exitCode, 0) << report.err;
     EXPECT_TRUE(fs::exists(dir + "/report.html"));
@@ -249,8 +250,7 @@ TEST_F(RunCommand, InterruptedRunIsResumable) {
     run.signal(SIGINT);
     const ProcessResult result = run.wait();
     EXPECT_EQ(result.exitCode, 130);
-    EXPECT_NE(result.err.find("interrupted; continue with: gfxrepro run --resume " + dir),
-              std::string::npos);
+    EXPECT_THAT(result.err, HasSubstr("interrupted; continue with: gfxrepro run --resume " + dir));
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
     EXPECT_EQ(rowsOf(dir, "number").size(), 6U);
 }
@@ -271,16 +271,14 @@ TEST_F(RunCommand, ResumeGoesOnWithWhatWasPlanned) {
     writeMockConfig(folder, "params: {number: 2}\nsweep: {pause_ms: [0, 1]}\n");
     const ProcessResult changed = mockGfxrepro({"run", "--resume", dir});
     EXPECT_EQ(changed.exitCode, 0) << changed.err;
-    EXPECT_NE(changed.err.find("warning: " + config + " changed" + goesOn), std::string::npos)
-        << changed.err;
+    EXPECT_THAT(changed.err, HasSubstr("warning: " + config + " changed" + goesOn));
     for (const records::Record& row : rowsOf(dir, "number")) EXPECT_EQ(row.value, 1.0);
     EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
     loseACase();
     fs::remove(config);
     const ProcessResult removed = mockGfxrepro({"run", "--resume", dir});
     EXPECT_EQ(removed.exitCode, 0) << removed.err;
-    EXPECT_NE(removed.err.find("No such file or directory" + goesOn), std::string::npos)
-        << removed.err;
+    EXPECT_THAT(removed.err, HasSubstr("No such file or directory" + goesOn));
     EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
 }
 
@@ -297,15 +295,13 @@ TEST_F(RunCommand, ResumeRefusesAPlanThatWasChanged) {
     };
     const ProcessResult other = resumedWith("\"number\":1", "\"number\":77");
     EXPECT_EQ(other.exitCode, 2);
-    EXPECT_NE(other.err.find("is not the one that was planned: plan.json was changed"),
-              std::string::npos)
-        << other.err;
+    EXPECT_THAT(other.err, HasSubstr("is not the one that was planned: plan.json was changed"));
     for (const char* text : {"", "[]", "3", "{\"schema\": 1, \"request\": 7}", "{\"schema\": "}) {
         writeFileAtomic(dir + "/plan.json", text);
         for (const char* command : {"table", "claims", "report"}) {
             const ProcessResult result = mockGfxrepro({command, dir});
             EXPECT_EQ(result.exitCode, 2) << command << ' ' << text << result.err;
-            EXPECT_NE(result.err.find("plan.json"), std::string::npos) << result.err;
+            EXPECT_THAT(result.err, HasSubstr("plan.json"));
         }
     }
 }
@@ -333,8 +329,7 @@ TEST(Reproduce, ExitCodesFollowClaimsAndCases) {
     const TemporaryFolder holds;
     const ProcessResult well = reproduceDemo(holds, "4", "[ok]");
     EXPECT_EQ(well.exitCode, 0) << well.err;
-    EXPECT_NE(well.out.find("claims: of the documents' own claims 1 holds\n"), std::string::npos)
-        << well.out;
+    EXPECT_THAT(well.out, HasSubstr("claims: of the documents' own claims 1 holds\n"));
     for (const char* file : {"records.csv", "claims.csv", "junit.xml", "report.html",
                              "tables/demo2026-1.csv", "tables/demo2026-1.md"}) {
         EXPECT_TRUE(fs::exists(holds.path() / "run" / file)) << file;
@@ -342,9 +337,7 @@ TEST(Reproduce, ExitCodesFollowClaimsAndCases) {
     const TemporaryFolder fails;
     const ProcessResult failing = reproduceDemo(fails, "6", "[ok]");
     EXPECT_EQ(failing.exitCode, 1) << failing.err;
-    EXPECT_NE(failing.out.find("demo2026/1 fails: the number is large (D1); measured 5"),
-              std::string::npos)
-        << failing.out;
+    EXPECT_THAT(failing.out, HasSubstr("demo2026/1 fails: the number is large (D1); measured 5"));
     const TemporaryFolder incomplete;
     EXPECT_EQ(reproduceDemo(incomplete, "4", "[ok, throw]").exitCode, 4);
 }

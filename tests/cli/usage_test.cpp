@@ -92,15 +92,13 @@ TEST_F(Usage, BadKeyHasItsPlace) {
 TEST_F(Usage, UnknownTechniqueAndScene) {
     const std::string technique =
         folder.write("technique.yaml", "sweep_of: bad\ntitle: Bad\ntechnique: templat\n");
-    EXPECT_NE(refusal({"check", technique}, folder)
-                  .find("unknown technique 'templat'; did you mean 'template'?"),
-              std::string::npos);
+    EXPECT_THAT(refusal({"check", technique}, folder),
+                HasSubstr("unknown technique 'templat'; did you mean 'template'?"));
     const std::string scene = folder.write(
         "scene.yaml", "sweep_of: bad\ntitle: Bad\ntechnique: template\nscene: shapes/tours\n");
-    EXPECT_NE(
-        refusal({"check", scene}, folder)
-            .find("scene.yaml:4:8: unknown scene 'shapes/tours'; did you mean 'shapes/torus'?"),
-        std::string::npos);
+    EXPECT_THAT(
+        refusal({"check", scene}, folder),
+        HasSubstr("scene.yaml:4:8: unknown scene 'shapes/tours'; did you mean 'shapes/torus'?"));
 }
 
 TEST_F(Usage, CheckHoldsPrintAndReasonsAgainstWhatThereIs) {
@@ -150,7 +148,7 @@ TEST_F(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
         << "which claims may name";
     const ProcessResult merged = gfxrepro({"describe", "xie2017/10", "--merged"});
     ASSERT_EQ(merged.exitCode, 0) << merged.err;
-    EXPECT_EQ(merged.out.find("extends:"), std::string::npos);
+    EXPECT_THAT(merged.out, testing::Not(HasSubstr("extends:")));
     EXPECT_EQ(merged.out.find("# table-10.yaml with all that it extends\ntable: xie2017/10\n"), 0u);
     const std::string file = folder.write("merged.yaml", merged.out);
     std::vector<std::string> tables, files;
@@ -253,13 +251,10 @@ TEST_F(Usage, CalibrationsCannotReadWhatComparesMethods) {
               "visibility_min: {table: xie2017/table-6.yaml, row: {" + scene + name + "_min}",
               "intensity_one: {table: xie2017/table-10.yaml, row: {" + lit + name + "}"}) {
             const std::string error = errorOf(target);
-            EXPECT_NE(error.find("the printed cell is of method '" + name + "', " + refused),
-                      std::string::npos)
-                << error;
+            EXPECT_THAT(error,
+                        HasSubstr("the printed cell is of method '" + name + "', " + refused));
             const std::string measured = errorOf(target + "\nparams: {method: " + name + "}");
-            EXPECT_NE(measured.find("compares method '" + name + "' with a usual one"),
-                      std::string::npos)
-                << measured;
+            EXPECT_THAT(measured, HasSubstr("compares method '" + name + "' with a usual one"));
         }
     }
 }

@@ -105,8 +105,7 @@ TEST(Help, ExamplesNameWhatThereIs) {
         if (at == std::string::npos) continue;
         std::istringstream words(help.substr(at + 10));
         for (std::string word; words >> word;) {
-            if (word.starts_with("--"))
-                EXPECT_NE(help.find("  " + word), std::string::npos) << word;
+            if (word.starts_with("--")) EXPECT_THAT(help, HasSubstr("  " + word)) << word;
         }
     }
 }
@@ -135,9 +134,9 @@ TEST(ManPage, HasItsSectionsAndOptions) {
     const std::string page = manPage();
     for (const char* section : {"NAME", "SYNOPSIS", "DESCRIPTION", "COMMANDS", "EXIT STATUS",
                                 "ENVIRONMENT", "FILES", "EXAMPLES"}) {
-        EXPECT_NE(page.find(std::string("\n.SH ") + section + "\n"), std::string::npos) << section;
+        EXPECT_THAT(page, HasSubstr(std::string("\n.SH ") + section + "\n")) << section;
     }
-    EXPECT_NE(page.find("\n.B \\-\\-profile quick|full|paper\n"), std::string::npos);
+    EXPECT_THAT(page, HasSubstr("\n.B \\-\\-profile quick|full|paper\n"));
 }
 
 std::vector<std::string> completed(std::vector<std::string> words) {
@@ -274,7 +273,7 @@ TEST(Modeline, ChangesNoPlan) {
         return result.out;
     };
     const std::string without = planOf("");
-    EXPECT_NE(without.find("\"hash\""), std::string::npos);
+    EXPECT_THAT(without, HasSubstr("\"hash\""));
     EXPECT_EQ(planOf("# yaml-language-server: $schema=../schema/experiment.json\n"), without);
     EXPECT_NE(planOf("params: {brightness: 0.5}\n"), without);
 }

@@ -19,6 +19,8 @@
 namespace gfxrepro::claims {
 namespace {
 
+using testing::HasSubstr;
+
 using test::errorText;
 
 const ReportContext kSoftware{"llvmpipe", "software", "quick", "abc", ""};
@@ -72,8 +74,8 @@ TEST(Claims, APerfectPictureIsBetterThanAnyOther) {
     const auto forty = [](double) { return 40.0; };
     const ClaimResult bound = judgePowers("bound: a, at_least: 30", powers(infinite));
     EXPECT_EQ(bound.verdict, Verdict::Holds);
-    EXPECT_NE(bound.measured.find("∞"), std::string::npos) << bound.measured;
-    EXPECT_EQ(bound.reason.find("crossing"), std::string::npos) << bound.reason;
+    EXPECT_THAT(bound.measured, HasSubstr("∞"));
+    EXPECT_THAT(bound.reason, testing::Not(HasSubstr("crossing")));
     EXPECT_EQ(judgePowers("bound: a, at_most: 30", powers(infinite)).verdict, Verdict::Fails);
     EXPECT_EQ(judgePowers("order: a < b", powers(forty, infinite)).verdict, Verdict::Holds);
     EXPECT_EQ(judgePowers("order: a < b", powers(infinite, forty)).verdict, Verdict::Fails);
@@ -580,7 +582,7 @@ TEST(Claims, WhatACaseDidNotRecordIsUnmeasuredWhereAClaimReadsIt) {
     maker.beginCase("", R"({"n":2})").add("b", {1.0});
     const ClaimResult result = judgePowers("bound: a, at_most: 2", maker.records());
     EXPECT_EQ(result.verdict, Verdict::Unmeasured);
-    EXPECT_THAT(result.reason, testing::HasSubstr("no 'a' was recorded"));
+    EXPECT_THAT(result.reason, HasSubstr("no 'a' was recorded"));
 }
 
 /// A failing row counts even where another row could not be measured.
@@ -803,7 +805,7 @@ TEST(Claims, ADifferenceBelowTheNoiseOfTheTableIsAmbiguous) {
     const ClaimResult result =
         judgeTimed("bound: ms, at_least: 100.5, at: {n: 2}, kind: algorithmic", records);
     EXPECT_EQ(result.verdict, Verdict::Ambiguous);
-    EXPECT_THAT(result.measured, testing::HasSubstr("[102, 102.1]"));
+    EXPECT_THAT(result.measured, HasSubstr("[102, 102.1]"));
     EXPECT_THAT(result.reason,
                 testing::MatchesRegex(
                     "nearer to the bound than the noise of these times, [0-9.]+ %" + kByTheClock));
@@ -837,7 +839,7 @@ TEST(Claims, ATimeIsJudgedByTheNoiseOfItsOwnColumn) {
     EXPECT_EQ(judge("ratio: build=new / build=old, of: wall, at_least: 1.2").verdict,
               Verdict::Ambiguous);
     EXPECT_THAT(errorText([&] { judge("ratio: build=new / build=olt, of: own, at_least: 1"); }),
-                testing::HasSubstr("'olt' is no column"));
+                HasSubstr("'olt' is no column"));
 }
 
 /// Of twenty rows that are alike one fails by itself: six seeds of one sign are one in 64.
@@ -861,10 +863,10 @@ TEST(Claims, OneOfManyRowsThatFailsByChanceIsAmbiguous) {
     EXPECT_EQ(judge(1.02, 1).verdict, Verdict::Fails);
     ClaimResult result = judge(1.02, 20);
     EXPECT_EQ(result.verdict, Verdict::Ambiguous) << result.measured;
-    EXPECT_THAT(result.reason, testing::HasSubstr("n 1; fails by itself, but the farthest of"));
+    EXPECT_THAT(result.reason, HasSubstr("n 1; fails by itself, but the farthest of"));
     result = judge(1.5, 20);
     EXPECT_EQ(result.verdict, Verdict::Fails) << result.reason;
-    EXPECT_THAT(result.reason, testing::HasSubstr("worst at n 1"));
+    EXPECT_THAT(result.reason, HasSubstr("worst at n 1"));
 }
 
 /// Where every case failed there is no row, and nobody laid any out.
@@ -1054,7 +1056,7 @@ TEST(Claims, RandomNumbersOfOneSeedDecideNothing) {
         judgePowers("order: a < b, at: {n: 1}", twoSamplers(Seeds::Process, 6, 1, 1.3));
     EXPECT_EQ(result.verdict, Verdict::Holds);
     EXPECT_EQ(result.reason, "");
-    EXPECT_THAT(result.measured, testing::HasSubstr("["));
+    EXPECT_THAT(result.measured, HasSubstr("["));
     // A count is what it is.
     EXPECT_EQ(
         judgePowers("exact: a, equals: 9, at: {n: 1}", twoSamplers(Seeds::Case, 6, 1)).verdict,
@@ -1241,7 +1243,7 @@ TEST(Claims, WhatIsNoExpressionOrReadsNoColumnIsRefusedBeforeAnythingIsMeasured)
                     testing::StartsWith(
                         fmt::format("t.yaml:4:2: claim 'X': '{}' is no expression: ", operand)));
     }
-    EXPECT_THAT(refused("a b"), testing::HasSubstr("\"b\"")) << "by its name, not the parser's";
+    EXPECT_THAT(refused("a b"), HasSubstr("\"b\"")) << "by its name, not the parser's";
     EXPECT_EQ(refused("1 + 1"),
               "t.yaml:4:2: claim 'X': '1 + 1' reads no column; the rows of an axis are compared "
               "with 'across: AXIS'");

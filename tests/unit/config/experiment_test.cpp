@@ -346,10 +346,9 @@ TEST_F(ExperimentTest, FilesThatExtendTheNextOneTwiceAreNotReadForAnHour) {
     }
     folder.write("e20.yaml", "params: {a: 1}\n");
     EXPECT_EQ(errorWith("extends: e12.yaml"), "no error");
-    EXPECT_NE(
-        errorWith("extends: e0.yaml")
-            .find("extends: more than 1000 files, those that are extended twice counted twice"),
-        std::string::npos);
+    EXPECT_THAT(errorWith("extends: e0.yaml"),
+                testing::HasSubstr(
+                    "extends: more than 1000 files, those that are extended twice counted twice"));
 }
 
 TEST_F(ExperimentTest, WhatIsSetToNothingIsNoValue) {

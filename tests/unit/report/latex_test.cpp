@@ -83,7 +83,7 @@ layout: {rows: scene, columns: {e: {metric: error}}}
                 testing::ElementsAre("zju2005/9.9", "zju2005/9.9/ring.obj/e",
                                      "zju2005/9.9/-a-x.obj/e", "zju2005/9.9/-b-x.obj/e"));
     EXPECT_THAT(latex, HasSubstr("{ring.obj} & "));
-    EXPECT_EQ(latex.find("/home/me"), std::string::npos);
+    EXPECT_THAT(latex, Not(HasSubstr("/home/me")));
 }
 
 /// Labels that differ only in what a key cannot hold, and some that TeX would act on.

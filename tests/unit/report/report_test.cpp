@@ -423,11 +423,10 @@ TEST_F(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
     EXPECT_EQ(orderOf({}), "truth result | classes_0 reflection ");
     EXPECT_EQ(orderOf({"classes"}), "classes_0 | truth result reflection ");
     EXPECT_EQ(orderOf({"no_such"}), "truth result | classes_0 reflection ");
-    EXPECT_NE(
-        readFile(folder.path() / "report.html")
-            .find("None of these cases saved the picture 'no_such', which `shows` names; they "
-                  "saved classes_0, reflection, result, truth."),
-        std::string::npos);
+    EXPECT_THAT(
+        readFile(folder.path() / "report.html"),
+        HasSubstr("None of these cases saved the picture 'no_such', which `shows` names; they "
+                  "saved classes_0, reflection, result, truth."));
 }
 
 TEST_F(Report, HeadsOfSeveralLevelsAndLabelsStandOnce) {
