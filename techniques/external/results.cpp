@@ -283,6 +283,10 @@ std::pair<std::string, std::string> besideGroup(std::string_view regex) {
     };
     drop(before, true);
     drop(behind, false);
+    for (const std::string_view blank : {"\\s+", " +", "\\s"}) {  // those that must be there
+        if (before.ends_with(blank)) before.replace(before.size() - blank.size(), before.npos, " ");
+        if (behind.starts_with(blank)) behind.replace(0, blank.size(), " ");
+    }
     if (behind.starts_with('\\')) behind.erase(0, 1);
     return {before, behind};
 }
@@ -333,6 +337,34 @@ bool isPartOfToken(std::string_view left, std::string_view right,
     std::size_t word = begin;
     while (word > 0 && isOfWord(left[word - 1])) --word;
     return isDigit(left[word]) || left[word] == '.';
+}
+
+/// How many bytes of a number stand before the group and behind it, beyond a blank that the pattern
+/// does not name: 1 234, 12 5/8.
+std::pair<std::size_t, std::size_t> bytesBeyondBlanks(const Found& found, std::string_view regex) {
+    static const std::regex kBefore("(?:^|[^-+0-9A-Za-z_.])([-+]?[0-9]{1,3}(?: [0-9]{3})* )$");
+    static const std::regex kThousands("^(?: [0-9]{3})+(?![0-9x])");
+    static const std::regex kFraction("^ (?:[0-9]+(?:/|\u2044)[0-9]+|\u00BC|\u00BD|\u00BE)");
+    const auto [named, namedBehind] = besideGroup(regex);
+    const std::size_t from = found.begin - std::min(found.begin, kBytesBeside);
+    const std::string left(found.line.substr(from, found.begin - from));
+    const std::string right(found.line.substr(found.end, kBytesBeside));
+    const std::string_view number = found.number();
+    const std::size_t sign = number.find_first_of("+-") == 0 ? 1 : 0;
+    const std::size_t end = std::min(number.find_first_not_of("0123456789", sign), number.size());
+    std::pair<std::size_t, std::size_t> bytes;
+    std::smatch match;
+    const auto finds = [&](const std::string& text, const std::regex& what) {
+        return std::regex_search(text, match, what);
+    };
+    if (end == 3 && sign == 0 && !named.ends_with(' ') && finds(left, kBefore)) {
+        bytes.first = static_cast<std::size_t>(match.length(1));
+    }
+    if (end < number.size() || namedBehind.starts_with(' ')) return bytes;
+    if ((end - sign <= 3 && finds(right, kThousands)) || finds(right, kFraction)) {
+        bytes.second = static_cast<std::size_t>(match.length());
+    }
+    return bytes;
 }
 
 /// Whether the number goes on before or behind the group. A comma that the pattern names and
@@ -398,12 +430,13 @@ bool isPartOfNumber(const Found& found, const config::ProgramPattern& pattern) {
 }
 
 /// The word that the group is a part of.
-std::string_view wordAround(const Found& found) {
+std::string_view wordAround(const Found& found, std::string_view regex) {
     const auto isOfWord = [](char c) {
         return isDigit(c) || isLetter(c) || static_cast<unsigned char>(c) >= 0x80 ||
                std::string_view(".,'_+-:/#^*").find(c) != std::string_view::npos;
     };
-    std::size_t begin = found.begin, end = found.end;
+    const auto [before, behind] = bytesBeyondBlanks(found, regex);
+    std::size_t begin = found.begin - before, end = found.end + behind;
     while (begin > 0 && isOfWord(found.line[begin - 1])) --begin;
     while (end < found.line.size() && isOfWord(found.line[end])) ++end;
     end = std::max(end, found.end + powerOfTenBytes(found.line.substr(found.end)));
@@ -437,11 +470,13 @@ std::optional<double> numberIn(std::string_view output, const config::ProgramPat
         throw Error(fmt::format("metric '{}': its pattern finds '{}'; allowed: a number",
                                 pattern.metric, shown(last->number())));
     }
-    if (isPartOfNumber(*last, pattern)) {
-        throw Error(
-            fmt::format("metric '{}': its pattern finds '{}' of '{}'; allowed: a whole "
-                        "number",
-                        pattern.metric, shown(last->number()), shown(wordAround(*last))));
+    const bool isBesideBlank =
+        bytesBeyondBlanks(*last, pattern.regex) != std::pair<std::size_t, std::size_t>();
+    if (isBesideBlank || isPartOfNumber(*last, pattern)) {
+        throw Error(fmt::format(
+            "metric '{}': its pattern finds '{}' of '{}'; allowed: a whole number{}",
+            pattern.metric, shown(last->number()), shown(wordAround(*last, pattern.regex)),
+            isBesideBlank ? ", or a pattern that names the blank beside it" : ""));
     }
     return *number * pattern.scale;
 }

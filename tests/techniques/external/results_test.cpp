@@ -277,6 +277,37 @@ TEST(MetricLines, APatternTakesNoPartOfATimeOrAFraction) {
     EXPECT_EQ(numberIn("m=5M rays", {"m", digits, 1e6}), 5e6);
 }
 
+TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
+    const auto errorOf = [](const std::string& regex, const std::string& line) {
+        return errorText([&] { numberIn(line, {"m", regex}); });
+    };
+    const auto partOf = [](const std::string& part, const std::string& whole) {
+        return "metric 'm': its pattern finds '" + part + "' of '" + whole +
+               "'; allowed: a whole number, or a pattern that names the blank beside it";
+    };
+    const std::string digits = "m=([0-9]+)";
+    EXPECT_EQ(errorOf(digits, "m=1 234"), partOf("1", "1 234"));
+    EXPECT_EQ(errorOf(digits, "m=12 345 678 rays"), partOf("12", "12 345 678"));
+    EXPECT_EQ(errorOf("m=(-?[0-9.]+)", "m=-1 234.5 s"), partOf("-1", "-1 234.5"));
+    EXPECT_EQ(errorOf(digits, "m=12 5/8"), partOf("12", "12 5/8"));
+    EXPECT_EQ(errorOf(digits, "m=12 \u00BD in"), partOf("12", "12 \u00BD"));
+    EXPECT_EQ(errorOf("([0-9]+)$", "m= 1 234"), partOf("234", "1 234"));
+    EXPECT_EQ(errorOf("([0-9.]+) s", "took 12 345 678.5 s"), partOf("678.5", "12 345 678.5"));
+    EXPECT_EQ(errorOf("([0-9]+).*rays", "m= 1 234 rays"), partOf("1", "1 234"));
+    // Columns, and what the pattern names.
+    for (const char* column :
+         {" 12", " 1.5", " 1234", "  234", "\t234", " x", " 128x128", ", 234"}) {
+        EXPECT_EQ(numberOf(digits, std::string("m=1") + column), 1.0) << column;
+    }
+    EXPECT_EQ(numberOf("m=([0-9.]+)", "m=12.5 128"), 12.5);
+    EXPECT_EQ(numberOf(digits, "m=1024 128"), 1024.0);
+    EXPECT_EQ(numberOf("^([0-9]+) ", "128 256 512"), 128.0);
+    EXPECT_EQ(numberOf("^([0-9]+)\\s+[0-9]+", "128 256 512"), 128.0);
+    EXPECT_EQ(numberOf("^[0-9]+ ([0-9]+)\\s", "128 256 512"), 256.0);
+    EXPECT_EQ(numberOf("^[0-9]+ +[0-9]+\\s+([0-9]+)", "128 256 512"), 512.0);
+    EXPECT_EQ(numberOf("([0-9]+) ms", "GPU0 128 ms"), 128.0);
+}
+
 using image::ImageF;
 using test::errorText;
 using test::TemporaryFolder;
