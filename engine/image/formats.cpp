@@ -17,21 +17,11 @@
 #include "engine/core/error.h"
 #include "engine/core/text.h"
 #include "engine/image/exr_io.h"
-#include "engine/image/srgb.h"
 
 namespace gfxrepro::image {
 
 using namespace std::string_view_literals;
 using Part = std::span<const std::byte>;
-
-std::size_t numberAt(Part part, std::size_t at, std::size_t count, bool isLittle) {
-    std::size_t value = 0;
-    for (std::size_t i = 0; i < count && at + i < part.size(); ++i) {
-        const auto digit = std::to_integer<std::size_t>(part[at + i]);
-        value = isLittle ? value | digit << 8 * i : value << 8 | digit;
-    }
-    return value;
-}
 
 namespace {
 
@@ -140,10 +130,6 @@ std::vector<std::byte> withoutStuffedEnds(std::span<const std::byte> bytes) {
     return kept;
 }
 
-std::string_view textOf(Part part) {
-    return {reinterpret_cast<const char*>(part.data()), part.size()};
-}
-
 constexpr int kScan = 0xDA;
 
 /// What follows `name` in each segment of a JPEG file with this marker that begins with it, up to
@@ -213,114 +199,6 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
     return image;
 }
 
-namespace {
-
-/// Orientation of an Exif block's tags: 1 … 8, 1 where they say nothing.
-int orientationOf(Part tags) {
-    if (tags.size() < 8) return 1;
-    const bool isLittle = tags[0] == std::byte{'I'};
-    const std::size_t first = numberAt(tags, 4, 4, isLittle);
-    const std::size_t count = numberAt(tags, first, 2, isLittle);
-    for (std::size_t i = 0; i < count && first + 2 + 12 * (i + 1) <= tags.size(); ++i) {
-        const std::size_t entry = first + 2 + 12 * i;
-        if (numberAt(tags, entry, 2, isLittle) != 0x0112) continue;
-        const std::size_t value = numberAt(tags, entry + 8, 2, isLittle);
-        return value >= 1 && value <= 8 ? static_cast<int>(value) : 1;
-    }
-    return 1;
-}
-
-}  // namespace
-
-namespace {
-
-/// Of a profile (ICC.1); empty where it has no such tag.
-Part tagOf(Part profile, const std::string& name) {
-    constexpr std::size_t kTags = 128, kTagBytes = 12;
-    const std::size_t count = numberAt(profile, kTags, 4, false);
-    for (std::size_t i = 0; i < count && kTags + 4 + kTagBytes * (i + 1) <= profile.size(); ++i) {
-        const Part tag = profile.subspan(kTags + 4 + kTagBytes * i, kTagBytes);
-        const std::size_t at = numberAt(tag, 4, 4, false), size = numberAt(tag, 8, 4, false);
-        if (!textOf(tag).starts_with(name) || at > profile.size()) continue;
-        return profile.subspan(at).first(std::min(size, profile.size() - at));
-    }
-    return {};
-}
-
-double fixedAt(Part bytes, std::size_t at) {
-    return static_cast<std::int32_t>(numberAt(bytes, at, 4, false)) / 65536.0;
-}
-
-/// The light of a value by a curve: of samples, one exponent, or the parameters that sRGB has.
-/// Not a number of others.
-double lightBy(Part curve, double value) {
-    const std::size_t count = numberAt(curve, 8, 4, false);
-    const auto parameter = [&](std::size_t i) { return fixedAt(curve, 12 + 4 * i); };
-    if (textOf(curve).starts_with("para") && count >> 16 == 3) {
-        const double a = parameter(1), b = parameter(2), c = parameter(3), d = parameter(4);
-        return value < d ? c * value : std::pow(a * value + b, parameter(0));
-    }
-    if (!textOf(curve).starts_with("curv")) return std::numeric_limits<double>::quiet_NaN();
-    const auto sample = [&](std::size_t i) {
-        return static_cast<double>(numberAt(curve, 12 + 2 * i, 2, false));
-    };
-    if (count < 2) return std::pow(value, count == 0 ? 1.0 : sample(0) / 256.0);
-    const double place = value * static_cast<double>(count - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const double part = place - static_cast<double>(below);
-    return ((1.0 - part) * sample(below) + part * sample(std::min(below + 1, count - 1))) / 65535.0;
-}
-
-}  // namespace
-
-bool isProfileOfSrgb(std::span<const std::byte> profile, bool isLinear) {
-    struct Primary {
-        const char* letter;
-        std::array<double, 3> xyz;  // under ICC's D50
-    };
-    static constexpr Primary kSrgb[] = {{"r", {0.4361, 0.2225, 0.0139}},
-                                        {"g", {0.3851, 0.7169, 0.0971}},
-                                        {"b", {0.1431, 0.0606, 0.7141}}};
-    static constexpr Primary kGrey[] = {{"k", {}}};
-    const bool isGrey = !tagOf(profile, "kTRC").empty();
-    if (!tagOf(profile, "A2B0").empty()) return false;  // a table, which goes first
-    constexpr double kTolerance = 0.004;                // a step of 8 bits
-    for (const auto& [letter, xyz] : isGrey ? std::span<const Primary>(kGrey) : kSrgb) {
-        const Part given = tagOf(profile, std::string(letter) + "XYZ");
-        for (std::size_t i = 0; i < 3 && !isGrey; ++i) {
-            if (std::abs(fixedAt(given, 8 + 4 * i) - xyz[i]) > kTolerance) return false;
-        }
-        const Part curve = tagOf(profile, std::string(letter) + "TRC");
-        for (int step = 0; step <= 16; ++step) {
-            const double value = step / 16.0;
-            const double wanted = isLinear ? value : linearOf(static_cast<float>(value));
-            if (!(std::abs(lightBy(curve, value) - wanted) < kTolerance)) return false;
-        }
-    }
-    return true;
-}
-
-ImageF turnedAsExif(const ImageF& image, std::span<const std::byte> exif) {
-    const int orientation = orientationOf(exif);
-    if (orientation == 1) return image;
-    const bool isTransposed = orientation >= 5;
-    const bool isMirrored = orientation == 2 || orientation == 3 || orientation >= 7;
-    const bool isUpsideDown =
-        orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
-    ImageF result(isTransposed ? image.height() : image.width(),
-                  isTransposed ? image.width() : image.height(), image.channels());
-    for (int y = 0; y < result.height(); ++y) {
-        for (int x = 0; x < result.width(); ++x) {
-            const int u = isTransposed ? y : x, v = isTransposed ? x : y;
-            for (int c = 0; c < image.channels(); ++c) {
-                result.at(x, y, c) = image.at(isMirrored ? image.width() - 1 - u : u,
-                                              isUpsideDown ? image.height() - 1 - v : v, c);
-            }
-        }
-    }
-    return result;
-}
-
 std::vector<std::string> notesOfJpeg(std::span<const std::byte> bytes) {
     // Behind the name are the part's number and their count; the description is in the first.
     const std::vector<Part> profile = segmentsOf(bytes, 0xE2, "ICC_PROFILE\0"sv);
@@ -337,10 +215,12 @@ Decoded decodeJpeg(std::span<const std::byte> bytes, const std::string& name) {
     const std::vector<Part> exif = segmentsOf(bytes, 0xE1, "Exif\0\0"sv);
     if (!exif.empty()) result.values = turnedAsExif(result.values, exif[0]);
     result.notes = notesOfJpeg(bytes);
-    const Part behind = behindJpeg(bytes).value_or(Part());
-    if (std::ranges::any_of(behind, [](std::byte each) { return each != std::byte{0}; })) {
-        result.notes.push_back(fmt::format("left out: {} bytes behind its end", behind.size()));
+    const std::vector<Part> jfif = segmentsOf(bytes, 0xE0, "JFIF\0"sv);
+    if (!jfif.empty() && jfif[0].size() >= 7) {  // version, unit, and of both directions
+        noteAspect(static_cast<double>(numberAt(jfif[0], 3, 2, false)),
+                   static_cast<double>(numberAt(jfif[0], 5, 2, false)), result.notes);
     }
+    noteBehind(behindJpeg(bytes).value_or(Part()), result.notes);
     return result;
 }
 
@@ -363,6 +243,7 @@ Decoded floatsOfPfm(Bytes& file, int channels) {
         }
     }
     flipRows(result.values);
+    noteBehind(file.rest(), result.notes);
     return result;
 }
 
@@ -407,6 +288,7 @@ Decoded decodeNetpbm(std::span<const std::byte> bytes, const std::string& name) 
     if (!file.rest().empty() && file.rest()[0] == std::byte{'P'}) {
         file.fail("has several pictures; one is allowed");
     }
+    noteBehind(file.rest(), result.notes);
     return result;
 }
 
@@ -431,7 +313,10 @@ std::array<float, 3> factorsOfHdr(Bytes& file, std::vector<std::string>& notes) 
         const bool isExposure = line.starts_with("EXPOSURE=");
         if (isExposure || line.starts_with("COLORCORR=")) {
             const auto numbers = numbersOf(line, isExposure ? 1 : 3);
-            for (std::size_t c = 0; c < 3; ++c) factors[c] *= numbers[isExposure ? 0 : c];
+            for (std::size_t c = 0; c < 3; ++c) {
+                factors[c] *= numbers[isExposure ? 0 : c];
+                if (!(factors[c] > 0.0F)) file.fail("its header has '" + line + "'");
+            }
         }
         const bool isOfPixels = line.starts_with("PIXASPECT=");
         if ((isOfPixels || line.starts_with("GAMMA=")) && numbersOf(line, 1)[0] != 1.0F) {
@@ -520,19 +405,24 @@ Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name) {
             }
         }
     }
+    noteBehind(file.rest(), result.notes);
     return result;
 }
 
 namespace {
 
-/// TGA 2.0's extension area, which the file's end names; empty where there is none.
+/// The end of a file of TGA 2.0; empty of others.
+Part footerOfTga(Part bytes) {
+    const Part footer = bytes.last(std::min<std::size_t>(bytes.size(), 26));
+    const bool isThere = footer.size() == 26 && textOf(footer).substr(8, 16) == "TRUEVISION-XFILE";
+    return isThere ? footer : Part();
+}
+
+/// Its extension area; empty where there is none.
 Part extensionOfTga(Part bytes) {
-    constexpr std::size_t kFooter = 26, kArea = 495;
-    if (bytes.size() < kFooter) return {};
-    const Part footer = bytes.last(kFooter);
-    const std::size_t area = numberAt(footer, 0, 4, true);
-    if (textOf(footer).substr(8, 16) != "TRUEVISION-XFILE" || area == 0) return {};
-    if (area > bytes.size() || bytes.size() - area < kArea) return {};
+    constexpr std::size_t kArea = 495;
+    const std::size_t area = numberAt(footerOfTga(bytes), 0, 4, true);
+    if (area == 0 || area > bytes.size() || bytes.size() - area < kArea) return {};
     return bytes.subspan(area, kArea);
 }
 
@@ -594,6 +484,9 @@ Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
     }
     if ((flags & 0x20) == 0) flipRows(result.values);
     if (saysGamma(extension)) result.notes.emplace_back("left out: its gamma");
+    noteAspect(static_cast<double>(numberAt(extension, 476, 2, true)),
+               static_cast<double>(numberAt(extension, 474, 2, true)), result.notes);
+    if (footerOfTga(bytes).empty()) noteBehind(file.rest(), result.notes);
     return result;
 }
 

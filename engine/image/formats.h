@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/image/image.h"
@@ -29,6 +30,11 @@ constexpr const char* kProfileLeftOut = "left out: its colour profile";
 /// Of a JPEG file's colours.
 std::vector<std::string> notesOfJpeg(std::span<const std::byte> bytes);
 
+/// Of how many pixels are as long across and down.
+void noteAspect(double across, double down, std::vector<std::string>& notes);
+/// Of what stands behind a picture, but for blanks and zeros.
+void noteBehind(std::span<const std::byte> behind, std::vector<std::string>& notes);
+
 /// As the tags of an Exif block say that it is to be seen.
 ImageF turnedAsExif(const ImageF& image, std::span<const std::byte> exif);
 
@@ -36,6 +42,7 @@ ImageF turnedAsExif(const ImageF& image, std::span<const std::byte> exif);
 /// left out.
 std::size_t numberAt(std::span<const std::byte> bytes, std::size_t at, std::size_t count,
                      bool isLittle);
+std::string_view textOf(std::span<const std::byte> bytes);
 
 // Each throws Error, which begins with `name`, for what it does not read; memory is bounded as in
 // png_io.h.

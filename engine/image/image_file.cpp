@@ -95,6 +95,7 @@ Decoded decodedPng(const std::filesystem::path& path) {
     const MappedFile file(path);
     const PngColours colours = pngColours(file.bytes(), path.string());
     result.notes = colours.notes;
+    result.notes.insert(result.notes.end(), colours.notesOfFile.begin(), colours.notesOfFile.end());
     makeSrgb(colours, path.string(), result);
     if (!colours.exif.empty()) values = turnedAsExif(values, colours.exif);
     return result;

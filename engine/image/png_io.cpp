@@ -246,7 +246,7 @@ void writeEncoded(const std::filesystem::path& path, const Image<T>& image) {
     writeFileAtomic(path, Writer().encoded(image, "cannot write " + path.string()));
 }
 
-/// What each kind of chunk holds; of several of a kind the first.
+/// What each kind of chunk holds, up to the last; of several of a kind the first.
 std::map<std::string, std::span<const std::byte>> chunksOf(std::span<const std::byte> bytes) {
     constexpr std::size_t kSignature = 8, kHead = 8, kChecksum = 4;
     std::map<std::string, std::span<const std::byte>> chunks;
@@ -255,6 +255,7 @@ std::map<std::string, std::span<const std::byte>> chunksOf(std::span<const std::
         if (length > bytes.size() - at - kHead - kChecksum) break;
         chunks.try_emplace({reinterpret_cast<const char*>(&bytes[at + 4]), 4},
                            bytes.subspan(at + kHead, length));
+        if (chunks.contains("IEND")) break;
         at += kHead + length + kChecksum;
     }
     return chunks;
@@ -273,6 +274,16 @@ PngColours pngColours(std::span<const std::byte> bytes, const std::string& name)
     };
     PngColours colours;
     if (const auto exif = chunks.find("eXIf"); exif != chunks.end()) colours.exif = exif->second;
+    if (has("pHYs", 9)) {
+        noteAspect(static_cast<double>(numberAt(chunks.at("pHYs"), 0, 4, false)),
+                   static_cast<double>(numberAt(chunks.at("pHYs"), 4, 4, false)),
+                   colours.notesOfFile);
+    }
+    if (const auto end = chunks.find("IEND"); end != chunks.end()) {
+        constexpr std::size_t kChecksum = 4;
+        const auto behind = static_cast<std::size_t>(end->second.data() - bytes.data()) + kChecksum;
+        noteBehind(bytes.subspan(behind + end->second.size()), colours.notesOfFile);
+    }
     if (chunks.contains("acTL")) colours.notes.emplace_back("left out: all but its first frame");
     if (has("cICP", 4)) {
         if (std::ranges::equal(chunks.at("cICP"), kSrgbCode)) return colours;

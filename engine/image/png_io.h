@@ -21,7 +21,8 @@ struct PngColours {
     double gamma = 0.0;                       // light is value^(1 / gamma); 0: by the curve of sRGB
     std::optional<Chromaticities> primaries;  // none: Rec. 709's
     std::span<const std::byte> exif;
-    std::vector<std::string> notes;  // what is left out
+    std::vector<std::string> notes;        // what is left out
+    std::vector<std::string> notesOfFile;  // likewise, but of no colours
 };
 /// A gamma of 1 / 2.2 is the standard's own number for sRGB. Of a broken file: as far as it goes.
 PngColours pngColours(std::span<const std::byte> bytes, const std::string& name);

@@ -86,7 +86,12 @@ class TiffReader {
         std::uint16_t extras = 0;
         const std::uint16_t* kinds = nullptr;
         TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_EXTRASAMPLES, &extras, &kinds);
-        isMultiplied_ = extras == 1 && kinds[0] == EXTRASAMPLE_ASSOCALPHA;
+        const int kind = extras == 1 ? kinds[0] : EXTRASAMPLE_UNSPECIFIED;
+        isMultiplied_ = kind == EXTRASAMPLE_ASSOCALPHA;
+        if (channels_ % 2 == 0 && kind == EXTRASAMPLE_UNSPECIFIED) {
+            notes_.push_back(fmt::format(
+                "its channel {}, of which it says no kind, is taken as straight alpha", channels_));
+        }
         const bool isOfColours =
             (colours == PHOTOMETRIC_MINISBLACK && (channels_ == 1 || channels_ == 2)) ||
             (colours == PHOTOMETRIC_RGB && (channels_ == 3 || channels_ == 4));
@@ -110,6 +115,8 @@ class TiffReader {
                           std::filesystem::file_size(path_), path_.string(), kMaxSidePx,
                           ImageUse::Picture);
         noteColours();
+        noteAspect(field<float>(TIFFTAG_XRESOLUTION, 0.0F), field<float>(TIFFTAG_YRESOLUTION, 0.0F),
+                   notes_);
     }
 
     void noteColours() {
@@ -133,6 +140,11 @@ class TiffReader {
         };
         if ((hasPrimaries && differs(primaries, 6, 0)) || (hasWhite && differs(white, 2, 6))) {
             notes_.emplace_back("left out: its chromaticities");
+        }
+        const std::uint16_t* curves[3] = {};
+        if (TIFFGetField(tiff_.get(), TIFFTAG_TRANSFERFUNCTION, &curves[0], &curves[1],
+                         &curves[2]) == 1) {
+            notes_.emplace_back("left out: its transfer function");
         }
     }
 

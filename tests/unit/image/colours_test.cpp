@@ -164,6 +164,7 @@ class ColoursOfFiles : public testing::Test {
     const std::pair<std::string, std::string> gammaOf1_{"gAMA", bigWord(100000)};
     const std::pair<std::string, std::string> displayP3_{
         "cHRM", bigWords({31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000})};
+    const Lines wide_{"left out: its pixels are 2 times as wide as high"};
     const Lines converted_{"its values are converted from a gamma of 1 to sRGB"};
 };
 
@@ -250,7 +251,9 @@ TEST_F(ColoursOfFiles, ProfilesOfJpegAndTiff) {
     EXPECT_EQ(notesOfJpeg(profileOf(kSrgbCurve)), Lines{});
     EXPECT_EQ(notesOfJpeg(profileOf(kSrgbCurve, kDisplayP3)),
               Lines{"left out: its colour profile"});
-    const auto notesOfTiff = [&](const std::string& profile, const std::vector<float>& primaries) {
+    const std::vector<std::uint16_t> curve(256, 0);
+    const auto notesOfTiff = [&](const std::string& profile, const std::vector<float>& primaries,
+                                 bool hasCurve = false, float down = 72.0F) {
         TIFF* file = TIFFOpen(tiff.c_str(), "w");
         TIFFSetField(file, TIFFTAG_IMAGEWIDTH, 1);
         TIFFSetField(file, TIFFTAG_IMAGELENGTH, 1);
@@ -265,6 +268,11 @@ TEST_F(ColoursOfFiles, ProfilesOfJpegAndTiff) {
         if (!primaries.empty()) {
             TIFFSetField(file, TIFFTAG_PRIMARYCHROMATICITIES, primaries.data());
         }
+        if (hasCurve) {
+            TIFFSetField(file, TIFFTAG_TRANSFERFUNCTION, curve.data(), curve.data(), curve.data());
+        }
+        TIFFSetField(file, TIFFTAG_XRESOLUTION, 72.0F);
+        TIFFSetField(file, TIFFTAG_YRESOLUTION, down);
         std::array<std::uint8_t, 3> row = pixel;
         TIFFWriteScanline(file, row.data(), 0, 0);
         TIFFClose(file);
@@ -277,6 +285,25 @@ TEST_F(ColoursOfFiles, ProfilesOfJpegAndTiff) {
     EXPECT_EQ(notesOfTiff("", {0.64F, 0.33F, 0.3F, 0.6F, 0.15F, 0.06F}), Lines{});
     EXPECT_EQ(notesOfTiff("", {0.68F, 0.32F, 0.265F, 0.69F, 0.15F, 0.06F}),
               Lines{"left out: its chromaticities"});
+    EXPECT_EQ(notesOfTiff("", {}, true), Lines{"left out: its transfer function"});
+    EXPECT_EQ(notesOfTiff("", {}, false, 144.0F), wide_);
+}
+
+/// Twice as wide as high, and squares.
+TEST_F(ColoursOfFiles, PixelsThatAreNoSquares) {
+    const std::string metre(1, '\1');
+    EXPECT_EQ(png(row({9}, 1), {{"pHYs", bigWords({2000, 1000}) + metre}}).notes,
+              Lines{"left out: its pixels are 0.5 times as wide as high"});
+    EXPECT_EQ(png(row({9}, 1), {{"pHYs", bigWords({2000, 4000}) + metre}}).notes, wide_);
+    EXPECT_EQ(png(row({9}, 1), {{"pHYs", bigWords({2834, 2835}) + metre}}).notes, Lines{});
+    const std::string jpeg = folder_.path() / "a.jpg";
+    const std::array<std::uint8_t, 1> pixel{10};
+    stbi_write_jpg(jpeg.c_str(), 1, 1, 1, pixel.data(), 100);
+    std::string file = readFile(jpeg);
+    ASSERT_EQ(file.substr(6, 4), "JFIF");
+    EXPECT_EQ(readPicture(jpeg).notes, Lines{});
+    file.replace(14, 4, std::string("\0\1\0\2", 4));
+    EXPECT_EQ(readPicture(folder_.write("b.jpg", file)).notes, wide_);
 }
 
 TEST_F(ColoursOfFiles, GammaOfHdrAndTga) {
@@ -293,12 +320,13 @@ TEST_F(ColoursOfFiles, GammaOfHdrAndTga) {
     std::string tga("\0\0\3\0\0\0\0\0\0\0\0\0\1\0\1\0\x08\0\x7F", 19);
     std::string area(495, '\0');
     area[478] = 22, area[480] = 10;
+    area[474] = 2, area[476] = 1;
     const auto footer = [](char at) {
         return std::string(1, at) + std::string(7, '\0') + "TRUEVISION-XFILE." + '\0';
     };
     EXPECT_EQ(readPicture(folder_.write("a.tga", tga + footer(0))).notes, Lines{});
     EXPECT_EQ(readPicture(folder_.write("a.tga", tga + area + footer(19))).notes,
-              Lines{"left out: its gamma"});
+              (Lines{"left out: its gamma", wide_[0]}));
 }
 
 }  // namespace

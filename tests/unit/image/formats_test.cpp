@@ -148,6 +148,25 @@ TEST_F(Formats, PortableFloatMapsAreLinear) {
     EXPECT_EQ(errorOf("c.pfm", "Pf\n1 1\n-1\nabc"), "DIR/c.pfm: the file ends early");
 }
 
+TEST_F(Formats, WhatStandsBehindAPictureIsSaid) {
+    std::string tga(18, '\0');
+    tga[2] = 3;
+    tga[12] = tga[14] = 1;
+    tga[16] = 8;
+    const std::string png = encodePng(Image8(1, 1, 1));
+    const std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
+    for (const std::string& picture :
+         {std::string("P5 1 1 255\nz"), std::string("P2 1 1 255\n9\n"),
+          std::string("Pf\n1 1\n-1\n\0\0\0\0", 14), tga + 'z', hdr, png}) {
+        const auto notesOf = [&](const std::string& behind) {
+            return readPicture(folder_.write("a.tga", picture + behind)).notes;
+        };
+        EXPECT_EQ(notesOf(std::string("\r\n\0\0", 4)), std::vector<std::string>{}) << picture;
+        EXPECT_EQ(notesOf("\nabc"), std::vector<std::string>{"left out: 4 bytes behind its end"})
+            << picture;
+    }
+}
+
 TEST_F(Formats, RadiancesPicturesAreLinear) {
     const std::vector<float> colours = light();
     ASSERT_NE(stbi_write_hdr(path("a.hdr").c_str(), kWidth, kHeight, 3, colours.data()), 0);
@@ -174,6 +193,8 @@ TEST_F(Formats, RadiancesPicturesAreLinear) {
     EXPECT_EQ(exposed.linear.at(3, 0, 1), 0.03125F);
     EXPECT_EQ(errorOf("d.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 4\n"),
               "DIR/d.hdr: FORMAT=32-bit_rle_xyze is not read; 32-bit_rle_rgbe is");
+    EXPECT_EQ(errorOf("d.hdr", head + "EXPOSURE=0\n" + pixels),
+              "DIR/d.hdr: its header has 'EXPOSURE=0'");
     EXPECT_EQ(errorOf("d.hdr", head + "PRIMARIES=1 0 0 1 0 0 .33 .33\n" + pixels),
               "DIR/d.hdr: PRIMARIES=1 0 0 1 0 0 .33 .33: other primaries than those of Rec. 709");
     EXPECT_EQ(errorOf("d.hdr", head + "\n+Y 1 +X 4\n"),
@@ -398,6 +419,13 @@ TEST_F(Formats, TiffOfWholeNumbersIsSrgb) {
     writeTiff<std::uint8_t>(path("c.tif"), 1, 1, {.channels = 4, .alpha = EXTRASAMPLE_ASSOCALPHA},
                             [](int i) { return static_cast<std::uint8_t>(i == 3 ? 102 : 51); });
     EXPECT_FLOAT_EQ(readPicture(path("c.tif")).stored.at(0, 0, 0), 0.5F);
+    EXPECT_EQ(readPicture(path("c.tif")).notes, std::vector<std::string>{});
+    writeTiff<std::uint8_t>(path("d.tif"), 1, 1, {.channels = 4, .alpha = EXTRASAMPLE_UNSPECIFIED},
+                            [](int) { return std::uint8_t{51}; });
+    EXPECT_EQ(readPicture(path("d.tif")).stored.at(0, 0, 0), 0.2F);
+    EXPECT_EQ(readPicture(path("d.tif")).notes,
+              std::vector<std::string>{
+                  "its channel 4, of which it says no kind, is taken as straight alpha"});
 }
 
 TEST_F(Formats, TiffOfFloatsIsLinear) {
