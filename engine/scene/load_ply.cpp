@@ -94,6 +94,14 @@ class AsciiReader {
     }
     static std::size_t minimumBytes(Type) { return 2; }
 
+    /// Rows are lines; where they are not, numbers are read in their order.
+    void endRow() {
+        const auto next =
+            std::ranges::find_if(rest_, [this](char c) { return c == lineEnd_ || !isBlank(c); });
+        splitLines += next == rest_.end() || *next == lineEnd_ ? 0 : 1;
+    }
+    std::size_t splitLines = 0;
+
     [[noreturn]] void fail(const std::string& message) const {
         throw Error({file_, line_, 0}, row.text() + ": " + message);
     }
@@ -160,6 +168,8 @@ class BinaryReader {
     std::size_t restBytes() const { return text_.size() - at_; }
     std::size_t unread() const { return restBytes(); }
     static std::size_t minimumBytes(Type type) { return ply::sizeBytes(type); }
+    void endRow() {}
+    static constexpr std::size_t splitLines = 0;
 
     [[noreturn]] void fail(const std::string& message) const {
         throw Error(file_ + ": byte " + std::to_string(at_) + ": " + row.text() + ": " + message);
@@ -229,6 +239,7 @@ void skipElement(Reader& reader, const Element& element) {
                 reader.skip(property.type, 1);
             }
         }
+        reader.endRow();
     }
 }
 
@@ -239,7 +250,8 @@ class VertexParser {
                  const glm::dvec3& offset, LeftOut& leftOut)
         : reader_(reader), element_(element), offset_(offset) {
         for (const Property& property : element.properties) {
-            slots_.push_back(slotOf(property));
+            const PropertySlot slot = slotOf(property);
+            slots_.push_back(has_[slot] ? kNoSlot : slot);  // red and diffuse_red: the first
             has_[slots_.back()] = true;
             if (!isColour(slots_.back())) continue;
             areBytes_ &= property.type == Type::UInt8;
@@ -328,6 +340,7 @@ class VertexParser {
                 row_[slots_[i]] = read(property, slots_[i]);
             }
         }
+        reader_.endRow();
     }
 
     static bool isColour(PropertySlot slot) {
@@ -438,7 +451,7 @@ void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCoun
                     "element '" + element.name + "' lacks the list vertex_indices");
     }
     for (const Property& property : element.properties) {
-        if (isIndexList(property) || changesNothing(property)) continue;
+        if (&property == &*list || changesNothing(property)) continue;
         leftOut.add(fmt::format("the property {} of faces", inQuotes(property.name)));
     }
     // A file of zeros has a face of no corners in each byte.
@@ -472,7 +485,7 @@ void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCoun
     };
     for (reader.row.number = 0; reader.row.number < element.count; ++reader.row.number) {
         for (const Property& property : element.properties) {
-            if (isIndexList(property)) {
+            if (&property == &*list) {
                 readCorners(property);
                 isStrip ? appendStrip(triangles, corners) : appendFan(faces, corners);
             } else if (property.isList()) {
@@ -481,6 +494,7 @@ void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCoun
                 reader.skip(property.type, 1);
             }
         }
+        reader.endRow();
     }
 }
 
@@ -530,6 +544,12 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file,
     Scene scene = sceneOfVertices(std::move(mesh), leftOut);
     if (scene.meshes.empty()) scene.points.radii = std::move(vertices.radii);
     scene.warnings = std::move(vertices.warnings);
+    if (reader.splitLines > 0) {
+        scene.warnings.push_back(
+            fmt::format("{} rows end within a line: their numbers are read in their order, "
+                        "whichever line has them",
+                        reader.splitLines));
+    }
     return scene;
 }
 

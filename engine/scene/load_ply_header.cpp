@@ -127,6 +127,7 @@ class HeaderParser {
             fail(fmt::format("element {} is declared twice", inQuotes(element.name)));
         }
         header_.elements.push_back(std::move(element));
+        properties_.clear();
     }
 
     void parseProperty(const std::vector<std::string_view>& line) {
@@ -144,6 +145,10 @@ class HeaderParser {
             fail("a property line is 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
         }
         property.name = line.back();
+        if (!properties_.insert(line.back()).second) {
+            fail(fmt::format("property {} of element {} is declared twice", inQuotes(property.name),
+                             inQuotes(header_.elements.back().name)));
+        }
         header_.elements.back().properties.push_back(std::move(property));
     }
 
@@ -160,7 +165,8 @@ class HeaderParser {
     const std::string& file_;
     std::size_t at_;
     int line_ = 0;
-    std::unordered_set<std::string_view> names_;  // of elements
+    std::unordered_set<std::string_view> names_;       // of elements
+    std::unordered_set<std::string_view> properties_;  // of the last one
     Header header_;
 };
 
