@@ -16,14 +16,17 @@ namespace gfxrepro::scene {
 namespace {
 
 /// "Kd r g b" or "Kd grey"; nothing of "Kd spectral file" and "Kd xyz x y z".
-std::optional<glm::vec3> colour(LineReader& lines) {
+std::optional<glm::vec3> colour(LineReader& lines, LeftOut& leftOut) {
     if (const std::string_view rest = lines.name();
         rest.starts_with("spectral") || rest.starts_with("xyz")) {
+        while (!lines.word().empty()) {
+        }
         return std::nullopt;
     }
     const float red = lines.number();
     const auto green = lines.optionalNumber();
     const auto blue = green ? lines.optionalNumber() : std::nullopt;
+    if (green && !blue) leftOut.add("the second of a colour's two numbers in a material file");
     return blue ? glm::vec3(red, *green, *blue) : glm::vec3(red);
 }
 
@@ -96,18 +99,28 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
     const MappedFile file(path);
     LineReader lines(file.text(), path.string());
     std::map<std::string, MtlMaterial> materials;
-    MtlMaterial ignored;  // what stands before the first newmtl
-    MtlMaterial* current = &ignored;
+    MtlMaterial* current = nullptr;
     while (lines.nextLine()) {
         const std::string_view key = lines.word();
-        Material& material = current->material;
         if (key == "newmtl") {
             const std::string name(lines.name());
-            current = &materials[name];
+            const auto [found, isNew] = materials.try_emplace(name);
+            current = isNew ? &found->second : nullptr;
+            leftOut.add("a material of the name of one before it", isNew ? 0 : 1);
+            if (!isNew) continue;
             current->material.name = name;
             current->folder = path.parent_path();
-        } else if (key == "Kd" || key == "Ke") {
-            const auto read = colour(lines);
+            continue;
+        }
+        if (current == nullptr) {
+            leftOut.add("a line of a material file that is of no material", key.empty() ? 0 : 1);
+            continue;
+        }
+        Material& material = current->material;
+        const bool isOfNumbers =
+            key == "Kd" || key == "Ke" || key == "Ns" || key == "Ni" || key == "d" || key == "Tr";
+        if (key == "Kd" || key == "Ke") {
+            const auto read = colour(lines, leftOut);
             if (!read) leftOut.add(fmt::format("'{}' by a spectrum in a material file", key));
             if (read && key == "Kd") {
                 material.baseColor = glm::vec4(*read, material.baseColor.a);
@@ -128,6 +141,9 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
         } else if (!key.empty() && key != "Ka" && key != "map_Ka" && key != "illum") {
             // No light here is ambient, and each term of `illum` follows from the others.
             leftOut.add(fmt::format("{} of a material file", inQuotes(key)));
+        }
+        if (isOfNumbers && !lines.word().empty()) {
+            leftOut.add(fmt::format("further words of the line '{}' of a material file", key));
         }
     }
     return materials;

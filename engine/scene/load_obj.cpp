@@ -351,8 +351,11 @@ class MaterialTable {
   private:
     void addLibrary(const std::string& name) {
         if (const auto path = fileInside(folder_, name)) {
+            if (std::ranges::find(scene_.filesBeside, *path) != scene_.filesBeside.end()) return;
             scene_.filesBeside.push_back(*path);
-            defined_.merge(loadMtl(*path, leftOut_));
+            std::map<std::string, MtlMaterial> read = loadMtl(*path, leftOut_);
+            defined_.merge(read);
+            leftOut_.add("a material of the name of one before it", read.size());
             return;
         }
         isComplete_ = false;
