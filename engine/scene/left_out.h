@@ -19,15 +19,15 @@ class LeftOut {
         if (count > 0) counts_[isOneMore ? "more of other kinds" : what] += count;
     }
 
-    /// "left out: the line 'l' (12 times)" of each kind.
+    /// "left out: the line 'l' (12 times)" of each kind; another beginning says what was done.
     std::vector<std::string> lines() const {
         std::vector<std::string> lines;
         tell(lines);
         return lines;
     }
-    void tell(std::vector<std::string>& warnings) const {
+    void tell(std::vector<std::string>& warnings, const char* done = "left out") const {
         for (const auto& [what, count] : counts_) {
-            warnings.push_back(fmt::format("left out: {}{}", what,
+            warnings.push_back(fmt::format("{}: {}{}", done, what,
                                            count > 1 ? fmt::format(" ({} times)", count) : ""));
         }
     }
