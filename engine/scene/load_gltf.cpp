@@ -194,7 +194,11 @@ class SceneBuilder {
             std::ranges::sort(used);
             used.erase(std::unique(used.begin(), used.end()), used.end());
         } else {
-            mesh.triangles = trianglesOf(checkedIndices(primitive, count, where), primitive.mode);
+            const std::vector<std::uint32_t> indices = checkedIndices(primitive, count, where);
+            mesh.triangles = trianglesOf(indices, primitive.mode);
+            if (primitive.mode == TINYGLTF_MODE_TRIANGLES) {
+                leftOut_.add("a corner behind the last triangle", indices.size() % 3);
+            }
             used = usedVertices_.renumber(mesh.triangles, count);
         }
         uses.isUsed.resize(count, false);
@@ -345,7 +349,7 @@ class SceneBuilder {
             if (worldFromNode) {
                 fail(fmt::format("node {} has two parents or is its own ancestor", index));
             }
-            const glm::dmat4 local = localMatrix(node, index);
+            const glm::dmat4 local = localMatrix(node);
             Open inner{0, parent.worldFromParent * glm::mat4(local), parent.exactFromParent * local,
                        parent.isVisible && isVisible(node)};
             if (isMoved_) inner.worldFromParent = glm::mat4(inner.exactFromParent);
@@ -387,27 +391,20 @@ class SceneBuilder {
         }
     }
 
-    glm::dmat4 localMatrix(const tinygltf::Node& node, int index) {
-        const auto has = [&](const std::vector<double>& values, std::size_t count) {
-            if (!values.empty() && values.size() != count) {
-                fail(fmt::format("node {}: {} numbers where {} are needed", index, values.size(),
-                                 count));
-            }
-            return !values.empty();
-        };
-        if (has(node.matrix, 16)) return glm::make_mat4(node.matrix.data());
+    glm::dmat4 localMatrix(const tinygltf::Node& node) {
+        if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
         glm::dmat4 matrix(1.0);
-        if (has(node.translation, 3)) {
+        if (node.translation.size() == 3) {
             matrix[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1.0);
         }
-        if (has(node.rotation, 4)) {
+        if (node.rotation.size() == 4) {
             const glm::dvec4 xyzw = glm::make_vec4(node.rotation.data());
             const glm::dquat rotation(xyzw.w, xyzw.x, xyzw.y, xyzw.z);
             if (std::abs(glm::length(rotation) - 1.0) > 1e-3)
                 leftOut_.add("the length of a node's rotation, which is not 1");
             matrix *= glm::mat4_cast(glm::normalize(rotation));
         }
-        if (has(node.scale, 3)) {
+        if (node.scale.size() == 3) {
             const glm::dvec3 scale = glm::make_vec3(node.scale.data());
             for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];
         }
@@ -526,6 +523,12 @@ class SceneBuilder {
         if (!(perspective.yfov > 0.0 && perspective.yfov < kPi) || !(perspective.znear > 0.0)) {
             fail(fmt::format("camera {}: yfov {} and znear {}; 0 to pi and above 0 are allowed",
                              node.camera, perspective.yfov, perspective.znear));
+        }
+        if (perspective.zfar != 0.0 && !(perspective.zfar > perspective.znear)) {
+            fail(
+                fmt::format("camera {}: zfar {} and znear {}; a zfar above znear, or none, is "
+                            "allowed",
+                            node.camera, perspective.zfar, perspective.znear));
         }
         Camera camera;
         camera.name = from.name.empty() ? node.name : from.name;

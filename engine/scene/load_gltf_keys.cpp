@@ -6,7 +6,9 @@
 #include <array>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "engine/scene/load_text.h"
@@ -15,71 +17,136 @@
 namespace gfxrepro::scene {
 namespace {
 
-/// The keys of one kind of object.
+/// The keys of one kind of object, used or without a meaning here; behind a colon the shape of what
+/// is used: n a number, i a whole number that an int holds, z one of bytes, b, t a text, o an
+/// object, twice for a list of such, a number for a list of so many numbers, or all values that are
+/// allowed.
 struct Known {
     std::string_view object;
-    std::string_view keys;  // used, or without a meaning here
+    std::string_view keys;
 };
 
 // Lists count as what they hold; all textures of materials are "texture"; numbers behind the names
 // of sets are left out. "name", "extras" and attributes that begin with '_' may stand anywhere.
 constexpr Known kKnown[] = {
     {"",
-     "accessors asset bufferViews buffers cameras extensions extensionsRequired extensionsUsed "
-     "images materials meshes nodes samplers scene scenes skins textures"},
-    {"accessors", "bufferView byteOffset componentType count max min normalized sparse type"},
-    {"accessors.sparse", "count indices values"},
-    {"accessors.sparse.indices", "bufferView byteOffset componentType"},
-    {"accessors.sparse.values", "bufferView byteOffset"},
-    {"asset", "copyright generator minVersion version"},
-    {"bufferViews", "buffer byteLength byteOffset byteStride target"},
-    {"buffers", "byteLength uri"},
-    {"cameras", "perspective type"},
-    {"cameras.perspective", "aspectRatio yfov zfar znear"},
-    {"extensions", "KHR_lights_punctual"},
-    {"extensions.KHR_lights_punctual", "lights"},
+     "accessors:oo asset:o bufferViews:oo buffers:oo cameras:oo extensions:o extensionsRequired:tt "
+     "extensionsUsed:tt images:oo materials:oo meshes:oo nodes:oo samplers:oo scene:i scenes:oo "
+     "skins:oo textures:oo"},
+    {"accessors",
+     "bufferView:i byteOffset:z componentType:i count:z max min normalized:b sparse:o "
+     "type:SCALAR|VEC2|VEC3|VEC4|MAT2|MAT3|MAT4"},
+    {"accessors.sparse", "count:i indices:o values:o"},
+    {"accessors.sparse.indices", "bufferView:i byteOffset:z componentType:i"},
+    {"accessors.sparse.values", "bufferView:i byteOffset:z"},
+    {"asset", "copyright generator:t minVersion:t version:t"},
+    {"bufferViews", "buffer:i byteLength:z byteOffset:z byteStride:i target"},
+    {"buffers", "byteLength:z uri:t"},
+    {"cameras", "perspective:o type:perspective|orthographic"},
+    {"cameras.perspective", "aspectRatio yfov:n zfar:n znear:n"},
+    {"extensions", "KHR_lights_punctual:o"},
+    {"extensions.KHR_lights_punctual", "lights:oo"},
     // The loader says itself what it leaves out of spot lights.
-    {"extensions.KHR_lights_punctual.lights", "color intensity spot type"},
+    {"extensions.KHR_lights_punctual.lights",
+     "color:3 intensity:n spot type:directional|point|spot"},
     {"extensions.KHR_lights_punctual.lights.spot", "innerConeAngle outerConeAngle"},
-    {"images", "bufferView mimeType uri"},
+    {"images", "bufferView:i mimeType uri:t"},
     {"materials",
-     "alphaCutoff alphaMode doubleSided emissiveFactor emissiveTexture extensions "
-     "normalTexture pbrMetallicRoughness"},
+     "alphaCutoff:n alphaMode:OPAQUE|MASK|BLEND doubleSided:b emissiveFactor:3 emissiveTexture:o "
+     "extensions:o normalTexture:o pbrMetallicRoughness:o"},
     {"materials.extensions",
-     "KHR_materials_emissive_strength KHR_materials_ior KHR_materials_transmission "
-     "KHR_materials_unlit"},
-    {"materials.extensions.KHR_materials_emissive_strength", "emissiveStrength"},
-    {"materials.extensions.KHR_materials_ior", "ior"},
-    {"materials.extensions.KHR_materials_transmission", "transmissionFactor"},
+     "KHR_materials_emissive_strength:o KHR_materials_ior:o KHR_materials_transmission:o "
+     "KHR_materials_unlit:o"},
+    {"materials.extensions.KHR_materials_emissive_strength", "emissiveStrength:n"},
+    {"materials.extensions.KHR_materials_ior", "ior:n"},
+    {"materials.extensions.KHR_materials_transmission", "transmissionFactor:n"},
     {"materials.extensions.KHR_materials_unlit", ""},
     {"materials.pbrMetallicRoughness",
-     "baseColorFactor baseColorTexture metallicFactor metallicRoughnessTexture roughnessFactor"},
-    {"meshes", "primitives weights"},
-    {"meshes.primitives", "attributes indices material mode targets"},
-    {"meshes.primitives.attributes", "COLOR_0 JOINTS_ NORMAL POSITION TEXCOORD_ WEIGHTS_"},
-    {"meshes.primitives.targets", "NORMAL POSITION"},
-    {"nodes", "camera children extensions matrix mesh rotation scale skin translation weights"},
-    {"nodes.extensions", "EXT_mesh_gpu_instancing KHR_lights_punctual KHR_node_visibility"},
-    {"nodes.extensions.EXT_mesh_gpu_instancing", "attributes"},
-    {"nodes.extensions.EXT_mesh_gpu_instancing.attributes", "ROTATION SCALE TRANSLATION"},
-    {"nodes.extensions.KHR_lights_punctual", "light"},
-    {"nodes.extensions.KHR_node_visibility", "visible"},
-    {"samplers", "magFilter minFilter wrapS wrapT"},
-    {"scenes", "nodes"},
-    {"skins", "inverseBindMatrices joints skeleton"},
-    {"texture", "extensions index scale texCoord"},
-    {"texture.extensions", "KHR_texture_transform"},
-    {"texture.extensions.KHR_texture_transform", "offset rotation scale texCoord"},
-    {"textures", "sampler source"},
+     "baseColorFactor:4 baseColorTexture:o metallicFactor:n metallicRoughnessTexture:o "
+     "roughnessFactor:n"},
+    {"meshes", "primitives:oo weights:nn"},
+    {"meshes.primitives", "attributes:o indices:i material:i mode:0|1|2|3|4|5|6 targets:oo"},
+    {"meshes.primitives.attributes",
+     "COLOR_0:i JOINTS_:i NORMAL:i POSITION:i TEXCOORD_:i WEIGHTS_:i"},
+    {"meshes.primitives.targets", "NORMAL:i POSITION:i"},
+    {"nodes",
+     "camera:i children:ii extensions:o matrix:16 mesh:i rotation:4 scale:3 skin:i translation:3 "
+     "weights:nn"},
+    {"nodes.extensions", "EXT_mesh_gpu_instancing:o KHR_lights_punctual:o KHR_node_visibility:o"},
+    {"nodes.extensions.EXT_mesh_gpu_instancing", "attributes:o"},
+    {"nodes.extensions.EXT_mesh_gpu_instancing.attributes", "ROTATION:i SCALE:i TRANSLATION:i"},
+    {"nodes.extensions.KHR_lights_punctual", "light:i"},
+    {"nodes.extensions.KHR_node_visibility", "visible:b"},
+    {"samplers",
+     "magFilter:9728|9729 minFilter:9728|9729|9984|9985|9986|9987 wrapS:10497|33071|33648 "
+     "wrapT:10497|33071|33648"},
+    {"scenes", "nodes:ii"},
+    {"skins", "inverseBindMatrices:i joints:ii skeleton"},
+    {"texture", "extensions:o index:i scale:n texCoord:i"},
+    {"texture.extensions", "KHR_texture_transform:o"},
+    {"texture.extensions.KHR_texture_transform", "offset:2 rotation:n scale:2 texCoord:i"},
+    {"textures", "sampler:i source:i"},
 };
 
-bool isWordOf(std::string_view words, std::string_view word) {
-    for (std::size_t at = words.find(word); at != words.npos; at = words.find(word, at + 1)) {
-        const std::size_t end = at + word.size();
-        const bool begins = at == 0 || words[at - 1] == ' ';
-        if (begins && (end == words.size() || words[end] == ' ')) return !word.empty();
+/// The word before `mark` is taken off `text`.
+std::string_view takenWord(std::string_view& text, char mark) {
+    const std::string_view word = text.substr(0, text.find(mark));
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    return word;
+}
+
+/// The shape of a key's value, empty where it may have any; none where nobody knows the key.
+std::optional<std::string_view> shapeOf(std::string_view keys, std::string_view key) {
+    while (!keys.empty()) {
+        std::string_view word = takenWord(keys, ' ');
+        if (takenWord(word, ':') == key) return word;
+    }
+    return std::nullopt;
+}
+
+/// Of how many numbers a list of this shape is; 0: of any.
+std::size_t lengthOf(std::string_view shape) {
+    return parsedNumber<std::size_t>(shape).value_or(0);
+}
+
+/// Of each in a list of this shape; empty where the shape is not that of a list.
+std::string_view itemShapeOf(std::string_view shape) {
+    if (lengthOf(shape) > 0) return "n";
+    return shape.size() == 2 && shape[0] == shape[1] ? shape.substr(1) : "";
+}
+
+/// Whether a shape of several values has this one: a text, or a number.
+bool isChoice(std::string_view shape, bool isText, std::string_view value) {
+    const bool isOfTexts = shape.find_first_of("0123456789") != 0;
+    if (shape.find('|') == shape.npos || isText != isOfTexts) return false;
+    while (!shape.empty()) {
+        if (takenWord(shape, '|') == value) return true;
     }
     return false;
+}
+
+std::string allowedBy(std::string_view shape) {
+    constexpr std::pair<std::string_view, const char*> kNames[] = {
+        {"n", "a number"},
+        {"i", "a whole number from 0 to 2147483647"},
+        {"b", "true or false"},
+        {"z", "a whole number from 0"},
+        {"t", "a text"},
+        {"o", "an object"},
+        {"nn", "a list of numbers"},
+        {"ii", "a list of whole numbers"},
+        {"tt", "a list of texts"},
+        {"oo", "a list of objects"}};
+    for (const auto& [name, text] : kNames) {
+        if (name == shape) return text;
+    }
+    if (lengthOf(shape) > 0) return fmt::format("a list of {} numbers", shape);
+    std::string values;
+    while (!shape.empty()) {
+        if (!values.empty()) values += ", ";
+        values += takenWord(shape, '|');
+    }
+    return values;
 }
 
 /// "TEXCOORD_" of "TEXCOORD_12".
@@ -95,46 +162,62 @@ std::string joinedPath(const std::string& object, std::string_view key) {
     return object.empty() ? std::string(key) : fmt::format("{}.{}", object, key);
 }
 
-/// Goes through JSON without keeping it, and calls back for each key that is not known, and for
-/// each URI of a buffer or an image.
+/// Goes through JSON without keeping it, and calls back for each key that is not known, each URI of
+/// a buffer or an image, and each value of another shape than its key's.
 class Walker : public nlohmann::json_sax<nlohmann::json> {
   public:
-    using Callback = std::function<void(const std::string&)>;
+    struct Callbacks {
+        std::function<void(const std::string&)> onUnknown = [](const std::string&) {};
+        std::function<void(const std::string&)> onUri = [](const std::string&) {};
+        std::function<void(const std::string&)> onWrong = [](const std::string&) {};
+    };
 
-    static void walk(std::string_view json, Callback onUnknown, Callback onUri) {
+    static void walk(std::string_view json, Callbacks callbacks) {
         Walker walker;
-        walker.onUnknown_ = std::move(onUnknown);
-        walker.onUri_ = std::move(onUri);
+        walker.on_ = std::move(callbacks);
         nlohmann::json::sax_parse(withoutByteOrderMark(json), &walker);
     }
 
-    bool null() override { return true; }
-    bool boolean(bool) override { return true; }
-    bool number_integer(number_integer_t) override { return true; }
-    bool number_unsigned(number_unsigned_t) override { return true; }
-    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool null() override {  // as if the key was not there
+        if (!isLookedAt()) return true;
+        if (!open_.back().isObject) return take("", "null");
+        open_.back().seen.erase(open_.back().key);
+        return true;
+    }
+    bool boolean(bool value) override { return take("b", value ? "true" : "false"); }
+    bool number_integer(number_integer_t value) override {
+        return value == 0 ? number_unsigned(0) : take("n", std::to_string(value));
+    }
+    bool number_unsigned(number_unsigned_t value) override {
+        return take(value <= std::numeric_limits<int>::max() ? "niz" : "nz", std::to_string(value));
+    }
+    bool number_float(number_float_t, const string_t& text) override { return take("n", text); }
     bool binary(binary_t&) override { return true; }
-    bool start_object(std::size_t) override { return enter(true); }
+    bool start_object(std::size_t) override { return take("o", "an object") && enter(true); }
     bool end_object() override { return leave(); }
-    bool start_array(std::size_t) override { return enter(false); }
+    bool start_array(std::size_t) override { return take("", "a list", true) && enter(false); }
     bool end_array() override { return leave(); }
 
     bool string(string_t& value) override {
-        if (key_ != "uri" || open_.empty() || value.starts_with("data:")) return true;
-        const std::string& path = open_.back().path;
-        if (!skipsValue_ && (path == "buffers" || path == "images")) onUri_(value);
-        return true;
+        if (!isLookedAt()) return true;
+        const Open& object = open_.back();
+        const bool isUri = object.isObject && object.key == "uri" && !value.starts_with("data:");
+        if (isUri && (object.path == "buffers" || object.path == "images")) on_.onUri(value);
+        return take("t", value);
     }
 
     bool key(string_t& key) override {
         if (skippedDepth_ > 0) return true;
-        const Open& object = open_.back();
-        key_ = setName(key);
+        Open& object = open_.back();
+        object.key = key;
         const bool isFree = key == "name" || key == "extras" ||
                             (key.starts_with('_') && object.path.ends_with("attributes"));
+        const std::optional<std::string_view> shape = shapeOf(object.keys, setName(key));
         // Of extensions each is known or not.
-        const bool isKnown = isFree || key == "extensions" || isWordOf(object.keys, key_);
-        if (!isKnown) onUnknown_(joinedPath(object.path, key));
+        const bool isKnown = isFree || key == "extensions" || shape;
+        if (!isKnown) on_.onUnknown(joinedPath(object.path, key));
+        if (!object.seen.insert(key).second) say("there twice", "once");
+        object.shape = shape.value_or("");
         skipsValue_ = isFree || !isKnown;
         return true;
     }
@@ -149,7 +232,36 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
         std::string path;
         std::string_view keys;
         bool isObject;
+        std::string_view shape;  // of the value that comes next
+        std::size_t length;      // of a list, as its shape has it; 0: any
+        std::string key = {};    // of an object: of that value
+        std::size_t count = 0;   // of a list: of values so far
+        std::set<std::string> seen = {};
     };
+
+    bool isLookedAt() const { return !open_.empty() && skippedDepth_ == 0 && !skipsValue_; }
+
+    /// A value with the letters of its shapes.
+    bool take(std::string_view letters, const std::string& found, bool isList = false) {
+        if (!isLookedAt()) return true;
+        Open& outer = open_.back();
+        ++outer.count;
+        const std::string_view shape = outer.shape;
+        const bool isFit = shape.empty() || letters.find(shape) != letters.npos ||
+                           (isList && !itemShapeOf(shape).empty()) ||
+                           isChoice(shape, letters == "t", found);
+        if (!isFit) say(letters == "t" ? inQuotes(found) : found, allowedBy(shape));
+        return true;
+    }
+
+    void say(const std::string& found, const std::string& allowed) {
+        std::string place;  // nodes[3].translation
+        for (const Open& open : open_) {
+            if (open.isObject && !place.empty()) place += '.';
+            place += open.isObject ? open.key.substr(0, 100) : fmt::format("[{}]", open.count - 1);
+        }
+        on_.onWrong(fmt::format("{} is {}; allowed: {}", place, found, allowed));
+    }
 
     /// False where the parsing ends: the loader refuses what is nested so deeply.
     bool enter(bool isObject) {
@@ -160,14 +272,17 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
             return true;
         }
         std::string path;
+        std::string_view shape;
         if (!open_.empty()) {
             const Open& outer = open_.back();
-            path = outer.isObject ? joinedPath(outer.path, key_) : outer.path;
+            path = outer.isObject ? joinedPath(outer.path, setName(outer.key)) : outer.path;
+            shape = outer.shape;
         }
         if (path.ends_with("Texture")) path = "texture";
         const Known* known = std::ranges::find(kKnown, path, &Known::object);
         const std::string_view keys = known == std::end(kKnown) ? "" : known->keys;
-        open_.push_back({std::move(path), keys, isObject});
+        open_.push_back({std::move(path), keys, isObject, isObject ? "" : itemShapeOf(shape),
+                         isObject ? 0 : lengthOf(shape)});
         return true;
     }
 
@@ -175,15 +290,25 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
         if (skippedDepth_ > 0) {
             --skippedDepth_;
         } else {
+            Open& closed = open_.back();
+            const auto has = [&](const char* key) { return closed.seen.contains(key); };
+            if (closed.path == "nodes" && has("matrix") &&  // glTF 2.0, Sec. 3.5.3
+                (has("translation") || has("rotation") || has("scale"))) {
+                closed.key = "matrix";
+                say("beside a translation, rotation or scale", "one or the other");
+            }
+            const std::size_t length = closed.length, count = closed.count;
             open_.pop_back();
+            if (length > 0 && count != length) {
+                say(fmt::format("a list of {}", count), allowedBy(std::to_string(length)));
+            }
         }
         if (skippedDepth_ == 0) skipsValue_ = false;
         return true;
     }
 
-    Callback onUnknown_, onUri_;
+    Callbacks on_;
     std::vector<Open> open_;
-    std::string key_;          // of the value that comes next
     bool skipsValue_ = false;  // nobody looks into it
     std::size_t skippedDepth_ = 0;
 };
@@ -196,17 +321,22 @@ int hexDigit(char c) {
 
 }  // namespace
 
-void addUnknownKeys(std::string_view json, LeftOut& leftOut) {
-    Walker::walk(
-        json,
-        [&](const std::string& key) { leftOut.add(fmt::format("the key {}", inQuotes(key))); },
-        [](const std::string&) {});
+std::string checkedKeys(std::string_view json, LeftOut& leftOut) {
+    std::string wrong;
+    Walker::walk(json, {.onUnknown =
+                            [&](const std::string& key) {
+                                leftOut.add(fmt::format("the key {}", inQuotes(key)));
+                            },
+                        .onWrong =
+                            [&](const std::string& what) {
+                                if (wrong.empty()) wrong = what;
+                            }});
+    return wrong;
 }
 
 std::vector<std::string> urisOfGltf(std::string_view json) {
     std::vector<std::string> uris;
-    Walker::walk(
-        json, [](const std::string&) {}, [&](const std::string& uri) { uris.push_back(uri); });
+    Walker::walk(json, {.onUri = [&](const std::string& uri) { uris.push_back(uri); }});
     return uris;
 }
 

@@ -12,8 +12,10 @@
 namespace gfxrepro::scene {
 
 /// Adds every key that the loader neither uses nor knows to change nothing here: "the key
-/// 'materials.occlusionTexture'". JSON that is broken is read as far as it goes.
-void addUnknownKeys(std::string_view json, LeftOut& leftOut);
+/// 'materials.occlusionTexture'". Returns the first value that is not of its key's shape,
+/// "nodes[3].scale is a list of 2; allowed: a list of 3 numbers", or key that is there twice; else
+/// nothing. JSON that is broken is read as far as it goes.
+std::string checkedKeys(std::string_view json, LeftOut& leftOut);
 
 /// The URIs of buffers and images as they are written, without those that hold the data.
 std::vector<std::string> urisOfGltf(std::string_view json);

@@ -74,8 +74,10 @@ TEST_F(LoadGltf, ConvertsNormalizedIntegers) {
     const Mesh& mesh = scene.meshes.at(0);
     EXPECT_EQ(mesh.colors[0], glm::vec3(1, 0, 0.2F));
     EXPECT_EQ(mesh.texcoords[1], glm::vec2(1, -1));  // 127 and −127
-    EXPECT_EQ(scene.warnings, (std::vector<std::string>{"left out: a vertex that no triangle uses",
-                                                        "left out: the alpha of vertex colours"}));
+    EXPECT_EQ(scene.warnings,
+              (std::vector<std::string>{"left out: a corner behind the last triangle",
+                                        "left out: a vertex that no triangle uses",
+                                        "left out: the alpha of vertex colours"}));
 }
 
 TEST_F(LoadGltf, ColoursAreFloatsOrNormalized) {
@@ -267,9 +269,10 @@ TEST_F(LoadGltf, RefusesOffsetsBelowZero) {
                {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}])";
     };
     EXPECT_EQ(errorWith("accessors", accessors("0")), "no error");
-    for (const std::string offset : {"-4", "1.5", "\"0\""}) {
+    for (const std::string offset : {"-4", "1.5"}) {
         EXPECT_EQ(errorWith("accessors", accessors(offset)),
-                  "DIR/a.gltf: \"byteOffset\" is " + offset + "; allowed: a whole number from 0");
+                  "DIR/a.gltf: accessors[0].byteOffset is " + offset +
+                      "; allowed: a whole number from 0");
     }
 }
 
@@ -579,8 +582,6 @@ TEST_F(LoadGltf, RefusesNodesThatAreNoTree) {
     EXPECT_EQ(
         errorWith("nodes", R"([{"mesh":0,"translation":[0,-2e9,0]}])"),
         "DIR/a.gltf: node 0: its box reaches to (0, -2000000000, 0); -1e+09 to 1e+09 are allowed");
-    EXPECT_EQ(errorWith("nodes", R"([{"mesh":0,"translation":[1,2]}])"),
-              "DIR/a.gltf: node 0: 2 numbers where 3 are needed");
     EXPECT_EQ(errorWith("scene", "4"), "DIR/a.gltf: scene 4 does not exist; there are 1");
 }
 

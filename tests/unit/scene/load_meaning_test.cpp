@@ -1,0 +1,235 @@
+// Values that a format does not have, that stand twice, or where others are expected: refused or
+// said, never passed over.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/scene/load.h"
+#include "tests/support/support.h"
+#include "tests/unit/scene/gltf_document.h"
+
+namespace gfxrepro::scene {
+namespace {
+
+using test::errorText;
+using test::TemporaryFolder;
+using Lines = std::vector<std::string>;
+
+class LoadMeaning : public testing::Test {
+  protected:
+    LoadMeaning() { folder_.write("square.bin", squareBytes()); }
+
+    std::string gltfError(const std::string& key, const std::string& value) {
+        Document document = square();
+        document[key] = value;
+        const auto path = folder_.write("a.gltf", text(document));
+        const std::string error = errorText([&] { loadGltf(path); }, folder_.path());
+        const std::string place = "DIR/a.gltf: ";
+        return error.starts_with(place) ? error.substr(place.size()) : error;
+    }
+    std::string nodeError(const std::string& members) {
+        return gltfError("nodes", R"([{"mesh":0},{)" + members + "}]");
+    }
+    std::string materialError(const std::string& members) {
+        return gltfError("materials", "[{" + members + "}]");
+    }
+    Lines warningsOf(const std::string& name, const std::string& content) {
+        return loadScene(folder_.write(name, content)).warnings;
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(LoadMeaning, NumbersOfGltfAreNumbers) {
+    const std::string three = "; allowed: a list of 3 numbers";
+    EXPECT_EQ(nodeError(R"("translation":[1,"2",3])"),
+              "nodes[1].translation[1] is '2'; allowed: a number");
+    EXPECT_EQ(nodeError(R"("translation":[1,null,3])"),
+              "nodes[1].translation[1] is null; allowed: a number");
+    EXPECT_EQ(nodeError(R"("translation":[1,2])"), "nodes[1].translation is a list of 2" + three);
+    EXPECT_EQ(nodeError(R"("scale":[1,2,3,4])"), "nodes[1].scale is a list of 4" + three);
+    EXPECT_EQ(nodeError(R"("scale":2)"), "nodes[1].scale is 2" + three);
+    EXPECT_EQ(nodeError(R"("scale":3)"), "nodes[1].scale is 3" + three);
+    EXPECT_EQ(nodeError(R"("rotation":{})"),
+              "nodes[1].rotation is an object; allowed: a list of 4 numbers");
+    EXPECT_EQ(nodeError(R"("matrix":[1,0,0,0,0,1,0,0,0,0,1,0])"),
+              "nodes[1].matrix is a list of 12; allowed: a list of 16 numbers");
+    EXPECT_EQ(materialError(R"("pbrMetallicRoughness":{"baseColorFactor":["1",0,0,1]})"),
+              "materials[0].pbrMetallicRoughness.baseColorFactor[0] is '1'; allowed: a number");
+    EXPECT_EQ(materialError(R"("pbrMetallicRoughness":{"baseColorFactor":[1,0,0]})"),
+              "materials[0].pbrMetallicRoughness.baseColorFactor is a list of 3; allowed: a list "
+              "of 4 numbers");
+    EXPECT_EQ(materialError(R"("pbrMetallicRoughness":{"roughnessFactor":"0.5"})"),
+              "materials[0].pbrMetallicRoughness.roughnessFactor is '0.5'; allowed: a number");
+    EXPECT_EQ(materialError(R"("normalTexture":{"extensions":{"KHR_texture_transform":
+                               {"offset":[1]}}})"),
+              "materials[0].normalTexture.extensions.KHR_texture_transform.offset is a list of 1; "
+              "allowed: a list of 2 numbers");
+    EXPECT_EQ(gltfError("meshes", R"([{"primitives":[],"weights":[true]}])"),
+              "meshes[0].weights[0] is true; allowed: a number");
+}
+
+TEST_F(LoadMeaning, OtherValuesOfGltfAreThoseThatItHas) {
+    EXPECT_EQ(nodeError(R"("mesh":0.0)"),
+              "nodes[1].mesh is 0.0; allowed: a whole number from 0 to 2147483647");
+    EXPECT_EQ(nodeError(R"("mesh":4294967296)"),
+              "nodes[1].mesh is 4294967296; allowed: a whole number from 0 to 2147483647");
+    EXPECT_EQ(nodeError(R"("mesh":-1)"),
+              "nodes[1].mesh is -1; allowed: a whole number from 0 to 2147483647");
+    EXPECT_EQ(nodeError(R"("children":0)"),
+              "nodes[1].children is 0; allowed: a list of whole numbers");
+    EXPECT_EQ(nodeError(R"("extensions":{"KHR_node_visibility":{"visible":"false"}})"),
+              "nodes[1].extensions.KHR_node_visibility.visible is 'false'; allowed: true or false");
+    EXPECT_EQ(materialError(R"("alphaMode":"FOO")"),
+              "materials[0].alphaMode is 'FOO'; allowed: OPAQUE, MASK, BLEND");
+    EXPECT_EQ(materialError(R"("alphaMode":1)"),
+              "materials[0].alphaMode is 1; allowed: OPAQUE, MASK, BLEND");
+    EXPECT_EQ(materialError(R"("doubleSided":1)"),
+              "materials[0].doubleSided is 1; allowed: true or false");
+    EXPECT_EQ(materialError(R"("pbrMetallicRoughness":[])"),
+              "materials[0].pbrMetallicRoughness is a list; allowed: an object");
+    const std::string modes = "; allowed: 0, 1, 2, 3, 4, 5, 6";
+    EXPECT_EQ(gltfError("meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"mode":7}]}])"),
+              "meshes[0].primitives[0].mode is 7" + modes);
+    EXPECT_EQ(gltfError("meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"mode":"4"}]}])"),
+              "meshes[0].primitives[0].mode is '4'" + modes);
+    EXPECT_EQ(gltfError("samplers", R"([{"wrapS":1}])"),
+              "samplers[0].wrapS is 1; allowed: 10497, 33071, 33648");
+    EXPECT_EQ(gltfError("scene", R"("0")"),
+              "scene is '0'; allowed: a whole number from 0 to 2147483647");
+    EXPECT_EQ(gltfError("images", R"({"a":{"uri":"a.png"}})"),
+              "images is an object; allowed: a list of objects");
+    // null, as some write what is not there, and what nobody reads.
+    EXPECT_EQ(nodeError(R"("mesh":null,"extras":{"mesh":"0"},"name":1)"), "no error");
+    EXPECT_EQ(gltfError("asset", R"({"version":"1.0"})"), "glTF version '1.0'; 2.0 is read");
+    EXPECT_EQ(gltfError("asset", R"({"version":2.0})"), "asset.version is 2.0; allowed: a text");
+}
+
+TEST_F(LoadMeaning, OfGltfNothingStandsTwice) {
+    EXPECT_EQ(nodeError(R"("scale":[1,1,1],"scale":[2,2,2])"),
+              "nodes[1].scale is there twice; allowed: once");
+    EXPECT_EQ(materialError(R"("extras":{"a":1,"a":2})"), "no error") << "nobody reads it";
+    const std::string both = R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],)";
+    for (const char* part : {R"("translation":[1,0,0])", R"("scale":[1,1,1])"}) {
+        EXPECT_EQ(gltfError("nodes", "[" + both + part + "}]"),
+                  "nodes[0].matrix is beside a translation, rotation or scale; allowed: one or "
+                  "the other");
+    }
+    EXPECT_EQ(gltfError("nodes", "[" + both + R"("scale":null}])"), "no error");
+}
+
+TEST_F(LoadMeaning, RestsOfGltfAreSaid) {
+    Document document = square();
+    document["accessors"].replace(document["accessors"].find("\"count\":6"), 9, "\"count\":5");
+    EXPECT_EQ(warningsOf("a.gltf", text(document)),
+              (Lines{"left out: a corner behind the last triangle (2 times)",
+                     "left out: a vertex that no triangle uses"}));
+    document = square();
+    document["nodes"] = R"([{"mesh":0,"camera":0}])";
+    document["cameras"] =
+        R"([{"type":"perspective","perspective":{"yfov":1,"znear":0.5,"zfar":0.25}}])";
+    const auto path = folder_.write("a.gltf", text(document));
+    EXPECT_EQ(errorText([&] { loadGltf(path); }, folder_.path()),
+              "DIR/a.gltf: camera 0: zfar 0.25 and znear 0.5; a zfar above znear, or none, is "
+              "allowed");
+    std::string json = text(square());
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto word = [](std::size_t value) {
+        const auto word32 = static_cast<std::uint32_t>(value);
+        return std::string(reinterpret_cast<const char*>(&word32), 4);
+    };
+    const std::string glb =
+        "glTF" + word(2) + word(20 + json.size()) + word(json.size()) + "JSON" + json;
+    EXPECT_EQ(warningsOf("a.glb", glb), Lines{});
+    EXPECT_EQ(warningsOf("a.glb", glb + "behind"),
+              Lines{"left out: a byte behind the file's length (6 times)"});
+}
+
+TEST_F(LoadMeaning, ColoursThatNoSurfaceHasAreSaid) {
+    Document document = square();
+    document["materials"] = R"([{"pbrMetallicRoughness":{"baseColorFactor":[2,0,0,1],
+        "metallicFactor":-0.5,"roughnessFactor":3}},
+        {"emissiveFactor":[-1,0,0],"pbrMetallicRoughness":{"baseColorFactor":[1,-1,1,1]}}])";
+    EXPECT_EQ(warningsOf("a.gltf", text(document)),
+              (Lines{"taken as it is: a base colour or opacity outside of 0 to 1 (2 times)",
+                     "taken as it is: a metallic factor outside of 0 to 1",
+                     "taken as it is: a roughness outside of 0 to 1",
+                     "taken as it is: an emissive colour below 0"}));
+    folder_.write("a.mtl", "newmtl a\nKd 255 0 0\nKe 5 5 5\nnewmtl b\nKd 1 1 1\nd 1\n");
+    EXPECT_EQ(
+        warningsOf("a.obj",
+                   "mtllib a.mtl\nv 0 0 0 -1 0 0\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\nusemtl a\nf 1 2 3\n"
+                   "usemtl b\nf 1 2 3\n"),
+        (Lines{"taken as it is: a base colour or opacity outside of 0 to 1",
+               "taken as it is: a vertex colour below 0 (2 times)"}));
+    EXPECT_EQ(warningsOf("a.ply",
+                         "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
+                         "property float y\nproperty float z\nproperty float red\n"
+                         "property float green\nproperty float blue\nend_header\n"
+                         "0 0 0 0.5 -0.25 0\n1 0 0 1 1 1\n"),
+              Lines{"taken as it is: a vertex colour below 0"});
+}
+
+TEST_F(LoadMeaning, OfMaterialFilesEachLineIsReadOrSaid) {
+    const auto warnings = [&](const std::string& mtl) {
+        folder_.write("a.mtl", mtl);
+        return warningsOf("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    };
+    EXPECT_EQ(warnings("newmtl a\nKd 0.5\nKe 0 0 0 # none\nd -halo 1\nNs 9\n").size(), 1U);
+    EXPECT_EQ(warnings("newmtl a\nKd 0.5 0.25\n"),
+              Lines{"left out: the second of a colour's two numbers in a material file"});
+    EXPECT_EQ(warnings("newmtl a\nKd 1 1 1 0.5\nNs 9 9\n"),
+              (Lines{"left out: further words of the line 'Kd' of a material file",
+                     "left out: further words of the line 'Ns' of a material file"}));
+    EXPECT_EQ(warnings("# a file\n\nKd 1 0 0\nnewmtl a\nnewmtl a\nKd 0 1 0\nNs 1\n"),
+              (Lines{"left out: a line of a material file that is of no material (3 times)",
+                     "left out: a material of the name of one before it"}));
+    folder_.write("b.mtl", "newmtl a\nKd 0 1 0\n");
+    folder_.write("a.mtl", "newmtl a\nKd 1 0 0\n");
+    const Scene scene = loadObj(folder_.write(
+        "a.obj",
+        "mtllib a.mtl b.mtl\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"));
+    EXPECT_EQ(scene.materials.at(0).baseColor.r, 1.0F);
+    EXPECT_EQ(scene.warnings, Lines{"left out: a material of the name of one before it"});
+}
+
+class PlyMeaning : public LoadMeaning {
+  protected:
+    static std::string ply(const std::string& properties, const std::string& rows) {
+        return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+               "property float z\n" +
+               properties + "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+               rows;
+    }
+};
+
+TEST_F(PlyMeaning, PropertiesAreDeclaredOnce) {
+    const auto path = folder_.write("a.ply", ply("property float x\n", ""));
+    EXPECT_EQ(errorText([&] { loadPly(path); }, folder_.path()),
+              "DIR/a.ply:7: property 'x' of element 'vertex' is declared twice");
+    // Under two names, and faces twice, the first is taken.
+    const Scene scene = loadPly(folder_.write(
+        "a.ply", ply("property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                     "property uchar diffuse_red\n",
+                     "0 0 0 255 0 0 9\n1 0 0 255 0 0 9\n0 1 0 255 0 0 9\n3 0 1 2\n")));
+    EXPECT_EQ(scene.meshes.at(0).colors.at(0), glm::vec3(1, 0, 0));
+    EXPECT_EQ(scene.warnings, Lines{"left out: the property 'diffuse_red' of vertices"});
+    std::string twice = ply("", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3 0 1 2\n");
+    twice.insert(twice.find("end_header"), "property list uchar int vertex_index\n");
+    const Scene faces = loadPly(folder_.write("a.ply", twice));
+    EXPECT_EQ(faces.triangleCount(), 1U);
+    EXPECT_EQ(faces.warnings, Lines{"left out: the property 'vertex_index' of faces"});
+}
+
+/// A number too many, and one too few, shift all that follow.
+TEST_F(PlyMeaning, RowsAreLines) {
+    EXPECT_EQ(warningsOf("a.ply", ply("", "0 0 0 \r\n1 0 0\n\n0 1 0\n3 0 1 2")), Lines{});
+    const std::string told =
+        " rows end within a line: their numbers are read in their order, whichever line has them";
+    EXPECT_EQ(warningsOf("a.ply", ply("", "0 0 0 1 0 0\n0 1 0\n3 0 1 2\n")), Lines{"1" + told});
+    EXPECT_EQ(warningsOf("a.ply", ply("", "0 0\n0 1 0\n0 0 1 0\n3 0 1 2\n")), Lines{"2" + told});
+}
+
+}  // namespace
+}  // namespace gfxrepro::scene
