@@ -145,7 +145,8 @@ class HeaderParser {
             fail("a property line is 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
         }
         property.name = line.back();
-        if (!properties_.insert(line.back()).second) {
+        const bool isRead = property.isList() || slotOf(property) != kNoSlot;
+        if (isRead && !properties_.insert(line.back()).second) {
             fail(fmt::format("property {} of element {} is declared twice", inQuotes(property.name),
                              inQuotes(header_.elements.back().name)));
         }
@@ -166,7 +167,7 @@ class HeaderParser {
     std::size_t at_;
     int line_ = 0;
     std::unordered_set<std::string_view> names_;       // of elements
-    std::unordered_set<std::string_view> properties_;  // of the last one
+    std::unordered_set<std::string_view> properties_;  // read, of the last one
     Header header_;
 };
 

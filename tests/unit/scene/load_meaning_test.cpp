@@ -208,7 +208,11 @@ TEST_F(PlyMeaning, PropertiesAreDeclaredOnce) {
     const auto path = folder_.write("a.ply", ply("property float x\n", ""));
     EXPECT_EQ(errorText([&] { loadPly(path); }, folder_.path()),
               "DIR/a.ply:7: property 'x' of element 'vertex' is declared twice");
-    // Under two names, and faces twice, the first is taken.
+    // What nobody reads fills rows up; under two names, and of faces, the first is taken.
+    const std::string gaps = ply("property uchar gap\nproperty uchar gap\n",
+                                 "0 0 0 9 9\n1 0 0 9 9\n0 1 0 9 9\n3 0 1 2\n");
+    EXPECT_EQ(warningsOf("a.ply", gaps),
+              Lines{"left out: the property 'gap' of vertices (2 times)"});
     const Scene scene = loadPly(folder_.write(
         "a.ply", ply("property uchar red\nproperty uchar green\nproperty uchar blue\n"
                      "property uchar diffuse_red\n",
