@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "engine/core/error.h"
@@ -132,7 +133,6 @@ OneByOnePainter::OneByOnePainter(const gl::ShaderLibrary& shaders,
     const std::vector<std::string> files = {"clustered_reflections/cluster_image.vert.glsl",
                                             "clustered_reflections/cluster_image.frag.glsl"};
     gl::Defines defines = shadedImageDefines(scene);
-    defines["ATLAS"] = 0;
     pass_ = gl::Pass(shaders, files, defines);
     defines["TEXTURES"] = 0;
     plainPass_ = gl::Pass(shaders, files, defines);
@@ -204,122 +204,6 @@ std::uint64_t OneByOnePainter::draw(const reflections::GpuObjects& objects,
     std::uint64_t triangles = 0;
     for (const std::uint32_t object : seen) triangles += trianglesOfObject_[object];
     return triangles;
-}
-
-namespace {
-
-/// Images begin at multiples of this, so that small tiles of the pyramid hold one image alone.
-constexpr int kPlaceStepPx = 8;
-
-}  // namespace
-
-SideBySidePainter::SideBySidePainter(const gl::ShaderLibrary& shaders,
-                                     const reflections::ReflectiveScene& scene,
-                                     const CameraSettings& settings)
-    : order_(sizeof(AtlasState) + kMaxClusters * sizeof(std::uint32_t)),
-      settings_(settings),
-      places_(kMaxClusters * sizeof(glm::ivec4)),
-      families_(gl::Buffer::of(reflectorFamilies(scene))) {
-    gl::Defines defines = imageDefines();
-    defines["PLACE_STEP_PX"] = kPlaceStepPx;
-    place_ = gl::Pass(shaders, {"clustered_reflections/place_images.comp.glsl"}, defines);
-}
-
-void SideBySidePainter::place(const gl::Buffer& cameras, const Clusters& clusters,
-                              glm::ivec2 atlasSizePx) const {
-    place_.set("atlasSizePx", atlasSizePx);
-    place_.set("depthImageScale", settings_.depthImageScale);
-    place_.set("texelsPerSample", settings_.texelsPerSample);
-    place_.set("maxSizePx", std::min(settings_.maxSizePx, atlasSizePx.x));
-    place_.dispatch({1, 1, 1},
-                    gl::Resources{{"Ranges", clusters.ranges}}.with(placed(cameras, clusters)));
-}
-
-gl::Resources SideBySidePainter::placed(const gl::Buffer& cameras, const Clusters& clusters) const {
-    return {{"Cameras", cameras},
-            {"Counts", clusters.counts},
-            {"Places", places_},
-            {"Order", order_},
-            {"Families", families_}};
-}
-
-std::size_t SideBySidePainter::sizeBytes() const {
-    return places_.sizeBytes() + order_.sizeBytes() + families_.sizeBytes();
-}
-
-namespace {
-
-/// Pairs of an object and a cluster that sees it; 8 MiB. All pairs of 512 objects and as many
-/// clusters as there may be; more of both is counted in AtlasState::leftOut.
-constexpr std::size_t kMostInstances = std::size_t{1} << 21;
-
-/// An instance is cluster << 20 | object.
-constexpr std::uint32_t kMostObjects = 1U << 20;
-static_assert(kMaxClusters <= 1 << 12);
-
-/// As glMultiDrawElementsIndirect reads it.
-struct ElementsCommand {
-    std::uint32_t count = 0, instanceCount = 0, firstIndex = 0, baseVertex = 0, baseInstance = 0;
-};
-
-}  // namespace
-
-AtlasPainter::AtlasPainter(const gl::ShaderLibrary& shaders,
-                           const reflections::ReflectiveScene& scene,
-                           const reflections::GpuObjects& objects, const CameraSettings& settings)
-    : SideBySidePainter(shaders, scene, settings) {
-    GFXREPRO_ASSERT(objects.objectCount() < kMostObjects);
-    gl::Defines defines = shadedImageDefines(scene);
-    defines["ATLAS"] = 1;
-    cull_ = gl::Pass(shaders, {"clustered_reflections/cull_objects.comp.glsl"}, defines);
-    draw_ = gl::Pass(shaders,
-                     {"clustered_reflections/cluster_image.vert.glsl",
-                      "clustered_reflections/cluster_image.frag.glsl"},
-                     defines);
-
-    const std::uint32_t most = objects.mostTrianglesPerDraw();
-    std::vector<ElementsCommand> commands;
-    std::vector<glm::uvec2> pieces;  // an object's first command and how many
-    for (const reflections::Object& object : scene.objects()) {
-        const auto first = static_cast<std::uint32_t>(commands.size());
-        for (std::uint32_t done = 0; done < object.triangleCount; done += most) {
-            const std::uint32_t count = std::min(object.triangleCount - done, most);
-            commands.push_back({3 * count, 0, 3 * (object.firstTriangle + done), 0, 0});
-        }
-        pieces.emplace_back(first, static_cast<std::uint32_t>(commands.size()) - first);
-    }
-    commandCount_ = static_cast<int>(commands.size());
-    commands_ = gl::Buffer::of(commands);
-    pieces_ = gl::Buffer::of(pieces);
-    const std::size_t pairs = std::size_t{objects.objectCount()} * kMaxClusters;
-    instances_ = gl::Buffer(std::min(pairs, kMostInstances) * sizeof(std::uint32_t));
-    vertexArray_ = objects.makeVertexArray(instances_);
-}
-
-void AtlasPainter::draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
-                        const Clusters& clusters, ClusterImages& target) {
-    place(cameras, clusters, target.sizePx());
-    cull_.dispatch(
-        {objects.objectCount(), 1, 1},
-        gl::Resources{{"Commands", commands_}, {"Pieces", pieces_}, {"Instances", instances_}}
-            .with(objects.resources())
-            .with(placed(cameras, clusters)));
-
-    instances_.awaitPasses(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
-    drawInPlaces(target, draw_, resources(objects, cameras), vertexArray_, commands_, [&] {
-        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, commandCount_,
-                                    sizeof(ElementsCommand));
-    });
-}
-
-gl::Resources AtlasPainter::resources(const reflections::GpuObjects& objects,
-                                      const gl::Buffer& cameras) const {
-    return gl::Resources{{"Cameras", cameras}, {"Places", places()}}.with(objects.resources());
-}
-
-std::size_t AtlasPainter::sizeBytes() const {
-    return SideBySidePainter::sizeBytes() + commands_.sizeBytes() + instances_.sizeBytes() +
-           pieces_.sizeBytes();
 }
 
 }  // namespace gfxrepro::clustered_reflections

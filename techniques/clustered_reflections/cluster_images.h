@@ -1,7 +1,6 @@
 // Step 3.b of [xie2017] Algorithm 6: the scene drawn from cluster cameras.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "engine/gl/objects.h"
@@ -70,8 +69,8 @@ glm::ivec2 imageSizePx(const ClusterCamera& camera, const CameraSettings& settin
                        std::uint32_t samples);
 
 /// Whether two parts of one object bend to different sides, as in- and outside of a bowl do: they
-/// lie back to back, and what leaves the one does not meet the other.
-/// shaders/cull_objects.comp.glsl has the same.
+/// lie back to back, and what leaves the one does not meet the other. shaders/culling.glsl has the
+/// same.
 ///
 /// Departure [xie2017] Algorithm 6, step 3.b: images of the one leave out the other, which lies as
 /// near behind them as a wall is thin, and curved surfaces rise before a near plane.
@@ -96,88 +95,6 @@ class OneByOnePainter {
     std::vector<std::uint32_t> reflectorOfObject_, trianglesOfObject_, families_;
     std::vector<std::uint8_t> isPlain_;  // by object: drawn by plainPass_
     gl::Pass pass_, plainPass_;          // which samples no texture
-};
-
-/// Of a painter's last draw; in front of the order in which images are placed, as
-/// shaders/atlas.glsl has it.
-struct AtlasState {
-    float scale = 1.0F;                   // by which all images were scaled to fit
-    std::uint32_t instances = 0;          // drawn: object × cluster pairs, or triangles
-    std::uint32_t leftOut = 0;            // of them, beyond the list
-    std::uint32_t triangles = 0;          // drawn
-    std::uint32_t groups[3] = {0, 1, 1};  // of a dispatch: one a cluster
-    std::uint32_t padding = 0;
-};
-static_assert(sizeof(AtlasState) == 32);
-
-/// Draws into the images by the commands in `commands`, which `issue` gives to the device;
-/// triangles are cut to their image by clip distances 1 to 4.
-template <class Issue>
-void drawInPlaces(ClusterImages& target, const gl::Pass& pass, const gl::Resources& resources,
-                  const gl::VertexArray& vertexArray, const gl::Buffer& commands, Issue&& issue) {
-    target.beginDrawing(target.sizePx());
-    pass.set("atlasSizePx", glm::vec2(target.sizePx()));
-    pass.use(resources);
-    commands.awaitPasses(GL_COMMAND_BARRIER_BIT);
-    vertexArray.bind();
-    for (int plane = 1; plane < 5; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.id());
-    issue();
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
-    for (int plane = 1; plane < 5; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
-    target.endDrawing(target.sizePx());
-}
-
-/// The images of all clusters side by side in one texture, drawn without a read-back. Where not all
-/// fit, all are scaled down by the same factor.
-class SideBySidePainter {
-  public:
-    virtual ~SideBySidePainter() = default;
-    virtual void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
-                      const Clusters& clusters, ClusterImages& target) = 0;
-    /// For the intersection.
-    virtual gl::Resources resources(const reflections::GpuObjects& objects,
-                                    const gl::Buffer& cameras) const = 0;
-    virtual std::size_t sizeBytes() const;
-
-    /// ivec4 a cluster: x, y, width, height; width 0: no image.
-    const gl::Buffer& places() const { return places_; }
-    /// Of the last draw(); waits for the device.
-    AtlasState state() const { return order_.read<AtlasState>(1).front(); }
-
-  protected:
-    SideBySidePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
-                      const CameraSettings& settings);
-    /// Places the images in a texture of `atlasSizePx`; leaves the counts 0.
-    void place(const gl::Buffer& cameras, const Clusters& clusters, glm::ivec2 atlasSizePx) const;
-    /// For passes that include atlas.glsl and culling.glsl.
-    gl::Resources placed(const gl::Buffer& cameras, const Clusters& clusters) const;
-
-    gl::Buffer order_;  // AtlasState, then the clusters in the order in which they are placed
-
-  private:
-    CameraSettings settings_;
-    gl::Buffer places_, families_;
-    gl::Pass place_;
-};
-
-/// Objects are culled for each cluster and drawn by one multi-draw indirect, an instance for each
-/// cluster that sees an object.
-class AtlasPainter final : public SideBySidePainter {
-  public:
-    AtlasPainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
-                 const reflections::GpuObjects& objects, const CameraSettings& settings);
-    void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
-              const Clusters& clusters, ClusterImages& target) override;
-    gl::Resources resources(const reflections::GpuObjects& objects,
-                            const gl::Buffer& cameras) const override;
-    std::size_t sizeBytes() const override;
-
-  private:
-    gl::Pass cull_, draw_;
-    gl::Buffer commands_, instances_, pieces_;
-    gl::VertexArray vertexArray_;
-    int commandCount_ = 0;
 };
 
 }  // namespace gfxrepro::clustered_reflections

@@ -36,7 +36,6 @@ constexpr Choice<Clustering> kClusterings[] = {
 };
 constexpr Choice<ImageDrawing> kDrawings[] = {
     {ImageDrawing::OneByOne, "one_by_one", "a cluster's image is overwritten by the next one's"},
-    {ImageDrawing::Atlas, "atlas", "all images side by side, by one multi-draw"},
     {ImageDrawing::Visible, "visible",
      "all images side by side, of the triangles that may be seen, shaded where rays meet them"},
     {ImageDrawing::None, "none",
@@ -234,8 +233,8 @@ config::Outputs outputs() {
             {"reflective_triangles", "triangle", "triangles that reflect"},
             {"drawn_triangles", "triangle", "triangles drawn into all depth images", Better::Lower},
             {"drawn_left_out", "triangle",
-             "triangles left out because the lists of `atlas` or `visible` had no room",
-             Better::Neither, kIsDetail},
+             "triangles left out because the list of `visible` had no room", Better::Neither,
+             kIsDetail},
             {"texels_per_sample", "texel", "texels of the depth images for each reflective sample",
              Better::Lower},
             {"frame_buffer_bytes", "byte",

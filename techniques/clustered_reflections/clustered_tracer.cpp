@@ -52,16 +52,13 @@ ClusteredTracer::ClusteredTracer(const gl::ShaderLibrary& shaders,
     defines["MARCH"] = settings.march == March::Hierarchical ? 1 : 0;
     defines["SEES_OWN"] = settings.ownReflector != OwnReflector::LeftOut ? 1 : 0;
     defines["OF_TRIANGLES"] = settings.drawing == ImageDrawing::Visible ? 1 : 0;
-    intersectAll_ = gl::Pass(
-        shaders, {"kit/whole_image.vert.glsl", "clustered_reflections/intersect.frag.glsl"},
-        defines);
-    intersectOne_ = gl::Pass(shaders, {"clustered_reflections/intersect.comp.glsl"}, defines);
-    if (settings.drawing == ImageDrawing::Atlas) {
-        sideBySide_ = std::make_unique<AtlasPainter>(shaders, scene, objects, settings_.camera);
-    } else if (settings.drawing == ImageDrawing::Visible) {
-        sideBySide_ = std::make_unique<VisiblePainter>(shaders, scene, objects, settings_.camera,
-                                                       settings.levelErrorPx);
+    if (settings.drawing == ImageDrawing::Visible) {
+        intersection_ = gl::Pass(
+            shaders, {"kit/whole_image.vert.glsl", "clustered_reflections/intersect.frag.glsl"},
+            defines);
+        visible_.emplace(shaders, scene, objects, settings_.camera, settings.levelErrorPx);
     } else {
+        intersection_ = gl::Pass(shaders, {"clustered_reflections/intersect.comp.glsl"}, defines);
         if (settings.drawing == ImageDrawing::OneByOne) oneByOne_.emplace(shaders, scene);
         places_ = gl::Buffer(kMaxClusters * sizeof(glm::ivec4));
     }
@@ -94,27 +91,27 @@ void ClusteredTracer::trace(const reflections::GBuffer& gbuffer, const gl::Textu
     } else if (oneByOne_) {
         drawOneByOne(gbuffer, target, profiler);
     } else {
-        drawAtlas(gbuffer, target, profiler);
+        drawVisible(gbuffer, target, profiler);
     }
 }
 
-void ClusteredTracer::drawAtlas(const reflections::GBuffer& gbuffer,
-                                reflections::ReflectionTarget& target, gl::Profiler& profiler) {
+void ClusteredTracer::drawVisible(const reflections::GBuffer& gbuffer,
+                                  reflections::ReflectionTarget& target, gl::Profiler& profiler) {
     const gl::Buffer& cameraTable = clusterCameras_.cameras();
     {
         const gl::GpuScope scope(profiler, "depth_images");
-        sideBySide_->draw(*objects_, cameraTable, builder_.clusters(), images_);
+        visible_->draw(*objects_, cameraTable, builder_.clusters(), images_);
     }
     const gl::GpuScope scope(profiler, "intersection");
     const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 3>{
         &target.radiance, &target.distance, &environmentSamples_});
     framebuffer.bind();
-    reflections::setLobe(intersectAll_, settings_.camera.lobe, settings_.camera.diagonalM);
-    intersectAll_.use(gl::Resources{{"clusterOfSample", builder_.clusters().clusterOfSample}}
-                          .with(gbuffer.resourcesFor(intersectAll_))
+    reflections::setLobe(intersection_, settings_.camera.lobe, settings_.camera.diagonalM);
+    intersection_.use(gl::Resources{{"clusterOfSample", builder_.clusters().clusterOfSample}}
+                          .with(gbuffer.resourcesFor(intersection_))
                           .with(map_.resources())
                           .with(images_.resources())
-                          .with(sideBySide_->resources(*objects_, cameraTable)));
+                          .with(visible_->resources(*objects_, cameraTable)));
     wholeImage_.draw();
 }
 
@@ -140,8 +137,8 @@ void ClusteredTracer::drawOneByOne(const reflections::GBuffer& gbuffer,
     const gl::Buffer& cameraTable = clusterCameras_.cameras();
     const gl::Resources drawn =
         gl::Resources{{"Cameras", cameraTable}, {"Places", places_}}.with(objects_->resources());
-    gbuffer.setUniforms(intersectOne_);  // once a frame
-    reflections::setLobe(intersectOne_, settings_.camera.lobe, settings_.camera.diagonalM);
+    gbuffer.setUniforms(intersection_);  // once a frame
+    reflections::setLobe(intersection_, settings_.camera.lobe, settings_.camera.diagonalM);
     for (std::uint32_t cluster = 0; cluster < table.size(); ++cluster) {
         const glm::ivec2 sizePx(sizes_[cluster].z, sizes_[cluster].w);
         if (sizePx.x > 0) {
@@ -162,11 +159,11 @@ void ClusteredTracer::intersectCluster(std::uint32_t cluster, const glm::uvec4& 
     constexpr std::uint32_t kGroupSize = 64;  // of the shader
     const std::uint32_t sampleCount = range.y;
     if (sampleCount == 0) return;
-    intersectOne_.set("cluster", cluster);
-    intersectOne_.set("firstSample", range.x);
-    intersectOne_.set("sampleCount", sampleCount);
+    intersection_.set("cluster", cluster);
+    intersection_.set("firstSample", range.x);
+    intersection_.set("sampleCount", sampleCount);
     // A sample is of one cluster.
-    intersectOne_.dispatch(
+    intersection_.dispatch(
         {kit::groupsFor(sampleCount, kGroupSize), 1, 1},
         gl::Resources{{"Samples", builder_.clusters().samples},
                       gl::Resource("radiance", target.radiance).unordered(),
@@ -178,7 +175,7 @@ void ClusteredTracer::intersectCluster(std::uint32_t cluster, const glm::uvec4& 
 std::size_t ClusteredTracer::sizeBytes() const {
     return builder_.sizeBytes() + clusterCameras_.sizeBytes() + images_.sizeBytes() +
            environmentSamples_.sizeBytes() + places_.sizeBytes() +
-           (sideBySide_ ? sideBySide_->sizeBytes() : 0);
+           (visible_ ? visible_->sizeBytes() : 0);
 }
 
 int ClusteredTracer::clusterCount() const {
@@ -194,9 +191,9 @@ ClusteredTracer::Drawn ClusteredTracer::drawn() const {
     Drawn drawn;
     std::vector<glm::ivec4> sizes = sizes_;
     drawn.triangles = trianglesDrawn_;
-    if (sideBySide_) {
-        const AtlasState state = sideBySide_->state();
-        sizes = sideBySide_->places().read<glm::ivec4>(static_cast<std::size_t>(clusterCount()));
+    if (visible_) {
+        const AtlasState state = visible_->state();
+        sizes = visible_->places().read<glm::ivec4>(static_cast<std::size_t>(clusterCount()));
         drawn.triangles = state.triangles;
         drawn.leftOut = state.leftOut;
     }

@@ -1,7 +1,6 @@
 // Steps 2 and 3 of [xie2017] Algorithm 6, as a tracer of reflections.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -22,8 +21,7 @@ enum class March {
 /// How the clusters' depth images are drawn.
 enum class ImageDrawing {
     OneByOne,  // the thesis: a cluster's image is drawn, used and overwritten by the next
-    Atlas,     // all at once side by side: one multi-draw indirect, culled on the device
-    Visible,   // as that, of the triangles that may be seen; shaded where rays meet them
+    Visible,   // all side by side, of the triangles that may be seen; shaded where rays meet them
     None,      // not at all: clusters and their cameras alone, nothing is reflected
 };
 
@@ -78,7 +76,7 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     /// none.
     struct Drawn {
         std::uint64_t triangles = 0, texels = 0;
-        std::uint64_t leftOut = 0;  // objects or triangles for which there was no room
+        std::uint64_t leftOut = 0;  // triangles for which there was no room
     };
     Drawn drawn() const;
     /// Samples whose mirror ray took the environment map ([xie2017] Fig. 28), a byte a sample, rows
@@ -86,8 +84,8 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     std::vector<std::uint8_t> environmentSamples() const;
 
   private:
-    void drawAtlas(const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
-                   gl::Profiler& profiler);
+    void drawVisible(const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
+                     gl::Profiler& profiler);
     void drawOneByOne(const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
                       gl::Profiler& profiler);
     /// Its samples, between the drawing of its image and of the next: `range` is its entry of
@@ -103,10 +101,10 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     ClusterCameras clusterCameras_;
     std::optional<gl::Pass> concavity_;
     ClusterImages images_;
-    gl::Pass intersectAll_, intersectOne_;
+    gl::Pass intersection_;
     gl::Texture environmentSamples_;  // R8UI: 1 where a mirror ray took the environment map
     kit::WholeImage wholeImage_;
-    std::unique_ptr<SideBySidePainter> sideBySide_;
+    std::optional<VisiblePainter> visible_;
     std::optional<OneByOnePainter> oneByOne_;
     // One by one:
     gl::Buffer places_;

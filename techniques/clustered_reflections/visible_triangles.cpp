@@ -206,6 +206,9 @@ namespace {
 /// more are counted in AtlasState::leftOut.
 constexpr std::uint32_t kMostVisible = 1U << 20;
 
+/// Images begin at multiples of this, so that small tiles of the pyramid hold one image alone.
+constexpr int kPlaceStepPx = 8;
+
 /// As glMultiDrawArraysIndirect reads it.
 struct DrawCommand {
     std::uint32_t count = 0, instanceCount = 0, first = 0, baseInstance = 0;
@@ -217,6 +220,7 @@ gl::Defines visibleDefines(std::uint32_t draws) {
     defines["TRIANGLES_PER_DRAW"] = static_cast<int>(kMostVisible / draws);
     defines["DRAWS"] = static_cast<int>(draws);
     defines["MOST_VISIBLE"] = static_cast<int>(kMostVisible);
+    defines["PLACE_STEP_PX"] = kPlaceStepPx;
     return defines;
 }
 
@@ -226,10 +230,13 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
                                const reflections::ReflectiveScene& scene,
                                const reflections::GpuObjects& objects,
                                const CameraSettings& settings, float levelErrorPx)
-    : SideBySidePainter(shaders, scene, settings),
+    : settings_(settings),
       levelErrorPx_(levelErrorPx),
       draws_(kMostVisible / std::min(kMostVisible, objects.mostTrianglesPerDraw())),
       levels_(detailLevels(scene, levelErrorPx > 0.0F)),
+      order_(sizeof(AtlasState) + kMaxClusters * sizeof(std::uint32_t)),
+      places_(kMaxClusters * sizeof(glm::ivec4)),
+      families_(gl::Buffer::of(reflectorFamilies(scene))),
       parts_(gl::Buffer::of(levels_.parts)),
       levelRecords_(gl::Buffer::of(levels_.levels)),
       chunks_(gl::Buffer::of(levels_.chunks)),
@@ -243,6 +250,7 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
     const auto compute = [&](const char* name) {
         return gl::Pass(shaders, {name}, visibleDefines(draws_));
     };
+    place_ = compute("clustered_reflections/place_images.comp.glsl");
     placeChunks_ = compute("clustered_reflections/place_chunks.comp.glsl");
     list_ = compute("clustered_reflections/list_visible.comp.glsl");
     split_ = compute("clustered_reflections/split_visible.comp.glsl");
@@ -279,7 +287,7 @@ void VisiblePainter::placeChunks(const reflections::GpuObjects& objects) {
 
 gl::Resources VisiblePainter::resources(const reflections::GpuObjects& objects,
                                         const gl::Buffer& cameras) const {
-    return gl::Resources{{"Cameras", cameras},           {"Places", places()},
+    return gl::Resources{{"Cameras", cameras},           {"Places", places_},
                          {"Triangles", triangles_},      {"Corners", cornersWorld_},
                          {"Normals", objects.normals()}, {"Texcoords", objects.texcoords()},
                          {"Colors", objects.colors()}}
@@ -289,9 +297,18 @@ gl::Resources VisiblePainter::resources(const reflections::GpuObjects& objects,
 void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
                           const Clusters& clusters, ClusterImages& target) {
     placeChunks(objects);
-    place(cameras, clusters, target.sizePx());
+    const glm::ivec2 atlasSizePx = target.sizePx();
+    const gl::Resources inPlaces{{"Cameras", cameras},
+                                 {"Counts", clusters.counts},
+                                 {"Places", places_},
+                                 {"Order", order_},
+                                 {"Families", families_}};
+    place_.set("atlasSizePx", atlasSizePx);
+    place_.set("depthImageScale", settings_.depthImageScale);
+    place_.set("texelsPerSample", settings_.texelsPerSample);
+    place_.set("maxSizePx", std::min(settings_.maxSizePx, atlasSizePx.x));
+    place_.dispatch({1, 1, 1}, gl::Resources{{"Ranges", clusters.ranges}}.with(inPlaces));
 
-    const gl::Resources inPlaces = placed(cameras, clusters);
     list_.set("partCount", static_cast<std::uint32_t>(levels_.parts.size()));
     list_.set("levelErrorPx", levelErrorPx_);
     list_.dispatchIndirect(order_, offsetof(AtlasState, groups),
@@ -306,18 +323,27 @@ void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buff
                                .with(inPlaces));
     split_.dispatch({1, 1, 1}, gl::Resources{{"Commands", commands_}}.with(inPlaces));
 
+    // Triangles are cut to their image by clip distances 1 to 4.
+    target.beginDrawing(atlasSizePx);
+    draw_.set("atlasSizePx", glm::vec2(atlasSizePx));
+    draw_.use({{"Visible", visible_}, {"Cameras", cameras}, {"Places", places_}});
     visibleCorners_.awaitPasses(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
-    const gl::Resources drawn{{"Visible", visible_}, {"Cameras", cameras}, {"Places", places()}};
-    drawInPlaces(target, draw_, drawn, vertexArray_, commands_, [&] {
-        glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<GLsizei>(draws_),
-                                  sizeof(DrawCommand));
-    });
+    commands_.awaitPasses(GL_COMMAND_BARRIER_BIT);
+    vertexArray_.bind();
+    for (int plane = 1; plane < 5; ++plane) glEnable(GL_CLIP_DISTANCE0 + plane);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.id());
+    glMultiDrawArraysIndirect(GL_TRIANGLES, nullptr, static_cast<GLsizei>(draws_),
+                              sizeof(DrawCommand));
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+    for (int plane = 1; plane < 5; ++plane) glDisable(GL_CLIP_DISTANCE0 + plane);
+    target.endDrawing(atlasSizePx);
 }
 
 std::size_t VisiblePainter::sizeBytes() const {
-    std::size_t sum = SideBySidePainter::sizeBytes();
-    for (const gl::Buffer* buffer : {&parts_, &levelRecords_, &chunks_, &chunkBoxes_, &triangles_,
-                                     &cornersWorld_, &commands_, &visible_, &visibleCorners_}) {
+    std::size_t sum = 0;
+    for (const gl::Buffer* buffer :
+         {&places_, &order_, &families_, &parts_, &levelRecords_, &chunks_, &chunkBoxes_,
+          &triangles_, &cornersWorld_, &commands_, &visible_, &visibleCorners_}) {
         sum += buffer->sizeBytes();
     }
     return sum;

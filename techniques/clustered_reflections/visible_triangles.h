@@ -47,30 +47,52 @@ struct DetailLevels {
 /// vertices of the finest, with all that these have.
 DetailLevels detailLevels(const reflections::ReflectiveScene& scene, bool isSimplified);
 
-/// Images lie side by side as in the atlas, and keep which triangle each texel shows. What is drawn
-/// is listed on the device, without a read-back: for each cluster, of the parts in its frustum the
+/// Of the last draw; in front of the order in which images are placed, as shaders/atlas.glsl has
+/// it.
+struct AtlasState {
+    float scale = 1.0F;                   // by which all images were scaled to fit
+    std::uint32_t listed = 0;             // triangles, of all clusters
+    std::uint32_t leftOut = 0;            // of them, beyond the list
+    std::uint32_t triangles = 0;          // drawn
+    std::uint32_t groups[3] = {0, 1, 1};  // of a dispatch: one a cluster
+    std::uint32_t padding = 0;
+};
+static_assert(sizeof(AtlasState) == 32);
+
+/// The images of all clusters side by side in one texture, the atlas, drawn without a read-back;
+/// they keep which triangle each texel shows. Where not all fit, all are scaled down by the same
+/// factor. What is drawn is listed on the device: for each cluster, of the parts in its frustum the
 /// coarsest level whose error is below `levelErrorPx` texels (0: the finest); of that, chunks in
 /// the frustum; of those, triangles whose box holds the middle of a texel. Surfaces are seen from
 /// both sides, as meshes need not wind, so that nothing is culled for its direction but the back of
 /// the own reflector, as in cluster_image.frag.glsl.
-class VisiblePainter final : public SideBySidePainter {
+class VisiblePainter {
   public:
     VisiblePainter(const gl::ShaderLibrary& shaders, const reflections::ReflectiveScene& scene,
                    const reflections::GpuObjects& objects, const CameraSettings& settings,
                    float levelErrorPx);
     void draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
-              const Clusters& clusters, ClusterImages& target) override;
+              const Clusters& clusters, ClusterImages& target);
+    /// For the intersection.
     gl::Resources resources(const reflections::GpuObjects& objects,
-                            const gl::Buffer& cameras) const override;
-    std::size_t sizeBytes() const override;
+                            const gl::Buffer& cameras) const;
+    std::size_t sizeBytes() const;
+
+    /// ivec4 a cluster: x, y, width, height; width 0: no image.
+    const gl::Buffer& places() const { return places_; }
+    /// Of the last draw(); waits for the device.
+    AtlasState state() const { return order_.read<AtlasState>(1).front(); }
 
   private:
     void placeChunks(const reflections::GpuObjects& objects);
 
+    CameraSettings settings_;
     float levelErrorPx_;
     std::uint32_t draws_;  // of what is listed
     DetailLevels levels_;
-    gl::Pass placeChunks_, list_, split_, draw_;
+    gl::Pass place_, placeChunks_, list_, split_, draw_;
+    gl::Buffer order_;  // AtlasState, then the clusters in the order in which they are placed
+    gl::Buffer places_, families_;
     gl::Buffer parts_, levelRecords_, chunks_, chunkBoxes_;
     gl::Buffer triangles_, cornersWorld_;  // by triangle of all levels
     gl::Buffer commands_, visible_, visibleCorners_;

@@ -184,7 +184,12 @@ GpuObjects::GpuObjects(const ReflectiveScene& scene, bool splitsDraws)
     std::vector<std::uint32_t> indices(objectCount_);
     std::iota(indices.begin(), indices.end(), 0U);
     objectIndices_ = gl::Buffer::of(indices);
-    vertexArray_ = makeVertexArray(objectIndices_);
+    vertexArray_.setAttribute(gpu_scene::kPosition, positions_, 3);
+    vertexArray_.setAttribute(gpu_scene::kNormal, normals_, 3);
+    vertexArray_.setAttribute(gpu_scene::kTexcoord, texcoords_, 2);
+    vertexArray_.setAttribute(gpu_scene::kColor, colors_, 3);
+    vertexArray_.setInstanceIndex(kObjectIndexAttribute, objectIndices_);
+    vertexArray_.setIndices(indices_);
     vertexArray_.setInstanceColumns(kMatrixAttribute, records_, 4, 4, sizeof(ObjectRecord),
                                     offsetof(ObjectRecord, worldFromMesh));
     vertexArray_.setInstanceColumns(kMatrixAttribute + 4, records_, 3, 3, sizeof(ObjectRecord),
@@ -194,17 +199,6 @@ GpuObjects::GpuObjects(const ReflectiveScene& scene, bool splitsDraws)
         restPose.push_back(instance.worldFromMesh);
     }
     setPoses(restPose);
-}
-
-gl::VertexArray GpuObjects::makeVertexArray(const gl::Buffer& objectIndices) const {
-    gl::VertexArray vertexArray;
-    vertexArray.setAttribute(gpu_scene::kPosition, positions_, 3);
-    vertexArray.setAttribute(gpu_scene::kNormal, normals_, 3);
-    vertexArray.setAttribute(gpu_scene::kTexcoord, texcoords_, 2);
-    vertexArray.setAttribute(gpu_scene::kColor, colors_, 3);
-    vertexArray.setInstanceIndex(kObjectIndexAttribute, objectIndices);
-    vertexArray.setIndices(indices_);
-    return vertexArray;
 }
 
 void GpuObjects::setPoses(std::span<const glm::mat4> poses) {

@@ -55,9 +55,6 @@ class GpuObjects {
     /// Culling, depth test and target are the caller's.
     void draw(std::span<const std::uint32_t> objects) const;
     void drawAll() const;
-    /// The vertex array with all attributes and indices, for indirect draws; the object index comes
-    /// from `objectIndices` (one unsigned an instance) instead of 0, 1, 2, ….
-    gl::VertexArray makeVertexArray(const gl::Buffer& objectIndices) const;
 
     const ReflectiveScene& scene() const { return *scene_; }
     std::uint32_t objectCount() const { return objectCount_; }

@@ -10,7 +10,7 @@ layout(std430) readonly buffer Counts { uint clusterCount; };
 layout(std430) ATLAS_ACCESS buffer Places { ivec4 places[]; };  // x, y, width (0: none), height
 layout(std430) ATLAS_ACCESS buffer Order {
     float atlasScale;  // by which all images were scaled to fit
-    uint instanceCount, instancesLeftOut, trianglesDrawn;
+    uint listedCount, leftOutCount, trianglesDrawn;
     uint clusterGroups[3], orderPadding;
     uint order[];  // clusters, the highest image first
 };

@@ -9,19 +9,11 @@
 #include "reflections/surface.glsl"
 #include "clustered_reflections/cluster_camera.glsl"
 
-#if ATLAS
-layout(std430) readonly buffer Cameras { ClusterCamera cameras[]; };
-flat in uint clusterOfPoint;
-#else
 uniform ClusterCamera camera;
-#endif
 
 layout(location = 0) out vec4 colour;
 
 void main() {
-#if ATLAS
-    ClusterCamera camera = cameras[clusterOfPoint];
-#endif
     vec3 eyeWorld = camera.eyeWorld.xyz;
     float footprint = footprintFrom(eyeWorld);
     bool isOwn = (objects[point.object].surface & 0xFFFFu) == camera.reflector;

@@ -46,7 +46,7 @@ vec3 imageColourAt(ivec2 texel) {
     return linearColour(texelFetch(imageColour, texel, 0).rgb);
 }
 
-// Bilinear in linear light, without the neighbours in an atlas.
+// Bilinear in linear light, without what lies beyond the image.
 vec3 colourAt(MarchImage image, vec2 positionPx) {
     vec2 place = clamp(positionPx, vec2(0.5), vec2(image.sizePx) - 0.5) - 0.5;
     ivec2 first = image.originPx + ivec2(place);

@@ -143,7 +143,7 @@ void listTriangles(uint chunkAndOwn, uint cluster, mat4 rows, float perNear, vec
     uint total;
     uint before = countBefore(isShown, total);
     if (total == 0u) return;  // the whole workgroup
-    if (self == 0u) firstPlace = atomicAdd(instanceCount, total);
+    if (self == 0u) firstPlace = atomicAdd(listedCount, total);
     barrier();
     uint place = firstPlace + before;
     if (!isShown || place >= MOST_VISIBLE) return;

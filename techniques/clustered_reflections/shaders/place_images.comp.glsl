@@ -87,8 +87,8 @@ void main() {
     if (thread == firstThatFits) {
         place(count, scale, true);
         atlasScale = scale;
-        instanceCount = 0u;
-        instancesLeftOut = 0u;
+        listedCount = 0u;
+        leftOutCount = 0u;
         trianglesDrawn = 0u;
         clusterGroups[0] = count;
         clusterGroups[1] = 1u;

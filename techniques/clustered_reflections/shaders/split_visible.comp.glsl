@@ -11,11 +11,11 @@ layout(std430) writeonly buffer Commands { DrawCommand commands[]; };
 
 void main() {
     uint first = gl_LocalInvocationID.x * TRIANGLES_PER_DRAW;
-    uint total = min(instanceCount, uint(MOST_VISIBLE));
+    uint total = min(listedCount, uint(MOST_VISIBLE));
     uint count = min(total - min(first, total), uint(TRIANGLES_PER_DRAW));
     commands[gl_LocalInvocationID.x] = DrawCommand(3u * count, 1u, 3u * first, 0u);
     if (gl_LocalInvocationID.x == 0u) {
         trianglesDrawn = total;
-        instancesLeftOut = instanceCount - total;
+        leftOutCount = listedCount - total;
     }
 }

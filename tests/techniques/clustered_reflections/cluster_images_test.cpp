@@ -45,8 +45,8 @@ class ClusterImagesTest : public TracerTest {
                 gl::Buffer::of(std::vector<glm::uvec4>(kMaxClusters, {0, kSamples, 0, 0}));
         }
     };
-    static void draw(SideBySidePainter& painter, const GpuObjects& objects,
-                     const OnDevice& clusters, ClusterImages& images) {
+    static void draw(VisiblePainter& painter, const GpuObjects& objects, const OnDevice& clusters,
+                     ClusterImages& images) {
         painter.draw(objects, clusters.cameras, clusters.clusters, images);
     }
     static std::vector<float> depthsOf(const ClusterImages& images) {
@@ -173,8 +173,8 @@ TEST_F(ClusterImagesTest, PlacesLieInTheAtlasAndApart) {
     const ReflectiveScene scene = furnishedRoom();
     const GpuObjects objects(scene);
     CameraSettings settings;
-    AtlasPainter painter(shaders(), scene, objects, settings);
-    ClusterImages images(shaders(), glm::ivec2(512), false);
+    VisiblePainter painter(shaders(), scene, objects, settings, 0.0F);
+    ClusterImages images(shaders(), glm::ivec2(512), false, TexelContent::Triangles);
     Random random(2);
     const struct {
         int count;
@@ -209,67 +209,6 @@ TEST_F(ClusterImagesTest, PlacesLieInTheAtlasAndApart) {
             }
         }
     }
-}
-
-TEST_F(ClusterImagesTest, AnImageInTheAtlasIsTheImageAlone) {
-    scene::Scene room = rooms::room();
-    rooms::addFurniture(room);
-    room.textures.emplace_back(1, 1, 3, std::uint8_t{90});
-    // Of objects with and without texture, as they come.
-    for (const std::size_t i : {1U, 2U, 6U, 8U}) room.materials[i].baseColorTexture = 0;
-    const ReflectiveScene scene(room);
-    const GpuObjects objects(scene);
-    Random random(3);
-    const std::vector<ClusterCamera> cameras = randomCameras(random, 30, 80);
-    ClusterImages atlas(shaders(), glm::ivec2(512), true), alone(shaders(), glm::ivec2(512), true);
-    AtlasPainter painter(shaders(), scene, objects, {});
-    draw(painter, objects, OnDevice(cameras), atlas);
-    ASSERT_EQ(painter.state().scale, 1.0F);
-    EXPECT_EQ(painter.state().leftOut, 0U);
-    const auto places = painter.places().read<glm::ivec4>(cameras.size());
-    const std::vector<float> depths = depthsOf(atlas);
-    const auto colours = atlas.colour().read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
-
-    OneByOnePainter one(shaders(), scene);
-    std::size_t texels = 0, drawn = 0, different = 0;
-    float worst = 0.0F;  // in steps between neighbours
-    for (std::uint32_t i = 0; i < cameras.size(); ++i) {
-        const glm::ivec4 place = places[i];
-        one.draw(objects, cameras[i], {place.z, place.w}, alone);
-        const std::vector<float> depth = depthsOf(alone);
-        const auto colour = alone.colour().read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
-        const glm::ivec2 last = glm::ivec2(place.z, place.w) - 1;
-        for (int y = 0; y < place.w; ++y) {
-            for (int x = 0; x < place.z; ++x) {
-                const auto a = static_cast<std::size_t>(y * 512 + x);
-                const auto b = static_cast<std::size_t>((y + place.y) * 512 + x + place.x);
-                // How much a texel's neighbours differ: a device may draw from corners that lie on
-                // 256ths of a texel, and the corners of the two images are rounded differently.
-                float depthStep = 0.0F, colourStep = 0.0F;
-                for (const glm::ivec2 to : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
-                    const glm::ivec2 at = glm::clamp(glm::ivec2(x, y) + to, glm::ivec2(0), last);
-                    const auto n = static_cast<std::size_t>(at.y * 512 + at.x);
-                    depthStep = std::max(depthStep, std::abs(depth[n] - depth[a]));
-                    colourStep = std::max(colourStep, glm::length(colour[n] - colour[a]));
-                }
-                // The same plane through other corners' rounding: 2e-5; colours to a step of 1023.
-                const bool isSame =
-                    std::abs(depth[a] - depths[b]) <=
-                        2e-5F * depth[a] + 1e-7F + depthStep / 64.0F &&
-                    glm::length(colour[a] - colours[b]) < 2.0F / 1023.0F + colourStep / 64.0F;
-                if (!isSame) {
-                    worst = std::max(worst, (std::abs(depth[a] - depths[b]) - 1e-7F) /
-                                                std::max(depthStep, 1e-9F));
-                }
-                different += !isSame;
-                drawn += depth[a] > 0.0F;
-                ++texels;
-            }
-        }
-    }
-    EXPECT_GT(drawn, texels / 4);
-    // Outlines through the middle of a texel: positions are rounded to 1/256 of a pixel.
-    EXPECT_LE(different, texels / 500) << worst;
 }
 
 TEST_F(ClusterImagesTest, DepthsAreNearOverTheDistanceAlongTheAxis) {
@@ -320,28 +259,22 @@ TEST_F(ClusterImagesTest, WhatLiesBeyondTheFarPlaneIsNotDrawn) {
     EXPECT_LT(near, 40 * 30 - 40);
 }
 
-TEST_F(ClusterImagesTest, NorInTheAtlasNorInImagesOfTriangles) {
+TEST_F(ClusterImagesTest, NorInImagesOfTriangles) {
     const ReflectiveScene scene(rooms::room());
     const GpuObjects objects(scene);
     ClusterCamera camera = cameraLooking({0.1F, 0.2F, 0.3F}, {0.6F, 0.0F, -0.8F}, {40, 30});
     camera.planeNormal.w = 2.6F;
-    const OnDevice clusters({camera});
-    ClusterImages whole(shaders(), glm::ivec2(64), false);
-    ClusterImages triangles(shaders(), glm::ivec2(64), false, TexelContent::Triangles);
-    AtlasPainter atlas(shaders(), scene, objects, {});
-    VisiblePainter visible(shaders(), scene, objects, {}, 0.0F);
-    draw(atlas, objects, clusters, whole);
-    draw(visible, objects, clusters, triangles);
-    for (const ClusterImages* images : {&whole, &triangles}) {
-        int drawn = 0;
-        for (const float depth : depthsOf(*images)) {
-            if (depth <= 0.0F) continue;
-            ++drawn;
-            EXPECT_LE(0.25F / depth, camera.planeNormal.w + 1e-3F);
-        }
-        EXPECT_GT(drawn, 40);
-        EXPECT_LT(drawn, 40 * 30 - 40);
+    ClusterImages images(shaders(), glm::ivec2(64), false, TexelContent::Triangles);
+    VisiblePainter painter(shaders(), scene, objects, {}, 0.0F);
+    draw(painter, objects, OnDevice({camera}), images);
+    int drawn = 0;
+    for (const float depth : depthsOf(images)) {
+        if (depth <= 0.0F) continue;
+        ++drawn;
+        EXPECT_LE(0.25F / depth, camera.planeNormal.w + 1e-3F);
     }
+    EXPECT_GT(drawn, 40);
+    EXPECT_LT(drawn, 40 * 30 - 40);
 }
 
 TEST_F(ClusterImagesTest, TrianglesThatMayBeSeenShowWhatAllTrianglesShow) {
@@ -350,33 +283,36 @@ TEST_F(ClusterImagesTest, TrianglesThatMayBeSeenShowWhatAllTrianglesShow) {
     Random random(4);
     const std::vector<ClusterCamera> cameras = randomCameras(random, 30, 60);
     const OnDevice clusters(cameras);
-    ClusterImages whole(shaders(), glm::ivec2(512), false);
-    AtlasPainter atlas(shaders(), scene, objects, {});
-    draw(atlas, objects, clusters, whole);
-    ASSERT_EQ(atlas.state().scale, 1.0F);
-    const std::vector<float> depths = depthsOf(whole);
-
     VisiblePainter painter(shaders(), scene, objects, {}, 0.0F);
     const ShownTexels shown = drawVisible(painter, objects, clusters);
+    ASSERT_EQ(shown.state.scale, 1.0F);
     EXPECT_EQ(shown.state.leftOut, 0U);
-    EXPECT_GT(shown.state.triangles, 0U);
-    EXPECT_LT(shown.state.triangles, atlas.state().triangles / 3);
     const auto places = painter.places().read<glm::ivec4>(cameras.size());
-    EXPECT_EQ(places, atlas.places().read<glm::ivec4>(cameras.size()));
     const auto triangles = scene.geometry().triangles.size();
-    std::size_t texels = 0, different = 0;
-    for (const glm::ivec4& place : places) {
-        for (int y = place.y; y < place.y + place.w; ++y) {
-            for (int x = place.x; x < place.x + place.z; ++x) {
-                const auto at = static_cast<std::size_t>(y * 512 + x);
+
+    OneByOnePainter one(shaders(), scene);
+    ClusterImages alone(shaders(), glm::ivec2(512), false);
+    std::size_t texels = 0, drawn = 0, different = 0, allTriangles = 0;
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        const glm::ivec4 place = places[i];
+        allTriangles += one.draw(objects, cameras[i], {place.z, place.w}, alone);
+        const std::vector<float> depths = depthsOf(alone);
+        for (int y = 0; y < place.w; ++y) {
+            for (int x = 0; x < place.z; ++x) {
+                const float expected = depths[static_cast<std::size_t>(y * 512 + x)];
+                const auto at = static_cast<std::size_t>((y + place.y) * 512 + x + place.x);
                 ++texels;
-                different += std::abs(shown.depths[at] - depths[at]) > 2e-5F;
+                drawn += expected > 0.0F;
+                different += std::abs(shown.depths[at] - expected) > 2e-5F;
                 if (shown.depths[at] > 0.0F) ASSERT_LT(shown.triangles[at], triangles);
             }
         }
     }
+    EXPECT_GT(shown.state.triangles, 0U);
+    EXPECT_LT(shown.state.triangles, allTriangles / 3);
     // Corners are rounded at another place: outlines through the middle of a texel.
     EXPECT_GT(texels, 20'000U);
+    EXPECT_GT(drawn, texels / 4);
     EXPECT_LT(different, texels / 500);
 
     // The same again: no order of what runs at once is seen.
@@ -416,8 +352,8 @@ TEST_F(ClusterImagesTest, ImagesHaveNoMoreTexelsThanTheirSamplesAskFor) {
     const std::vector<ClusterCamera> cameras = randomCameras(random, 40, 60);
     CameraSettings settings;
     settings.texelsPerSample = 8.0F;
-    AtlasPainter painter(shaders(), scene, objects, settings);
-    ClusterImages images(shaders(), glm::ivec2(512), false);
+    VisiblePainter painter(shaders(), scene, objects, settings, 0.0F);
+    ClusterImages images(shaders(), glm::ivec2(512), false, TexelContent::Triangles);
     draw(painter, objects, OnDevice(cameras), images);
     const auto places = painter.places().read<glm::ivec4>(cameras.size());
     int smaller = 0;

@@ -129,12 +129,11 @@ TEST(ReflectionParamsTest, RefusesWhatMeansNothing) {
              "mirror; allowed: -1, 0, 0.002 … 1"},
             {"{glossiness: 0.002}", ""},
             {"{method: embree, bin_gain: 2}", "28: 'bin_gain' needs 'method: clustered'"},
-            {"{method: ray_traced, depth_images: atlas}",
+            {"{method: ray_traced, depth_images: visible}",
              "36: 'depth_images' needs 'method: clustered'"},
             {"{clustering: kd_tree, least_samples: 9}",
              "38: 'least_samples' needs 'clustering: normal_bins'"},
-            {"{depth_images: atlas, level_error_px: 0.5}",
-             "39: 'level_error_px' needs 'depth_images: visible'"},
+            {"{level_error_px: 0.5}", "18: 'level_error_px' needs 'depth_images: visible'"},
             {"{depth_images: none, pictures: true}",
              "32: 'pictures' needs 'depth_images' other than none"},
             {"{method: embree, own_reflector: left_out}",
@@ -211,8 +210,8 @@ TEST_F(ClusteredReflectionsTest, RayTracingOnTheDeviceAgreesWithEmbree) {
 
 TEST_F(ClusteredReflectionsTest, PlanarMirrorsHaveNoOcclusionError) {
     const scene::Scene scene = roomWithMirror();
-    for (const char* options : {"", "depth_images: atlas", "march: hierarchical",
-                                "depth_images: atlas, march: hierarchical", "supersampling: 3"}) {
+    for (const char* options : {"", "depth_images: visible", "march: hierarchical",
+                                "depth_images: visible, march: hierarchical", "supersampling: 3"}) {
         SCOPED_TRACE(options);
         const Metrics metrics = run(fmt::format("{{{}}}", options), scene);
         EXPECT_EQ(metrics.at("planar_pct"), 100.0);
@@ -240,7 +239,7 @@ TEST_F(ClusteredReflectionsTest, ClustersAreNearerToTheTruthThanAnEnvironmentMap
 TEST_F(ClusteredReflectionsTest, ConvexMirrorsDoNotShowThemselves) {
     // A green column in a room without green; from its silhouette rays leave along its surface.
     scene::Scene scene = roomWithColumn({.baseColor = {0, 1, 0, 1}, .metallic = 1, .roughness = 0});
-    for (const char* options : {"{pictures: true}", "{pictures: true, depth_images: atlas}"}) {
+    for (const char* options : {"{pictures: true}", "{pictures: true, depth_images: visible}"}) {
         SCOPED_TRACE(options);
         const image::ImageF reflection = recorded(options, &scene).images.at("reflection");
         int reflecting = 0, green = 0;

@@ -64,8 +64,7 @@ class ClusteredTracerTest : public TracerTest {
     }
     static constexpr OwnReflector kOwnReflectors[] = {
         OwnReflector::LeftOut, OwnReflector::ConcaveDiffuse, OwnReflector::WholeScene};
-    static constexpr ImageDrawing kDrawings[] = {ImageDrawing::OneByOne, ImageDrawing::Atlas,
-                                                 ImageDrawing::Visible};
+    static constexpr ImageDrawing kDrawings[] = {ImageDrawing::OneByOne, ImageDrawing::Visible};
 };
 
 TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
@@ -194,26 +193,6 @@ TEST_F(ClusteredTracerTest, ASphereShowsTheRoomThatItsRaysMeet) {
     }
 }
 
-TEST_F(ClusteredTracerTest, TheAtlasGivesTheReflectionsOfImagesOneByOne) {
-    const ReflectiveScene scene(fullRoom());
-    for (const OwnReflector own : kOwnReflectors) {
-        const auto traced = [&](ImageDrawing drawing) {
-            return trace(scene, frontCamera(), {.drawing = drawing, .ownReflector = own}, 256);
-        };
-        const Traced one = traced(ImageDrawing::OneByOne), atlas = traced(ImageDrawing::Atlas);
-        ASSERT_EQ(atlas.drawn.texels, one.drawn.texels);  // the atlas scaled nothing down
-        ASSERT_EQ(atlas.cameras.size(), one.cameras.size());
-        int different = 0;
-        const int count = one.forEachReflective([&](glm::ivec2, std::size_t i) {
-            different +=
-                reflections::largestDifference(one.radiance[i], atlas.radiance[i]) > 1.5F / 1023.0F;
-        });
-        // Rasterizers round positions to 1/256 of a pixel, the same place in the texture or not: an
-        // outline through the middle of a texel may fall to either side.
-        EXPECT_LE(different, count / 500);
-    }
-}
-
 TEST_F(ClusteredTracerTest, TheHierarchicalMarchGivesTheLinearReflections) {
     const ReflectiveScene scene(fullRoom());
     for (const ImageDrawing drawing : kDrawings) {
@@ -229,10 +208,10 @@ TEST_F(ClusteredTracerTest, TheHierarchicalMarchGivesTheLinearReflections) {
 
 TEST_F(ClusteredTracerTest, ImagesThatDoNotFitInTheAtlasAreScaledDown) {
     const ReflectiveScene scene(fullRoom());
-    const Traced plain = trace(scene, frontCamera(), {.drawing = ImageDrawing::Atlas});
+    const Traced plain = trace(scene, frontCamera(), {.drawing = ImageDrawing::Visible});
     const Traced scaled =
         trace(scene, frontCamera(),
-              {.camera = {.depthImageScale = 16.0F}, .drawing = ImageDrawing::Atlas});
+              {.camera = {.depthImageScale = 16.0F}, .drawing = ImageDrawing::Visible});
     EXPECT_GT(scaled.drawn.texels, plain.drawn.texels);
     EXPECT_LT(scaled.drawn.texels, 200 * plain.drawn.texels);  // of 16 * 16 times
     EXPECT_TRUE(scaled.isFinite());
@@ -475,8 +454,7 @@ TEST_F(ClusteredTracerTest, AFrameChangesNoTextureParameter) {
 TEST_F(ClusteredTracerTest, AFrameHoldsNoMoreThanPrinted) {
     const ReflectiveScene scene(fullRoom());
     for (const March march : {March::Linear, March::Hierarchical}) {
-        const Traced traced =
-            trace(scene, frontCamera(), {.drawing = ImageDrawing::Atlas, .march = march}, 1024);
+        const Traced traced = trace(scene, frontCamera(), {.march = march}, 1024);
         EXPECT_LE(traced.sizeBytes, 87'000'000U);
     }
 }
