@@ -376,7 +376,7 @@ class ClusteredReflections final : public technique::Technique {
                 return std::make_unique<reflections::GpuRayTracer>(shaders, frame_->objects, lobe,
                                                                    diagonalM);
             case Method::Embree:
-                return std::make_unique<reflections::EmbreeTracer>(shaders, frame_->scene, lobe);
+                return std::make_unique<reflections::EmbreeTracer>(frame_->scene, lobe);
             case Method::Clustered:
                 break;
         }

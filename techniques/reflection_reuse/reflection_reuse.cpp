@@ -411,7 +411,7 @@ class ReflectionReuse final : public technique::Technique {
                 return std::make_unique<reflections::GpuRayTracer>(shaders, frame_->objects, lobe,
                                                                    diagonalM);
             case Tracer::Embree:
-                return std::make_unique<reflections::EmbreeTracer>(shaders, frame_->scene, lobe);
+                return std::make_unique<reflections::EmbreeTracer>(frame_->scene, lobe);
             case Tracer::Clustered:
                 break;
         }

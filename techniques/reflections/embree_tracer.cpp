@@ -4,60 +4,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <glm/gtc/packing.hpp>
 
 #include "engine/core/error.h"
-#include "techniques/kit/draws.h"
 
 namespace gfxrepro::reflections {
 
 namespace {
-
-constexpr std::size_t kSamplesGroupSize = 64;
-/// Work groups along one axis that every device takes; beyond, invocations take several samples.
-constexpr GLuint kMostGroups = 65535;
-
-/// As shaders/wanted_samples.comp.glsl has it.
-struct ListedSample {
-    std::uint32_t surface = 0;
-    float depthM = 0.0F;
-    glm::vec2 normalOctahedral{0.0F};
-    glm::vec3 keptDiffuse{0.0F};
-    std::uint32_t triangleNormal = 0;  // packed
-};
-static_assert(sizeof(ListedSample) == 32);
-
-gl::Pass samplesPass(const gl::ShaderLibrary& shaders, const char* file) {
-    return {shaders, {file}, {{"GROUP_SIZE", static_cast<unsigned>(kSamplesGroupSize)}}};
-}
-
-void dispatch(const gl::Pass& pass, std::size_t count, const gl::Resources& resources) {
-    pass.set("count", static_cast<std::uint32_t>(count));
-    pass.dispatch({std::min(kit::groupsFor(count, kSamplesGroupSize), kMostGroups), 1, 1},
-                  resources);
-}
-
-/// The places whose mask is not 0 and their four neighbours, each once.
-std::vector<std::uint32_t> withNeighbours(const std::vector<std::uint8_t>& mask,
-                                          glm::ivec2 sizePx) {
-    std::vector<std::uint8_t> isListed(mask.size());
-    std::vector<std::uint32_t> places;
-    const auto add = [&](std::size_t place) {
-        if (isListed[place] != 0) return;
-        isListed[place] = 1;
-        places.push_back(static_cast<std::uint32_t>(place));
-    };
-    const auto width = static_cast<std::size_t>(sizePx.x);
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-        if (mask[i] == 0) continue;
-        add(i);
-        if (i % width > 0) add(i - 1);
-        if (i % width + 1 < width) add(i + 1);
-        if (i >= width) add(i - width);
-        if (i + width < mask.size()) add(i + width);
-    }
-    return places;
-}
 
 /// Triangles and instances; no attributes, materials or textures, so that posing the scene copies
 /// no more than matrices.
@@ -82,20 +34,8 @@ glm::mat3 normalFromMesh(const glm::mat4& worldFromMesh) {
 
 }  // namespace
 
-/// As shaders/found_samples.comp.glsl has it.
-struct EmbreeTracer::FoundSample {
-    std::uint32_t index = 0;  // of HostGBuffer
-    float distanceM = 0.0F;   // as TracedSample
-    glm::vec3 radiance{0.0F};
-};
-
-EmbreeTracer::EmbreeTracer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
-                           const LobeSettings& lobe)
-    : scene_(scene),
-      lobe_(lobe),
-      posed_(trianglesOf(scene.scene())),
-      readWanted_(samplesPass(shaders, "reflections/wanted_samples.comp.glsl")),
-      writeFound_(samplesPass(shaders, "reflections/found_samples.comp.glsl")) {}
+EmbreeTracer::EmbreeTracer(const ReflectiveScene& scene, const LobeSettings& lobe)
+    : scene_(scene), lobe_(lobe), posed_(trianglesOf(scene.scene())) {}
 
 void EmbreeTracer::update(const GpuObjects& objects, gl::Profiler& profiler) {
     GFXREPRO_ASSERT_EQ(objects.poses().size(), posed_.instances.size());
@@ -110,129 +50,66 @@ void EmbreeTracer::update(const GpuObjects& objects, gl::Profiler& profiler) {
 
 void EmbreeTracer::trace(const GBuffer& gbuffer, const gl::Texture* wanted,
                          ReflectionTarget& target, gl::Profiler& profiler) {
-    if (wanted != nullptr) {
-        traceWanted(gbuffer, *wanted, target, profiler);
-        return;
-    }
     HostGBuffer host;
+    std::vector<std::uint8_t> mask;
+    std::vector<glm::vec4> radiance;
+    std::vector<float> distancesM;
     {
         const gl::CpuScope scope(profiler, "transfer");
         host = readGBuffer(gbuffer);
+        radiance.resize(host.depthM.size(), glm::vec4(0.0F, 0.0F, 0.0F, 1.0F));
+        distancesM.resize(host.depthM.size());
+        if (wanted != nullptr) {  // the others stay what they are
+            mask = readMask(*wanted);
+            radiance = target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
+            distancesM = target.distance.read<float>(GL_RED, GL_FLOAT, 1);
+        }
     }
-    std::vector<TracedSample> samples;
     {
         const gl::CpuScope scope(profiler, "intersection");
-        samples = trace(host);
+        forEachReflective(host, [&](glm::ivec2 pixel, std::size_t i) {
+            if (wanted != nullptr && mask[i] == 0) return;
+            const TracedSample sample = traceSample(host, pixel, lobe_);
+            radiance[i] = glm::vec4(sample.radiance, 1.0F);
+            distancesM[i] = sample.distanceM;
+        });
     }
     const gl::CpuScope scope(profiler, "transfer");
-    std::vector<glm::vec4> radiance;
-    std::vector<float> distancesM;
-    for (const TracedSample& sample : samples) {
-        radiance.emplace_back(sample.radiance, 1.0F);
-        distancesM.push_back(sample.distanceM);
-    }
     target.radiance.upload(GL_RGBA, GL_FLOAT, radiance.data());
     target.distance.upload(GL_RED, GL_FLOAT, distancesM.data());
 }
 
-void EmbreeTracer::traceWanted(const GBuffer& gbuffer, const gl::Texture& wanted,
-                               ReflectionTarget& target, gl::Profiler& profiler) {
-    GFXREPRO_ASSERT(rays_.has_value());
-    std::vector<std::uint32_t> indices;
-    {
-        const gl::CpuScope scope(profiler, "transfer");
-        indices = readWanted(gbuffer, wanted);
-    }
-    std::vector<FoundSample> found(indices.size());
-    {
-        const gl::CpuScope scope(profiler, "intersection");
-        const auto width = static_cast<std::uint32_t>(gbuffer.view.sizePx.x);
-        tbb::parallel_for(std::size_t{0}, indices.size(), [&](std::size_t i) {
-            const glm::ivec2 pixel(indices[i] % width, indices[i] / width);
-            const TracedSample sample = traceSample(host_, pixel, lobe_);
-            found[i] = {indices[i], sample.distanceM, sample.radiance};
-        });
-    }
-    const gl::CpuScope scope(profiler, "transfer");
-    writeFound(found, target);
-}
-
-/// Reads the reflective samples where `wanted` is not 0 and their four neighbours into host_.
-/// Returns the indices of the wanted ones. Waits for the device.
-std::vector<std::uint32_t> EmbreeTracer::readWanted(const GBuffer& gbuffer,
-                                                    const gl::Texture& wanted) {
-    const std::vector<std::uint8_t> mask = readMask(wanted);
-    host_.resizeFor(gbuffer.view);
-    const std::vector<std::uint32_t> places = withNeighbours(mask, gbuffer.view.sizePx);
-    std::vector<std::uint32_t> indices;
-    if (places.empty()) return indices;
-
-    const gl::Buffer placesBuffer = gl::Buffer::of(places);
-    const gl::Buffer samples(places.size() * sizeof(ListedSample));
-    dispatch(readWanted_, places.size(),
-             gl::Resources{{"Places", placesBuffer}, {"Samples", samples}}.with(
-                 gbuffer.resourcesFor(readWanted_)));
-    const std::vector<ListedSample> listed = samples.read<ListedSample>(places.size());
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        const std::size_t i = places[k];
-        host_.diffuse[i] = linearColour(listed[k].keptDiffuse);
-        host_.setNormal(i, listed[k].normalOctahedral);
-        host_.setTriangleNormal(i, listed[k].triangleNormal);
-        host_.depthM[i] = listed[k].depthM;
-        host_.surface[i] = listed[k].surface;
-        if (mask[i] != 0 && host_.isReflective(i)) indices.push_back(places[k]);
-    }
-    return indices;
-}
-
-/// The rest of the target stays what it is.
-void EmbreeTracer::writeFound(std::vector<FoundSample>& found, ReflectionTarget& target) const {
-    static_assert(sizeof(FoundSample) == 20);
-    if (found.empty()) return;
-    // To halves as an upload does, to the nearest: a device may round what it stores down.
-    for (FoundSample& sample : found) {
-        for (int i = 0; i < 3; ++i) {
-            sample.radiance[i] = glm::unpackHalf1x16(glm::packHalf1x16(sample.radiance[i]));
-        }
-    }
-    const gl::Buffer samples = gl::Buffer::of(found);
-    dispatch(writeFound_, found.size(),
-             {{"Samples", samples},
-              {"radianceImage", target.radiance},
-              {"distanceImage", target.distance}});
-}
-
-/// What `trace` gives for the pixels of reflective samples.
-template <class Trace>
-std::vector<TracedSample> EmbreeTracer::samplesOf(const HostGBuffer& gbuffer,
-                                                  const Trace& trace) const {
+template <class Visit>
+void EmbreeTracer::forEachReflective(const HostGBuffer& gbuffer, const Visit& visit) const {
     GFXREPRO_ASSERT(rays_.has_value());
     const glm::ivec2 sizePx = gbuffer.view.sizePx;
-    std::vector<TracedSample> samples(gbuffer.depthM.size());
     tbb::parallel_for(tbb::blocked_range<int>(0, sizePx.y), [&](const auto& rows) {
         for (int y = rows.begin(); y < rows.end(); ++y) {
             for (int x = 0; x < sizePx.x; ++x) {
                 const std::size_t index = gbuffer.indexOf({x, y});
-                if (gbuffer.isReflective(index)) samples[index] = trace(glm::ivec2(x, y));
+                if (gbuffer.isReflective(index)) visit(glm::ivec2(x, y), index);
             }
         }
     });
-    return samples;
 }
 
 std::vector<TracedSample> EmbreeTracer::trace(const HostGBuffer& gbuffer,
                                               const LobeSettings& lobe) const {
-    return samplesOf(gbuffer, [&](glm::ivec2 pixel) { return traceSample(gbuffer, pixel, lobe); });
+    std::vector<TracedSample> samples(gbuffer.depthM.size());
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t i) {
+        samples[i] = traceSample(gbuffer, pixel, lobe);
+    });
+    return samples;
 }
 
 std::vector<TracedSample> EmbreeTracer::traceMirrorRays(const HostGBuffer& gbuffer) const {
-    return samplesOf(gbuffer, [&](glm::ivec2 pixel) {
-        TracedSample sample;
+    std::vector<TracedSample> samples(gbuffer.depthM.size());
+    forEachReflective(gbuffer, [&](glm::ivec2 pixel, std::size_t i) {
         const auto hit = closestHit(gbuffer.positionWorld(pixel), gbuffer.mirrorDirection(pixel),
-                                    gbuffer.triangleNormalWorld[gbuffer.indexOf(pixel)]);
-        if (hit) sample = {glm::vec3(0.0F), hit->distance, 1 + hit->instance};
-        return sample;
+                                    gbuffer.triangleNormalWorld[i]);
+        if (hit) samples[i] = {glm::vec3(0.0F), hit->distance, 1 + hit->instance};
     });
+    return samples;
 }
 
 /// What a ray from a sample meets; nothing where it goes below the sample's triangle.

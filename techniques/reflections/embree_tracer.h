@@ -30,8 +30,7 @@ class EmbreeTracer final : public ReflectionTracer {
     static constexpr float kLift = 1e-5F, kGrazing = 0.1F;
 
     /// The scene must outlive this.
-    EmbreeTracer(const gl::ShaderLibrary& shaders, const ReflectiveScene& scene,
-                 const LobeSettings& lobe);
+    EmbreeTracer(const ReflectiveScene& scene, const LobeSettings& lobe);
     void update(const GpuObjects& objects, gl::Profiler& profiler) override;
     void trace(const GBuffer& gbuffer, const gl::Texture* wanted, ReflectionTarget& target,
                gl::Profiler& profiler) override;
@@ -49,17 +48,8 @@ class EmbreeTracer final : public ReflectionTracer {
     const raycast::RayTracer& rays() const { return *rays_; }
 
   private:
-    struct FoundSample;
-
-    /// Wanted samples go by lists, so that what is transferred goes with them and not with the
-    /// image: beside its mask, a byte a sample, 32 bytes a wanted sample or neighbour of one, by
-    /// which its beam is found, and 20 back.
-    void traceWanted(const GBuffer& gbuffer, const gl::Texture& wanted, ReflectionTarget& target,
-                     gl::Profiler& profiler);
-    std::vector<std::uint32_t> readWanted(const GBuffer& gbuffer, const gl::Texture& wanted);
-    void writeFound(std::vector<FoundSample>& found, ReflectionTarget& target) const;
-    template <class Trace>
-    std::vector<TracedSample> samplesOf(const HostGBuffer& gbuffer, const Trace& trace) const;
+    template <class Visit>
+    void forEachReflective(const HostGBuffer& gbuffer, const Visit& visit) const;
     std::optional<raycast::Hit> closestHit(const glm::vec3& origin, const glm::vec3& direction,
                                            const glm::vec3& triangleNormal) const;
     TracedSample traceSample(const HostGBuffer& gbuffer, glm::ivec2 pixel,
@@ -71,8 +61,6 @@ class EmbreeTracer final : public ReflectionTracer {
     scene::Scene posed_;  // the triangles alone: all that a BVH is built of
     std::vector<glm::mat3> normalFromMesh_;
     std::optional<raycast::RayTracer> rays_;
-    gl::Pass readWanted_, writeFound_;
-    HostGBuffer host_;  // samples that were wanted; others stay what they are, nothing at first
 };
 
 }  // namespace gfxrepro::reflections

@@ -97,7 +97,7 @@ Frame::Frame(technique::SetupContext& context, const FrameSettings& wanted)
     map.render(objects);
     if (!settings.measuresErrors) return;
     untimed.emplace(context.device.info().isSoftware);
-    truth.emplace(context.shaders, scene, settings.lobe);
+    truth.emplace(scene, settings.lobe);
 }
 
 kit::View Frame::viewAt(double time) const {

@@ -149,9 +149,10 @@ HostGBuffer GBufferRenderer::readForRays(const GpuObjects& objects, const GBuffe
 
 HostGBuffer readGBuffer(const GBuffer& gbuffer) {
     HostGBuffer host;
-    host.resizeFor(gbuffer.view);
-    const std::vector<float> diffuse = gbuffer.diffuse.read<float>(GL_RGB, GL_FLOAT, 3);
-    const std::vector<float> normals = gbuffer.normal.read<float>(GL_RG, GL_FLOAT, 2);
+    host.view = gbuffer.view;
+    host.worldFromPixels = kit::worldFromPixels(host.view);
+    host.diffuse = gbuffer.diffuse.read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
+    host.normalOctahedral = gbuffer.normal.read<glm::vec2>(GL_RG, GL_FLOAT, 1);
     host.depthM = gbuffer.depth.read<float>(GL_RED, GL_FLOAT, 1);
     host.surface = readSurfaces(gbuffer);
     std::vector<std::uint32_t> ofTriangles;
@@ -159,10 +160,14 @@ HostGBuffer readGBuffer(const GBuffer& gbuffer) {
         ofTriangles =
             gbuffer.triangleNormal.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
     }
+    host.normalWorld.resize(host.depthM.size());
+    host.triangleNormalWorld.resize(host.depthM.size());
     tbb::parallel_for(std::size_t{0}, host.depthM.size(), [&](std::size_t i) {
-        host.diffuse[i] = linearColour({diffuse[3 * i], diffuse[3 * i + 1], diffuse[3 * i + 2]});
-        host.setNormal(i, {normals[2 * i], normals[2 * i + 1]});
-        if (!ofTriangles.empty()) host.setTriangleNormal(i, ofTriangles[i]);
+        host.diffuse[i] = linearColour(host.diffuse[i]);
+        host.normalWorld[i] = glm::normalize(directionFromOctahedral(host.normalOctahedral[i]));
+        if (ofTriangles.empty()) return;
+        host.triangleNormalWorld[i] =
+            glm::normalize(directionFromOctahedral(glm::unpackSnorm2x16(ofTriangles[i])));
     });
     return host;
 }
@@ -173,28 +178,6 @@ std::vector<std::uint32_t> readSurfaces(const GBuffer& gbuffer) {
 
 std::vector<std::uint8_t> readMask(const gl::Texture& mask) {
     return mask.read<std::uint8_t>(GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1);
-}
-
-void HostGBuffer::resizeFor(const kit::View& of) {
-    view = of;
-    worldFromPixels = kit::worldFromPixels(view);
-    const std::size_t samples = indexOf({0, view.sizePx.y});
-    diffuse.resize(samples);
-    normalWorld.resize(samples);
-    normalOctahedral.resize(samples);
-    triangleNormalWorld.resize(samples);
-    depthM.resize(samples);
-    surface.resize(samples);
-}
-
-void HostGBuffer::setNormal(std::size_t index, const glm::vec2& octahedral) {
-    normalOctahedral[index] = octahedral;
-    normalWorld[index] = glm::normalize(directionFromOctahedral(octahedral));
-}
-
-void HostGBuffer::setTriangleNormal(std::size_t index, std::uint32_t packed) {
-    triangleNormalWorld[index] =
-        glm::normalize(directionFromOctahedral(glm::unpackSnorm2x16(packed)));
 }
 
 float HostGBuffer::glossiness(std::size_t index) const {

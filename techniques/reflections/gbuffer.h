@@ -86,12 +86,6 @@ struct HostGBuffer {
     std::vector<float> depthM;
     std::vector<std::uint32_t> surface;
 
-    /// Room for the samples of a view.
-    void resizeFor(const kit::View& of);
-    /// Sets both forms of a sample's normal.
-    void setNormal(std::size_t index, const glm::vec2& octahedral);
-    /// Sets the normal of its triangle, as the texture has it.
-    void setTriangleNormal(std::size_t index, std::uint32_t packed);
     std::size_t indexOf(glm::ivec2 pixel) const {
         return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(view.sizePx.x) +
                static_cast<std::size_t>(pixel.x);

@@ -23,7 +23,7 @@ struct KeyFrame {
         image.diagonalM = prepared.scene.diagonalM();
         prepared.renderer.render(prepared.objects, image.gbuffer);
         gl::Profiler profiler(true);
-        reflections::EmbreeTracer tracer(shaders, prepared.scene, {});
+        reflections::EmbreeTracer tracer(prepared.scene, {});
         tracer.update(prepared.objects, profiler);
         tracer.trace(image.gbuffer, nullptr, image.reflection, profiler);
         host = readReflectionDepthImage(image);

@@ -67,7 +67,7 @@ class ReuseTest : public reflections::ReflectionsTest {
             : scene(source),
               objects(scene),
               map(shaders, scene),
-              tracer(shaders, scene, {}),
+              tracer(scene, {}),
               renderer(shaders, objects, tracer, settings, kSize, scene.diagonalM()) {
             map.render(objects);
             tracer.update(objects, profiler);

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "techniques/reflections/gpu_ray_tracer.h"
-#include "tests/techniques/reflections/gl_calls.h"
 #include "tests/techniques/reflections/traced_scenes.h"
 
 namespace gfxrepro::reflections {
@@ -310,53 +309,6 @@ TEST_F(EmbreeTracerTest, MirrorRaysEndWhereTheyDoWithRadiance) {
     }
     EXPECT_GT(met, traced.samples.size() / 10);
     EXPECT_EQ(readSurfaces(traced.prepared.gbuffer), traced.gbuffer.surface);
-}
-
-TEST_F(EmbreeTracerTest, TransfersGoWithTheWantedSamples) {
-    scene::Scene source = glowingRoom({0.8F, 0.6F, 0.4F}, 0.2F);
-    source.materials[2] = mirror(0.2F);  // glossy, so that the diffuse colour counts
-    EmbreeTrace traced = trace(source, aboveFloor(), kSizePx);
-    const std::size_t mask = traced.gbuffer.surface.size();
-    constexpr glm::vec4 kLeftThere(5.0F);
-    std::size_t leastBytes = 0;
-    for (const std::size_t stride : {400U, 40U, 4U}) {
-        std::vector<std::uint8_t> wantedSamples(traced.gbuffer.surface.size());
-        std::size_t count = 0, selected = 0;
-        for (std::size_t i = 0; i < wantedSamples.size(); i += stride) {
-            wantedSamples[i] = 1;
-            ++selected;
-            count += traced.gbuffer.isReflective(i) ? 1 : 0;
-        }
-        const gl::Texture wanted = maskTexture(wantedSamples, kSizePx);
-        ReflectionTarget target(kSizePx);
-        // That no more is uploaded, either: who does not read the rest back cannot write it again.
-        const std::vector<glm::vec4> before(wantedSamples.size(), kLeftThere);
-        target.radiance.upload(GL_RGBA, GL_FLOAT, before.data());
-        bytesReadBack() = 0;
-        traced.tracer.trace(traced.prepared.gbuffer, &wanted, target, profiler);
-        const std::size_t bytes = bytesReadBack();
-        EXPECT_GT(count, 0U);
-        EXPECT_GE(bytes, mask + count * 32);
-        EXPECT_LE(bytes, mask + selected * 5 * 32);  // with four neighbours each
-        EXPECT_GT(bytes, leastBytes);
-        leastBytes = bytes;
-
-        const std::vector<TracedSample> expected = traced.tracer.trace(traced.gbuffer);
-        const auto radiance = target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
-        for (std::size_t i = 0; i < radiance.size(); ++i) {
-            if (wantedSamples[i] == 0 || !traced.gbuffer.isReflective(i)) {
-                ASSERT_EQ(radiance[i], kLeftThere) << "is left alone";
-            } else {
-                ASSERT_LT(largestDifference(glm::vec3(radiance[i]), expected[i].radiance),
-                          1.0F / 2048.0F);
-            }
-        }
-    }
-    const gl::Texture none = maskTexture(std::vector<std::uint8_t>(mask), kSizePx);
-    ReflectionTarget target(kSizePx);
-    bytesReadBack() = 0;
-    traced.tracer.trace(traced.prepared.gbuffer, &none, target, profiler);
-    EXPECT_EQ(bytesReadBack(), mask);
 }
 
 }  // namespace

@@ -11,11 +11,6 @@ std::vector<GlCall>& glCalls() {
     return calls;
 }
 
-std::size_t& bytesReadBack() {
-    static std::size_t bytes = 0;
-    return bytes;
-}
-
 namespace {
 
 /// Notes the call and hands it on to the library that has it.
@@ -28,7 +23,6 @@ void passOn(GlCall call, const char* name, Arguments... arguments) {
 }  // namespace
 }  // namespace gfxrepro::reflections
 
-using gfxrepro::reflections::bytesReadBack;
 using gfxrepro::reflections::GlCall;
 using gfxrepro::reflections::passOn;
 
@@ -67,12 +61,10 @@ void glNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, const
     passOn(GlCall::Write, __func__, buffer, offset, size, data);
 }
 void glGetNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, void* data) {
-    bytesReadBack() += static_cast<std::size_t>(size);
     passOn(GlCall::Wait, __func__, buffer, offset, size, data);
 }
 void glGetTextureImage(GLuint texture, GLint level, GLenum format, GLenum type, GLsizei size,
                        void* pixels) {
-    bytesReadBack() += static_cast<std::size_t>(size);
     passOn(GlCall::Wait, __func__, texture, level, format, type, size, pixels);
 }
 }

@@ -1,7 +1,6 @@
 // What has been asked of GL. Tests that link gl_calls.cpp call these functions of GL through it.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 namespace gfxrepro::reflections {
@@ -19,8 +18,5 @@ enum class GlCall {
 
 /// In order, since the last clear().
 std::vector<GlCall>& glCalls();
-
-/// Read back from buffers and textures, since it was set to 0.
-std::size_t& bytesReadBack();
 
 }  // namespace gfxrepro::reflections

@@ -65,7 +65,7 @@ class GpuRayTracerTest : public ReflectionsTest {
         GpuRayTracer tracer(shaders, frame.objects, lobe, diagonalM);
         tracer.update(frame.objects, profiler);
         tracer.trace(frame.gbuffer, nullptr, target, profiler);
-        EmbreeTracer embree(shaders, frame.scene, lobe);
+        EmbreeTracer embree(frame.scene, lobe);
         embree.update(frame.objects, profiler);
         const HostGBuffer host = readGBuffer(frame.gbuffer);
         const std::vector<TracedSample> truth = embree.trace(host);

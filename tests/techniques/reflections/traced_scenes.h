@@ -146,7 +146,7 @@ struct EmbreeTrace {
     EmbreeTrace(const gl::ShaderLibrary& shaders, const scene::Scene& source,
                 const scene::Camera& from, glm::ivec2 sizePx, const LobeSettings& lobe,
                 gl::Profiler& profiler)
-        : prepared(shaders, source, from, sizePx), tracer(shaders, prepared.scene, lobe) {
+        : prepared(shaders, source, from, sizePx), tracer(prepared.scene, lobe) {
         tracer.update(prepared.objects, profiler);
         gbuffer = readGBuffer(prepared.gbuffer);
         samples = tracer.trace(gbuffer);

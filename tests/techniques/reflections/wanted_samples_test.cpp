@@ -51,7 +51,7 @@ TEST_F(WantedSamplesTest, AreAllThatIsWritten) {
          {}},
         {"Embree",
          [&](Prepared& p) -> Made {
-             return std::make_unique<EmbreeTracer>(shaders, p.scene, LobeSettings{});
+             return std::make_unique<EmbreeTracer>(p.scene, LobeSettings{});
          },
          1.0F / 2048.0F,  // halves
          {"bvh_build", "transfer", "intersection"}},
