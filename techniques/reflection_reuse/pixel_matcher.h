@@ -1,5 +1,5 @@
 // [xie2017] Algorithm 9: where the reflection that a key-frame sample holds goes when the eye
-// moves; on the device and on the host.
+// moves.
 #pragma once
 
 #include <cstdint>
@@ -93,7 +93,7 @@ class PixelMatcher {
     gl::Pass pass_, countsPass_;
 };
 
-/// The reflection depth image on the host, for the reference and exhaustive searches.
+/// The reflection depth image on the host, for exhaustive searches.
 struct HostReflectionDepthImage {
     reflections::HostGBuffer gbuffer;
     std::vector<float> distanceM;  // 0: the ray left the scene
@@ -105,29 +105,26 @@ struct HostReflectionDepthImage {
 /// Reads back; waits for the device.
 HostReflectionDepthImage readReflectionDepthImage(const ReflectionDepthImage& image);
 
-/// d(s_n, R, E): how far the eye is from the ray from M, the mirror image of R in the plane of
+/// From the eye to the nearest point of the ray from M, the mirror image of R in the plane of
 /// candidate n, through W_n (Sec. 5.4.1). The normal may have any length.
 /// Departure [xie2017] Sec. 5.4.1: the ray begins in W_n, where it leaves the mirror; to an eye
 /// behind, W_n is the nearest. Begun in M, it also meets eyes between M and W_n, and candidates
 /// that turn their backs to R match.
-float matchingDistance(const glm::vec3& candidateWorld, const glm::vec3& candidateNormal,
-                       const glm::vec3& reflectedWorld, const glm::vec3& eyeWorld);
+glm::vec3 missAt(const glm::vec3& candidateWorld, const glm::vec3& candidateNormal,
+                 const glm::vec3& reflectedWorld, const glm::vec3& eyeWorld);
+/// d(s_n, R, E): its length.
+inline float matchingDistance(const glm::vec3& candidateWorld, const glm::vec3& candidateNormal,
+                              const glm::vec3& reflectedWorld, const glm::vec3& eyeWorld) {
+    return glm::length(missAt(candidateWorld, candidateNormal, reflectedWorld, eyeWorld));
+}
 
-struct HostMatch {
-    std::optional<glm::vec2> offset;  // whole pixels in first order; nothing: invalid
-    int steps = 0;
-    float distance = 0.0F;      // of the last candidate
-    glm::ivec2 end{0};          // the last candidate
-    std::vector<float> passed;  // distances of all candidates that the search stood on
-};
-/// Algorithm 9 for one sample, line by line; the search stops on equality, too, where the printed
-/// one can cycle.
-HostMatch matchOnHost(const HostReflectionDepthImage& key, glm::ivec2 sample,
-                      const glm::vec3& eyeWorld, std::optional<glm::vec2> previous,
-                      const MatchingSettings& settings);
 /// The best candidate of all samples of the same reflector: what a search should have found.
-HostMatch matchExhaustively(const HostReflectionDepthImage& key, glm::ivec2 sample,
-                            const glm::vec3& eyeWorld);
+struct BestSample {
+    glm::ivec2 pixel{0};
+    float distance = 0.0F;
+};
+BestSample bestSample(const HostReflectionDepthImage& key, glm::ivec2 sample,
+                      const glm::vec3& eyeWorld);
 
 bool isValid(const glm::vec2& offset);
 
@@ -137,10 +134,9 @@ struct MatchCheck {
                             // than the match does where it is: between samples, of second order
 };
 
-/// At most `samples` of the valid matches, evenly spread over the image, against
-/// matchExhaustively().
+/// At most `samples` of the valid matches, evenly spread over the image, against bestSample().
 MatchCheck checkMatches(const HostReflectionDepthImage& key, const std::vector<glm::vec2>& offsets,
-                        const glm::vec3& eyeWorld, const MatchingSettings& settings, int samples);
+                        const glm::vec3& eyeWorld, int samples);
 
 /// Of the second-order search ([xie2017] Sec. 5.5.4, outlook).
 constexpr int kMaxNewtonSteps = 8;

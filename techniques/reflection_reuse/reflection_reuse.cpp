@@ -524,9 +524,8 @@ class ReflectionReuse final : public technique::Technique {
         }
         recorder.metric("unshifted_pct", kit::percent(unshifted, reflective));
         if (params_.exhaustiveSamples == 0) return;
-        const MatchCheck check =
-            checkMatches(readReflectionDepthImage(key), offsets, view_.eyeWorld,
-                         params_.reuse.matching, params_.exhaustiveSamples);
+        const MatchCheck check = checkMatches(readReflectionDepthImage(key), offsets,
+                                              view_.eyeWorld, params_.exhaustiveSamples);
         recorder.metric("wrong_minimum_pct", kit::percent(check.wrong, check.checked));
     }
 

@@ -2,7 +2,7 @@
 // [xie2017] Algorithm 9: for every reflective sample s of the key frame, the sample s* whose plane
 // now shows the eye what s showed. Reads the key frame's G-buffer and travel distances and the
 // offsets of the frame before; writes the offsets s* − s and how many steps each search took.
-// pixel_matcher.cpp has the same on the host, operation by operation.
+// The tests have the same on the host, operation by operation.
 #include "reflection_reuse/square_ring.glsl"
 #include "reflections/gbuffer.glsl"
 

@@ -1,6 +1,7 @@
 // The search on the host, and the distance that it descends ([xie2017] Sec. 5.4.1).
 #include <gtest/gtest.h>
 
+#include "tests/techniques/reflection_reuse/host_matcher.h"
 #include "tests/techniques/reflection_reuse/key_frame.h"
 
 namespace gfxrepro::reflection_reuse {
@@ -49,7 +50,7 @@ class MatchingSearchTest : public KeyFrameTest {
         Outcome outcome;
         forEachReflective(key.host.gbuffer, [&](glm::ivec2 pixel, std::size_t) {
             const HostMatch match = matchOnHost(key.host, pixel, eye, {}, settings);
-            const HostMatch best = matchExhaustively(key.host, pixel, eye);
+            const BestSample best = bestSample(key.host, pixel, eye);
             EXPECT_EQ(match.passed.size(), static_cast<std::size_t>(match.steps) + 1);
             for (std::size_t i = 1; i < match.passed.size(); ++i) {
                 EXPECT_LT(match.passed[i], match.passed[i - 1]);
@@ -122,6 +123,22 @@ TEST_F(MatchingSearchTest, WiderRingsEndNoFartherAway) {
         nearer += wider.distance < printed.distance ? 1 : 0;
     });
     EXPECT_GT(nearer, 0);
+}
+
+TEST_F(MatchingSearchTest, MatchesThatAreNotNextToTheBestSampleAreWrong) {
+    const KeyFrame key = keyFrame(roomWithMirrorFloor(), aboveFloor(), kSizePx);
+    const glm::vec3 eye = key.eyeWorld() + move_;
+    constexpr int kSamples = 100;
+    for (const int awayPx : {0, 1, 4}) {
+        std::vector<glm::vec2> offsets(key.host.gbuffer.surface.size(), glm::vec2(kInvalidOffset));
+        forEachReflective(key.host.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
+            const glm::ivec2 end = bestSample(key.host, pixel, eye).pixel + glm::ivec2(awayPx, 0);
+            if (key.host.gbuffer.reflectorAt(end) == 1) offsets[index] = glm::vec2(end - pixel);
+        });
+        const MatchCheck check = checkMatches(key.host, offsets, eye, kSamples);
+        EXPECT_EQ(check.checked, std::size_t{kSamples});
+        EXPECT_EQ(check.wrong, awayPx <= 1 ? std::size_t{0} : std::size_t{kSamples});
+    }
 }
 
 /// Where a ball (centre, radius) shows `reflected` to the eye: between their directions from the

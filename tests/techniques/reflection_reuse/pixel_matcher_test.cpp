@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "techniques/reflection_reuse/pixel_matcher.h"
+#include "tests/techniques/reflection_reuse/host_matcher.h"
 #include "tests/techniques/reflection_reuse/key_frame.h"
 
 namespace gfxrepro::reflection_reuse {
