@@ -118,14 +118,11 @@ ReuseParams::ReuseParams(Params& params)
         "exhaustive_samples", 0,
         {"matches of a frame that are compared with a search of the whole reflector; 0: none",
          "samples", 0, 1000000});
-    fitsRecompute = params.getBool(
-        "recompute_fit", false,
-        {"a line through recomputing's times over the samples, of all frames but key frames"});
     params.finish();
     reuse.isDirect = method == Method::Direct;
     if (method == Method::RayTraced) {
         params.refuseGiven({"threshold", "silhouette", "forward", "max_growth", "depth_tolerance",
-                            "moved_objects", "seam_px", "recompute_fit"},
+                            "moved_objects", "seam_px"},
                            "'method: reuse' or 'method: direct'");
     }
     if (method != Method::Reuse) {
@@ -143,26 +140,6 @@ ReuseParams::ReuseParams(Params& params)
                     fmt::format("'first_frame' is {}; the path has frames 0 … {} ('path_frames')",
                                 firstFrame, pathFrames - 1));
     }
-}
-
-std::optional<LinearFit> linearFit(std::span<const glm::dvec2> points) {
-    if (points.size() < 3) return std::nullopt;
-    glm::dvec2 mean(0.0);
-    for (const glm::dvec2& point : points) mean += point;
-    mean /= static_cast<double>(points.size());
-    glm::dvec2 squares(0.0);
-    double products = 0.0;
-    for (const glm::dvec2& point : points) {
-        const glm::dvec2 apart = point - mean;
-        squares += apart * apart;
-        products += apart.x * apart.y;
-    }
-    if (squares.x == 0.0 || squares.y == 0.0) return std::nullopt;
-    LinearFit fit;
-    fit.slope = products / squares.x;
-    fit.intercept = mean.y - fit.slope * mean.x;
-    fit.rSquared = products * products / (squares.x * squares.y);
-    return fit;
 }
 
 namespace {
@@ -201,13 +178,6 @@ config::Outputs outputs() {
              kIsDetail},
             {"wrong_minimum_pct", "%",
              "share of the searches checked in full that ended at the wrong place", Better::Lower},
-            {"recompute_time_r_squared", "1",
-             "how well a line through the number of traced samples gives the time of tracing (R²)",
-             Better::Neither, kIsDetail},
-            {"recompute_fit_us_per_sample", "us", "time of tracing one sample more, by such a line",
-             Better::Lower, kIsDetail},
-            {"recompute_fit_fixed_ms", "ms", "time of tracing without any sample, by such a line",
-             Better::Lower, kIsDetail},
         },
         {
             {"diffuse", "drawing what the eye sees"},
@@ -315,7 +285,6 @@ class ReflectionReuse final : public technique::Technique {
             renderer_.emplace(shaders, frame_->objects, *tracer_, settings, frame_->samplesPx(),
                               frame_->scene.diagonalM());
         }
-        if (params_.fitsRecompute) recomputeTimes_.emplace(context.device.info());
     }
 
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
@@ -339,8 +308,7 @@ class ReflectionReuse final : public technique::Technique {
         if (renderer_) {
             // Warm-ups and repetitions must not move the choice of key frames on.
             if (context.frame == frameIndex_) renderer_->undo();
-            if (recomputeTimes_) keepLeastRecomputeTime();
-            renderer_->render(view_, profiler, recomputeTimes_ ? &*recomputeTimes_ : nullptr);
+            renderer_->render(view_, profiler);
         } else {
             traceFully(profiler);
         }
@@ -470,7 +438,6 @@ class ReflectionReuse final : public technique::Technique {
         recorder.metric("is_key_frame", counts.isKeyFrame ? 1.0 : 0.0);
         recorder.metric("recomputed_samples", counts.recomputedSamples);
         if (counts.reflectiveSamples > 0) recorder.metric("saved_pct", 100.0 - recomputedPct);
-        recordRecomputeFit(recorder, counts);
         if (counts.isKeyFrame) {
             if (lastKeyFrame_ >= 0 && frameIndex_ > lastKeyFrame_) {
                 recorder.metric("key_frame_interval", frameIndex_ - lastKeyFrame_);
@@ -480,28 +447,6 @@ class ReflectionReuse final : public technique::Technique {
         }
         if (counts.reflectiveSamples > 0) recorder.metric("recomputed_pct", recomputedPct);
         if (renderer_->shifted()) recordMatches(recorder, counts);
-    }
-
-    /// Of a frame's repetitions the fastest counts: what else runs on the machine only adds.
-    void keepLeastRecomputeTime() {
-        for (const gl::PassTime& time : recomputeTimes_->collect()) {
-            if (!leastMs_ || time.timeMs < leastMs_) leastMs_ = time.timeMs;
-        }
-    }
-
-    /// Whether the time follows the number of samples, over all frames that have been rendered, in
-    /// the last one. Key frames are left out: far from all others they would settle the line alone.
-    void recordRecomputeFit(technique::Recorder& recorder, const ReuseCounts& counts) {
-        if (!recomputeTimes_) return;
-        keepLeastRecomputeTime();
-        if (leastMs_) recomputed_.emplace_back(counts.recomputedSamples, *leastMs_);
-        leastMs_.reset();
-        if (frameIndex_ + 1 < frameCount_) return;
-        const std::optional<LinearFit> fit = linearFit(recomputed_);
-        if (!fit) return;
-        recorder.metric("recompute_time_r_squared", fit->rSquared);
-        recorder.metric("recompute_fit_us_per_sample", 1e3 * fit->slope);
-        recorder.metric("recompute_fit_fixed_ms", fit->intercept);
     }
 
     void recordMatches(technique::Recorder& recorder, const ReuseCounts& counts) {
@@ -578,10 +523,7 @@ class ReflectionReuse final : public technique::Technique {
     bool hasReflections_ = false;  // in the frame that record() is at
     int frameCount_ = 0;
 
-    std::optional<gl::Profiler> recomputeTimes_;  // of `recompute_fit`
-    std::optional<double> leastMs_;               // of recomputing, in the frame at hand
     bool hasWarned_ = false;
-    std::vector<glm::dvec2> recomputed_;  // (samples, ms) of frames that are not key frames
 };
 
 std::unique_ptr<technique::Technique> create(Params& params) {

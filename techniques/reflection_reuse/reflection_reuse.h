@@ -1,10 +1,6 @@
 // The technique `reflection_reuse`: chapter 5 of xie2017. See README.md.
 #pragma once
 
-#include <glm/glm.hpp>
-#include <optional>
-#include <span>
-
 #include "runner/technique/technique.h"
 #include "techniques/reflection_reuse/reuse_renderer.h"
 #include "techniques/reflections/frame.h"
@@ -28,24 +24,12 @@ struct ReuseParams : reflections::FrameSettings {
     Tracer tracer = Tracer::Compute;
     int pathFrames = 500;
     int firstFrame = 0;
-    ReuseSettings reuse;  // isDirect is set, too
-    bool fitsRecompute = false;
+    ReuseSettings reuse;        // isDirect is set, too
     int exhaustiveSamples = 0;  // searched over their whole reflector; 0: none
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
     explicit ReuseParams(Params& params);
 };
-
-/// A straight line through measurements, and how much of their variation it explains.
-struct LinearFit {
-    double slope = 0.0;
-    double intercept = 0.0;
-    double rSquared = 0.0;  // 1: all points lie on the line; 0: x says nothing about y
-};
-
-/// Least squares of y over x. Nothing for fewer than three points, which any line fits, and where
-/// x or y does not vary.
-std::optional<LinearFit> linearFit(std::span<const glm::dvec2> points);
 
 extern const technique::TechniqueInfo kReflectionReuse;
 

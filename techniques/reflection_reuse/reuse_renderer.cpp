@@ -125,8 +125,7 @@ ReuseRenderer::ReuseRenderer(const gl::ShaderLibrary& shaders,
     if (!settings.isDirect && !isGathered(settings)) shifted_.emplace(sizePx);
 }
 
-void ReuseRenderer::render(const kit::View& view, gl::Profiler& profiler,
-                           gl::Profiler* recomputeTimes) {
+void ReuseRenderer::render(const kit::View& view, gl::Profiler& profiler) {
     GFXREPRO_ASSERT(view.sizePx == gbuffer_.view.sizePx);
     // First what every frame needs: the device draws it while the count of the frame before, by
     // which this one is a key frame or not, is waited for.
@@ -140,7 +139,7 @@ void ReuseRenderer::render(const kit::View& view, gl::Profiler& profiler,
     if (isKeyFrame_) {
         renderKeyFrame(profiler);
     } else {
-        renderReused(profiler, recomputeTimes);
+        renderReused(profiler);
     }
     hasFrame_ = true;
     isUndone_ = false;
@@ -173,7 +172,7 @@ void ReuseRenderer::renderKeyFrame(gl::Profiler& profiler) {
     hasOffsets_ = false;
 }
 
-void ReuseRenderer::renderReused(gl::Profiler& profiler, gl::Profiler* recomputeTimes) {
+void ReuseRenderer::renderReused(gl::Profiler& profiler) {
     const bool hasMoved = settings_.recomputesMoved && movedObjects_.find(objects_);
     const gl::Texture* doubtful =
         hasMoved && !settings_.isDirect ? &movedObjects_.doubtful(key_) : nullptr;
@@ -193,8 +192,6 @@ void ReuseRenderer::renderReused(gl::Profiler& profiler, gl::Profiler* recompute
         if (hasMoved) movedObjects_.want(objects_, gbuffer_, key_.diagonalM, wanted_);
     }
     const gl::GpuScope scope(profiler, "recompute");
-    std::optional<gl::GpuScope> own;
-    if (recomputeTimes != nullptr) own.emplace(*recomputeTimes, "recompute");
     tracer_.trace(gbuffer_, &wanted_, traced_, profiler);
     mendReflections();
 }

@@ -84,10 +84,8 @@ class ReuseRenderer {
                   reflections::ReflectionTracer& tracer, const ReuseSettings& settings,
                   glm::ivec2 sizePx, float diagonalM);
 
-    /// The objects are posed and the tracer is updated. The first frame is a key frame. A profiler
-    /// for `recomputeTimes` gets a scope of its own within `recompute`, between key frames.
-    void render(const kit::View& view, gl::Profiler& profiler,
-                gl::Profiler* recomputeTimes = nullptr);
+    /// The objects are posed and the tracer is updated. The first frame is a key frame.
+    void render(const kit::View& view, gl::Profiler& profiler);
     /// Takes the last render() back but for what gbuffer() and the others hold: the next one
     /// decides and starts as it did, so that a frame can be rendered again.
     void undo();
@@ -111,7 +109,7 @@ class ReuseRenderer {
     std::uint32_t recomputedSamples() const;
     bool isKeyFrameNext() const;
     void renderKeyFrame(gl::Profiler& profiler);
-    void renderReused(gl::Profiler& profiler, gl::Profiler* recomputeTimes);
+    void renderReused(gl::Profiler& profiler);
     void match(gl::Profiler& profiler);
     void mendReflections();
 

@@ -113,8 +113,6 @@ TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
              "33: 'threshold' needs 'method: reuse' or 'method: direct'"},
             {"{method: ray_traced, seam_px: 1}",
              "31: 'seam_px' needs 'method: reuse' or 'method: direct'"},
-            {"{method: ray_traced, recompute_fit: true}",
-             "37: 'recompute_fit' needs 'method: reuse' or 'method: direct'"},
             {"{method: direct, matching: second_order}", "28: 'matching' needs 'method: reuse'"},
             {"{method: direct, widest_ring: 2}", "31: 'widest_ring' needs 'method: reuse'"},
             {"{method: direct, resampling: gather}", "30: 'resampling' needs 'method: reuse'"},
@@ -432,31 +430,6 @@ TEST_F(ReflectionReuseTest, MatchesAreComparedWithTheWholeReflector) {
         EXPECT_LT(frames[2].metrics.at("wrong_minimum_pct"), 5.0) << matching;
         EXPECT_LT(frames[2].metrics.at("unmatched_pct"), 50.0) << matching;
     }
-}
-
-// Times are not tested, but that there are as many as frames to fit a line to.
-TEST_F(ReflectionReuseTest, FitsRecomputingOnceAfterTheLastFrame) {
-    for (const char* method : {"reuse", "direct"}) {
-        SCOPED_TRACE(method);
-        const auto frames = recorded(
-            fmt::format("{{method: {}, recompute_fit: true, errors: false, path_frames: 20, "
-                        "threshold: 1}}",
-                        method),
-            &room_, 5, 2);
-        for (std::size_t i = 0; i < 4; ++i) {
-            EXPECT_FALSE(frames[i].metrics.contains("recompute_time_r_squared"));
-        }
-        const auto& last = frames[4].metrics;
-        EXPECT_GE(last.at("recompute_time_r_squared"), 0.0);
-        EXPECT_LE(last.at("recompute_time_r_squared"), 1.0);
-        EXPECT_TRUE(last.contains("recompute_fit_us_per_sample"));
-        EXPECT_TRUE(last.contains("recompute_fit_fixed_ms"));
-    }
-    // Two frames behind a key frame lie on any line.
-    const auto few = recorded("{recompute_fit: true, threshold: 1, path_frames: 20}", &room_, 3);
-    EXPECT_FALSE(few[2].metrics.contains("recompute_time_r_squared"));
-    EXPECT_FALSE(recorded("{threshold: 1, path_frames: 20}", &room_, 5)[4].metrics.contains(
-        "recompute_time_r_squared"));
 }
 
 TEST_F(ReflectionReuseTest, ShowsPicturesOfEveryStep) {
