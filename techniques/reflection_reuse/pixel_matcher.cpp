@@ -70,7 +70,6 @@ void PixelMatcher::match(const ReflectionDepthImage& key, const glm::vec3& eyeWo
     pass_.set("diagonalM", key.diagonalM);
     pass_.set("maxSteps", settings_.maxSteps);
     pass_.set("silhouette", settings_.silhouette);
-    pass_.set("widestRingPx", settings_.widestRingPx);
     // Without previous offsets the distances stand in.
     const gl::Texture& distance = key.reflection.distance;
     pass_.dispatch(

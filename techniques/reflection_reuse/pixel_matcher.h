@@ -43,9 +43,6 @@ struct MatchingSettings {
     /// Neighbours whose eye depths differ by more than this share of the nearer one lie on two
     /// sides of a reflector's silhouette.
     float silhouette = 0.05F;
-    /// Where nothing next to it is better, a search looks at the wider square rings around, up to
-    /// this; it finds its way along narrow valleys across the eight directions. 1: Algorithm 9.
-    int widestRingPx = 1;
 };
 
 /// Offsets of Algorithm 9, a texel a sample of the key frame.

@@ -62,10 +62,6 @@ ReuseSettings readReuse(Params& params) {
     settings.matching.maxSteps =
         params.getInt("max_steps", settings.matching.maxSteps,
                       {"most steps of a search; a longer one finds no match", "steps", 1, 65536});
-    settings.matching.widestRingPx = params.getInt(
-        "widest_ring", settings.matching.widestRingPx,
-        {"widest ring around a minimum in which the search looks for a better one; 1: algorithm 9",
-         "pixels", 1, 64});
     const double silhouette = params.getDouble(
         "silhouette", 0.05,
         {"neighbours whose eye depths differ by more of the nearer one are not connected", "1", 0.0,
@@ -126,12 +122,10 @@ ReuseParams::ReuseParams(Params& params)
                            "'method: reuse' or 'method: direct'");
     }
     if (method != Method::Reuse) {
-        params.refuseGiven(
-            {"matching", "max_steps", "widest_ring", "resampling", "exhaustive_samples"},
-            "'method: reuse'");
+        params.refuseGiven({"matching", "max_steps", "resampling", "exhaustive_samples"},
+                           "'method: reuse'");
     } else if (reuse.reprojection.resampling == Resampling::Gather) {
-        params.refuseGiven({"matching", "max_steps", "widest_ring", "exhaustive_samples"},
-                           "'resampling: twice'");
+        params.refuseGiven({"matching", "max_steps", "exhaustive_samples"}, "'resampling: twice'");
         params.refuseGiven({"silhouette", "forward", "max_growth"},
                            "'resampling: twice' or 'method: direct'");
     }

@@ -3,7 +3,6 @@
 // now shows the eye what s showed. Reads the key frame's G-buffer and travel distances and the
 // offsets of the frame before; writes the offsets s* − s and how many steps each search took.
 // The tests have the same on the host, operation by operation.
-#include "reflection_reuse/square_ring.glsl"
 #include "reflections/gbuffer.glsl"
 
 layout(local_size_x = GROUP_SIZE, local_size_y = GROUP_SIZE) in;
@@ -18,7 +17,6 @@ uniform float diagonalM;
 uniform bool hasPrevious;
 uniform int maxSteps;
 uniform float silhouette;
-uniform int widestRingPx;
 
 // A sample of the key frame as the search sees it: a plane, and by how much the reflection misses
 // the eye there.
@@ -84,25 +82,23 @@ bool isOnReflector(ivec2 pixel, uint reflector) {
            reflectorOf(texelFetch(gbufferSurface, pixel, 0).r) == reflector;
 }
 
-// Whether a sample, `reach` steps away, continues the surface: no silhouette lies between.
-bool isNeighbour(Candidate from, ivec2 pixel, int reach, uint reflector, out float depthM) {
+// Whether a sample next to it continues the surface: no silhouette lies between.
+bool isNeighbour(Candidate from, ivec2 pixel, uint reflector, out float depthM) {
     depthM = 0.0;
     if (!isOnReflector(pixel, reflector)) return false;
     depthM = texelFetch(gbufferDepth, pixel, 0).r;
-    return abs(depthM - from.depthM) <= float(reach) * silhouette * min(depthM, from.depthM);
+    return abs(depthM - from.depthM) <= silhouette * min(depthM, from.depthM);
 }
 
-// The best of the samples of the square ring `reach` pixels from where the search is, or that
-// itself.
-Candidate bestOfRing(Candidate at, int reach, uint reflector, vec3 reflected,
-                     out float reachSquared) {
+// The best of the eight samples around where the search is, or that itself.
+Candidate bestAround(Candidate at, uint reflector, vec3 reflected, out float reachSquared) {
     Candidate best = at;
     float bestSquared = squared(best.miss);
     reachSquared = 0.0;
-    for (int i = 0; i < 8 * reach; ++i) {
-        ivec2 pixel = at.pixel + onRing(i, reach);
+    for (int i = 0; i < 9; ++i) {
+        ivec2 pixel = at.pixel + ivec2(i % 3 - 1, i / 3 - 1);
         float depthM;
-        if (!isNeighbour(at, pixel, reach, reflector, depthM)) continue;
+        if (i == 4 || !isNeighbour(at, pixel, reflector, depthM)) continue;
         Candidate candidate = candidateAt(pixel, depthM, reflected);
         reachSquared = max(reachSquared, squared(candidate.miss - at.miss));
         float distanceSquared = squared(candidate.miss);
@@ -114,16 +110,10 @@ Candidate bestOfRing(Candidate at, int reach, uint reflector, vec3 reflected,
     return best;
 }
 
-// The loop of Algorithm 9. Samples beyond a silhouette are no candidates. With widestRingPx > 1 a
-// minimum has to be one among wider rings, too.
+// The loop of Algorithm 9. Samples beyond a silhouette are no candidates.
 Search searchRings(Search search, uint reflector, vec3 reflected) {
     for (; search.steps <= maxSteps; ++search.steps) {
-        Candidate best =
-            bestOfRing(search.at, 1, reflector, reflected, search.reachSquared);
-        for (int reach = 2; reach <= widestRingPx && best.pixel == search.at.pixel; ++reach) {
-            float ignored;
-            best = bestOfRing(search.at, reach, reflector, reflected, ignored);
-        }
+        Candidate best = bestAround(search.at, reflector, reflected, search.reachSquared);
         if (best.pixel == search.at.pixel) {
             search.isOver = true;
             return search;
@@ -144,7 +134,7 @@ vec3 missDifference(Search search, ivec2 axis, uint reflector, vec3 reflected,
     for (int side = -1; side <= 1; side += 2) {
         ivec2 pixel = search.at.pixel + side * axis;
         float depthM;
-        if (!isNeighbour(search.at, pixel, 1, reflector, depthM)) continue;
+        if (!isNeighbour(search.at, pixel, reflector, depthM)) continue;
         vec3 difference = candidateAt(pixel, depthM, reflected).miss - search.at.miss;
         reachSquared = max(reachSquared, squared(difference));
         sum += float(side) * difference;

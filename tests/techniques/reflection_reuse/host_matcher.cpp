@@ -20,15 +20,6 @@ float squared(const glm::vec3& v) {
     return glm::dot(v, v);
 }
 
-/// The samples of the square ring `reach` pixels around 0, row by row.
-glm::ivec2 onRing(int i, int reach) {
-    const int width = 2 * reach + 1;
-    if (i < width) return {i - reach, -reach};
-    if (i >= 8 * reach - width) return {i - 8 * reach + reach + 1, reach};
-    const int between = i - width;
-    return {between % 2 == 0 ? -reach : reach, between / 2 - reach + 1};
-}
-
 /// One search, for one sample of the key frame.
 class Search {
   public:
@@ -74,12 +65,11 @@ class Search {
 
     bool isOnReflector(glm::ivec2 pixel) const { return gbuffer_.reflectorAt(pixel) == reflector_; }
 
-    /// Whether a sample, `reach` steps away, continues the surface: no silhouette lies between.
-    bool isNeighbour(glm::ivec2 pixel, int reach = 1) const {
+    /// Whether a sample next to it continues the surface: no silhouette lies between.
+    bool isNeighbour(glm::ivec2 pixel) const {
         if (!isOnReflector(pixel)) return false;
         const float depth = gbuffer_.depthM[gbuffer_.indexOf(pixel)];
-        return std::abs(depth - at_.depthM) <=
-               static_cast<float>(reach) * settings_.silhouette * std::min(depth, at_.depthM);
+        return std::abs(depth - at_.depthM) <= settings_.silhouette * std::min(depth, at_.depthM);
     }
 
     glm::ivec2 startOf(const std::optional<glm::vec2>& previous) const {
@@ -88,15 +78,15 @@ class Search {
         return isOnReflector(start) ? start : sample_;
     }
 
-    Candidate bestOfRing(int reach, float& reachSquared) const {
+    Candidate bestAround() {
         Candidate best = at_;
         float bestSquared = squared(at_.miss);
-        reachSquared = 0.0F;
-        for (int i = 0; i < 8 * reach; ++i) {
-            const glm::ivec2 pixel = at_.pixel + onRing(i, reach);
-            if (!isNeighbour(pixel, reach)) continue;
+        reachSquared_ = 0.0F;
+        for (int i = 0; i < 9; ++i) {
+            const glm::ivec2 pixel = at_.pixel + glm::ivec2(i % 3 - 1, i / 3 - 1);
+            if (i == 4 || !isNeighbour(pixel)) continue;
             const Candidate candidate = candidateAt(pixel);
-            reachSquared = std::max(reachSquared, squared(candidate.miss - at_.miss));
+            reachSquared_ = std::max(reachSquared_, squared(candidate.miss - at_.miss));
             const float distanceSquared = squared(candidate.miss);
             if (distanceSquared < bestSquared) {
                 bestSquared = distanceSquared;
@@ -108,12 +98,7 @@ class Search {
 
     void searchRings() {
         for (; match_.steps <= settings_.maxSteps; ++match_.steps) {
-            Candidate best = bestOfRing(1, reachSquared_);
-            for (int reach = 2; reach <= settings_.widestRingPx && best.pixel == at_.pixel;
-                 ++reach) {
-                float ignored = 0.0F;
-                best = bestOfRing(reach, ignored);
-            }
+            const Candidate best = bestAround();
             if (best.pixel == at_.pixel) {
                 isOver_ = true;
                 return;

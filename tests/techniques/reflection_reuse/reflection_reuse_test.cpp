@@ -114,7 +114,6 @@ TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
             {"{method: ray_traced, seam_px: 1}",
              "31: 'seam_px' needs 'method: reuse' or 'method: direct'"},
             {"{method: direct, matching: second_order}", "28: 'matching' needs 'method: reuse'"},
-            {"{method: direct, widest_ring: 2}", "31: 'widest_ring' needs 'method: reuse'"},
             {"{method: direct, resampling: gather}", "30: 'resampling' needs 'method: reuse'"},
             {"{matching: second_order}", "12: 'matching' needs 'resampling: twice'"},
             {"{resampling: gather, exhaustive_samples: 9}",
