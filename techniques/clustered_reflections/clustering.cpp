@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <set>
 #include <utility>
 
@@ -17,77 +16,51 @@
 
 namespace gfxrepro::clustered_reflections {
 
-BinTables::BinTables(const BinSettings& settings)
-    : maxBins(settings.maxThetaBins, settings.maxPhiBins) {
-    GFXREPRO_ASSERT(maxBins.x >= 1 && maxBins.y >= 1);
-    GFXREPRO_ASSERT(settings.exponent >= 0.0F && settings.gain > 0.0F);
-    for (const int most : {maxBins.x, maxBins.y}) {
+glm::ivec2 binsOf(const BinSettings& settings, std::uint32_t area, std::uint32_t total,
+                  std::uint32_t visible) {
+    const float scale =
+        static_cast<float>(area) / (static_cast<float>(total) * static_cast<float>(visible));
+    const glm::vec2 most(settings.maxThetaBins, settings.maxPhiBins);
+    const float share = std::pow(scale * settings.gain, settings.exponent);
+    return glm::ivec2(glm::clamp(glm::floor(most * share + 0.5F), glm::vec2(1.0F), most));
+}
+
+long long mostBins(const BinSettings& settings, std::vector<int> parts) {
+    // The bins of one reflector by its scale a_R / n_v: corners of a staircase, where one of the
+    // axes has a bin more.
+    std::vector<double> steps[2];
+    const double exponent = settings.exponent;
+    for (const int axis : {0, 1}) {
+        const int most = axis == 0 ? settings.maxThetaBins : settings.maxPhiBins;
         for (int bins = 2; bins <= most; ++bins) {
-            // round(most · (scale · gain)^exponent) ≥ bins, solved for the scale; with exponent 0
-            // the power is 1 and every scale will do.
             const double share = (bins - 0.5) / most;
-            const double exponent = settings.exponent;
-            const double least =
-                exponent > 0.0 ? std::pow(share, 1.0 / exponent) / double{settings.gain} : 0.0;
-            leastScale.push_back(static_cast<float>(least));
+            steps[axis].push_back(
+                exponent > 0.0 ? std::pow(share, 1.0 / exponent) / double{settings.gain} : 0.0);
         }
     }
-    for (int bins = 2; bins <= maxBins.x; ++bins) {
-        for (int k = 1; k < bins; ++k) {
-            const double theta = 2.0 * std::numbers::pi * k / bins;
-            thetaBorders.emplace_back(std::cos(theta), std::sin(theta));
-        }
-    }
-    for (int bins = 2; bins <= maxBins.y; ++bins) {
-        for (int k = 1; k < bins; ++k) {
-            const double cosine = std::cos(std::numbers::pi * k / bins);
-            phiBorders.push_back(static_cast<float>(cosine * std::abs(cosine)));
-        }
-    }
-}
-
-glm::ivec2 BinTables::binsOf(std::uint32_t area, std::uint32_t total, std::uint32_t visible) const {
-    const float totalTimesVisible = static_cast<float>(total) * static_cast<float>(visible);
-    glm::ivec2 bins(1);
-    std::size_t at = 0;
-    for (int axis = 0; axis < 2; ++axis) {
-        for (int k = 2; k <= maxBins[axis]; ++k) {
-            if (static_cast<float>(area) >= leastScale[at++] * totalTimesVisible) ++bins[axis];
-        }
-    }
-    return bins;
-}
-
-long long BinTables::mostBins(std::vector<int> parts) const {
-    // The bins of one reflector by its scale a_R / n_v: corners of the staircase, in order.
     std::vector<glm::dvec2> corners{{0.0, 1.0}};
-    std::vector<float> scales = leastScale;
-    std::ranges::sort(scales);
-    for (const float scale : scales) {
-        int bins[2] = {1, 1};
-        for (std::size_t at = 0; at < leastScale.size(); ++at) {
-            const int axis = at < static_cast<std::size_t>(maxBins.x - 1) ? 0 : 1;
-            bins[axis] += scale >= leastScale[at] ? 1 : 0;
-        }
-        const glm::dvec2 corner(scale, bins[0] * bins[1]);
-        // Its upper convex hull: no corner below the line from the one before to the one after.
-        while (corners.size() > 1 && corner.y > corners.back().y) {
-            const glm::dvec2 a = corners[corners.size() - 2], b = corners.back();
-            if ((b.y - a.y) * (corner.x - a.x) > (corner.y - a.y) * (b.x - a.x)) break;
-            corners.pop_back();
-        }
-        if (corner.x == corners.back().x) {
-            corners.back().y = std::max(corners.back().y, corner.y);
-        } else {
-            corners.push_back(corner);
+    for (const std::vector<double>& ofAxis : steps) {
+        for (const double scale : ofAxis) {
+            double bins = 1.0;
+            for (const std::vector<double>& all : steps) {
+                bins *= static_cast<double>(
+                    1 + std::ranges::count_if(all, [&](double step) { return step <= scale; }));
+            }
+            corners.emplace_back(scale, bins);
         }
     }
+    // On the lines between any two of them.
     const auto atMost = [&](double scale) {
-        for (std::size_t i = 1; i < corners.size(); ++i) {
-            const glm::dvec2 a = corners[i - 1], b = corners[i];
-            if (scale < b.x) return a.y + (b.y - a.y) * (scale - a.x) / (b.x - a.x);
+        double most = 0.0;
+        for (const glm::dvec2& a : corners) {
+            if (a.x > scale) continue;
+            most = std::max(most, a.y);
+            for (const glm::dvec2& b : corners) {
+                if (b.x <= scale) continue;
+                most = std::max(most, glm::mix(a.y, b.y, (scale - a.x) / (b.x - a.x)));
+            }
         }
-        return corners.back().y;
+        return most;
     };
     // Of n visible objects the scales of all m parts add up to 1 / n: on a concave curve the most
     // is where all are the same. Most parts have the objects with most of them.
@@ -217,7 +190,6 @@ void buildKdClusters(const reflections::GBuffer& gbuffer, const gl::Texture* wan
         if (!ofReflectors[r].empty()) visibleWholes.insert(wholeOf(families[r]));
     }
     const auto visible = static_cast<std::uint32_t>(visibleWholes.size());
-    const BinTables tables(bins);
     const auto width = static_cast<std::uint32_t>(host.view.sizePx.x);
     std::vector<std::uint16_t> clusterOfSample(host.surface.size(), 0);
     std::vector<std::uint32_t> sorted;
@@ -226,7 +198,7 @@ void buildKdClusters(const reflections::GBuffer& gbuffer, const gl::Texture* wan
         std::vector<Sample>& samples = ofReflectors[r];
         if (samples.empty()) continue;
         const auto area = static_cast<std::uint32_t>(samples.size());
-        const glm::ivec2 grid = tables.binsOf(area, total, visible);
+        const glm::ivec2 grid = binsOf(bins, area, total, visible);
         const int budget = isPlanar(families[r]) ? 1 : (grid.x * grid.y + 1) / 2;
         normalizePositions(samples);
         for (const Cell& cell : split(samples, static_cast<std::size_t>(budget))) {
@@ -297,11 +269,10 @@ std::vector<std::uint32_t> reflectorFamilies(const reflections::ReflectiveScene&
 
 /// Passes and scratch of the clustering by normals.
 struct ClusterBuilder::NormalBinPasses {
-    NormalBinPasses(const gl::ShaderLibrary& shaders, const BinSettings& settings,
+    NormalBinPasses(const gl::ShaderLibrary& shaders, const BinSettings& binSettings,
                     const std::vector<std::uint32_t>& families, const Clusters& clusters)
-        : tables(settings),
+        : settings(binSettings),
           sizePx(clusters.clusterOfSample.size()),
-          leastSamples(static_cast<std::uint32_t>(settings.leastSamples)),
           areas(compute(shaders, "reflector_areas", kGroupSize)),
           bins(compute(shaders, "reflector_bins", kScanGroupSize)),
           assign(wholeImage(shaders, "assign_bins")),
@@ -311,9 +282,6 @@ struct ClusterBuilder::NormalBinPasses {
           sort(compute(shaders, "sort_samples", kGroupSize)),
           label(wholeImage(shaders, "label_clusters")),
           areaOfReflector(families.size() * sizeof(std::uint32_t)),
-          leastScale(gl::Buffer::of(tables.leastScale)),
-          thetaBorders(gl::Buffer::of(tables.thetaBorders)),
-          phiBorders(gl::Buffer::of(tables.phiBorders)),
           binOfSample(gl::Texture::make2D(GL_R16UI, sizePx)),
           binTarget(framebufferOf(binOfSample)),
           clusterTarget(framebufferOf(clusters.clusterOfSample)) {
@@ -334,11 +302,11 @@ struct ClusterBuilder::NormalBinPasses {
 
         bins.set("reflectorCount",
                  static_cast<int>(areaOfReflector.sizeBytes() / sizeof(std::uint32_t)) - 1);
-        bins.set("maxThetaBins", tables.maxBins.x);
-        bins.set("maxPhiBins", tables.maxBins.y);
+        bins.set("maxBins", glm::vec2(settings.maxThetaBins, settings.maxPhiBins));
+        bins.set("exponent", settings.exponent);
+        bins.set("gain", settings.gain);
         bins.set("pixelCount", sizePx.x * sizePx.y);
         bins.dispatch({1, 1, 1}, {{"Areas", areaOfReflector},
-                                  {"Thresholds", leastScale},
                                   {"Reflectors", reflectors},
                                   {"SortLayout", layout},
                                   {"Bins", binRecords},
@@ -348,9 +316,7 @@ struct ClusterBuilder::NormalBinPasses {
                     {"normals", gbuffer.normal},
                     {"wanted", wanted},
                     {"Reflectors", reflectors},
-                    {"SortLayout", layout},
-                    {"ThetaBorders", thetaBorders},
-                    {"PhiBorders", phiBorders}});
+                    {"SortLayout", layout}});
         binTarget.bind();
         image.draw();
     }
@@ -366,7 +332,7 @@ struct ClusterBuilder::NormalBinPasses {
         count.dispatch(blocks, gl::Resources{}.with(sorted));
         scan.dispatch({kit::groupsFor(kMatrixEntries, kPieceLength), 1, 1},
                       gl::Resources{}.with(sorted));
-        number.set("leastSamples", leastSamples);
+        number.set("leastSamples", static_cast<std::uint32_t>(settings.leastSamples));
         number.dispatch({1, 1, 1}, gl::Resources{{"Bins", binRecords},
                                                  {"Ranges", clusters.ranges},
                                                  {"Counts", clusters.counts}}
@@ -381,22 +347,19 @@ struct ClusterBuilder::NormalBinPasses {
     std::size_t sizeBytes() const {
         std::size_t sum = binOfSample.sizeBytes();
         for (const gl::Buffer* buffer :
-             {&areaOfReflector, &reflectors, &layout, &binRecords, &matrix, &pieces, &leastScale,
-              &thetaBorders, &phiBorders}) {
+             {&areaOfReflector, &reflectors, &layout, &binRecords, &matrix, &pieces}) {
             sum += buffer->sizeBytes();
         }
         return sum;
     }
 
-    BinTables tables;
+    BinSettings settings;
     glm::ivec2 sizePx;
-    std::uint32_t leastSamples;
     gl::Pass areas, bins, assign, count, scan, number, sort, label;
     gl::Buffer areaOfReflector, reflectors;
     gl::Buffer layout{3 * sizeof(std::uint32_t)}, binRecords{kMaxClusters * sizeof(std::uint32_t)};
     gl::Buffer matrix{kMatrixEntries * sizeof(std::uint32_t)};
     gl::Buffer pieces{kScanGroupSize * sizeof(std::uint32_t)};
-    gl::Buffer leastScale, thetaBorders, phiBorders;
     gl::Texture binOfSample;  // R16UI: 1 + bin; 0: not reflective
     gl::Framebuffer binTarget, clusterTarget;
     kit::WholeImage image;
@@ -415,7 +378,7 @@ ClusterBuilder::ClusterBuilder(const gl::ShaderLibrary& shaders,
         ++curved;
     }
     const int planar = scene.reflectorCount() - curved;
-    const long long most = BinTables(bins).mostBins(std::move(curvedParts)) + planar;
+    const long long most = mostBins(bins, std::move(curvedParts)) + planar;
     if (most > kMaxClusters) {
         throw UnsupportedError(fmt::format(
             "{} curved reflectors of {} × {} bins and {} planar ones may make {} clusters; at most "

@@ -83,23 +83,12 @@ constexpr std::uint32_t wholeOf(std::uint32_t family) {
     return family >> 2;
 }
 
-struct BinTables {
-    explicit BinTables(const BinSettings& settings);
-
-    /// Theta and phi bins of a curved reflector with `area` of `total` reflective samples, one of
-    /// `visible` reflectors.
-    glm::ivec2 binsOf(std::uint32_t area, std::uint32_t total, std::uint32_t visible) const;
-    /// No more bins than this have curved reflectors together, whatever their areas are; `parts`
-    /// has the number of them that each object consists of.
-    long long mostBins(std::vector<int> parts) const;
-
-    glm::ivec2 maxBins;
-    /// The least a_R / n_v for k + 2 theta bins, k = 0 … maxThetaBins − 2; then for phi's.
-    std::vector<float> leastScale;
-    /// (cos, sin) of border k = 1 … n − 1 between n theta bins, n = 2 … maxThetaBins.
-    std::vector<glm::vec2> thetaBorders;
-    /// cos · |cos| of border k = 1 … n − 1 between n phi bins, n = 2 … maxPhiBins.
-    std::vector<float> phiBorders;
-};
+/// Theta and phi bins of a curved reflector with `area` of `total` reflective samples, one of
+/// `visible` reflectors. shaders/reflector_bins.comp.glsl has the same.
+glm::ivec2 binsOf(const BinSettings& settings, std::uint32_t area, std::uint32_t total,
+                  std::uint32_t visible);
+/// No more bins than this have curved reflectors together, whatever their areas are; `parts` has
+/// the number of them that each object consists of.
+long long mostBins(const BinSettings& settings, std::vector<int> parts);
 
 }  // namespace gfxrepro::clustered_reflections

@@ -7,24 +7,18 @@
 layout(local_size_x = GROUP_SIZE) in;
 
 layout(std430) restrict readonly buffer Areas { uint areas[]; };
-// The least scale for k + 2 bins, over the gain: theta's, then phi's (see BinTables).
-layout(std430) restrict readonly buffer Thresholds { float leastScale[]; };
 layout(std430) restrict writeonly buffer Bins { uint reflectorOfBin[]; };
 layout(std430) restrict writeonly buffer Counts { uint clusterCount, sampleCount, visibleCount; };
 
 uniform int reflectorCount;
-uniform int maxThetaBins;
-uniform int maxPhiBins;
+uniform vec2 maxBins;  // theta's and phi's
+uniform float exponent;
+uniform float gain;
 uniform int pixelCount;
 
-// clamp(round(maxBins · (area / (total · visible) · gain)^exponent), 1, maxBins), with products in
-// place of the quotient and of the power: correctly rounded on every device.
-uint binsOf(uint area, float totalTimesVisible, int first, int maxBins) {
-    uint bins = 1u;
-    for (int k = first; k < first + maxBins - 1; ++k) {
-        if (float(area) >= leastScale[k] * totalTimesVisible) ++bins;
-    }
-    return bins;
+// As binsOf() of clustering.cpp; `scale` is a_R / n_v.
+uvec2 binsOf(float scale) {
+    return uvec2(clamp(floor(maxBins * pow(scale * gain, exponent) + 0.5), vec2(1.0), maxBins));
 }
 
 // Whether no part of the same object before it is visible.
@@ -51,13 +45,11 @@ void main() {
     exclusiveScan(visible, allVisible);
     exclusiveScan(area, total);
 
-    float totalTimesVisible = float(total) * float(allVisible);
     uint bins = 0u;
     for (int r = first; r < end; ++r) {
         uvec2 grid = uvec2(areas[r] > 0u ? 1u : 0u);
         if (areas[r] > 0u && (reflectors[r].w & 1u) == 0u) {
-            grid.x = binsOf(areas[r], totalTimesVisible, 0, maxThetaBins);
-            grid.y = binsOf(areas[r], totalTimesVisible, maxThetaBins - 1, maxPhiBins);
+            grid = binsOf(float(areas[r]) / (float(total) * float(allVisible)));
         }
         reflectors[r].xyz = uvec3(grid, bins);
         bins += grid.x * grid.y;

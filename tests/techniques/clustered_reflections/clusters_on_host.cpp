@@ -10,47 +10,20 @@
 
 namespace gfxrepro::clustered_reflections {
 
-namespace {
-
-/// Borders between n bins begin here.
-std::size_t firstBorder(int bins) {
-    return static_cast<std::size_t>((bins - 1) * (bins - 2) / 2);
-}
-
-bool isInSecondHalf(const glm::vec2& v) {
-    return !(v.y > 0.0F || (v.y == 0.0F && v.x > 0.0F));
-}
-
-/// Is the angle of a at least that of b, both in [0°, 360°) from +x? As in assign_bins.frag.
-bool isAtLeast(const glm::vec2& a, const glm::vec2& b) {
-    if (isInSecondHalf(a) != isInSecondHalf(b)) return isInSecondHalf(a);
-    return b.x * a.y >= b.y * a.x;
-}
-
-}  // namespace
-
-glm::ivec2 binOnHost(const BinTables& tables, const glm::vec2& normalOctahedral,
-                     const glm::ivec2& bins) {
-    const glm::vec3 n = reflections::directionFromOctahedral(normalOctahedral);
-    glm::ivec2 bin(0);
-    if (n.x != 0.0F || n.z != 0.0F) {
-        for (int k = 1; k < bins.x; ++k) {
-            const auto border = firstBorder(bins.x) + static_cast<std::size_t>(k - 1);
-            if (isAtLeast({n.x, n.z}, tables.thetaBorders[border])) bin.x = k;
-        }
-    }
-    const float lengthSquare = n.x * n.x + n.y * n.y + n.z * n.z;
-    for (int k = 1; k < bins.y; ++k) {
-        const auto border = firstBorder(bins.y) + static_cast<std::size_t>(k - 1);
-        if (n.y * std::abs(n.y) <= tables.phiBorders[border] * lengthSquare) bin.y = k;
-    }
-    return bin;
+glm::ivec2 binOnHost(const glm::vec2& normalOctahedral, const glm::ivec2& bins) {
+    const glm::dvec3 n(reflections::directionFromOctahedral(normalOctahedral));
+    double theta = n.x == 0.0 && n.z == 0.0 ? 0.0 : std::atan2(n.z, n.x);
+    if (theta < 0.0) theta += 2.0 * std::numbers::pi;
+    const double phi = std::atan2(std::hypot(n.x, n.z), n.y);
+    // On a border, the bin that begins there (assign_bins.frag).
+    const glm::dvec2 angles = glm::dvec2(theta, phi) + 1e-5;
+    const glm::dvec2 at = angles / std::numbers::pi / glm::dvec2(2.0, 1.0) * glm::dvec2(bins);
+    return glm::min(glm::ivec2(at), bins - 1);
 }
 
 HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
                            const reflections::ReflectiveScene& scene, const BinSettings& bins,
                            const std::vector<std::uint8_t>* wanted) {
-    const BinTables tables(bins);
     const std::vector<std::uint32_t> families = reflectorFamilies(scene);
     const std::size_t pixels = gbuffer.surface.size();
     const auto reflectorAt = [&](std::size_t i) {
@@ -74,7 +47,7 @@ HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
         firstBins[r] = static_cast<int>(reflectorOfBin.size());
         if (areas[r] == 0) continue;
         const auto visibleCount = static_cast<std::uint32_t>(visible.size());
-        if (!isPlanar(families[r])) grids[r] = tables.binsOf(areas[r], total, visibleCount);
+        if (!isPlanar(families[r])) grids[r] = binsOf(bins, areas[r], total, visibleCount);
         const auto count = static_cast<std::size_t>(grids[r].x * grids[r].y);
         reflectorOfBin.insert(reflectorOfBin.end(), count, static_cast<int>(r));
     }
@@ -84,7 +57,7 @@ HostClusters clusterOnHost(const reflections::HostGBuffer& gbuffer,
     for (std::size_t i = 0; i < pixels; ++i) {
         const std::size_t r = reflectorAt(i);
         if (r == 0) continue;
-        const glm::ivec2 ij = binOnHost(tables, gbuffer.normalOctahedral[i], grids[r]);
+        const glm::ivec2 ij = binOnHost(gbuffer.normalOctahedral[i], grids[r]);
         bin[i] = firstBins[r] + ij.y * grids[r].x + ij.x;
         ++samplesOfBin[static_cast<std::size_t>(bin[i])];
     }

@@ -10,11 +10,9 @@
 namespace gfxrepro::clustered_reflections {
 
 /// (i, j) of a normal as the G-buffer stores it.
-glm::ivec2 binOnHost(const BinTables& tables, const glm::vec2& normalOctahedral,
-                     const glm::ivec2& bins);
+glm::ivec2 binOnHost(const glm::vec2& normalOctahedral, const glm::ivec2& bins);
 
-/// ClusterBuilder::build() by NormalBins, to the bit. Reads
-/// HostGBuffer::normalOctahedral and surface.
+/// ClusterBuilder::build() by NormalBins. Reads HostGBuffer::normalOctahedral and surface.
 struct HostClusters {
     int clusterCount = 0, visibleReflectors = 0;
     std::vector<std::uint16_t> clusterOfSample;  // 1 + cluster; 0: not reflective
