@@ -81,9 +81,6 @@ ReuseSettings readReuse(Params& params) {
         {"ε: share by which the depth of a reused sample may be off", "1", 0.0, 1.0}));
     settings.recomputesMoved = params.getBool(
         "moved_objects", false, {"recomputes what an object that moved reflects in or hides"});
-    settings.seamPx = params.getInt(
-        "seam_px", 0,
-        {"width over which recomputed samples are mixed with reused neighbours", "pixels", 0, 64});
     return settings;
 }
 
@@ -118,7 +115,7 @@ ReuseParams::ReuseParams(Params& params)
     reuse.isDirect = method == Method::Direct;
     if (method == Method::RayTraced) {
         params.refuseGiven({"threshold", "silhouette", "forward", "max_growth", "depth_tolerance",
-                            "moved_objects", "seam_px"},
+                            "moved_objects"},
                            "'method: reuse' or 'method: direct'");
     }
     if (method != Method::Reuse) {

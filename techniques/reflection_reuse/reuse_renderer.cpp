@@ -121,7 +121,6 @@ ReuseRenderer::ReuseRenderer(const gl::ShaderLibrary& shaders,
       traced_(sizePx),
       offsets_{Offsets(sizePx), Offsets(sizePx)},
       wanted_(gl::Texture::make2D(GL_R8UI, sizePx)) {
-    GFXREPRO_ASSERT(settings.seamPx >= 0);
     if (!settings.isDirect && !isGathered(settings)) shifted_.emplace(sizePx);
 }
 
@@ -204,15 +203,8 @@ void ReuseRenderer::match(gl::Profiler& profiler) {
 }
 
 void ReuseRenderer::mendReflections() {
-    // Read while it is drawn to: OpenGL 4.5 (Sec. 9.3.1) allows it where the texels read and
-    // those written are different ones, as reused and recomputed samples are.
-    glTextureBarrier();
-    mend_.set("seamPx", settings_.seamPx);
-    mend_.use(gl::Resources{{"wanted", wanted_},
-                            {"traced", traced_.radiance},
-                            {"tracedDistance", traced_.distance},
-                            {"reused", reflection_.radiance}}
-                  .with(gbuffer_.resourcesFor(mend_)));
+    mend_.use(
+        {{"wanted", wanted_}, {"traced", traced_.radiance}, {"tracedDistance", traced_.distance}});
     reflection_.framebuffer.bind();
     recomputed_.begin();
     wholeImage_.draw();

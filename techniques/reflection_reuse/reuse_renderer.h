@@ -60,9 +60,6 @@ struct ReuseSettings {
     /// Outlook of Sec. 5.5.4: samples whose reflected segment, then or now, passes the box of an
     /// object that has moved since the key frame are recomputed.
     bool recomputesMoved = false;
-    /// Outlook: recomputed samples within this distance of a reused one of their reflector are
-    /// mixed with the reused ones around; pixels, 0: none.
-    int seamPx = 0;
 };
 
 /// Of one frame.

@@ -66,7 +66,7 @@ TEST_F(ReuseTest, EveryReflectiveSampleIsReusedOrRecomputed) {
             if (frame.recomputed[i] == 0) continue;
             ++recomputed;
             EXPECT_TRUE(frame.gbuffer.isReflective(i));
-            // Without a seam, just what the tracer says.
+            // Just what the tracer says.
             EXPECT_LE(reflections::largestDifference(frame.radiance[i], truth[i].radiance), 1e-3F);
         }
         EXPECT_EQ(frame.counts.reflectiveSamples, reflective);
@@ -225,37 +225,6 @@ TEST_F(ReuseTest, TheDeviceHasAFrameToDrawWhileTheLastOnesCountIsWaitedFor) {
     const auto firstWait = std::ranges::find(calls, reflections::GlCall::Wait);
     EXPECT_EQ(std::count(calls.begin(), firstWait, reflections::GlCall::DrawObject),
               world.objects.objectCount());  // its G-buffer
-}
-
-TEST_F(ReuseTest, SeamsAreMixedWithinTheirWidthOnly) {
-    constexpr int kSeamPx = 3;
-    World plain(shaders, mirrorRoom(), {});
-    World mixed(shaders, mirrorRoom(), {.seamPx = kSeamPx});
-    plain.render(front());
-    mixed.render(front());
-    const Frame without = plain.render(front(0.1F));
-    const Frame with = mixed.render(front(0.1F));
-    ASSERT_EQ(without.recomputed, with.recomputed);
-    int changed = 0;
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) {
-            const std::size_t i = with.gbuffer.indexOf({x, y});
-            if (!with.gbuffer.isReflective(i) || with.radiance[i] == without.radiance[i]) continue;
-            ++changed;
-            EXPECT_EQ(with.recomputed[i], 1);
-            float nearest = 1e9F;
-            for (int dy = -kSeamPx; dy <= kSeamPx; ++dy) {
-                for (int dx = -kSeamPx; dx <= kSeamPx; ++dx) {
-                    const glm::ivec2 at(x + dx, y + dy);
-                    if (with.gbuffer.reflectorAt(at) != with.gbuffer.reflector(i)) continue;
-                    if (with.recomputed[with.gbuffer.indexOf(at)] != 0) continue;
-                    nearest = std::min(nearest, glm::length(glm::vec2(dx, dy)));
-                }
-            }
-            EXPECT_LE(nearest, static_cast<float>(kSeamPx)) << x << " " << y;
-        }
-    }
-    EXPECT_GT(changed, 50);
 }
 
 TEST_F(ReuseTest, PassesAreThoseOfTheThesis) {
