@@ -159,6 +159,17 @@ std::optional<Part> behindJpeg(Part bytes) {
     return bytes.subspan(end + 2);
 }
 
+/// Of four inks, which printers have, stb makes colours by the Adobe marker alone, and by a
+/// formula.
+void requireNoInks(Part bytes, const std::string& name) {
+    for (const int frame : {0xC0, 0xC1, 0xC2}) {
+        for (const Part head : segmentsOf(bytes, frame, "")) {
+            if (numberAt(head, 5, 1, false) != 4) continue;
+            throw Error(name + ": its colours are four inks (CMYK); grey and RGB are allowed");
+        }
+    }
+}
+
 }  // namespace
 
 void flipRows(ImageF& image) {
@@ -181,8 +192,9 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
     }
     checkDeclaredSize(width, height, 4, bytes.size(), name, kMaxSidePx, use);
     // stb fills up what is not there.
-    if (textOf(bytes).starts_with("\xFF\xD8") && !behindJpeg(bytes)) {
-        throw Error(name + ": the file ends early");
+    if (textOf(bytes).starts_with("\xFF\xD8")) {
+        if (!behindJpeg(bytes)) throw Error(name + ": the file ends early");
+        requireNoInks(bytes, name);
     }
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
         stbi_load_from_memory(data, size, &width, &height, &channels, channels), stbi_image_free);

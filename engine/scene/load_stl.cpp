@@ -130,10 +130,12 @@ Mesh textMesh(std::string_view text, const std::string& file, const glm::dvec3& 
     LineReader lines(text, file);
     Mesh mesh;
     std::size_t corners = 0;
+    bool isWithin = true;  // a solid, which has its end
     while (lines.nextLine()) {
         for (std::string word(lines.word()); !word.empty(); word = lines.word()) {
             std::ranges::transform(word, word.begin(),
                                    [](unsigned char c) { return std::tolower(c); });
+            isWithin = word != "endsolid";
             if (word == "solid" || word == "endsolid") break;  // a name follows
             if (word == "vertex") {
                 addCorner(mesh, lines.position(offset));
@@ -156,6 +158,7 @@ Mesh textMesh(std::string_view text, const std::string& file, const glm::dvec3& 
         }
     }
     if (corners > 0) lines.fail("the file ends within a facet");
+    if (isWithin) lines.fail("the file ends without 'endsolid'");
     return mesh;
 }
 

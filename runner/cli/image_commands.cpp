@@ -467,11 +467,18 @@ Image8 convertedPicture(const ImageConvertOptions& options) {
     return shown(interleaved(image), options);
 }
 
-ExrImage exrOf(const ImageF& image, image::ExrPixelType type = image::ExrPixelType::Half) {
+/// Of values as they are: a half ends at 65504.
+ExrImage exrOf(const ImageF& image) {
     static const std::vector<std::string> kNames[] = {
         {}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     ExrImage exr;
-    exr.add(image, kNames[image.channels()], type);
+    exr.add(image, kNames[image.channels()], image::ExrPixelType::Float);
+    return exr;
+}
+
+ExrImage exrTelling(const std::string& file) {
+    ExrImage exr = image::readExr(file);
+    for (const std::string& note : exr.notes) tell("{}: {}\n", file, note);
     return exr;
 }
 
@@ -479,7 +486,7 @@ ExrImage exrFrom(const ImageConvertOptions& options) {
     if (options.toneMap != "none" || !options.range.empty()) {
         throw UsageError("--tonemap and --range are for PNG files; an EXR keeps its numbers");
     }
-    ExrImage exr = image::formatOf(options.in) == "exr" ? image::readExr(options.in)
+    ExrImage exr = image::formatOf(options.in) == "exr" ? exrTelling(options.in)
                                                         : exrOf(readTelling(options.in).linear);
     if (!options.channels.empty()) exr = picked(exr, options.channels, options.in);
     const auto scale = static_cast<float>(std::exp2(options.exposureStops));
@@ -487,6 +494,8 @@ ExrImage exrFrom(const ImageConvertOptions& options) {
         const bool isColour = channel.name == "R" || channel.name == "G" || channel.name == "B" ||
                               channel.name == "Y";
         if (!isColour) continue;
+        if (scale == 1.0F) continue;
+        channel.type = image::ExrPixelType::Float;
         for (float& value : channel.values.values()) value *= scale;
     }
     return exr;
@@ -528,10 +537,12 @@ int imageCrop(const ImageCropOptions& options) {
                         options.in, options.out));
     }
     requireNoInput(options.out, {&options.in, 1});
-    const image::Rectangle part{options.left, options.top, options.width, options.height};
+    image::Rectangle part{options.left, options.top, options.width, options.height};
     if (isExr || picture.isLinear) {
-        const ExrImage exr =
-            isExr ? image::readExr(options.in) : exrOf(picture.linear, image::ExrPixelType::Float);
+        const ExrImage exr = isExr ? exrTelling(options.in) : exrOf(picture.linear);
+        // Counted from the corner of what is shown.
+        part.left += exr.shownWindow().left - exr.dataWindow().left;
+        part.top += exr.shownWindow().top - exr.dataWindow().top;
         image::writeExr(options.out, image::cropped(exr, part, options.scale));
     } else {
         const ImageF cropped = image::cropped(picture.stored, part, options.scale);

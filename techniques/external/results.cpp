@@ -443,9 +443,14 @@ std::string_view wordAround(const Found& found, std::string_view regex) {
     return found.line.substr(begin, end - begin);
 }
 
-/// Also with Fortran's exponents, 1.5D+03 and 1.5-103, and a typesetter's minus.
+/// Also with zeros before it, as of a clock, with Fortran's exponents, 1.5D+03 and 1.5-103, and a
+/// typesetter's minus.
 std::optional<double> numberFrom(std::string_view text) {
     std::string number = plain(text);
+    const std::size_t first = number.find_first_of("0123456789");
+    while (first + 1 < number.size() && number[first] == '0' && isDigit(number[first + 1])) {
+        number.erase(first, 1);
+    }
     if (const std::size_t at = number.find_first_of("dD"); at != number.npos) number[at] = 'e';
     const std::size_t sign = number.find_last_of("+-");
     const bool isBare = sign != number.npos && sign > 0 && number.size() - sign == 4 &&

@@ -242,6 +242,32 @@ TEST_F(ImageCommands, CropKeepsChannelsAndWhereTheyAre) {
     EXPECT_NEAR(6.0F * ndc[0] + ndc[12], 0.0F, 1e-6);
 }
 
+TEST_F(ImageCommands, CropCountsFromTheCornerOfWhatIsShown) {
+    ImageF ramp(4, 4, 1);
+    for (int y = 0; y < 4; ++y) {
+        for (int x = 0; x < 4; ++x) ramp.at(x, y) = static_cast<float>(4 * y + x);
+    }
+    ExrImage exr;
+    exr.add(ramp, {"Y"}, image::ExrPixelType::Float);
+    exr.displayWindow = image::Rectangle{1, 2, 2, 2};  // of its columns and rows
+    out({"image", "crop", write("a.exr", exr), "--out", at("b.exr"), "1", "0", "1", "2"});
+    const ImageF part = image::readExr(at("b.exr")).colour();
+    EXPECT_EQ(part.at(0, 0), 10.0F);
+    EXPECT_EQ(part.at(0, 1), 14.0F);
+}
+
+TEST_F(ImageCommands, ConvertToExrKeepsItsNumbers) {
+    const float value = 100000.5F;  // more than a half holds
+    std::string pfm = "Pf\n1 1\n-1.0\n";
+    pfm.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    out({"image", "convert", folder_.write("a.pfm", pfm), "--out", at("a.exr")});
+    EXPECT_EQ(image::readExr(at("a.exr")).colour().at(0, 0), value);
+    ExrImage bright;
+    bright.add(ImageF(1, 1, 1, 60000.0F), {"Y"});
+    out({"image", "convert", write("b.exr", bright), "--out", at("c.exr"), "--exposure", "3"});
+    EXPECT_EQ(image::readExr(at("c.exr")).colour().at(0, 0), 8.0F * 60000.0F);
+}
+
 TEST_F(ImageCommands, CropOfPngAndRefusals) {
     Image8 image(5, 4, 3);
     image.at(4, 3, 1) = 9;

@@ -115,6 +115,7 @@ TEST(MetricLines, RefusesAFileThatIsGoneOrNoPlainOne) {
 TEST(MetricLines, APatternTakesItsLastMatch) {
     const config::ProgramPattern pattern{"rays", "^Rays: +([0-9.eE+-]+)"};
     EXPECT_EQ(numberIn("Rays:  12\rRays:  64 (all)\nno Rays: 3\n", pattern), 64.0);
+    EXPECT_EQ(numberIn("Rays: 0064\n", pattern), 64.0);
     EXPECT_EQ(numberIn("nothing\n", pattern), std::nullopt);
     EXPECT_EQ(numberIn("", pattern), std::nullopt);
     EXPECT_EQ(errorText([&] { numberIn("Rays: 1.2.3\n", pattern); }),
