@@ -187,6 +187,7 @@ void requireTimed(const Experiment& experiment) {
     if (!experiment.hasDefaultLayout() || (lane && !isOwn)) return;
     for (const ClaimSpec& claim : experiment.claims) {
         std::vector<std::string> read = claim.operands;
+        if (claim.over) read.push_back(*claim.over);
         for (const auto& [axis, columns] : claim.at) {
             for (const Node& column : columns) {
                 if (axis == claims::kColumnAxis) read.push_back(column.text());

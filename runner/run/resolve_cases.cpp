@@ -108,6 +108,18 @@ void requireNoWhole(const std::string& metric, const std::string& pass,
                                    metric, joined(passesOf(*info, outputs), " | ")));
 }
 
+/// `equal` names no pass: there is one at most.
+void requireOnePass(const std::string& metric, const config::Outputs& outputs,
+                    const SourceLocation& where) {
+    const config::MetricInfo* info = outputs.find(metric);
+    if (!info || info->of != Of::Pass) return;
+    const std::vector<std::string> passes = passesOf(*info, outputs);
+    if (passes.size() == 1) return;
+    throw Error(where,
+                fmt::format("equal: metric '{}' is of {}; allowed: one that is recorded once",
+                            metric, passes.empty() ? "no pass" : joined(passes, " and of ")));
+}
+
 /// The keys of rows or columns, a swept axis without a value.
 std::vector<tables::Key> labelKeys(const std::vector<config::LayoutAxis>& axes) {
     std::vector<tables::Key> keys = {{}};
@@ -139,7 +151,7 @@ void requireCells(const config::Layout& layout, const config::Outputs& outputs) 
                 requireOfPass(*info, cell.pass, outputs, cell.location);
             }
             if (!cell.equal) continue;
-            requireNoWhole(cell.equal->metric, "", outputs, cell.location);
+            requireOnePass(cell.equal->metric, outputs, cell.location);
         }
     }
 }

@@ -124,6 +124,15 @@ std::vector<const records::Record*> CaseRecords::Attempt::values(std::string_vie
     return values;
 }
 
+std::string CaseRecords::passOf(std::string_view metric) const {
+    for (const auto& [number, attempt] : processes) {
+        const Place first{metric, "", INT_MIN, INT_MIN};
+        const auto row = std::ranges::lower_bound(attempt.rows, first, {}, placeOf);
+        if (row != attempt.rows.end() && (*row)->metric == metric) return (*row)->pass.string();
+    }
+    return "";
+}
+
 bool CaseRecords::scatters(std::string_view metric, std::string_view pass) const {
     constexpr double kRounding = 1e-12;  // of a sum of doubles in another order
     const auto differ = [](double a, double b) {

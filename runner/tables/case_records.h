@@ -54,6 +54,9 @@ struct CaseRecords {
     /// than rounding. Where no random numbers are declared, it was measured more than once.
     bool scatters(std::string_view metric, std::string_view pass) const;
 
+    /// The first pass of which it is recorded; empty also where that is none.
+    std::string passOf(std::string_view metric) const;
+
     std::string id;
     AxisValues axes;
     std::map<int, Attempt> processes;

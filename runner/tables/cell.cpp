@@ -209,8 +209,13 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
                 gathered.shareCounts.push_back(count->value);
         }
         if (isRandom && !process.empty()) gathered.seeds.insert(run.seedOf(number));
-        // Process k of all cases is one round: what a cell of several cases shows is of rounds.
-        if (!process.empty()) gathered.samples.processes[number].merge(process);
+        // Process k of all cases is one round: what a cell of several cases shows is of rounds. Of
+        // several scenes each is one, however many processes it has.
+        const int round = number - (run.sceneSeeds > 1 ? number % records::kMostProcesses : 0);
+        for (const auto& [unit, values] : process) {
+            std::vector<double>& all = gathered.samples.processes[round][unit];
+            all.insert(all.end(), values.begin(), values.end());
+        }
     }
 }
 
@@ -392,12 +397,12 @@ std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRe
                                   Gathered& gathered) {
     CellQuery other = query;
     other.metric = query.equal->metric;
-    other.pass.clear();
     other.scale = 1.0;
     other.isRateOfTime = false;
     std::vector<CurveCase> cases;
     for (const CaseRecords* run : along) {
         if (run->processes.empty()) gathered.note(records::Status::Missing, "a case was not run");
+        other.pass = run->passOf(other.metric);
         Gathered x, y;
         std::map<int, int> unitsOfX, unitsOfY;
         int xCount = 0, yCount = 0;

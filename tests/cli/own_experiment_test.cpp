@@ -472,6 +472,13 @@ TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
                              column + "}}\n");
         EXPECT_EQ(gfxrepro({"check", good}).err, "") << column;
     }
+    const auto curve = folder.write(
+        "curve.yaml",
+        "sweep_of: curve\ntitle: Time to an error\ntechnique: template\nparams: {errors: true}\n"
+        "sweep: {brightness: [0.1, 0.5, 1]}\nmeasure: {lane: timing, processes: 6}\n"
+        "layout: {rows: {all: {where: {}}}, columns: {a: {metric: wall_time_ms, equal: {metric: "
+        "rmse, is: 0.1}}}}\n");
+    EXPECT_EQ(gfxrepro({"check", curve}).err, "") << "of the only picture";
     // What a technique gives of passes alone is known of it.
     for (const auto& [technique, metric] :
          {std::pair("depth_sampling", "coverage_pct"), std::pair("soft_shadows", "missing_pct"),

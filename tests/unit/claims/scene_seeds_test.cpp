@@ -70,6 +70,25 @@ TEST(SceneSeeds, FewDecideNothing) {
     EXPECT_EQ(verdictOnShares("bound", {9, 9}), Verdict::Holds) << "they do not differ";
 }
 
+/// However many processes each scene has, these are no more scenes.
+TEST(SceneSeeds, AreAsManyRoundsAsScenes) {
+    tables::RecordMaker maker;
+    for (int seed = 0; seed < 3; ++seed) {
+        const std::string sample = "\"scene_sample\":" + std::to_string(seed);
+        const std::string other = seed == 0 ? "" : ",\"stands_for\":\"grass\"";
+        maker.beginCase(seed == 0 ? "grass" : "grass@" + std::to_string(seed + 1),
+                        "{" + sample + other + "}");
+        maker.lane("quality");
+        for (const int process : {0, 1}) {
+            maker.process(process).add("share", {9.0 + seed + 0.2 * process}, "", "%");
+        }
+    }
+    const tables::Table table = tables::buildTable(tables::experimentFrom(kBody), maker.records());
+    const tables::Cell& grass = table.rows[0].cells[0];
+    EXPECT_EQ(grass.values[0].rounds.size(), 3U);
+    EXPECT_DOUBLE_EQ(grass.values[0].value, 10.1);
+}
+
 /// Two processes of a scan are two however many seeds the meadow has.
 TEST(SceneSeeds, ProcessesOfOtherScenesAreNoSeeds) {
     tables::RecordMaker maker;

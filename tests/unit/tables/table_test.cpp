@@ -569,6 +569,26 @@ layout:
     EXPECT_TRUE(table.rows[0].cells[1].isOk()) << table.rows[0].cells[1].message;
 }
 
+/// An error is of a picture, whose name is its pass.
+TEST(Table, TheTimeToAnErrorOfAPicture) {
+    RecordMaker maker;
+    for (const int samples : {1, 4}) {
+        maker.beginCase("models/duck", fmt::format(R"({{"samples": {}}})", samples));
+        maker.add("wall_time_ms", {1.0 * samples});
+        maker.add("rmse", {1.0 / std::sqrt(samples)}, "picture", "1");
+    }
+    const Table table = buildTable(experimentFrom(R"(
+scene: models/duck
+sweep: {samples: [1, 4]}
+layout:
+  rows: {all: {where: {}}}
+  columns: {t: {metric: wall_time_ms, equal: {metric: rmse, is: 0.7071067811865476}}}
+)"),
+                                   maker.records());
+    ASSERT_TRUE(table.rows[0].cells[0].isOk()) << table.rows[0].cells[0].message;
+    EXPECT_NEAR(table.rows[0].cells[0].values[0].value, 2.0, 1e-9);
+}
+
 /// Six processes; the errors of the last case have the seeds `last`, those before it `others`.
 /// `scatters`: they differ whatever is declared.
 Table tableOfSeeds(config::Measure::Seeds others, config::Measure::Seeds last,
