@@ -383,4 +383,17 @@ Scene Catalog::load(const Node& reference) const {
     return scene;
 }
 
+const std::vector<std::string>& Catalog::viewNames(const Node& reference) const {
+    const bool isFile = isSceneFile(SceneReference::from(reference).name);
+    const std::string key =
+        reference.text() + '\n' + (isFile ? reference.location().file.text() : "");
+    const auto known = viewNames_.find(key);
+    if (known != viewNames_.end()) return known->second;
+    const Scene scene = load(reference);
+    std::vector<std::string> names;
+    for (const CameraPath& path : scene.paths) names.push_back(path.name);
+    for (const Camera& camera : scene.cameras) names.push_back(camera.name);
+    return viewNames_.emplace(key, std::move(names)).first->second;
+}
+
 }  // namespace gfxrepro::scene

@@ -83,6 +83,9 @@ class Catalog {
     /// Remembers the digests of files by size and time, so not for several threads at once.
     std::string contentKey(const Node& reference) const;
     Scene load(const Node& reference) const;
+    /// The names of its camera paths, then of its cameras; a scene is loaded once for them.
+    /// Remembers them, so not for several threads at once.
+    const std::vector<std::string>& viewNames(const Node& reference) const;
 
     const std::filesystem::path& assetsFolder() const { return assetsFolder_; }
 
@@ -100,6 +103,8 @@ class Catalog {
     std::filesystem::path assetsFolder_;
     std::map<std::string, SceneEntry> entries_;
     mutable std::map<std::filesystem::path, FileDigest> digests_;
+    mutable std::map<std::string, std::vector<std::string>>
+        viewNames_;  // by reference, and the file that names a file
 };
 
 }  // namespace gfxrepro::scene

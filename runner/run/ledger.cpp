@@ -284,10 +284,7 @@ void requireViews(const Assumption& assumption, const std::vector<Case>& cases,
         const std::string name = scene::sceneName(item.scene.text());
         if (std::ranges::find(loaded, name) != loaded.end()) continue;
         loaded.push_back(name);
-        const scene::Scene scene = catalog.load(item.scene);
-        std::vector<std::string> views;
-        for (const scene::CameraPath& path : scene.paths) views.push_back(path.name);
-        for (const scene::Camera& camera : scene.cameras) views.push_back(camera.name);
+        const std::vector<std::string>& views = catalog.viewNames(item.scene);
         for (const Node& value : listOf(assumption)) {
             const std::string text = value.isScalar() ? value.text() : "";
             if (std::ranges::find(views, text) != views.end()) continue;

@@ -15,6 +15,11 @@ namespace fs = std::filesystem;
 
 class Nightly : public ::testing::Test {
   protected:
+    /// What nights look for in most tests shows without times.
+    std::string measure() const {
+        return isTimed ? "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2}\n"
+                       : "measure: {lane: quality, processes: 1}\n";
+    }
     /// A bundle of the mock program, slower by `extraUs` in each iteration, its picture of `shade`.
     std::string bundle(int extraUs) const {
         const std::string name = "bundle-" + std::to_string(extraUs);
@@ -34,12 +39,9 @@ class Nightly : public ::testing::Test {
                                               GFXREPRO_SOURCE "/scripts/nightly"};
         if (isFix) arguments.emplace_back("--fix");
         if (!reason.empty()) arguments.insert(arguments.end(), {"--accept", reason});
-        const fs::path config =
-            writeMockConfig(folder,
-                            "params: {busy_ms: 20}\n"
-                            "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2}\n");
-        arguments.insert(arguments.end(),
-                         {"--rounds", "8", "--cases", "1", "--program", bundle(extraUs), config});
+        const fs::path config = writeMockConfig(folder, "params: {busy_ms: 20}\n" + measure());
+        arguments.insert(arguments.end(), {"--rounds", isTimed ? "8" : "2", "--cases", "1",
+                                           "--program", bundle(extraUs), config});
         return runProgram(arguments);
     }
     /// A night of a bundle whose program is this script, of two cases and those of `second`.
@@ -47,15 +49,12 @@ class Nightly : public ::testing::Test {
                           const std::vector<std::string>& options = {"--cases", "2"}) const {
         const fs::path program = folder.write("broken/gfxrepro", "#!/bin/sh\n" + script);
         fs::permissions(program, fs::perms::owner_all);
-        const fs::path config =
-            writeMockConfig(folder,
-                            "sweep: {busy_ms: [18, 22]}\n"
-                            "measure: {lane: timing, processes: 1, repeats: 2}\n");
+        const fs::path config = writeMockConfig(folder, "sweep: {busy_ms: [18, 22]}\n" + measure());
         std::vector<std::string> arguments = {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
                                               GFXREPRO_SOURCE "/scripts/nightly"};
         arguments.insert(arguments.end(), options.begin(), options.end());
-        arguments.insert(arguments.end(),
-                         {"--rounds", "8", "--program", program.parent_path(), config});
+        arguments.insert(arguments.end(), {"--rounds", isTimed ? "8" : "2", "--program",
+                                           program.parent_path(), config});
         if (!second.empty()) arguments.push_back(second);
         return runProgram(arguments);
     }
@@ -78,6 +77,7 @@ class Nightly : public ::testing::Test {
     std::string state = folder.path() / "state";
     std::string shade = "0.5";
     bool isCrashing = false;
+    bool isTimed = false;
     std::string second;
 };
 
@@ -136,10 +136,11 @@ TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustFindWhatItFinds) {
         EXPECT_NE(blind.err.find("(code, tests, failures)"), std::string::npos) << blind.err;
         EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     }
-    // Nor where it is slower on purpose; one that is slower is found, whatever it says itself.
+    // Nor where a reason is given; one that is slower is found, whatever it says itself.
     const std::string slow = "export GFXREPRO_MOCK_EXTRA_MS=15\n" + kBlind[1];
     EXPECT_EQ(nightOf(slow, {"--accept", "it is right"}).exitCode, 2);
     EXPECT_FALSE(fs::exists(state + "/accepted.csv"));
+    isTimed = true;
     EXPECT_EQ(nightOf(slow).exitCode, 1);
     EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     // A judge that landed before, and ends with 0 whatever it found.
@@ -149,14 +150,15 @@ TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustFindWhatItFinds) {
     EXPECT_NE(judged.err.find("nightly: the comparison ends with 0, and tells of "),
               std::string::npos)
         << judged.err;
+    isTimed = false;
     EXPECT_EQ(nightOf("exec " + kMock + '\n').exitCode, 2) << "nor lands what is no slower";
     EXPECT_EQ(landed(), "#!/bin/sh\n" + kBlind[1]);
 }
 
 TEST_F(Nightly, AJudgeOfTheFirstConfigAloneIsNone) {
-    second = folder.write("second.yaml",
-                          "sweep_of: second\ntitle: t\ntechnique: mock\nsweep: {busy_ms: [5]}\n"
-                          "measure: {lane: timing, processes: 1, repeats: 2}\n");
+    second = folder.write(
+        "second.yaml",
+        "sweep_of: second\ntitle: t\ntechnique: mock\nsweep: {busy_ms: [5]}\n" + measure());
     const std::string half =
         "case \"$*\" in *--binaries*second.yaml*) exit 0;; esac\nexec " + kMock + '\n';
     EXPECT_EQ(nightOf(half, {"--cases", "3"}).exitCode, 2);
@@ -224,6 +226,7 @@ TEST_F(Nightly, TheWorkflowShowsWhatTheNightHas) {
 }
 
 TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
+    isTimed = true;
     ASSERT_EQ(night(0).exitCode, 0);
     const ProcessResult same = night(1);
     EXPECT_EQ(same.exitCode, 0) << same.out << same.err;
@@ -315,6 +318,7 @@ TEST_F(Nightly, WhatGotSlowerLittleByLittleIsFoundEachWeekAndInTheHistory) {
     fs::remove_all(state + "/landed");
     fs::copy(bundle(15000), state + "/landed", fs::copy_options::recursive);
     letAWeekPass();
+    isTimed = true;
     const ProcessResult week = night(15000);
     EXPECT_EQ(week.exitCode, 1) << week.out << week.err;
     EXPECT_NE(week.out.find("nightly: with the fixed build\nalarm; measuring again\n"),
