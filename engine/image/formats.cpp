@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/core/foreign_text.h"
 #include "engine/core/text.h"
 #include "engine/image/exr_io.h"
 
@@ -83,11 +84,9 @@ class Bytes {
     }
     int number() {
         const std::string text = word();
-        const auto value = parseInteger(text);
-        if (!value || *value < 0 || *value > std::numeric_limits<int>::max()) {
-            fail("has '" + text + "' where a number is allowed");
-        }
-        return static_cast<int>(*value);
+        const auto value = parsedNumber<int>(text);
+        if (!value || *value < 0) fail("has '" + text + "' where a number is allowed");
+        return *value;
     }
     /// All that is behind the last word, whose blank may be the two characters of a line's end.
     std::span<const std::byte> raster(std::size_t count) {
@@ -241,7 +240,7 @@ namespace {
 Decoded floatsOfPfm(Bytes& file, int channels) {
     const int width = file.number(), height = file.number();
     const std::string text = file.word();
-    const std::optional<double> scale = parseDouble(text);
+    const std::optional<double> scale = parsedNumber<double>(text);
     if (!scale || std::abs(*scale) != 1.0) {
         file.fail("its scale is " + text + "; 1 or -1 are allowed, as readers differ in others");
     }
@@ -312,8 +311,8 @@ std::array<float, 3> factorsOfHdr(Bytes& file, std::vector<std::string>& notes) 
     const auto numbersOf = [&](const std::string& line, std::size_t count) {
         std::vector<float> numbers;
         for (const std::string& word : split(line.substr(line.find('=') + 1), ' ')) {
-            const auto number = parseDouble(trimmed(word));
-            if (number) numbers.push_back(static_cast<float>(*number));
+            const auto number = parsedNumber<float>(trimmed(word));
+            if (number && std::isfinite(*number)) numbers.push_back(*number);
         }
         if (numbers.size() != count) file.fail("its header has '" + line + "'");
         return numbers;
@@ -392,14 +391,14 @@ Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name) {
     const std::string size = file.line();
     const std::vector<std::string> words = split(trimmed(size), ' ');
     const bool isUsual = words.size() == 4 && words[0] == "-Y" && words[2] == "+X";
-    const long long height = isUsual ? parseInteger(words[1]).value_or(0) : 0;
-    const long long width = isUsual ? parseInteger(words[3]).value_or(0) : 0;
-    if (height == 0 || width == 0) {
+    const int height = isUsual ? parsedNumber<int>(words[1]).value_or(0) : 0;
+    const int width = isUsual ? parsedNumber<int>(words[3]).value_or(0) : 0;
+    if (height <= 0 || width <= 0) {
         file.fail("its size is '" + size + "'; allowed: -Y height +X width, rows from the top");
     }
     checkDeclaredSize(width, height, 3 * sizeof(float), bytes.size(), name, kMaxSidePx,
                       ImageUse::Picture);
-    Decoded result{ImageF(static_cast<int>(width), static_cast<int>(height), 3), true};
+    Decoded result{ImageF(width, height, 3), true};
     result.notes = std::move(notes);
     std::vector<Rgbe> row(static_cast<std::size_t>(width));
     for (int y = 0; y < result.values.height(); ++y) {

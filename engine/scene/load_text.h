@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
@@ -14,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/foreign_text.h"
 #include "engine/image/srgb.h"
 #include "engine/scene/left_out.h"
 #include "engine/scene/load.h"
@@ -31,29 +34,6 @@ inline std::string_view withoutByteOrderMark(std::string_view text) {
 /// Of a text's lines: programs of old Macintoshes write no line feeds.
 inline char lineEndOf(std::string_view text) {
     return text.find('\n') == text.npos ? '\r' : '\n';
-}
-
-/// The whole word as a number, independent of the locale; "nan" and "inf" are numbers here, what is
-/// too large becomes infinite and what is too small 0. Empty when it is anything else.
-template <class T>
-std::optional<T> parsedNumber(std::string_view word) {
-    if (!word.empty() && word[0] == '+') word.remove_prefix(1);
-    T value{};
-    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (stop != word.data() + word.size() || word.empty()) return std::nullopt;
-    if (error == std::errc()) return value;
-    if (error == std::errc::result_out_of_range && std::numeric_limits<T>::has_infinity) {
-        // from_chars does not say on which side it left the range. The exponent does; without one
-        // the first digit that counts, which stands behind the point.
-        const std::size_t exponent = word.find_first_of("eE");
-        const bool isTiny = exponent != word.npos
-                                ? word.substr(exponent + 1).starts_with('-')
-                                : word.find_first_of("123456789") > word.find('.');
-        if (isTiny) return T{0};
-        const T infinity = std::numeric_limits<T>::infinity();
-        return word[0] == '-' ? -infinity : infinity;
-    }
-    return std::nullopt;
 }
 
 /// A word of a file as messages show it: in a file of zeros one has gigabytes, and a message ends

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -12,6 +11,7 @@
 #include <tuple>
 
 #include "engine/core/files.h"
+#include "engine/core/foreign_text.h"
 #include "engine/core/text.h"
 #include "runner/records/csv.h"
 
@@ -148,10 +148,9 @@ double numberCell(const NamedCsv& csv, const std::string& column, records::Statu
     if (text.empty() && status != records::Status::Ok) {
         return std::numeric_limits<double>::quiet_NaN();
     }
-    double value = 0.0;
-    const char* end = text.data() + text.size();
-    const auto [stop, problem] = std::from_chars(text.data(), end, value);
-    if (problem == std::errc() && stop == end && !std::isnan(value)) return value;
+    const auto value = parsedNumber<double>(text);
+    const bool isTooLarge = value && std::isinf(*value) && text.find_first_of("iI") == text.npos;
+    if (value && !std::isnan(*value) && !isTooLarge) return *value;
     throw Error(csv.where(), fmt::format("column '{}': '{}'; allowed: a number, inf, or nothing in "
                                          "a row whose status is not ok",
                                          column, text));

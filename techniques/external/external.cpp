@@ -33,16 +33,11 @@ constexpr std::size_t kLoggedBytes = 4096;  // of what a program prints
 /// The last three that say something, without colours and other control characters, in one.
 std::string lastLines(std::string_view output) {
     output.remove_prefix(output.size() - std::min(output.size(), kLoggedBytes));
-    std::string plain;
-    for (std::size_t i = 0; i < output.size(); ++i) {
-        const auto c = static_cast<unsigned char>(output[i]);
-        if (output.substr(i).starts_with("\x1b[")) {
-            i = std::min(output.find_first_not_of("0123456789;:?", i + 2), output.size());
-        } else if ((c >= 0x20 && c != 0x7f) || c == '\n' || c == '\r') {
-            plain += output[i];
-        }
-    }
+    std::string plain = withoutColours(output);
     std::ranges::replace(plain, '\r', '\n');
+    std::erase_if(plain, [](char c) {
+        return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == '\x7f';
+    });
     std::vector<std::string> lines;
     for (const std::string& line : split(plain, '\n')) {
         if (!trimmed(line).empty()) lines.emplace_back(trimmed(line));

@@ -21,6 +21,11 @@ struct GivenMetric {
     double value = 0.0;
 };
 
+/// The begin of what a program wrote, for a message.
+std::string shown(std::string_view line);
+/// Without what sets colours on a terminal.
+std::string withoutColours(std::string_view text);
+
 /// The lines of JSON, {"metric": …, "pass": …, "frame": …, "value": …, "unit": …}: "pass" where
 /// there are such, "frame" where there are several, `frame` and those that follow it. Throws Error
 /// with the number of a line that is none, and for a file that is gone or no plain one (a pipe, a
@@ -30,7 +35,7 @@ std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame,
 /// The number that the pattern finds last in what the program printed, line by line, scaled. Throws
 /// Error where its group is no number or a part of one, as 1.5 of 1.5e-03 and 12 of 12,5, and where
 /// a line is too long for it.
-std::optional<double> numberIn(std::string_view output, const config::ProgramPattern& pattern);
+std::optional<double> numberIn(std::string_view printed, const config::ProgramPattern& pattern);
 
 using image::Picture;
 

@@ -299,6 +299,11 @@ TEST_F(Data, BadImportsAreOneErrorEach) {
         "gfxrepro: DIR/a.csv:2: column 'value': 'fast'; allowed: a number, inf, or nothing in "
         "a row whose status is not ok\n");
     EXPECT_FALSE(fs::exists(dir("a")));
+    folder_.write("b.csv", "n,metric,value\n1,mse,+1e-400\n2,mse,1e400\n");
+    EXPECT_EQ(
+        refusal({"import", dir("b.csv"), "--out", dir("a")}),
+        "gfxrepro: DIR/b.csv:3: column 'value': '1e400'; allowed: a number, inf, or nothing in "
+        "a row whose status is not ok\n");
     EXPECT_EQ(refusal({"import", csv, "--metric", "value", "--out", dir("a")}),
               "gfxrepro: --metric 'value'; allowed: COLUMN=UNIT, such as render_time_ms=ms; 1 is "
               "the unit of "

@@ -116,6 +116,10 @@ TEST(MetricLines, APatternTakesItsLastMatch) {
     const config::ProgramPattern pattern{"rays", "^Rays: +([0-9.eE+-]+)"};
     EXPECT_EQ(numberIn("Rays:  12\rRays:  64 (all)\nno Rays: 3\n", pattern), 64.0);
     EXPECT_EQ(numberIn("Rays: 0064\n", pattern), 64.0);
+    EXPECT_EQ(numberIn("\x1b[1;32mRays: \x1b[32m64\x1b[0m\n", pattern), 64.0);
+    EXPECT_EQ(numberIn("Rays: 1e-400\nRays: -1e-400\n", pattern), 0.0);  // as strtod reads it
+    EXPECT_EQ(errorText([&] { numberIn("Rays: 1e400\n", pattern); }),
+              "metric 'rays': its pattern finds '1e400'; allowed: a number");
     EXPECT_EQ(numberIn("nothing\n", pattern), std::nullopt);
     EXPECT_EQ(numberIn("", pattern), std::nullopt);
     EXPECT_EQ(errorText([&] { numberIn("Rays: 1.2.3\n", pattern); }),
@@ -204,15 +208,15 @@ TEST(MetricLines, APatternTakesNoPartOfWhatFortranAndTypesettersWrite) {
             .ends_with("; allowed: a whole number");
     };
     const std::string decimal = "m=([0-9.]+)";
-    for (const char* whole :
-         {"1d-3", "1.5D+03", "1.5D3", "2.d0", "1.5\u00D710^3", "1.5 x 10^3", "1.5*10**3",
-          "1.5\u00B710\u00B3", "1.5 \u00D7 10\u207B\u2074", "1\u00A0234", "1\u202F234.5",
-          "1\u2009234\u2009567", "1\u2019234", "1.5-103", "1.5+103", ".5-103"}) {
+    for (const char* whole : {"1d-3", "1.5D+03", "1.5D3", "2.d0", "1.5\u00D710^3", "1.5 x 10^3",
+                              "1.5*10**3", "1.5\u00B710\u00B3", "1.5 \u00D7 10\u207B\u2074",
+                              "1\u00A0234", "1\u202F234.5", "1\u2009234\u2009567", "1\u2019234",
+                              "1.5-103", "1.5+103", ".5-103", "5e\u20133", "5e\u22123"}) {
         EXPECT_TRUE(isPart(decimal, std::string("m=") + whole)) << whole;
     }
     for (const char* whole :
          {"0x15", "0xA5", "0x1.8p3", "1d-3", "1.5D3", "1\u00A0234", "1.5e\u22123", "\u22125",
-          "1\u2019234", "1.5-103", "0.-103", ".15+102"}) {
+          "1\u2019234", "1.5-103", "0.-103", ".15+102", "\u20135", "\uFF0D5"}) {
         EXPECT_TRUE(isPart("([0-9]+)$", std::string("m= ") + whole)) << whole;
     }
     EXPECT_EQ(errorText([] {
@@ -225,12 +229,14 @@ TEST(MetricLines, APatternTakesNoPartOfWhatFortranAndTypesettersWrite) {
     EXPECT_EQ(numberOf("m=(\\S+)", "m=1.5-103"), 1.5e-103);
     EXPECT_EQ(numberOf("m=(\\S+)", "m=-.5+101 s"), -5e100);
     EXPECT_EQ(numberOf("m=(\\S+)", "m=\u22125"), -5.0);
+    EXPECT_EQ(numberOf("m=(\\S+)", "m=5e\u20133"), 5e-3);
+    EXPECT_EQ(numberOf("([0-9.]+) ms", "10\u201320 ms"), 20.0);
     // Whole ones: sizes, days, names, products, blanks between columns.
     EXPECT_EQ(numberOf("x([0-9]+)$", "10x1080"), 1080.0);
     EXPECT_EQ(numberOf("([0-9]+)x", "16x10 tiles"), 16.0);
     EXPECT_EQ(numberOf("([0-9.]+)-", "1.5-20 ms"), 1.5);
     EXPECT_EQ(numberOf("-([0-9]+)", "100-103"), 103.0);
-    EXPECT_EQ(numberOf("m=([0-9]+)", "m=5d 3h"), 5.0);
+    EXPECT_EQ(numberOf("m=([0-9]+)", "m=5d per h"), 5.0);
     EXPECT_EQ(numberOf("([0-9]+)$", "conv2d5"), 5.0);
     EXPECT_EQ(numberOf("m=([0-9]+)", "m=3\u00A0ms"), 3.0);
     EXPECT_EQ(numberOf("m=([0-9]+)", "m=1\u00A02\u00A03"), 1.0);
@@ -248,23 +254,21 @@ TEST(MetricLines, APatternTakesNoPartOfATimeOrAFraction) {
     const std::string digits = "m=([0-9]+)", decimal = "m=([0-9.]+)";
     for (const char* whole :
          {"1:23.45", "1/2", "2^10", "2^-3", "2**10", "12\u00B75", "12\u066B5", "12\u00BD",
-          "10\u00B2", "0m1.234s", "0b11", "0o17", "1h30", "1x2", "1.#QNAN", "5k", "5M", "16#FF"}) {
+          "10\u00B2", "0b11", "0o17", "1h30", "1x2", "1.#QNAN", "5k", "5M", "16#FF"}) {
         const std::string token(whole);
         const std::string part = token.substr(0, token.find_first_not_of("0123456789"));
-        EXPECT_EQ(errorOf(digits, "m=" + token + " s"), partOf(part, token));
+        EXPECT_EQ(errorOf(digits, "m=" + token + " rays"), partOf(part, token));
     }
     EXPECT_EQ(errorOf(decimal, "m=1.#INF"), partOf("1.", "1.#INF"));
     EXPECT_EQ(errorOf(decimal, "m=1.5x10-3"), partOf("1.5", "1.5x10-3"));
     EXPECT_EQ(errorOf(decimal, "m=1.5\u00D710-3"), partOf("1.5", "1.5\u00D710-3"));
-    EXPECT_EQ(errorOf("real ([0-9.]+)", "real 0m1.234s"), partOf("0", "0m1.234s"));
     EXPECT_EQ(errorOf("took: .*?([0-9.]+)$", "took: 00:01:23.45"), partOf("23.45", "00:01:23.45"));
     EXPECT_EQ(errorOf("([0-9.]+)s?$", "took 1:23.45"), partOf("23.45", "1:23.45"));
-    EXPECT_EQ(errorOf("([0-9.]+)s$", "took 0m1.234s"), partOf("1.234", "0m1.234s"));
     EXPECT_EQ(errorOf("([0-9]+)$", "m= 1/2"), partOf("2", "1/2"));
     EXPECT_EQ(errorOf("([0-9]+)$", "m= 2^10"), partOf("10", "2^10"));
     // Whole ones: units, names, and what the pattern names.
     for (const char* unit :
-         {"ms", "s", "MB", "m", "GiB", "/s", " k", "m2", "cm3", "%", ":", "#", "/", "kHz", "f"}) {
+         {"ms", "s", "MB", "m", "GiB", "/s", " K", "m2", "cm3", "%", ":", "#", "/", "kHz", "f"}) {
         EXPECT_EQ(numberOf(decimal, std::string("m=2.5") + unit), 2.5) << unit;
     }
     EXPECT_EQ(numberOf("#([0-9]+)", "frame #12"), 12.0);
@@ -284,7 +288,7 @@ TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
     };
     const auto partOf = [](const std::string& part, const std::string& whole) {
         return "metric 'm': its pattern finds '" + part + "' of '" + whole +
-               "'; allowed: a whole number, or a pattern that names the blank beside it";
+               "'; allowed: a whole number, or a pattern that names what stands beside it";
     };
     const std::string digits = "m=([0-9]+)";
     EXPECT_EQ(errorOf(digits, "m=1 234"), partOf("1", "1 234"));
@@ -295,6 +299,22 @@ TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
     EXPECT_EQ(errorOf("([0-9]+)$", "m= 1 234"), partOf("234", "1 234"));
     EXPECT_EQ(errorOf("([0-9.]+) s", "took 12 345 678.5 s"), partOf("678.5", "12 345 678.5"));
     EXPECT_EQ(errorOf("([0-9]+).*rays", "m= 1 234 rays"), partOf("1", "1 234"));
+    EXPECT_EQ(errorOf("m=([0-9.]+)", "m=1.5 e-3 s"), partOf("1.5", "1.5 e-3"));
+    EXPECT_EQ(errorOf("m=([0-9.]+)", "m=1.5e +03"), partOf("1.5", "1.5e +03"));
+    EXPECT_EQ(errorOf("m=([0-9.]+)", "m=1.5(2)e3"), partOf("1.5", "1.5(2)e3"));
+    EXPECT_EQ(errorOf("([0-9]+) ms", "took 3.2E 2 ms"), partOf("2", "3.2E 2"));
+    EXPECT_EQ(errorOf("(-?[0-9]+)$", "m= 1.5 e-3"), partOf("-3", "1.5 e-3"));
+    for (const char* whole : {"3Mi", "5 Ki", "3 k", "2.5 M", "4 million", "3mio", "2 billion"}) {
+        const std::string text(whole);
+        EXPECT_EQ(errorOf("m=([0-9.]+)", "m=" + text + " rays"),
+                  partOf(text.substr(0, text.find_first_not_of("0123456789.")), text));
+        EXPECT_EQ(numberOf("m=([0-9.]+) ?" + text.substr(text.find_first_not_of("0123456789. ")),
+                           "m=" + text),
+                  std::stod(text));
+    }
+    EXPECT_EQ(numberIn("m=3Mi", {"m", digits, 1024.0}), 3072.0);
+    EXPECT_EQ(numberOf("m=([0-9]+)", "m=3 MiB"), 3.0);
+    EXPECT_EQ(numberOf("m=([0-9]+)", "m=3 e2e"), 3.0);
     // Columns, and what the pattern names.
     for (const char* column :
          {" 12", " 1.5", " 1234", "  234", "\t234", " x", " 128x128", ", 234"}) {
@@ -307,6 +327,37 @@ TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
     EXPECT_EQ(numberOf("^[0-9]+ ([0-9]+)\\s", "128 256 512"), 256.0);
     EXPECT_EQ(numberOf("^[0-9]+ +[0-9]+\\s+([0-9]+)", "128 256 512"), 512.0);
     EXPECT_EQ(numberOf("([0-9]+) ms", "GPU0 128 ms"), 128.0);
+}
+
+TEST(MetricLines, APatternTakesNoPartOfATimeOfSeveralUnits) {
+    const auto errorOf = [](const std::string& regex, const std::string& line) {
+        return errorText([&] { numberIn(line, {"m", regex}); });
+    };
+    const auto partOf = [](const std::string& part, const std::string& whole) {
+        return "metric 'm': its pattern finds '" + part + "' of '" + whole +
+               "'; allowed: a whole number, or a pattern that names what stands beside it";
+    };
+    const std::string seconds = "([0-9.]+) ?s";
+    EXPECT_EQ(errorOf(seconds, "took 1h 2m 3s"), partOf("3", "1h 2m 3s"));
+    EXPECT_EQ(errorOf(seconds, "took 0m1.234s"), partOf("1.234", "0m1.234s"));
+    EXPECT_EQ(errorOf("real ([0-9.]+)", "real 0m1.234s"), partOf("0", "0m1.234s"));
+    EXPECT_EQ(errorOf(seconds, "real\t1m 2.35s"), partOf("2.35", "1m 2.35s"));
+    EXPECT_EQ(errorOf(seconds, "2 minutes and 5 seconds"), partOf("5", "2 minutes and 5 seconds"));
+    EXPECT_EQ(errorOf(seconds, "took 3 min, 2.5 s."), partOf("2.5", "3 min, 2.5 s."));
+    EXPECT_EQ(errorOf("([0-9.]+) ms", "2 s 300 ms"), partOf("300", "2 s 300 ms"));
+    EXPECT_EQ(errorOf("([0-9.]+) us", "2 ms 300 us"), partOf("300", "2 ms 300 us"));
+    EXPECT_EQ(errorOf("m=([0-9]+)", "m=1h 30m"), partOf("1", "1h 30m"));
+    EXPECT_EQ(errorOf("m=([0-9]+)", "m=5d 3h"), partOf("5", "5d 3h"));
+    EXPECT_EQ(errorOf("([0-9]+)m", "took 2m3s"), partOf("2", "2m3s"));
+    // Each with a pattern of its own, columns, and times of one unit.
+    EXPECT_EQ(numberOf("([0-9]+)h [0-9]+m", "took 1h 2m 3s"), 1.0);
+    EXPECT_EQ(numberOf("h ([0-9]+)m [0-9]+", "took 1h 2m 3s"), 2.0);
+    EXPECT_EQ(numberOf("m ([0-9]+)s", "took 1h 2m 3s"), 3.0);
+    EXPECT_EQ(numberOf(seconds, "GPU 2 ms 3 s"), 3.0);
+    EXPECT_EQ(numberOf(seconds, "frame 12 30 s"), 30.0);
+    EXPECT_EQ(numberOf(seconds, "v2 3 s"), 3.0);
+    EXPECT_EQ(numberOf("([0-9.]+) ms", "1.5 s 300 ms"), 300.0);
+    EXPECT_EQ(numberOf("([0-9.]+) ?min", "12 min"), 12.0);
 }
 
 using image::ImageF;

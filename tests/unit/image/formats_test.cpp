@@ -121,6 +121,8 @@ TEST_F(Formats, PortableAnymapsMayBeText) {
             EXPECT_EQ(mask.stored.at(x, 1), x == 8 ? 0.0F : 1.0F) << x;
         }
     }
+    const Picture zeros = readPicture(folder_.write("a.pgm", "P2 01 1 0100\n050\n"));
+    EXPECT_EQ(zeros.stored.at(0, 0), 0.5F);
     EXPECT_EQ(errorOf("c.ppm", "P3 1 1 255\n1 2"), "DIR/c.ppm: the file ends early");
     EXPECT_EQ(errorOf("c.ppm", "P3 1 1 255\n1 2 256"),
               "DIR/c.ppm: holds 256, its largest value is 255");
@@ -191,6 +193,9 @@ TEST_F(Formats, RadiancesPicturesAreLinear) {
         folder_.write("c.hdr", head + "EXPOSURE=2\nEXPOSURE= 4\nCOLORCORR=1 2 1\n" + pixels));
     EXPECT_EQ(exposed.linear.at(2, 0, 0), 0.125F);
     EXPECT_EQ(exposed.linear.at(3, 0, 1), 0.03125F);
+    const Picture zeros = readPicture(folder_.write(
+        "c.hdr", head + "EXPOSURE=02\n\n-Y 01 +X 04" + pixels.substr(pixels.find("+X 4") + 4)));
+    EXPECT_EQ(zeros.linear.at(3, 0, 1), 0.25F);
     EXPECT_EQ(errorOf("d.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 4\n"),
               "DIR/d.hdr: FORMAT=32-bit_rle_xyze is not read; 32-bit_rle_rgbe is");
     EXPECT_EQ(errorOf("d.hdr", head + "EXPOSURE=0\n" + pixels),
