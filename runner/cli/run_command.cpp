@@ -470,6 +470,7 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
     run.directory.removeScratch();
     run::addScenes(run.manifest, outcome.scenes);
     run::addPrograms(run.manifest, outcome.programs);
+    run::addWarnings(run.manifest, outcome.warnings);
     run.manifest["rounds"] = rounds.endings();
     run.manifest["machine_states"] = watch.states();
     saveManifest(context, run, phases);
@@ -493,6 +494,7 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
         for (const std::string& note : run::notesOf(stored.manifest)) tell("warning: {}\n", note);
     }
     for (const std::string& line : outcome.warnings) tell("warning: {}\n", line);
+    for (const std::string& line : outcome.timeWarnings) tell("warning: {}\n", line);
     if (const std::string line = watch.warning(); !line.empty()) tell("warning: {}\n", line);
     say("{} of {} finished{}{}{}{}; records: {}\n", outcome.finished, outcome.begun,
         countText(outcome.shared, "as a twin"), countText(outcome.flaky, "flaky"),

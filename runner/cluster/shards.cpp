@@ -196,6 +196,7 @@ run::Json mergedManifest(const std::vector<ShardRun>& shards, const std::string&
         }
         manifest["scenes"].update(from.at("scenes"));
         run::addPrograms(manifest, run::programsOf(from));
+        run::addWarnings(manifest, from.value("warnings", std::set<std::string>{}));
         if (from.contains("rounds")) rounds.update(from.at("rounds"));
         if (from.contains("machine_states")) states.update(from.at("machine_states"));
         manifest["merged"].push_back(

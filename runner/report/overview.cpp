@@ -111,8 +111,10 @@ std::string printedHtml(const Model& model) {
 /// A run's facts by their names, the same of each run; empty where it does not say.
 std::vector<std::pair<const char*, std::string>> factsOf(const ReportRun& run) {
     const Json& manifest = run.manifest;
-    const auto notes = manifest.is_object() ? manifest.value("notes", std::vector<std::string>{})
-                                            : std::vector<std::string>();
+    const auto linesOf = [&](const char* key) {
+        return manifest.is_object() ? manifest.value(key, std::vector<std::string>{})
+                                    : std::vector<std::string>();
+    };
     const claims::ReportContext& context = run.context;
     return {{"Device", escapeXml(fmt::format("{} ({})", context.device, context.deviceClass))},
             {"OpenGL", escapeXml(manifestText(manifest, "/gl/version"))},
@@ -124,7 +126,8 @@ std::vector<std::pair<const char*, std::string>> factsOf(const ReportRun& run) {
             {"Command", escapeXml(context.command)},
             {"Scenes", scenesHtml(manifest)},
             {"Programs", programsHtml(manifest)},
-            {"Notes", escapeXml(joined(notes, "; "))},
+            {"Notes", escapeXml(joined(linesOf("notes"), "; "))},
+            {"Warnings", escapeXml(joined(linesOf("warnings"), "; "))},
             {"Folder", escapeXml(run.folder.lexically_normal().filename().string())}};
 }
 

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/foreign_text.h"
 #include "engine/core/hash.h"
-#include "engine/core/text.h"
 #include "runner/run/commit.h"  // made by the build
 #include "runner/run/run_directory.h"
 
@@ -197,6 +197,19 @@ void addPrograms(Json& manifest, const std::set<ProgramUse>& programs) {
         Json& known = manifest["programs"];
         if (std::ranges::find(known, entry) == known.end()) known.push_back(entry);
     }
+}
+
+void addWarnings(Json& manifest, const std::set<std::string>& warnings) {
+    constexpr std::size_t kMost = 100;
+    Json known = manifest.value("warnings", Json::array());
+    for (const std::string& warning : warnings) {
+        std::string line = asUtf8(warning);
+        std::ranges::replace_if(
+            line, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
+        if (known.size() > kMost || std::ranges::find(known, Json(line)) != known.end()) continue;
+        known.push_back(known.size() < kMost ? line : "further ones are in journal.jsonl");
+    }
+    if (!known.empty()) manifest["warnings"] = known;
 }
 
 std::set<ProgramUse> programsOf(const Json& manifest) {

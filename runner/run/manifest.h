@@ -52,6 +52,8 @@ void addScenes(Json& manifest, const std::vector<SceneUse>& scenes);
 /// Adds the programs that workers ran and the files that these read, each of its versions once.
 void addPrograms(Json& manifest, const std::set<ProgramUse>& programs);
 std::set<ProgramUse> programsOf(const Json& manifest);
+/// Adds what loaders, programs and drivers warned of, each once, for the report.
+void addWarnings(Json& manifest, const std::set<std::string>& warnings);
 
 /// "Xeon, 2 cores, llvmpipe (LLVM 15), 4.5 Mesa 22.3.6", or "imported: " and what the importing
 /// person calls it: times of two names are not compared.

@@ -109,8 +109,7 @@ class Scheduler {
         workers_.clear();
         images_.requireOurs();
         records_.requireOurs();
-        outcome_.warnings.assign(warnings_.begin(), warnings_.end());
-        std::ranges::copy(rounds_.warnings(), std::back_inserter(outcome_.warnings));
+        outcome_.timeWarnings = rounds_.warnings();
         return std::move(outcome_);
     }
 
@@ -349,7 +348,7 @@ class Scheduler {
         constexpr std::string_view kMark = "warning: ";
         std::istringstream lines(output);
         for (std::string line; std::getline(lines, line);) {
-            if (line.starts_with(kMark)) warnings_.insert(line.substr(kMark.size()));
+            if (line.starts_with(kMark)) outcome_.warnings.insert(line.substr(kMark.size()));
         }
     }
 
@@ -441,8 +440,7 @@ class Scheduler {
     records::RecordWriter records_;
     std::vector<std::unique_ptr<WorkerHandle>> workers_;
     Clock::time_point lastLook_ = Clock::now();
-    int lostInARow_ = 0;              // units that ended device-lost
-    std::set<std::string> warnings_;  // of units, each once
+    int lostInARow_ = 0;  // units that ended device-lost
     RunOutcome outcome_;
 };
 

@@ -62,10 +62,11 @@ struct RunOutcome {
     int shared = 0;    // of these: recorded from a twin's measurement
     int voided = 0;    // likewise, but their times are void: blank pictures or unequal work
     int failed = 0;    // others
-    std::vector<std::string> warnings;  // of units, each once; then about times
-    bool isInterrupted = false;         // by SIGINT, SIGTERM or SIGHUP
-    std::string stopReason;             // of a stop before the end that nobody asked for then
-    bool isFull = false;                // of these: the run's files take no more
+    std::set<std::string> warnings;         // of units
+    std::vector<std::string> timeWarnings;  // of tables
+    bool isInterrupted = false;             // by SIGINT, SIGTERM or SIGHUP
+    std::string stopReason;                 // of a stop before the end that nobody asked for then
+    bool isFull = false;                    // of these: the run's files take no more
     std::vector<SceneUse> scenes;
     std::set<ProgramUse> programs;
 };
