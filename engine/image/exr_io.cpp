@@ -522,22 +522,29 @@ void ExrImage::add(const ImageF& image, const std::vector<std::string>& names, E
     }
 }
 
-ImageF ExrImage::colour() const {
-    std::vector<const ImageF*> planes{find("R"), find("G"), find("B")};
-    if (planes[0] == nullptr || planes[1] == nullptr || planes[2] == nullptr) {
+std::vector<std::string> ExrImage::colourNames() const {
+    std::vector<std::string> used{"R", "G", "B"};
+    const auto isThere = [this](const std::string& name) { return find(name) != nullptr; };
+    if (!std::ranges::all_of(used, isThere)) {
         // Beside these Y and Z are no luminance and no depth: a colour (CIE XYZ), a place.
         const bool isPart = std::ranges::any_of(channels, [](const Channel& channel) {
             return channel.name.size() == 1 && std::strchr("XRGB", channel.name[0]) != nullptr;
         });
-        planes = {isPart ? nullptr : find("Y")};
-        if (planes[0] == nullptr && !isPart && find("Z") != nullptr) return *find("Z");
-        if (planes[0] == nullptr) {
+        if (!isPart && !isThere("Y") && isThere("Z")) return {"Z"};
+        if (isPart || !isThere("Y")) {
             std::string names;
             for (const Channel& channel : channels) names += " '" + channel.name + "'";
             throw Error("the image has the channels" + names + "; R, G, B or Y or Z are needed");
         }
+        used = {"Y"};
     }
-    if (find("A") != nullptr) planes.push_back(find("A"));
+    if (isThere("A")) used.emplace_back("A");
+    return used;
+}
+
+ImageF ExrImage::colour() const {
+    std::vector<const ImageF*> planes;
+    for (const std::string& name : colourNames()) planes.push_back(find(name));
     ImageF result(width(), height(), static_cast<int>(planes.size()));
     for (int y = 0; y < height(); ++y) {
         for (int x = 0; x < width(); ++x) {

@@ -67,8 +67,10 @@ struct ExrImage {
     /// Adds image channel by channel under `names` ("R","G","B", …).
     void add(const ImageF& image, const std::vector<std::string>& names,
              ExrPixelType type = ExrPixelType::Half);
-    /// R, G, B or Y, with A where it is there, as one image, or Z alone. Throws Error when none of
-    /// these is there.
+    /// R, G, B or Y, with A where it is there, or Z alone. Throws Error when none of these is
+    /// there.
+    std::vector<std::string> colourNames() const;
+    /// These as one image.
     ImageF colour() const;
 };
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/formats.h"
 #include "engine/image/png_io.h"
@@ -150,6 +151,33 @@ Picture shownOf(ImageF linear, const Rectangle& data, const Rectangle& display,
     return picture;
 }
 
+/// Names the channels of which a picture has nothing: layers, depths, identifiers.
+void noteOtherChannels(const ExrImage& exr, std::vector<std::string>& notes) {
+    constexpr std::size_t kMostNamed = 8;
+    const std::vector<std::string> used = exr.colourNames();
+    std::vector<std::string> others;
+    for (const ExrImage::Channel& channel : exr.channels) {
+        if (std::ranges::find(used, channel.name) == used.end()) others.push_back(channel.name);
+    }
+    if (others.empty()) return;
+    const std::size_t named = std::min(others.size(), kMostNamed);
+    notes.push_back(fmt::format(
+        "left out: the channels {}{}", joined(std::span(others).first(named)),
+        named < others.size() ? fmt::format(" and {} more", others.size() - named) : ""));
+}
+
+void noteNonFinite(const ImageF& image, std::vector<std::string>& notes) {
+    const auto channels = static_cast<std::size_t>(image.channels());
+    std::size_t pixels = 0;
+    for (std::size_t i = 0; i < image.values().size(); i += channels) {
+        pixels += !std::ranges::all_of(image.values().subspan(i, channels),
+                                       [](float value) { return std::isfinite(value); });
+    }
+    if (pixels == 0) return;
+    notes.push_back(
+        fmt::format("pixels that are not finite: {}; NaN is shown black, infinity white", pixels));
+}
+
 }  // namespace
 
 bool isExrFile(const std::filesystem::path& path) {
@@ -197,13 +225,18 @@ Picture readPicture(const std::filesystem::path& path) {
         const ExrImage exr = readExr(path);
         Picture picture = shownOf(exr.colour(), exr.dataWindow(), exr.shownWindow(), path);
         picture.notes = exr.notes;
+        noteOtherChannels(exr, picture.notes);
+        noteNonFinite(picture.stored, picture.notes);
         return picture;
     }
     Decoded decoded = decodedFile(path, format);
     const Rectangle whole{0, 0, decoded.values.width(), decoded.values.height()};
     Picture picture = shownOf(std::move(decoded.values), whole, whole, path);
     picture.notes = std::move(decoded.notes);
-    if (decoded.isLinear) return picture;
+    if (decoded.isLinear) {
+        noteNonFinite(picture.stored, picture.notes);
+        return picture;
+    }
     picture.isLinear = false;
     picture.linear = lightOf(std::move(picture.linear));
     picture.bits = decoded.bits;

@@ -1,5 +1,6 @@
 #include "engine/image/png_io.h"
 
+#include <fmt/format.h>
 #include <png.h>
 
 #include <algorithm>
@@ -73,6 +74,24 @@ class Reader {
         int method = 0;
         if (png_get_iCCP(png_, info_, &name, &method, &bytes, &size) == 0) return {};
         return std::as_bytes(std::span(bytes, size));
+    }
+
+    /// How many pixels have a number that the palette does not; in the place of expandTo().
+    std::size_t pixelsBeyondPalette() {
+        png_colorp palette = nullptr;
+        int colours = 0;
+        if (png_get_PLTE(png_, info_, &palette, &colours) == 0 || colours >= 1 << bitDepth() ||
+            png_get_color_type(png_, info_) != PNG_COLOR_TYPE_PALETTE) {
+            return 0;
+        }
+        guarded(png_, name_, message_, [this] {
+            png_set_packing(png_);
+            png_set_interlace_handling(png_);
+            png_read_update_info(png_, info_);
+        });
+        const Image8 numbers = image<std::uint8_t>();
+        return static_cast<std::size_t>(std::ranges::count_if(
+            numbers.values(), [colours](std::uint8_t number) { return number >= colours; }));
     }
 
     /// Rows come as T, palettes, low depths and transparent colours expanded.
@@ -283,6 +302,13 @@ PngColours pngColours(std::span<const std::byte> bytes, const std::string& name)
         constexpr std::size_t kChecksum = 4;
         const auto behind = static_cast<std::size_t>(end->second.data() - bytes.data()) + kChecksum;
         noteBehind(bytes.subspan(behind + end->second.size()), colours.notesOfFile);
+    }
+    if (chunks.contains("PLTE")) {
+        const std::size_t count = Reader(bytes, name, ImageUse::Picture).pixelsBeyondPalette();
+        if (count > 0) {
+            colours.notesOfFile.push_back(fmt::format(
+                "pixels of colours that its palette has not: {}; they are black", count));
+        }
     }
     if (chunks.contains("acTL")) colours.notes.emplace_back("left out: all but its first frame");
     if (has("cICP", 4)) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/formats.h"
 
@@ -146,6 +147,24 @@ class TiffReader {
                          &curves[2]) == 1) {
             notes_.emplace_back("left out: its transfer function");
         }
+        constexpr std::size_t kGreyResponseCurve = 291;
+        if (hasTag(kGreyResponseCurve)) notes_.emplace_back("left out: its grey response curve");
+    }
+
+    /// Also of those that the library passes over, as 291.
+    bool hasTag(std::size_t tag) const {
+        const MappedFile file(path_);
+        const bool isLittle = file.text().starts_with('I');
+        const auto number = [&](std::size_t at, std::size_t bytes) {
+            return numberAt(file.bytes(), at, bytes, isLittle);
+        };
+        const bool isClassic = number(2, 2) == 42;  // not of 64 bits
+        const std::size_t directory = number(4, 4);
+        const std::size_t count = isClassic ? number(directory, 2) : 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (number(directory + 2 + 12 * i, 2) == tag) return true;
+        }
+        return false;
     }
 
     float valueAt(const std::byte* at) const {

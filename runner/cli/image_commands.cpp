@@ -211,6 +211,13 @@ image::Picture readTelling(const std::string& file) {
     return picture;
 }
 
+/// Of a picture that is to be shown, also of which part it is.
+image::ImageF shownTelling(const std::string& file) {
+    image::Picture picture = readTelling(file);
+    if (!picture.isWhole()) tell("{}: {}\n", file, image::placeOf(picture));
+    return std::move(picture.linear);
+}
+
 struct Pair {
     image::Picture reference, test;
     bool isLinear() const { return reference.isLinear; }
@@ -449,9 +456,7 @@ Image8 shown(const ImageF& linear, const ImageConvertOptions& options) {
 Image8 convertedPicture(const ImageConvertOptions& options) {
     if (options.channels.empty()) {
         if (!options.range.empty()) throw UsageError("--range is of one channel: give --channels");
-        const image::Picture picture = readTelling(options.in);
-        if (!picture.isWhole()) tell("{}: {}\n", options.in, image::placeOf(picture));
-        return shown(picture.linear, options);
+        return shown(shownTelling(options.in), options);
     }
     if (image::formatOf(options.in) != "exr") {
         throw UsageError(options.in + ": --channels is for EXR files");
@@ -562,7 +567,7 @@ int imageSheet(const ImageSheetOptions& options) {
     requireNoInput(options.out, options.files);
     std::vector<image::Image8> images;
     for (const std::string& file : options.files) {
-        images.push_back(image::toSrgb8(image::withStraightAlpha(readTelling(file).linear)));
+        images.push_back(image::toSrgb8(image::withStraightAlpha(shownTelling(file))));
     }
     image::SheetLayout layout;
     layout.columns = options.columns;

@@ -1,9 +1,12 @@
 // `gfxrepro image …` on files that the tests write.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "engine/core/text.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
 #include "engine/metrics/flip.h"
@@ -54,20 +57,36 @@ class ImageCommands : public ::testing::Test {
     std::string out(const std::vector<std::string>& arguments) const {
         const ProcessResult result = gfxrepro(arguments);
         EXPECT_EQ(result.exitCode, 0) << result.err;
-        EXPECT_EQ(result.err, "");
+        EXPECT_EQ(withoutLayers(result.err), "");
         return result.out;
     }
-    /// Standard error of a call that must end with exit code 2, with the folder's path as DIR.
+    /// Standard error of a call that must end well, with the folder's path as DIR.
+    std::string said(const std::vector<std::string>& arguments) const {
+        return saidWith(0, arguments);
+    }
+    /// The same of one that must end with exit code 2.
     std::string refusal(const std::vector<std::string>& arguments) const {
+        return saidWith(2, arguments);
+    }
+    std::string saidWith(int exitCode, const std::vector<std::string>& arguments) const {
         ProcessResult result = gfxrepro(arguments);
-        EXPECT_EQ(result.exitCode, 2);
-        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(result.exitCode, exitCode);
+        if (exitCode != 0) EXPECT_EQ(result.out, "");
         const std::string prefix = folder_.path().string();
         for (std::size_t found; (found = result.err.find(prefix)) != std::string::npos;) {
             result.err.replace(found, prefix.size(), "DIR");
         }
         return result.err;
     }
+    /// A text without the lines that gbuffer() has other channels than colours.
+    static std::string withoutLayers(const std::string& text) {
+        std::string rest;
+        for (const std::string& line : split(text, '\n')) {
+            if (!line.ends_with(kLayers)) rest += (rest.empty() ? "" : "\n") + line;
+        }
+        return rest;
+    }
+    static constexpr const char* kLayers = ": left out: the channels N.X, N.Y, N.Z, Z, id";
 
     TemporaryFolder folder_;
 };
@@ -98,7 +117,9 @@ TEST_F(ImageCommands, DiffPrintsTheMetrics) {
     const ExrImage a = gbuffer(0.75F), b = gbuffer(0.5F);
     const std::string first = write("a.exr", a), second = write("b.exr", b);
     // Half of the pixels are 0.25 off: MSE 1/32, PSNR 10·log10(32).
-    const std::string text = out({"image", "diff", first, second});
+    const std::vector<std::string> diff{"image", "diff", first, second};
+    EXPECT_EQ(said(diff), fmt::format("DIR/a.exr{0}\nDIR/b.exr{0}\n", kLayers));
+    const std::string text = out(diff);
     EXPECT_NE(text.find("mse 0.03125\npsnr_db 15.0515\nssim 0."), std::string::npos) << text;
     EXPECT_NE(text.find("\nflip 0."), std::string::npos) << text;
     EXPECT_NE(text.find("\nmax 0.25\n"), std::string::npos) << text;
@@ -154,7 +175,7 @@ TEST_F(ImageCommands, DiffOfSmallImagesHasNoSimilarity) {
 TEST_F(ImageCommands, DiffRefuses) {
     const std::string exr = write("a.exr", gbuffer(1.0F)), png = write("b.png", Image8(4, 4, 3));
     EXPECT_EQ(
-        refusal({"image", "diff", exr, png}),
+        withoutLayers(refusal({"image", "diff", exr, png})),
         "gfxrepro: image diff: DIR/a.exr and DIR/b.png are of different kinds: one is linear, "
         "as EXR files are, the other sRGB, as PNG files are\n");
     EXPECT_EQ(refusal({"image", "diff", png, write("c.png", Image8(5, 4, 3))}),
@@ -326,6 +347,13 @@ TEST_F(ImageCommands, ContactSheetPutsImagesInOrder) {
     // The right half of the EXR file.
     EXPECT_EQ(sheet.at(8 + 39, 2 * kCaption + 96 + 29, 1), 255);
     EXPECT_EQ(sheet.at(8 + 1, 8 + 5, 1), 255) << "of the dots before its name's end";
+    ImageF part(2, 1, 1, std::numeric_limits<float>::quiet_NaN());
+    ExrImage odd;
+    odd.add(part, {"Y"}, image::ExrPixelType::Float);
+    odd.displayWindow = {0, 0, 4, 4};
+    EXPECT_EQ(said({"image", "contact-sheet", "--out", at("s.png"), write("n.exr", odd)}),
+              "DIR/n.exr: pixels that are not finite: 2; NaN is shown black, infinity "
+              "white\nDIR/n.exr: 2x1 pixels from (0, 0) of 4x4\n");
     EXPECT_EQ(refusal({"image", "contact-sheet", "--out", at("s.exr"), red}),
               "gfxrepro: DIR/s.exr: a contact sheet is a .png\n");
 }
@@ -365,7 +393,8 @@ TEST_F(ImageCommands, PartsOfAPictureKeepTheirPlace) {
          {std::tuple(first, "psnr_db inf\n", "(0, 0)"), {last, "psnr_db 12.0412\n", "(8, 6)"}}) {
         const ProcessResult result = gfxrepro({"image", "diff", whole, part, "--metric", "psnr"});
         EXPECT_EQ(result.out, psnr);
-        EXPECT_EQ(result.err, std::string("compared are 8x6 pixels from ") + place + " of 16x12\n");
+        EXPECT_EQ(withoutLayers(result.err),
+                  std::string("compared are 8x6 pixels from ") + place + " of 16x12\n");
     }
     EXPECT_NE(out({"image", "info", last})
                   .find("data window 8x6 from (8, 6), display window 16x12 from (0, 0)\n"),

@@ -13,6 +13,7 @@ namespace gfxrepro::test {
 namespace {
 
 using image::ImageF;
+using testing::AllOf;
 using testing::HasSubstr;
 
 class PicturesOfPrograms : public testing::Test {
@@ -137,6 +138,26 @@ TEST_F(PicturesOfPrograms, GammaOfAPngIsReadAndSaid) {
                           "gamma of 1 to sRGB"));
     EXPECT_EQ(gfxrepro({"image", "info", (folder.path() / "light.png").string()}).out,
               "png 16x12, 3 channels, sRGB\nits values are converted from a gamma of 1 to sRGB\n");
+}
+
+TEST_F(PicturesOfPrograms, LayersThatAreLeftOutAreSaidInTheRunAndTheReport) {
+    const ImageF light(16, 12, 3, 0.25F);
+    image::ExrImage exr;
+    exr.add(light, {"R", "G", "B"}, image::ExrPixelType::Float);
+    image::writeExr(folder.path() / "truth.exr", exr);
+    exr.add(light, {"diffuse.R", "diffuse.G", "diffuse.B"});
+    image::writeExr(folder.path() / "layers.exr", exr);
+    const ProcessResult said = run("layers.exr", "truth.exr");
+    ASSERT_EQ(said.exitCode, 0) << said.err;
+    EXPECT_EQ(rowsOf(dir, "mse").at(0).value, 0.0);
+    const std::string note = "left out: the channels diffuse.B, diffuse.G, diffuse.R";
+    const std::string line = "warning: image 'result': " + note + "\n";
+    const std::size_t at = said.err.find(line);
+    ASSERT_NE(at, std::string::npos) << said.err;
+    EXPECT_EQ(said.err.find(note, at + line.size()), std::string::npos) << said.err;
+    ASSERT_EQ(gfxrepro({"report", dir}).exitCode, 0);
+    EXPECT_THAT(readFile(dir + "/report.html"),
+                AllOf(HasSubstr("<th scope=\"row\">Warnings</th><td>image "), HasSubstr(note)));
 }
 
 TEST_F(PicturesOfPrograms, TwoPatternsAreComparedByAFewLines) {

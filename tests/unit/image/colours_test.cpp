@@ -231,6 +231,52 @@ TEST_F(ColoursOfFiles, PrecedenceOfPng) {
               Lines{"left out: all but its first frame"});
 }
 
+TEST_F(ColoursOfFiles, NumbersThatAPaletteHasNotAreSaid) {
+    std::string file = encodePng(row({0, 1, 5, 1}, 1));
+    file[25] = 3;  // its kind of colours
+    file.replace(29, 4, bigWord(crcOf(file.substr(12, 17))));
+    const std::string colours = std::string("PLTE\xFF\0\0\0\xFF\0", 10);
+    file.insert(33, bigWord(6) + colours + bigWord(crcOf(colours)));
+    const Picture picture = readPicture(folder_.write("a.png", file));
+    EXPECT_EQ(picture.stored.at(0, 0, 0), 1.0F);
+    EXPECT_EQ(picture.stored.at(2, 0, 0), 0.0F);
+    EXPECT_EQ(picture.stored.at(3, 0, 1), 1.0F);
+    EXPECT_EQ(picture.notes,
+              Lines{"pixels of colours that its palette has not: 1; they are black"});
+    file[45] = '\x7F';  // a broken one
+    EXPECT_THROW(readPicture(folder_.write("a.png", file)), Error);
+}
+
+TEST_F(ColoursOfFiles, GreyResponseOfTiffIsSaid) {
+    const auto word = [](std::uint32_t value, int bytes) {
+        std::string text;
+        for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> 8 * i & 255U);
+        return text;
+    };
+    std::string directory;
+    std::uint16_t count = 0;
+    const auto add = [&](std::uint32_t tag, std::uint32_t type, std::uint32_t values,
+                         std::uint32_t value) {
+        directory += word(tag, 2) + word(type, 2) + word(values, 4) + word(value, 4);
+        ++count;
+    };
+    const std::uint32_t curveAt = 8 + 2 + 9 * 12 + 4, pixelAt = curveAt + 512;
+    add(256, 3, 1, 1);          // width
+    add(257, 3, 1, 1);          // height
+    add(258, 3, 1, 8);          // bits
+    add(259, 3, 1, 1);          // not compressed
+    add(262, 3, 1, 1);          // 0 is black
+    add(273, 4, 1, pixelAt);    // where its rows are
+    add(279, 4, 1, 1);          // how long they are
+    add(281, 3, 1, 100);        // the largest value there is: statistics
+    add(291, 3, 256, curveAt);  // densities
+    const std::string file = "II*" + std::string(1, '\0') + word(8, 4) + word(count, 2) +
+                             directory + word(0, 4) + std::string(512, '\1') + "\x33";
+    const Picture picture = readPicture(folder_.write("a.tif", file));
+    EXPECT_EQ(picture.stored.at(0, 0), 0.2F);
+    EXPECT_EQ(picture.notes, Lines{"left out: its grey response curve"});
+}
+
 TEST_F(ColoursOfFiles, PngIsTurnedAsItsExifSays) {
     const std::string exif("II*\0\x08\0\0\0\1\0\x12\1\3\0\1\0\0\0\3\0\0\0\0\0\0\0", 26);
     EXPECT_EQ(png(row({1, 2, 3}, 1), {{"eXIf", exif}}).stored.at(0, 0), 3.0F / 255.0F);

@@ -11,6 +11,8 @@
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
+#include <limits>
+
 #include "engine/image/exr_io.h"
 #include "engine/image/image_file.h"
 #include "engine/image/png_io.h"
@@ -246,6 +248,41 @@ TEST_F(ExrMeaning, AttributesThatAreNotUsedAreNamed) {
     const ExrImage exr = readExr(writeEven("a.exr", header, {{"Y", 0.5F}}));
     EXPECT_EQ(exr.notes, std::vector<std::string>{
                              "not used of its attributes: exposureOfNobody, pixelAspectRatio"});
+}
+
+TEST_F(ExrMeaning, ChannelsThatAPictureLeavesOutAreNamed) {
+    std::vector<std::pair<const char*, float>> channels = {
+        {"R", 1.0F}, {"G", 1.0F}, {"B", 1.0F}, {"A", 1.0F}, {"Z", 3.0F}, {"diffuse.R", 0.5F}};
+    const auto notes = [&] {
+        return readPicture(writeEven("a.exr", Imf::Header(4, 4), channels)).notes;
+    };
+    using Notes = std::vector<std::string>;
+    EXPECT_EQ(notes(), Notes{"left out: the channels Z, diffuse.R"});
+    for (const char* name : {"a", "b", "c", "d", "e", "f", "g"}) channels.emplace_back(name, 0.0F);
+    EXPECT_EQ(notes(), Notes{"left out: the channels Z, a, b, c, d, diffuse.R, e, f and 1 more"});
+    channels = {{"Y", 1.0F}, {"A", 1.0F}};
+    EXPECT_EQ(notes(), Notes{});
+    EXPECT_EQ(readExr(path("a.exr")).notes, Notes{});
+}
+
+TEST_F(ExrMeaning, PixelsThatAreNotFiniteAreCounted) {
+    ImageF light(3, 1, 3, 0.5F);
+    light.at(0, 0, 1) = std::numeric_limits<float>::quiet_NaN();
+    light.at(0, 0, 2) = light.at(2, 0, 0) = std::numeric_limits<float>::infinity();
+    ExrImage exr;
+    exr.add(light, {"R", "G", "B"}, ExrPixelType::Float);
+    writeExr(path("a.exr"), exr);
+    const Picture picture = readPicture(path("a.exr"));
+    const std::vector<std::string> note{
+        "pixels that are not finite: 2; NaN is shown black, infinity white"};
+    EXPECT_EQ(picture.notes, note);
+    const Image8 shown = toSrgb8(picture.linear);
+    EXPECT_EQ(shown.at(0, 0, 1), 0);
+    EXPECT_EQ(shown.at(2, 0, 0), 255);
+    std::string pfm = "PF\n3 1\n-1\n";
+    pfm.append(reinterpret_cast<const char*>(light.values().data()), light.values().size_bytes());
+    test::TemporaryFolder folder;
+    EXPECT_EQ(readPicture(folder.write("a.pfm", pfm)).notes, note);
 }
 
 TEST_F(ExrMeaning, OtherSpacesOfColourAreNamed) {
