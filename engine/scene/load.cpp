@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "engine/core/foreign_text.h"
 #include "engine/scene/left_out.h"
 #include "engine/scene/model_files.h"
 
@@ -50,6 +51,16 @@ void warnOfColours(Scene& scene) {
     odd.tell(scene.warnings, "taken as it is");
 }
 
+/// GLB files and reports take no other names.
+void makeUtf8(Scene& scene) {
+    const auto convert = [](std::string& text) { text = asUtf8(text); };
+    convert(scene.name);
+    convert(scene.origin.description);
+    for (Mesh& mesh : scene.meshes) convert(mesh.name);
+    for (Material& material : scene.materials) convert(material.name);
+    std::ranges::for_each(scene.warnings, convert);
+}
+
 }  // namespace
 
 void requireKnownExtension(const std::filesystem::path& path) {
@@ -64,6 +75,7 @@ Scene loadScene(const std::filesystem::path& path) {
     scene.name = path.stem().string();
     scene.origin = {Origin::Kind::Real, path.filename().string(),
                     sha256OfModel(path, scene.filesBeside)};
+    makeUtf8(scene);
     return scene;
 }
 

@@ -349,7 +349,7 @@ class SceneBuilder {
             if (worldFromNode) {
                 fail(fmt::format("node {} has two parents or is its own ancestor", index));
             }
-            const glm::dmat4 local = localMatrix(node);
+            const glm::dmat4 local = localMatrix(node, index);
             Open inner{0, parent.worldFromParent * glm::mat4(local), parent.exactFromParent * local,
                        parent.isVisible && isVisible(node)};
             if (isMoved_) inner.worldFromParent = glm::mat4(inner.exactFromParent);
@@ -391,8 +391,11 @@ class SceneBuilder {
         }
     }
 
-    glm::dmat4 localMatrix(const tinygltf::Node& node) {
-        if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
+    glm::dmat4 localMatrix(const tinygltf::Node& node, int index) {
+        if (node.matrix.size() == 16) {
+            return gltf::affine(glm::dmat4(glm::make_mat4(node.matrix.data())),
+                                fmt::format("{}: node {}", file_.name, index));
+        }
         glm::dmat4 matrix(1.0);
         if (node.translation.size() == 3) {
             matrix[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1.0);

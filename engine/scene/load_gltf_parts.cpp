@@ -291,7 +291,9 @@ std::vector<glm::mat4> jointMatrices(const File& file, Accessors& accessors, int
             throw Error(fmt::format("{}: its joint, node {}, is not in the scene", where, node));
         }
         matrices.push_back(*worldFromNode[static_cast<std::size_t>(node)] *
-                           (inverseBinds.empty() ? glm::mat4(1.0F) : inverseBinds[i]));
+                           (inverseBinds.empty()
+                                ? glm::mat4(1.0F)
+                                : affine(inverseBinds[i], fmt::format("{}: joint {}", where, i))));
     }
     return matrices;
 }

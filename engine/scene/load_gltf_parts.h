@@ -1,6 +1,9 @@
 // Materials, lights, morph targets and skins of glTF files.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -8,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/error.h"
 #include "engine/scene/load_gltf_file.h"
 #include "engine/scene/scene.h"
 
@@ -80,6 +84,23 @@ struct UsedPart {
 
 /// Moves positions and normals towards each target, by its weight; missing weights are 0.
 void morph(Accessors& accessors, const UsedPart& part, std::span<const double> weights, Mesh& mesh);
+
+/// Of a matrix that files write in decimals: its last row is 0, 0, 0, 1. Throws Error, which begins
+/// with `where`, for another one, as it is no rotation, scale and translation.
+template <class Matrix>
+Matrix affine(Matrix matrix, const std::string& where) {
+    for (int column = 0; column < 4; ++column) {
+        const double usual = column == 3 ? 1.0 : 0.0;
+        if (!(std::abs(matrix[column][3] - usual) <= 1e-5)) {
+            throw Error(
+                fmt::format("{}: the last row of its matrix is {}, {}, {}, {}; 0, 0, 0, 1 "
+                            "is allowed",
+                            where, matrix[0][3], matrix[1][3], matrix[2][3], matrix[3][3]));
+        }
+        matrix[column][3] = static_cast<typename Matrix::value_type>(usual);
+    }
+    return matrix;
+}
 
 /// One matrix a joint, from the space of the mesh into the world. `worldFromNode` is empty for
 /// nodes that are not in the scene. Throws Error for joints that are not.

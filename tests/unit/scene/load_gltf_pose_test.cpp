@@ -71,6 +71,14 @@ TEST_F(PoseGltf, JointsHoldASkinnedMeshWhereverItsNodeIs) {
     document_["skins"] =
         R"([{"joints":[2],"inverseBindMatrices":)" + std::to_string(add("MAT4", 1, bind)) + "}]";
     EXPECT_LT(glm::length(load().bounds().min - glm::vec3(-1, 4, 0)), 1e-5F);
+    bind[3] = 0.5F;
+    const std::string bound = document_["skins"];
+    document_["skins"] =
+        R"([{"joints":[2],"inverseBindMatrices":)" + std::to_string(add("MAT4", 1, bind)) + "}]";
+    EXPECT_EQ(errorText([&] { load(); }, folder_.path()),
+              "DIR/a.gltf: skin 0: joint 0: the last row of its matrix is 0.5, 0, 0, 1; 0, 0, 0, 1 "
+              "is allowed");
+    document_["skins"] = bound;
 
     // Joints say where it is: once.
     document_["nodes"].insert(document_["nodes"].find("\"mesh\":0,"),

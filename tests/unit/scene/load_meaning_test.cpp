@@ -1,5 +1,6 @@
 // Values that a format does not have, that stand twice, or where others are expected: refused or
 // said, never passed over.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -192,6 +193,35 @@ TEST_F(LoadMeaning, OfMaterialFilesEachLineIsReadOrSaid) {
         "mtllib a.mtl b.mtl\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"));
     EXPECT_EQ(scene.materials.at(0).baseColor.r, 1.0F);
     EXPECT_EQ(scene.warnings, Lines{"left out: a material of the name of one before it"});
+}
+
+TEST_F(LoadMeaning, MatricesOfNodesArePlacesAndNoProjections) {
+    const auto error = [&](const char* numbers) {
+        return gltfError("nodes", fmt::format(R"([{{"mesh":0,"matrix":[{}]}}])", numbers));
+    };
+    EXPECT_EQ(error("1,0,0,0,0,1,0,0,0,0,1,0.5,0,0,0,1"),
+              "node 0: the last row of its matrix is 0, 0, 0.5, 1; 0, 0, 0, 1 is allowed");
+    EXPECT_EQ(error("1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2"),
+              "node 0: the last row of its matrix is 0, 0, 0, 2; 0, 0, 0, 1 is allowed");
+    Document document = square();
+    document["nodes"] = R"([{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,0.9999999]}])";
+    const Scene scene = loadGltf(folder_.write("a.gltf", text(document)));
+    EXPECT_EQ(scene.instances.at(0).worldFromMesh, glm::mat4(1.0F));
+}
+
+TEST_F(LoadMeaning, NamesOfLatin1AreMadeUtf8) {
+    folder_.write("a.mtl", "newmtl gr\xFCn\nKd 0 1 0\nnewmtl \u00FC\nKd 1 0 0\nK\xFC 1\n");
+    const Scene scene = loadScene(folder_.write("\xFC.obj",
+                                                "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                                "usemtl gr\xFCn\nf 1 2 3\nusemtl \u00FC\n"
+                                                "f 1 2 3\n"));
+    EXPECT_EQ(scene.materials.at(0).name, "gr\u00FCn");
+    EXPECT_EQ(scene.materials.at(1).name, "\u00FC");
+    EXPECT_EQ(scene.warnings, Lines{"left out: 'K\u00FC' of a material file"});
+    saveGlb(folder_.path() / "a.glb", scene);
+    const Scene saved = loadScene(folder_.path() / "a.glb");
+    EXPECT_EQ(saved.materials.at(0).name, "gr\u00FCn");
+    EXPECT_EQ(saved.meshes.at(0).name, scene.meshes.at(0).name);
 }
 
 class PlyMeaning : public LoadMeaning {
