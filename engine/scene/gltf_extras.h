@@ -1,6 +1,6 @@
 // What glTF has no place for, among the extras of files of ours: how far cameras look, how far
-// lights reach, camera paths and motions. Positions in a file are in its own coordinates, those in
-// a scene relative to its offset.
+// lights reach, meshes that are smooth without normals, camera paths and motions. Positions in a
+// file are in its own coordinates, those in a scene relative to its offset.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -18,6 +18,9 @@ namespace gfxrepro::scene::gltf {
 inline constexpr const char* kTargetM = "target_m";
 /// Of a light, whose intensity is a PointLight's then, and no candela: its radius.
 inline constexpr const char* kRadiusM = "radius_m";
+
+/// Of a mesh that has no normals and is no flat one for all that: 1.
+inline constexpr const char* kSmooth = "smooth";
 
 /// An object of one number.
 tinygltf::Value numberExtra(const char* key, double value);

@@ -165,6 +165,7 @@ class SceneBuilder {
             }
             if (mesh.triangles.empty()) continue;
             mesh.name = from.name;
+            if (gltf::lengthExtra(from.extras, gltf::kSmooth)) mesh.isFlat = false;
             parts.meshes.push_back(static_cast<int>(scene_.meshes.size()));
             scene_.meshes.push_back(std::move(mesh));
         }

@@ -191,6 +191,9 @@ class GlbBuilder {
             primitive.indices = addAccessor(view, mesh.triangles.size() * 3, TINYGLTF_TYPE_SCALAR,
                                             TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
             addMesh(mesh.name, std::move(primitive));
+            if (mesh.normals.empty() && !mesh.isFlat) {  // glTF 2.0, Sec. 3.7.2.1: it would be
+                model_.meshes.back().extras = gltf::numberExtra(gltf::kSmooth, 1.0);
+            }
         }
         for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
             const Instance& instance = scene_.instances[i];

@@ -93,7 +93,9 @@ class External : public technique::Technique {
         values_[placeholder::kSeed] = std::to_string(context.seed);
         if (sceneNeed() == technique::SceneNeed::Nothing) return;
         const fs::path scene = folder_->path() / "scene.glb";
-        scene::saveGlb(scene, *context.scene);
+        for (const std::string& line : scene::saveGlb(scene, *context.scene)) {
+            fmt::print(stderr, "warning: {{scene}}: {}\n", line);
+        }
         values_[placeholder::kScene] = scene.string();
     }
 

@@ -142,6 +142,21 @@ TEST_F(SaveGlb, KeepsInstancesMaterialsTexturesAndCameras) {
     EXPECT_EQ(eye.farM, camera.farM);
 }
 
+TEST_F(SaveGlb, KeepsWhichMeshesAreFlat) {
+    Scene scene;
+    for (const bool isFlat : {false, true}) {
+        scene.instances.push_back({static_cast<int>(scene.meshes.size()), glm::mat4(1.0F)});
+        scene.meshes.push_back(randomMesh(3));
+        scene.meshes.back().normals.clear();
+        scene.meshes.back().isFlat = isFlat;
+    }
+    saveGlb(folder.path() / "a.glb", scene);
+    const Scene back = loadGltf(folder.path() / "a.glb");
+    EXPECT_FALSE(back.meshes.at(0).isFlat);
+    EXPECT_TRUE(back.meshes.at(1).isFlat);
+    EXPECT_TRUE(back.warnings.empty());
+}
+
 TEST_F(SaveGlb, KeepsEveryMemberOfAMaterial) {
     Scene scene = sceneOf(randomMesh(5));
     scene.textures.emplace_back(1, 1, 3, std::uint8_t{7});
