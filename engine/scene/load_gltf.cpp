@@ -571,9 +571,9 @@ class SceneBuilder {
 
 Scene loadGltf(const std::filesystem::path& path) {
     const gltf::File file = gltf::readFile(path);
-    return loadedNearOrigin([&](const glm::dvec3& offset, LeftOut& leftOut) {
+    return loadedNearOrigin([&](const Anchor& anchor, LeftOut& leftOut) {
         leftOut = file.leftOut;
-        return SceneBuilder(file, offset, leftOut).build();
+        return SceneBuilder(file, anchor.offset, leftOut).build();
     });
 }
 

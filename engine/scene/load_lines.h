@@ -15,8 +15,8 @@
 namespace gfxrepro::scene {
 
 /// Goes through a text line by line and through a line word by word. A backslash at the end of a
-/// line continues it; '#' begins a comment at the start of a line and behind a blank. A byte order
-/// mark is skipped. In a text without line feeds carriage returns end the lines.
+/// line continues it, but no comment; '#' begins one at the start of a line and behind a blank. A
+/// byte order mark is skipped. In a text without line feeds carriage returns end the lines.
 class LineReader {
   public:
     LineReader(std::string_view text, std::string file)
@@ -29,7 +29,7 @@ class LineReader {
         line_ = nextLine_;
         if (text_.empty()) return false;
         rest_ = takeLine();
-        if (endsWithBackslash(rest_)) joinContinuations();
+        if (isContinued(rest_)) joinContinuations();
         lineEnd_ = rest_.data() + rest_.size();
         rest_ = withoutComment(rest_);
         return true;
@@ -81,14 +81,13 @@ class LineReader {
         return *value;
     }
 
-    /// Three coordinates less the offset.
-    glm::vec3 position(const glm::dvec3& offset) {
+    glm::vec3 position(Anchor& anchor) {
         glm::dvec3 position(0.0);
         for (int axis = 0; axis < 3; ++axis) {
             position[axis] = number<double>();
             requireNear(position[axis], [this](const std::string& problem) { fail(problem); });
         }
-        return position - offset;
+        return anchor.relative(position);
     }
 
     /// Goes on to the next line that has a word.
@@ -118,7 +117,8 @@ class LineReader {
     static constexpr std::size_t kMostLineBytes = std::size_t{64} << 20;
 
     static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-    static bool endsWithBackslash(std::string_view line) {
+    static bool isContinued(std::string_view line) {
+        line = withoutComment(line);
         while (!line.empty() && isBlank(line.back())) line.remove_suffix(1);
         return !line.empty() && line.back() == '\\';
     }
@@ -153,7 +153,7 @@ class LineReader {
 
     void joinContinuations() {
         joined_.clear();
-        while (endsWithBackslash(rest_)) {
+        while (isContinued(rest_)) {
             joined_ += rest_.substr(0, rest_.rfind('\\'));
             joined_ += ' ';
             rest_ = text_.empty() ? std::string_view{} : takeLine();

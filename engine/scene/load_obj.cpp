@@ -55,10 +55,9 @@ struct ObjContent {
 
 class ObjParser {
   public:
-    /// `offset` is subtracted from all positions.
-    ObjParser(std::string_view text, const std::string& file, const glm::dvec3& offset,
-              LeftOut& leftOut)
-        : lines_(text, file), offset_(offset), leftOut_(leftOut) {}
+    /// Positions are relative to `anchor`.
+    ObjParser(std::string_view text, const std::string& file, Anchor& anchor, LeftOut& leftOut)
+        : lines_(text, file), anchor_(anchor), leftOut_(leftOut) {}
 
     ObjContent parse() {
         while (lines_.nextLine()) parseLine(lines_.word());
@@ -110,7 +109,7 @@ class ObjParser {
 
     /// "v x y z", "v x y z w", "v x y z r g b".
     void parseVertex() {
-        content_.positions.push_back(lines_.position(offset_));
+        content_.positions.push_back(lines_.position(anchor_));
         const auto red = lines_.optionalNumber();
         const auto green = red ? lines_.optionalNumber() : std::nullopt;
         const auto blue = green ? lines_.optionalNumber() : std::nullopt;
@@ -237,7 +236,7 @@ class ObjParser {
         "a texture coordinate or a normal of a corner, which is not in the file";
 
     LineReader lines_;
-    glm::dvec3 offset_;
+    Anchor& anchor_;
     LeftOut& leftOut_;
     ObjContent content_;
     std::unordered_map<std::string, std::size_t> groupOf_;
@@ -453,8 +452,8 @@ Scene sceneOf(ObjContent content, const std::filesystem::path& path, LeftOut& le
 
 Scene loadObj(const std::filesystem::path& path) {
     const MappedFile mapped(path);
-    return loadedNearOrigin([&](const glm::dvec3& offset, LeftOut& leftOut) {
-        return sceneOf(ObjParser(mapped.text(), path.string(), offset, leftOut).parse(), path,
+    return loadedNearOrigin([&](Anchor& anchor, LeftOut& leftOut) {
+        return sceneOf(ObjParser(mapped.text(), path.string(), anchor, leftOut).parse(), path,
                        leftOut);
     });
 }

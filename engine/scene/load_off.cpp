@@ -20,9 +20,8 @@ namespace {
 
 class OffParser {
   public:
-    OffParser(std::string_view text, const std::string& file, const glm::dvec3& offset,
-              LeftOut& leftOut)
-        : lines_(text, file), offset_(offset), leftOut_(leftOut) {}
+    OffParser(std::string_view text, const std::string& file, Anchor& anchor, LeftOut& leftOut)
+        : lines_(text, file), anchor_(anchor), leftOut_(leftOut) {}
 
     Scene parse() {
         parseHeader();
@@ -84,7 +83,7 @@ class OffParser {
 
     void parseVertex() {
         lines_.nextFilledLine();
-        mesh_.positions.push_back(lines_.position(offset_));
+        mesh_.positions.push_back(lines_.position(anchor_));
         const auto vector = [&] {
             glm::vec3 v;
             for (int i = 0; i < 3; ++i) v[i] = lines_.number();
@@ -126,7 +125,7 @@ class OffParser {
     }
 
     LineReader lines_;
-    glm::dvec3 offset_;
+    Anchor& anchor_;
     bool hasTexcoords_ = false, hasColors_ = false, hasNormals_ = false;
     std::uint64_t vertexCount_ = 0, faceCount_ = 0;
     Mesh mesh_;
@@ -138,8 +137,8 @@ class OffParser {
 
 Scene loadOff(const std::filesystem::path& path) {
     const MappedFile mapped(path);
-    return loadedNearOrigin([&](const glm::dvec3& offset, LeftOut& leftOut) {
-        return OffParser(mapped.text(), path.string(), offset, leftOut).parse();
+    return loadedNearOrigin([&](Anchor& anchor, LeftOut& leftOut) {
+        return OffParser(mapped.text(), path.string(), anchor, leftOut).parse();
     });
 }
 

@@ -246,9 +246,9 @@ void skipElement(Reader& reader, const Element& element) {
 template <class Reader>
 class VertexParser {
   public:
-    VertexParser(Reader& reader, const Element& element, const std::string& file,
-                 const glm::dvec3& offset, LeftOut& leftOut)
-        : reader_(reader), element_(element), offset_(offset) {
+    VertexParser(Reader& reader, const Element& element, const std::string& file, Anchor& anchor,
+                 LeftOut& leftOut)
+        : reader_(reader), element_(element), anchor_(anchor) {
         for (const Property& property : element.properties) {
             const PropertySlot slot = slotOf(property);
             slots_.push_back(has_[slot] ? kNoSlot : slot);  // red and diffuse_red: the first
@@ -282,7 +282,7 @@ class VertexParser {
         std::uint64_t& number = reader_.row.number;
         for (number = 0; number < element_.count; ++number) {
             readRow();
-            mesh.positions.push_back({row_[kX], row_[kY], row_[kZ]});
+            mesh.positions.push_back(anchor_.relative(place_));
             if (normals) mesh.normals.push_back(unitNormal({row_[kNx], row_[kNy], row_[kNz]}));
             if (colors) mesh.colors.push_back({row_[kRed], row_[kGreen], row_[kBlue]});
             if (texcoords) mesh.texcoords.push_back({row_[kU], row_[kV]});
@@ -351,7 +351,8 @@ class VertexParser {
         const double number = reader_.number(property.type);
         const bool isPosition = slot <= kZ;
         if (isColour(slot) && areBytes_) return linearBytes_[static_cast<std::size_t>(number)];
-        const auto value = static_cast<float>(isPosition ? number - offset_[slot] : number);
+        if (isPosition) place_[slot] = number;
+        const auto value = static_cast<float>(number);
         // Scanners write normals that are not numbers; unitNormal() takes those.
         const bool isNormal = slot == kNx || slot == kNy || slot == kNz;
         if (!std::isfinite(value) && !isNormal) {
@@ -367,7 +368,8 @@ class VertexParser {
 
     Reader& reader_;
     const Element& element_;
-    glm::dvec3 offset_;
+    Anchor& anchor_;
+    glm::dvec3 place_{0.0};
     bool areBytes_ = true;               // all colours
     std::array<Type, 3> colourTypes_{};  // of red, green and blue
     std::vector<PropertySlot> slots_;
@@ -499,8 +501,8 @@ void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCoun
 }
 
 template <class Reader>
-Scene parseBody(Reader reader, const Header& header, const std::string& file,
-                const glm::dvec3& offset, LeftOut& leftOut) {
+Scene parseBody(Reader reader, const Header& header, const std::string& file, Anchor& anchor,
+                LeftOut& leftOut) {
     const Element* vertexElement = header.find("vertex");
     if (vertexElement == nullptr || vertexElement->count == 0) throw Error(file + ": no vertices");
     if (vertexElement->count > std::numeric_limits<std::uint32_t>::max()) {
@@ -521,7 +523,7 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file,
                                                      "' do not fit into the file");
         }
         if (element.name == "vertex") {
-            vertices = VertexParser<Reader>(reader, element, file, offset, leftOut)
+            vertices = VertexParser<Reader>(reader, element, file, anchor, leftOut)
                            .parse(header.hasLinearColours);
         } else if (hasFaces(element)) {
             parseFaces(reader, element, vertexElement->count, file, faces, leftOut);
@@ -559,12 +561,12 @@ Scene loadPly(const std::filesystem::path& path) {
     const MappedFile mapped(path);
     const std::string file = path.string();
     const Header header = ply::parseHeader(mapped.text(), file);
-    return loadedNearOrigin([&](const glm::dvec3& offset, LeftOut& leftOut) {
-        const bool isExact = offset != glm::dvec3(0.0);
+    return loadedNearOrigin([&](Anchor& anchor, LeftOut& leftOut) {
+        const bool isExact = anchor.counts || anchor.offset != glm::dvec3(0.0);
         return header.format == ply::Format::Ascii
                    ? parseBody(AsciiReader(mapped.text(), header, file, isExact), header, file,
-                               offset, leftOut)
-                   : parseBody(BinaryReader(mapped.text(), header, file), header, file, offset,
+                               anchor, leftOut)
+                   : parseBody(BinaryReader(mapped.text(), header, file), header, file, anchor,
                                leftOut);
     });
 }

@@ -89,8 +89,7 @@ std::uint32_t addCorner(Mesh& mesh, const glm::vec3& position) {
     return static_cast<std::uint32_t>(mesh.positions.size() - 1);
 }
 
-Mesh binaryMesh(std::string_view bytes, const std::string& file, const glm::dvec3& offset,
-                LeftOut& leftOut) {
+Mesh binaryMesh(std::string_view bytes, const std::string& file, Anchor& anchor, LeftOut& leftOut) {
     const std::uint64_t needed = declaredBytes(bytes);
     if (needed == 0 || needed > bytes.size()) {
         throw Error(fmt::format(
@@ -115,7 +114,7 @@ Mesh binaryMesh(std::string_view bytes, const std::string& file, const glm::dvec
                         fmt::format("{}: facet {}: {}", file, mesh.triangles.size(), problem));
                 });
             }
-            triangle[i] = addCorner(mesh, corner - offset);
+            triangle[i] = addCorner(mesh, anchor.relative(corner));
         }
         mesh.triangles.push_back(triangle);
         std::uint16_t bits = 0;
@@ -126,19 +125,38 @@ Mesh binaryMesh(std::string_view bytes, const std::string& file, const glm::dvec
     return mesh;
 }
 
-Mesh textMesh(std::string_view text, const std::string& file, const glm::dvec3& offset) {
+std::string lowerCase(std::string_view text) {
+    std::string result(text);
+    std::ranges::transform(result, result.begin(), [](unsigned char c) { return std::tolower(c); });
+    return result;
+}
+
+/// Goes behind a solid's name, which ends with its line, or, in a file of one line, before the next
+/// "facet normal". False where there is none.
+bool skipName(LineReader& lines) {
+    for (std::string word = lowerCase(lines.word()); !word.empty();
+         word = lowerCase(lines.word())) {
+        if (word == "facet" && lowerCase(lines.name().substr(0, 6)) == "normal") return true;
+    }
+    return false;
+}
+
+Mesh textMesh(std::string_view text, const std::string& file, Anchor& anchor) {
     LineReader lines(text, file);
     Mesh mesh;
     std::size_t corners = 0;
     bool isWithin = true;  // a solid, which has its end
     while (lines.nextLine()) {
-        for (std::string word(lines.word()); !word.empty(); word = lines.word()) {
-            std::ranges::transform(word, word.begin(),
-                                   [](unsigned char c) { return std::tolower(c); });
+        for (std::string word = lowerCase(lines.word()); !word.empty();
+             word = lowerCase(lines.word())) {
             isWithin = word != "endsolid";
-            if (word == "solid" || word == "endsolid") break;  // a name follows
+            if (word == "solid" || word == "endsolid") {
+                if (!skipName(lines)) break;
+                isWithin = true;
+                word = "facet";
+            }
             if (word == "vertex") {
-                addCorner(mesh, lines.position(offset));
+                addCorner(mesh, lines.position(anchor));
                 ++corners;
             } else if (word == "facet") {
                 for (int i = 0; i < 4; ++i) lines.word();  // "normal" and its numbers
@@ -168,9 +186,9 @@ Scene loadStl(const std::filesystem::path& path) {
     const MappedFile mapped(path);
     const std::string file = path.string();
     const bool isText = isTextStl(mapped.text());
-    return loadedNearOrigin([&](const glm::dvec3& offset, LeftOut& leftOut) {
-        Mesh mesh = isText ? textMesh(mapped.text(), file, offset)
-                           : binaryMesh(mapped.text(), file, offset, leftOut);
+    return loadedNearOrigin([&](Anchor& anchor, LeftOut& leftOut) {
+        Mesh mesh = isText ? textMesh(mapped.text(), file, anchor)
+                           : binaryMesh(mapped.text(), file, anchor, leftOut);
         if (mesh.triangles.empty()) throw Error(file + ": no facets");
         return sceneOf(std::move(mesh));
     });

@@ -87,6 +87,38 @@ inline glm::vec3 unitNormal(const glm::vec3& normal) {
     return isFinite(unit) ? unit : glm::vec3(0.0F);
 }
 
+/// What the coordinates of a scene are relative to. One that counts says how many vertices floats
+/// put where others of the file's are.
+class Anchor {
+  public:
+    explicit Anchor(const glm::dvec3& at, bool isCounting = false)
+        : offset(at), counts(isCounting) {}
+
+    glm::vec3 relative(const glm::dvec3& position) {
+        const glm::vec3 rounded(position - offset);
+        if (counts) count(position, rounded);
+        return rounded;
+    }
+
+    const glm::dvec3 offset;
+    const bool counts;
+    std::size_t joined = 0;
+
+  private:
+    void count(const glm::dvec3& position, const glm::vec3& rounded) {
+        const glm::vec3 r = rounded + 0.0F;  // −0 is 0
+        const auto [place, isNew] = places_.number(std::bit_cast<std::array<std::uint32_t, 3>>(r));
+        if (isNew) {
+            first_.push_back(position);
+        } else if (first_[place] != position) {
+            ++joined;
+        }
+    }
+
+    KeyTable<std::array<std::uint32_t, 3>> places_;
+    std::vector<glm::dvec3> first_;  // of the vertices at each place
+};
+
 /// Of a file's vertices: points where it has no triangles, else a mesh of those that these use.
 inline Scene sceneOfVertices(Mesh mesh, LeftOut& leftOut) {
     if (!mesh.triangles.empty()) {
@@ -176,15 +208,16 @@ inline std::size_t differentPlaces(const Scene& scene) {
     return sum;
 }
 
-/// A scene whose coordinates floats can hold. `load(offset, leftOut)` reads a file and subtracts
-/// the offset from all coordinates in double; where most of the scene lies far from the origin
+/// A scene whose coordinates floats can hold. `load(anchor, leftOut)` reads a file and subtracts
+/// the offset from all coordinates in double; where most of the scene lies far from it
 /// without one, or floats make one place of several, it reads again with one, which Scene::offset
 /// keeps and a warning tells.
 template <class Load>
-Scene loadedNearOrigin(Load&& loadLess) {
+Scene nearOrigin(Load&& loadLess) {
     const auto load = [&](const glm::dvec3& offset) {
         LeftOut leftOut;
-        Scene scene = loadLess(offset, leftOut);
+        Anchor anchor(offset);
+        Scene scene = loadLess(anchor, leftOut);
         leftOut.tell(scene.warnings);
         return scene;
     };
@@ -207,6 +240,27 @@ Scene loadedNearOrigin(Load&& loadLess) {
         fmt::format("its coordinates lie far from the origin: ({}, {}, {}) is subtracted from them",
                     offset.x, offset.y, offset.z));
     return moved;
+}
+
+/// The same, with a warning where the scene is too large for floats, wherever its origin lies.
+template <class Load>
+Scene loadedNearOrigin(Load&& loadLess) {
+    Scene scene = nearOrigin(loadLess);
+    constexpr float kCoarse = 65536.0F;  // from there on a float's step is 1/128
+    const Box box = scene.bounds();
+    const glm::vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
+    const float most = box.isEmpty() ? 0.0F : std::max({reach.x, reach.y, reach.z});
+    if (most < kCoarse) return scene;
+    Anchor anchor(scene.offset, true);
+    LeftOut ignored;
+    loadLess(anchor, ignored);
+    if (anchor.joined > 0) {
+        scene.warnings.push_back(fmt::format(
+            "floats put {} of its vertices where others are: it reaches to {:.0f}, where their "
+            "steps are {:g}",
+            anchor.joined, most, std::nextafter(most, 2.0F * most) - most));
+    }
+    return scene;
 }
 
 }  // namespace gfxrepro::scene

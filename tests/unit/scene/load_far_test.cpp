@@ -215,6 +215,42 @@ TEST_F(FarFiles, FinePartsOfARoomMoveNothing) {
     EXPECT_TRUE(scene.warnings.empty());
 }
 
+/// Of 800 km, so that floats have steps of 3 cm at both ends: no offset helps.
+TEST_F(FarFiles, VerticesThatFallTogetherAreCounted) {
+    const auto warnings = [&](const char* name, const std::string& content) {
+        return loadScene(folder.write(name, content)).warnings;
+    };
+    using Lines = std::vector<std::string>;
+    const Lines two{
+        "floats put 2 of its vertices where others are: it reaches to 400000, where their steps "
+        "are 0.03125"};
+    const std::vector<std::string> places{"-400000 0 0", "-400000.01 0 0", "-400000.5 0 0",
+                                          "400000 0 0",  "400000.01 0 0",  "400000.5 0 0",
+                                          "-400000 0 0", "400000 0 0"};
+    std::string obj, rows, stl = "solid\n";
+    for (const std::string& place : places) {
+        obj += "v " + place + '\n';
+        rows += place + '\n';
+    }
+    EXPECT_EQ(warnings("a.obj", obj + "f 1 2 3\nf 4 5 6\nf 7 8 1\n"), two);
+    EXPECT_EQ(warnings("a.off", "OFF 8 3 0\n" + rows + "3 0 1 2\n3 3 4 5\n3 6 7 0\n"), two);
+    for (const char* type : {"float", "double"}) {
+        const std::string head = fmt::format(
+            "ply\nformat ascii 1.0\nelement vertex 8\nproperty {0} x\nproperty {0} y\n"
+            "property {0} z\nend_header\n",
+            type);
+        EXPECT_EQ(warnings("a.ply", head + rows), two) << type;
+    }
+    for (std::size_t i : {0U, 3U}) {
+        stl += "facet normal 0 0 1\nouter loop\n";
+        for (std::size_t k = i; k < i + 3; ++k) stl += "vertex " + places[k] + '\n';
+        stl += "endloop\nendfacet\n";
+    }
+    EXPECT_EQ(warnings("a.stl", stl + "endsolid\n"), two);
+    EXPECT_EQ(warnings("a.obj", "v -400000 0 0\nv 400000 0 0\nv 400000 0.01 0\nf 1 2 3\n"),
+              Lines{});
+}
+
 TEST_F(FarFiles, ComeBackFromWhatIsSaved) {
     const Scene scene = loadPly(folder.write("a.ply", points("double")));
     savePly(folder.path() / "b.ply", scene);

@@ -278,6 +278,19 @@ TEST_F(LoadObj, ReadsVerticesWithoutFacesAsPoints) {
     EXPECT_EQ(error("o nothing\n"), "DIR/a.obj: no vertices");
 }
 
+/// A path is often the last word of one.
+TEST_F(LoadObj, CommentsAreNotContinued) {
+    folder_.write("a.mtl", "# C:\\\nnewmtl red\nKd 1 0 \\\n 0 # D:\\\nNs 96\n");
+    const Scene scene = loadObj(folder_.write(
+        "a.obj",
+        "# C:\\models\\\nmtllib a.mtl # D:\\ \r\nv 0 0 0 # first \\\nv 1 0 \\\n0 # \\\nv 0 1 0\n"
+        "usemtl red\nf 1 2 3\n"));
+    EXPECT_EQ(scene.triangleCount(), 1U);
+    EXPECT_EQ(scene.materials.at(0).baseColor, glm::vec4(1, 0, 0, 1));
+    EXPECT_LT(scene.materials.at(0).roughness, 0.5F);
+    EXPECT_EQ(scene.warnings, std::vector<std::string>{});
+}
+
 TEST_F(LoadObj, SaysWhereItIsWrong) {
     EXPECT_EQ(error("v 0 0\n"), "DIR/a.obj:1: the line lacks a number");
     EXPECT_EQ(error("v 0 \\\n0\n\nv 0 zero 0\n"), "DIR/a.obj:1: the line lacks a number");

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -121,7 +122,9 @@ TEST_F(LoadOffStl, ReadsBothFormsOfStl) {
         fmt::format("solid a name\n{}endsolid\nsolid\n{}endsolid a\n", kFacet, kFacet);
     std::string upper = two;
     for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    for (const std::string& text : {two, upper, binaryStl(2), binaryStl(2, "")}) {
+    std::string oneLine = two;
+    std::ranges::replace(oneLine, '\n', ' ');
+    for (const std::string& text : {two, upper, oneLine, binaryStl(2), binaryStl(2, "")}) {
         const Scene scene = stl(text);
         const Mesh& mesh = scene.meshes.at(0);
         EXPECT_EQ(mesh.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {3, 4, 5}}));
@@ -160,6 +163,7 @@ TEST_F(LoadOffStl, ReadsColoursOfStl) {
 
 TEST_F(LoadOffStl, RefusesBrokenStl) {
     EXPECT_EQ(stlError("solid\nendsolid\n"), "DIR/a.STL: no facets");
+    EXPECT_EQ(stlError("solid a facet endsolid"), "DIR/a.STL:2: the file ends without 'endsolid'");
     EXPECT_EQ(stlError(binaryStl(0, "")), "DIR/a.STL: no facets");
     EXPECT_EQ(stlError(binaryStl(2, "").substr(0, 150)),
               "DIR/a.STL: has 150 bytes; a binary STL file of its 2 facets has 184, one in text "
