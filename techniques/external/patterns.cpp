@@ -191,9 +191,23 @@ std::pair<std::string, std::string> besideGroup(std::string_view regex) {
     return {before, behind};
 }
 
+/// Whether the scale is what is written behind a number, as k, Ki or million.
+bool isScaleOf(std::string_view factor, double scale) {
+    static constexpr std::pair<std::string_view, int> kPowers[] = {
+        {"k", 1}, {"K", 1}, {"thousand", 1}, {"M", 2}, {"mi", 2},
+        {"G", 3}, {"b", 3}, {"mrd", 3},      {"T", 4},
+    };
+    const auto power = std::ranges::find_if(
+        kPowers, [&](const auto& each) { return factor.starts_with(each.first); });
+    if (power == std::end(kPowers)) return false;
+    const bool isBinary = factor.ends_with('i'), isWord = factor.size() > 1 && !isBinary;
+    return (!isBinary && scale == std::pow(1000.0, power->second)) ||
+           (!isWord && scale == std::pow(1024.0, power->second));
+}
+
 /// Whether a time, a fraction, a power or digits among letters go on before or behind the group:
 /// 1:23.4, 1/2, 2^10, 1.#QNAN, 0m1.2s, 0b11, 5k. What the pattern names there is a separator, and
-/// where it scales the number a k or M is its unit.
+/// where its scale is a thousand, a k is its unit.
 bool isPartOfToken(std::string_view left, std::string_view right,
                    const config::ProgramPattern& pattern) {
     static constexpr std::string_view kMarks[] = {
@@ -220,7 +234,7 @@ bool isPartOfToken(std::string_view left, std::string_view right,
             goesOn = false;
         }
     }
-    const bool isThousands = lettersRight == 1 && pattern.scale == 1.0 &&
+    const bool isThousands = lettersRight == 1 && !isScaleOf(between, pattern.scale) &&
                              std::string_view("kKMGT").find(between[0]) != std::string_view::npos;
     if ((goesOn || isThousands) && !isNamed) return true;
     if (std::ranges::any_of(kTails, startsRight)) return true;
@@ -318,9 +332,9 @@ std::pair<std::size_t, std::size_t> bytesBeside(const Found& found,
         !namedBehind.starts_with(match.str(1))) {
         take(second, 0);
     }
-    if (pattern.scale == 1.0 && finds(right, kFactor) &&
-        !namedBehind.starts_with(match.str(match[1].matched ? 1 : 2))) {
-        take(second, 0);
+    if (finds(right, kFactor)) {
+        const std::string factor = match.str(match[1].matched ? 1 : 2);
+        if (!isScaleOf(factor, pattern.scale) && !namedBehind.starts_with(factor)) take(second, 0);
     }
     if (end < number.size() || behind.starts_with(' ')) return {first, second};
     if (end - sign <= 3 && finds(right, kThousands)) take(second, 0);

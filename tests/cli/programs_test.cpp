@@ -508,5 +508,19 @@ TEST_F(ExternalProgram, TakesASceneOfTheCatalogue) {
     EXPECT_EQ(rowsOf(dir, "scene_triangles").size(), 1U);
 }
 
+TEST_F(ExternalProgram, SaysWhatTheFileOfItsSceneLeavesOut) {
+    folder.write("a.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                 "property float z\nproperty float radius\nend_header\n0 0 0 1\n1 1 1 1\n");
+    const std::string config = folder.write("scene.yaml",
+                                            "sweep_of: scene\ntitle: T\ntechnique: external\n"
+                                            "program: {command: \"test -s {scene}\"}\n"
+                                            "scene: a.ply\nmeasure: {lane: quality}\n");
+    const ProcessResult result = run(config);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_THAT(result.err,
+                HasSubstr("warning: {scene}: left out: the radius of a point (2 times)\n"));
+}
+
 }  // namespace
 }  // namespace gfxrepro::test

@@ -312,7 +312,12 @@ TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
                            "m=" + text),
                   std::stod(text));
     }
-    EXPECT_EQ(numberIn("m=3Mi", {"m", digits, 1024.0}), 3072.0);
+    EXPECT_EQ(numberIn("m=3Ki", {"m", digits, 1024.0}), 3072.0);
+    EXPECT_EQ(numberIn("m=3 million", {"m", digits, 1e6}), 3e6);
+    for (const char* text :
+         {"m=3M", "m=3Mi", "m=3 M", "m=3 thousand"}) {  // of which a k is the scale
+        EXPECT_NE(errorText([&] { numberIn(text, {"m", digits, 1024.0}); }), "no error") << text;
+    }
     EXPECT_EQ(numberOf("m=([0-9]+)", "m=3 MiB"), 3.0);
     EXPECT_EQ(numberOf("m=([0-9]+)", "m=3 e2e"), 3.0);
     // Columns, and what the pattern names.

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <sstream>
+#include <string>
 
 #include "engine/core/json_shape.h"
 #include "runner/run/run_directory.h"
@@ -25,6 +27,21 @@ TEST(CpuName, IsTheModelOrThePartOfAnArm) {
         "ARM 0x41 0xd0c");
     EXPECT_EQ(nameIn("processor\t: 0\nuarch : x\n"), "unknown");
     EXPECT_EQ(nameIn(""), "unknown");
+}
+
+TEST(Manifest, HoldsEachWarningOnce) {
+    Json manifest = Json::object();
+    addWarnings(manifest, {});
+    EXPECT_FALSE(manifest.contains("warnings"));
+    addWarnings(manifest, {"gr\xFCn\x1b[2J", "b"});
+    addWarnings(manifest, {"b", "c"});
+    EXPECT_EQ(manifest.at("warnings"), (Json{"b", "gr\u00FCn?[2J", "c"}));
+    std::set<std::string> many;
+    for (int i = 0; i < 200; ++i) many.insert("n" + std::to_string(i));
+    addWarnings(manifest, many);
+    addWarnings(manifest, many);
+    EXPECT_EQ(manifest.at("warnings").size(), 101U);
+    EXPECT_EQ(manifest.at("warnings").back(), "further ones are in journal.jsonl");
 }
 
 TEST(Manifest, OfAnEarlierVersionMayHaveMore) {
