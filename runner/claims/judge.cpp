@@ -212,6 +212,17 @@ Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirem
 
 namespace {
 
+/// The first of its values that is such; null where none is.
+const Sampled* findIn(const Group& group, const std::function<bool(const Sampled&)>& isSuch) {
+    std::vector<const std::vector<Sampled>*> all = {&group.x};
+    for (const auto& operand : group.operands) all.push_back(&operand);
+    for (const auto* values : all) {
+        const auto found = std::ranges::find_if(*values, isSuch);
+        if (found != values->end()) return &*found;
+    }
+    return nullptr;
+}
+
 /// Seeds of a scene: with five, the range misses the median of all in 6 % of cases, with two in 50.
 constexpr std::size_t kFewestScenes = 5;
 
@@ -258,6 +269,12 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
         areTooFew = values.size() < kFewestScenes;
     }
     judgement.verdict = verdictOf(interval, requirement);
+    // What is otherwise at times is exactly so in a few processes by chance, or in none of them.
+    const bool isByChance = requirement.isOfCounts && findIn(group, &Sampled::differs);
+    if (const std::string why = isByChance ? whyNoInterval(group) : ""; !why.empty()) {
+        judgement.verdict = Verdict::Ambiguous;
+        judgement.why = why;
+    }
     if (areTooFew && judgement.verdict != Verdict::Unmeasured) {
         judgement.verdict = Verdict::Ambiguous;
         judgement.why = fmt::format("{} scenes that differ; {} are the fewest that decide",
@@ -281,17 +298,6 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
 }
 
 namespace {
-
-/// The first of its values that is such; null where none is.
-const Sampled* findIn(const Group& group, const std::function<bool(const Sampled&)>& isSuch) {
-    std::vector<const std::vector<Sampled>*> all = {&group.x};
-    for (const auto& operand : group.operands) all.push_back(&operand);
-    for (const auto* values : all) {
-        const auto found = std::ranges::find_if(*values, isSuch);
-        if (found != values->end()) return &*found;
-    }
-    return nullptr;
-}
 
 const Sampled* findOverProcesses(const Group& group) {
     return findIn(group, [](const Sampled& value) { return !value.overProcesses.empty(); });

@@ -309,6 +309,21 @@ std::vector<std::size_t> candidates(const LayoutCases& cases, const Where& where
 
 }  // namespace
 
+namespace {
+
+void countSweptSeeds(LayoutCases& cases) {
+    const auto axis = std::ranges::find(cases.axes, kSeedAxis) - cases.axes.begin();
+    if (axis == std::ssize(cases.axes)) return;
+    std::map<std::string, int> places;
+    for (CaseRecords& item : cases.cases) {
+        const auto& value = item.axes[static_cast<std::size_t>(axis)];
+        if (!value || *value == kLeftOut) continue;
+        item.sweptSeed = places.try_emplace(*value, static_cast<int>(places.size())).first->second;
+    }
+}
+
+}  // namespace
+
 CaseIndex::CaseIndex(const std::vector<const AxisValues*>& cases) : caseCount_(cases.size()) {
     for (std::size_t place = 0; place < cases.size(); ++place) {
         const AxisValues& values = *cases[place];
@@ -378,6 +393,8 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
     cases.cases = groupByCase(planned, records, experiment.id, cases.axes,
                               sweep.isMap() ? sweep.find("when") : nullptr);
     cases.frameCount = experiment.measure.frames;
+    cases.isOfElsewhere = !config::isMeasuredHere(experiment);
+    if (config::goesByClock(experiment)) countSweptSeeds(cases);
     std::vector<const AxisValues*> values;
     for (const CaseRecords& item : cases.cases) values.push_back(&item.axes);
     cases.index = CaseIndex(values);

@@ -27,6 +27,9 @@ using AxisValues = std::vector<std::optional<std::string>>;
 /// In place of the value of an axis that does not apply to a case.
 inline constexpr std::string_view kLeftOut = "–";
 
+/// The axis whose values are draws of one number.
+inline constexpr std::string_view kSeedAxis = "seed";
+
 /// A case with the last attempt of each of its processes; without any where it was not run. Where
 /// scenes are taken at several seeds, a seed is to a case what a process is to a time: cases that
 /// differ by it alone are one, whose process k has the k-th seed.
@@ -67,8 +70,11 @@ struct CaseRecords {
     int sceneSeeds = 1;      // at how many its scene is taken
     /// Its scene has no seeds, where others have: its processes stand there once for each of these.
     bool isRepeated = false;
+    /// Of a program or an import whose sweep has an axis `seed`: which of its values, from 0.
+    std::optional<int> sweptSeed = {};
 
     std::uint64_t seedOf(int process) const {
+        if (sweptSeed && seeds == config::Measure::Seeds::None) return static_cast<std::uint64_t>(*sweptSeed);
         const bool isOther = seeds == config::Measure::Seeds::Process;
         return seed +
                (isOther ? static_cast<std::uint64_t>(process) * config::kSeedsOfAProcess : 0);
@@ -114,6 +120,8 @@ struct LayoutCases {
     std::size_t namedAxes = 0;
     std::vector<CaseRecords> cases;
     int frameCount = 1;
+    /// Measured elsewhere: of what was measured once nobody knows whether it was looked at twice.
+    bool isOfElsewhere = false;
     CaseIndex index;
 
     /// The place of an axis in `axes`.

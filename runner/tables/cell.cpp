@@ -16,49 +16,6 @@
 
 namespace gfxrepro::tables {
 
-namespace {
-
-/// The texts of these numbers, and of them together.
-void writeTexts(const CellFormat& format, std::vector<Measured>& numbers, std::string& whole,
-                std::string& low, std::string& high) {
-    if (numbers.empty()) return;
-    std::vector<double> values, lows, highs;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        Measured& measured = numbers[i];
-        measured.text = format.formatOne(i, measured.value);
-        if (measured.bounds != Bounds::None) {
-            measured.low = format.formatOne(i, measured.interval.low);
-            measured.high = format.formatOne(i, measured.interval.high);
-        }
-        values.push_back(measured.value);
-        lows.push_back(measured.interval.low);
-        highs.push_back(measured.interval.high);
-    }
-    whole = format.format(values);
-    if (numbers.front().bounds == Bounds::None) return;
-    low = format.format(lows);
-    high = format.format(highs);
-}
-
-}  // namespace
-
-void writeValues(const CellFormat& format, Cell& cell) {
-    writeTexts(format, cell.values, cell.measured, cell.low, cell.high);
-    writeTexts(format, cell.byProcess, cell.measuredByProcess, cell.lowByProcess,
-               cell.highByProcess);
-}
-
-void writeStatus(std::string_view word, Cell& cell) {
-    if (cell.values.empty()) {
-        cell.measured = cell.isPlanned ? word : "";
-    } else if (cell.status == records::Status::Flaky) {
-        cell.measured += " (flaky)";
-    } else if (cell.status != records::Status::Ok) {
-        cell.isPartial = true;
-        cell.measured += fmt::format(" (partial: {})", word);
-    }
-}
-
 // Which records a cell takes, and what they come to.
 
 namespace {
@@ -143,6 +100,7 @@ struct Gathered {  // what the records of a cell came to
     std::set<std::uint64_t> seeds;  // of random numbers that the values hang on
     std::size_t fewestSeeds = 0;    // of a curve's cases
     bool scatters = false;          // as Cell::scatters
+    bool differs = false;           // as Cell::differs
     std::size_t notRun = 0;         // further cases
     std::set<int> frames;
     std::vector<double> shareCounts;  // of shares that say so: how many samples each is a share of
@@ -181,11 +139,22 @@ bool isOfItsSeed(const std::string& metric) {
            metric != "same_mean_p" && metric != "bias_seen";
 }
 
+/// Whether each value of a swept seed is a round of its own, as a process with its seed is.
+bool isRoundOfSeed(const CaseRecords& run, const CellQuery& query) {
+    using Seeds = config::Measure::Seeds;
+    const bool isDrawn = run.sweptSeed && run.sceneSeeds == 1 && isOfItsSeed(query.metric);
+    return isDrawn && (run.seeds == Seeds::None ? !run.scatters(query.metric, query.pass)
+                                                : run.seeds == Seeds::Case);
+}
+
 void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>& unitOfFrame,
               int& unitCount, Gathered& gathered) {
+    using Seeds = config::Measure::Seeds;
     const bool differs = run.scatters(query.metric, query.pass);
-    gathered.scatters |= differs && run.seeds == config::Measure::Seeds::None &&
-                         !config::isTimeMetric(query.metric) && !config::isOfDevice(query.metric);
+    const bool isOfSeed = isRoundOfSeed(run, query);
+    gathered.differs |=
+        differs && !config::isTimeMetric(query.metric) && !config::isOfDevice(query.metric);
+    gathered.scatters |= gathered.differs && run.seeds == Seeds::None;
     for (const auto& [number, attempt] : run.processes) {
         // What differs between processes is no new number for each seed of another scene.
         if (run.isRepeated && differs && number >= records::kMostProcesses) break;
@@ -194,7 +163,7 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             continue;
         }
         std::map<int, std::vector<double>> process;
-        bool isRandom = run.seeds != config::Measure::Seeds::None && isOfItsSeed(query.metric);
+        bool isRandom = isOfSeed || (run.seeds != Seeds::None && isOfItsSeed(query.metric));
         for (const records::Record* record : attempt.values(query.metric, query.pass)) {
             if (!matchesFrame(query.where, record->frame)) continue;
             const auto [unit, isNew] = unitOfFrame.try_emplace(record->frame, unitCount);
@@ -211,7 +180,9 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
         if (isRandom && !process.empty()) gathered.seeds.insert(run.seedOf(number));
         // Process k of all cases is one round: what a cell of several cases shows is of rounds. Of
         // several scenes each is one, however many processes it has.
-        const int round = number - (run.sceneSeeds > 1 ? number % records::kMostProcesses : 0);
+        const int round =
+            isOfSeed ? *run.sweptSeed
+                     : number - (run.sceneSeeds > 1 ? number % records::kMostProcesses : 0);
         for (const auto& [unit, values] : process) {
             std::vector<double>& all = gathered.samples.processes[round][unit];
             all.insert(all.end(), values.begin(), values.end());
@@ -273,14 +244,16 @@ std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
 Gathered gather(const CellQuery& query, const LayoutCases& cases) {
     Gathered gathered;
     int unitCount = 0;
+    std::map<AxisValues, std::map<int, int>> unitOfFrame;
     for (const CaseRecords* run : casesAt(query.where, cases)) {
         if (run->processes.empty()) {
             ++gathered.notRun;
             continue;
         }
         gathered.caseIds.push_back(run->id);
-        std::map<int, int> unitOfFrame;
-        takeCase(*run, query, unitOfFrame, unitCount, gathered);
+        AxisValues unit = run->axes;  // draws of one number share theirs
+        if (isRoundOfSeed(*run, query)) unit[cases.indexOf(std::string(kSeedAxis))].reset();
+        takeCase(*run, query, unitOfFrame[unit], unitCount, gathered);
     }
     return gathered;
 }
@@ -319,6 +292,7 @@ void countSeeds(const Gathered& gathered, Cell& cell) {
     if (std::ranges::any_of(cell.values, &Measured::areDraws)) return;
     cell.seedCount = gathered.seeds.size();
     cell.scatters = gathered.scatters;
+    cell.differs = gathered.differs;
     if (cell.isOfOneSeed()) std::ranges::for_each(cell.values, takeAsOne);
 }
 
@@ -368,9 +342,11 @@ Sampled sampledOf(const Samples& samples, const CellFormat::Placeholder& placeho
 /// The axis of numbers along which the curve goes: the one of those that the cell takes together.
 std::optional<std::size_t> curveAxis(const std::vector<Pooled>& pooled) {
     for (std::size_t i = 0; i < pooled.size(); ++i) {
-        const bool isOfNumbers = std::ranges::all_of(
-            pooled[i].values,
-            [](const std::string& value) { return parseDouble(value).has_value(); });
+        const bool isOfNumbers =
+            pooled[i].axis != kSeedAxis &&
+            std::ranges::all_of(pooled[i].values, [](const std::string& value) {
+                return parseDouble(value).has_value();
+            });
         if (isOfNumbers) return i;
     }
     return std::nullopt;
@@ -412,6 +388,7 @@ std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRe
             gathered.note(one->worst, one->message);
             gathered.fewestSeeds = fewerSeeds(gathered.fewestSeeds, one->seeds.size());
             gathered.scatters |= one->scatters;
+            gathered.differs |= one->differs;
         }
         gathered.units.merge(y.units);
         gathered.frames.merge(y.frames);
@@ -471,6 +448,11 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
         cell.lacksCurve = true;
         gathered.note(records::Status::Missing, "equal needs a swept axis of numbers in the cell");
     }
+    if (std::ranges::count(cell.pooled, kSeedAxis, &Pooled::axis) > 0) {
+        along.clear();
+        gathered.note(records::Status::Missing,
+                      "equal takes no swept seed: 'measure: {seeds: process}' draws several");
+    }
     if (!along.empty()) cell.values = equalValues(query, along, gathered);
     addSampled(query, cases, gathered.frames.size(), cell);
     cell.status = gathered.worst;
@@ -483,6 +465,7 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
         }
         cell.seedCount = gathered.fewestSeeds;
         cell.scatters = gathered.scatters;
+        cell.differs = gathered.differs;
         for (Measured& measured : cell.values) {
             if (cell.seedCount > 0 && cell.seedCount < measured.rounds.size()) takeAsOne(measured);
         }
@@ -536,6 +519,8 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     cell.isTime = config::isTimeMetric(query.metric);
     cell.timePower = config::timePower(query.metric);
     cell.pooled = pooledAt(query.where, cases);
+    cell.isSaid =
+        isOfItsSeed(query.metric) && (cases.isOfElsewhere || !config::isPictureError(query.metric));
     if (query.equal) {
         fillEqual(query, cases, cell);
         return cell;

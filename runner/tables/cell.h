@@ -90,6 +90,11 @@ struct Cell {
     /// No time, and of no declared seed, but repeats or processes came to different values: an
     /// unseeded program, an import.
     bool scatters = false;
+    /// It, or what is of its column or metric, came to different values, whatever is declared.
+    bool differs = false;
+    /// What a program or an import says of itself, which its random numbers may move: no time, and
+    /// no error of a picture that each process is known to give alike.
+    bool isSaid = false;
     /// An input was fitted so that it comes out (config::isCalibrated).
     bool isCalibrated = false;
     /// Of a frame's or a pass's time or rate: the same by the process's CPU time, and as

@@ -114,7 +114,12 @@ std::string seedNote(const Table& table) {
             "{{seeds: process, processes: 6}}` tells.",
             columns);
     }
-    if (const std::string columns = columnsWith(&Cell::scatters); !columns.empty()) {
+    const auto differs = [](const Cell& cell) {
+        if (!cell.scatters || cell.values.empty()) return false;
+        const Measured& first = cell.values[0];
+        return first.isOverProcesses || first.interval.low != first.interval.high;
+    };
+    if (const std::string columns = columnsWith(differs); !columns.empty()) {
         note += fmt::format(
             "{}Repeats or processes came to different numbers, and no seed is declared: {}.",
             note.empty() ? "" : " ", columns);
@@ -129,24 +134,32 @@ bool isRecorded(const Cell& cell) {
     return !cell.values.empty() || cell.status == records::Status::Ambiguous;
 }
 
-/// What differs when it is taken again did so by chance where it was taken once: of one column, and
-/// of one metric.
+/// What differs when it is taken again did so by chance where it was taken once: of one column, of
+/// one metric, and what a program or an import says beside it. Memory differs in any program: it
+/// says so of what is in bytes alone.
 void spreadScatter(Table& table) {
+    const auto isOfMemory = [](const Cell& cell) { return cell.unit == "byte"; };
     std::set<std::string> metrics;
     std::set<std::size_t> columns;
+    std::set<std::pair<const TableRow*, bool>> rows;
     const auto visit = [&](const auto& take) {
         for (TableRow& row : table.rows) {
-            for (std::size_t i = 0; i < row.cells.size(); ++i) take(row.cells[i], i);
+            for (std::size_t i = 0; i < row.cells.size(); ++i) take(row, row.cells[i], i);
         }
     };
-    visit([&](const Cell& cell, std::size_t column) {
-        if (!cell.scatters) return;
+    visit([&](const TableRow& row, const Cell& cell, std::size_t column) {
+        if (!cell.differs) return;
         columns.insert(column);
         if (!cell.metric.empty()) metrics.insert(cell.metric);
+        if (table.goesByClock) rows.emplace(&row, isOfMemory(cell));
     });
-    visit([&](Cell& cell, std::size_t column) {
-        const bool isSuch = columns.contains(column) || metrics.contains(cell.metric);
-        cell.scatters |= isSuch && !cell.isTime && cell.seedCount == 0 && !cell.values.empty();
+    visit([&](const TableRow& row, Cell& cell, std::size_t column) {
+        const bool isBeside =
+            rows.contains({&row, false}) || (isOfMemory(cell) && rows.contains({&row, true}));
+        const bool isSuch =
+            columns.contains(column) || metrics.contains(cell.metric) || (cell.isSaid && isBeside);
+        cell.differs |= isSuch && !cell.isTime && !cell.values.empty();
+        cell.scatters |= cell.differs && cell.seedCount == 0;
     });
 }
 

@@ -1124,7 +1124,8 @@ TEST(Claims, WhatIsExactIsSoInEachProcess) {
     EXPECT_EQ(judge({5, 5, 5, 5, 5, 5}), Verdict::Holds);
     EXPECT_EQ(judge({5, 5, 5, 5, 5, 5, 5, 5, 5, 6}), Verdict::Ambiguous);
     EXPECT_EQ(judge({5, 6}), Verdict::Ambiguous);
-    EXPECT_EQ(judge({4, 6}), Verdict::Fails) << "in neither";
+    EXPECT_EQ(judge({4, 6}), Verdict::Ambiguous) << "two of what differs";
+    EXPECT_EQ(judge({4, 6, 4, 6, 6, 4}), Verdict::Fails) << "in none";
     EXPECT_EQ(judge({6, 6}), Verdict::Fails);
 }
 

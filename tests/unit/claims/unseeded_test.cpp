@@ -1,0 +1,162 @@
+// Verdicts on what a program or an import says of itself, where its numbers differ when they are
+// taken again, or its sweep has the seeds.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "engine/core/random.h"
+#include "tests/support/support.h"
+#include "tests/unit/tables/fixture.h"
+
+namespace gfxrepro::claims {
+namespace {
+
+enum class Of { Import, Program };
+
+config::Experiment experimentOf(Of of, const std::string& body) {
+    config::Experiment experiment = tables::experimentFrom(body);
+    experiment.technique = of == Of::Import ? config::kImported : "external";
+    if (of == Of::Program) experiment.document.set("program", Node::map({}));
+    return experiment;
+}
+
+ClaimResult judgeOne(const config::Experiment& experiment, const tables::Recorded& records) {
+    return evaluateClaims(experiment, tables::buildTable(experiment, records),
+                          {"llvmpipe", "software", "quick", "abc", ""})[0];
+}
+
+constexpr const char* kOneBesideMany =
+    "one process of numbers that differ when they are taken again; an interval needs 6 processes";
+
+/// `one` in the first process alone, `many` in each of six, where it differs unless `isSure`.
+ClaimResult judgeOneBesideMany(Of of, const std::string& one, const std::string& claim,
+                               bool isSure = false) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})");
+    for (int process = 0; process < 6; ++process) {
+        maker.process(process).add("many", {isSure ? 1.0 : 1.0 + 0.01 * process}, "", "1");
+        if (process == 0) maker.add(one, {0.5}, "", "1");
+    }
+    const std::string body =
+        "sweep: {n: [1]}\nlayout: {rows: n, columns: {one: {metric: " + one +
+        "}, many: {metric: many}, both: {of: one / many}}}\nclaims: {C: {says: so, " + claim +
+        "}}\n";
+    return judgeOne(experimentOf(of, body), maker.records());
+}
+
+TEST(Unseeded, OneProcessOfAnotherMetricBesideManyDecidesNothing) {
+    for (const char* claim : {"order: one < many", "ratio: one / many, at_most: 1",
+                              "bound: both, at_most: 1", "bound: one, at_most: 1"}) {
+        for (const Of of : {Of::Import, Of::Program}) {
+            const ClaimResult result = judgeOneBesideMany(of, "value", claim);
+            EXPECT_EQ(result.verdict, Verdict::Ambiguous) << claim;
+            EXPECT_EQ(result.reason, kOneBesideMany) << claim;
+            EXPECT_EQ(judgeOneBesideMany(of, "value", claim, true).verdict, Verdict::Holds)
+                << "what does not differ is certain: " << claim;
+        }
+    }
+}
+
+/// Of a program the first process records the error, and the others that their picture is the same.
+TEST(Unseeded, TheErrorOfAPictureThatEachProcessMakesIsKnown) {
+    const std::string claim = "bound: one, at_most: 1";
+    EXPECT_EQ(judgeOneBesideMany(Of::Program, "rmse", claim).verdict, Verdict::Holds);
+    EXPECT_EQ(judgeOneBesideMany(Of::Import, "rmse", claim).verdict, Verdict::Ambiguous);
+}
+
+/// Memory differs in any program, and says nothing of what it computes.
+TEST(Unseeded, MemoryTellsOfMemoryAlone) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})");
+    for (int process = 0; process < 3; ++process) {
+        maker.process(process).add("heap", {1e6 + 10.0 * process}, "", "byte");
+        maker.add("rays", {4.0}, "", "ray").add("stack", {1e3}, "", "byte");
+    }
+    for (const auto& [column, verdict] : {std::pair("rays", Verdict::Holds),
+                                          {"stack", Verdict::Ambiguous},
+                                          {"heap", Verdict::Ambiguous}}) {
+        const std::string body = fmt::format(
+            "sweep: {{n: [1]}}\nlayout: {{rows: n, columns: {{rays: {{metric: rays}}, "
+            "heap: {{metric: heap}}, stack: {{metric: stack}}}}}}\n"
+            "claims: {{C: {{says: so, bound: {}, at_least: 1}}}}\n",
+            column);
+        EXPECT_EQ(judgeOne(experimentOf(Of::Import, body), maker.records()).verdict, verdict)
+            << column;
+    }
+}
+
+/// Numbers of two values, one as likely as the other, beside one that always differs: how often
+/// `exact` holds and fails on the first in `processes` processes.
+std::map<Verdict, int> exactByChance(int processes, int trials) {
+    const config::Experiment experiment = experimentOf(
+        Of::Import,
+        "sweep: {n: [1]}\nlayout: {rows: n, columns: {a: {metric: a}, b: {metric: b}}}\n"
+        "claims: {C: {says: so, exact: a, equals: 5}}\n");
+    Random random(1);
+    std::map<Verdict, int> verdicts;
+    for (int trial = 0; trial < trials; ++trial) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})");
+        for (int process = 0; process < processes; ++process) {
+            const double isSix = double{random.uniform()} < 0.5 ? 1.0 : 0.0;
+            maker.process(process).add("a", {5.0 + isSix}, "", "1");
+            maker.add("b", {double{random.uniform()}}, "", "1");
+        }
+        ++verdicts[judgeOne(experiment, maker.records()).verdict];
+    }
+    return verdicts;
+}
+
+TEST(Unseeded, FewEqualProcessesOfARandomProgramAreNoExactNumber) {
+    constexpr int kTrials = test::kIsSanitized ? 100 : 1000;
+    for (const int processes : {2, 3, 5}) {
+        EXPECT_EQ(exactByChance(processes, kTrials)[Verdict::Ambiguous], kTrials) << processes;
+    }
+    std::map<Verdict, int> six = exactByChance(6, kTrials);
+    EXPECT_LE(six[Verdict::Holds] + six[Verdict::Fails], 0.05 * kTrials);
+}
+
+/// Rows m × …: an import whose config sweeps the seed; `b` is as much above `a`.
+ClaimResult judgeSwept(const std::string& layout, int seeds, double ratio, Random& random) {
+    tables::RecordMaker maker;
+    std::string values;
+    for (int seed = 0; seed < seeds; ++seed) {
+        values += fmt::format("{}{}", seed == 0 ? "" : ", ", seed);
+        for (const char* m : {"a", "b"}) {
+            maker.beginCase("", fmt::format(R"({{"m":"{}","seed":{}}})", m, seed));
+            const double value = 1.0 + 0.05 * (double{random.uniform()} - 0.5);
+            maker.add("e", {m[0] == 'a' ? value : ratio * value}, "", "1");
+        }
+    }
+    const std::string body = fmt::format(
+        "sweep: {{m: [a, b], seed: [{0}]}}\n"
+        "layout: {{{1}}}\nclaims: {{C: {{says: so, order: [a, b], of: e}}}}\n",
+        values, fmt::format(fmt::runtime(layout), values));
+    return judgeOne(experimentOf(Of::Import, body), maker.records());
+}
+
+TEST(Unseeded, ValuesOfASweptSeedAreRounds) {
+    constexpr int kTrials = test::kIsSanitized ? 60 : 400;
+    const std::string pooled = "rows: m, columns: {{e: {{metric: e, where: {{seed: [{}]}}}}}}";
+    Random random(2);
+    int alarms = 0, found = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        const Verdict alike = judgeSwept(pooled, 8, 1.0, random).verdict;
+        alarms += alike == Verdict::Holds || alike == Verdict::Fails ? 1 : 0;
+        found += judgeSwept(pooled, 8, 1.1, random).verdict == Verdict::Holds ? 1 : 0;
+    }
+    EXPECT_LE(alarms, 0.07 * kTrials);
+    EXPECT_GE(found, 0.95 * kTrials);
+    const ClaimResult few = judgeSwept(pooled, 4, 1.1, random);
+    EXPECT_EQ(few.verdict, Verdict::Ambiguous);
+    EXPECT_EQ(few.reason,
+              "4 seeds of random numbers; an interval needs 6: `measure: {seeds: process, "
+              "processes: 6}`");
+    EXPECT_EQ(judgeSwept("rows: [m, seed], columns: {{e: {{metric: e}}}}", 8, 1.1, random).verdict,
+              Verdict::Ambiguous)
+        << "one seed a row";
+}
+
+}  // namespace
+}  // namespace gfxrepro::claims
