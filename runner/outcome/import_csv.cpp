@@ -215,16 +215,35 @@ class Rows {
                                     "process, seed, frame and repeat tell measurements apart",
                                     column, known->second));
         }
+        requireSeed(csv, record.metric, line);
         rows.push_back({caseIndex, std::move(record), line});
     }
 
     std::vector<ImportedRow> rows;
 
   private:
+    /// One value without a seed beside those of several would count as what never varies.
+    void requireSeed(const NamedCsv& csv, const std::string& metric, int line) {
+        if (metric.empty()) return;
+        const auto said = [](const std::string& seed) {
+            return seed.empty() ? "no seed" : "the seed '" + seed + "'";
+        };
+        const std::string seed = csv.cell(kSeed);
+        const auto [first, isNew] = seeds_.try_emplace(metric, std::pair(seed, line));
+        const auto& [firstSeed, firstLine] = first->second;
+        if (isNew || firstSeed.empty() == seed.empty()) return;
+        throw Error(csv.where(),
+                    fmt::format("'{}' has {}; in line {} it has {}; allowed: one in all of its "
+                                "rows, or in none; what draws no random numbers has the same value "
+                                "with each",
+                                metric, said(seed), firstLine, said(firstSeed)));
+    }
+
     using Key = std::tuple<std::size_t, int, int, int, std::string, std::string>;
     std::map<Key, int> lines_;
     std::map<std::string, std::pair<std::string, int>> units_;  // by metric: unit, line
     std::map<std::size_t, std::pair<std::string, int>> lanes_;  // by case: lane, line
+    std::map<std::string, std::pair<std::string, int>> seeds_;  // by metric: seed, line
 };
 
 /// Of the columns those of the cases. Throws Error for what cannot be one of them.

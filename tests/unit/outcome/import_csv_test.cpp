@@ -33,10 +33,10 @@ class ImportCsv : public testing::Test {
     const TemporaryFolder folder_;
 };
 
-/// In one order in all cases, so that one seed is one round; what has none draws no random numbers.
+/// In one order in all cases, so that one seed is one round; a metric without any draws none.
 TEST_F(ImportCsv, ASeedNumbersProcesses) {
     const ImportedNumbers numbers = read(
-        "method,seed,metric,value\na,7,rmse,1\na,3,rmse,2\nb,3,rmse,3\nb,7,rmse,4\nc,,rmse,5\n"
+        "method,seed,metric,value\na,7,rmse,1\na,3,rmse,2\nb,3,rmse,3\nb,7,rmse,4\nc,,rays,5\n"
         "d,9,rmse,6\nd,8,rmse,7\n");
     ASSERT_EQ(numbers.cases.size(), 4U);
     std::vector<int> processes;
@@ -49,6 +49,12 @@ TEST_F(ImportCsv, ASeedNumbersProcesses) {
         "method,seed,metric,value\na,1,rmse,1\na,2,rmse,2\na,3,rmse,3\nb,2,rmse,4\nb,3,rmse,5\n");
     EXPECT_EQ(parts.rows[3].record.process, 1) << "as of the same seed elsewhere";
     EXPECT_EQ(parts.rows[4].record.process, 2);
+    EXPECT_EQ(refusal("method,seed,metric,value\na,7,rmse,1\nb,,rmse,2\n"),
+              "DIR/a.csv:3: 'rmse' has no seed; in line 2 it has the seed '7'; allowed: one in all "
+              "of its rows, or in none; what draws no random numbers has the same value with each");
+    EXPECT_EQ(refusal("method,seed,metric,value\na,,rmse,1\na,8,rmse,2\n"),
+              "DIR/a.csv:3: 'rmse' has the seed '8'; in line 2 it has no seed; allowed: one in all "
+              "of its rows, or in none; what draws no random numbers has the same value with each");
     EXPECT_EQ(refusal("seed,process,metric,value\n1,0,rmse,1\n"),
               "DIR/a.csv:1: columns 'seed' and 'process': a seed is of a process of its own; "
               "allowed: one of the two, or the column 'params.seed' for a parameter");
