@@ -53,8 +53,12 @@ struct Measured {
 Measured readMeasured(const fs::path& runDir) {
     const run::StoredRun run = run::readRun(runDir);
     regression::CaseParams params;
-    for (const config::Case& item : run.plan.cases)
+    std::set<std::string> unseeded;
+    for (const config::Case& item : run.plan.cases) {
         params[item.id] = item.recordedParams().toJson().dump();
+        const bool isSeeded = item.measure.seeds != config::Measure::Seeds::None;
+        if (!isSeeded && !item.program.isNull()) unseeded.insert(item.id);
+    }
     regression::Tables byClock, byProcess;
     const bool isSoftware = run.plan.deviceClass == "software";
     for (const config::Experiment& experiment : run.plan.experiments) {
@@ -73,7 +77,7 @@ Measured readMeasured(const fs::path& runDir) {
                       std::move(byProcess),
                       {},
                       run::notesOf(run.manifest),
-                      regression::picturesOf(runDir, run.records, params),
+                      regression::picturesOf(runDir, run.records, params, unseeded),
                       run.plan.buildId,
                       outcome::madeFromLine(runDir, run.manifest)};
     for (const run::ProgramUse& use : run::programsOf(run.manifest)) {

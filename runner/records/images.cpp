@@ -139,7 +139,12 @@ std::vector<ImageEntry> readImages(const fs::path& runDir) {
         if (isNew) {
             images.push_back(std::move(entry));
         } else {
-            images[found->second] = std::move(entry);
+            ImageEntry& last = images[found->second];
+            const auto digest = [](const ImageEntry& one) {
+                return one.exrSha256.empty() ? one.pngSha256 : one.exrSha256;
+            };
+            entry.hasOthers = last.hasOthers || digest(last) != digest(entry);
+            last = std::move(entry);
         }
     }
     return images;

@@ -28,6 +28,8 @@ struct ImageEntry {
     std::string truthOf = {};
     std::string pngSha256 = {};  // of what was written, by which a later change is seen
     std::string exrSha256 = {};
+    /// Not of the list: another process of the run made another one. readImages() finds it.
+    bool hasOthers = false;
 
     bool operator==(const ImageEntry&) const = default;
 };

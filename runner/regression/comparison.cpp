@@ -275,7 +275,8 @@ std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
         addPictures(differences, sides.pictures);
         tables.clear();
         for (const Difference& one : differences) {
-            if (one.verdict == Verdict::CannotTell) tables.insert(one.key.table);
+            const bool isOpen = one.verdict == Verdict::CannotTell && !one.isPicture();
+            if (isOpen) tables.insert(one.key.table);
         }
         if (tables.empty()) break;
     }

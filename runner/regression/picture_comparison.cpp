@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "engine/core/text.h"
@@ -200,6 +201,11 @@ Difference compareAndKeep(const Pair& pair, const PictureRules& rules) {
     std::optional<ImageF> map;
     Difference result = compareOne(pair, rules.isOneBuild, map);
     if (result.verdict == Verdict::Same) return result;
+    if (result.picture && (pair.before.isDrawn || pair.after.isDrawn)) {
+        result.verdict = Verdict::CannotTell;
+        result.reason +=
+            "; processes of one side made other pictures, too, and no seed is declared";
+    }
     result.evidence = evidenceName(pair.after.png.empty() ? pair.after.exr : pair.after.png);
     const fs::path target = rules.folder / result.evidence;
     keep(pair.before, target, "-before");
@@ -225,14 +231,19 @@ Difference onlyOneSide(const SeriesKey& key, Verdict verdict, const char* reason
 }  // namespace
 
 PictureMap picturesOf(const fs::path& runDir, const std::vector<records::Record>& records,
-                      const CaseParams& params) {
+                      const CaseParams& params, const std::set<std::string>& unseeded) {
     std::map<std::string, SeriesKey> cases;
     for (const records::Record& record : records) {
         cases.try_emplace(record.caseId, keyOf(record, params, kPictureMetric));
     }
     const std::vector<records::ImageEntry> entries = records::readImages(runDir);
     std::map<std::string, std::set<int>> frames;
-    for (const records::ImageEntry& entry : entries) frames[entry.caseId].insert(entry.frame);
+    std::set<std::tuple<std::string, int, std::string>> drawn;
+    for (const records::ImageEntry& entry : entries) {
+        frames[entry.caseId].insert(entry.frame);
+        if (!entry.hasOthers || !unseeded.contains(entry.caseId)) continue;
+        drawn.emplace(entry.caseId, entry.frame, entry.name);
+    }
     PictureMap pictures;
     for (const records::ImageEntry& entry : entries) {
         const auto found = cases.find(entry.caseId);
@@ -242,7 +253,10 @@ PictureMap picturesOf(const fs::path& runDir, const std::vector<records::Record>
             const fs::path path = runDir / name;
             return !name.empty() && fs::is_regular_file(path, isAbsent) ? path : fs::path();
         };
-        const PictureFiles files{file(entry.exr), file(entry.png)};
+        // What the same program made once, as its truth, would be another if it were made again.
+        const std::string& drawnName = entry.truthOf.empty() ? entry.name : entry.truthOf;
+        const PictureFiles files{file(entry.exr), file(entry.png),
+                                 drawn.contains({entry.caseId, entry.frame, drawnName})};
         if (files.exr.empty() && files.png.empty()) continue;
         SeriesKey key = found->second;
         key.pass = frames[entry.caseId].size() == 1

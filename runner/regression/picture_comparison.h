@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,17 @@ namespace gfxrepro::regression {
 struct PictureFiles {
     std::filesystem::path exr;
     std::filesystem::path png;
+    /// Processes of one run made several, and no seed says why: it tells nothing of a change.
+    bool isDrawn = false;
 };
 /// By case, as its records name it, and picture: "flat", "flat, frame 3" where there are several.
 using PictureMap = std::map<SeriesKey, PictureFiles>;
 
-/// The pictures of a run that are listed and there. Throws Error as readImages().
+/// The pictures of a run that are listed and there; `unseeded` are the cases of programs that
+/// declare no seed, by id. Throws Error as readImages().
 PictureMap picturesOf(const std::filesystem::path& runDir,
-                      const std::vector<records::Record>& records, const CaseParams& params);
+                      const std::vector<records::Record>& records, const CaseParams& params,
+                      const std::set<std::string>& unseeded = {});
 
 /// How far apart the pictures of a case may be that two builds have recorded.
 inline constexpr double kPictureFlip =
@@ -39,7 +44,7 @@ struct PictureRules {
 /// only `before` has, and Missing for those of `after`. Changed is what lies beyond FLIP's or the
 /// largest difference's tolerance, and what cannot be subtracted: a picture that cannot be read, is
 /// of another size or other channels, or holds a value that is not finite (where both are not the
-/// same). Values of EXR files are compared, those of PNG files where a side has no other.
+/// same). What is Changed by these, and drawn anew in each process, is CannotTell. Values of EXR files are compared, those of PNG files where a side has no other.
 std::vector<Difference> comparePictures(const PictureMap& before, const PictureMap& after,
                                         const PictureRules& rules);
 

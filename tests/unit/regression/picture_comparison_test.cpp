@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/core/files.h"
+#include "engine/core/hash.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
 #include "engine/image/srgb.h"
@@ -34,8 +35,9 @@ class Pictures : public ::testing::Test {
                                                  : std::vector<std::string>{"R", "G", "B"});
         image::writeExr(dir / (stem + ".exr"), exr);
         image::writePng(dir / (stem + ".png"), image::toSrgb8(picture));
-        records::ImageWriter(dir).append(
-            {{side, "p/1", frame, name, stem + ".png", stem + ".exr", "p/1"}});
+        records::ImageWriter(dir).append({{side, "p/1", frame, name, stem + ".png", stem + ".exr",
+                                           "p/1", "", sha256OfFile(dir / (stem + ".png")),
+                                           sha256OfFile(dir / (stem + ".exr"))}});
         records::Record row;
         row.caseId = side;
         row.table = "p/1";
@@ -48,7 +50,7 @@ class Pictures : public ::testing::Test {
     }
     std::vector<Difference> compared(bool isOneBuild = false) {
         const auto pictures = [&](const std::string& side) {
-            return picturesOf(folder.path() / side, records[side], caseParams);
+            return picturesOf(folder.path() / side, records[side], caseParams, unseeded);
         };
         return comparePictures(pictures("a"), pictures("b"),
                                {.isOneBuild = isOneBuild, .folder = folder.path() / "out"});
@@ -62,6 +64,7 @@ class Pictures : public ::testing::Test {
     gfxrepro::test::TemporaryFolder folder;
     std::map<std::string, std::vector<records::Record>> records;
     CaseParams caseParams;
+    std::set<std::string> unseeded;
 };
 
 const ImageF kGrey(16, 16, 3, 0.25F);
@@ -89,6 +92,33 @@ TEST_F(Pictures, OneBuildMayNotDifferAtAllAndTwoALittle) {
     const Difference strict = only(true);
     EXPECT_EQ(strict.verdict, Verdict::Changed);
     EXPECT_THAT(strict.reason, HasSubstr(" (0 allowed), largest difference 0.000488 (0 allowed)"));
+}
+
+/// Of a program without a seed: as far apart as its own processes are.
+TEST_F(Pictures, OneThatEachProcessDrawsAnewTellsNothing) {
+    record("a", "flat", kGrey);
+    record("a", "flat", withValue(0.5F));  // by the next process
+    record("b", "flat", ImageF(16, 16, 3, 0.75F));
+    EXPECT_EQ(only(true).verdict, Verdict::Changed) << "a built-in technique, or one with a seed";
+    unseeded = {"a", "b"};
+    const Difference drawn = only(true);
+    EXPECT_EQ(drawn.verdict, Verdict::CannotTell);
+    EXPECT_FALSE(drawn.isAlarm());
+    EXPECT_THAT(drawn.reason, HasSubstr("largest difference 0.5 (0 allowed); processes of one side "
+                                        "made other pictures, too, and no seed is declared"));
+    record("b", "flat", withValue(0.5F));
+    EXPECT_EQ(only(true).verdict, Verdict::Same);
+    record("a", "flat", ImageF(8, 8, 3, 0.25F));
+    EXPECT_EQ(only(true).verdict, Verdict::Changed) << "of another size";
+}
+
+TEST_F(Pictures, OneThatEachProcessMakesAlikeStillChanges) {
+    unseeded = {"a", "b"};
+    for (int process = 0; process < 2; ++process) {
+        record("a", "flat", kGrey);
+        record("b", "flat", ImageF(16, 16, 3, 0.75F));
+    }
+    EXPECT_EQ(only(true).verdict, Verdict::Changed);
 }
 
 TEST_F(Pictures, AChangedOneIsKeptWithTheMapOfDifferences) {
