@@ -291,7 +291,9 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
             judgement.beyond = beyondBound(byRound, requirement, Scale::Linear);
         }
     }
-    judgement.measured = boundedText(point, bounds, interval, requirement);
+    const bool isFarthest = requirement.isOfCounts && !isEqual;
+    judgement.measured =
+        boundedText(isFarthest ? interval.high : point, bounds, interval, requirement);
     judgement.margin = std::min(point - requirement.low, requirement.high - point);
     judgement.marginText = quantityText(judgement.margin, requirement);
     return judgement;

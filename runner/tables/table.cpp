@@ -134,32 +134,47 @@ bool isRecorded(const Cell& cell) {
     return !cell.values.empty() || cell.status == records::Status::Ambiguous;
 }
 
-/// What differs when it is taken again did so by chance where it was taken once: of one column, of
-/// one metric, and what a program or an import says beside it. Memory differs in any program: it
-/// says so of what is in bytes alone.
+/// Where numbers came to others when they were taken again.
+class Evidence {
+  public:
+    /// `tellsOfRow`: what a program or an import says in the same row may have done so, too.
+    void add(const TableRow& row, const Cell& cell, std::size_t column, bool tellsOfRow) {
+        columns_.insert(column);
+        if (!cell.metric.empty()) metrics_.insert(cell.metric);
+        if (tellsOfRow) rows_.emplace(&row, isOfMemory(cell));
+    }
+    bool isOf(const TableRow& row, const Cell& cell, std::size_t column) const {
+        // Memory differs in any program: it tells of what is in bytes alone.
+        const bool isBeside =
+            rows_.contains({&row, false}) || (isOfMemory(cell) && rows_.contains({&row, true}));
+        return columns_.contains(column) || metrics_.contains(cell.metric) ||
+               (cell.isSaid && isBeside);
+    }
+
+  private:
+    static bool isOfMemory(const Cell& cell) { return cell.unit == "byte"; }
+
+    std::set<std::size_t> columns_;
+    std::set<std::string> metrics_;
+    std::set<std::pair<const TableRow*, bool>> rows_;  // whether of memory
+};
+
+/// What differs when it is taken again did so by chance where it was taken once.
 void spreadScatter(Table& table) {
-    const auto isOfMemory = [](const Cell& cell) { return cell.unit == "byte"; };
-    std::set<std::string> metrics;
-    std::set<std::size_t> columns;
-    std::set<std::pair<const TableRow*, bool>> rows;
     const auto visit = [&](const auto& take) {
         for (TableRow& row : table.rows) {
             for (std::size_t i = 0; i < row.cells.size(); ++i) take(row, row.cells[i], i);
         }
     };
+    Evidence differing, scattering;
     visit([&](const TableRow& row, const Cell& cell, std::size_t column) {
-        if (!cell.differs) return;
-        columns.insert(column);
-        if (!cell.metric.empty()) metrics.insert(cell.metric);
-        if (table.goesByClock) rows.emplace(&row, isOfMemory(cell));
+        if (cell.differs) differing.add(row, cell, column, table.goesByClock);
+        if (cell.scatters) scattering.add(row, cell, column, table.goesByClock);
     });
     visit([&](const TableRow& row, Cell& cell, std::size_t column) {
-        const bool isBeside =
-            rows.contains({&row, false}) || (isOfMemory(cell) && rows.contains({&row, true}));
-        const bool isSuch =
-            columns.contains(column) || metrics.contains(cell.metric) || (cell.isSaid && isBeside);
-        cell.differs |= isSuch && !cell.isTime && !cell.values.empty();
-        cell.scatters |= cell.differs && cell.seedCount == 0;
+        if (cell.isTime || cell.values.empty()) return;
+        cell.differs |= differing.isOf(row, cell, column);
+        cell.scatters |= cell.seedCount == 0 && scattering.isOf(row, cell, column);
     });
 }
 

@@ -1057,10 +1057,11 @@ TEST(Claims, RandomNumbersOfOneSeedDecideNothing) {
     EXPECT_EQ(result.verdict, Verdict::Holds);
     EXPECT_EQ(result.reason, "");
     EXPECT_THAT(result.measured, HasSubstr("["));
-    // A count is what it is.
-    EXPECT_EQ(
-        judgePowers("exact: a, equals: 9, at: {n: 1}", twoSamplers(Seeds::Case, 6, 1)).verdict,
-        Verdict::Fails);
+    // A count is what it is, where nothing says that it is drawn.
+    const std::string exact = "exact: a, equals: 9, at: {n: 1}";
+    EXPECT_EQ(judgePowers(exact, twoSamplers(Seeds::Case, 1, 1)).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers(exact, twoSamplers(Seeds::Case, 6, 1)).verdict, Verdict::Ambiguous);
+    EXPECT_EQ(judgePowers(exact, twoSamplers(Seeds::Process, 6, 1)).verdict, Verdict::Fails);
 }
 
 TEST(Claims, NumbersThatScatterWithoutASeedAreNotCertain) {

@@ -21,7 +21,7 @@ config::Experiment experimentOf(Of of, const std::string& body) {
     return experiment;
 }
 
-ClaimResult judgeOne(const config::Experiment& experiment, const tables::Recorded& records) {
+ClaimResult resultOf(const config::Experiment& experiment, const tables::Recorded& records) {
     return evaluateClaims(experiment, tables::buildTable(experiment, records),
                           {"llvmpipe", "software", "quick", "abc", ""})[0];
 }
@@ -42,7 +42,7 @@ ClaimResult judgeOneBesideMany(Of of, const std::string& one, const std::string&
         "sweep: {n: [1]}\nlayout: {rows: n, columns: {one: {metric: " + one +
         "}, many: {metric: many}, both: {of: one / many}}}\nclaims: {C: {says: so, " + claim +
         "}}\n";
-    return judgeOne(experimentOf(of, body), maker.records());
+    return resultOf(experimentOf(of, body), maker.records());
 }
 
 TEST(Unseeded, OneProcessOfAnotherMetricBesideManyDecidesNothing) {
@@ -65,6 +65,20 @@ TEST(Unseeded, TheErrorOfAPictureThatEachProcessMakesIsKnown) {
     EXPECT_EQ(judgeOneBesideMany(Of::Import, "rmse", claim).verdict, Verdict::Ambiguous);
 }
 
+/// Of an import: one metric has a seed in each of its rows, the other in none.
+TEST(Unseeded, WhatHasNoSeedBesideWhatHasOneDrawsNone) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})").seeds(config::Measure::Seeds::Process);
+    for (int process = 0; process < 6; ++process) {
+        maker.process(process).frame(0).add("many", {1.0 + 0.01 * process}, "", "1");
+        if (process == 0) maker.frame(records::kSetup).add("rays", {4.0}, "", "ray");
+    }
+    const std::string body =
+        "sweep: {n: [1]}\nlayout: {rows: n, columns: {rays: {metric: rays}, many: {metric: many}}}"
+        "\nclaims: {C: {says: so, exact: rays, equals: 4}}\n";
+    EXPECT_EQ(resultOf(experimentOf(Of::Import, body), maker.records()).verdict, Verdict::Holds);
+}
+
 /// Memory differs in any program, and says nothing of what it computes.
 TEST(Unseeded, MemoryTellsOfMemoryAlone) {
     tables::RecordMaker maker;
@@ -81,7 +95,7 @@ TEST(Unseeded, MemoryTellsOfMemoryAlone) {
             "heap: {{metric: heap}}, stack: {{metric: stack}}}}}}\n"
             "claims: {{C: {{says: so, bound: {}, at_least: 1}}}}\n",
             column);
-        EXPECT_EQ(judgeOne(experimentOf(Of::Import, body), maker.records()).verdict, verdict)
+        EXPECT_EQ(resultOf(experimentOf(Of::Import, body), maker.records()).verdict, verdict)
             << column;
     }
 }
@@ -103,7 +117,7 @@ std::map<Verdict, int> exactByChance(int processes, int trials) {
             maker.process(process).add("a", {5.0 + isSix}, "", "1");
             maker.add("b", {double{random.uniform()}}, "", "1");
         }
-        ++verdicts[judgeOne(experiment, maker.records()).verdict];
+        ++verdicts[resultOf(experiment, maker.records()).verdict];
     }
     return verdicts;
 }
@@ -133,7 +147,7 @@ ClaimResult judgeSwept(const std::string& layout, int seeds, double ratio, Rando
         "sweep: {{m: [a, b], seed: [{0}]}}\n"
         "layout: {{{1}}}\nclaims: {{C: {{says: so, order: [a, b], of: e}}}}\n",
         values, fmt::format(fmt::runtime(layout), values));
-    return judgeOne(experimentOf(Of::Import, body), maker.records());
+    return resultOf(experimentOf(Of::Import, body), maker.records());
 }
 
 TEST(Unseeded, ValuesOfASweptSeedAreRounds) {
