@@ -44,7 +44,8 @@ struct PictureRules {
 /// only `before` has, and Missing for those of `after`. Changed is what lies beyond FLIP's or the
 /// largest difference's tolerance, and what cannot be subtracted: a picture that cannot be read, is
 /// of another size or other channels, or holds a value that is not finite (where both are not the
-/// same). What is Changed by these, and drawn anew in each process, is CannotTell. Values of EXR files are compared, those of PNG files where a side has no other.
+/// same). What is Changed by these, and drawn anew in each process, is CannotTell. Values of EXR
+/// files are compared, those of PNG files where a side has no other.
 std::vector<Difference> comparePictures(const PictureMap& before, const PictureMap& after,
                                         const PictureRules& rules);
 

@@ -35,9 +35,9 @@ class Pictures : public ::testing::Test {
                                                  : std::vector<std::string>{"R", "G", "B"});
         image::writeExr(dir / (stem + ".exr"), exr);
         image::writePng(dir / (stem + ".png"), image::toSrgb8(picture));
-        records::ImageWriter(dir).append({{side, "p/1", frame, name, stem + ".png", stem + ".exr",
-                                           "p/1", "", sha256OfFile(dir / (stem + ".png")),
-                                           sha256OfFile(dir / (stem + ".exr"))}});
+        records::ImageWriter(dir).append(
+            {{side, "p/1", frame, name, stem + ".png", stem + ".exr", "p/1", "",
+              sha256OfFile(dir / (stem + ".png")), sha256OfFile(dir / (stem + ".exr"))}});
         records::Record row;
         row.caseId = side;
         row.table = "p/1";
