@@ -227,7 +227,7 @@ void sayPictures(std::size_t done, std::size_t all) {
     if (done % kEvery == 0 && done < all) tell("report: {} of {} pictures\n", done, all);
 }
 
-/// Says which columns name no pass of what was recorded of passes alone; how many there are.
+/// Says which columns name no pass of what was recorded of other passes; how many there are.
 std::size_t sayWithoutPass(const std::vector<tables::Table>& tables) {
     std::size_t count = 0;
     for (const tables::Table& table : tables) {
@@ -236,12 +236,12 @@ std::size_t sayWithoutPass(const std::vector<tables::Table>& tables) {
             bool isEmpty = true;
             for (const tables::TableRow& row : table.rows) {
                 isEmpty &= row.cells[i].values.empty();
-                if (row.cells[i].isOfPasses) found = &row.cells[i];
+                if (row.cells[i].isOfOthers) found = &row.cells[i];
             }
             if (!isEmpty || !found) continue;
             ++count;
-            tell("error: {}: column '{}' names no pass: {}\n", table.id, table.columns[i].label,
-                 found->message);
+            tell("error: {}: column '{}' names no pass that it is of: {}\n", table.id,
+                 table.columns[i].label, found->message);
         }
     }
     return count;

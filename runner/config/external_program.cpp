@@ -353,11 +353,23 @@ Names filesIn(const Node* list, const std::string& what) {
     return names;
 }
 
+/// A claim knows a row and a column by one name each.
+void requireNameOfItsOwn(const Node& metrics, const std::string& name) {
+    static const Names kAxes = {"scene", placeholder::kSeed, placeholder::kFrame};
+    const bool isFrameTime = name == kFrameTime;
+    if (!isFrameTime && !contains(kAxes, name)) return;
+    throw Error(metrics.keyLocation(name),
+                fmt::format("program: metric '{}' has the name of {}; allowed: another", name,
+                            isFrameTime ? "the column of wall_time_ms, a frame's time"
+                                        : "an axis that any program may have"));
+}
+
 void readMetrics(const Node& metrics, ExternalProgram& program) {
     if (!metrics.isMap()) throwNotAllowed(metrics, "program: metrics", "a map {name: metric}");
     for (const auto& [name, given] : metrics.entries()) {
         const std::string what = "program: metric '" + name + "'";
         requireSnakeCase(metrics, name, "metric");
+        requireNameOfItsOwn(metrics, name);
         // A unit alone is all that a metric needs.
         const Node map = given.isMap() ? given : Node::map({{"unit", given}}, given.location());
         const MetricKeys keys = metricTable().readKnown(map, what);
@@ -483,6 +495,7 @@ void readPictures(const Node& pictures, const Names& known, ExternalProgram& pro
         program.pictures.push_back(picture);
         if (!picture.hasTruth()) continue;
         program.outputs.withTruth.push_back(name);
+        if (picture.truthFrames > 1) program.outputs.tested.push_back(name);
         if (program.outputs.hasPass(name)) continue;
         program.outputs.passes.push_back({name, "the picture against its truth"});
     }

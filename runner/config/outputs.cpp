@@ -24,9 +24,10 @@ std::vector<std::string> namesOf(const Infos& infos) {
 
 [[noreturn]] void throwUnknown(const std::string& owner, const char* what, std::string_view name,
                                const std::vector<std::string>& known, const SourceLocation& where) {
-    const std::string near = suggestion(std::string(name), known);
-    throw Error(where, owner + " has no " + what + " '" + std::string(name) + "'" +
-                           (near.empty() && !known.empty() ? "; it has " + joined(known) : near));
+    std::string near = suggestion(std::string(name), known);
+    if (near.empty()) near = "; it has " + (known.empty() ? "none" : joined(known));
+    if (name == kFrameTime) near = "; the time of a frame is the metric wall_time_ms";
+    throw Error(where, owner + " has no " + what + " '" + std::string(name) + "'" + near);
 }
 
 }  // namespace
@@ -77,6 +78,10 @@ std::span<const MetricInfo> pictureErrors() {
 bool isPictureError(std::string_view metric) {
     const auto errors = pictureErrors();
     return std::ranges::find(errors, metric, &MetricInfo::name) != errors.end();
+}
+
+bool isTestOfMeans(std::string_view metric) {
+    return metric == "same_mean_p" || metric == "bias_seen";
 }
 
 std::string_view betterText(Better better) {

@@ -47,6 +47,8 @@ struct Outputs {
     std::vector<std::string> withTruth = {};
     /// The metrics that are given of passes alone (Of::Pass), by their names.
     std::vector<std::string> ofPasses = {};
+    /// Those of a program whose truth has several pictures: same_mean_p and bias_seen are of them.
+    std::vector<std::string> tested = {};
 
     /// Of the share `m`, `m`_of is a metric, too. Null where there is none.
     const MetricInfo* find(std::string_view metric) const;
@@ -62,6 +64,11 @@ struct Outputs {
 /// first counts, which the report shows, too.
 std::span<const MetricInfo> pictureErrors();
 bool isPictureError(std::string_view metric);
+/// Whether the metric is a test of several pictures: same_mean_p or bias_seen.
+bool isTestOfMeans(std::string_view metric);
+
+/// The column of wall_time_ms in a table that nobody laid out.
+inline constexpr std::string_view kFrameTime = "frame_ms";
 
 /// Ends the name of what a share is of.
 inline constexpr std::string_view kShareOf = "_of";

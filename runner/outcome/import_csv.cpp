@@ -206,6 +206,7 @@ class Rows {
                         fmt::format("column 'lane': '{}'; the same case has '{}' in line {}",
                                     record.lane, lane->second.first, lane->second.second));
         }
+        requireSeed(csv, record.metric, line);
         const auto [known, isNew] = lines_.try_emplace(
             {caseIndex, record.process, record.frame, record.repeat, record.pass, record.metric},
             line);
@@ -215,7 +216,6 @@ class Rows {
                                     "process, seed, frame and repeat tell measurements apart",
                                     column, known->second));
         }
-        requireSeed(csv, record.metric, line);
         rows.push_back({caseIndex, std::move(record), line});
     }
 

@@ -67,8 +67,8 @@ using Of = config::MetricInfo::Of;
 /// The passes that a metric may be of: errors are of pictures, the runner's times of steps.
 std::vector<std::string> passesOf(const config::MetricInfo& metric,
                                   const config::Outputs& outputs) {
-    const bool isTest = metric.name == "same_mean_p" || metric.name == "bias_seen";
-    const bool isError = isTest || config::isPictureError(metric.name);
+    if (config::isTestOfMeans(metric.name)) return outputs.tested;
+    const bool isError = config::isPictureError(metric.name);
     const bool isCommon =
         std::ranges::count(technique::commonMetrics(), metric.name, &config::MetricInfo::name) > 0;
     std::vector<std::string> names;
@@ -77,6 +77,18 @@ std::vector<std::string> passesOf(const config::MetricInfo& metric,
         if (isError ? isPicture : !isPicture || !isCommon) names.push_back(pass.name);
     }
     return names;
+}
+
+/// The passes that the metric is of; of none, why there are none.
+std::string allowedPasses(const config::MetricInfo& metric, const config::Outputs& outputs) {
+    if (const auto passes = passesOf(metric, outputs); !passes.empty()) {
+        return joined(passes, " | ");
+    }
+    if (config::isTestOfMeans(metric.name)) {
+        return "none, as no image has a truth of several 'frames': {frame: 1000, frames: 6}";
+    }
+    if (config::isPictureError(metric.name)) return "none, as no image has a truth";
+    return "none, as there are no passes; the time of a whole frame is wall_time_ms";
 }
 
 /// What the runner takes of a whole frame or process has no pass, and not every pass has all.
@@ -95,7 +107,7 @@ void requireOfPass(const config::MetricInfo& metric, const std::string& pass,
     const bool isOne = std::ranges::count(outputs.passes, pass, &config::PassInfo::name) > 0;
     if (!isOne || std::ranges::count(passes, pass) > 0) return;
     throw Error(where, fmt::format("metric '{}' is not taken of '{}'; allowed: {}", metric.name,
-                                   pass, passes.empty() ? "no pass" : joined(passes, " | ")));
+                                   pass, allowedPasses(metric, outputs)));
 }
 
 /// What there is of passes alone has one.
@@ -105,7 +117,7 @@ void requireNoWhole(const std::string& metric, const std::string& pass,
     if (!info || info->of != Of::Pass || !pass.empty()) return;
     throw Error(where, fmt::format("metric '{}' is of a pass, and the cell names none; allowed: "
                                    "with pass: {}",
-                                   metric, joined(passesOf(*info, outputs), " | ")));
+                                   metric, allowedPasses(*info, outputs)));
 }
 
 /// `equal` names no pass: there is one at most.
@@ -156,6 +168,21 @@ void requireCells(const config::Layout& layout, const config::Outputs& outputs) 
     }
 }
 
+/// A metric of a program with the name of a swept axis: a claim could mean either.
+void requireOwnNames(const config::Experiment& experiment) {
+    const Node* metrics = config::programOf(experiment).find("metrics");
+    if (!metrics) return;
+    for (const config::AxisPoint& point : config::expandSweep(experiment.sweep)) {
+        for (const auto& [axis, value] : point) {
+            if (!metrics->find(axis)) continue;
+            throw Error(metrics->keyLocation(axis),
+                        fmt::format("program: metric '{}' has the name of an axis that is swept; "
+                                    "allowed: another",
+                                    axis));
+        }
+    }
+}
+
 /// What is laid out is recorded: metrics and passes of the technique.
 void requireOutputs(const config::Experiment& experiment,
                     std::span<const technique::TechniqueInfo> techniques) {
@@ -182,6 +209,7 @@ void requireOutputs(const config::Experiment& experiment,
         }
     }
     requireCells(experiment.layout, outputs);
+    if (!config::programOf(experiment).isNull()) requireOwnNames(experiment);
 }
 
 /// The value of `key` in a section of the config; its file where there is none.

@@ -394,7 +394,8 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
                               sweep.isMap() ? sweep.find("when") : nullptr);
     cases.frameCount = experiment.measure.frames;
     cases.isOfElsewhere = !config::isMeasuredHere(experiment);
-    if (config::goesByClock(experiment)) countSweptSeeds(cases);
+    cases.isOfProgram = config::goesByClock(experiment);
+    if (cases.isOfProgram) countSweptSeeds(cases);
     std::vector<const AxisValues*> values;
     for (const CaseRecords& item : cases.cases) values.push_back(&item.axes);
     cases.index = CaseIndex(values);

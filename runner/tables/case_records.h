@@ -74,7 +74,8 @@ struct CaseRecords {
     std::optional<int> sweptSeed = {};
 
     std::uint64_t seedOf(int process) const {
-        if (sweptSeed && seeds == config::Measure::Seeds::None) return static_cast<std::uint64_t>(*sweptSeed);
+        if (sweptSeed && seeds == config::Measure::Seeds::None)
+            return static_cast<std::uint64_t>(*sweptSeed);
         const bool isOther = seeds == config::Measure::Seeds::Process;
         return seed +
                (isOther ? static_cast<std::uint64_t>(process) * config::kSeedsOfAProcess : 0);
@@ -122,6 +123,7 @@ struct LayoutCases {
     int frameCount = 1;
     /// Measured elsewhere: of what was measured once nobody knows whether it was looked at twice.
     bool isOfElsewhere = false;
+    bool isOfProgram = false;  // config::goesByClock: a program's, or measured elsewhere
     CaseIndex index;
 
     /// The place of an axis in `axes`.

@@ -136,7 +136,7 @@ void takeRow(const records::Record& record, const CellQuery& query, int unit,
 /// Neither a time, nor what the device counted, nor a test of several seeds.
 bool isOfItsSeed(const std::string& metric) {
     return !config::isTimeMetric(metric) && !config::isOfDevice(metric) &&
-           metric != "same_mean_p" && metric != "bias_seen";
+           !config::isTestOfMeans(metric);
 }
 
 /// Whether each value of a swept seed is a round of its own, as a process with its seed is.
@@ -519,8 +519,8 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     cell.isTime = config::isTimeMetric(query.metric);
     cell.timePower = config::timePower(query.metric);
     cell.pooled = pooledAt(query.where, cases);
-    cell.isSaid =
-        isOfItsSeed(query.metric) && (cases.isOfElsewhere || !config::isPictureError(query.metric));
+    cell.isSaid = cases.isOfProgram && isOfItsSeed(query.metric) &&
+                  (cases.isOfElsewhere || !config::isPictureError(query.metric));
     if (query.equal) {
         fillEqual(query, cases, cell);
         return cell;
@@ -539,7 +539,8 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     if (!hasSamples && gathered.worst == records::Status::Ok) {
         gathered.note(records::Status::Missing, whyNothing(query, cases));
         cell.isUnrecorded = true;
-        cell.isOfPasses = query.pass.empty() && !passesWith(query, cases).empty();
+        const bool mayBeOfOthers = query.pass.empty() || cell.isSaid;
+        cell.isOfOthers = mayBeOfOthers && !passesWith(query, cases).empty();
     }
     cell.status = gathered.worst;
     cell.message = gathered.message;

@@ -58,7 +58,7 @@ struct ClockRange {
 struct Cell {
     bool isPlanned = true;      // the sweep has such cases; if not, the cell is blank, not missing
     bool isUnrecorded = false;  // its cases ran, and none recorded it; blank where others did
-    bool isOfPasses = false;    // its metric was recorded, of passes alone
+    bool isOfOthers = false;    // its metric was recorded, of other passes than it asks for
     bool isPartial = false;  // some of the cases that it gathers failed; its values are the others'
     records::Status status = records::Status::Missing;  // the worst of its records
     std::string message;                                // why it is not ok

@@ -104,6 +104,7 @@ config::Outputs outputsOf(const TechniqueInfo& technique, const Node& program) {
     all.metrics.insert(all.metrics.end(), own.metrics.begin(), own.metrics.end());
     all.passes.insert(all.passes.end(), said.passes.begin(), said.passes.end());
     all.withTruth = said.withTruth;
+    all.tested = said.tested;
     return withPictureErrors(std::move(all));
 }
 

@@ -54,10 +54,10 @@ esac
 constexpr const char* kProgram =
     "sweep_of: mine\ntitle: Mine\ntechnique: external\n"
     "program:\n"
-    "  command: \"{here}/renderer.sh {behaviour} {number} {out} {width} {height}\"\n"
+    "  command: \"{here}/renderer.sh {behaviour} {given} {out} {width} {height}\"\n"
     "  params:\n"
     "    behaviour: ok\n"
-    "    number: {default: 1, min: 0, max: 100, doc: given back}\n"
+    "    given: {default: 1, min: 0, max: 100, doc: given back}\n"
     "  metrics: {number: \"1\"}\n"
     "  files: [picture.png]\n";
 
@@ -179,13 +179,13 @@ TEST_F(ExternalProgram, ATimeBelowZeroIsNoneAndItsLastLinesAreKept) {
 
 TEST_F(ExternalProgram, RecordsWhatItSaysAndHowFarItsPictureIsFromTheTruth) {
     const ProcessResult result =
-        run(write(kPicture + "sweep: {number: [3, 5]}\nmeasure: {lane: quality}\n"));
+        run(write(kPicture + "sweep: {given: [3, 5]}\nmeasure: {lane: quality}\n"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
     EXPECT_EQ(rowsOf(dir, "number").at(0).unit, "1");
     const auto params = paramsOf(dir);
     for (const records::Record& row : rowsOf(dir, "number")) {
-        EXPECT_EQ(row.value, params.at(row.caseId).at("number").get<double>());
+        EXPECT_EQ(row.value, params.at(row.caseId).at("given").get<double>());
     }
     for (const char* metric : {"mse", "rmse", "rel_mse", "psnr_db", "ssim", "flip"}) {
         ASSERT_EQ(rowsOf(dir, metric).size(), 2U) << metric;
@@ -297,9 +297,9 @@ TEST_F(ExternalProgram, TheTruthIsMadeOnce) {
                                  ">&3\n"),
                     fs::perms::owner_all);
     const std::string config = write(
-        "  images: {result: {file: result.png, truth: {number: 99}}}\n"
+        "  images: {result: {file: result.png, truth: {given: 99}}}\n"
         "output: {width: 32, height: 16}\n"
-        "sweep: {number: [1, 2, 3]}\nmeasure: {lane: quality}\n");
+        "sweep: {given: [1, 2, 3]}\nmeasure: {lane: quality}\n");
     ASSERT_EQ(run(config, {"--jobs", "1"}).exitCode, 0);
     EXPECT_EQ(readFile(folder.path() / "runs"), "1\n99\n2\n3\n");
     for (const records::Record& row : rowsOf(dir, "mse")) EXPECT_EQ(row.value, 0.0);
@@ -363,7 +363,7 @@ TEST_F(ExternalProgram, DiesWithAKilledRunWhoseLeftoversHarmNobody) {
 
 TEST_F(ExternalProgram, IsTimedInRoundsAndComparedWithItself) {
     const std::string config =
-        write("sweep: {number: [1, 2]}\nmeasure: {lane: timing, processes: 6}\n");
+        write("sweep: {given: [1, 2]}\nmeasure: {lane: timing, processes: 6}\n");
     ASSERT_EQ(run(config).exitCode, 0);
     EXPECT_GE(rowsOf(dir, "wall_time_ms").size(), 12U);
     const std::string again = (folder.path() / "again").string();
@@ -375,7 +375,7 @@ TEST_F(ExternalProgram, IsTimedInRoundsAndComparedWithItself) {
 }
 
 TEST_F(ExternalProgram, AComparisonSaysThatTheProgramIsAnotherAndWhichCasesChanged) {
-    const std::string config = write("sweep: {number: [1, 2]}\nmeasure: {lane: quality}\n");
+    const std::string config = write("sweep: {given: [1, 2]}\nmeasure: {lane: quality}\n");
     ASSERT_EQ(run(config).exitCode, 0);
     folder.write("renderer.sh",
                  "#!/bin/sh\necho '{\"metric\": \"number\", \"value\": 3, \"unit\": \"1\"}' >&3\n");
@@ -385,16 +385,16 @@ TEST_F(ExternalProgram, AComparisonSaysThatTheProgramIsAnotherAndWhichCasesChang
         gfxrepro({"compare", dir, again, "--out", folder.path() / "compared"});
     EXPECT_EQ(compared.exitCode, 1) << compared.err;
     EXPECT_THAT(compared.out + compared.err, HasSubstr("renderer.sh is another: "));
-    EXPECT_THAT(compared.out, HasSubstr("sweep/mine external number, number=1: changed"));
-    EXPECT_THAT(compared.out, HasSubstr("sweep/mine external number, number=2: changed"));
+    EXPECT_THAT(compared.out, HasSubstr("sweep/mine external number, given=1: changed"));
+    EXPECT_THAT(compared.out, HasSubstr("sweep/mine external number, given=2: changed"));
     EXPECT_THAT(readFile(folder.path() / "compared" / "comparison.md"),
-                HasSubstr("number, number=2 | 2 | 3"));
+                HasSubstr("number, given=2 | 2 | 3"));
 }
 
 TEST_F(ExternalProgram, ShardsOfItMergeIntoTheRun) {
     const std::string config = write(
-        "sweep: {number: [1, 2, 3, 4]}\nmeasure: {lane: quality}\n"
-        "layout: {rows: number, columns: {n: {metric: number, format: \"{median:.0f}\"}}}\n");
+        "sweep: {given: [1, 2, 3, 4]}\nmeasure: {lane: quality}\n"
+        "layout: {rows: given, columns: {n: {metric: number, format: \"{median:.0f}\"}}}\n");
     ASSERT_EQ(run(config).exitCode, 0);
     std::vector<std::string> shards;
     for (const char* shard : {"1/2", "2/2"}) {
@@ -416,32 +416,32 @@ TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
         const std::string& text = result.exitCode == 0 ? result.out : result.err;
         return text.substr(text.find("mine.yaml"));
     };
-    EXPECT_EQ(check("sweep: {number: [1, 2]}\n"), "mine.yaml: ok, sweep/mine, 2 cases, 0 claims\n");
-    EXPECT_EQ(check("sweep: {number: [1, 200]}\n"),
-              "mine.yaml:11:21: technique 'external': number is 200; allowed: 0 … 100\n");
+    EXPECT_EQ(check("sweep: {given: [1, 2]}\n"), "mine.yaml: ok, sweep/mine, 2 cases, 0 claims\n");
+    EXPECT_EQ(check("sweep: {given: [1, 200]}\n"),
+              "mine.yaml:11:20: technique 'external': given is 200; allowed: 0 … 100\n");
     // Of a document's table the program is asked what it was printed at.
     std::string table = kProgram;
     table.replace(table.find("sweep_of: mine"), 14, "table: doc/1");
     const auto printedAt = [&](const std::string& value) {
         const ProcessResult result =
             gfxrepro({"check", folder.write("mine.yaml",
-                                            table + "printed: {at: {number: " + value + "}}\n")});
+                                            table + "printed: {at: {given: " + value + "}}\n")});
         return result.exitCode == 0 ? result.out : result.err;
     };
     EXPECT_THAT(printedAt("3"), HasSubstr("mine.yaml: ok, doc/1, 1 case"));
-    EXPECT_THAT(printedAt("200"), HasSubstr("printed.at: number is 200; allowed: 0 … 100"));
+    EXPECT_THAT(printedAt("200"), HasSubstr("printed.at: given is 200; allowed: 0 … 100"));
     const std::string image = "  images: {result: {file: result.png, truth: ";
     EXPECT_EQ(check(image + "\"{here}/gone.png\"}}\n"),
               "mine.yaml:11:46: program: image 'result': truth: there is no file " +
                   folder.path().string() + "/gone.png\n");
-    EXPECT_EQ(check(image + "\"{here}/truth.png\"}}\nsweep: {number: [1, 2]}\n"),
+    EXPECT_EQ(check(image + "\"{here}/truth.png\"}}\nsweep: {given: [1, 2]}\n"),
               "mine.yaml: ok, sweep/mine, 2 cases, 0 claims\n");
-    EXPECT_EQ(check("params: {nubmer: 1}\n"),
-              "mine.yaml:11:10: technique 'external': unknown parameter 'nubmer'; did you mean "
-              "'number'?\n");
-    EXPECT_EQ(check("sweep: {number: [1, 2]}\n"
-                    "layout: {rows: number, columns: {n: {metric: nmuber}}}\n"),
-              "mine.yaml:12:37: technique 'external' has no metric 'nmuber'; did you mean "
+    EXPECT_EQ(check("params: {givn: 1}\n"),
+              "mine.yaml:11:10: technique 'external': unknown parameter 'givn'; did you mean "
+              "'given'?\n");
+    EXPECT_EQ(check("sweep: {given: [1, 2]}\n"
+                    "layout: {rows: given, columns: {n: {metric: nmuber}}}\n"),
+              "mine.yaml:12:36: technique 'external' has no metric 'nmuber'; did you mean "
               "'number'?\n");
     EXPECT_EQ(check("scene: models/duck\n"),
               "mine.yaml:11:1: 'scene': the program's command has no {scene}\n");
@@ -456,13 +456,13 @@ TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
     const ProcessResult described = gfxrepro({"describe", write("")});
     EXPECT_EQ(described.exitCode, 0) << described.err;
     EXPECT_THAT(described.out, HasSubstr("given back [1; 0 … 100]"));
-    EXPECT_THAT(described.out, HasSubstr("{here}/renderer.sh {behaviour} {number} {out}"));
+    EXPECT_THAT(described.out, HasSubstr("{here}/renderer.sh {behaviour} {given} {out}"));
     EXPECT_THAT(gfxrepro({"describe", write(kPicture)}).out,
                 HasSubstr("result.png: mse, rmse, rel_mse, psnr_db, ssim, flip,"));
     EXPECT_THAT(gfxrepro({"describe", "external"}).out, HasSubstr("rel_mse"));
     const auto program =
         nlohmann::json::parse(gfxrepro({"describe", write(kPicture), "--json"}).out).at("program");
-    EXPECT_EQ(program["parameters"][1]["name"], "number");
+    EXPECT_EQ(program["parameters"][1]["name"], "given");
     EXPECT_EQ(program["parameters"][1]["range"], "0 … 100");
     EXPECT_EQ(program["metrics"][0]["unit"], "1");
     EXPECT_EQ(program["images"][0]["has_truth"], true);

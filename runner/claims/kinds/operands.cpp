@@ -26,8 +26,14 @@ bool isNumber(const std::string& text) {
 }  // namespace
 
 std::string noColumn(const std::string& name, Labels labels) {
+    const bool isFrameTime = name == "wall_time_ms" && std::ranges::count(labels, "frame_ms") > 0;
+    const bool isTest = name == "bias_seen" || name == "same_mean_p";
     return fmt::format("'{}' is no column{} (columns: {})", name,
-                       isNumber(name) ? "" : suggestion(name, labels), joined(labels));
+                       isFrameTime      ? "; its column is 'frame_ms'"
+                       : isTest         ? "; it is of an image whose truth has several 'frames'"
+                       : isNumber(name) ? ""
+                                        : suggestion(name, labels),
+                       joined(labels));
 }
 
 namespace {
