@@ -246,18 +246,61 @@ void requireScenes(const Context& context, const config::Experiment& experiment,
     }
 }
 
+/// Throws Error for a truth that is made as the case itself is, in whichever process.
+void requireOtherTruths(const config::Case& item) {
+    if (item.program.isNull()) return;
+    const config::ExternalProgram program = config::readProgram(item.program);
+    const bool isOfProcesses = item.measure.seeds == config::Measure::Seeds::Process;
+    const auto isOwn = [&](const Node::Entry& given) {
+        const auto& [name, value] = given;
+        if (name == config::placeholder::kFrame) {
+            return value.tryInteger().value_or(-1) < item.measure.frames;
+        }
+        const Node* own = item.params.find(name);
+        const auto seed = value.tryInteger(), ownSeed = own ? own->tryInteger() : std::nullopt;
+        if (name == config::placeholder::kSeed && isOfProcesses && seed && ownSeed) {
+            const long long beyond = *seed - *ownSeed;
+            return beyond >= 0 && beyond % config::kSeedsOfAProcess == 0 &&
+                   beyond / config::kSeedsOfAProcess < item.measure.processes;
+        }
+        return own && own->sameContent(value);
+    };
+    for (const config::ProgramPicture& picture : program.pictures) {
+        const Node& truth = picture.truthParams;
+        if (truth.isNull() || !std::ranges::all_of(truth.entries(), isOwn)) continue;
+        throw Error(truth.location(),
+                    fmt::format("program: image '{}': truth: {} is what makes the case {} itself, "
+                                "whose error would be 0 whatever the program does; allowed: a "
+                                "parameter, 'seed' or 'frame' that no case has",
+                                picture.name, truth.toFlowText(), item.title()));
+    }
+}
+
+/// Throws Error where the cases have no times, and a claim reads a column of some.
+void requireTimesTaken(const config::Experiment& experiment, const tables::Table& table) {
+    const bool isTimed = experiment.measure.lane == config::Measure::Lane::Timing;
+    if (isTimed || !config::isMeasuredHere(experiment) || !experiment.hasDefaultLayout()) return;
+    for (const config::ClaimSpec& claim : experiment.claims) {
+        if (claims::isOfTime(claim, table)) config::refuseTimes(experiment, claim);
+    }
+}
+
 /// Says which programs are not on this machine: other machines may have them. Files that they read
 /// have to be there.
 void sayAbsent(const std::string& file, const std::vector<config::Case>& cases) {
-    std::set<std::string> absent;
+    std::set<std::string> absent, absentArguments;
     for (const config::Case& item : cases) {
         if (item.program.isNull()) continue;
         const config::ExternalProgram program = config::readProgram(item.program);
         const config::Placeholders values = program.valuesOf(item.params);
         config::requireFiles(item.program, program, values);
+        for (std::string& line : config::absentArguments(program, values)) {
+            absentArguments.insert(std::move(line));
+        }
         const auto files = config::filesOf(program, values);
         if (const config::ProgramFile* one = config::absentOf(files)) absent.insert(one->name);
     }
+    for (const std::string& line : absentArguments) say("{}: {}\n", file, line);
     for (const std::string& name : absent) {
         say("{}: the program '{}' is not on this machine: its cases will be unsupported\n", file,
             name);
@@ -372,7 +415,9 @@ std::vector<records::Record> foreseen(std::span<config::Case> cases,
             // Of passes there are times, of pictures all else that is of passes alone.
             const bool isOfPictures = metric.of == Of::Pass && !config::isTimeMetric(metric.name);
             for (const config::PassInfo& pass : outputs.passes) {
-                const bool isPicture = std::ranges::count(outputs.withTruth, pass.name) > 0;
+                const std::vector<std::string>& pictures =
+                    config::isTestOfMeans(metric.name) ? outputs.tested : outputs.withTruth;
+                const bool isPicture = std::ranges::count(pictures, pass.name) > 0;
                 if (isOfPictures == isPicture) add(metric, pass.name);
             }
         }
@@ -453,6 +498,8 @@ void requireSound(const Context& context, const scene::Catalog& catalog,
     const tables::Table table =
         isImported ? tables::buildTable(experiment, casesOf(context, catalog, experiment), {})
                    : tableBefore(context, experiment, cases);
+    for (const config::Case& item : cases) requireOtherTruths(item);
+    requireTimesTaken(experiment, table);
     tables::requireToldApart(experiment, table);
     tables::requireStatistics(experiment, cases, table);
     claims::requireProvenance(experiment, table);

@@ -272,12 +272,29 @@ class ClaimParser {
         claim_.at = readRowFilter(at, what_ + ": at", rows);
     }
 
+    /// " (pat=SOBOL)" where the claim has SOBOL in the place of a column; else empty.
+    std::string exampleOfValue() const {
+        const Node& operands = *node_.find(claim_.kind->name());
+        for (const std::string& side : claims::sidesOf(operands.toFlowText(), " / ", {})) {
+            for (const auto& [axis, values] : names_.rowValues) {
+                const auto isSide = [&](const Node& value) {
+                    return value.isScalar() && value.text() == side;
+                };
+                if (std::ranges::any_of(values, isSide)) return fmt::format(" ({}={})", axis, side);
+            }
+        }
+        return "";
+    }
+
     void readOf(const Node& of) {
         if (!claim_.across) {
             throw Error(node_.keyLocation("of"),
-                        fmt::format("{}: 'of' is of a claim that compares rows; allowed: with "
-                                    "[AXIS=VALUE, …] or across: {}",
-                                    what_, joined(names_.rowAxes, " | ")));
+                        fmt::format("{}: 'of' is of a claim that compares rows; allowed: with {}{} "
+                                    "or across: {}",
+                                    what_,
+                                    claim_.kind->name() == "ratio" ? "AXIS=VALUE / AXIS=VALUE"
+                                                                   : "[AXIS=VALUE, …]",
+                                    exampleOfValue(), joined(names_.rowAxes, " | ")));
         }
         claim_.at.emplace_back(kColumnAxis,
                                readFilterValues(of, what_ + ": of", kColumnAxis, names_));

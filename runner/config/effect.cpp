@@ -172,18 +172,31 @@ void requireInSections(const Node& document, const Names& allowed) {
     }
 }
 
+namespace {
+
+[[noreturn]] void refuseTimes(const Experiment& experiment, const SourceLocation& where,
+                              const std::string& what) {
+    const bool hasSeeds = experiment.measure.sceneSeeds > 1;
+    throw Error(where, fmt::format("'{}' takes no times, and {}; allowed: {}",
+                                   hasSeeds ? "scene_seeds" : "lane: quality", what,
+                                   hasSeeds ? "scene_seeds: 1" : "lane: timing"));
+}
+
+}  // namespace
+
+void refuseTimes(const Experiment& experiment, const ClaimSpec& claim) {
+    refuseTimes(experiment, claim.location,
+                fmt::format("claim '{}' reads '{}'", claim.id, joined(claim.operands, "', '")));
+}
+
 void requireTimed(const Experiment& experiment) {
     if (!isMeasuredHere(experiment) || experiment.measure.lane == Measure::Lane::Timing) return;
     const Node* measure = experiment.document.find("measure");
     const Node* lane = measure && measure->isMap() ? measure->find("lane") : nullptr;
     const bool isOwn = lane && lane->location().file.text() == experiment.file;
-    const bool hasSeeds = experiment.measure.sceneSeeds > 1;
-    const auto refuse = [&](const SourceLocation& where, const std::string& what) {
-        throw Error(where, fmt::format("'{}' takes no times, and {}; allowed: {}",
-                                       hasSeeds ? "scene_seeds" : "lane: quality", what,
-                                       hasSeeds ? "scene_seeds: 1" : "lane: timing"));
-    };
-    if (isOwn && showsTimes(experiment.layout)) refuse(lane->location(), "the layout shows some");
+    if (isOwn && showsTimes(experiment.layout)) {
+        refuseTimes(experiment, lane->location(), "the layout shows some");
+    }
     if (!experiment.hasDefaultLayout() || (lane && !isOwn)) return;
     for (const ClaimSpec& claim : experiment.claims) {
         std::vector<std::string> read = claim.operands;
@@ -201,7 +214,8 @@ void requireTimed(const Experiment& experiment) {
                     continue;
                 }
                 if (isTimeMetric(name)) {
-                    refuse(claim.location, fmt::format("claim '{}' reads '{}'", claim.id, name));
+                    refuseTimes(experiment, claim.location,
+                                fmt::format("claim '{}' reads '{}'", claim.id, name));
                 }
                 name.clear();
             }

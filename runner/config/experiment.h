@@ -206,6 +206,9 @@ inline bool goesByClock(const Experiment& experiment) {
     return experiment.document.isMap() && experiment.document.find("program");
 }
 
+/// Throws the Error of a claim that reads times where the lane takes none.
+[[noreturn]] void refuseTimes(const Experiment& experiment, const ClaimSpec& claim);
+
 /// Begins the place of what was given there.
 inline constexpr const char* kCommandLine = "command line, ";
 

@@ -125,6 +125,11 @@ std::vector<ProgramFile> filesOf(const ExternalProgram& program, const Placehold
 /// A truth below {out}, or one of {frame}, {width} or {height}, is passed over.
 void requireFiles(const Node& node, const ExternalProgram& program, const Placeholders& values);
 
+/// What is likely amiss with arguments that name files, a sentence each: one below {here} that is
+/// not there, though the program may make it; one that is beside the config and not in {out}.
+std::vector<std::string> absentArguments(const ExternalProgram& program,
+                                         const Placeholders& values);
+
 /// Digests of files, remembered by size and time.
 class FileDigests {
   public:

@@ -173,6 +173,28 @@ void requireFiles(const Node& node, const ExternalProgram& program, const Placeh
     }
 }
 
+std::vector<std::string> absentArguments(const ExternalProgram& program,
+                                         const Placeholders& values) {
+    std::vector<std::string> lines;
+    const std::string here = fmt::format("{{{}}}/", placeholder::kHere);
+    for (std::size_t i = 1; i < program.command.size(); ++i) {
+        std::error_code unknown;
+        const std::string &text = program.command[i], argument = filled(text, values);
+        if (argument.find('{') != std::string::npos) continue;
+        const bool isBeside = text.find('{') == std::string::npos && !text.starts_with('/') &&
+                              fs::is_regular_file(fs::path(program.here) / text, unknown);
+        if (text.starts_with(here) && !fs::exists(argument, unknown)) {
+            lines.push_back(fmt::format("the command's '{}' is not there: {}", text, argument));
+        } else if (isBeside) {
+            lines.push_back(
+                fmt::format("the command's '{0}' is a file beside the config, and the "
+                            "program runs in {{out}}; there it is {{here}}/{0}",
+                            text));
+        }
+    }
+    return lines;
+}
+
 const std::string& FileDigests::of(const fs::path& path) {
     Entry& entry = entries_[path];
     std::error_code problem;
