@@ -85,9 +85,7 @@ constexpr std::chrono::milliseconds kDrawInterval{100};
 
 /// At most.
 int roundsOf(const run::Unit& unit) {
-    const config::Measure& measure = unit.item->measure;
-    return measure.mayContinue() ? std::max(measure.processes, measure.processesAtMost)
-                                 : measure.processes;
+    return unit.item->measure.mostRounds();
 }
 
 /// Whether further rounds may or may not follow.

@@ -119,7 +119,7 @@ Node Case::sceneParams() const {
 
 bool Measure::mayContinue() const {
     return relativeError > 0.0 && lane == Lane::Timing && processes >= kFewestRounds &&
-           processes < processesAtMost;
+           processes < kMostRounds;
 }
 
 bool Measure::mayFollow(int rounds, double roundS) const {
@@ -155,7 +155,7 @@ Measure readMeasure(Params& params, Measure measure) {
     measure.relativeError = params.getDouble(
         "relative_error", measure.relativeError,
         {"rounds go on until half of each 95 % interval ÷ time is no more, and then "
-         "to 14, 16 or 19; with 6 processes or more in the timing lane; 0: they do not",
+         "to 14, 16 or 19, or to 20; with 6 to 19 processes in the timing lane; 0: they do not",
          "", 0, 1});
     // Who asks how well a time is known wants times.
     if (measure.relativeError > 0.0 && !params.isGiven("lane")) {
@@ -176,8 +176,6 @@ Measure readMeasure(Params& params, Measure measure) {
         {"rounds: in each every case is run, in a process of its own; of times six, or "
          "as many as fit into the budget, where it is not given",
          "", 1, kMax});
-    measure.processesAtMost = params.getInt("processes_at_most", measure.processesAtMost,
-                                            {"rounds, where they go on", "", 1, kMax});
     measure.timeBudgetS = params.getDouble(
         "time_budget_s", measure.timeBudgetS,
         {"of all rounds of the file but those that 'processes' asks for: none is begun to end "

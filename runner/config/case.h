@@ -14,6 +14,8 @@ namespace gfxrepro::config {
 
 /// Processes that a 95 % interval of a time takes (metrics::kFewestForInterval).
 inline constexpr int kFewestRounds = 6;
+/// Where rounds go on until times are known, of which some never are.
+inline constexpr int kMostRounds = 20;
 
 // What a case may have, in its config, swept, printed or varied by an assumption.
 inline constexpr NumberRange kOutputSizesPx{.least = 1, .most = 16384, .isWhole = true};
@@ -31,7 +33,6 @@ struct Measure {
     /// Timing lane, from metrics::kFewestForInterval processes on: rounds go on until half of each
     /// case's 95 % interval ÷ the time of its frames is no more than this. 0: they do not.
     double relativeError = 0.0;
-    int processesAtMost = 20;
     double timeBudgetS = 60.0;  // of all rounds of the experiment
     int frames = 1;             // frames of a path; each is repeated
     int sceneSeeds = 1;         // samples of a generated scene: its seed and those that follow it
@@ -46,6 +47,8 @@ struct Measure {
 
     /// Whether rounds may follow the first `processes`.
     bool mayContinue() const;
+    /// At most.
+    int mostRounds() const { return mayContinue() ? kMostRounds : processes; }
     /// Rounds that are measured whatever they take.
     int certainRounds() const;
     /// Whether a round may follow the first `rounds`, which took so long each: it ends within

@@ -101,16 +101,12 @@ std::vector<NoEffect> keysInVain(const Experiment& experiment) {
     const Node* measure = isSweep ? document.find("measure") : nullptr;
     const Measure& own = experiment.measure;
     const bool isTimed = own.lane == Measure::Lane::Timing;
-    for (const char* key : {"relative_error", "time_budget_s", "processes_at_most"}) {
+    for (const char* key : {"relative_error", "time_budget_s"}) {
         require(measure, key, isTimed,
                 "in the quality lane no rounds are timed; allowed: lane: timing");
     }
-    require(measure, "processes_at_most", own.mayContinue(),
-            "no more rounds follow than 'processes' asks for; allowed: with 'relative_error', and "
-            "more than 'processes', of which there are 6 or more");
     require(measure, "relative_error", own.relativeError == 0.0 || own.mayContinue(),
-            "no rounds follow; allowed: with 'processes' of 6 or more, and fewer than "
-            "'processes_at_most'");
+            "no rounds follow; allowed: with 6 to 19 'processes'");
     require(
         measure, "time_budget_s", own.isWithinBudget || own.mayContinue(),
         "all 'processes' are measured whatever they take; allowed: without 'processes', or with "

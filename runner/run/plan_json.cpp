@@ -73,7 +73,6 @@ void eachNumber(Measure& measure, Each each) {
     each("/repeats", measure.repeats);
     each("/processes", measure.processes);
     each("/relative_error", measure.relativeError);
-    each("/processes_at_most", measure.processesAtMost);
     each("/time_budget_s", measure.timeBudgetS);
     each("/frames", measure.frames);
     each("/time_limit_s", measure.timeLimitS);

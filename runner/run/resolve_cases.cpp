@@ -366,11 +366,7 @@ void requireCaseCount(std::size_t count, const config::Experiment& experiment) {
 std::size_t unitCount(std::span<const Case> cases) {
     std::size_t count = 0;
     for (const Case& item : cases) {
-        const config::Measure& measure = item.measure;
-        const int processes = measure.mayContinue()
-                                  ? std::max(measure.processes, measure.processesAtMost)
-                                  : measure.processes;
-        count += static_cast<std::size_t>(std::max(processes, 0));
+        count += static_cast<std::size_t>(std::max(item.measure.mostRounds(), 0));
     }
     return count;
 }

@@ -194,7 +194,7 @@ std::vector<Unit> Rounds::next(const std::string& experiment) {
     const int measured = std::max(table.roundsBegun, measure.certainRounds());
     const bool isAffordable = measure.mayFollow(measured, table.spent.count() / measured);
     const bool isAsked = process < measure.processes;
-    const bool isUnknown = measure.mayContinue() && process < measure.processesAtMost &&
+    const bool isUnknown = measure.mayContinue() && process < config::kMostRounds &&
                            !table.times.isKnownTo(measure.relativeError, measure.processes);
     const bool isWanted = rounds > 0 && (isAsked || isUnknown);
     if (isWanted && isAffordable && !cases.empty()) {

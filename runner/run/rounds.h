@@ -28,7 +28,7 @@ std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& 
 
 /// Decides after each round of a table of times whether another follows: while the time of some
 /// case is not known to its `relative_error` (tables::FrameTimes::isKnownTo), there are fewer than
-/// `processes_at_most`, and the next may follow by `time_budget_s` (Measure::mayFollow). A decision
+/// config::kMostRounds, and the next may follow by `time_budget_s` (Measure::mayFollow). A decision
 /// is final, also for a run that is resumed.
 class Rounds {
   public:

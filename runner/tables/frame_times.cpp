@@ -249,8 +249,8 @@ std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& t
     if (!hasAsked && measure.certainRounds() < measure.processes) return "time_budget_s";
     if (!measure.mayContinue()) return "processes";
     if (times.isKnownTo(measure.relativeError, measure.processes)) return "relative_error";
-    const bool isMost = times.roundCount() >= static_cast<std::size_t>(measure.processesAtMost);
-    return isMost ? "processes_at_most" : "time_budget_s";
+    const bool isMost = times.roundCount() >= static_cast<std::size_t>(config::kMostRounds);
+    return isMost ? "most_rounds" : "time_budget_s";
 }
 
 namespace {
@@ -259,7 +259,7 @@ namespace {
 std::string_view endInWords(std::string_view end) {
     if (end == "time_budget_s") return "as many as the time allowed";
     if (end == "relative_error") return "until the times were known";
-    return end == "processes_at_most" ? "the most that are allowed" : "as many as asked for";
+    return end == "most_rounds" ? "the most that are allowed" : "as many as asked for";
 }
 
 }  // namespace

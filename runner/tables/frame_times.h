@@ -91,7 +91,7 @@ std::optional<double> columnNoise(const Table& table, const std::vector<std::str
                                   Clock clock);
 
 /// Which condition of `measure` ended the rounds: "processes" (as many as asked for, no more),
-/// "relative_error", "processes_at_most", or "time_budget_s".
+/// "relative_error", "most_rounds", or "time_budget_s".
 std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& times);
 
 /// What a reader knows cases by, by their ids: "torus, light ratio 0.25".

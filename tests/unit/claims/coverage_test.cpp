@@ -441,7 +441,6 @@ Ended measure(int cases, double scatter, Random& random) {
     measure.lane = config::Measure::Lane::Timing;
     measure.processes = 6;
     measure.relativeError = 0.05;
-    measure.processesAtMost = 20;
     tables::FrameTimes times;
     std::vector<tables::Samples> samples(static_cast<std::size_t>(cases));
     Ended ended{false, 0, cases, 0};

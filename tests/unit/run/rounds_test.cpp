@@ -23,7 +23,6 @@ run::Plan timedPlan() {
         if (item.measure.lane == Lane::Quality) continue;
         item.measure.processes = 6;
         item.measure.relativeError = 0.05;
-        item.measure.processesAtMost = 8;
         item.measure.timeBudgetS = 100.0;
     }
     return plan;
@@ -115,7 +114,6 @@ TEST(Rounds, EndAtTheRelativeError) {
 /// It is small enough at once, and rounds follow (FrameTimes::isKnownTo).
 TEST(Rounds, GoOnToTheLastOfEqualDepth) {
     run::Plan plan = timedPlan();
-    for (config::Case& item : plan.cases) item.measure.processesAtMost = 20;
     run::Rounds rounds(plan, rows(plan, 6, 0.08), {});
     for (int process = 6; process < 14; ++process) {
         EXPECT_EQ(rounds.next("t/1").size(), 3U);
@@ -132,9 +130,12 @@ TEST(Rounds, GoOnWhileTheErrorIsLarge) {
     EXPECT_THAT(namesOf(rounds.next("t/1")), ElementsAre("t/1 a 1 #6", "t/1 b 1 #6", "t/1 c 1 #6"));
     for (std::size_t i = 2; i < 5; ++i) rounds.add({timeRow(plan.cases[i], 15.0, 6)});
     EXPECT_THAT(namesOf(rounds.next("t/1")), ElementsAre("t/1 c 1 #7", "t/1 b 1 #7", "t/1 a 1 #7"));
-    for (std::size_t i = 2; i < 5; ++i) rounds.add({timeRow(plan.cases[i], 15.0, 7)});
-    EXPECT_THAT(rounds.next("t/1"), IsEmpty());
-    EXPECT_EQ(rounds.ending("t/1")["ended_by"], "processes_at_most");
+    for (int process = 7; process < 20; ++process) {
+        const double timeMs = process % 2 == 0 ? 15.0 : 10.0;
+        for (std::size_t i = 2; i < 5; ++i) rounds.add({timeRow(plan.cases[i], timeMs, process)});
+        EXPECT_EQ(rounds.next("t/1").size(), process == 19 ? 0U : 3U);
+    }
+    EXPECT_EQ(rounds.ending("t/1")["ended_by"], "most_rounds");
 }
 
 TEST(Rounds, OfAProgramGoOnWhileItsClockIsUnknown) {
@@ -142,7 +143,6 @@ TEST(Rounds, OfAProgramGoOnWhileItsClockIsUnknown) {
         run::Plan plan = timedPlan();
         std::vector<records::Record> records;
         for (std::size_t i = 2; i < plan.cases.size(); ++i) {
-            plan.cases[i].measure.processesAtMost = 20;
             if (isProgram) plan.cases[i].program = Node::map({});
             for (int process = 0; process < 14; ++process) {
                 records.push_back(

@@ -34,7 +34,6 @@ TEST(Twins, AreOfOneWorkWhateverTheyAreCalled) {
     twin.params.set("size", Node::scalar("64.0"));
     // Of rounds, which the timing lane alone has.
     twin.measure.relativeError = 0.05;
-    twin.measure.processesAtMost = 20;
     twin.measure.timeBudgetS = 7.0;
     EXPECT_EQ(run::workKey(item), run::workKey(twin));
 }
