@@ -39,6 +39,11 @@ std::vector<ClaimResult> readClaims(const std::filesystem::path& file) {
     std::vector<std::string> header, fields;
     std::vector<ClaimResult> claims;
     reader.next(header);
+    if (!std::ranges::equal(header, kClaimsColumns)) {
+        throw Error({file.string(), 1},
+                    fmt::format("the columns are {}; allowed: {}", fmt::join(header, ","),
+                                fmt::join(kClaimsColumns, ",")));
+    }
     while (reader.next(fields)) {
         if (fields.size() != header.size()) {
             throw Error(reader.location(),

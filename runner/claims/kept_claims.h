@@ -21,8 +21,7 @@ inline constexpr std::array<std::string_view, 19> kClaimsColumns = {
 /// The verdict of that name. Throws Error at `where` for a name that is none.
 Verdict verdictAt(const SourceLocation& where, const std::string& name);
 
-/// claims.csv as writeClaims() wrote it, in older forms too: then nothing is known of a claim's
-/// origin, or of what it says. Throws Error with file and line.
+/// claims.csv as writeClaims() wrote it. Throws Error with file and line.
 std::vector<ClaimResult> readClaims(const std::filesystem::path& file);
 
 }  // namespace gfxrepro::claims

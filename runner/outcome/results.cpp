@@ -154,37 +154,6 @@ std::string commandOf(const config::Experiment& experiment, const run::Plan& pla
     return command;
 }
 
-/// The shipped config of a table, figure, section or sweep; none for one of another's.
-std::optional<fs::path> shippedConfig(const std::string& experiment) {
-    const fs::path id = experiment;
-    const bool isSweep = id.parent_path() == "sweep";
-    const fs::path folder = dataFolder("configs") / (isSweep ? "sweeps" : id.parent_path());
-    for (const char* kind : {"", "table-", "section-"}) {
-        const fs::path file = folder / (kind + id.filename().string() + ".yaml");
-        if (fs::is_regular_file(file)) return file;
-    }
-    return std::nullopt;
-}
-
-/// Kept verdicts of before say nothing in words: those of the shipped configs' claims of that name.
-void addWords(std::vector<claims::ClaimResult>& claims) {
-    std::map<std::string, std::map<std::string, std::string>> words;  // by experiment, by claim
-    for (claims::ClaimResult& claim : claims) {
-        if (!claim.text.empty()) continue;
-        const auto [known, isNew] = words.try_emplace(claim.table);
-        const auto file = isNew ? shippedConfig(claim.table) : std::nullopt;
-        if (file) {
-            for (const config::ClaimSpec& spec :
-                 config::loadExperiment(*file, {}, dataFolder("configs")).claims) {
-                known->second[spec.id] = spec.text;
-            }
-        }
-        if (const auto found = known->second.find(claim.id); found != known->second.end()) {
-            claim.text = found->second;
-        }
-    }
-}
-
 }  // namespace
 
 report::ReportOptions reportOptions(bool embeds, report::PicturesDone progress) {
@@ -229,7 +198,6 @@ report::ReportRun keptRun(const fs::path& folder) {
     result.manifest = run::readManifest(folder / "manifest.json");
     result.context = reportContext(result.manifest);
     result.claims = claims::readClaims(folder / "claims.csv");
-    addWords(result.claims);
     return result;
 }
 

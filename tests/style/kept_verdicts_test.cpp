@@ -30,16 +30,12 @@ struct Kept {
     claims::SceneFiles scenes = {};
 };
 
-/// By table and claim. Those of before claims had an origin are of other configs.
+/// By table and claim.
 std::map<std::pair<std::string, std::string>, std::vector<Kept>> keptVerdicts(
     const fs::path& root) {
     std::map<std::pair<std::string, std::string>, std::vector<Kept>> kept;
     for (const auto& entry : fs::recursive_directory_iterator(root)) {
         if (entry.path().filename() != "claims.csv") continue;
-        std::ifstream first(entry.path());
-        std::string head;
-        std::getline(first, head);
-        if (head.find(",origin,") == head.npos) continue;
         std::ifstream file(entry.path().parent_path() / "manifest.json");
         const auto manifest = nlohmann::json::parse(file);
         claims::SceneFiles scenes;

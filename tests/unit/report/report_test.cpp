@@ -30,6 +30,8 @@ using testing::Not;
 const claims::ReportContext kContext{"llvmpipe", "software", "quick", "abc123",
                                      "gfxrepro reproduce"};
 
+const std::string kClaimsHeader = fmt::format("{}\n", fmt::join(claims::kClaimsColumns, ","));
+
 config::Experiment experiment() {
     return tables::withPaperCases(tables::experimentFrom(R"(
 sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
@@ -636,10 +638,10 @@ TEST_F(Report, IdsAreUniqueAlsoWithCurvesOfSeveralRuns) {
 TEST_F(Report, KeptVerdictsStandBesideARun) {
     const test::TemporaryFolder a, kept;
     const auto file =
-        kept.write("claims.csv",
-                   "claim,table,device,profile,verdict,measured,required,margin,reason,rests_on\n"
-                   "A,zju2005/9.9,gpu,quick,fails,12,draw_ms ≤ 10,-2,,bias (of 3 tried)\n"
-                   "Z,zju2005/1.1,gpu,quick,holds,1,x,1,,\n");
+        kept.write("claims.csv", kClaimsHeader +
+                                     "A,,zju2005/9.9,gpu,quick,,,,fails,,12,draw_ms ≤ 10,-2,,,bias "
+                                     "(of 3 tried),,,\n"
+                                     "Z,,zju2005/1.1,gpu,quick,,,,holds,,1,x,1,,,,,,\n");
     ReportRun other;
     other.folder = kept.path();
     other.context = kContext;
@@ -654,16 +656,17 @@ TEST_F(Report, KeptVerdictsStandBesideARun) {
 }
 
 TEST_F(Report, RefusesVerdictsThatAreNone) {
-    const auto file = folder.write("claims.csv", "claim,table,verdict\nA,t,perhaps\n");
-    try {
-        claims::readClaims(file);
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_EQ(std::string(error.what()),
-                  file.string() +
-                      ":2: 'perhaps' is no verdict (holds, fails, ambiguous, not-applicable, "
-                      "unmeasured)");
-    }
+    const auto errorOf = [&](const std::string& text) {
+        const auto file = folder.write("claims.csv", text);
+        return test::errorText([&] { claims::readClaims(file); }, folder.path());
+    };
+    EXPECT_EQ(errorOf(kClaimsHeader + "A,,t,,,,,,perhaps,,,,,,,,,,\n"),
+              "DIR/claims.csv:2: 'perhaps' is no verdict (holds, fails, ambiguous, not-applicable, "
+              "unmeasured)");
+    EXPECT_EQ(errorOf("claim,table,verdict\nA,t,holds\n"),
+              "DIR/claims.csv:1: the columns are claim,table,verdict; allowed: "
+              "claim,says,table,device,profile,origin,bound_from,kind,verdict,known,measured,"
+              "required,margin,reason,because,rests_on,rows,holds_on,same_as");
 }
 
 }  // namespace
