@@ -151,6 +151,12 @@ class Technique {
     virtual std::optional<ProcessUsage> usageElsewhere() const { return std::nullopt; }
 };
 
+/// What `create` of a TechniqueInfo is.
+template <class Own>
+std::unique_ptr<Technique> make(Params& params) {
+    return std::make_unique<Own>(params);
+}
+
 struct TechniqueInfo {
     std::string_view name;
     std::string_view summary;

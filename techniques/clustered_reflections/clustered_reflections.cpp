@@ -577,13 +577,10 @@ class ClusteredReflections final : public technique::Technique {
     bool hasReflections_ = false;  // in the view that record() is at
 };
 
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<ClusteredReflections>(params);
-}
 }  // namespace
 
 const technique::TechniqueInfo kClusteredReflections{
-    "clustered_reflections", "mirror and glossy reflections from clustered depth images", create,
-    outputs};
+    "clustered_reflections", "mirror and glossy reflections from clustered depth images",
+    technique::make<ClusteredReflections>, outputs};
 
 }  // namespace gfxrepro::clustered_reflections

@@ -438,10 +438,6 @@ class DepthSampling final : public technique::Technique {
     std::optional<Measures> measures_;            // of all frames alike: taken once
 };
 
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<DepthSampling>(params);
-}
-
 config::Outputs outputs() {
     using config::Better;
     constexpr bool kIsDetail = true;
@@ -486,7 +482,7 @@ config::Outputs outputs() {
 
 const technique::TechniqueInfo kDepthSampling = {
     "depth_sampling",
-    "non-redundant depth images, conventional ones and depth peeling (xie2017, chapter 2)", &create,
-    &outputs};
+    "non-redundant depth images, conventional ones and depth peeling (xie2017, chapter 2)",
+    technique::make<DepthSampling>, &outputs};
 
 }  // namespace gfxrepro::depth_sampling

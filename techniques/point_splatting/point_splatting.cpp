@@ -333,10 +333,6 @@ image::ImageF PointSplatting::drawnWith(const SplatSettings& splats,
 
 namespace {
 
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<PointSplatting>(params);
-}
-
 config::Outputs outputs() {
     using config::Better;
     const auto detail = [](const char* name, const char* unit, const char* doc,
@@ -435,7 +431,7 @@ config::Outputs outputs() {
 }  // namespace
 
 const technique::TechniqueInfo kPointSplatting{
-    "point_splatting", "adaptive EWA splatting of large point models (zju2005, chapter 3)", create,
-    outputs};
+    "point_splatting", "adaptive EWA splatting of large point models (zju2005, chapter 3)",
+    technique::make<PointSplatting>, outputs};
 
 }  // namespace gfxrepro::point_splatting

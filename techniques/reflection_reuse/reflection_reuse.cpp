@@ -517,13 +517,10 @@ class ReflectionReuse final : public technique::Technique {
     bool hasWarned_ = false;
 };
 
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<ReflectionReuse>(params);
-}
 }  // namespace
 
 const technique::TechniqueInfo kReflectionReuse{
-    "reflection_reuse", "mirror reflections of key frames reused in the frames after them", create,
-    outputs};
+    "reflection_reuse", "mirror reflections of key frames reused in the frames after them",
+    technique::make<ReflectionReuse>, outputs};
 
 }  // namespace gfxrepro::reflection_reuse

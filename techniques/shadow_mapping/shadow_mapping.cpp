@@ -413,10 +413,6 @@ class ShadowMapping final : public technique::Technique {
     std::optional<ShadedImage> image_;
 };
 
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<ShadowMapping>(params);
-}
-
 config::Outputs outputs() {
     using config::Better;
     constexpr bool kIsDetail = true;
@@ -460,6 +456,7 @@ config::Outputs outputs() {
 }  // namespace
 
 const technique::TechniqueInfo kShadowMapping{
-    "shadow_mapping", "shadow maps compared in the shader or by the texture unit", create, outputs};
+    "shadow_mapping", "shadow maps compared in the shader or by the texture unit",
+    technique::make<ShadowMapping>, outputs};
 
 }  // namespace gfxrepro::shadow_mapping

@@ -527,10 +527,6 @@ void SoftShadows::recordLightView(technique::Recorder& recorder, const char* nam
 
 namespace {
 
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<SoftShadows>(params);
-}
-
 config::Outputs outputs() {
     using config::Better;
     constexpr bool kIsDetail = true;
@@ -586,7 +582,7 @@ config::Outputs outputs() {
 }  // namespace
 
 const technique::TechniqueInfo kSoftShadows{
-    "soft_shadows", "soft shadows of a rectangular light from reconstructed depth images", create,
-    outputs};
+    "soft_shadows", "soft shadows of a rectangular light from reconstructed depth images",
+    technique::make<SoftShadows>, outputs};
 
 }  // namespace gfxrepro::soft_shadows

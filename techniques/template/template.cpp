@@ -158,10 +158,6 @@ class TemplateTechnique : public technique::Technique {
     std::optional<kit::WholeImage> wholeImage_;
 };
 
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<TemplateTechnique>(params);
-}
-
 // All that is recorded and timed, in the order in which tables show it; the runner refuses others.
 config::Outputs outputs() {
     return {
@@ -175,6 +171,10 @@ config::Outputs outputs() {
 }  // namespace
 
 const technique::TechniqueInfo kTemplate{
-    "template", "a technique in miniature: a ramp or a silhouette", create, outputs};
+    "template",
+    "a technique in miniature: a ramp or a silhouette",
+    technique::make<TemplateTechnique>,
+    outputs,
+};
 
 }  // namespace gfxrepro::template_

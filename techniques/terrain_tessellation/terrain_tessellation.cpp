@@ -434,10 +434,6 @@ void TerrainTessellation::render(technique::FrameContext& context) {
 
 namespace {
 
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<TerrainTessellation>(params);
-}
-
 config::Outputs outputs() {
     using config::Better;
     const auto detail = [](const char* name, const char* unit, const char* doc,
@@ -517,6 +513,6 @@ config::Outputs outputs() {
 
 const technique::TechniqueInfo kTerrainTessellation{
     "terrain_tessellation", "height maps tessellated to the screen's resolution (zhang2012)",
-    create, outputs};
+    technique::make<TerrainTessellation>, outputs};
 
 }  // namespace gfxrepro::terrain_tessellation

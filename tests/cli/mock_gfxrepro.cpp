@@ -211,11 +211,6 @@ class MockOfScenes : public Mock {
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
 };
 
-template <class Technique>
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<Technique>(params);
-}
-
 config::Outputs outputs() {
     return {{{"number", "1", "as asked for"}, {"fidelity_db", "dB", "of a perfect picture"}},
             {},
@@ -253,10 +248,6 @@ class Dice : public technique::Technique {
     gl::Texture image_;
 };
 
-std::unique_ptr<technique::Technique> createDice(Params& params) {
-    return std::make_unique<Dice>(params);
-}
-
 config::Outputs diceOutputs() {
     return {{{"face", "1", "what was thrown"}, {"worth", "1", "what it is worth"}}, {}, true};
 }
@@ -270,9 +261,9 @@ int main(int argc, char** argv) {
         ::pause();
     }
     const technique::TechniqueInfo techniques[] = {
-        {"mock", "fails on demand", create<Mock>, outputs},
-        {"mock_of_scenes", "likewise, with a scene", create<MockOfScenes>, outputs},
-        {"dice", "throws", createDice, diceOutputs},
+        {"mock", "fails on demand", technique::make<Mock>, outputs},
+        {"mock_of_scenes", "likewise, with a scene", technique::make<MockOfScenes>, outputs},
+        {"dice", "throws", technique::make<Dice>, diceOutputs},
         external::kExternal};
     return cli::run(argc, argv, techniques, scene::registeredGenerators());
 }
