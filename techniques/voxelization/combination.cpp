@@ -1,7 +1,5 @@
 #include "techniques/voxelization/combination.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 
@@ -32,38 +30,19 @@ void CsgPass::run(const gl::Texture& left, const gl::Texture& right,
 
 namespace {
 constexpr int kCollisionGroupSize = 8;
-
-// The block Extent of collision.comp.glsl (std430).
-using Words = std::array<std::uint32_t, 7>;
-constexpr Words kNothing{0, ~0U, ~0U, ~0U, 0, 0, 0};
-static_assert(sizeof(Words) == 28);
 }  // namespace
 
-scene::Box GridExtent::bounds(const VoxelGrid& grid) const {
-    scene::Box bounds;
-    if (count == 0) return bounds;
-    bounds.min = grid.box.min + grid.voxelSize() * glm::vec3(lowest);
-    bounds.max = grid.box.min + grid.voxelSize() * glm::vec3(highest + 1);
-    return bounds;
-}
-
-ExtentPass::ExtentPass(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout)
+CountPass::CountPass(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout)
     : layout_(layout),
       pass_(shaders, {"voxelization/collision.comp.glsl"}, layout.defines()),
-      extent_(sizeof(Words)) {}
+      count_(sizeof(std::uint32_t)) {}
 
-void ExtentPass::run(const gl::Texture& sheets) {
+void CountPass::run(const gl::Texture& sheets) {
     GFXREPRO_ASSERT(sheets.size() == glm::ivec3(layout_.sheetSizePx(), layout_.layers()));
-    extent_.write(std::span<const std::uint32_t>(kNothing));
+    constexpr std::array kNothing{0U};
+    count_.write(std::span<const std::uint32_t>(kNothing));
     const auto groups = static_cast<GLuint>(layout_.resolution() / kCollisionGroupSize);
-    pass_.dispatch({groups, groups, layout_.slabCount()},
-                   {{"sheets", sheets}, {"Extent", extent_}});
-}
-
-GridExtent ExtentPass::read() const {
-    const std::vector<std::uint32_t> words = extent_.read<std::uint32_t>(kNothing.size());
-    return {words[0], glm::ivec3(words[1], words[2], words[3]),
-            glm::ivec3(words[4], words[5], words[6])};
+    pass_.dispatch({groups, groups, layout_.slabCount()}, {{"sheets", sheets}, {"Count", count_}});
 }
 
 namespace {
@@ -124,7 +103,7 @@ void Combination::setup(technique::SetupContext& context, const MeshVoxelizerSet
     }
     if (settings_.findsCollision) {
         intersectionPass_.emplace(context.shaders, layout, CsgOperation::Intersection);
-        extentPass_.emplace(context.shaders, layout);
+        countPass_.emplace(context.shaders, layout);
         common_ = {makeSheets(layout), layout, box};
     }
 }
@@ -139,22 +118,12 @@ void Combination::render(gl::Profiler& profiler, const VoxelGrid& first) {
     if (intersectionPass_) {
         const gl::GpuScope scope(profiler, "collision");
         intersectionPass_->run(first.sheets, second, common_.sheets);
-        extentPass_->run(common_.sheets);
+        countPass_->run(common_.sheets);
     }
 }
 
 void Combination::record(technique::Recorder& recorder) const {
-    if (!extentPass_) return;
-    const GridExtent extent = extentPass_->read();
-    recorder.metric("collision_voxels", extent.count);
-    if (extent.count == 0) return;
-    const scene::Box bounds = extent.bounds(common_);
-    constexpr std::array<char, 3> kAxisNames{'x', 'y', 'z'};
-    for (int i = 0; i < 3; ++i) {
-        const char axis = kAxisNames[static_cast<std::size_t>(i)];
-        recorder.metric(fmt::format("collision_min_{}", axis), bounds.min[i]);
-        recorder.metric(fmt::format("collision_max_{}", axis), bounds.max[i]);
-    }
+    if (countPass_) recorder.metric("collision_voxels", countPass_->read());
 }
 
 }  // namespace gfxrepro::voxelization

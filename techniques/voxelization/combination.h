@@ -30,29 +30,19 @@ class CsgPass {
     gl::Pass pass_;
 };
 
-/// The full voxels of a grid: of an intersection, what a collision test answers. [zju2005]
-/// Sec. 2.4.3.
-struct GridExtent {
-    std::uint32_t count = 0;
-    glm::ivec3 lowest{0};   // voxels, inclusive; meaningless when there is none
-    glm::ivec3 highest{0};  // voxels, inclusive
-
-    /// World space; empty when there is no full voxel.
-    scene::Box bounds(const VoxelGrid& grid) const;
-};
-
-/// Finds the extent of a grid, on the device.
-class ExtentPass {
+/// Counts the full voxels of a grid, on the device: of an intersection, what a collision test
+/// answers. [zju2005] Sec. 2.4.3.
+class CountPass {
   public:
-    ExtentPass(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout);
+    CountPass(const gl::ShaderLibrary& shaders, const WorksheetLayout& layout);
     void run(const gl::Texture& sheets);
     /// Of the last run; waits for the device.
-    GridExtent read() const;
+    std::uint32_t read() const { return count_.read<std::uint32_t>(1)[0]; }
 
   private:
     WorksheetLayout layout_;
     gl::Pass pass_;
-    gl::Buffer extent_;
+    gl::Buffer count_;
 };
 
 struct CombinationSettings {
@@ -78,8 +68,7 @@ class Combination {
                const scene::Box& box);
     /// Voxelizes the second model like the first, then combines; scopes "csg" and "collision".
     void render(gl::Profiler& profiler, const VoxelGrid& first);
-    /// Collision: collision_voxels, and where there are any collision_{min,max}_{x,y,z}, the box
-    /// that holds them in world units.
+    /// Collision: collision_voxels.
     void record(technique::Recorder& recorder) const;
 
     /// The combined grid; null without a boolean operation.
@@ -92,7 +81,7 @@ class Combination {
     std::optional<MeshInput> secondInput_;
     std::optional<MeshVoxelizer> secondSource_;
     std::optional<CsgPass> csgPass_, intersectionPass_;
-    std::optional<ExtentPass> extentPass_;
+    std::optional<CountPass> countPass_;
     VoxelGrid result_, common_;
 };
 

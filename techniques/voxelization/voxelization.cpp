@@ -420,10 +420,6 @@ class Voxelization final : public technique::Technique {
     Drawing drawing_;
 };
 
-std::unique_ptr<technique::Technique> create(Params& params) {
-    return std::make_unique<Voxelization>(params);
-}
-
 config::Outputs outputs() {
     using config::Better;
     const auto detail = [](const char* name, const char* unit, const char* doc,
@@ -462,12 +458,6 @@ config::Outputs outputs() {
                    "planes of voxels that were blended or searched for the picture"),
             {"samples", "sample", "samples of a parametric surface"},
             {"collision_voxels", "voxel", "voxels that both solids fill"},
-            detail("collision_min_x", "scene unit", "least x of the box around the collision"),
-            detail("collision_max_x", "scene unit", "greatest x of the box around the collision"),
-            detail("collision_min_y", "scene unit", "least y of the box around the collision"),
-            detail("collision_max_y", "scene unit", "greatest y of the box around the collision"),
-            detail("collision_min_z", "scene unit", "least z of the box around the collision"),
-            detail("collision_max_z", "scene unit", "greatest z of the box around the collision"),
         },
         {
             {"preprocess", "sorting triangles by their main axis", true},
@@ -490,7 +480,7 @@ config::Outputs outputs() {
 
 const technique::TechniqueInfo kVoxelization = {
     "voxelization",
-    "real-time voxelization of triangle meshes with worksheets (zju2005, chapter 2)", create,
-    outputs};
+    "real-time voxelization of triangle meshes with worksheets (zju2005, chapter 2)",
+    technique::make<Voxelization>, outputs};
 
 }  // namespace gfxrepro::voxelization

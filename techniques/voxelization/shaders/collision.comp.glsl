@@ -1,17 +1,15 @@
 #version 450 core
-// Counts the full voxels of a worksheet and finds the box that holds them: the answer to a collision
-// test when the worksheet is an intersection. [zju2005] Sec. 2.4.3.
-// Reads `sheets`, one invocation a texel; adds to `Extent`, which starts as {0, ~0, ~0, ~0, 0, 0, 0}.
+// Counts the full voxels of a worksheet: the answer to a collision test when the worksheet is an
+// intersection. [zju2005] Sec. 2.4.3.
+// Reads `sheets`, one invocation a texel; adds to `Count`, which starts as 0.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "voxelization/worksheet.glsl"
 
 layout(r32ui) readonly uniform uimage2DArray sheets;
-layout(std430) buffer Extent {
+layout(std430) buffer Count {
     uint count;
-    uint lowest[3];   // x, y, z of voxels
-    uint highest[3];  // inclusive
 };
 
 shared uint groupCount;
@@ -24,21 +22,10 @@ void main() {
     uint word = imageLoad(sheets, worksheetPatch(slab) + ivec3(column, 0)).r;
     if (word != 0u) {
         uint full = 0u;
-        int first = VOXELS_PER_TEXEL;
-        int last = 0;
         for (int lane = 0; lane < VOXELS_PER_TEXEL; ++lane) {
-            if (voxelOfWord(word, lane) == 0u) continue;
-            ++full;
-            first = min(first, lane);
-            last = lane;
+            if (voxelOfWord(word, lane) != 0u) ++full;
         }
         atomicAdd(groupCount, full);
-        uvec3 low = uvec3(column, slab * VOXELS_PER_TEXEL + first);
-        uvec3 high = uvec3(column, slab * VOXELS_PER_TEXEL + last);
-        for (int i = 0; i < 3; ++i) {
-            atomicMin(lowest[i], low[i]);
-            atomicMax(highest[i], high[i]);
-        }
     }
     barrier();
     if (gl_LocalInvocationIndex == 0u && groupCount != 0u) atomicAdd(count, groupCount);
