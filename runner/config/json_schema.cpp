@@ -150,15 +150,27 @@ Json namesType(const std::vector<std::string>& names) {
     return types.size() == 1 ? types[0] : Json{{"anyOf", std::move(types)}};
 }
 
-/// What a layout may show of a technique: its metrics and passes.
-void defineLayout(const SchemaNames::Technique& technique, Json& definitions) {
+/// The metrics that all techniques have.
+std::vector<std::string> commonMetrics(const SchemaNames& names) {
+    std::vector<std::string> common;
+    for (const MetricInfo& info : names.techniques.front().outputs.metrics) {
+        const bool isCommon = std::ranges::all_of(
+            names.techniques, [&](const auto& each) { return each.outputs.find(info.name); });
+        if (isCommon) common.push_back(info.name);
+    }
+    return common;
+}
+
+/// What a layout may show of a technique: its metrics, beside those in `common`, and passes.
+void defineLayout(const SchemaNames::Technique& technique, const std::vector<std::string>& common,
+                  Json& definitions) {
     std::vector<std::string> metrics, passes;
-    for (const MetricInfo& info : technique.outputs.metrics) metrics.push_back(info.name);
     for (const MetricInfo& info : technique.outputs.metrics) {
+        if (std::ranges::find(common, info.name) == common.end()) metrics.push_back(info.name);
         if (info.unit == "%") metrics.push_back(info.name + std::string(kShareOf));
     }
     for (const PassInfo& info : technique.outputs.passes) passes.push_back(info.name);
-    definitions["metric_" + technique.name] = namesType(metrics);
+    definitions["metric_" + technique.name] = anyOf({refTo("metric"), namesType(metrics)});
     const Json metric = refTo("metric_" + technique.name);
     Json parts = {{"type", "object"},
                   {"properties", {{"metric", metric}, {"pass", namesType(passes)}}}};
@@ -207,11 +219,13 @@ Json conditionOf(const SchemaNames::Technique& technique) {
 /// What holds of the names of a technique, and of which techniques there are.
 void addNames(const SchemaNames& names, Json& definitions) {
     Json measured = Json::array(), techniques = Json::array();
+    const std::vector<std::string> common = commonMetrics(names);
+    definitions["metric"] = namesType(common);
     for (const SchemaNames::Technique& technique : names.techniques) {
         techniques.push_back(technique.name);
         if (technique.isOpen) continue;
         defineTechnique(technique, definitions);
-        defineLayout(technique, definitions);
+        defineLayout(technique, common, definitions);
         measured.push_back(conditionOf(technique));
     }
     definitions["measured"] = {{"allOf", std::move(measured)}};
