@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -10,8 +9,6 @@
 #include <set>
 #include <span>
 
-#include "engine/core/files.h"
-#include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/claims/claims.h"
 #include "runner/cli/annotations.h"
@@ -100,92 +97,6 @@ void requireProfiles(const Context& context, const scene::Catalog& catalog,
     const auto whole = std::ranges::find_if(
         profiles, [](const config::Experiment& one) { return !one.printed.rows.empty(); });
     if (!tables.empty()) tables::requirePrintedValues(*whole, tables);
-}
-
-/// Throws Error for a sweep that the text names ("sweeps/NAME") and that is not among the configs.
-void requireNamedSweeps(const Node& node) {
-    if (node.isMap()) {
-        for (const auto& [key, value] : node.entries()) requireNamedSweeps(value);
-    } else if (node.isSequence()) {
-        for (const Node& item : node.items()) requireNamedSweeps(item);
-    }
-    if (!node.isScalar()) return;
-    static constexpr std::string_view kFolder = "sweeps/";
-    const std::string& text = node.text();
-    for (std::size_t at = text.find(kFolder); at != std::string::npos;
-         at = text.find(kFolder, at + 1)) {
-        const std::size_t begin = at + kFolder.size();
-        const auto isOfName = [](unsigned char c) {
-            return std::isalnum(c) || c == '_' || c == '-';
-        };
-        const auto end = std::find_if_not(text.begin() + static_cast<std::ptrdiff_t>(begin),
-                                          text.end(), isOfName);
-        const std::string name(text.begin() + static_cast<std::ptrdiff_t>(begin), end);
-        const std::filesystem::path folder = dataFolder("configs") / "sweeps";
-        if (std::filesystem::is_regular_file(folder / (name + ".yaml"))) continue;
-        std::vector<std::string> known;
-        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-            if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
-        }
-        throw Error(node.location(), fmt::format("'sweeps/{}' is named, and configs/sweeps has "
-                                                 "none of that name{}",
-                                                 name, suggestion(name, known)));
-    }
-}
-
-/// The anchor of a heading in Markdown: "### Table 2.1: V1" has "table-21-v1".
-std::string anchorOf(std::string_view heading) {
-    std::string anchor;
-    for (const char c : trimmed(heading.substr(heading.find_first_not_of('#')))) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (std::isalnum(byte) != 0 || c == '-' || c == '_') {
-            anchor += static_cast<char>(std::tolower(byte));
-        } else if (c == ' ') {
-            anchor += '-';
-        }
-    }
-    return anchor;
-}
-
-/// Throws Error for a place in results/findings that is none: "PAGE.md#ANCHOR". An installation
-/// has no findings: there any place is taken.
-void requireFinding(const Node& shownBy) {
-    const std::string& place = shownBy.text();
-    const std::size_t end = place.find(".md#");
-    if (end == std::string::npos || place.find_first_of("/ ") != std::string::npos) {
-        throw Error(shownBy.location(),
-                    fmt::format("shown_by is '{}'; allowed: PAGE.md#ANCHOR, a heading of a page in "
-                                "results/findings",
-                                place));
-    }
-    const std::filesystem::path folder =
-        dataFolder("configs").parent_path() / "results" / "findings";
-    if (!std::filesystem::is_directory(folder)) return;
-    const std::string page = place.substr(0, end + 3), anchor = place.substr(end + 4);
-    if (!std::filesystem::is_regular_file(folder / page)) {
-        throw Error(shownBy.location(),
-                    fmt::format("shown_by: results/findings has no page '{}'", page));
-    }
-    std::vector<std::string> known;
-    for (const std::string& line : split(readFile(folder / page), '\n')) {
-        if (line.starts_with('#')) known.push_back(anchorOf(line));
-    }
-    if (std::ranges::find(known, anchor) != known.end()) return;
-    throw Error(shownBy.location(),
-                fmt::format("shown_by: no heading of results/findings/{} has the anchor '{}'{}",
-                            page, anchor, suggestion(anchor, known)));
-}
-
-void requireFindings(const Node& claims) {
-    for (const auto& [id, claim] : claims.entries()) {
-        const Node* because = claim.find("because");
-        if (!because) continue;
-        const Node::Sequence known =
-            because->isSequence() ? because->items() : Node::Sequence{*because};
-        for (const Node& one : known) {
-            if (const Node* shownBy = one.find("shown_by")) requireFinding(*shownBy);
-        }
-    }
 }
 
 /// Throws Error for a scene that the technique of a case cannot take.
@@ -489,11 +400,6 @@ void requireSound(const Context& context, const scene::Catalog& catalog,
     run::requireRanges(experiment, {cases.begin(), cases.end()}, catalog, context.techniques);
     requireScenes(context, experiment, cases, catalog);
     requireProfiles(context, catalog, experiment.file);
-    for (const char* section : {"claims", "assumptions", "printed"}) {
-        const Node* node = experiment.document.find(section);
-        if (node) requireNamedSweeps(*node);
-    }
-    if (const Node* given = experiment.document.find("claims")) requireFindings(*given);
     const bool isImported = experiment.technique == config::kImported;
     const tables::Table table =
         isImported ? tables::buildTable(experiment, casesOf(context, catalog, experiment), {})

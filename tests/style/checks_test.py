@@ -89,7 +89,13 @@ expect("check_style", {TABLE: "printed:\n  remark: >-\n    text.\n\n    ray_trac
        f"{TABLE}:5: 'ray_traced' in a remark, which people read: say it in words\n")
 expect("check_style", {TABLE: "title: What c_min decides\n"}, f"{TABLE}:1: 'c_min' in a title, which")
 expect("check_style", {TABLE: "  A: {says: full_ewa is fast, ratio: a_b / c_d}\n"}, f"{TABLE}:1: 'full_ewa' in a says, which")
-code, output = run("check_style", {**GOOD, "configs/README.md": "", "configs/x/README.md": "", TABLE:
+expect("check_style", {TABLE: "remark: see sweeps/a-b.yaml\n"}, f"{TABLE}:1: configs/sweeps has no 'a-b'\n")
+FINDING = {"results/README.md": "", "results/findings/p.md": "# P\n## Table 2.1: V1\n"}
+for place in ("p.md", "p.md#table-2", "q.md#table-21-v1"):
+    expect("check_style", {**FINDING, TABLE: f"  because: {{shown_by: {place}}}\n"},
+           f"{TABLE}:1: shown_by: results/findings has no heading '{place}'\n")
+code, output = run("check_style", {**GOOD, **FINDING, "configs/README.md": "", "configs/x/README.md": "", "configs/sweeps/README.md": "",
+                                   "configs/sweeps/soft_shadows-light.yaml": "", TABLE: "shown_by: p.md#table-21-v1\n"
     "  A: {says: soft shadows do, ratio: a_b / c_d}\n  remark: see sweeps/soft_shadows-light.yaml, a D3DFMT_32F\n"
     "printed:\n  values: |\n    " + "a," * 70 + "\n"})
 if code != 0:
