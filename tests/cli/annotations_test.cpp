@@ -45,10 +45,10 @@ TEST_F(Annotations, OfCasesAndClaimsThatFailed) {
         "  known: {says: it is, bound: n, bound_from: ours, less_than: 1, "
         "because: {verdict: fails, reason: r}}\n"
         "  fresh: {says: it is, bound: n, bound_from: ours, less_than: 2}\n");
-    const ProcessResult run = runProgram({GFXREPRO_MOCK_PROGRAM, "reproduce", config, "--device",
-                                          "software", "--quiet", "--out", dir},
-                                         kOnGitHub);
-    EXPECT_EQ(run.exitCode, 4) << run.err;
+    const ProcessResult run =
+        endedWith(4, runProgram({GFXREPRO_MOCK_PROGRAM, "reproduce", config, "--device", "software",
+                                 "--quiet", "--out", dir},
+                                kOnGitHub));
     const std::string file = "file=" + config;
     EXPECT_THAT(run.err, HasSubstr("::error " + file +
                                    ",title=sweep/mock number=1 "

@@ -1,6 +1,9 @@
 #include "tests/cli/cli_support.h"
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -14,8 +17,26 @@ ProcessResult gfxrepro(std::vector<std::string> arguments) {
 }
 
 ProcessResult mockGfxrepro(std::vector<std::string> arguments) {
+    static constexpr std::string_view kMeasuring[] = {"run", "reproduce", "plan", "submit"};
+    const auto has = [&](const char* option) {
+        return std::ranges::find(arguments, option) != arguments.end();
+    };
+    const bool measures = std::ranges::find(kMeasuring, arguments[0]) != std::end(kMeasuring);
+    if (measures && !has("--device") && !has("--resume")) {
+        arguments.insert(arguments.end(), {"--device", "software"});
+    }
     arguments.insert(arguments.begin(), GFXREPRO_MOCK_PROGRAM);
     return runProgram(arguments);
+}
+
+ProcessResult endedWith(int exitCode, ProcessResult result, int line) {
+    EXPECT_EQ(result.exitCode, exitCode) << "line " << line << ": " << result.out << result.err;
+    return result;
+}
+
+std::string refusalOf(const ProcessResult& result, const TemporaryFolder& folder) {
+    EXPECT_EQ(result.exitCode, 2) << result.out;
+    return errorText([&] { throw Error(result.err); }, folder.path());
 }
 
 std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines) {

@@ -21,9 +21,16 @@ class RunTest : public FolderTest {
     const std::string dir = folder.path() / "run";
 };
 
-/// The program, and the one with the failing technique; both on the software device.
+/// The program, and the one with the failing technique, whose cases are measured on the software
+/// device where another is not named.
 ProcessResult gfxrepro(std::vector<std::string> arguments);
 ProcessResult mockGfxrepro(std::vector<std::string> arguments);
+
+/// A result that must have this exit code; a failure names the caller's line.
+ProcessResult endedWith(int exitCode, ProcessResult result, int line = __builtin_LINE());
+
+/// Standard error of what must end with exit code 2, with the folder's path as DIR.
+std::string refusalOf(const ProcessResult& result, const TemporaryFolder& folder);
 
 /// A config for the mock technique with these lines behind its head.
 std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines);

@@ -37,9 +37,9 @@ class BrokenClock : public testing::Test {
 
 TEST_F(BrokenClock, OneThatHardlyMovesGivesNoTimesOfTheDevice) {
     for (const std::string clock : {"none", "zero", "slow"}) {
-        const ProcessResult run = measured(clock);
-        EXPECT_EQ(run.exitCode, 0) << run.err;
-        EXPECT_THAT(run.err, HasSubstr("; it has no clock for GPU times\n")) << clock;
+        EXPECT_THAT(endedWith(0, measured(clock)).err,
+                    HasSubstr("; it has no clock for GPU times\n"))
+            << clock;
         EXPECT_TRUE(rowsOf(runOf(clock), "gpu_time_ms").empty()) << clock;
         // What other clocks told is kept.
         EXPECT_FALSE(rowsOf(runOf(clock), "wall_time_ms").empty()) << clock;
@@ -65,8 +65,7 @@ TEST_F(BrokenClock, OneThatBreaksEndsTheCase) {
 }
 
 TEST_F(BrokenClock, OneOfFewBitsIsReadPastItsEnd) {
-    const ProcessResult run = measured("wraps");
-    EXPECT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0, measured("wraps"));
     std::map<int, double> wallMs;
     for (const auto& row : rowsOf(runOf("wraps"), "wall_time_ms")) wallMs[row.repeat] = row.value;
     EXPECT_EQ(wallMs.size(), 20U);

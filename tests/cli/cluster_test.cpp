@@ -60,29 +60,25 @@ void expectSameTables(const std::string& a, const std::string& b) {
 TEST(Plan, PredictsFromEarlierRuns) {
     const TemporaryFolder folder;
     const std::string config = writeNumbers(folder, 3, "params: {pause_ms: 5}\n");
-    const ProcessResult before = mockGfxrepro({"plan", config, "--device", "software"});
+    const ProcessResult before = mockGfxrepro({"plan", config});
     EXPECT_THAT(before.out, HasSubstr("no earlier run tells the time; --from RUN names one\n"));
     EXPECT_THAT(planLine(before.out, 1), HasSubstr("-     -       -"));
     const std::string dir = folder.path() / "earlier";
     ASSERT_EQ(measure(config, dir, {"--sweep", "number=1,2"}).exitCode, 0);
 
-    const ProcessResult after =
-        mockGfxrepro({"plan", config, "--device", "software", "--from", dir});
+    const ProcessResult after = mockGfxrepro({"plan", config, "--from", dir});
     EXPECT_THAT(planLine(after.out, 1), HasSubstr(" MiB  same case "));
     EXPECT_THAT(planLine(after.out, 3), HasSubstr(" MiB  nearest "));
     EXPECT_THAT(after.out, HasSubstr("as " + dir + " tells\n"));
-    const ProcessResult far = mockGfxrepro(
-        {"plan", config, "--device", "software", "--from", dir, "--sweep", "number=2,8"});
+    const ProcessResult far =
+        mockGfxrepro({"plan", config, "--from", dir, "--sweep", "number=2,8"});
     EXPECT_THAT(planLine(far.out, 8), ContainsRegex("120 s +- +- +- "));
     EXPECT_THAT(far.out, HasSubstr("no earlier run tells the time"))
         << "nothing rather than what is four times as much";
-    EXPECT_THAT(mockGfxrepro({"plan", config, "--device", "software", "--from", dir, "--set",
-                              "measure.repeats=2"})
-                    .out,
+    EXPECT_THAT(mockGfxrepro({"plan", config, "--from", dir, "--set", "measure.repeats=2"}).out,
                 HasSubstr("same case, other run"));
     const ProcessResult none =
-        mockGfxrepro({"plan", config, "--device", "software", "--from", folder.path() / "none"});
-    EXPECT_EQ(none.exitCode, 2);
+        endedWith(2, mockGfxrepro({"plan", config, "--from", folder.path() / "none"}));
     EXPECT_EQ(none.err, "gfxrepro: " + (folder.path() / "none").string() +
                             ": is not a run directory (it has no plan.json)\n");
 }
@@ -101,8 +97,7 @@ TEST(Plan, NewestRunsTellAndBrokenOnesDoNotStop) {
     folder.write("runs/broken/journal.jsonl",
                  "{\"case\": \"x\", \"cost\": {\"load_s\": 0, \"setup_s\": 0, \"render_s\": 0, "
                  "\"record_s\": 0, \"peak_bytes\": 0}}\n");
-    const ProcessResult plan = inFolder("plan mock.yaml --device software");
-    EXPECT_EQ(plan.exitCode, 0) << plan.err;
+    const ProcessResult plan = endedWith(0, inFolder("plan mock.yaml --device software"));
     EXPECT_THAT(plan.out, HasSubstr("expect about "));
     EXPECT_THAT(plan.out, HasSubstr("as runs/"));
     const ProcessResult run = inFolder("run mock.yaml --device software --out again");
@@ -121,22 +116,19 @@ TEST_F(Shards, MergeToTheTablesOfOneRun) {
     std::size_t rows = 0;
     for (const char* k : {"3", "1", "2"}) {  // in no order
         const std::string dir = folder.path() / (std::string("s") + k);
-        const ProcessResult run =
-            measure(config, dir, {"--shard", std::string(k) + "/3", "--from", whole});
-        EXPECT_EQ(run.exitCode, 0) << run.err;
+        endedWith(0, measure(config, dir, {"--shard", std::string(k) + "/3", "--from", whole}));
         rows += rowsOf(dir, "number").size();
         merge.push_back(dir);
     }
     EXPECT_EQ(rows, 10U);
-    const ProcessResult result = mockGfxrepro(merge);
-    EXPECT_EQ(result.exitCode, 0) << result.err;
-    EXPECT_EQ(result.out, "merged 3 shards into " + merged +
-                              ": 10 of 10 measured, 0 failed, 0 missing\nclaims: no claims\n"
-                              "tables: " +
-                              merged +
-                              "/tables (CSV, Markdown, LaTeX)\n"
-                              "report: " +
-                              merged + "/report.html\n");
+    EXPECT_EQ(endedWith(0, mockGfxrepro(merge)).out,
+              "merged 3 shards into " + merged +
+                  ": 10 of 10 measured, 0 failed, 0 missing\nclaims: no claims\n"
+                  "tables: " +
+                  merged +
+                  "/tables (CSV, Markdown, LaTeX)\n"
+                  "report: " +
+                  merged + "/report.html\n");
     expectSameTables(merged, whole);
     EXPECT_EQ(rowsOf(merged, "number").size(), 10U);
     const std::vector<records::ImageEntry> images = records::readImages(merged);
@@ -149,7 +141,7 @@ TEST_F(Shards, MergeToTheTablesOfOneRun) {
     const std::string list = readFile(merged + "/images/index.csv");
     EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 21);  // two images a case
     // A merge is a past like any other run, and may be made again.
-    EXPECT_THAT(mockGfxrepro({"plan", config, "--device", "software", "--from", merged}).out,
+    EXPECT_THAT(mockGfxrepro({"plan", config, "--from", merged}).out,
                 HasSubstr("as " + merged + " tells\n"));
     EXPECT_EQ(mockGfxrepro(merge).exitCode, 0);
     expectSameTables(merged, whole);
@@ -160,8 +152,7 @@ TEST_F(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
     const std::string s1 = folder.path() / "s1", s2 = folder.path() / "s2";
     const std::string merged = folder.path() / "merged", whole = folder.path() / "whole";
     ASSERT_EQ(measure(config, s1, {"--shard", "1/2"}).exitCode, 0);
-    const ProcessResult partial = mockGfxrepro({"merge", "--out", merged, s1, s2});
-    EXPECT_EQ(partial.exitCode, 4);
+    const ProcessResult partial = endedWith(4, mockGfxrepro({"merge", "--out", merged, s1, s2}));
     EXPECT_EQ(partial.err, s2 + ": there is no such folder\n");
     EXPECT_THAT(partial.out, HasSubstr("missing: shard 2/2\nmissing: sweep/mock number=2\n"
                                        "missing: sweep/mock number=4\nmerged 1 shard into " +
@@ -176,11 +167,10 @@ TEST_F(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
     ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
     expectSameTables(merged, whole);
     // What was measured into it is not overwritten.
-    const ProcessResult again = mockGfxrepro({"merge", "--out", merged, s1});
-    EXPECT_EQ(again.exitCode, 2);
-    EXPECT_EQ(again.err, "gfxrepro: " + merged +
-                             ": holds a run that is no merge of these shards; give another "
-                             "folder\n");
+    EXPECT_EQ(endedWith(2, mockGfxrepro({"merge", "--out", merged, s1})).err,
+              "gfxrepro: " + merged +
+                  ": holds a run that is no merge of these shards; give another "
+                  "folder\n");
     EXPECT_EQ(rowsOf(merged, "number").size(), 4U);
 }
 
@@ -189,13 +179,13 @@ TEST_F(Shards, MergeRefusesOtherPlansAndNoRuns) {
     const std::string s1 = folder.path() / "s1", s2 = folder.path() / "s2";
     ASSERT_EQ(measure(config, s1, {"--shard", "1/2"}).exitCode, 0);
     ASSERT_EQ(measure(config, s2, {"--shard", "2/2", "--set", "pause_ms=1"}).exitCode, 0);
-    const ProcessResult result = mockGfxrepro({"merge", "--out", folder.path() / "m", s1, s2});
-    EXPECT_EQ(result.exitCode, 2);
+    const ProcessResult result =
+        endedWith(2, mockGfxrepro({"merge", "--out", folder.path() / "m", s1, s2}));
     EXPECT_THAT(result.err, HasSubstr(s1 + " and " + s2 + " are shards of different plans ("));
     EXPECT_THAT(result.err, HasSubstr("the config " + config + " changed\n"));
     EXPECT_FALSE(fs::exists(folder.path() / "m/plan.json"));
-    const ProcessResult none = mockGfxrepro({"merge", "--out", folder.path() / "m", folder.path()});
-    EXPECT_EQ(none.exitCode, 2);
+    const ProcessResult none =
+        endedWith(2, mockGfxrepro({"merge", "--out", folder.path() / "m", folder.path()}));
     EXPECT_THAT(none.err, HasSubstr("gfxrepro: merge: none of the folders holds a run\n"));
     for (const auto& [name, why] :
          {std::pair{"none", "there is no such folder"}, {"data", "holds no run"}}) {
@@ -224,8 +214,7 @@ TEST_F(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
     std::erase_if(two, [&](const records::Record& r) { return r.caseId == rows.back().caseId; });
     fs::remove(dir + "/records.csv");
     records::RecordWriter(dir + "/records.csv").append(two);
-    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
-    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    const ProcessResult resumed = endedWith(0, mockGfxrepro({"run", "--resume", dir}));
     EXPECT_THAT(resumed.err, HasSubstr("sweep/mock: begun on another machine; its times are "
                                        "measured again on "));
     EXPECT_EQ(resumed.out, "3 of 3 finished; records: " + dir + "/records.csv\n");
@@ -261,9 +250,8 @@ TEST_F(Shards, ValuesOfSeveralMachinesAreMarked) {
                 HasSubstr("the runs are of several machines: Another "));
 
     fs::remove(dir + "/records.csv");
-    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
-    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
-    EXPECT_THAT(resumed.err, HasSubstr("warning: begun on Another "));
+    EXPECT_THAT(endedWith(0, mockGfxrepro({"run", "--resume", dir})).err,
+                HasSubstr("warning: begun on Another "));
     EXPECT_THAT(mockGfxrepro({"table", dir}).out, HasSubstr("warning: measured on several"));
     hasNote(dir);
     const ProcessResult again = mockGfxrepro({"run", "--resume", dir});  // measures nothing
@@ -302,26 +290,22 @@ TEST_F(Submit, CommandsMeasureAndMerge) {
     const std::string out = folder.path() / "it's out";  // a shell must not stumble
     const std::vector<std::string> command = {"submit", config,     "--device", "software", "--out",
                                               out,      "--engine", "commands", "--shards", "2"};
-    const ProcessResult submitted = mockGfxrepro(command);
-    ASSERT_EQ(submitted.exitCode, 0) << submitted.err;
+    const ProcessResult submitted = endedWith(0, mockGfxrepro(command));
     std::vector<std::string> lines = split(submitted.out, '\n');
     ASSERT_EQ(lines.size(), 4U) << submitted.out;  // two shards, the merge, the end
     EXPECT_EQ(lines[0] + '\n' + lines[1] + '\n', readFile(out + "/commands.txt"));
     EXPECT_EQ("#!/bin/sh\n" + lines[2] + '\n', readFile(out + "/merge.sh"));
 
-    const ProcessResult begun = mockGfxrepro({"submit", "--status", out});
-    EXPECT_EQ(begun.exitCode, 4);
-    EXPECT_EQ(begun.out,
+    EXPECT_EQ(endedWith(4, mockGfxrepro({"submit", "--status", out})).out,
               "shard  done  failed  state\n1/2    0/3   0       not complete\n"
               "2/2    0/2   0       not complete\nmerge                not complete\n");
     EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 4);  // one case throws
     EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[1]}).exitCode, 0);
     EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[1]}).exitCode, 0);  // again: nothing to do
-    const ProcessResult merged = runProgram({"/bin/sh", "-c", lines[2]});
-    EXPECT_EQ(merged.exitCode, 4);
-    EXPECT_THAT(merged.out, HasSubstr(": 4 of 5 measured, 1 failed, 0 missing\n"));
-    const ProcessResult done = mockGfxrepro({"submit", "--status", out});
-    EXPECT_EQ(done.exitCode, 4);  // a case failed
+    EXPECT_THAT(endedWith(4, runProgram({"/bin/sh", "-c", lines[2]})).out,
+                HasSubstr(": 4 of 5 measured, 1 failed, 0 missing\n"));
+    const ProcessResult done =
+        endedWith(4, mockGfxrepro({"submit", "--status", out}));  // a case failed
     EXPECT_EQ(done.out,
               "shard  done  failed  state\n1/2    2/3   1       complete\n"
               "2/2    2/2   0       complete\nmerge  4/5   1       complete\n");
@@ -337,21 +321,16 @@ TEST_F(Submit, WhatWasSubmittedIsMeasured) {
     const std::string out = folder.path() / "out";
     const std::vector<std::string> command = {"submit", config,     "--device", "software", "--out",
                                               out,      "--engine", "commands", "--shards", "2"};
-    const ProcessResult submitted = mockGfxrepro(command);
-    ASSERT_EQ(submitted.exitCode, 0) << submitted.err;
+    const ProcessResult submitted = endedWith(0, mockGfxrepro(command));
     const std::vector<std::string> lines = split(submitted.out, '\n');
     ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
     writeNumbers(folder, 3, "params: {pause_ms: 1}\n");
     const std::string warning = "warning: " + config + " changed; what was submitted is measured\n";
-    const ProcessResult second = runProgram({"/bin/sh", "-c", lines[1]});
-    EXPECT_EQ(second.exitCode, 0) << second.err;
-    EXPECT_THAT(second.err, HasSubstr(warning));
-    const ProcessResult merged = runProgram({"/bin/sh", "-c", lines[2]});
-    EXPECT_EQ(merged.exitCode, 0) << merged.err;
-    EXPECT_THAT(merged.out, HasSubstr(": 2 of 2 measured, 0 failed, 0 missing\n"));
+    EXPECT_THAT(endedWith(0, runProgram({"/bin/sh", "-c", lines[1]})).err, HasSubstr(warning));
+    EXPECT_THAT(endedWith(0, runProgram({"/bin/sh", "-c", lines[2]})).out,
+                HasSubstr(": 2 of 2 measured, 0 failed, 0 missing\n"));
     // Submitted once more it is the same submission.
-    const ProcessResult again = mockGfxrepro(command);
-    EXPECT_EQ(again.exitCode, 0);
+    const ProcessResult again = endedWith(0, mockGfxrepro(command));
     EXPECT_THAT(again.err, HasSubstr(warning));
     EXPECT_EQ(again.out, submitted.out);
 
@@ -362,8 +341,7 @@ TEST_F(Submit, WhatWasSubmittedIsMeasured) {
     ASSERT_EQ(mockGfxrepro(command).exitCode, 0);
     EXPECT_EQ(readFile(file), plan);
     folder.write("out/submitted-program/shaders/other.glsl", "");
-    const ProcessResult other = runProgram({"/bin/sh", "-c", lines[0]});
-    EXPECT_EQ(other.exitCode, 2);
+    const ProcessResult other = endedWith(2, runProgram({"/bin/sh", "-c", lines[0]}));
     EXPECT_THAT(other.err,
                 HasSubstr(shard + ": cannot be measured: the program or a shader changed "
                                   "(build "));
@@ -384,9 +362,8 @@ TEST_F(Submit, WhatWasSubmittedIsMeasured) {
 std::vector<std::string> submitPairs(const TemporaryFolder& folder, int count,
                                      const std::string& out) {
     const ProcessResult result =
-        mockGfxrepro({"submit", writeNumbers(folder, count), "--device", "software", "--out", out,
-                      "--engine", "commands", "--shards", std::to_string(count / 2)});
-    EXPECT_EQ(result.exitCode, 0) << result.err;
+        endedWith(0, mockGfxrepro({"submit", writeNumbers(folder, count), "--out", out, "--engine",
+                                   "commands", "--shards", std::to_string(count / 2)}));
     std::vector<std::string> lines = split(trimmed(result.out), '\n');
     EXPECT_EQ(lines.size(), static_cast<std::size_t>(count / 2 + 1));
     return lines;
@@ -421,10 +398,9 @@ TEST_F(Submit, AShardHasTheSizeOfItsOwnCases) {
 TEST_F(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
     const std::string out = folder.path() / "out", alone = folder.path() / "alone";
     const std::vector<std::string> lines = submitPairs(folder, 4, out);
-    const ProcessResult early = mockGfxrepro({"table", out + "/shards/1"});
-    EXPECT_EQ(early.exitCode, 2);
-    EXPECT_EQ(early.err, "gfxrepro: " + out +
-                             "/shards/1: was planned, and not begun (it has no manifest.json)\n");
+    EXPECT_EQ(
+        endedWith(2, mockGfxrepro({"table", out + "/shards/1"})).err,
+        "gfxrepro: " + out + "/shards/1: was planned, and not begun (it has no manifest.json)\n");
     EXPECT_EQ(mockGfxrepro({"merge", out}).err,
               "gfxrepro: merge: none of the folders holds a run\n");
     ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
@@ -435,8 +411,8 @@ TEST_F(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
     fs::remove(alone + "/records.csv");
     const ProcessResult rest = mockGfxrepro({"run", "--resume", alone});
     EXPECT_EQ(rest.out, "2 of 2 finished; records: " + alone + "/records.csv\n");
-    const ProcessResult merge = mockGfxrepro({"merge", alone, "--out", folder.path() / "merged"});
-    EXPECT_EQ(merge.exitCode, 2);
+    const ProcessResult merge =
+        endedWith(2, mockGfxrepro({"merge", alone, "--out", folder.path() / "merged"}));
     EXPECT_EQ(merge.err,
               "gfxrepro: " + alone +
                   ": the plan that it is a shard of is neither in it (whole-plan.json) nor two "
@@ -444,8 +420,7 @@ TEST_F(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
                   "the submission's folder\n");
     // With its submission it may lie anywhere, and what was not begun is missing.
     fs::rename(out, folder.path() / "moved");
-    const ProcessResult moved = mockGfxrepro({"merge", folder.path() / "moved"});
-    EXPECT_EQ(moved.exitCode, 4);
+    const ProcessResult moved = endedWith(4, mockGfxrepro({"merge", folder.path() / "moved"}));
     EXPECT_EQ(moved.err, "");
     EXPECT_THAT(moved.out, HasSubstr("missing: shard 2/2\n"));
     EXPECT_THAT(moved.out, HasSubstr("merged 1 shard into " + (folder.path() / "moved").string() +
@@ -461,13 +436,12 @@ TEST_F(Submit, AReplacedPlanIsNotMerged) {
     submitPairs(folder, 6, other);
     const std::string replaced = "no part of the submitted plan: it was replaced";
     const auto expectRefused = [&](const std::string& problem, const std::string& state) {
-        const ProcessResult merge = mockGfxrepro({"merge", out, "--out", folder.path() / "merged"});
-        EXPECT_EQ(merge.exitCode, 2);
-        EXPECT_THAT(merge.err, HasSubstr(problem));
+        EXPECT_THAT(
+            endedWith(2, mockGfxrepro({"merge", out, "--out", folder.path() / "merged"})).err,
+            HasSubstr(problem));
         EXPECT_FALSE(fs::exists(folder.path() / "merged/plan.json"));
-        const ProcessResult status = mockGfxrepro({"submit", "--status", out});
-        EXPECT_EQ(status.exitCode, 4);
-        EXPECT_THAT(status.out, HasSubstr("2/2    2/2   0       " + state + '\n'));
+        EXPECT_THAT(endedWith(4, mockGfxrepro({"submit", "--status", out})).out,
+                    HasSubstr("2/2    2/2   0       " + state + '\n'));
     };
     fs::copy_file(other + "/submitted-plan.json", file, fs::copy_options::overwrite_existing);
     expectRefused(
@@ -496,9 +470,8 @@ TEST_F(Submit, AReplacedPlanIsNotMerged) {
     fs::remove(file);
     for (const char* described : {"", "{ broken"}) {
         writeFileAtomic(out + "/submission.json", described);
-        const ProcessResult lost = mockGfxrepro({"merge", out});
-        EXPECT_EQ(lost.exitCode, 2);
-        EXPECT_THAT(lost.err, HasSubstr("(submitted-plan.json)"));
+        EXPECT_THAT(endedWith(2, mockGfxrepro({"merge", out})).err,
+                    HasSubstr("(submitted-plan.json)"));
     }
 }
 
@@ -539,8 +512,7 @@ TEST_F(Submit, TheStatusOfWhatEndedNeedsNoWholePlan) {
         ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
     }
     writeFileAtomic(out + "/plan.json", "of a thousand shards this would take long");
-    const ProcessResult status = mockGfxrepro({"submit", "--status", out});
-    EXPECT_EQ(status.exitCode, 0) << status.err;
+    const ProcessResult status = endedWith(0, mockGfxrepro({"submit", "--status", out}));
     EXPECT_EQ(status.out,
               "shard  done  failed  state\n1/2    2/2   0       complete\n"
               "2/2    2/2   0       complete\nmerge  4/4   0       complete\n");
@@ -569,8 +541,7 @@ TEST_F(Submit, TheProgramThatWasSubmittedRunsWhateverIsBuiltLater) {
     const std::vector<std::string> command = {program,    "submit",   config, "--device",
                                               "software", "--out",    out,    "--engine",
                                               "commands", "--shards", "2"};
-    const ProcessResult submitted = runProgram(command);
-    ASSERT_EQ(submitted.exitCode, 0) << submitted.err;
+    const ProcessResult submitted = endedWith(0, runProgram(command));
 
     std::ofstream(program, std::ios::app) << "another build";
     folder.write("built/shaders/another.glsl", "");
@@ -582,9 +553,8 @@ TEST_F(Submit, TheProgramThatWasSubmittedRunsWhateverIsBuiltLater) {
     EXPECT_EQ(again.out, submitted.out);
     fs::remove_all(folder.path() / "built");
     EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[1]}).exitCode, 0);
-    const ProcessResult merged = runProgram({"/bin/sh", "-c", lines[2]});
-    EXPECT_EQ(merged.exitCode, 0) << merged.err;
-    EXPECT_THAT(merged.out, HasSubstr(": 2 of 2 measured, 0 failed, 0 missing\n"));
+    EXPECT_THAT(endedWith(0, runProgram({"/bin/sh", "-c", lines[2]})).out,
+                HasSubstr(": 2 of 2 measured, 0 failed, 0 missing\n"));
 }
 
 TEST_F(Submit, WithoutACopyOfTheProgramNothingIsSubmitted) {
@@ -593,11 +563,10 @@ TEST_F(Submit, WithoutACopyOfTheProgramNothingIsSubmitted) {
     folder.write("data/shaders/a.glsl", "");
     fs::create_directories(folder.path() / "data/configs/scenes");
     ASSERT_EQ(::mkfifo((folder.path() / "data/shaders/pipe").c_str(), 0600), 0);
-    const ProcessResult result = runProgram({GFXREPRO_MOCK_PROGRAM, "submit", config, "--device",
-                                             "software", "--out", out, "--engine", "commands"},
-                                            {"GFXREPRO_DATA=" + (folder.path() / "data").string()});
-    EXPECT_EQ(result.exitCode, 2);
-    EXPECT_THAT(result.err,
+    EXPECT_THAT(endedWith(2, runProgram({GFXREPRO_MOCK_PROGRAM, "submit", config, "--device",
+                                         "software", "--out", out, "--engine", "commands"},
+                                        {"GFXREPRO_DATA=" + (folder.path() / "data").string()}))
+                    .err,
                 HasSubstr("gfxrepro: no copy of the program for the tasks could be made: "));
     EXPECT_FALSE(fs::exists(out));
 }
@@ -613,9 +582,8 @@ TEST_F(Submit, LinksAmongTheProgramsLibrariesAreFollowed) {
     fs::copy(shaders, folder.path() / "bundle/shaders", fs::copy_options::recursive);
     fs::create_directory_symlink(GFXREPRO_SOURCE "/configs", folder.path() / "bundle/configs");
     const ProcessResult submitted =
-        runProgram({program, "submit", config, "--device", "software", "--out", out, "--engine",
-                    "commands", "--shards", "2"});
-    ASSERT_EQ(submitted.exitCode, 0) << submitted.err;
+        endedWith(0, runProgram({program, "submit", config, "--device", "software", "--out", out,
+                                 "--engine", "commands", "--shards", "2"}));
     for (const std::string& line : split(submitted.out, '\n')) {
         EXPECT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0) << line;
     }
@@ -647,25 +615,24 @@ TEST_F(Submit, AShardWhosePlanWasChangedIsNotMerged) {
         EXPECT_THAT(merge.err, HasSubstr(file + ": the case "));
         EXPECT_THAT(merge.err, HasSubstr(problem));
         EXPECT_FALSE(fs::exists(folder.path() / "merged"));
-        const ProcessResult status = mockGfxrepro({"submit", "--status", out});
-        EXPECT_EQ(status.exitCode, 4);
-        EXPECT_THAT(status.out, ContainsRegex("1/2 .*/shards/1/plan.json: the case .*" + problem));
+        EXPECT_THAT(endedWith(4, mockGfxrepro({"submit", "--status", out})).out,
+                    ContainsRegex("1/2 .*/shards/1/plan.json: the case .*" + problem));
     }
 }
 
 TEST_F(Submit, DryRunWritesNothing) {
     const std::string config = writeNumbers(folder, 6, "measure: {lane: timing, processes: 1}\n");
     const std::string out = folder.path() / "out";
-    const ProcessResult result = mockGfxrepro(
-        {"submit", config, "--device", "software", "--out", out, "--shards", "3", "--dry-run",
-         "--partition", "gpus", "--gres", "gpu:1", "--sbatch=--account=x", "--sbatch=--mem=8G"});
-    EXPECT_EQ(result.exitCode, 0) << result.err;
+    const ProcessResult result = endedWith(
+        0,
+        mockGfxrepro({"submit", config, "--out", out, "--shards", "3", "--dry-run", "--partition",
+                      "gpus", "--gres", "gpu:1", "--sbatch=--account=x", "--sbatch=--mem=8G"}));
     // Times of one table: one shard, alone on its node.
     EXPECT_EQ(result.err,
               "6 cases in 1 shard and not 3, as timing cases of one table and twins stay together, "
               "of 6 to 6 units; no earlier run tells their time\n");
-    EXPECT_EQ(mockGfxrepro({"submit", writeNumbers(folder, 2), "--device", "software", "--out", out,
-                            "--shards", "5", "--dry-run"})
+    EXPECT_EQ(mockGfxrepro(
+                  {"submit", writeNumbers(folder, 2), "--out", out, "--shards", "5", "--dry-run"})
                   .err,
               "2 cases in 2 shards and not 5, of 1 to 1 units; no earlier run tells their time\n");
     EXPECT_THAT(result.out, HasSubstr("#SBATCH --exclusive\n#SBATCH --partition=gpus\n"
@@ -700,11 +667,12 @@ TEST_F(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
                                               out,
                                               "--shards",
                                               "2"};
-    const ProcessResult refused = runProgram(
-        command, {fakeSlurm(folder, "echo 'invalid partition' >&2; exit 1\n", "exit 1\n")});
-    EXPECT_EQ(refused.exitCode, 2);
-    EXPECT_THAT(refused.err, HasSubstr("gfxrepro: sbatch did not take the job (exit code 1): "
-                                       "invalid partition; nothing was queued\n"));
+    EXPECT_THAT(endedWith(2, runProgram(command,
+                                        {fakeSlurm(folder, "echo 'invalid partition' >&2; exit 1\n",
+                                                   "exit 1\n")}))
+                    .err,
+                HasSubstr("gfxrepro: sbatch did not take the job (exit code 1): "
+                          "invalid partition; nothing was queued\n"));
     // Numbers may come with a cluster's name; the second job waits for the first.
     const std::string log = folder.path() / "log";
     const std::string path =
@@ -717,8 +685,7 @@ TEST_F(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
                   "/task.sh\n--parsable --clusters=here --dependency=afterany:41 --output=" + out +
                   "/merge.txt " + out + "/merge.sh\n");
     const ProcessResult status =
-        runProgram({GFXREPRO_MOCK_PROGRAM, "submit", "--status", out}, {path});
-    EXPECT_EQ(status.exitCode, 4);
+        endedWith(4, runProgram({GFXREPRO_MOCK_PROGRAM, "submit", "--status", out}, {path}));
     EXPECT_THAT(status.out, HasSubstr("1/2    0/2   0       RUNNING\n"
                                       "2/2    0/2   0       stopped: NODE_FAIL\n"));
     EXPECT_THAT(readFile(log), HasSubstr("-j 41,41 -o %F_%K %T --clusters=here\n"));
@@ -734,8 +701,7 @@ TEST_F(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
                 HasSubstr("1/2    2/2   0       complete\n"
                           "2/2    0/2   0       unknown: the queue does not answer\n"));
     // So nothing is queued a second time that may be queued.
-    const ProcessResult refusedAgain = runProgram(command, {mute});
-    EXPECT_EQ(refusedAgain.exitCode, 2);
+    const ProcessResult refusedAgain = endedWith(2, runProgram(command, {mute}));
     EXPECT_THAT(replaced(refusedAgain.err, out, "OUT"),
                 HasSubstr("gfxrepro: OUT: the queue does not answer, so the merge may be queued; "
                           "look with squeue, and submit again with --force where nothing is\n"));
@@ -761,29 +727,24 @@ TEST_F(Submit, WhatWasRefusedIsNotQueued) {
                            out, "--shards", "1"},
                           {path});
     };
-    const ProcessResult refused =
-        submitted(writeNumbers(folder, 2),
-                  fakeSlurm(folder, "echo 'invalid partition' >&2; exit 1\n", "exit 1\n"));
-    EXPECT_EQ(refused.exitCode, 2);
+    endedWith(2,
+              submitted(writeNumbers(folder, 2),
+                        fakeSlurm(folder, "echo 'invalid partition' >&2; exit 1\n", "exit 1\n")));
     EXPECT_FALSE(fs::exists(out)) << "nothing else was there";
     EXPECT_EQ(mockGfxrepro({"submit", "--status", out}).err,
               "gfxrepro: " + out + ": holds no submission\n");
     fs::create_directories(folder.path() / "none");
-    const ProcessResult missing =
-        submitted(writeNumbers(folder, 2), "PATH=" + (folder.path() / "none").string());
-    EXPECT_EQ(missing.exitCode, 2);
+    const ProcessResult missing = endedWith(
+        2, submitted(writeNumbers(folder, 2), "PATH=" + (folder.path() / "none").string()));
     EXPECT_THAT(missing.err, HasSubstr("sbatch did not take the job (exit code 127): "));
     EXPECT_THAT(missing.err, HasSubstr("; where there is no Slurm, --engine commands prints "
                                        "commands; nothing was queued\n"));
     EXPECT_FALSE(fs::exists(out));
     // What is queued then is what the config says then; so it is where a submit was killed.
     folder.write("out/submitted-plan.json", "of another day");
-    const ProcessResult taken =
-        submitted(writeNumbers(folder, 3), fakeSlurm(folder, "echo 7\n", "exit 1\n"));
-    EXPECT_EQ(taken.exitCode, 0) << taken.err;
-    const ProcessResult task =
-        runProgram({"/bin/sh", "-c", "SLURM_ARRAY_TASK_ID=1 exec sh '" + out + "/task.sh'"});
-    EXPECT_EQ(task.exitCode, 0) << task.err;
+    endedWith(0, submitted(writeNumbers(folder, 3), fakeSlurm(folder, "echo 7\n", "exit 1\n")));
+    endedWith(0,
+              runProgram({"/bin/sh", "-c", "SLURM_ARRAY_TASK_ID=1 exec sh '" + out + "/task.sh'"}));
     EXPECT_EQ(rowsOf(out + "/shards/1", "number").size(), 3U);
 }
 
@@ -794,24 +755,23 @@ TEST_F(Submit, ARefusedMergeAndAnAnswerWithoutANumber) {
                            folder.path() / out, "--shards", "1"},
                           {fakeSlurm(folder, sbatch, "exit 1\n")});
     };
-    const ProcessResult merge = submitted(
-        "a", "case \"$*\" in *afterany*) echo 'no such dependency' >&2; exit 1;; esac\necho 41\n");
-    EXPECT_EQ(merge.exitCode, 2);
+    const ProcessResult merge = endedWith(
+        2,
+        submitted(
+            "a",
+            "case \"$*\" in *afterany*) echo 'no such dependency' >&2; exit 1;; esac\necho 41\n"));
     EXPECT_THAT(merge.err, HasSubstr("gfxrepro: the merge: sbatch did not take the job (exit code "
                                      "1): no such dependency; array 41 is queued; submit again "
                                      "when the shards are complete\n"));
     EXPECT_TRUE(fs::exists(folder.path() / "a/submitted-plan.json")) << "the array measures it";
-    const ProcessResult again = submitted("a", "echo 42\n");
-    EXPECT_EQ(again.exitCode, 2) << again.out;
-    EXPECT_THAT(again.err, HasSubstr("/a: the queue does not answer, so shard 1 may be queued; "));
-    const ProcessResult mute = submitted("b", "echo 'Submitted batch job'\n");
-    EXPECT_EQ(mute.exitCode, 2);
-    EXPECT_THAT(mute.err, HasSubstr("gfxrepro: sbatch gave no number of a job, so what is queued "
-                                    "is not known; squeue shows it: Submitted batch job\n"));
+    EXPECT_THAT(endedWith(2, submitted("a", "echo 42\n")).err,
+                HasSubstr("/a: the queue does not answer, so shard 1 may be queued; "));
+    EXPECT_THAT(endedWith(2, submitted("b", "echo 'Submitted batch job'\n")).err,
+                HasSubstr("gfxrepro: sbatch gave no number of a job, so what is queued "
+                          "is not known; squeue shows it: Submitted batch job\n"));
     EXPECT_TRUE(fs::exists(folder.path() / "b/submitted-plan.json"));
-    const ProcessResult unknown = submitted("b", "echo 42\n");
-    EXPECT_EQ(unknown.exitCode, 2) << unknown.out;
-    EXPECT_THAT(unknown.err, HasSubstr("/b: sbatch gave no number of a job, so shard 1 may be "));
+    EXPECT_THAT(endedWith(2, submitted("b", "echo 42\n")).err,
+                HasSubstr("/b: sbatch gave no number of a job, so shard 1 may be "));
 }
 
 TEST_F(Submit, SaysWhatItNeeds) {
@@ -823,10 +783,10 @@ TEST_F(Submit, SaysWhatItNeeds) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
     const std::string file = folder.write("file", "words");
     for (const std::string& out : {file, file + "/in/it"}) {
-        const ProcessResult result = mockGfxrepro(
-            {"submit", config, "--device", "software", "--out", out, "--engine", "commands"});
-        EXPECT_EQ(result.exitCode, 2);
-        EXPECT_EQ(result.err, "gfxrepro: " + file + ": is a file; --out names a folder\n");
+        EXPECT_EQ(
+            endedWith(2, mockGfxrepro({"submit", config, "--out", out, "--engine", "commands"}))
+                .err,
+            "gfxrepro: " + file + ": is a file; --out names a folder\n");
     }
     EXPECT_EQ(readFile(file), "words");
 }

@@ -47,8 +47,7 @@ class Compare : public ::testing::Test {
     std::array<std::string, 2> twoRuns(const fs::path& config, int exitCode = 0) const {
         std::array<std::string, 2> dirs{folder.path() / "a", folder.path() / "b"};
         for (const std::string& dir : dirs) {
-            EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode,
-                      exitCode);
+            EXPECT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, exitCode);
         }
         return dirs;
     }
@@ -59,8 +58,7 @@ class Compare : public ::testing::Test {
 };
 
 TEST_F(Compare, FindsASlowerBuildAndConfirmsIt) {
-    const ProcessResult result = byTurns(40);
-    EXPECT_EQ(result.exitCode, 1) << result.err;
+    const ProcessResult result = endedWith(1, byTurns(40));
     EXPECT_EQ(result.out.find("alarm; measuring again\n"), 0U) << result.out;
     EXPECT_THAT(result.out, HasSubstr("_time_ms: slower"));
     EXPECT_THAT(readFile(out + "/comparison.md"), HasSubstr("| slower |"));
@@ -71,16 +69,14 @@ TEST_F(Compare, FindsASlowerBuildAndConfirmsIt) {
 }
 
 TEST_F(Compare, TheSameBuildRaisesNoAlarm) {
-    const ProcessResult result = byTurns(0);
-    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+    endedWith(0, byTurns(0));
 }
 
 TEST_F(Compare, RunsOfOneProcessCannotTellTimes) {
     const fs::path config =
         writeMockConfig(folder, "measure: {lane: timing, processes: 1, repeats: 2}\n");
     const auto [a, b] = twoRuns(config);
-    const ProcessResult result = mockGfxrepro({"compare", a, b, "--out", out});
-    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+    endedWith(0, mockGfxrepro({"compare", a, b, "--out", out}));
     EXPECT_THAT(readFile(out + "/comparison.md"), HasSubstr("1 and 1 processes cannot decide"));
 }
 
@@ -89,12 +85,10 @@ TEST_F(Compare, ABuildThatCrashesIsAnAlarm) {
     const fs::path crashing = folder.write(
         "crashing", "#!/bin/sh\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\" --set behaviour=crash\n");
     fs::permissions(crashing, fs::perms::owner_all);
-    const ProcessResult lost = compared(program("old", 0), crashing, config);
-    EXPECT_EQ(lost.exitCode, 1) << lost.out << lost.err;
+    const ProcessResult lost = endedWith(1, compared(program("old", 0), crashing, config));
     EXPECT_THAT(lost.out, HasSubstr(": lost: crash: "));
     EXPECT_THAT(readFile(out + "/junit.xml"), HasSubstr("<failure message=\"lost: crash: "));
-    const ProcessResult both = compared(crashing, crashing, config);
-    EXPECT_EQ(both.exitCode, 4) << both.out << both.err;
+    const ProcessResult both = endedWith(4, compared(crashing, crashing, config));
     EXPECT_THAT(both.out, HasSubstr("sweep/mock mock status: failed on both sides: crash: "));
     EXPECT_THAT(both.out, HasSubstr("\n1 failed on both sides; "));
     EXPECT_THAT(readFile(out + "/junit.xml"),
@@ -112,18 +106,18 @@ TEST_F(Compare, ATableThatABuildLeavesOutIsAnErrorWithAName) {
         "#!/bin/sh\nfor a; do shift; case $a in */two.yaml) ;; *) set -- \"$@\" \"$a\";; "
         "esac; done\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n");
     fs::permissions(program, fs::perms::owner_all);
-    const ProcessResult result =
-        mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device", "software", "--out",
-                      folder.path() / "turns", GFXREPRO_MOCK_PROGRAM, program, one, two});
-    EXPECT_EQ(result.exitCode, 2);
-    EXPECT_THAT(result.err, HasSubstr("/fewer: exit code 2: gfxrepro: run: give PAPER"));
+    EXPECT_THAT(endedWith(2, mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device",
+                                           "software", "--out", folder.path() / "turns",
+                                           GFXREPRO_MOCK_PROGRAM, program, one, two}))
+                    .err,
+                HasSubstr("/fewer: exit code 2: gfxrepro: run: give PAPER"));
 }
 
 TEST_F(Compare, ACaseThatNeitherSideMeasuredWeighsMoreThanAnAlarm) {
     const fs::path config =
         writeMockConfig(folder, "sweep: {behaviour: [ok, throw]}\nmeasure: {lane: quality}\n");
-    const ProcessResult both = compared(program("old", 0), program("new", 0, "0.75"), config);
-    EXPECT_EQ(both.exitCode, 4) << both.out << both.err;
+    const ProcessResult both =
+        endedWith(4, compared(program("old", 0), program("new", 0, "0.75"), config));
     EXPECT_THAT(both.out, HasSubstr("picture/flat: changed: "));
     EXPECT_THAT(both.out, HasSubstr("status: failed on both sides: "));
 }
@@ -132,8 +126,7 @@ TEST_F(Compare, TimesThatAreVoidOnBothSidesAreNamed) {
     const fs::path config = writeMockConfig(
         folder, "params: {behaviour: blank}\nmeasure: {lane: timing, processes: 1, repeats: 2}\n");
     const auto [a, b] = twoRuns(config, 4);
-    const ProcessResult result = mockGfxrepro({"compare", a, b, "--out", out});
-    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+    const ProcessResult result = endedWith(0, mockGfxrepro({"compare", a, b, "--out", out}));
     EXPECT_THAT(result.out,
                 HasSubstr("_time_ms: void on both sides: frame 0: the picture of repeat 0 is "
                           "blank: all its pixels are the same\n"));
@@ -143,17 +136,15 @@ TEST_F(Compare, TimesThatAreVoidOnBothSidesAreNamed) {
 TEST_F(Compare, SaysThatTimesOfTheQualityLaneAreNotCompared) {
     const fs::path config = writeMockConfig(folder, "measure: {lane: quality}\n");
     const std::string a = folder.path() / "a";
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", a}).exitCode, 0);
-    const ProcessResult result = mockGfxrepro({"compare", a, a, "--out", out});
-    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
-    EXPECT_THAT(result.out,
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", a}).exitCode, 0);
+    EXPECT_THAT(endedWith(0, mockGfxrepro({"compare", a, a, "--out", out})).out,
                 HasSubstr("one case is of the quality lane: times that are not compared\n"));
 }
 
 TEST_F(Compare, APictureThatChangedIsAnAlarmAndIsKept) {
     const fs::path config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
-    const ProcessResult result = compared(program("old", 0), program("new", 0, "0.75"), config);
-    EXPECT_EQ(result.exitCode, 1) << result.err;
+    const ProcessResult result =
+        endedWith(1, compared(program("old", 0), program("new", 0, "0.75"), config));
     EXPECT_THAT(result.out, HasSubstr("alarm; measuring again\n"));
     EXPECT_THAT(result.out, HasSubstr("sweep/mock mock picture/flat, number=1: changed: FLIP "));
     EXPECT_THAT(result.out, HasSubstr("largest difference 0.25 (0 allowed)"));
@@ -172,9 +163,7 @@ TEST_F(Compare, APictureThatChangedIsAnAlarmAndIsKept) {
 
 TEST_F(Compare, PicturesThatABuildNoLongerRecordsAreAnAlarm) {
     const fs::path config = writeMockConfig(folder, "params: {number: 1}\n");
-    const ProcessResult result = compared(program("old", 0), program("new", 0, "none"), config);
-    EXPECT_EQ(result.exitCode, 1) << result.out << result.err;
-    EXPECT_THAT(result.out,
+    EXPECT_THAT(endedWith(1, compared(program("old", 0), program("new", 0, "none"), config)).out,
                 HasSubstr("sweep/mock mock picture/flat: lost: recorded before only\n"));
 }
 
@@ -182,8 +171,7 @@ TEST_F(Compare, ARunThatLostItsPicturesIsAnAlarmAndOneThatNeverHadThemIsNot) {
     const fs::path config = writeMockConfig(folder, "params: {number: 1}\n");
     const auto [a, b] = twoRuns(config);
     fs::remove_all(b + "/images");
-    const ProcessResult lost = mockGfxrepro({"compare", a, b, "--out", out});
-    EXPECT_EQ(lost.exitCode, 1) << lost.out << lost.err;
+    const ProcessResult lost = endedWith(1, mockGfxrepro({"compare", a, b, "--out", out}));
     EXPECT_THAT(lost.out, HasSubstr("sweep/mock mock picture/flat: lost: recorded before only\n"));
     EXPECT_THAT(readFile(out + "/junit.xml"),
                 HasSubstr("<failure message=\"lost: recorded before only"));
@@ -197,23 +185,22 @@ TEST_F(Compare, ARunThatLostItsPicturesIsAnAlarmAndOneThatNeverHadThemIsNot) {
 
 TEST_F(Compare, ADriverThatDoesNotAnswerIsNoDevice) {
     const fs::path config = writeMockConfig(folder, "params: {number: 1}\n");
-    const ProcessResult result =
-        runProgram({GFXREPRO_MOCK_PROGRAM, "compare", "--binaries", "--device", "software", "--out",
-                    out, program("old", 0), program("new", 0), config},
-                   {"GFXREPRO_MOCK_DRIVER_HANGS=1", "GFXREPRO_START_LIMIT_S=1"});
-    EXPECT_EQ(result.exitCode, 3) << result.out;
-    EXPECT_EQ(result.err, "gfxrepro: " + program("old", 0) +
-                              ": exit code 3: gfxrepro: the driver did not open a device within 1 "
-                              "s\n\n");
+    EXPECT_EQ(endedWith(3, runProgram({GFXREPRO_MOCK_PROGRAM, "compare", "--binaries", "--device",
+                                       "software", "--out", out, program("old", 0),
+                                       program("new", 0), config},
+                                      {"GFXREPRO_MOCK_DRIVER_HANGS=1", "GFXREPRO_START_LIMIT_S=1"}))
+                  .err,
+              "gfxrepro: " + program("old", 0) +
+                  ": exit code 3: gfxrepro: the driver did not open a device within 1 "
+                  "s\n\n");
 }
 
 TEST_F(Compare, RefusesWhatIsNoPair) {
     EXPECT_EQ(mockGfxrepro({"compare", "a"}).err, "gfxrepro: compare: needs two run directories\n");
     EXPECT_EQ(mockGfxrepro({"compare", "--binaries", "a", "b"}).err,
               "gfxrepro: compare: --binaries needs OLD NEW CONFIG…\n");
-    const ProcessResult result =
-        mockGfxrepro({"compare", "--binaries", "--out", out, "/bin/false", "/bin/false", "c.yaml"});
-    EXPECT_EQ(result.exitCode, 2);
+    const ProcessResult result = endedWith(2, mockGfxrepro({"compare", "--binaries", "--out", out,
+                                                            "/bin/false", "/bin/false", "c.yaml"}));
     EXPECT_THAT(result.err, StartsWith("device "));
     EXPECT_THAT(result.err, EndsWith("\ngfxrepro: /bin/false: exit code 1: \n"));
 }

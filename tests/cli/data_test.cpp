@@ -33,18 +33,11 @@ class Data : public testing::Test {
   protected:
     ProcessResult run(const std::string& lines) {
         config_ = writeMockConfig(folder_, lines);
-        return mockGfxrepro({"reproduce", config_, "--device", "software", "--out", dir("run")});
+        return mockGfxrepro({"reproduce", config_, "--out", dir("run")});
     }
     std::string dir(const std::string& name) const { return folder_.path() / name; }
-    /// Standard error of a call that must end with exit code 2, with the folder's path as DIR.
     std::string refusal(const std::vector<std::string>& arguments) const {
-        ProcessResult result = mockGfxrepro(arguments);
-        EXPECT_EQ(result.exitCode, 2) << result.out;
-        const std::string prefix = folder_.path().string();
-        for (std::size_t at; (at = result.err.find(prefix)) != std::string::npos;) {
-            result.err.replace(at, prefix.size(), "DIR");
-        }
-        return result.err;
+        return refusalOf(mockGfxrepro(arguments), folder_);
     }
     /// "grows holds", … of a run's claims.csv.
     std::vector<std::string> verdicts(const std::string& name) const {
@@ -60,15 +53,12 @@ class Data : public testing::Test {
 };
 
 TEST_F(Data, ARunThatWasExportedAndImportedHasTheSameTables) {
-    const ProcessResult made = run(kLines);
-    ASSERT_EQ(made.exitCode, 4) << made.err;
-    const ProcessResult exported = mockGfxrepro({"export", dir("run"), "--tidy"});
-    ASSERT_EQ(exported.exitCode, 0) << exported.err;
-    EXPECT_EQ(exported.out, dir("run-tidy") + "\n");
-    const ProcessResult imported =
-        mockGfxrepro({"import", dir("run-tidy/records.csv"), "--cases", dir("run-tidy/cases.csv"),
-                      "--config", config_, "--machine", "the same one", "--out", dir("back")});
-    EXPECT_EQ(imported.exitCode, 4) << imported.err;
+    endedWith(4, run(kLines));
+    EXPECT_EQ(endedWith(0, mockGfxrepro({"export", dir("run"), "--tidy"})).out,
+              dir("run-tidy") + "\n");
+    endedWith(4, mockGfxrepro({"import", dir("run-tidy/records.csv"), "--cases",
+                               dir("run-tidy/cases.csv"), "--config", config_, "--machine",
+                               "the same one", "--out", dir("back")}));
     const std::string table = "/tables/sweep-mock.csv";
     EXPECT_EQ(readFile(dir("back") + table), readFile(dir("run") + table));
     EXPECT_EQ(verdicts("back"), verdicts("run"));
@@ -121,8 +111,7 @@ TEST_F(Data, OfManyParametersEachIsAColumn) {
     }
     ASSERT_EQ(
         mockGfxrepro({"run", folder_.write("wide.yaml", config), "--out", dir("run")}).exitCode, 0);
-    const ProcessResult exported = mockGfxrepro({"export", dir("run"), "--tidy"});
-    ASSERT_EQ(exported.exitCode, 0) << exported.err;
+    endedWith(0, mockGfxrepro({"export", dir("run"), "--tidy"}));
     EXPECT_THAT(readFile(dir("run-tidy/cases.csv")), HasSubstr(",p2098,p2099,output.width"));
 }
 
@@ -131,9 +120,9 @@ TEST_F(Data, AnImportedRunSaysSoEverywhere) {
     const ProcessResult imported = mockGfxrepro(
         {"import", csv, "--metric", "mse=1", "--machine", "RTX 4090", "--out", dir("theirs")});
     for (const std::string machine : {"RTX\n4090", "RTX\x1b", "RTX \xFF"}) {
-        const ProcessResult refused = mockGfxrepro(
-            {"import", csv, "--metric", "mse=1", "--machine", machine, "--out", dir("refused")});
-        EXPECT_EQ(refused.exitCode, 2);
+        const ProcessResult refused =
+            endedWith(2, mockGfxrepro({"import", csv, "--metric", "mse=1", "--machine", machine,
+                                       "--out", dir("refused")}));
         EXPECT_EQ(refused.err,
                   "gfxrepro: the machine's name (--machine, or run.csv beside the cases): allowed: "
                   "text of one line, in UTF-8\n");
@@ -186,9 +175,7 @@ TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
                  "them\n"));
     const std::string csv =
         folder_.write("theirs.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.125\n64,mse,0.03\n");
-    const ProcessResult imported =
-        mockGfxrepro({"import", csv, "--config", config, "--out", dir("theirs")});
-    EXPECT_EQ(imported.exitCode, 0) << imported.err << imported.out;
+    endedWith(0, mockGfxrepro({"import", csv, "--config", config, "--out", dir("theirs")}));
     EXPECT_THAT(verdicts("theirs"), testing::Contains("slope holds"));
     const std::string flat =
         folder_.write("flat.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.5\n64,mse,0.5\n");
@@ -265,10 +252,8 @@ TEST_F(Data, WhatDiffersBesideTheSweepIsSaid) {
         folder_.write("t.yaml",
                       "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {method: [a, b]}\n"
                       "layout: {rows: method, columns: {t: {metric: frame_t_ms}}}\n");
-    const ProcessResult result =
-        mockGfxrepro({"import", csv, "--metric", "frame_t_ms=ms", "--machine", "X", "--config",
-                      config, "--out", dir("t")});
-    EXPECT_EQ(result.exitCode, 0) << result.err;
+    endedWith(0, mockGfxrepro({"import", csv, "--metric", "frame_t_ms=ms", "--machine", "X",
+                               "--config", config, "--out", dir("t")}));
     EXPECT_THAT(readFile(dir("t") + "/tables/sweep-t.md"),
                 HasSubstr("Each number is taken over scene (x, y)."));
 }
@@ -276,9 +261,8 @@ TEST_F(Data, WhatDiffersBesideTheSweepIsSaid) {
 TEST_F(Data, WhatIsMissingOfAnImportMakesItIncomplete) {
     const std::string csv = folder_.write(
         "a.csv", "n,metric,value,process,status\n1,mse,5,0,\n1,mse,6,2,\n2,,,0,crash\n");
-    const ProcessResult imported = mockGfxrepro({"import", csv, "--out", dir("a")});
-    EXPECT_EQ(imported.exitCode, 4) << imported.err;
-    EXPECT_THAT(imported.out, HasSubstr("incomplete: 1 not measured, 1 failed\n"));
+    EXPECT_THAT(endedWith(4, mockGfxrepro({"import", csv, "--out", dir("a")})).out,
+                HasSubstr("incomplete: 1 not measured, 1 failed\n"));
 }
 
 TEST_F(Data, NothingIsMeasuredIntoAnImportedRun) {
@@ -337,8 +321,7 @@ TEST_F(Data, BadImportsAreOneErrorEach) {
 
 TEST_F(Data, ARunHasItsCasesAsATable) {
     ASSERT_EQ(run(kLines).exitCode, 4);
-    const ProcessResult tidy = mockGfxrepro({"export", dir("run"), "--tidy", "--out", dir("t")});
-    EXPECT_EQ(tidy.exitCode, 0) << tidy.err;
+    endedWith(0, mockGfxrepro({"export", dir("run"), "--tidy", "--out", dir("t")}));
     EXPECT_THAT(readFile(dir("run") + "/cases.csv"),
                 testing::StartsWith("case_id,experiment,technique,"));
     EXPECT_EQ(readFile(dir("run") + "/cases.csv"), readFile(dir("t") + "/cases.csv"));
@@ -348,8 +331,7 @@ TEST_F(Data, ColumnsThatDifferByCaseAloneAreExported) {
     const std::string csv =
         folder_.write("a.csv", "scene,Scene,N,n,metric,value\ns,1,2,3,mse,5\ns,2,2,4,mse,6\n");
     ASSERT_EQ(mockGfxrepro({"import", csv, "--out", dir("a")}).exitCode, 0);
-    const ProcessResult tidy = mockGfxrepro({"export", dir("a"), "--tidy", "--out", dir("t")});
-    EXPECT_EQ(tidy.exitCode, 0) << tidy.err;
+    endedWith(0, mockGfxrepro({"export", dir("a"), "--tidy", "--out", dir("t")}));
     EXPECT_THAT(readFile(dir("t") + "/cases.csv"), HasSubstr(",n,output.width,"));
 }
 
@@ -369,9 +351,7 @@ TEST_F(Data, AHistoryBecomesAPage) {
                std::to_string(night) + "\n";
     }
     const std::string file = folder_.write("history.csv", csv);
-    const ProcessResult made = mockGfxrepro({"history", file, "--out", dir("history.html")});
-    EXPECT_EQ(made.exitCode, 0) << made.err;
-    EXPECT_EQ(made.out,
+    EXPECT_EQ(endedWith(0, mockGfxrepro({"history", file, "--out", dir("history.html")})).out,
               "m: 30 nights, 1 series, 1 changes\nhistory: " + dir("history.html") + "\n");
     EXPECT_THAT(readFile(dir("history.html")), HasSubstr("<td>c24</td><td>c25</td>"));
     const std::string text = folder_.write("thesis.html", "four years");

@@ -46,9 +46,9 @@ class DeviceChoice : public testing::Test {
 constexpr const char* kUuid = "00112233-4455-6677-8899-aabbccddeeff";
 
 TEST_F(DeviceChoice, TheFirstLineOfARunNamesTheDevice) {
-    const ProcessResult run = mockGfxrepro(
-        {"run", config, "--device", "software", "--quiet", "--out", folder.path() / "run"});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run =
+        endedWith(0, mockGfxrepro({"run", config, "--device", "software", "--quiet", "--out",
+                                   folder.path() / "run"}));
     EXPECT_THAT(run.err, testing::MatchesRegex("device [0-9]+: .* \\(software\\), OpenGL 4.*\n"));
     const ProcessResult again = mockGfxrepro({"run", "--resume", folder.path() / "run"});
     EXPECT_EQ(again.err.substr(0, run.err.size()), run.err);
@@ -66,16 +66,13 @@ TEST_F(DeviceChoice, AGpuIsTakenByItsKindIndexAndUuid) {
         EXPECT_EQ(lastManifest()["device_class"], "gpu") << name;
         EXPECT_EQ(lastManifest()["gl"]["uuid"], kUuid) << name;
     }
-    const ProcessResult software = onPretended("software");
-    EXPECT_EQ(software.exitCode, 0) << software.err;
+    const ProcessResult software = endedWith(0, onPretended("software"));
     EXPECT_EQ(lastManifest()["device_class"], "software");
 }
 
 TEST_F(DeviceChoice, AnotherUuidIsRefused) {
     if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: its own UUID would be named";
-    const ProcessResult run = onPretended("00112233-4455-6677-8899-aabbccddee00");
-    EXPECT_EQ(run.exitCode, 3);
-    EXPECT_THAT(run.err,
+    EXPECT_THAT(endedWith(3, onPretended("00112233-4455-6677-8899-aabbccddee00")).err,
                 StartsWith("gfxrepro: no usable OpenGL 4.5 device for "
                            "'00112233-4455-6677-8899-aabbccddee00':\n|   device 0 (device): "
                            "Pretended GPU has the UUID 00112233-4455-6677-8899-aabbccddeeff\n"));
@@ -94,24 +91,21 @@ TEST_F(DeviceChoice, NothingStandsInForAGpuThatDoesNotServe) {
         EXPECT_THAT(run.err, HasSubstr(" is no GPU\n")) << name;
         EXPECT_EQ(run.err.ends_with(last), name == "auto") << run.err;
     }
-    const ProcessResult told = onPretended("software", "refuses");
-    EXPECT_EQ(told.exitCode, 0) << told.err;
-    EXPECT_THAT(told.err, HasSubstr(" (software), OpenGL 4"));
+    EXPECT_THAT(endedWith(0, onPretended("software", "refuses")).err,
+                HasSubstr(" (software), OpenGL 4"));
 }
 
 TEST_F(DeviceChoice, WithoutAGpuOnlyWhoAsksForOneIsRefused) {
     if (hasRealGpu()) GTEST_SKIP() << "a GPU is here";
-    const ProcessResult run = mockGfxrepro({"run", config, "--device", "gpu"});
-    EXPECT_EQ(run.exitCode, 3);
+    const ProcessResult run = endedWith(3, mockGfxrepro({"run", config, "--device", "gpu"}));
     EXPECT_THAT(run.err,
                 StartsWith("gfxrepro: no usable OpenGL 4.5 device for 'gpu':\n|   device 0 "));
     EXPECT_THAT(run.err, HasSubstr(" is no GPU\n"));
 }
 
 TEST_F(DeviceChoice, AWordThatIsNoDeviceIsAMistakeOfTheCommandLine) {
-    const ProcessResult run = mockGfxrepro({"run", config, "--device", "nonsense"});
-    EXPECT_EQ(run.exitCode, 2);
-    EXPECT_THAT(run.err, HasSubstr("unknown device 'nonsense'; allowed: auto, gpu, software, or "));
+    EXPECT_THAT(endedWith(2, mockGfxrepro({"run", config, "--device", "nonsense"})).err,
+                HasSubstr("unknown device 'nonsense'; allowed: auto, gpu, software, or "));
 }
 
 TEST_F(DeviceChoice, OnAGpuAFrameIsRepeatedByTime) {
@@ -120,8 +114,7 @@ TEST_F(DeviceChoice, OnAGpuAFrameIsRepeatedByTime) {
         folder,
         "params: {pause_ms: 20}\n"
         "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2, frames: 1}\n");
-    const ProcessResult run = onPretended("gpu");
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run = endedWith(0, onPretended("gpu"));
     const auto rows = [&](const char* metric) {
         return rowsOf(folder.path() / ("run-" + std::to_string(count)), metric).size();
     };
@@ -173,10 +166,10 @@ TEST_F(DeviceChoice, WhatTheGpuDidIsKeptWithItsTimes) {
     EXPECT_EQ(gpuOf()["hottest_c"], 64.0);
     EXPECT_EQ(gpuOf()["other_processes"], 0);
 
-    const ProcessResult run = onPretended(
-        "gpu", "serves",
-        {kNvml, "PRETENDED_CLOCKS_MHZ=1980 1410", "PRETENDED_THROTTLE=0x24", "PRETENDED_USERS=1"});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run =
+        endedWith(0, onPretended("gpu", "serves",
+                                 {kNvml, "PRETENDED_CLOCKS_MHZ=1980 1410",
+                                  "PRETENDED_THROTTLE=0x24", "PRETENDED_USERS=1"}));
     EXPECT_EQ(gpuOf()["lowest_clock_hz"], 1.41e9);
     EXPECT_EQ(gpuOf()["throttled_by"], nlohmann::json({"heat", "its power limit"}));
     EXPECT_THAT(run.err, HasSubstr("the GPU's clock moved between 1.41 and 1.98 GHz; the GPU's "
@@ -190,8 +183,7 @@ TEST_F(DeviceChoice, WhatTheGpuDidIsKeptWithItsTimes) {
 }
 
 TEST_F(DeviceChoice, PlansForAGpuNeedNone) {
-    const ProcessResult plan = mockGfxrepro({"plan", config, "--device", "gpu"});
-    EXPECT_EQ(plan.exitCode, 0) << plan.err;
+    endedWith(0, mockGfxrepro({"plan", config, "--device", "gpu"}));
 }
 
 }  // namespace

@@ -26,10 +26,9 @@ using Disk = test::RunTest;
 TEST_F(Disk, ALimitOnFilesIsAWriteThatFails) {
     const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
     const ProcessResult run =
-        runProgram({"/bin/sh", "-c",
-                    std::string("ulimit -f 1; exec ") + GFXREPRO_MOCK_PROGRAM + " run " + config +
-                        " --device software --out " + dir});
-    EXPECT_EQ(run.exitCode, 2) << run.err;
+        endedWith(2, runProgram({"/bin/sh", "-c",
+                                 std::string("ulimit -f 1; exec ") + GFXREPRO_MOCK_PROGRAM +
+                                     " run " + config + " --device software --out " + dir}));
     EXPECT_THAT(run.err, HasSubstr("gfxrepro: cannot write " + dir));
     EXPECT_THAT(run.err, HasSubstr(": File too large\n"));
 }
@@ -40,22 +39,20 @@ TEST_F(Disk, AFullDiskLosesNothingMeasured) {
         "sweep:\n  number: {range: [1, 40]}\nmeasure: {lane: quality, repeats: 9}\n"
         "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n");
     const std::string whole = folder.path() / "whole", full = folder.path() / "full";
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", whole}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", whole}).exitCode, 0);
     ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
     // The plan fits, the records of 40 cases do not.
     const auto planBlocks = static_cast<int>(fs::file_size(whole + "/plan.json") / 512 + 1);
     const auto recordBlocks = static_cast<int>(fs::file_size(whole + "/records.csv") / 512);
     ASSERT_LT(planBlocks, recordBlocks) << "the test needs records larger than the plan";
-    const ProcessResult run =
-        mockWithFullDisk("run " + config + " --device software --out " + full, planBlocks);
-    EXPECT_EQ(run.exitCode, 2) << run.err;
+    const ProcessResult run = endedWith(
+        2, mockWithFullDisk("run " + config + " --device software --out " + full, planBlocks));
     EXPECT_THAT(run.err, testing::EndsWith("gfxrepro: cannot write " + full +
                                            "/records.csv: No space left on device\n"));
     const std::size_t measured = rowsOf(full, "number").size();
     EXPECT_GT(measured, 0U);
     EXPECT_LT(measured, 40U);
-    const ProcessResult resumed = mockGfxrepro({"run", "--resume", full});
-    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    const ProcessResult resumed = endedWith(0, mockGfxrepro({"run", "--resume", full}));
     const std::string left = std::to_string(40 - measured);
     EXPECT_EQ(resumed.out, left + " of " + left + " finished; records: " + full + "/records.csv\n");
     EXPECT_EQ(mockGfxrepro({"table", full}).exitCode, 0);
@@ -69,37 +66,31 @@ TEST_F(Disk, AFullDiskLosesNothingMeasured) {
 TEST_F(Disk, AFailedWriteOfTheRunnerIsNoneOfTheCase) {
     const std::string config =
         writeMockConfig(folder, "sweep: {number: [1, 2]}\nmeasure: {lane: quality}\n");
-    ASSERT_EQ(
-        mockGfxrepro({"run", config, "--device", "software", "--out", dir, "--jobs", "1"}).exitCode,
-        0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir, "--jobs", "1"}).exitCode, 0);
     const fs::path picture = fs::path(dir) / records::readImages(dir).front().exr;
     for (const fs::path& file : {picture, fs::path(dir) / "records.csv"}) fs::remove(file);
     fs::create_directories(picture / "in-the-way");
     for (int i = 0; i < 3; ++i) {  // nor is it taken for what the runner did not survive
-        const ProcessResult stopped = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
-        EXPECT_EQ(stopped.exitCode, 2) << stopped.out;
-        EXPECT_THAT(stopped.err, testing::EndsWith("gfxrepro: cannot rename to " +
-                                                   picture.string() + ": Is a directory\n"));
+        EXPECT_THAT(endedWith(2, mockGfxrepro({"run", "--resume", dir, "--jobs", "1"})).err,
+                    testing::EndsWith("gfxrepro: cannot rename to " + picture.string() +
+                                      ": Is a directory\n"));
         EXPECT_TRUE(rowsOf(dir, "number").empty());
     }
     fs::remove_all(picture);
-    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
-    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
-    EXPECT_EQ(resumed.out, "2 of 2 finished; records: " + dir + "/records.csv\n")
+    EXPECT_EQ(endedWith(0, mockGfxrepro({"run", "--resume", dir})).out,
+              "2 of 2 finished; records: " + dir + "/records.csv\n")
         << "none is flaky";
 }
 
 TEST_F(Disk, AnExportIsThereAsAWholeOrNotAtAll) {
     const std::string config = writeMockConfig(folder, "sweep: {number: {range: [1, 60]}}\n");
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
     for (const std::string tidy : {"", " --tidy"}) {
         const fs::path out = folder.path() / ("out" + tidy.substr(0, 1)) / "artifact";
         const std::string command = "export " + dir + tidy + " --out '" + out.string() + "'";
-        const ProcessResult full = mockWithFullDisk(command, 8);
-        EXPECT_EQ(full.exitCode, 2) << full.out;
+        endedWith(2, mockWithFullDisk(command, 8));
         EXPECT_TRUE(!fs::exists(out.parent_path()) || fs::is_empty(out.parent_path())) << command;
-        const ProcessResult whole = mockWithFullDisk(command, 1 << 20);
-        EXPECT_EQ(whole.exitCode, 0) << whole.err;
+        endedWith(0, mockWithFullDisk(command, 1 << 20));
         EXPECT_TRUE(fs::exists(out / (tidy.empty() ? "SHA256SUMS" : "run.csv")));
         EXPECT_EQ(std::distance(fs::directory_iterator(out.parent_path()), {}), 1);
     }
@@ -109,8 +100,7 @@ TEST_F(Disk, AFolderThatCannotBeWrittenIsNamed) {
     const std::string config = writeMockConfig(folder, "");
     // Nobody, root either, makes folders there.
     const ProcessResult run =
-        mockGfxrepro({"run", config, "--device", "software", "--out", "/proc/gfxrepro/run"});
-    EXPECT_EQ(run.exitCode, 2);
+        endedWith(2, mockGfxrepro({"run", config, "--out", "/proc/gfxrepro/run"}));
     EXPECT_THAT(
         run.err,
         testing::EndsWith(
@@ -121,11 +111,9 @@ TEST_F(Disk, AFolderThatCannotBeWrittenIsNamed) {
 TEST_F(Disk, AReadOnlyRunIsNotContinued) {
     if (::geteuid() == 0) GTEST_SKIP() << "root writes to read-only folders";
     const std::string config = writeMockConfig(folder, "params: {number: 3}\n");
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
     fs::permissions(dir, fs::perms::owner_read | fs::perms::owner_exec);
-    const ProcessResult table = mockGfxrepro({"table", dir});
-    EXPECT_EQ(table.exitCode, 2);
-    EXPECT_THAT(table.err, HasSubstr("Permission denied"));
+    EXPECT_THAT(endedWith(2, mockGfxrepro({"table", dir})).err, HasSubstr("Permission denied"));
     fs::permissions(dir, fs::perms::owner_all);
     EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
 }

@@ -44,7 +44,7 @@ class FailingCalls : public testing::Test {
     }
 
     static ProcessResult run(const std::string& config, const std::string& dir) {
-        return mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
+        return mockGfxrepro({"run", config, "--jobs", "1", "--out", dir});
     }
 
     /// Prepares, lets `command` fail at each call that is tried, and asks `check` after each.
@@ -85,8 +85,7 @@ class FailingCalls : public testing::Test {
         for (const records::Record& row : records::readRecords(dir / "records.csv")) {
             EXPECT_EQ(row.status, records::Status::Ok) << row.message.string();
         }
-        const ProcessResult table = mockGfxrepro({"table", dir});
-        EXPECT_EQ(table.exitCode, 0) << table.err;
+        endedWith(0, mockGfxrepro({"table", dir}));
         for (const char* file : {"csv", "md", "tex"}) {
             const std::string name = std::string("tables/sweep-mock.") + file;
             EXPECT_EQ(readFile(dir / name), readFile(fs::path(whole_) / name));
@@ -108,9 +107,7 @@ TEST_F(FailingCalls, OfARunLoseNothing) {
         [&] { fs::remove_all(place_); },
         [&] {
             const bool isPlanned = fs::exists(dir + "/plan.json");
-            const ProcessResult again =
-                isPlanned ? mockGfxrepro({"run", "--resume", dir}) : run(config_, dir);
-            EXPECT_EQ(again.exitCode, 0) << again.err;
+            endedWith(0, isPlanned ? mockGfxrepro({"run", "--resume", dir}) : run(config_, dir));
             expectAsUntouched(dir);
         });
 }
@@ -130,8 +127,7 @@ TEST_F(FailingCalls, OfAResumeLoseNothing) {
     };
     tryAll({"run", "--resume", dir, "--jobs", "1"}, prepare, [&] {
         // What was begun when the runner was killed, twice now, is left to --retry.
-        const ProcessResult again = mockGfxrepro({"run", "--resume", dir, "--retry"});
-        EXPECT_EQ(again.exitCode, 0) << again.err;
+        endedWith(0, mockGfxrepro({"run", "--resume", dir, "--retry"}));
         expectAsUntouched(dir);
     });
 }
@@ -156,8 +152,7 @@ TEST_F(FailingCalls, OfWhatReadsARunLeaveItAsItIs) {
     };
     for (const Arguments& command : commands) {
         tryAll(command, prepare, [&] {
-            const ProcessResult again = mockGfxrepro(command);
-            EXPECT_EQ(again.exitCode, 0) << again.err;
+            endedWith(0, mockGfxrepro(command));
             expectAsUntouched(dir);
         });
     }

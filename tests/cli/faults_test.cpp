@@ -22,10 +22,8 @@ TEST_F(Faults, EveryFailureBecomesARow) {
         folder,
         "sweep:\n  behaviour: [ok, crash, exit, hang, throw, bad_alloc, unsupported, device_lost,"
         " not_a_number]\nmeasure: {lane: quality, time_limit_s: 2}\n");
-    const ProcessResult run =
-        mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
-    EXPECT_EQ(run.exitCode, 4);
-    EXPECT_EQ(run.out, "1 of 9 finished, 8 failed; records: " + dir + "/records.csv\n");
+    EXPECT_EQ(endedWith(4, mockGfxrepro({"run", config, "--jobs", "1", "--out", dir})).out,
+              "1 of 9 finished, 8 failed; records: " + dir + "/records.csv\n");
     EXPECT_THAT(statusLines(dir),
                 ElementsAre("ok: ok", "crash: crash (SIGSEGV: about to crash)",
                             "exit: crash (the worker ended with exit code 7: leaving)",
@@ -48,18 +46,16 @@ TEST_F(Faults, TablesOfOneFileNameAreNoRunTogether) {
             .string();
     };
     const std::string first = write("first.yaml", "a-b/c"), second = write("second.yaml", "a/b-c");
-    const ProcessResult both = mockGfxrepro({"plan", first, second});
-    EXPECT_EQ(both.exitCode, 2);
-    EXPECT_EQ(both.err, "gfxrepro: " + second +
-                            ": the experiment 'a/b-c' and 'a-b/c' would write the same files, "
-                            "'a-b-c'; allowed: one of them in a run\n");
+    EXPECT_EQ(endedWith(2, mockGfxrepro({"plan", first, second})).err,
+              "gfxrepro: " + second +
+                  ": the experiment 'a/b-c' and 'a-b/c' would write the same files, "
+                  "'a-b-c'; allowed: one of them in a run\n");
     const std::string a = folder.path() / "a", b = folder.path() / "b",
                       page = folder.path() / "p.html";
     for (const auto& [config, dir] : {std::pair(first, a), std::pair(second, b)}) {
-        ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+        ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
     }
-    const ProcessResult report = mockGfxrepro({"report", a, b, "--out", page});
-    ASSERT_EQ(report.exitCode, 0) << report.err;
+    endedWith(0, mockGfxrepro({"report", a, b, "--out", page}));
     EXPECT_THAT(readFile(page), HasSubstr("<section class=\"page\" id=\"a-b-c\">"));
     EXPECT_THAT(readFile(page), HasSubstr("<section class=\"page\" id=\"a-b-c-\">"));
 }
@@ -72,8 +68,7 @@ TEST_F(Faults, WhatPassesAtTheSecondTryIsFlaky) {
                                     "layout:\n  rows: number\n  columns:\n"
                                     "    n: {metric: number, format: \"{median:.0f}\"}\n");
     const ProcessResult run =
-        mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
+        endedWith(0, mockGfxrepro({"run", config, "--jobs", "1", "--out", dir}));
     EXPECT_EQ(run.out, "2 of 2 finished, 1 flaky; records: " + dir + "/records.csv\n");
     EXPECT_THAT(statusLines(dir),
                 ElementsAre("flake: flaky (passed at the second try; the first: crash: SIGSEGV: "
@@ -89,19 +84,17 @@ TEST_F(Faults, AFlakyCaseIsMeasuredAgainWhereThatIsAskedFor) {
     const std::string config = writeMockConfig(
         folder, "params: {behaviour: flake, marker: " + (folder.path() / "marker").string() +
                     "}\nsweep: {number: [1, 2]}\n");
-    mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
+    mockGfxrepro({"run", config, "--jobs", "1", "--out", dir});
     ASSERT_EQ(statusLines(dir).size(), 2U);
-    const ProcessResult again = mockGfxrepro({"run", "--resume", dir, "--retry"});
-    EXPECT_EQ(again.exitCode, 0) << again.err;
-    EXPECT_EQ(again.out, "1 of 1 finished; records: " + dir + "/records.csv\n");
+    EXPECT_EQ(endedWith(0, mockGfxrepro({"run", "--resume", dir, "--retry"})).out,
+              "1 of 1 finished; records: " + dir + "/records.csv\n");
     EXPECT_THAT(statusLines(dir), ElementsAre("flake: ok", "flake: ok"));
 }
 
 TEST_F(Faults, WhatALibraryThrowsNamesTheFile) {
     const std::string name = std::string(300, 'x') + ".obj";
     const std::string config = writeMockConfig(folder, "scene: " + name + "\n");
-    const ProcessResult check = mockGfxrepro({"check", config});
-    EXPECT_EQ(check.exitCode, 2);
+    const ProcessResult check = endedWith(2, mockGfxrepro({"check", config}));
     EXPECT_THAT(check.err, HasSubstr(name));
     EXPECT_THAT(check.err, HasSubstr("File name too long"));
     EXPECT_THAT(check.err, Not(HasSubstr("filesystem error")));
@@ -113,10 +106,10 @@ TEST_F(Faults, MeasurementsAreCountedAsCasesAre) {
     const std::string why =
         "the plan has 1200000 measurements (cases × processes); at most 1000000 are allowed\n";
     EXPECT_EQ(mockGfxrepro({"check", config}).err, "gfxrepro: " + config + ": " + why);
-    EXPECT_THAT(mockGfxrepro({"run", config, "--device", "software"}).err, HasSubstr(why));
+    EXPECT_THAT(mockGfxrepro({"run", config}).err, HasSubstr(why));
     // In a plan of someone else it would be as much memory.
     writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
     std::string plan = readFile(dir + "/plan.json");
     const std::string one = "\"processes\":1,";
     ASSERT_THAT(plan, HasSubstr(one));
@@ -158,8 +151,7 @@ TEST_F(Faults, CheckTellsOfAPlanThatIsTooLarge) {
     const auto said = [&](const std::vector<std::string>& files) {
         std::vector<std::string> arguments = {"check"};
         arguments.insert(arguments.end(), files.begin(), files.end());
-        const ProcessResult result = mockGfxrepro(arguments);
-        EXPECT_EQ(result.exitCode, 0) << result.err;
+        const ProcessResult result = endedWith(0, mockGfxrepro(arguments));
         return result.out;
     };
     std::string passes = "  passes: {";
@@ -187,7 +179,7 @@ TEST_F(Faults, CheckTellsOfAPlanThatIsTooLarge) {
 
 TEST_F(Faults, AMetricIsGivenOnce) {
     const std::string config = writeMockConfig(folder, "sweep: {behaviour: [twice]}\n");
-    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
+    EXPECT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 4);
     EXPECT_THAT(statusLines(dir),
                 ElementsAre("twice: error (metric 'number' is given twice for frame 0, repeat 0)"));
 }
@@ -199,9 +191,7 @@ TEST_F(Faults, APerfectPictureIsInfinitelyGood) {
                         "layout:\n  rows: behaviour\n  columns:\n"
                         "    psnr: {metric: fidelity_db, format: \"{median:.1f} dB\"}\n"
                         "claims:\n  C: {says: it is good, bound: psnr, at_least: 40}\n");
-    const ProcessResult run =
-        mockGfxrepro({"reproduce", config, "--device", "software", "--out", dir});
-    EXPECT_EQ(run.exitCode, 0) << run.out << run.err;
+    endedWith(0, mockGfxrepro({"reproduce", config, "--out", dir}));
     ASSERT_EQ(rowsOf(dir, "fidelity_db").size(), 1U);
     EXPECT_EQ(rowsOf(dir, "fidelity_db")[0].value, HUGE_VAL);
     const auto ofPicture = rowsOf(dir, "psnr_db");
@@ -216,7 +206,7 @@ TEST_F(Faults, APerfectPictureIsInfinitelyGood) {
 TEST_F(Faults, WhatSetUpMeasuredIsNoFrame) {
     const std::string config =
         writeMockConfig(folder, "measure: {lane: timing, processes: 1, frames: 2, repeats: 2}\n");
-    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    EXPECT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
     ASSERT_EQ(rowsOf(dir, "setup_time_ms").size(), 1U);
     EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].frame, records::kSetup);
     EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].repeat, records::kSetup);
@@ -234,8 +224,7 @@ TEST_F(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return runProgram(arguments, {"GFXREPRO_MACHINE_ROOT=" + machine});
     };
-    const ProcessResult hot = run({config, "--device", "software", "--out", dir});
-    EXPECT_EQ(hot.exitCode, 0) << hot.err;
+    const ProcessResult hot = endedWith(0, run({config, "--device", "software", "--out", dir}));
     const std::string warning =
         "warning: the machine was not quiet: while sweep/mock was timed it was hot, 97 °C of 95 °C "
         "at which it is slowed\n";
@@ -261,9 +250,7 @@ TEST_F(Faults, SideBySideAndInFreshProcesses) {
     const std::string config = writeMockConfig(
         folder,
         "sweep:\n  number: [1, 2, 3]\nmeasure: {lane: quality, processes: 2, repeats: 2}\n");
-    const ProcessResult run =
-        mockGfxrepro({"run", config, "--device", "software", "--jobs", "2", "--out", dir});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0, mockGfxrepro({"run", config, "--jobs", "2", "--out", dir}));
     EXPECT_EQ(rowsOf(dir, "number").size(), 6U);
     EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 12U);
 }
@@ -275,9 +262,8 @@ TEST_F(Faults, BlankPicturesUnequalWorkAndSuspensionsVoidTimesAndNothingElse) {
                         "measure: {lane: timing, processes: 1, repeats: 3}\n"
                         "layout:\n  rows: behaviour\n  columns:\n    fps: {metric: frame_rate}\n"
                         "    n: {metric: number, format: \"{median:.0f}\"}\n");
-    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
-    EXPECT_EQ(run.exitCode, 4) << run.err;
-    EXPECT_EQ(run.out, "4 of 4 finished, 3 with void times; records: " + dir + "/records.csv\n");
+    EXPECT_EQ(endedWith(4, mockGfxrepro({"run", config, "--out", dir})).out,
+              "4 of 4 finished, 3 with void times; records: " + dir + "/records.csv\n");
     std::vector<std::string> messages;
     for (const records::Record& row : rowsOf(dir, "frame_rate")) {
         messages.push_back(std::string(records::statusName(row.status)) + ": " + row.message);
@@ -318,9 +304,7 @@ TEST_F(Faults, TimesAreMeasuredInRounds) {
                 keys +
                 "}\n"
                 "layout:\n  rows: number\n  columns:\n    ms: {metric: wall_time_ms}\n");
-        const ProcessResult run =
-            mockGfxrepro({"run", config, "--device", "software", "--out", into});
-        EXPECT_EQ(run.exitCode, 0) << run.err;
+        endedWith(0, mockGfxrepro({"run", config, "--out", into}));
         EXPECT_EQ(mockGfxrepro({"table", into}).exitCode, 0);
         return readFile(into + "/tables/sweep-mock.md");
     };
@@ -352,10 +336,10 @@ TEST_F(Faults, TimesAreMeasuredInRounds) {
 
 TEST_F(Faults, NoSuchDevice) {
     const std::string config = writeMockConfig(folder, "");
-    const ProcessResult run =
-        mockGfxrepro({"run", config, "--device", "77", "--out", (folder.path() / "run").string()});
-    EXPECT_EQ(run.exitCode, 3);
-    EXPECT_EQ(run.err.substr(0, 10), "gfxrepro: ");
+    EXPECT_EQ(endedWith(3, mockGfxrepro({"run", config, "--device", "77", "--out",
+                                         (folder.path() / "run").string()}))
+                  .err.substr(0, 10),
+              "gfxrepro: ");
 }
 
 /// It would stand in every line of the log, which could not be read any more.
@@ -369,9 +353,8 @@ TEST(Titles, AreRefusedBeforeTheyAreMeasured) {
         "are allowed\n";
     EXPECT_EQ(mockGfxrepro({"check", config}).err, why);
     const std::string dir = folder.path() / "run";
-    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
-    EXPECT_EQ(run.exitCode, 2);
-    EXPECT_THAT(run.err, testing::EndsWith(why));  // behind the device
+    EXPECT_THAT(endedWith(2, mockGfxrepro({"run", config, "--out", dir})).err,
+                testing::EndsWith(why));  // behind the device
     EXPECT_FALSE(fs::exists(dir));
     writeMockConfig(folder, "sweep: {marker: [x, " + std::string(4000, 'y') + "]}\n");
     EXPECT_EQ(mockGfxrepro({"check", config}).exitCode, 0);
@@ -398,9 +381,8 @@ TEST_F(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
                   "(columns: x)\n");
     EXPECT_EQ(checked("number=1"), config + ": ok, sweep/mock, 2 cases, 2 claims\n" + config +
                                        ": claim 'two' will be unmeasured: no row that it reads\n");
-    const ProcessResult run = mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--device",
-                                            "software", "--quiet", "--out", dir});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0,
+              mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--quiet", "--out", dir}));
     EXPECT_THAT(readFile(dir + "/claims.csv"),
                 HasSubstr("not among what was measured: 'y' is no column"));
     EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
@@ -413,9 +395,8 @@ TEST_F(Overrides, CheckSaysHowManyCasesOnlyLeaves) {
     };
     EXPECT_EQ(checked("marker=x").out,
               config + ": ok, sweep/mock, 4 cases, 0 claims\n--only leaves 2 of 4 cases\n");
-    const ProcessResult none = checked("number=3");
-    EXPECT_EQ(none.exitCode, 2);
-    EXPECT_THAT(none.err, testing::HasSubstr("no case has that value; there are 1, 2"));
+    EXPECT_THAT(endedWith(2, checked("number=3")).err,
+                testing::HasSubstr("no case has that value; there are 1, 2"));
     EXPECT_THAT(checked("numbr=1").err, testing::HasSubstr("did you mean 'number'?"));
 }
 
@@ -431,9 +412,8 @@ TEST_F(Overrides, WhatTheyTakeFromPlotsIsLeftOutAndSaidBefore) {
     EXPECT_EQ(mockGfxrepro({"check", config, "--sweep", "marker=x"}).out,
               config + ": ok, sweep/mock, 2 cases, 0 claims\n" + config +
                   ": plot 2 will be left out: 'y' is no column (columns: x)\n");
-    const ProcessResult run = mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--device",
-                                            "software", "--quiet", "--out", dir});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0,
+              mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--quiet", "--out", dir}));
     EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
     EXPECT_TRUE(std::filesystem::exists(dir + "/plots/sweep-mock.svg"));
     EXPECT_FALSE(std::filesystem::exists(dir + "/plots/sweep-mock-2.svg"));
@@ -451,9 +431,8 @@ TEST_F(Overrides, ANumberThatWasAColumnIsNoConstant) {
     EXPECT_EQ(mockGfxrepro({"check", config, "--sweep", "number=7,8"}).out,
               config + ": ok, sweep/mock, 2 cases, 1 claim\n" + config +
                   ": claim 'rises' will be unmeasured: '1' is no column (columns: 7, 8)\n");
-    const ProcessResult run = mockGfxrepro({"reproduce", config, "--sweep", "number=7,8",
-                                            "--device", "software", "--quiet", "--out", dir});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
+    endedWith(
+        0, mockGfxrepro({"reproduce", config, "--sweep", "number=7,8", "--quiet", "--out", dir}));
     EXPECT_THAT(readFile(dir + "/claims.csv"), HasSubstr("unmeasured"));
     const std::string unclear =
         writeMockConfig(folder,
@@ -469,9 +448,8 @@ TEST_F(Overrides, ANumberThatWasAColumnIsNoConstant) {
 TEST_F(Faults, FramesThatATechniqueDoesNotHaveAreRefusedBeforeTheRun) {
     const std::string config = writeMockConfig(folder, "measure: {frames: 501}\n");
     for (const char* command : {"check", "plan", "run"}) {
-        const ProcessResult result = mockGfxrepro({command, config});
-        EXPECT_EQ(result.exitCode, 2);
-        EXPECT_THAT(result.err, HasSubstr(":19: the mock has 500 frames\n"));
+        EXPECT_THAT(endedWith(2, mockGfxrepro({command, config})).err,
+                    HasSubstr(":19: the mock has 500 frames\n"));
     }
     const std::string all = writeMockConfig(folder, "measure: {frames: 500}\n");
     EXPECT_EQ(mockGfxrepro({"check", all}).exitCode, 0);
@@ -480,7 +458,7 @@ TEST_F(Faults, FramesThatATechniqueDoesNotHaveAreRefusedBeforeTheRun) {
 TEST_F(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
     const std::string config = writeMockConfig(folder, "sweep: {behaviour: [ok, throw]}\n");
     const std::string out = folder.path() / "out.html";
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 4);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 4);
     for (const std::vector<std::string>& command : {std::vector<std::string>{"table", dir},
                                                     {"claims", dir},
                                                     {"report", dir},
@@ -493,8 +471,7 @@ TEST_F(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
     }
     const std::string crashing =
         writeMockConfig(folder, "params: {behaviour: crash}\nsweep: {number: [1, 2]}\n");
-    ASSERT_EQ(mockGfxrepro({"run", crashing, "--device", "software", "--out", dir + "2"}).exitCode,
-              4);
+    ASSERT_EQ(mockGfxrepro({"run", crashing, "--out", dir + "2"}).exitCode, 4);
     EXPECT_THAT(mockGfxrepro({"table", dir + "2"}).out,
                 HasSubstr("incomplete: 0 not run, 2 failed (2 crash); no case has a result\n"));
 }
@@ -502,10 +479,9 @@ TEST_F(Faults, EveryCommandThatReadsARunTellsThatCasesDidNotFinish) {
 TEST_F(Faults, NamesOfThreeHundredLettersAreNoReasonToLoseACase) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
     const std::string name(300, 'n');
-    const ProcessResult run =
-        runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir},
-                   {"GFXREPRO_MOCK_PICTURE=" + name});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    endedWith(
+        0, runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir},
+                      {"GFXREPRO_MOCK_PICTURE=" + name}));
     const std::string index = readFile(dir + "/images/index.csv");
     EXPECT_THAT(index, HasSubstr(",0," + name + ",images/sweep-mock/")) << "its name stays";
     ASSERT_EQ(mockGfxrepro({"report", dir}).exitCode, 0);
@@ -518,11 +494,10 @@ TEST_F(Faults, NamesOfThreeHundredLettersAreNoReasonToLoseACase) {
     EXPECT_EQ(count, 1U);
     const std::string named =
         folder.write("long.yaml", "sweep_of: " + name + "\ntitle: t\ntechnique: mock\n");
-    const ProcessResult check = mockGfxrepro({"check", named});
-    EXPECT_EQ(check.exitCode, 2);
-    EXPECT_EQ(check.err, "gfxrepro: " + named +
-                             ":1:11: sweep_of: a name of 300 letters; at most 80, for files are "
-                             "named after it\n");
+    EXPECT_EQ(endedWith(2, mockGfxrepro({"check", named})).err,
+              "gfxrepro: " + named +
+                  ":1:11: sweep_of: a name of 300 letters; at most 80, for files are "
+                  "named after it\n");
 }
 
 TEST_F(Faults, WhatAConfigMayNameARunMayReadAgain) {
@@ -541,8 +516,7 @@ TEST_F(Faults, WhatAConfigMayNameARunMayReadAgain) {
                      "output: {width: 8, height: 8}\nparams: {marker: \"/a\\x7fb\"}\n"
                      "scene: " +
                          (deep / "a.ply").string() + "\n");
-    const ProcessResult run = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run = endedWith(0, mockGfxrepro({"run", config, "--out", dir}));
     for (const std::vector<std::string>& command : {std::vector<std::string>{"table", dir},
                                                     {"claims", dir},
                                                     {"report", dir},

@@ -24,8 +24,8 @@ TEST(Judging, ACauseOfGeneratedScenesIsOfThoseThatWereLoaded) {
                         "layout:\n  rows: scene\n  columns: {n: {metric: number}}\n"
                         "claims:\n  none: {says: there is none, bound: n, at_most: -1, because: "
                         "{verdict: fails, scenes: generated, reason: there is one}}\n");
-        const ProcessResult run = mockGfxrepro(
-            {"reproduce", config, "--device", "software", "--out", folder.path() / "run"});
+        const ProcessResult run =
+            mockGfxrepro({"reproduce", config, "--out", folder.path() / "run"});
         EXPECT_EQ(run.exitCode, 1) << lines << run.err;
         EXPECT_THAT(run.out, HasSubstr("why: there is one")) << lines;
         EXPECT_THAT(run.out, Not(HasSubstr("news:"))) << lines;
@@ -50,10 +50,7 @@ TEST(Judging, TheRunsOwnConfigGivenAgainJudgesAlike) {
         "claims:\n  small: {says: it is small, bound: n, at_most: 1, because: {verdict: fails, "
         "reason: two is more}}\n");
     const std::string dir = folder.path() / "run";
-    ASSERT_EQ(mockGfxrepro(
-                  {"reproduce", config, "--only", "number=1", "--device", "software", "--out", dir})
-                  .exitCode,
-              0);
+    ASSERT_EQ(mockGfxrepro({"reproduce", config, "--only", "number=1", "--out", dir}).exitCode, 0);
     auto manifest = nlohmann::ordered_json::parse(readFile(dir + "/manifest.json"));
     manifest["machine_states"] = {{"sweep/mock", {{"hottest_c", 97.0}, {"hot_from_c", 95.0}}}};
     writeFileAtomic(dir + "/manifest.json", manifest.dump());

@@ -120,7 +120,7 @@ TEST_F(Mutation, OfRunFolders) {
     const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
     const std::string whole = folder.path() / "whole", dir = folder.path() / "run";
     const std::string out = folder.path() / "out";
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", whole}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", whole}).exitCode, 0);
     const auto restore = [&] {
         for (const std::string& old : {dir, out, out + ".html"}) fs::remove_all(old);
         fs::copy(whole, dir, fs::copy_options::recursive);

@@ -82,9 +82,8 @@ class Nightly : public ::testing::Test {
 };
 
 TEST_F(Nightly, TheFirstNightIsWhatLaterOnesAreComparedWith) {
-    const ProcessResult first = night(0);
-    EXPECT_EQ(first.exitCode, 0) << first.err;
-    EXPECT_EQ(first.out, "nightly: tonight's build is what later nights are compared with\n");
+    EXPECT_EQ(endedWith(0, night(0)).out,
+              "nightly: tonight's build is what later nights are compared with\n");
     EXPECT_EQ(landed(), readFile(state + "/fixed/gfxrepro"));
     EXPECT_FALSE(fs::exists(state + "/history.csv"));
 }
@@ -113,8 +112,7 @@ const std::string kBlind[] = {
     "case \"$*\" in *--binaries*) " + kMock + "; exit 0;; esac\nexec " + kMock + '\n'};
 
 TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
-    const ProcessResult first = nightOf("exit 0\n");
-    EXPECT_EQ(first.exitCode, 2) << first.out << first.err;
+    const ProcessResult first = endedWith(2, nightOf("exit 0\n"));
     EXPECT_NE(first.err.find("/first has no record of some case; the configs ask for 2\n"),
               std::string::npos)
         << first.err;
@@ -145,8 +143,7 @@ TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustFindWhatItFinds) {
     EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     // A judge that landed before, and ends with 0 whatever it found.
     folder.write("state/landed/gfxrepro", "#!/bin/sh\n" + kBlind[1]);
-    const ProcessResult judged = nightOf(slow);
-    EXPECT_EQ(judged.exitCode, 2) << judged.out;
+    const ProcessResult judged = endedWith(2, nightOf(slow));
     EXPECT_NE(judged.err.find("nightly: the comparison ends with 0, and tells of "),
               std::string::npos)
         << judged.err;
@@ -174,14 +171,12 @@ TEST_F(Nightly, WhatTheConfigsAskForIsCountedByAnotherBuild) {
     EXPECT_EQ(nightOf(fewer).exitCode, 2);
     EXPECT_EQ(nightOf(fewer, {}).exitCode, 2);
     EXPECT_FALSE(fs::exists(state + "/landed"));
-    const ProcessResult first = nightOf(mock + '\n', {});
-    ASSERT_EQ(first.exitCode, 0);
+    const ProcessResult first = endedWith(0, nightOf(mock + '\n', {}));
     EXPECT_EQ(first.err.find("nightly: no other build has counted the cases of the configs: "
                              "tonight's says 2; --cases N says it otherwise\n"),
               0U)
         << first.err;
-    const ProcessResult fix = nightOf(fewer, {"--fix"});
-    EXPECT_EQ(fix.exitCode, 2);
+    const ProcessResult fix = endedWith(2, nightOf(fewer, {"--fix"}));
     EXPECT_NE(fix.err.find("/first has no record of some case; the configs ask for 2\n"),
               std::string::npos)
         << fix.err;
@@ -212,15 +207,12 @@ TEST_F(Nightly, TheWorkflowShowsWhatTheNightHas) {
     EXPECT_EQ(shown().exitCode, 0) << "no night yet";
     isCrashing = true;
     ASSERT_EQ(night(0).exitCode, 4);
-    const ProcessResult first = shown();
-    EXPECT_EQ(first.exitCode, 0) << first.err;
-    EXPECT_EQ(first.out, "");
+    EXPECT_EQ(endedWith(0, shown()).out, "");
     isCrashing = false;
     ASSERT_EQ(night(0).exitCode, 0);
     letAWeekPass();
     ASSERT_EQ(night(1).exitCode, 0);
-    const ProcessResult later = shown();
-    EXPECT_EQ(later.exitCode, 0) << later.err;
+    const ProcessResult later = endedWith(0, shown());
     EXPECT_NE(later.out.find("With the fixed build:\n"), std::string::npos) << later.out;
     EXPECT_TRUE(fs::exists(folder.path() / "benchmark.json"));
 }
@@ -228,26 +220,22 @@ TEST_F(Nightly, TheWorkflowShowsWhatTheNightHas) {
 TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
     isTimed = true;
     ASSERT_EQ(night(0).exitCode, 0);
-    const ProcessResult same = night(1);
-    EXPECT_EQ(same.exitCode, 0) << same.out << same.err;
+    endedWith(0, night(1));
     EXPECT_NE(landed().find("EXTRA_MS=1e-3 "), std::string::npos)
         << "a microsecond of 20 ms is nothing";
     EXPECT_TRUE(fs::exists(state + "/history.csv"));
     EXPECT_NE(readFile(state + "/history.html").find("<svg"), std::string::npos);
-    const ProcessResult slow = night(15000);
-    EXPECT_EQ(slow.exitCode, 1) << slow.out << slow.err;
+    const ProcessResult slow = endedWith(1, night(15000));
     EXPECT_NE(slow.out.find("alarm; measuring again\n"), std::string::npos) << slow.out;
     EXPECT_NE(landed().find("EXTRA_MS=1e-3 "), std::string::npos) << "a slower build does not land";
     EXPECT_GE(keptRuns(), 28U) << "those of the alarm: two looks at both builds";
     // As it is meant to be slower:
-    const ProcessResult accepted = night(15000, false, "it is \"right\" now");
-    EXPECT_EQ(accepted.exitCode, 0) << accepted.err;
+    const ProcessResult accepted = endedWith(0, night(15000, false, "it is \"right\" now"));
     EXPECT_NE(landed().find("EXTRA_MS=15000e-3 "), std::string::npos);
     EXPECT_FALSE(fs::exists(state + "/history.csv")) << "begins anew";
     const std::string reasons = readFile(state + "/accepted.csv");
     EXPECT_NE(reasons.find(",1,\"it is \"\"right\"\" now\"\n"), std::string::npos) << reasons;
-    const ProcessResult fixed = night(0, true);
-    EXPECT_EQ(fixed.exitCode, 0) << fixed.err;
+    endedWith(0, night(0, true));
     EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
 }
 
@@ -260,8 +248,7 @@ TEST_F(Nightly, AReasonIsKeptOfTheFirstNightToo) {
 TEST_F(Nightly, ABuildWhosePictureChangedDoesNotLandAndTheEvidenceIsKept) {
     ASSERT_EQ(night(0).exitCode, 0);
     shade = "0.75";
-    const ProcessResult other = night(1);
-    EXPECT_EQ(other.exitCode, 1) << other.out << other.err;
+    const ProcessResult other = endedWith(1, night(1));
     EXPECT_NE(other.out.find("picture/flat: changed: FLIP "), std::string::npos) << other.out;
     EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     std::size_t kept = 0;
@@ -275,8 +262,7 @@ TEST_F(Nightly, ABuildWhosePictureChangedDoesNotLandAndTheEvidenceIsKept) {
 TEST_F(Nightly, ABuildThatCrashesIsNotAcceptedAndASoundOneLandsAfterIt) {
     ASSERT_EQ(night(0).exitCode, 0);
     isCrashing = true;
-    const ProcessResult refused = night(1, false, "it is right");
-    EXPECT_EQ(refused.exitCode, 1) << refused.out << refused.err;
+    const ProcessResult refused = endedWith(1, night(1, false, "it is right"));
     EXPECT_NE(refused.err.find("nightly: not accepted: what the last build measured is lost, or a "
                                "case did not finish\n"),
               std::string::npos)
@@ -287,11 +273,9 @@ TEST_F(Nightly, ABuildThatCrashesIsNotAcceptedAndASoundOneLandsAfterIt) {
     EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     fs::remove_all(state + "/landed");
     fs::copy(bundle(1), state + "/landed");  // as where the landed one crashes since then
-    const ProcessResult both = night(2);
-    EXPECT_EQ(both.exitCode, 4) << both.out << both.err;
+    endedWith(4, night(2));
     isCrashing = false;
-    const ProcessResult sound = night(3);
-    EXPECT_EQ(sound.exitCode, 0) << sound.out << sound.err;
+    endedWith(0, night(3));
     EXPECT_NE(landed().find("EXTRA_MS=3e-3 "), std::string::npos);
 }
 
@@ -302,9 +286,7 @@ TEST_F(Nightly, OneNightAtATimeAndAKilledOneLosesNothing) {
     BackgroundProgram other({"/usr/bin/flock", "-F", state + "/lock", "/bin/sleep", "60"});
     while (runProgram({"/usr/bin/flock", "-n", state + "/lock", "/bin/true"}).exitCode == 0) {
     }
-    const ProcessResult second = night(1);
-    EXPECT_EQ(second.exitCode, 2);
-    EXPECT_EQ(second.err, "nightly: another night is under way in " + state + "\n");
+    EXPECT_EQ(endedWith(2, night(1)).err, "nightly: another night is under way in " + state + "\n");
     other.signal(SIGKILL);
     other.wait();
     EXPECT_EQ(night(1).exitCode, 0);
@@ -337,8 +319,7 @@ TEST_F(Nightly, WhatGotSlowerLittleByLittleIsFoundEachWeekAndInTheHistory) {
         rows += history.substr(row, begin - row) + std::to_string(own) + '\n';
     }
     writeFileAtomic(state + "/history.csv", rows);
-    const ProcessResult step = night(15000);
-    EXPECT_EQ(step.exitCode, 1) << step.out << step.err;
+    const ProcessResult step = endedWith(1, night(15000));
     EXPECT_NE(step.out.find("since night 14 of 27"), std::string::npos) << step.out;
 }
 

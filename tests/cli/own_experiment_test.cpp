@@ -40,9 +40,7 @@ TEST_F(OwnExperiment, AFewLinesGiveTimesPicturesAndACurve) {
                      "sweep_of: mine\ntitle: Mine at three\ntechnique: template\n"
                      "sweep: {brightness: [0.25, 0.5, 1]}\n");
     const fs::path dir = folder.path() / "run";
-    const ProcessResult run =
-        gfxrepro({"reproduce", config, "--device", "software", "--out", dir.string()});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0, gfxrepro({"reproduce", config, "--device", "software", "--out", dir.string()}));
     EXPECT_EQ(processesOf(rowsOf(dir, "wall_time_ms")), (std::set{0, 1, 2, 3, 4, 5}));
     const std::string table = readFile(dir / "tables" / "sweep-mine.csv");
     EXPECT_TRUE(table.starts_with("brightness,frame_ms_measured")) << table;
@@ -89,8 +87,7 @@ TEST_P(OwnExperimentOf, FiveLinesGivesTimesPicturesAndACurve) {
                                      "measure.time_budget_s=1"};
     sets.insert(sets.end(), lines.smaller.begin(), lines.smaller.end());
     for (const std::string& set : sets) command.insert(command.end(), {"--set", set});
-    const ProcessResult run = gfxrepro(command);
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0, gfxrepro(command));
     EXPECT_GE(processesOf(rowsOf(dir, "wall_time_ms")).size(), 1u);
     const std::string table = readFile(dir / "tables" / "sweep-mine.csv");
     EXPECT_TRUE(table.starts_with(std::string(lines.swept) + ",")) << table.substr(0, 80);
@@ -123,9 +120,7 @@ TEST_F(OwnExperiment, RoundsOfWhoNamesNoLaneEndWithTheirBudget) {
                      "sweep_of: mine\ntitle: T\ntechnique: mock\nparams: {pause_ms: 300}\n"
                      "measure: {time_budget_s: 1}\n");
     const fs::path dir = folder.path() / "run";
-    const ProcessResult run =
-        mockGfxrepro({"run", config, "--device", "software", "--out", dir.string()});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0, mockGfxrepro({"run", config, "--out", dir.string()}));
     EXPECT_EQ(processesOf(rowsOf(dir, "wall_time_ms")), std::set{0});
     EXPECT_THAT(readFile(dir / "journal.jsonl"), HasSubstr("\"ended_by\":\"time_budget_s\""));
 }
@@ -164,13 +159,7 @@ TEST_F(OwnExperiment, LatestIsTheNewestAndRunsAreListed) {
 /// What check says of a config with these lines and a file beside it.
 std::string checked(const TemporaryFolder& folder, const std::string& lines) {
     const std::string head = "sweep_of: mine\ntitle: Mine\n";
-    ProcessResult result = gfxrepro({"check", folder.write("mine.yaml", head + lines)});
-    EXPECT_EQ(result.exitCode, 2) << lines;
-    const std::string prefix = folder.path().string();
-    for (std::size_t at; (at = result.err.find(prefix)) != std::string::npos;) {
-        result.err.replace(at, prefix.size(), "DIR");
-    }
-    return result.err;
+    return refusalOf(gfxrepro({"check", folder.write("mine.yaml", head + lines)}), folder);
 }
 
 TEST_F(OwnExperiment, CheckFindsWhatARunWouldFailBy) {
@@ -264,18 +253,17 @@ TEST_F(OwnExperiment, HeightsThatStandAsSpikesAreSaidBeforeTheyAreMeasured) {
         "steep.png: heights from 0 to 1600 m over 16 m of ground (17 x 17 samples, 1 m apart) look "
         "like spikes; `scene_params: {spacing_m: …, height_scale_m: …}` says how far its samples "
         "stand apart and how many metres a value is\n";
-    const ProcessResult check = gfxrepro({"check", config});
-    EXPECT_EQ(check.exitCode, 0) << check.err;
+    const ProcessResult check = endedWith(0, gfxrepro({"check", config}));
     EXPECT_THAT(check.err, HasSubstr(warning));
-    const ProcessResult run = gfxrepro(
-        {"run", config, "--device", "software", "--out", (folder.path() / "run").string()});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
-    EXPECT_THAT(run.err, HasSubstr(warning));
+    EXPECT_THAT(endedWith(0, gfxrepro({"run", config, "--device", "software", "--out",
+                                       (folder.path() / "run").string()}))
+                    .err,
+                HasSubstr(warning));
     const std::string flat =
         folder.write("flat.yaml", head + "scene_params: {spacing_m: 30, height_scale_m: 0.1}\n");
     EXPECT_EQ(gfxrepro({"check", flat}).err, "");
-    const ProcessResult shown = gfxrepro({"scene", (folder.path() / "steep.png").string()});
-    EXPECT_EQ(shown.exitCode, 0) << shown.err;
+    const ProcessResult shown =
+        endedWith(0, gfxrepro({"scene", (folder.path() / "steep.png").string()}));
     EXPECT_THAT(shown.out, HasSubstr("heights    17 x 17 samples, 1 m apart, 0 filled"));
     EXPECT_THAT(shown.out, HasSubstr("warning    heights from 0 to 1600 m"));
 }
@@ -302,15 +290,14 @@ TEST_F(OwnExperiment, ARunDoesNotGoOnWithAnotherSecondModel) {
                      "params: {csg: union, scene_b: second.obj, resolution: 32}\n"
                      "measure: {lane: quality}\n");
     const std::string dir = (folder.path() / "run").string();
-    const ProcessResult run = gfxrepro({"run", config, "--device", "software", "--out", dir});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run =
+        endedWith(0, gfxrepro({"run", config, "--device", "software", "--out", dir}));
     folder.write("second.obj", "v 0 0 0.5\n" + triangle);
     const ProcessResult other = gfxrepro({"run", "--resume", dir});
     EXPECT_NE(other.exitCode, 0);
     EXPECT_THAT(other.err, HasSubstr("second.obj' changed"));
     folder.write("second.obj", triangle);
-    const ProcessResult same = gfxrepro({"run", "--resume", dir});
-    EXPECT_EQ(same.exitCode, 0) << same.err;
+    endedWith(0, gfxrepro({"run", "--resume", dir}));
 }
 
 TEST_F(OwnExperiment, CheckAsksTheTechniqueWhetherItTakesTheScene) {
@@ -329,10 +316,9 @@ TEST_F(OwnExperiment, CheckAsksTheTechniqueWhetherItTakesTheScene) {
     EXPECT_TRUE(isTaken("technique: point_splatting\nscene: points.obj\n"));
     const std::string points = (folder.path() / "points.obj").string();
     const std::string picture = (folder.path() / "points.png").string();
-    const ProcessResult rendered = gfxrepro({"scene", points, "--render", picture});
-    EXPECT_EQ(rendered.exitCode, 2);
-    EXPECT_EQ(rendered.err, "gfxrepro: --render " + picture + ": " + points +
-                                " has 3 points and no triangles; allowed to draw: triangles\n");
+    EXPECT_EQ(endedWith(2, gfxrepro({"scene", points, "--render", picture})).err,
+              "gfxrepro: --render " + picture + ": " + points +
+                  " has 3 points and no triangles; allowed to draw: triangles\n");
     EXPECT_FALSE(std::filesystem::exists(picture));
     EXPECT_THAT(checked(folder,
                         "technique: voxelization\nscene: shapes/torus\n"
@@ -400,9 +386,8 @@ TEST_F(OwnExperiment, NoTableIsNamedWhereNoCaseHasAResult) {
                      "params: {resolution: 1024}\n"
                      "measure: {lane: quality, time_limit_s: 0.001}\n");
     const std::string dir = folder.path() / "run";
-    const ProcessResult run =
-        gfxrepro({"reproduce", config, "--device", "software", "--quiet", "--out", dir});
-    EXPECT_EQ(run.exitCode, 4) << run.err;
+    const ProcessResult run = endedWith(
+        4, gfxrepro({"reproduce", config, "--device", "software", "--quiet", "--out", dir}));
     EXPECT_FALSE(fs::exists(dir + "/tables"));
     EXPECT_THAT(run.out, Not(HasSubstr("tables: ")));
     EXPECT_THAT(gfxrepro({"table", dir}).out,
@@ -414,11 +399,8 @@ TEST_F(OwnExperiment, AValueOfWhatIsExtendedMayBeSwept) {
     const fs::path config =
         writeMockConfig(folder, "extends: [base.yaml]\nsweep: {number: [2, 3]}\n");
     const std::string dir = folder.path() / "run";
-    const ProcessResult run =
-        mockGfxrepro({"run", config, "--device", "software", "--quiet", "--out", dir});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
-    const ProcessResult table = mockGfxrepro({"table", dir});
-    EXPECT_EQ(table.exitCode, 0) << table.err;  // the plan has both in one document
+    endedWith(0, mockGfxrepro({"run", config, "--quiet", "--out", dir}));
+    endedWith(0, mockGfxrepro({"table", dir}));  // the plan has both in one document
 }
 
 TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
@@ -594,13 +576,11 @@ TEST_F(OwnExperiment, ClaimsReadTheColumnsOfATableThatNobodyLaidOut) {
                                 "  solid: {says: a solid has more, order: "
                                 "[fill=surface, fill=solid], of: voxels}\n");
     };
-    const ProcessResult bad = gfxrepro({"check", configOf("voxel")});
-    EXPECT_EQ(bad.exitCode, 2);
-    EXPECT_THAT(bad.err, HasSubstr(":8:3: claim 'grows': 'voxel' is no column; did you mean "
-                                   "'voxels'? (columns: frame_ms, "));
+    EXPECT_THAT(endedWith(2, gfxrepro({"check", configOf("voxel")})).err,
+                HasSubstr(":8:3: claim 'grows': 'voxel' is no column; did you mean "
+                          "'voxels'? (columns: frame_ms, "));
     const std::string dir = folder.path() / "run";
-    const ProcessResult good = gfxrepro({"reproduce", configOf("voxels"), "--out", dir});
-    EXPECT_EQ(good.exitCode, 0) << good.out << good.err;
+    endedWith(0, gfxrepro({"reproduce", configOf("voxels"), "--out", dir}));
     const std::string claims = readFile(dir + "/claims.csv");
     EXPECT_THAT(claims, HasSubstr("\ngrows,there are more voxels,sweep/mine,"));
     EXPECT_THAT(claims, HasSubstr("\nsolid,a solid has more,sweep/mine,"));
@@ -611,8 +591,7 @@ TEST_F(OwnExperiment, CheckGoesOnBehindABadFile) {
     const std::string rest = "title: t\ntechnique: voxelization\nscene: shapes/torus\n";
     const std::string bad = folder.write("bad.yaml", "sweep_of: bad\nsweeep: {}\n" + rest);
     const std::string good = folder.write("good.yaml", "sweep_of: good\n" + rest);
-    const ProcessResult result = gfxrepro({"check", bad, good, bad});
-    EXPECT_EQ(result.exitCode, 2);
+    const ProcessResult result = endedWith(2, gfxrepro({"check", bad, good, bad}));
     EXPECT_EQ(result.out, good + ": ok, sweep/good, 1 case, 0 claims\n");
     const std::string line =
         "gfxrepro: " + bad + ":2:1: config: unknown key 'sweeep'; did you mean 'sweep'?\n";

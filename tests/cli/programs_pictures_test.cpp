@@ -103,10 +103,9 @@ TEST_F(PicturesOfPrograms, OtherFormatsAreReadAsTheirKind) {
     EXPECT_THAT(readFile(dir + "/records.csv"),
                 HasSubstr("image 'result': one of it and its truth is linear, as EXR files are, "
                           "the other sRGB, as PNG files are"));
-    const ProcessResult refused = run("p.gif", "truth.png");
-    EXPECT_EQ(refused.exitCode, 2);
-    EXPECT_THAT(refused.err, HasSubstr("file is result.gif; allowed: a name that ends in one of "
-                                       ".exr, .png, .pfm, "));
+    EXPECT_THAT(endedWith(2, run("p.gif", "truth.png")).err,
+                HasSubstr("file is result.gif; allowed: a name that ends in one of "
+                          ".exr, .png, .pfm, "));
 }
 
 /// A path tracer as far as a config can tell: noise that falls with the root of the samples, less
@@ -180,18 +179,15 @@ TEST_F(PicturesOfPrograms, TwoPatternsAreComparedByAFewLines) {
         "  faster: {says: more samples take longer, order: [samples=16, samples=64], "
         "of: render_ms}\n");
     const ProcessResult bad =
-        gfxrepro({"check", folder.write("bad.yaml", [&] {
-                      std::string text = readFile(config);
-                      return text.replace(text.find("of: rmse,"), 8, "of: rmsee");
-                  }())});
-    EXPECT_EQ(bad.exitCode, 2);
+        endedWith(2, gfxrepro({"check", folder.write("bad.yaml", [&] {
+                                   std::string text = readFile(config);
+                                   return text.replace(text.find("of: rmse,"), 8, "of: rmsee");
+                               }())}));
     EXPECT_THAT(bad.err, HasSubstr(":12:3: claim 'better': 'rmsee' is no column; did you mean "
                                    "'rmse'? (columns: render_ms, "));
     EXPECT_THAT(bad.err, testing::Not(HasSubstr("render_ms_picture")));
-    const ProcessResult check = gfxrepro({"check", config});
-    EXPECT_EQ(check.exitCode, 0) << check.err;
-    const ProcessResult run = gfxrepro({"reproduce", config, "--out", dir});
-    ASSERT_EQ(run.exitCode, 0) << run.out << run.err;
+    endedWith(0, gfxrepro({"check", config}));
+    endedWith(0, gfxrepro({"reproduce", config, "--out", dir}));
     EXPECT_THAT(readFile(dir + "/tables/sweep-patterns.csv"),
                 testing::StartsWith("pattern,samples,render_ms_measured"));
     const std::string claims = readFile(dir + "/claims.csv");

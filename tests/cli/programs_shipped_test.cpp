@@ -18,10 +18,11 @@ bool isHere(const std::string& program) {
 
 /// Every claim of the shipped config holds.
 void expectClaimsHold(const std::string& config, const std::string& dir) {
-    const ProcessResult result = gfxrepro(
-        {"reproduce", std::string(GFXREPRO_CONFIGS) + "/external/" + config, "--out", dir});
-    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
-    EXPECT_THAT(result.out, Not(HasSubstr("fails")));
+    EXPECT_THAT(
+        endedWith(0, gfxrepro({"reproduce", std::string(GFXREPRO_CONFIGS) + "/external/" + config,
+                               "--out", dir}))
+            .out,
+        Not(HasSubstr("fails")));
 }
 
 using ShippedPrograms = test::RunTest;
@@ -46,8 +47,7 @@ TEST_F(ShippedPrograms, TheReadmesExampleWorksAsTyped) {
     const std::string config =
         folder.write("mine.yaml", readme.substr(begin, readme.find("```", begin) - begin));
     folder.write("configs/external/hall.pov", readFile(configs / "external" / "hall.pov"));
-    const ProcessResult result = gfxrepro({"reproduce", config, "--out", dir});
-    ASSERT_EQ(result.exitCode, 0) << result.out << result.err;
+    endedWith(0, gfxrepro({"reproduce", config, "--out", dir}));
     EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 18U);
     for (const char* metric : {"rmse", "ssim", "flip", "rel_mse", "psnr_db", "process_time_ms"}) {
         EXPECT_FALSE(rowsOf(dir, metric).empty()) << metric;

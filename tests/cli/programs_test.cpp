@@ -98,11 +98,11 @@ const std::string kPicture =
 TEST_F(ExternalProgram, FailuresAreSeenWhereTheEndsOfChildrenWereIgnored) {
     const std::string config =
         write("sweep: {behaviour: [ok, crash, fails]}\nmeasure: {lane: quality}\n");
-    const ProcessResult result =
-        runProgram({"/bin/sh", "-c", "trap '' CHLD; exec \"$0\" \"$@\"", GFXREPRO_PROGRAM, "run",
-                    config, "--jobs", "1", "--out", dir});
-    EXPECT_EQ(result.exitCode, 4) << result.err;
-    EXPECT_THAT(result.out, HasSubstr("1 of 3 finished, 2 failed; "));
+    EXPECT_THAT(
+        endedWith(4, runProgram({"/bin/sh", "-c", "trap '' CHLD; exec \"$0\" \"$@\"",
+                                 GFXREPRO_PROGRAM, "run", config, "--jobs", "1", "--out", dir}))
+            .out,
+        HasSubstr("1 of 3 finished, 2 failed; "));
     EXPECT_THAT(statusLines(dir), ElementsAre("ok: ok", HasSubstr("ended with SIGSEGV"),
                                               HasSubstr("ended with exit code 3")));
 }
@@ -121,8 +121,7 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
               "sweep: {behaviour: [ok, crash, fails, hangs, silent, not_a_number, wrong_unit, "
               "undeclared, deep, no_json, twice, no_picture, half_picture, other_size, flatters]}\n"
               "measure: {lane: quality, time_limit_s: 2}\n");
-    const ProcessResult result = run(config, {"--jobs", "2"});
-    EXPECT_EQ(result.exitCode, 4);
+    const ProcessResult result = endedWith(4, run(config, {"--jobs", "2"}));
     EXPECT_THAT(result.out, HasSubstr("1 of 15 finished, 14 failed; "));
     std::vector<std::string> lines = statusLines(dir);
     std::ranges::sort(lines);
@@ -241,9 +240,9 @@ TEST_F(ExternalProgram, RunsHoldTheHashOfTheProgramAndItsVersion) {
         EXPECT_EQ(readFile(fs::path(artifact) / beside / name), readFile(folder.path() / name));
         fs::remove(folder.path() / name);
     }
-    const ProcessResult again = runProgram({artifact + "/scripts/sweep-mine.sh"},
-                                           {std::string("GFXREPRO=") + GFXREPRO_PROGRAM});
-    EXPECT_EQ(again.exitCode, 0) << again.err;
+    const ProcessResult again =
+        endedWith(0, runProgram({artifact + "/scripts/sweep-mine.sh"},
+                                {std::string("GFXREPRO=") + GFXREPRO_PROGRAM}));
     EXPECT_EQ(rowsOf(artifact + "/again/sweep-mine", "number").size(), 2U);
 }
 
@@ -264,8 +263,7 @@ TEST_F(ExternalProgram, AChangedOneIsNotResumed) {
     EXPECT_EQ(run(config).exitCode, 4);
     EXPECT_EQ(gfxrepro({"run", "--resume", dir}).exitCode, 4);
     image::writePng(folder.path() / "picture.png", image::Image8(32, 16, 3, 7));
-    const ProcessResult changed = gfxrepro({"run", "--resume", dir});
-    EXPECT_EQ(changed.exitCode, 2);
+    const ProcessResult changed = endedWith(2, gfxrepro({"run", "--resume", dir}));
     EXPECT_THAT(
         changed.err,
         HasSubstr("cannot be resumed: the program of sweep/mine, or a file of it, changed"));
@@ -277,10 +275,9 @@ TEST_F(ExternalProgram, OneThatIsNotHereIsUnsupported) {
         folder.write("none.yaml",
                      "sweep_of: none\ntitle: T\ntechnique: external\n"
                      "program: {command: no-such-program-anywhere}\nmeasure: {lane: quality}\n");
-    const ProcessResult check = gfxrepro({"check", config});
-    EXPECT_EQ(check.exitCode, 0) << check.err;
-    EXPECT_THAT(check.out, HasSubstr("the program 'no-such-program-anywhere' is not on this "
-                                     "machine: its cases will be unsupported"));
+    EXPECT_THAT(endedWith(0, gfxrepro({"check", config})).out,
+                HasSubstr("the program 'no-such-program-anywhere' is not on this "
+                          "machine: its cases will be unsupported"));
     EXPECT_EQ(run(config).exitCode, 4);
     const std::vector<records::Record> rows = rowsOf(dir, "");
     ASSERT_EQ(rows.size(), 1U);
@@ -382,8 +379,7 @@ TEST_F(ExternalProgram, AComparisonSaysThatTheProgramIsAnotherAndWhichCasesChang
     const std::string again = (folder.path() / "again").string();
     ASSERT_EQ(gfxrepro({"run", config, "--out", again}).exitCode, 0);
     const ProcessResult compared =
-        gfxrepro({"compare", dir, again, "--out", folder.path() / "compared"});
-    EXPECT_EQ(compared.exitCode, 1) << compared.err;
+        endedWith(1, gfxrepro({"compare", dir, again, "--out", folder.path() / "compared"}));
     EXPECT_THAT(compared.out + compared.err, HasSubstr("renderer.sh is another: "));
     EXPECT_THAT(compared.out, HasSubstr("sweep/mine external number, given=1: changed"));
     EXPECT_THAT(compared.out, HasSubstr("sweep/mine external number, given=2: changed"));
@@ -453,8 +449,7 @@ TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
         "cd " + folder.path().string() + " && " + GFXREPRO_PROGRAM + " check mine.yaml";
     EXPECT_EQ(runProgram({"/bin/sh", "-c", inItsFolder}).out,
               "mine.yaml: ok, sweep/mine, 1 case, 0 claims\n");
-    const ProcessResult described = gfxrepro({"describe", write("")});
-    EXPECT_EQ(described.exitCode, 0) << described.err;
+    const ProcessResult described = endedWith(0, gfxrepro({"describe", write("")}));
     EXPECT_THAT(described.out, HasSubstr("given back [1; 0 … 100]"));
     EXPECT_THAT(described.out, HasSubstr("{here}/renderer.sh {behaviour} {given} {out}"));
     EXPECT_THAT(gfxrepro({"describe", write(kPicture)}).out,
@@ -502,8 +497,7 @@ TEST_F(ExternalProgram, TakesASceneOfTheCatalogue) {
         "sweep_of: scene\ntitle: T\ntechnique: external\n"
         "program: {command: \"{here}/renderer.sh {scene}\", metrics: {number: \"1\"}}\n"
         "scene: shapes/sphere\nmeasure: {lane: quality}\n");
-    const ProcessResult result = run(config);
-    ASSERT_EQ(result.exitCode, 0) << result.err;
+    endedWith(0, run(config));
     EXPECT_GT(rowsOf(dir, "number").at(0).value, 1000.0);
     EXPECT_EQ(rowsOf(dir, "scene_triangles").size(), 1U);
 }

@@ -63,18 +63,19 @@ class Timed : public testing::Test {
 };
 
 TEST_F(Timed, AProgramThatWaitsIsJudgedByTheClock) {
-    const ProcessResult result = reproduce(
-        std::string(kSleeps) +
-        "sweep: {number: [1, 2, 4]}\n"
-        "layout: {rows: number, columns: {ms: {metric: wall_time_ms}, own: {metric: own_ms}}}\n"
-        "claims:\n"
-        "  slope: {says: it falls with the number, trend: ms, over: number, "
-        "at_least: -1.2, at_most: -0.6}\n"
-        "  slower: {says: two take longer than four, kind: algorithmic, across: number, "
-        "ratio: \"'2' / '4'\", at_least: 1.3, of: ms}\n"
-        "  absolute: {says: it takes a tenth of a second, kind: absolute, bound: ms, at_least: "
-        "100, at: {number: 1}}\n");
-    EXPECT_EQ(result.exitCode, 0) << result.out << result.err;
+    endedWith(
+        0,
+        reproduce(
+            std::string(kSleeps) +
+            "sweep: {number: [1, 2, 4]}\n"
+            "layout: {rows: number, columns: {ms: {metric: wall_time_ms}, own: {metric: own_ms}}}\n"
+            "claims:\n"
+            "  slope: {says: it falls with the number, trend: ms, over: number, "
+            "at_least: -1.2, at_most: -0.6}\n"
+            "  slower: {says: two take longer than four, kind: algorithmic, across: number, "
+            "ratio: \"'2' / '4'\", at_least: 1.3, of: ms}\n"
+            "  absolute: {says: it takes a tenth of a second, kind: absolute, bound: ms, at_least: "
+            "100, at: {number: 1}}\n"));
     const std::string claims = readFile(runDir() + "/claims.csv");
     EXPECT_THAT(claims, Not(HasSubstr("CPU time")));
     EXPECT_THAT(claims, Not(HasSubstr("not-applicable")));
@@ -88,10 +89,10 @@ TEST_F(Timed, ItsOwnTimesAreComparedToo) {
     folder.write("own_ms", "100");
     ASSERT_EQ(reproduce(config, "after").exitCode, 0);
     const std::string history = folder.path() / "history.csv";
-    const ProcessResult result = gfxrepro({"compare", runDir("before"), runDir("after"), "--out",
-                                           folder.path() / "compared", "--history", history});
-    EXPECT_EQ(result.exitCode, 1) << result.err;
-    EXPECT_THAT(result.out, HasSubstr("sweep/mine external own_ms: slower × 2.000"));
+    EXPECT_THAT(endedWith(1, gfxrepro({"compare", runDir("before"), runDir("after"), "--out",
+                                       folder.path() / "compared", "--history", history}))
+                    .out,
+                HasSubstr("sweep/mine external own_ms: slower × 2.000"));
     for (const char* metric : {"own_ms", "wall_time_ms"}) {
         EXPECT_THAT(readFile(folder.path() / "compared" / "junit.xml"), HasSubstr(metric));
         EXPECT_THAT(readFile(history), HasSubstr(metric));

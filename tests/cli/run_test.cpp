@@ -23,10 +23,10 @@ std::string smokeConfig() {
 using RunCommand = test::RunTest;
 
 TEST_F(RunCommand, SmokeFromConfigToReport) {
-    const ProcessResult run =
-        gfxrepro({"run", smokeConfig(), "--device", "software", "--jobs", "1", "--out", dir});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
-    EXPECT_EQ(run.out, "2 of 2 finished; records: " + dir + "/records.csv\n");
+    EXPECT_EQ(endedWith(0, gfxrepro({"run", smokeConfig(), "--device", "software", "--jobs", "1",
+                                     "--out", dir}))
+                  .out,
+              "2 of 2 finished; records: " + dir + "/records.csv\n");
     const std::vector<records::Record> rows = rowsOf(dir, "mean_brightness");
     ASSERT_EQ(rows.size(), 2U);
     EXPECT_NEAR(rows[0].value, 0.25, 1e-6);
@@ -38,30 +38,24 @@ TEST_F(RunCommand, SmokeFromConfigToReport) {
     EXPECT_TRUE(fs::exists(picture + ".exr"));
     EXPECT_TRUE(fs::exists(picture + ".png"));
 
-    const ProcessResult table = gfxrepro({"table", dir});
-    EXPECT_EQ(table.exitCode, 0) << table.err;
+    endedWith(0, gfxrepro({"table", dir}));
     EXPECT_TRUE(fs::exists(dir + "/tables/sweep-smoke-template.csv"));
-    const ProcessResult claims = gfxrepro({"claims", dir});
-    EXPECT_EQ(claims.exitCode, 0) << claims.err;
-    EXPECT_THAT(claims.out, HasSubstr("1 holds"));
-    const ProcessResult report = gfxrepro({"report", dir});
-    EXPECT_EQ(report.exitCode, 0) << report.err;
+    EXPECT_THAT(endedWith(0, gfxrepro({"claims", dir})).out, HasSubstr("1 holds"));
+    const ProcessResult report = endedWith(0, gfxrepro({"report", dir}));
     EXPECT_TRUE(fs::exists(dir + "/report.html"));
 }
 
 // A user's file has its views where the catalogue's scene has them: nothing looks past the scene.
 TEST_F(RunCommand, AnExportedSceneMeasuresAsTheCataloguesDoes) {
     const std::string file = folder.path() / "tree.glb";
-    const ProcessResult exported = gfxrepro({"scene", "outdoor/tree", "--export", file});
-    ASSERT_EQ(exported.exitCode, 0) << exported.err;
+    endedWith(0, gfxrepro({"scene", "outdoor/tree", "--export", file}));
     const std::string config = folder.write(
         "tree.yaml",
         "sweep_of: tree\ntitle: T\ntechnique: depth_sampling\nmeasure: {lane: quality}\n"
         "params: {method: conventional, redundancy: visibility, view_distance: 0.55, "
         "view_spread: 0.5, output_frames: 10, availability: true}\n"
         "output: {width: 128, height: 128}\nsweep: {scene: [outdoor/tree, tree.glb]}\n");
-    const ProcessResult run = gfxrepro({"run", config, "--device", "software", "--out", dir});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0, gfxrepro({"run", config, "--device", "software", "--out", dir}));
     for (const char* metric : {"redundant_pct", "available_mean_pct"}) {
         const std::vector<records::Record> rows = rowsOf(dir, metric);
         ASSERT_GE(rows.size(), 2U) << metric;
@@ -75,9 +69,7 @@ TEST_F(RunCommand, AnExportedSceneMeasuresAsTheCataloguesDoes) {
 
 // Lights, camera paths and motions, too.
 TEST_F(RunCommand, AnExportedRoomShowsTheCataloguesPicture) {
-    const ProcessResult exported =
-        gfxrepro({"scene", "indoor/living_room", "--export", folder.path() / "room.glb"});
-    ASSERT_EQ(exported.exitCode, 0) << exported.err;
+    endedWith(0, gfxrepro({"scene", "indoor/living_room", "--export", folder.path() / "room.glb"}));
     const std::string config = folder.write(
         "room.yaml",
         "sweep_of: room\ntitle: R\ntechnique: reflection_reuse\n"
@@ -85,15 +77,13 @@ TEST_F(RunCommand, AnExportedRoomShowsTheCataloguesPicture) {
         "params: {method: ray_traced, pictures: true, view: path_1, path_frames: 9, first_frame: "
         "3, motion: true}\n"
         "output: {width: 64, height: 48}\nsweep: {scene: [indoor/living_room, room.glb]}\n");
-    const ProcessResult run = gfxrepro({"run", config, "--device", "software", "--out", dir});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0, gfxrepro({"run", config, "--device", "software", "--out", dir}));
     std::vector<fs::path> pictures;
     for (const auto& entry : fs::recursive_directory_iterator(dir + "/images")) {
         if (entry.path().string().ends_with("result-f0001.exr")) pictures.push_back(entry.path());
     }
     ASSERT_EQ(pictures.size(), 2U);
-    const ProcessResult diff = gfxrepro({"image", "diff", pictures[0], pictures[1]});
-    EXPECT_EQ(diff.exitCode, 0) << diff.err;
+    const ProcessResult diff = endedWith(0, gfxrepro({"image", "diff", pictures[0], pictures[1]}));
     EXPECT_THAT(diff.out, testing::ContainsRegex("flip +0(\\.0+)?\n")) << diff.out;
 }
 
@@ -102,8 +92,7 @@ TEST_F(RunCommand, TableThatIsOnlyPrinted) {
         "table-1.yaml",
         "table: p/1\ntitle: T\nprinted: {values: \"function,dimensions\\npanorama,2\"}\n");
     EXPECT_EQ(gfxrepro({"check", config}).out, config + ": ok, p/1, 0 cases, 0 claims\n");
-    const ProcessResult run = gfxrepro({"reproduce", config, "--device", "software", "--out", dir});
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0, gfxrepro({"reproduce", config, "--device", "software", "--out", dir}));
     EXPECT_EQ(readFile(dir + "/tables/p-1.md"),
               "# Table 1. T\n\nAs printed; nothing is measured.\n\n"
               "| function | dimensions |\n| --- | ---: |\n| panorama | 2 |\n");
@@ -165,20 +154,19 @@ TEST_F(RunCommand, TablesSayAtWhichParametersTheyWereMeasured) {
 
 TEST_F(RunCommand, PrintedParametersHaveToBeParameters) {
     const std::string config = printedConfig(folder, "  paper: {printed: {at: {pause_m: 500}}}\n");
-    const ProcessResult check = mockGfxrepro({"check", config});
-    EXPECT_EQ(check.exitCode, 2);
-    EXPECT_EQ(check.err, "gfxrepro: " + config +
-                             ":18:35: printed.at: 'pause_m' is no parameter; did you mean "
-                             "'pause_ms'?\n");
+    EXPECT_EQ(endedWith(2, mockGfxrepro({"check", config})).err,
+              "gfxrepro: " + config +
+                  ":18:35: printed.at: 'pause_m' is no parameter; did you mean "
+                  "'pause_ms'?\n");
 }
 
 /// Of three cases alike: told at the end, once.
 TEST_F(RunCommand, WhatCasesWarnOfIsTold) {
     const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2, 3]}\n");
-    const ProcessResult run = runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device",
-                                          "software", "--out", folder.path() / "run"},
-                                         {"GFXREPRO_MOCK_WARNING=a frame shows no reflector"});
-    EXPECT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run =
+        endedWith(0, runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software",
+                                 "--out", folder.path() / "run"},
+                                {"GFXREPRO_MOCK_WARNING=a frame shows no reflector"}));
     const std::string warning = "warning: a frame shows no reflector\n";
     const std::size_t at = run.err.find(warning);
     ASSERT_NE(at, std::string::npos) << run.err;
@@ -192,13 +180,10 @@ TEST_F(RunCommand, SecondRunIntoOneFolderIsRefused) {
     while (!fs::exists(dir + "/plan.json")) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    const ProcessResult second =
-        mockGfxrepro({"run", config, "--device", "software", "--out", dir});
-    EXPECT_EQ(second.exitCode, 2);
-    EXPECT_THAT(second.err,
+    EXPECT_THAT(endedWith(2, mockGfxrepro({"run", config, "--out", dir})).err,
                 EndsWith("gfxrepro: " + dir + ": another run is writing to this folder\n"));
     EXPECT_EQ(first.wait().exitCode, 0);
-    const ProcessResult third = mockGfxrepro({"run", config, "--device", "software", "--out", dir});
+    const ProcessResult third = mockGfxrepro({"run", config, "--out", dir});
     EXPECT_THAT(third.err,
                 EndsWith("gfxrepro: " + dir + ": holds a run already; continue it with --resume " +
                          dir + ", or give another folder\n"));
@@ -220,7 +205,7 @@ TEST_F(RunCommand, KilledRunResumesToTheSameTables) {
     const std::string config = writeMockConfig(folder, kSixCases);
     const std::string whole = folder.path() / "whole";
     const std::string killed = folder.path() / "killed";
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", whole}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", whole}).exitCode, 0);
     BackgroundProgram run(
         {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", killed});
     waitForFirstCase(killed);
@@ -230,8 +215,7 @@ TEST_F(RunCommand, KilledRunResumesToTheSameTables) {
     EXPECT_LT(finished, 6U);
     EXPECT_EQ(mockGfxrepro({"table", killed}).exitCode, 4);
 
-    const ProcessResult resumed = mockGfxrepro({"run", "--resume", killed});
-    EXPECT_EQ(resumed.exitCode, 0) << resumed.err;
+    const ProcessResult resumed = endedWith(0, mockGfxrepro({"run", "--resume", killed}));
     const std::string left = std::to_string(6 - finished);
     EXPECT_EQ(resumed.out,
               left + " of " + left + " finished; records: " + killed + "/records.csv\n");
@@ -248,9 +232,8 @@ TEST_F(RunCommand, InterruptedRunIsResumable) {
         {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
     waitForFirstCase(dir);
     run.signal(SIGINT);
-    const ProcessResult result = run.wait();
-    EXPECT_EQ(result.exitCode, 130);
-    EXPECT_THAT(result.err, HasSubstr("interrupted; continue with: gfxrepro run --resume " + dir));
+    EXPECT_THAT(endedWith(130, run.wait()).err,
+                HasSubstr("interrupted; continue with: gfxrepro run --resume " + dir));
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
     EXPECT_EQ(rowsOf(dir, "number").size(), 6U);
 }
@@ -258,7 +241,7 @@ TEST_F(RunCommand, InterruptedRunIsResumable) {
 TEST_F(RunCommand, ResumeGoesOnWithWhatWasPlanned) {
     const std::string config =
         writeMockConfig(folder, "params: {number: 1}\nsweep: {pause_ms: [0, 1]}\n");
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
     const auto rows = records::readRecords(dir + "/records.csv");
     const auto loseACase = [&] {
         std::vector<records::Record> left = rows;
@@ -269,22 +252,20 @@ TEST_F(RunCommand, ResumeGoesOnWithWhatWasPlanned) {
     const std::string goesOn = "; the run goes on with its configs as they were when it began\n";
     loseACase();
     writeMockConfig(folder, "params: {number: 2}\nsweep: {pause_ms: [0, 1]}\n");
-    const ProcessResult changed = mockGfxrepro({"run", "--resume", dir});
-    EXPECT_EQ(changed.exitCode, 0) << changed.err;
+    const ProcessResult changed = endedWith(0, mockGfxrepro({"run", "--resume", dir}));
     EXPECT_THAT(changed.err, HasSubstr("warning: " + config + " changed" + goesOn));
     for (const records::Record& row : rowsOf(dir, "number")) EXPECT_EQ(row.value, 1.0);
     EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
     loseACase();
     fs::remove(config);
-    const ProcessResult removed = mockGfxrepro({"run", "--resume", dir});
-    EXPECT_EQ(removed.exitCode, 0) << removed.err;
-    EXPECT_THAT(removed.err, HasSubstr("No such file or directory" + goesOn));
+    EXPECT_THAT(endedWith(0, mockGfxrepro({"run", "--resume", dir})).err,
+                HasSubstr("No such file or directory" + goesOn));
     EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
 }
 
 TEST_F(RunCommand, ResumeRefusesAPlanThatWasChanged) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
     const std::string plan = readFile(dir + "/plan.json");
     const auto resumedWith = [&](const std::string& from, const std::string& to) {
         std::string text = plan;
@@ -293,9 +274,8 @@ TEST_F(RunCommand, ResumeRefusesAPlanThatWasChanged) {
         writeFileAtomic(dir + "/plan.json", text);
         return mockGfxrepro({"run", "--resume", dir});
     };
-    const ProcessResult other = resumedWith("\"number\":1", "\"number\":77");
-    EXPECT_EQ(other.exitCode, 2);
-    EXPECT_THAT(other.err, HasSubstr("is not the one that was planned: plan.json was changed"));
+    EXPECT_THAT(endedWith(2, resumedWith("\"number\":1", "\"number\":77")).err,
+                HasSubstr("is not the one that was planned: plan.json was changed"));
     for (const char* text : {"", "[]", "3", "{\"schema\": 1, \"request\": 7}", "{\"schema\": "}) {
         writeFileAtomic(dir + "/plan.json", text);
         for (const char* command : {"table", "claims", "report"}) {
@@ -327,17 +307,15 @@ ProcessResult reproduceDemo(const TemporaryFolder& folder, const std::string& mi
 
 TEST(Reproduce, ExitCodesFollowClaimsAndCases) {
     const TemporaryFolder holds;
-    const ProcessResult well = reproduceDemo(holds, "4", "[ok]");
-    EXPECT_EQ(well.exitCode, 0) << well.err;
-    EXPECT_THAT(well.out, HasSubstr("claims: of the documents' own claims 1 holds\n"));
+    EXPECT_THAT(endedWith(0, reproduceDemo(holds, "4", "[ok]")).out,
+                HasSubstr("claims: of the documents' own claims 1 holds\n"));
     for (const char* file : {"records.csv", "claims.csv", "junit.xml", "report.html",
                              "tables/demo2026-1.csv", "tables/demo2026-1.md"}) {
         EXPECT_TRUE(fs::exists(holds.path() / "run" / file)) << file;
     }
     const TemporaryFolder fails;
-    const ProcessResult failing = reproduceDemo(fails, "6", "[ok]");
-    EXPECT_EQ(failing.exitCode, 1) << failing.err;
-    EXPECT_THAT(failing.out, HasSubstr("demo2026/1 fails: the number is large (D1); measured 5"));
+    EXPECT_THAT(endedWith(1, reproduceDemo(fails, "6", "[ok]")).out,
+                HasSubstr("demo2026/1 fails: the number is large (D1); measured 5"));
     const TemporaryFolder incomplete;
     EXPECT_EQ(reproduceDemo(incomplete, "4", "[ok, throw]").exitCode, 4);
 }

@@ -29,10 +29,10 @@ std::string writeRun(const TemporaryFolder& folder, int count) {
         folder, "params: {behaviour: throw}\nsweep: {number: {range: [1, " + std::to_string(count) +
                     "]}}\nlayout:\n  rows: number\n  columns: {n: {metric: number}, t: {metric: "
                     "fidelity_db}}\n");
-    EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--quiet",
-                            "--max-failures", "1", "--out", dir})
-                  .exitCode,
-              4);
+    EXPECT_EQ(
+        mockGfxrepro({"run", config, "--jobs", "1", "--quiet", "--max-failures", "1", "--out", dir})
+            .exitCode,
+        4);
     std::vector<records::Record> rows;
     const auto plan = nlohmann::ordered_json::parse(readFile(dir + "/plan.json"));
     for (const auto& item : plan["cases"]) {

@@ -44,8 +44,7 @@ class SchedulerTest : public ::testing::Test {
                             std::size_t mostRecords = records::kMostRecords) {
         unsetenv("GFXREPRO_MOCK_LOG");
         const std::string planned = folder.path() / "planned";
-        EXPECT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", planned}).exitCode,
-                  0);
+        EXPECT_EQ(mockGfxrepro({"run", config, "--out", planned}).exitCode, 0);
         fs::remove(folder.path() / "marker");
         const run::Plan plan = run::Plan::fromJsonFile(planned + "/plan.json");
         const run::RunDirectory directory = run::RunDirectory::create(dir);
@@ -115,8 +114,7 @@ class PairedUnits : public SchedulerTest {
 
 TEST_F(SchedulerTest, StopsBeforeItsRecordsAreMoreThanAreRead) {
     const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2, 3, 4]}\n");
-    ASSERT_EQ(
-        mockGfxrepro({"run", config, "--device", "software", "--out", dir + "-whole"}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir + "-whole"}).exitCode, 0);
     const std::size_t unitRows = records::readRecords(dir + "-whole/records.csv").size() / 4;
     const run::RunOutcome outcome = measure(
         config, [] {}, 2 * unitRows + 2);

@@ -27,10 +27,8 @@ class Seal : public ::testing::Test {
         return writeMockConfig(folder, kBody + std::to_string(bound) + "}\n");
     }
     void run() const {
-        const ProcessResult result =
-            mockGfxrepro({"reproduce", config(6), "--device", "software", "--out", dir});
-        ASSERT_EQ(result.exitCode, 0) << result.out << result.err;
-        EXPECT_THAT(result.out, Not(HasSubstr("warning")));
+        EXPECT_THAT(endedWith(0, mockGfxrepro({"reproduce", config(6), "--out", dir})).out,
+                    Not(HasSubstr("warning")));
     }
     /// The number becomes 4.
     void changeRecords() const {
@@ -84,9 +82,7 @@ TEST_F(Seal, AResumedRunIsSealedAnewAndKeepsTheNote) {
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).exitCode, 0);
     EXPECT_THAT(mockGfxrepro({"table", dir}).out, Not(HasSubstr("warning")));
     changeRecords();
-    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
-    EXPECT_EQ(resumed.exitCode, 0);
-    EXPECT_THAT(resumed.err, HasSubstr(warning));
+    EXPECT_THAT(endedWith(0, mockGfxrepro({"run", "--resume", dir})).err, HasSubstr(warning));
     EXPECT_THAT(mockGfxrepro({"table", dir}).out, HasSubstr(warning));
     EXPECT_EQ(manifest(dir)["notes"].size(), 1U);
 }
@@ -102,9 +98,7 @@ TEST_F(Seal, ARunThatIsUnderWayHasNone) {
 
 TEST_F(Seal, AMergeSaysWhichShardWasChanged) {
     const std::string file = config(6);
-    ASSERT_EQ(mockGfxrepro({"run", file, "--device", "software", "--shard", "1/1", "--out", dir})
-                  .exitCode,
-              0);
+    ASSERT_EQ(mockGfxrepro({"run", file, "--shard", "1/1", "--out", dir}).exitCode, 0);
     changeRecords();
     const std::string merged = folder.path() / "merged";
     EXPECT_EQ(mockGfxrepro({"merge", "--out", merged, dir}).exitCode, 0);
@@ -116,9 +110,7 @@ TEST_F(Seal, AMergeSaysWhichShardWasChanged) {
 
 TEST_F(Seal, PicturesThatAreNotAsTheyWereRecordedAreNamed) {
     const std::string file = config(6);
-    ASSERT_EQ(mockGfxrepro({"run", file, "--device", "software", "--shard", "1/1", "--out", dir})
-                  .exitCode,
-              0);
+    ASSERT_EQ(mockGfxrepro({"run", file, "--shard", "1/1", "--out", dir}).exitCode, 0);
     const records::ImageEntry image = records::readImages(dir).front();
     EXPECT_THAT(mockGfxrepro({"report", dir}).out, Not(HasSubstr("warning")));
     writeFileAtomic(dir + '/' + image.png, readFile(dir + '/' + image.png) + "x");
@@ -141,9 +133,7 @@ TEST_F(Seal, PicturesThatAreNotAsTheyWereRecordedAreNamed) {
 /// Nothing but what the page would show of it is lost.
 TEST_F(Seal, DamagedPicturesAreToldAsMissingOnesAre) {
     const std::string file = config(6);
-    ASSERT_EQ(mockGfxrepro({"run", file, "--device", "software", "--shard", "1/1", "--out", dir})
-                  .exitCode,
-              0);
+    ASSERT_EQ(mockGfxrepro({"run", file, "--shard", "1/1", "--out", dir}).exitCode, 0);
     const std::string png = records::readImages(dir).front().png;
     const std::string whole = readFile(dir + '/' + png);
     std::string damaged = whole;
@@ -160,8 +150,7 @@ TEST_F(Seal, DamagedPicturesAreToldAsMissingOnesAre) {
             EXPECT_EQ(result.exitCode, 0) << command.front() << ": " << result.err;
             EXPECT_THAT(result.out, HasSubstr(png + " was changed")) << command.front();
         }
-        const ProcessResult merge = mockGfxrepro({"merge", "--out", merged, dir});
-        EXPECT_EQ(merge.exitCode, 0) << merge.err;
+        endedWith(0, mockGfxrepro({"merge", "--out", merged, dir}));
         EXPECT_THAT(manifest(merged)["notes"].dump(), HasSubstr(png + " was changed"));
         fs::remove_all(artifact);
         fs::remove_all(merged);
@@ -172,7 +161,7 @@ TEST_F(Seal, DamagedPicturesAreToldAsMissingOnesAre) {
 /// Of what is measured again the old pictures are nothing to be told of.
 TEST_F(Seal, ARunThatGoesOnNamesTheKeptPicturesThatAreNotAsTheyWere) {
     const std::string file = writeMockConfig(folder, "sweep: {number: [3, 4]}\n");
-    ASSERT_EQ(mockGfxrepro({"run", file, "--device", "software", "--out", dir}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", file, "--out", dir}).exitCode, 0);
     const std::vector<records::ImageEntry> images = records::readImages(dir);
     const records::ImageEntry& kept = images.front();
     ASSERT_NE(kept.caseId, images.back().caseId);
@@ -193,8 +182,7 @@ TEST_F(Seal, ARunThatGoesOnNamesTheKeptPicturesThatAreNotAsTheyWere) {
 TEST_F(Seal, AnotherConfigJudgesApartAndSaysSo) {
     run();
     const std::string before = readFile(dir + "/claims.csv");
-    const ProcessResult result = mockGfxrepro({"claims", dir, "--config", config(2)});
-    EXPECT_EQ(result.exitCode, 1) << result.err;
+    const ProcessResult result = endedWith(1, mockGfxrepro({"claims", dir, "--config", config(2)}));
     EXPECT_THAT(
         result.out,
         HasSubstr(

@@ -32,8 +32,7 @@ TEST_F(Sensitivity, FindsTheNumberAtWhichAVerdictFlips) {
     const std::string config = writeMockConfig(folder, kClaim);
     const std::string out = folder.path() / "out";
     const std::vector<std::string> command = sensitivityCommand(config, out);
-    const ProcessResult run = mockGfxrepro(command);
-    EXPECT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run = endedWith(0, mockGfxrepro(command));
     EXPECT_EQ(run.out,
               "sweep/mock small: holds unless number is 10 (flips between 5 and 10, near "
               "6); rests on: number (of 1 tried)\n"
@@ -53,9 +52,7 @@ TEST_F(Sensitivity, ARangeThatNoCaseCanHaveIsRefused) {
     const std::string out = folder.path() / "out";
     const std::string why = "gfxrepro: " + config +
                             ":17:22: technique 'mock': pause_ms is 100000; allowed: 0 … 60000 ms\n";
-    const ProcessResult run = mockGfxrepro(sensitivityCommand(config, out));
-    EXPECT_EQ(run.exitCode, 2);
-    EXPECT_THAT(run.err, HasSubstr(why));
+    EXPECT_THAT(endedWith(2, mockGfxrepro(sensitivityCommand(config, out))).err, HasSubstr(why));
     EXPECT_EQ(mockGfxrepro({"check", config}).err, why);
 }
 
@@ -68,21 +65,19 @@ TEST_F(Sensitivity, CasesThatFailedLeaveItIncomplete) {
         "params: {behaviour: ok}\n"
         "assumptions:\n  behaviour: {range: [throw], why: left open}\n");
     const std::string out = folder.path() / "out";
-    const ProcessResult run = mockGfxrepro(sensitivityCommand(config, out));
-    EXPECT_EQ(run.exitCode, 4) << run.out;
-    EXPECT_THAT(run.err, HasSubstr("sweep/mock: not all of its cases were measured; the runs are "
-                                   "in " +
-                                   out + "/sweep-mock\n"));
+    EXPECT_THAT(endedWith(4, mockGfxrepro(sensitivityCommand(config, out))).err,
+                HasSubstr("sweep/mock: not all of its cases were measured; the runs are "
+                          "in " +
+                          out + "/sweep-mock\n"));
 }
 
 TEST_F(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
     const std::string config = writeMockConfig(folder, kClaim);
     const std::string run = folder.path() / "run", out = folder.path() / "out";
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", run}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", run}).exitCode, 0);
     std::vector<std::string> command = sensitivityCommand(config, out);
     command.insert(command.end(), {"--from", run, "--budget", "0.001s"});
-    const ProcessResult none = mockGfxrepro(command);
-    EXPECT_EQ(none.exitCode, 0) << none.err;
+    const ProcessResult none = endedWith(0, mockGfxrepro(command));
     EXPECT_THAT(none.out, HasSubstr("sweep/mock any: holds under all 1; rests on: not tried\n"));
     command.resize(command.size() - 2);
     const ProcessResult all = mockGfxrepro(command);
@@ -154,8 +149,8 @@ TEST_F(Sensitivity, OfATableThatNobodyLaidOutTheOtherClaimsAreTried) {
                         "claims:\n  few: {says: few, bound: number, at_most: 6}\n"
                         "  fast: {says: fast, bound: frame_ms, at_most: 9e9, kind: absolute}\n"
                         "assumptions: {number: {range: [0, 10], why: left open}}\n");
-    const ProcessResult run = mockGfxrepro(sensitivityCommand(config, folder.path() / "out"));
-    EXPECT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run =
+        endedWith(0, mockGfxrepro(sensitivityCommand(config, folder.path() / "out")));
     EXPECT_THAT(run.err, Not(HasSubstr("exit code")));
     EXPECT_THAT(run.out, HasSubstr("sweep/mock few: holds unless number is 10 (flips between"));
 }
@@ -211,8 +206,7 @@ TEST_F(Sensitivity, ReportsShowWhatIsKept) {
             "--profile",           "full",      "--out", run};
         arguments.insert(arguments.end(), more.begin(), more.end());
         fs::remove_all(run);
-        const ProcessResult result = runProgram(arguments, environment);
-        EXPECT_EQ(result.exitCode, 0) << result.err;
+        endedWith(0, runProgram(arguments, environment));
         return readFile(run + "/claims.csv");
     };
     EXPECT_THAT(claims({}), HasSubstr("one sample,,number (of 1 tried),,,\n"));
@@ -234,8 +228,7 @@ TEST_F(Sensitivity, WhereNothingCouldBeKeptIsSaidOnce) {
     const auto out = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), GFXREPRO_MOCK_PROGRAM);
         const ProcessResult result =
-            runProgram(arguments, {"GFXREPRO_DATA=" + folder.path().string()});
-        EXPECT_EQ(result.exitCode, 0) << result.err;
+            endedWith(0, runProgram(arguments, {"GFXREPRO_DATA=" + folder.path().string()}));
         return result.out;
     };
     const std::string line =
@@ -257,10 +250,8 @@ TEST(Export, AnArtifactCanBeMeasuredAgain) {
     const TemporaryFolder folder;
     const std::string config = writeMockConfig(folder, kClaim);
     const std::string dir = folder.path() / "run", artifact = folder.path() / "artifact";
-    ASSERT_EQ(mockGfxrepro({"run", config, "--device", "software", "--out", dir}).exitCode, 0);
-    const ProcessResult result = mockGfxrepro({"export", dir, "--out", artifact});
-    EXPECT_EQ(result.exitCode, 0) << result.err;
-    EXPECT_EQ(result.out, artifact + "\n");
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
+    EXPECT_EQ(endedWith(0, mockGfxrepro({"export", dir, "--out", artifact})).out, artifact + "\n");
     for (const char* name : {"plan.json", "records.csv", "claims.csv", "report.html", "ASSETS.md",
                              "environment.txt", "tables/sweep-mock.csv"}) {
         EXPECT_TRUE(fs::exists(fs::path(artifact) / name)) << name;
@@ -271,9 +262,9 @@ TEST(Export, AnArtifactCanBeMeasuredAgain) {
         runProgram({"/bin/sh", "-c", "cd " + artifact + " && sha256sum --quiet -c SHA256SUMS"})
             .exitCode,
         0);
-    const ProcessResult again = runProgram({artifact + "/scripts/sweep-mock.sh"},
-                                           {std::string("GFXREPRO=") + GFXREPRO_MOCK_PROGRAM});
-    EXPECT_EQ(again.exitCode, 0) << again.err;
+    const ProcessResult again =
+        endedWith(0, runProgram({artifact + "/scripts/sweep-mock.sh"},
+                                {std::string("GFXREPRO=") + GFXREPRO_MOCK_PROGRAM}));
     EXPECT_EQ(readFile(artifact + "/again/sweep-mock/tables/sweep-mock.csv"),
               readFile(artifact + "/tables/sweep-mock.csv"));
     EXPECT_EQ(mockGfxrepro({"export", dir, "--out", artifact}).err,

@@ -80,8 +80,7 @@ using Twins = test::RunTest;
 
 TEST_F(Twins, AreMeasuredOnceAndFillBothTables) {
     const std::vector<std::string> configs = writeTables(folder);
-    const ProcessResult run = measureTwins(configs, dir);
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run = endedWith(0, measureTwins(configs, dir));
     EXPECT_EQ(run.out, "6 of 6 finished, 2 as a twin; records: " + dir + "/records.csv\n");
     EXPECT_THAT(run.err, HasSubstr("] ok demo2026/2 number=3 (as demo2026/1 number=3)\n"));
     EXPECT_THAT(run.err, HasSubstr("[6/6] ok demo2026/2 number=4\n"));
@@ -109,9 +108,7 @@ TEST_F(Twins, AreMeasuredOnceAndFillBothTables) {
 }
 
 TEST_F(Twins, NeverAmongTimesOfTablesThatHaveAPartInCommon) {
-    const ProcessResult run =
-        measureTwins(writeTables(folder, "measure: {lane: timing, processes: 1}\n"), dir);
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    endedWith(0, measureTwins(writeTables(folder, "measure: {lane: timing, processes: 1}\n"), dir));
     EXPECT_EQ(measuredCount(dir), 6);
     EXPECT_NE(timesOf(dir, "demo2026/1").at(2), timesOf(dir, "demo2026/2").at(2));
 }
@@ -128,8 +125,7 @@ std::vector<std::string> writeTimes(const TemporaryFolder& folder, int processes
 
 TEST_F(Twins, ATableOfTimesWithinAnotherTakesThemAndSaysSo) {
     const std::vector<std::string> configs = writeTimes(folder, 1);
-    const ProcessResult run = measureTwins(configs, dir);
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run = endedWith(0, measureTwins(configs, dir));
     EXPECT_THAT(run.out, HasSubstr("5 of 5 finished, 2 as a twin;"));
     EXPECT_THAT(run.err, HasSubstr("ok demo2026/1 number=2 (as demo2026/2 number=2)\n"));
     EXPECT_EQ(measuredCount(dir), 3);
@@ -145,15 +141,13 @@ TEST_F(Twins, ATableOfTimesWithinAnotherTakesThemAndSaysSo) {
         EXPECT_THAT(shown(std::string("/tables/demo2026-2") + form), Not(HasSubstr(note))) << form;
     }
     EXPECT_THAT(shown("/report.html"), HasSubstr(note));
-    const ProcessResult plan =
-        mockGfxrepro({"plan", configs[0], configs[1], "--device", "software", "--from", dir});
+    const ProcessResult plan = mockGfxrepro({"plan", configs[0], configs[1], "--from", dir});
     EXPECT_THAT(plan.out, HasSubstr("5 cases (2 measured as another's twin), 6 iterations,"));
 }
 
 TEST_F(Twins, TimesOfSeveralProcessesAreOfTheirTable) {
-    const ProcessResult run = measureTwins(writeTimes(folder, 2), dir);
-    ASSERT_EQ(run.exitCode, 0) << run.err;
-    EXPECT_THAT(run.out, HasSubstr("10 of 10 finished; "));
+    EXPECT_THAT(endedWith(0, measureTwins(writeTimes(folder, 2), dir)).out,
+                HasSubstr("10 of 10 finished; "));
     EXPECT_EQ(measuredCount(dir), 10);
     ASSERT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
     EXPECT_THAT(readFile(dir + "/tables/demo2026-1.md"), Not(HasSubstr("Times are those of")));
@@ -178,8 +172,8 @@ TEST_F(Twins, ARunThatEndedBetweenTwoTablesOfTimesSaysWhoseEachIs) {
 }
 
 TEST_F(Twins, ProcessesAreSharedOneByOne) {
-    const ProcessResult run = measureTwins(writeTables(folder, "measure: {processes: 2}\n"), dir);
-    ASSERT_EQ(run.exitCode, 0) << run.err;
+    const ProcessResult run =
+        endedWith(0, measureTwins(writeTables(folder, "measure: {processes: 2}\n"), dir));
     EXPECT_THAT(run.out, HasSubstr("12 of 12 finished, 4 as a twin;"));
     EXPECT_THAT(run.err, HasSubstr("demo2026/2 number=3, round 2 of 2 (as demo2026/1 number=3)\n"));
     EXPECT_EQ(measuredCount(dir), 8);
@@ -220,8 +214,7 @@ TEST_F(Twins, FailTogetherAndAreTriedAgainTogether) {
                    "sweep: {behaviour: [throw, flake]}\nparams: {marker: " + marker + "}\n"),
         writeTable(folder, "2",
                    "sweep: {behaviour: [flake, throw]}\nparams: {marker: " + marker + "}\n")};
-    const ProcessResult run = measureTwins(configs, dir);
-    EXPECT_EQ(run.exitCode, 4) << run.err;
+    const ProcessResult run = endedWith(4, measureTwins(configs, dir));
     EXPECT_THAT(run.out, HasSubstr("2 of 4 finished, 1 as a twin, 2 flaky, 2 failed; records: "));
     EXPECT_THAT(run.err, HasSubstr("error demo2026/2 behaviour=throw (as demo2026/1 "
                                    "behaviour=throw): nothing works\n"));
@@ -246,8 +239,7 @@ TEST_F(Twins, ShardsKeepThemTogetherAndMerge) {
         merge.push_back(part);
     }
     EXPECT_EQ(measured, 4);
-    const ProcessResult result = mockGfxrepro(merge);
-    ASSERT_EQ(result.exitCode, 0) << result.err;
+    endedWith(0, mockGfxrepro(merge));
     EXPECT_EQ(timesOf(merged, "demo2026/1").at(3), timesOf(merged, "demo2026/2").at(3));
     for (const records::ImageEntry& image : records::readImages(merged)) {
         EXPECT_TRUE(fs::exists(fs::path(merged) / image.png)) << image.png;
@@ -260,13 +252,11 @@ TEST_F(Twins, OnlyLeavesThemAloneAndAPlanPredictsThemOnce) {
     const ProcessResult run = measureTwins(configs, dir, {"--only", "number=3"});
     EXPECT_THAT(run.out, HasSubstr("2 of 2 finished, 1 as a twin;")) << run.err;
     const ProcessResult plan =
-        mockGfxrepro({"plan", configs[0], configs[1], "--device", "software", "--from", dir});
-    ASSERT_EQ(plan.exitCode, 0) << plan.err;
+        endedWith(0, mockGfxrepro({"plan", configs[0], configs[1], "--from", dir}));
     EXPECT_THAT(plan.out, HasSubstr("6 cases (2 measured as another's twin), 4 iterations,"));
     EXPECT_THAT(plan.out, HasSubstr("no earlier run tells the time")) << "1 is far from 3";
     // Alone the second table is measured, and its time is known.
-    const ProcessResult second =
-        mockGfxrepro({"plan", configs[1], "--device", "software", "--from", dir});
+    const ProcessResult second = mockGfxrepro({"plan", configs[1], "--from", dir});
     EXPECT_THAT(second.out, HasSubstr("3 cases, 3 iterations,"));
     EXPECT_THAT(second.out, HasSubstr(" tells\n"));
 }

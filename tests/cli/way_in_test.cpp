@@ -29,8 +29,7 @@ bool isInstalled(const std::string& program) {
 }
 
 std::string manPage() {
-    const ProcessResult result = gfxrepro({"man"});
-    EXPECT_EQ(result.exitCode, 0);
+    const ProcessResult result = endedWith(0, gfxrepro({"man"}));
     return result.out;
 }
 
@@ -141,8 +140,7 @@ TEST(ManPage, HasItsSectionsAndOptions) {
 
 std::vector<std::string> completed(std::vector<std::string> words) {
     words.insert(words.begin(), "complete");
-    const ProcessResult result = gfxrepro(words);
-    EXPECT_EQ(result.exitCode, 0);
+    const ProcessResult result = endedWith(0, gfxrepro(words));
     EXPECT_EQ(result.err, "");
     return linesOfText(result.out);
 }
@@ -268,8 +266,7 @@ TEST(Modeline, ChangesNoPlan) {
     const auto planOf = [&](const std::string& head) {
         const fs::path config = folder.write(
             "a.yaml", head + "sweep_of: a\ntitle: A\ntechnique: template\noutput: {width: 32}\n");
-        const ProcessResult result = gfxrepro({"plan", config.string(), "--json"});
-        EXPECT_EQ(result.exitCode, 0) << result.err;
+        const ProcessResult result = endedWith(0, gfxrepro({"plan", config.string(), "--json"}));
         return result.out;
     };
     const std::string without = planOf("");

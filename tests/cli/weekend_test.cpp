@@ -63,8 +63,7 @@ TEST_F(Weekend, NobodyReadsTheProgress) {
         << "its last words, on standard output, had no reader";
     for (const char* run : {"1", "2", "3"}) EXPECT_EQ(rowsOf(dir + run, "number").size(), 3U);
     EXPECT_EQ(shell(GFXREPRO_MOCK_PROGRAM " check nothere.yaml 2>/dev/full").exitCode, 2);
-    const ProcessResult full = shell(GFXREPRO_MOCK_PROGRAM " list scenes >/dev/full");
-    EXPECT_EQ(full.exitCode, 2);
+    const ProcessResult full = endedWith(2, shell(GFXREPRO_MOCK_PROGRAM " list scenes >/dev/full"));
     EXPECT_THAT(full.err, HasSubstr("No space left on device"));
     for (const char* question : {" --version", " --help", " run --help"}) {
         EXPECT_EQ(shell(GFXREPRO_MOCK_PROGRAM + std::string(question) + " >/dev/full").exitCode, 2)
@@ -79,9 +78,8 @@ TEST_F(Weekend, ADriverThatDoesNotAnswer) {
                            folder.path() / "run"},
                           {"GFXREPRO_MOCK_DRIVER_HANGS=1", "GFXREPRO_START_LIMIT_S=" + limit});
     };
-    const ProcessResult result = started("1");
-    EXPECT_EQ(result.exitCode, 3);
-    EXPECT_EQ(result.err, "gfxrepro: the driver did not open a device within 1 s\n");
+    EXPECT_EQ(endedWith(3, started("1")).err,
+              "gfxrepro: the driver did not open a device within 1 s\n");
     EXPECT_EQ(started("soon").err,
               "gfxrepro: GFXREPRO_START_LIMIT_S: expected a number of seconds, found 'soon'\n");
 }
@@ -109,9 +107,7 @@ TEST_F(Weekend, AFolderThatIsGoneOrAnothersEndsTheRun) {
                                "--jobs", "1", "--out", into});
         waitForStarts(into, 1);
         disturb();
-        const ProcessResult result = run.wait();
-        EXPECT_EQ(result.exitCode, 2) << result.out;
-        EXPECT_THAT(result.err,
+        EXPECT_THAT(endedWith(2, run.wait()).err,
                     HasSubstr("gfxrepro: " + into + ": was removed or moved, or its lock"));
     };
     const std::string moved = folder.path() / "moved", locked = folder.path() / "locked";
@@ -119,8 +115,7 @@ TEST_F(Weekend, AFolderThatIsGoneOrAnothersEndsTheRun) {
     ended(locked, [&] { fs::remove(locked + "/lock"); });
     EXPECT_FALSE(fs::exists(moved)) << "nothing is written where it was";
     EXPECT_TRUE(rowsOf(locked, "number").empty()) << "another run may have measured it";
-    const ProcessResult rest = mockGfxrepro({"run", "--resume", locked});
-    EXPECT_EQ(rest.exitCode, 0) << rest.err;
+    endedWith(0, mockGfxrepro({"run", "--resume", locked}));
     EXPECT_EQ(rowsOf(locked, "number").size(), 4U);
 }
 
@@ -168,8 +163,7 @@ TEST_F(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
     killedIn(1, {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", dir});
     killedIn(2, {GFXREPRO_MOCK_PROGRAM, "run", "--resume", dir});
     for (int i = 0; i < 2; ++i) {
-        const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
-        EXPECT_EQ(resumed.exitCode, 4) << resumed.err;
+        endedWith(4, mockGfxrepro({"run", "--resume", dir}));
         EXPECT_THAT(statusLines(dir),
                     testing::Contains("hang: crash (the runner did not survive it, 2 times; "
                                       "resume with --retry to try it again)"));
@@ -227,9 +221,8 @@ TEST_F(Weekend, WhatTookTheMachineDownInOneProcessIsNotTriedInTheOthers) {
                                                "sweep: {behaviour: [hang, ok]}\nmeasure: {lane: "
                                                "quality, time_limit_s: 20, processes: 3}\n");
     killTwice({config}, dir);
-    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
-    EXPECT_EQ(resumed.exitCode, 4) << resumed.err;
-    EXPECT_THAT(resumed.out, HasSubstr("3 of 6 finished, 3 failed; "));
+    EXPECT_THAT(endedWith(4, mockGfxrepro({"run", "--resume", dir, "--jobs", "1"})).out,
+                HasSubstr("3 of 6 finished, 3 failed; "));
     for (const records::Record& row : records::readRecords(dir + "/records.csv")) {
         if (row.status == records::Status::Ok) continue;
         EXPECT_EQ(row.status, records::Status::Crash) << "process " << row.process;
@@ -248,8 +241,7 @@ TEST_F(Weekend, ATwinOfWhatTookTheMachineDownIsNotTriedEither) {
                                            kHangs));
     }
     killTwice(configs, dir);
-    const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir, "--jobs", "1"});
-    EXPECT_EQ(resumed.exitCode, 4) << resumed.err;
+    endedWith(4, mockGfxrepro({"run", "--resume", dir, "--jobs", "1"}));
     const std::string end = ", 2 times; resume with --retry to try it again)";
     EXPECT_THAT(
         statusLines(dir),
@@ -263,17 +255,16 @@ TEST_F(Weekend, StopsWhereTheMachineIsNotToBeTrusted) {
     const std::string config = writeMockConfig(
         folder, "params: {behaviour: device_lost}\nsweep: {number: [1, 2, 3, 4]}\n");
     const ProcessResult lost =
-        mockGfxrepro({"run", config, "--device", "software", "--jobs", "1", "--out", dir});
-    EXPECT_EQ(lost.exitCode, 4);
+        endedWith(4, mockGfxrepro({"run", config, "--jobs", "1", "--out", dir}));
     EXPECT_THAT(lost.err, HasSubstr("stopped: the device was lost in two cases in a row; continue "
                                     "with: gfxrepro run --resume " +
                                     dir));
     EXPECT_THAT(lost.out, HasSubstr("0 of 2 finished, 2 failed"));
     const std::string failing =
         writeMockConfig(folder, "params: {behaviour: throw}\nsweep: {number: [1, 2, 3, 4, 5]}\n");
-    const ProcessResult stopped = mockGfxrepro({"run", failing, "--device", "software", "--jobs",
-                                                "1", "--max-failures", "3", "--out", dir + "2"});
-    EXPECT_EQ(stopped.exitCode, 4);
+    const ProcessResult stopped = endedWith(
+        4,
+        mockGfxrepro({"run", failing, "--jobs", "1", "--max-failures", "3", "--out", dir + "2"}));
     EXPECT_THAT(stopped.err, HasSubstr("stopped: 3 failed; "));
     EXPECT_THAT(stopped.out, HasSubstr("0 of 3 finished, 3 failed"));
 }
@@ -364,11 +355,8 @@ TEST_F(Weekend, OtherFilesAmongTheRunsStopNoRun) {
     fs::create_symlink("manifest.json", runs / "loop/manifest.json");
     folder.write("runs/number/manifest.json", "{\"device_class\": 5}");
     const std::string inside = "cd " + folder.path().string() + " && ";
-    const ProcessResult run = shell(inside + mockRun(config, "mine"));
-    EXPECT_EQ(run.exitCode, 0) << run.err;
-    const ProcessResult plan =
-        shell(inside + GFXREPRO_MOCK_PROGRAM " plan --device software " + config);
-    EXPECT_EQ(plan.exitCode, 0) << plan.err;
+    endedWith(0, shell(inside + mockRun(config, "mine")));
+    endedWith(0, shell(inside + GFXREPRO_MOCK_PROGRAM " plan --device software " + config));
 }
 
 TEST_F(Weekend, WhatFailedGoesLastWhereFailuresStopTheRun) {
@@ -376,9 +364,7 @@ TEST_F(Weekend, WhatFailedGoesLastWhereFailuresStopTheRun) {
         writeMockConfig(folder, "sweep: {behaviour: [throw, bad_alloc, ok]}\n");
     const auto stopped = [&](std::vector<std::string> command) {
         command.insert(command.end(), {"--jobs", "1", "--max-failures", "2"});
-        const ProcessResult result = mockGfxrepro(command);
-        EXPECT_EQ(result.exitCode, 4);
-        EXPECT_THAT(result.err, HasSubstr("stopped: 2 failed; "));
+        EXPECT_THAT(endedWith(4, mockGfxrepro(command)).err, HasSubstr("stopped: 2 failed; "));
     };
     stopped({"run", config, "--device", "software", "--out", dir});
     EXPECT_EQ(rowsOf(dir, "number").size(), 0U);
@@ -404,8 +390,7 @@ TEST_F(Weekend, WhatARunWithoutAPlanWasWritingIsSweptWhereItBeginsAgain) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
     const auto isKept = [&](const std::string& name) {
         folder.write(name + "/manifest.json.tmp12", "torn");
-        const ProcessResult run = shell(mockRun(config, folder.path() / name));
-        EXPECT_EQ(run.exitCode, 0) << run.err;
+        endedWith(0, shell(mockRun(config, folder.path() / name)));
         return fs::exists(folder.path() / name / "manifest.json.tmp12");
     };
     folder.write("killed/lock", "");
@@ -417,9 +402,7 @@ TEST_F(Weekend, FilesOfOthersAreNotWrittenOver) {
     const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
     const std::string work = folder.path() / "work";
     folder.write("work/claims.csv", "my own\n");
-    const ProcessResult result = shell(mockRun(config, work));
-    EXPECT_EQ(result.exitCode, 2);
-    EXPECT_THAT(result.err,
+    EXPECT_THAT(endedWith(2, shell(mockRun(config, work))).err,
                 EndsWith("gfxrepro: " + work +
                          ": has a claims.csv that is of no run and would be written over; "
                          "give another folder\n"));
