@@ -290,17 +290,6 @@ void checkCount(const Params& params, const Plan& plan, std::size_t count, std::
                     " triangles, but 'triangles' is " + std::to_string(triangles));
 }
 
-void addMesh(Scene& scene, MeshBuilder& builder, const char* name, float roughness) {
-    const int index = static_cast<int>(scene.meshes.size());
-    Material material;
-    material.name = name;
-    material.baseColor = {1.0F, 1.0F, 1.0F, 1.0F};
-    material.roughness = roughness;
-    scene.materials.push_back(material);
-    scene.meshes.push_back(builder.take(name, index));
-    scene.instances.push_back({index, glm::mat4(1.0F)});
-}
-
 }  // namespace
 
 Scene city(Params& params, std::uint64_t seed) {
@@ -329,15 +318,15 @@ Scene city(Params& params, std::uint64_t seed) {
     checkCount(params, plan, builders.triangleCount(), wanted);
     const std::size_t missing = wanted - builders.triangleCount();
     Scene scene;
-    addMesh(scene, builders.ground, "ground", 1.0F);
+    builders.ground.addTo(scene, "ground", 1.0F);
     Mesh& ground = scene.meshes.back();
     const std::size_t ofGround = ground.triangles.size() + missing;
     ground = refinedTo(std::move(ground), static_cast<long long>(ofGround));
-    addMesh(scene, builders.walls, "walls", 1.0F);
-    addMesh(scene, builders.glass, "glass", 0.2F);
-    addMesh(scene, builders.roofs, "roofs", 1.0F);
-    addMesh(scene, builders.metal, "metal", 0.5F);
-    addMesh(scene, builders.plants, "plants", 1.0F);
+    builders.walls.addTo(scene, "walls", 1.0F);
+    builders.glass.addTo(scene, "glass", 0.2F);
+    builders.roofs.addTo(scene, "roofs", 1.0F);
+    builders.metal.addTo(scene, "metal", 0.5F);
+    builders.plants.addTo(scene, "plants", 1.0F);
     GFXREPRO_ASSERT_EQ(scene.triangleCount(), wanted);
     // Over the roofs, at an angle to the streets.
     const glm::vec3 target(0.0F, 0.15F * scene.bounds().max.y, 0.0F);

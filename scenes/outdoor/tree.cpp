@@ -265,16 +265,6 @@ void addGround(MeshBuilder& builder, float radiusM) {
     builder.addIndexed(low, std::vector<glm::vec3>(kSides, -kUp), fan);
 }
 
-void addMesh(Scene& scene, MeshBuilder& builder, const char* name) {
-    const int index = static_cast<int>(scene.meshes.size());
-    Material material;
-    material.name = name;
-    material.baseColor = {1.0F, 1.0F, 1.0F, 1.0F};
-    scene.materials.push_back(material);
-    scene.meshes.push_back(builder.take(name, index));
-    scene.instances.push_back({index, glm::mat4(1.0F)});
-}
-
 }  // namespace
 
 Scene tree(Params& params, std::uint64_t seed) {
@@ -325,9 +315,9 @@ Scene tree(Params& params, std::uint64_t seed) {
               static_cast<float>(leafSize) * 0.23F / std::sqrt(share), seed);
 
     Scene scene;
-    addMesh(scene, ground, "ground");
-    addMesh(scene, grower.bark(), "bark");
-    addMesh(scene, leaves, "leaves");
+    ground.addTo(scene, "ground");
+    grower.bark().addTo(scene, "bark");
+    leaves.addTo(scene, "leaves");
     if (faces == 2) addBackSides(scene.meshes.back());
     GFXREPRO_ASSERT_EQ(scene.triangleCount(), wanted);
     const glm::vec3 target(0.0F, 0.5F * scene.bounds().max.y, 0.0F);

@@ -161,16 +161,7 @@ void addFurniture(Square& square, Random& random) {
 
 void addMesh(Scene& scene, MeshBuilder& builder, const char* name, float roughness,
              bool isDoubleSided = false) {
-    if (builder.triangleCount() == 0) return;
-    const int index = static_cast<int>(scene.meshes.size());
-    Material material;
-    material.name = name;
-    material.baseColor = glm::vec4(1.0F);
-    material.roughness = roughness;
-    material.isDoubleSided = isDoubleSided;
-    scene.materials.push_back(material);
-    scene.meshes.push_back(builder.take(name, index));
-    scene.instances.push_back({index, glm::mat4(1.0F)});
+    if (builder.triangleCount() > 0) builder.addTo(scene, name, roughness, isDoubleSided);
 }
 
 void addCameraAndLights(Scene& scene) {

@@ -147,4 +147,16 @@ Mesh MeshBuilder::take(std::string_view name, int material) {
     return mesh;
 }
 
+void MeshBuilder::addTo(Scene& scene, const char* name, float roughness, bool isDoubleSided) {
+    const int index = static_cast<int>(scene.meshes.size());
+    Material material;
+    material.name = name;
+    material.baseColor = glm::vec4(1.0F);
+    material.roughness = roughness;
+    material.isDoubleSided = isDoubleSided;
+    scene.materials.push_back(material);
+    scene.meshes.push_back(take(name, index));
+    scene.instances.push_back({index, glm::mat4(1.0F)});
+}
+
 }  // namespace gfxrepro::scene

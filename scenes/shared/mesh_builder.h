@@ -40,6 +40,8 @@ class MeshBuilder {
     std::size_t triangleCount() const { return mesh_.triangles.size(); }
     /// The mesh so far; the builder is empty afterwards.
     Mesh take(std::string_view name, int material);
+    /// It becomes an instance of `scene`, with a white material of its own.
+    void addTo(Scene& scene, const char* name, float roughness = 1.0F, bool isDoubleSided = false);
 
   private:
     Mesh mesh_;

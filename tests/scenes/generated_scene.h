@@ -23,6 +23,11 @@ inline Scene generated(const std::string& name, const std::string& yaml, std::ui
     return findGenerator(registeredGenerators(), name, {}).generate(params, seed);
 }
 
+/// What it says against them.
+inline std::string refusalOf(const std::string& name, const std::string& yaml) {
+    return test::errorText([&] { generated(name, yaml); });
+}
+
 inline const Mesh& meshNamed(const Scene& scene, const std::string& name) {
     for (const Mesh& mesh : scene.meshes) {
         if (mesh.name == name) return mesh;
