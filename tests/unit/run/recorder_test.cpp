@@ -97,17 +97,21 @@ config::Outputs withTruthOf(const char* picture) {
     return {{errors.begin(), errors.end()}, {{picture, ""}}, false, {picture}};
 }
 
-std::map<std::string, double> errorsIn(const CaseResult& result) {
-    std::map<std::string, double> errors;
-    for (const Sample& sample : result.samples) errors[sample.metric] = sample.value;
-    return errors;
-}
+/// A case whose picture `result` has a truth.
+class Recorded : public test::FolderTest {
+  protected:
+    std::map<std::string, double> errors() const {
+        std::map<std::string, double> errors;
+        for (const Sample& sample : result.samples) errors[sample.metric] = sample.value;
+        return errors;
+    }
 
-TEST(RunRecorder, ErrorsAreThoseOfKnownPictures) {
-    const test::TemporaryFolder folder;
-    CaseResult result;
     const Case item = someCase();
-    RunRecorder recorder(folder.path(), "", item, withTruthOf("result"), result);
+    CaseResult result;
+    RunRecorder recorder{folder.path(), "gfxrepro run x.yaml", item, withTruthOf("result"), result};
+};
+
+TEST_F(Recorded, ErrorsAreThoseOfKnownPictures) {
     recorder.setIteration(0, 0);
     image::ImageF picture(16, 16, 3, 0.75F);
     picture.at(0, 0, 1) = 1.0F;
@@ -115,44 +119,36 @@ TEST(RunRecorder, ErrorsAreThoseOfKnownPictures) {
     recorder.image("truth", image::ImageF(16, 16, 3, 0.5F), {.truthOf = "result"});
     recorder.image("other", image::ImageF(16, 16, 3, 0.1F), {.truthOf = "result"});
     recorder.compareWithTruths();
-    std::map<std::string, double> errors = errorsIn(result);
-    EXPECT_EQ(errors.size(), config::pictureErrors().size());
+    std::map<std::string, double> first = errors();
+    EXPECT_EQ(first.size(), config::pictureErrors().size());
     const double mse = (767.0 * 0.0625 + 0.25) / 768.0;
-    EXPECT_NEAR(errors["mse"], mse, 1e-12) << "against the first truth";
-    EXPECT_NEAR(errors["rmse"], std::sqrt(mse), 1e-12);
-    EXPECT_NEAR(errors["rel_mse"], mse / 0.26, 1e-9);
-    EXPECT_NEAR(errors["psnr_db"], -10.0 * std::log10(mse), 1e-9);
-    EXPECT_LT(errors["ssim"], 1.0);
-    EXPECT_GT(errors["flip"], 0.0);
-    EXPECT_DOUBLE_EQ(errors["error_p95"], 0.25) << "one pixel of 256 is worse";
-    EXPECT_DOUBLE_EQ(errors["error_p99"], 0.25);
+    EXPECT_NEAR(first["mse"], mse, 1e-12) << "against the first truth";
+    EXPECT_NEAR(first["rmse"], std::sqrt(mse), 1e-12);
+    EXPECT_NEAR(first["rel_mse"], mse / 0.26, 1e-9);
+    EXPECT_NEAR(first["psnr_db"], -10.0 * std::log10(mse), 1e-9);
+    EXPECT_LT(first["ssim"], 1.0);
+    EXPECT_GT(first["flip"], 0.0);
+    EXPECT_DOUBLE_EQ(first["error_p95"], 0.25) << "one pixel of 256 is worse";
+    EXPECT_DOUBLE_EQ(first["error_p99"], 0.25);
     EXPECT_EQ(result.samples[0].pass, "result");
     // Of the next frame its own.
     recorder.setIteration(1, 0);
     recorder.image("result", image::ImageF(4, 4, 3, 0.5F), {});
     recorder.compareWithTruths();
-    EXPECT_EQ(errorsIn(result), errors);
+    EXPECT_EQ(errors(), first);
 }
 
-TEST(RunRecorder, APngIsComparedAsItIsStored) {
-    const test::TemporaryFolder folder;
-    CaseResult result;
-    const Case item = someCase();
-    RunRecorder recorder(folder.path(), "", item, withTruthOf("result"), result);
+TEST_F(Recorded, APngIsComparedAsItIsStored) {
     recorder.setIteration(0, 0);
     const image::ImageF stored(16, 16, 3, 0.4F), storedTruth(16, 16, 3, 0.2F);
     recorder.image("result", image::ImageF(16, 16, 3, 0.1329F), {.stored = &stored});
     recorder.image("truth", image::ImageF(16, 16, 3, 0.0331F),
                    {.truthOf = "result", .stored = &storedTruth});
     recorder.compareWithTruths();
-    EXPECT_NEAR(errorsIn(result)["rmse"], 0.2, 1e-6);
+    EXPECT_NEAR(errors().at("rmse"), 0.2, 1e-6);
 }
 
-TEST(RunRecorder, WhatCannotBeComparedIsAnError) {
-    const test::TemporaryFolder folder;
-    CaseResult result;
-    const Case item = someCase();
-    RunRecorder recorder(folder.path(), "", item, withTruthOf("result"), result);
+TEST_F(Recorded, WhatCannotBeComparedIsAnError) {
     recorder.image("result", image::ImageF(16, 16, 3), {});
     recorder.image("truth", image::ImageF(32, 16, 3), {.truthOf = "result"});
     EXPECT_EQ(test::errorText([&] { recorder.compareWithTruths(); }),
@@ -164,11 +160,7 @@ TEST(RunRecorder, WhatCannotBeComparedIsAnError) {
               "does not declare that it has one");
 }
 
-TEST(RunRecorder, KeepsLayersTruthsAndAttributes) {
-    const test::TemporaryFolder folder;
-    CaseResult result;
-    const Case item = someCase();
-    RunRecorder recorder(folder.path(), "gfxrepro run x.yaml", item, withTruthOf("result"), result);
+TEST_F(Recorded, KeepsLayersTruthsAndAttributes) {
     recorder.setIteration(0, 0);
     technique::ImageOptions options;
     options.layers.add(image::ImageF(4, 2, 1, 7.0F), {"id"}, image::ExrPixelType::Uint);
@@ -190,11 +182,7 @@ TEST(RunRecorder, KeepsLayersTruthsAndAttributes) {
 }
 
 /// Grey at half cover: PNG has what is covered.
-TEST(RunRecorder, GreyMayHaveAlpha) {
-    const test::TemporaryFolder folder;
-    CaseResult result;
-    const Case item = someCase();
-    RunRecorder recorder(folder.path(), "", item, withTruthOf("result"), result);
+TEST_F(Recorded, GreyMayHaveAlpha) {
     image::ImageF grey(2, 1, 2, 0.5F);
     grey.at(0, 0, 0) = 0.25F;
     recorder.image("grey", grey, {});
@@ -207,11 +195,7 @@ TEST(RunRecorder, GreyMayHaveAlpha) {
               "image 'five' has 5 channels; 1 to 4 are allowed");
 }
 
-TEST(RunRecorder, TruthsNeedTheirImage) {
-    const test::TemporaryFolder folder;
-    CaseResult result;
-    const Case item = someCase();
-    RunRecorder recorder(folder.path(), "", item, withTruthOf("result"), result);
+TEST_F(Recorded, TruthsNeedTheirImage) {
     recorder.setIteration(0, 0);
     recorder.image("result", image::ImageF(1, 1, 1), {});
     recorder.compareWithTruths();

@@ -43,6 +43,13 @@ class Worker : public testing::Test {
         }
         ASSERT_TRUE(worker.device());
     }
+    /// One that has its case, until the next.
+    WorkerHandle& begun(const std::string& script) {
+        worker_.emplace(command(script), config::Measure::Lane::Quality, false, phases);
+        waitUntilReady(*worker_);
+        worker_->assign({&item, 0});
+        return *worker_;
+    }
     static void signal(const WorkerHandle& worker, int number) {
         ::kill(worker.process().pid(), number);
         for (int i = 0; i < 1000 && worker.process().isSuspended() != (number == SIGSTOP); ++i) {
@@ -53,12 +60,13 @@ class Worker : public testing::Test {
 
     PhaseClock phases;
     Case item = test::makeCase("t/1", "a", 1);
+
+  private:
+    std::optional<WorkerHandle> worker_;
 };
 
 TEST_F(Worker, SuspendedAloneItsLimitMovesBySixtySecondsAtMost) {
-    WorkerHandle worker(command("sleep 1000"), config::Measure::Lane::Quality, false, phases);
-    waitUntilReady(worker);
-    worker.assign({&item, 0});
+    WorkerHandle& worker = begun("sleep 1000");
     const Clock::time_point begin = Clock::now();
     signal(worker, SIGSTOP);
     for (const auto at : {1s, 30s, 59s, 61s, 64s}) {
@@ -104,10 +112,7 @@ TEST_F(Worker, WhoSpeaksInItsPlaceEndsTheCaseAlone) {
          {std::pair{R"({"ready": {}})",
                     "the worker was ready already: descriptor 3 is not a technique's"},
           std::pair{R"({"done": {}})", "the worker's answer: '/status' is missing"}}) {
-        WorkerHandle worker(command(std::string("echo '") + said + "' >&3; sleep 1000"),
-                            config::Measure::Lane::Quality, false, phases);
-        waitUntilReady(worker);
-        worker.assign({&item, 0});
+        WorkerHandle& worker = begun(std::string("echo '") + said + "' >&3; sleep 1000");
         const auto result = receive(worker);
         ASSERT_TRUE(result) << said;
         EXPECT_EQ(result->status, records::Status::Error);
@@ -117,10 +122,8 @@ TEST_F(Worker, WhoSpeaksInItsPlaceEndsTheCaseAlone) {
 }
 
 TEST_F(Worker, AFileThatItCannotWriteIsNoneOfTheCase) {
-    WorkerHandle worker(command(R"(echo '{"unwritable": "cannot write x: full"}' >&3; sleep 1000)"),
-                        config::Measure::Lane::Quality, false, phases);
-    waitUntilReady(worker);
-    worker.assign({&item, 0});
+    WorkerHandle& worker =
+        begun(R"(echo '{"unwritable": "cannot write x: full"}' >&3; sleep 1000)");
     const auto result = receive(worker);
     ASSERT_TRUE(result);
     EXPECT_TRUE(result->isUnwritable);
@@ -128,9 +131,7 @@ TEST_F(Worker, AFileThatItCannotWriteIsNoneOfTheCase) {
 }
 
 TEST_F(Worker, AfterASuspensionItHasItsOwnTime) {
-    WorkerHandle worker(command("sleep 1000"), config::Measure::Lane::Quality, false, phases);
-    waitUntilReady(worker);
-    worker.assign({&item, 0});
+    WorkerHandle& worker = begun("sleep 1000");
     const Clock::time_point begin = Clock::now();
     signal(worker, SIGSTOP);
     EXPECT_FALSE(worker.checkLimits(begin + 1s));
@@ -164,13 +165,9 @@ TEST_F(Worker, OneThatCannotBeKilledIsLeftBehindAndTheRowSaysSo) {
 
 TEST_F(Worker, AnAnswerOfAnotherShapeIsAnErrorOfTheCase) {
     const auto messageOf = [&](const std::string& done) {
-        WorkerHandle worker(
-            command(
-                "echo a library >&3; echo '[1]' >&3; echo '{\"begin\": 3}' >&3; echo '{\"done\": " +
-                done + "}' >&3; sleep 1000"),
-            config::Measure::Lane::Quality, false, phases);
-        waitUntilReady(worker);
-        worker.assign({&item, 0});
+        WorkerHandle& worker = begun(
+            "echo a library >&3; echo '[1]' >&3; echo '{\"begin\": 3}' >&3; echo '{\"done\": " +
+            done + "}' >&3; sleep 1000");
         const auto result = receive(worker);
         EXPECT_TRUE(result && result->status == records::Status::Error);
         return result ? result->message : "";
@@ -194,9 +191,7 @@ TEST_F(Worker, AnAnswerOfAnotherShapeIsAnErrorOfTheCase) {
 
 TEST_F(Worker, AnAnswerWithoutEndIsACrashOfTheCase) {
     for (const char* script : {"cat /dev/zero >&3", "head -c 70000000 /dev/zero >&3; sleep 1000"}) {
-        WorkerHandle worker(command(script), config::Measure::Lane::Quality, false, phases);
-        waitUntilReady(worker);
-        worker.assign({&item, 0});
+        WorkerHandle& worker = begun(script);
         const auto result = receive(worker);
         ASSERT_TRUE(result) << script;
         EXPECT_EQ(result->status, records::Status::Crash);
@@ -207,12 +202,9 @@ TEST_F(Worker, AnAnswerWithoutEndIsACrashOfTheCase) {
 }
 
 TEST_F(Worker, ALongAnswerIsReadWhole) {
-    WorkerHandle worker(
-        command("printf '{\"unavailable\": \"' >&3; head -c 60000000 /dev/zero | tr "
-                "'\\0' x >&3; echo '\"}' >&3"),
-        config::Measure::Lane::Quality, false, phases);
-    waitUntilReady(worker);
-    worker.assign({&item, 0});
+    WorkerHandle& worker = begun(
+        "printf '{\"unavailable\": \"' >&3; head -c 60000000 /dev/zero | tr "
+        "'\\0' x >&3; echo '\"}' >&3");
     const auto result = receive(worker);
     ASSERT_TRUE(result);
     EXPECT_EQ(result->status, records::Status::Unsupported);
