@@ -71,8 +71,6 @@ std::vector<std::string> unusedGpus(const fs::path& devices, const fs::path& dri
     return sentences;
 }
 
-namespace fs = std::filesystem;
-
 namespace {
 
 std::vector<std::string> listed(const char* variable, const std::string& otherwise) {

@@ -415,8 +415,6 @@ double flip(const ImageF& reference, const ImageF& test, double pixelsPerDegree)
 
 namespace {
 
-using image::ImageF;
-
 /// The positive luminances of linear Rec. 709 colour, and how many there are in all.
 struct Luminances {
     std::vector<double> positive;

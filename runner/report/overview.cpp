@@ -272,8 +272,6 @@ std::vector<Highlight> highlightsOf(const std::vector<const Page*>& pages,
     return chosen;
 }
 
-using claims::ClaimResult;
-using claims::Verdict;
 // What reproduced and what did not, and every claim.
 
 namespace {

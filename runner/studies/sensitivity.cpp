@@ -293,8 +293,6 @@ std::string restsOn(const std::vector<Outcome>& all, std::size_t claim) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-using claims::ClaimResult;
 using report::escapeMarkdown;
 
 constexpr const char* kHeader =

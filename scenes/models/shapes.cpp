@@ -324,14 +324,6 @@ Shape dragon(std::uint32_t seed) {
 
 // Stand-ins for scanned parts of the body: hand, head, hip bone.
 
-using glm::vec3;
-using sdf::ball;
-using sdf::box;
-using sdf::capsule;
-using sdf::ellipsoid;
-using sdf::Relief;
-using sdf::Shape;
-
 namespace {
 
 struct Finger {

@@ -113,8 +113,6 @@ FrameCounts PixelMeasures::finishAvailability() {
     return {samplesQuery_.result(), availableQuery_.result()};
 }
 
-using kit::DepthImage;
-
 NextView::NextView(const gl::ShaderLibrary& shaders, kit::DepthImageRenderer& renderer,
                    const kit::DrawableScene& scene, std::vector<scene::Camera> candidates,
                    const std::vector<scene::Camera>& outputCameras, glm::ivec2 sizePx)

@@ -295,9 +295,6 @@ TEST(Visibility, FrustumsEndWhatImagesHold) {
     EXPECT_TRUE(VisibilitySequence(tracer, {moved}, false).holds(0, b));
 }
 
-using kit::View;
-using raycast::RayTracer;
-
 /// A square of half size 1 at z = 0 and one of half size 0.5 behind it at z = −1.
 scene::Scene twoSquares() {
     scene::Scene scene;

@@ -185,8 +185,6 @@ TEST(Plans, EveryModelOfACaseIsInItsId) {
 }
 
 using cluster::mergeRuns;
-using Lane = config::Measure::Lane;
-using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 /// Four quality cases q/1, then two timing cases t/1.

@@ -321,7 +321,6 @@ TEST_F(Exr, ReadsRealFiles) {
 }
 
 using Colour = std::array<std::uint8_t, 3>;
-using test::errorText;
 
 /// Entries of matplotlib 3.6.3 that are no control colours: magma's 8th, 101st, 200th and 247th,
 /// coolwarm's second and 32nd of 33.

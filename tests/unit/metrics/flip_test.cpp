@@ -337,9 +337,6 @@ TEST(Flip, RefusesWhatCannotBeCompared) {
               "FLIP allows 1 to 1000 pixels a degree, found nan");
 }
 
-using image::ImageF;
-using test::errorText;
-
 /// One luminance is compared at one exposure, that which shows it as 0.85.
 TEST(HdrFlip, ConstantReferenceHasOneExposure) {
     const ImageF grey(4, 4, 3, 8.0F);
