@@ -148,10 +148,6 @@ void makeBelow(const fs::path& runDir, const fs::path& folder) {
     makeFolder(runDir / folder);
 }
 
-}  // namespace
-
-namespace {
-
 /// By the names of config::pictureErrors(); `seen` is the picture in linear light.
 std::vector<std::pair<const char*, double>> errorsOf(const image::ImageF& test,
                                                      const image::ImageF& truth,

@@ -48,10 +48,6 @@ void shareArtifacts(const fs::path& runDir, const Case& measured, const Case& tw
     }
 }
 
-}  // namespace
-
-namespace {
-
 bool hasTimes(const Case& item) {
     return item.measure.lane == config::Measure::Lane::Timing;
 }

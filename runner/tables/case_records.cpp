@@ -307,10 +307,6 @@ std::vector<std::size_t> candidates(const LayoutCases& cases, const Where& where
     return all;
 }
 
-}  // namespace
-
-namespace {
-
 void countSweptSeeds(LayoutCases& cases) {
     const auto axis = std::ranges::find(cases.axes, kSeedAxis) - cases.axes.begin();
     if (axis == std::ssize(cases.axes)) return;
