@@ -191,6 +191,7 @@ void requireOtherTruths(const config::Case& item) {
 void requireTimesTaken(const config::Experiment& experiment, const tables::Table& table) {
     const bool isTimed = experiment.measure.lane == config::Measure::Lane::Timing;
     if (isTimed || !config::isMeasuredHere(experiment) || !experiment.hasDefaultLayout()) return;
+    if (config::isLaneGivenBeside(experiment)) return;
     for (const config::ClaimSpec& claim : experiment.claims) {
         if (claims::isOfTime(claim, table)) config::refuseTimes(experiment, claim);
     }

@@ -178,7 +178,18 @@ namespace {
                                    hasSeeds ? "scene_seeds: 1" : "lane: timing"));
 }
 
+/// Null where none is given.
+const Node* laneOf(const Experiment& experiment) {
+    const Node* measure = experiment.document.find("measure");
+    return measure && measure->isMap() ? measure->find("lane") : nullptr;
+}
+
 }  // namespace
+
+bool isLaneGivenBeside(const Experiment& experiment) {
+    const Node* lane = laneOf(experiment);
+    return lane && lane->location().file.text() != experiment.file;
+}
 
 void refuseTimes(const Experiment& experiment, const ClaimSpec& claim) {
     refuseTimes(experiment, claim.location,
@@ -187,13 +198,11 @@ void refuseTimes(const Experiment& experiment, const ClaimSpec& claim) {
 
 void requireTimed(const Experiment& experiment) {
     if (!isMeasuredHere(experiment) || experiment.measure.lane == Measure::Lane::Timing) return;
-    const Node* measure = experiment.document.find("measure");
-    const Node* lane = measure && measure->isMap() ? measure->find("lane") : nullptr;
-    const bool isOwn = lane && lane->location().file.text() == experiment.file;
-    if (isOwn && showsTimes(experiment.layout)) {
+    const Node* lane = laneOf(experiment);
+    if (lane && !isLaneGivenBeside(experiment) && showsTimes(experiment.layout)) {
         refuseTimes(experiment, lane->location(), "the layout shows some");
     }
-    if (!experiment.hasDefaultLayout() || (lane && !isOwn)) return;
+    if (!experiment.hasDefaultLayout() || isLaneGivenBeside(experiment)) return;
     for (const ClaimSpec& claim : experiment.claims) {
         std::vector<std::string> read = claim.operands;
         if (claim.over) read.push_back(*claim.over);

@@ -208,6 +208,9 @@ inline bool goesByClock(const Experiment& experiment) {
 
 /// Throws the Error of a claim that reads times where the lane takes none.
 [[noreturn]] void refuseTimes(const Experiment& experiment, const ClaimSpec& claim);
+/// Whether its lane is not of its own file, but of what it extends or of --set: its claims on times
+/// are not meant then.
+bool isLaneGivenBeside(const Experiment& experiment);
 
 /// Begins the place of what was given there.
 inline constexpr const char* kCommandLine = "command line, ";
