@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "engine/core/text.h"
 
@@ -39,16 +40,11 @@ std::optional<T> parsedNumber(std::string_view word) {
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (stop != word.data() + word.size() || word.empty()) return std::nullopt;
     if (error == std::errc()) return value;
-    if (error == std::errc::result_out_of_range && std::numeric_limits<T>::has_infinity) {
-        // from_chars does not say on which side it left the range. The exponent does; without one
-        // the first digit that counts, which stands behind the point.
-        const std::size_t exponent = word.find_first_of("eE");
-        const bool isTiny = exponent != word.npos
-                                ? word.substr(exponent + 1).starts_with('-')
-                                : word.find_first_of("123456789") > word.find('.');
-        if (isTiny) return T{0};
-        const T infinity = std::numeric_limits<T>::infinity();
-        return word[0] == '-' ? -infinity : infinity;
+    // from_chars does not say on which side it left the range.
+    if (error == std::errc::result_out_of_range && std::is_floating_point_v<T>) {
+        const std::string text(word);
+        if constexpr (std::is_same_v<T, float>) return std::strtof(text.c_str(), nullptr);
+        return static_cast<T>(std::strtod(text.c_str(), nullptr));
     }
     return std::nullopt;
 }

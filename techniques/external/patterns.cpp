@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <regex>
+#include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -120,16 +123,26 @@ bool isLetter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
+std::string lowered(std::string_view text) {
+    std::string result(text);
+    std::ranges::transform(result, result.begin(), [](unsigned char c) { return std::tolower(c); });
+    return result;
+}
+
 constexpr char kThinBlank = '\1';
 
-/// What typesetters write, as programs do: minus and what is taken for it, apostrophe, and the
+/// What typesetters write, as programs do: minus and what is taken for it, apostrophes, and the
 /// blanks that part digits.
 std::string plain(std::string_view text) {
     constexpr std::pair<std::string_view, char> kMarks[] = {
         {"\u2212", '-'},        {"\u2010", '-'},        {"\u2011", '-'},
         {"\u2012", '-'},        {"\u2013", '-'},        {"\uFE63", '-'},
-        {"\uFF0D", '-'},        {"\u2019", '\''},       {"\u00A0", kThinBlank},
-        {"\u2007", kThinBlank}, {"\u2009", kThinBlank}, {"\u202F", kThinBlank}};
+        {"\uFF0D", '-'},        {"\u2019", '\''},       {"\u2018", '\''},
+        {"\u02BC", '\''},       {"\u00B4", '\''},       {"\u2032", '\''},
+        {"\u00A0", kThinBlank}, {"\u2002", kThinBlank}, {"\u2004", kThinBlank},
+        {"\u2005", kThinBlank}, {"\u2006", kThinBlank}, {"\u2007", kThinBlank},
+        {"\u2008", kThinBlank}, {"\u2009", kThinBlank}, {"\u200A", kThinBlank},
+        {"\u202F", kThinBlank}, {"\u205F", kThinBlank}};
     std::string result;
     while (!text.empty()) {
         const auto mark = std::ranges::find_if(
@@ -146,8 +159,9 @@ constexpr std::size_t kBytesBeside = 64;
 /// The bytes of a power of ten behind a number: "×10^3", " x 10**3", "·10³".
 std::size_t powerOfTenBytes(std::string_view behind) {
     static const std::regex kPower(
-        "^ ?(?:[xX*]|\u00D7|\u00B7|\u22C5) ?10(?:\\^|\\*\\*|\u00B9|\u00B2|\u00B3|\u2070|"
-        "\u2074|\u2075|\u2076|\u2077|\u2078|\u2079|\u207A|\u207B|[-+](?=[0-9]))[-+0-9]*");
+        "^ ?(?:(?:[xX*]|\u00D7|\u00B7|\u22C5) ?)?10(?:\\^|\\*\\*|\u00B9|\u00B2|\u00B3|"
+        "\u2070|\u2074|\u2075|\u2076|\u2077|\u2078|\u2079|\u207A|\u207B|"
+        "(?:[-+]|\u2212|\u2013)(?=[0-9]))[-+0-9]*");
     std::cmatch match;
     behind = behind.substr(0, kBytesBeside);
     const bool isPower =
@@ -193,16 +207,31 @@ std::pair<std::string, std::string> besideGroup(std::string_view regex) {
 
 /// Whether the scale is what is written behind a number, as k, Ki or million.
 bool isScaleOf(std::string_view factor, double scale) {
-    static constexpr std::pair<std::string_view, int> kPowers[] = {
-        {"k", 1}, {"K", 1}, {"thousand", 1}, {"M", 2}, {"mi", 2},
-        {"G", 3}, {"b", 3}, {"mrd", 3},      {"T", 4},
-    };
-    const auto power = std::ranges::find_if(
-        kPowers, [&](const auto& each) { return factor.starts_with(each.first); });
-    if (power == std::end(kPowers)) return false;
-    const bool isBinary = factor.ends_with('i'), isWord = factor.size() > 1 && !isBinary;
+    static constexpr std::pair<std::string_view, int> kLetters[] = {{"k", 1}, {"K", 1}, {"M", 2},
+                                                                    {"G", 3}, {"T", 4}, {"P", 5}};
+    static constexpr std::pair<std::string_view, int> kWords[] = {
+        {"kilo", 1}, {"th", 1}, {"ts", 1},  {"mega", 2}, {"mi", 2}, {"ml", 2},
+        {"giga", 3}, {"b", 3},  {"mrd", 3}, {"tera", 4}, {"tr", 4}};
+    const bool isBinary = factor.size() == 2 && factor[1] == 'i';
+    const bool isWord = factor.size() > 1 && !isBinary;
+    const std::string lower = lowered(factor);
+    const std::span<const std::pair<std::string_view, int>> powers =
+        isWord ? std::span<const std::pair<std::string_view, int>>(kWords) : kLetters;
+    const auto power = std::ranges::find_if(powers, [&](const auto& each) {
+        return (isWord ? std::string_view(lower) : factor).starts_with(each.first);
+    });
+    if (power == powers.end()) return false;
     return (!isBinary && scale == std::pow(1000.0, power->second)) ||
            (!isWord && scale == std::pow(1024.0, power->second));
+}
+
+/// Whether a fraction of one letter comes next: ¼, ½, ¾, or one of U+2150 to U+215E.
+bool isFraction(std::string_view text) {
+    const auto byte = [&](std::size_t i) {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
+    };
+    return (byte(0) == 0xC2 && byte(1) >= 0xBC && byte(1) <= 0xBE) ||
+           (byte(0) == 0xE2 && byte(1) == 0x85 && byte(2) >= 0x90 && byte(2) <= 0x9E);
 }
 
 /// Whether a time, a fraction, a power or digits among letters go on before or behind the group:
@@ -211,10 +240,9 @@ bool isScaleOf(std::string_view factor, double scale) {
 bool isPartOfToken(std::string_view left, std::string_view right,
                    const config::ProgramPattern& pattern) {
     static constexpr std::string_view kMarks[] = {
-        ":", "/", "#", "^", "**", "\u00B7", "\u22C5", "\u00D7", "\u066B", "\u066C", "\u2044"};
-    static constexpr std::string_view kTails[] = {
-        ".#",     "\u00BC", "\u00BD", "\u00BE", "\u2153", "\u2154", "\u215B", "\u00B2",
-        "\u00B3", "\u00B9", "\u2070", "\u2074", "\u2075", "\u2076", "\u207A", "\u207B"};
+        ":", "/", "#", "^", "**", "*", "\u00B7", "\u22C5", "\u00D7", "\u066B", "\u066C", "\u2044"};
+    static constexpr std::string_view kTails[] = {".#",     "\u00B2", "\u00B3", "\u00B9", "\u2070",
+                                                  "\u2074", "\u2075", "\u2076", "\u207A", "\u207B"};
     const auto [named, namedBehind] = besideGroup(pattern.regex);
     // Behind: a mark, or letters, and a digit.
     const auto startsRight = [&](std::string_view mark) { return right.starts_with(mark); };
@@ -235,9 +263,9 @@ bool isPartOfToken(std::string_view left, std::string_view right,
         }
     }
     const bool isThousands = lettersRight == 1 && !isScaleOf(between, pattern.scale) &&
-                             std::string_view("kKMGT").find(between[0]) != std::string_view::npos;
+                             std::string_view("kKMGTP").find(between[0]) != std::string_view::npos;
     if ((goesOn || isThousands) && !isNamed) return true;
-    if (std::ranges::any_of(kTails, startsRight)) return true;
+    if (std::ranges::any_of(kTails, startsRight) || isFraction(right)) return true;
     // Before: a word that begins with a digit, and a mark or letters. Names have digits, too.
     const auto markLeft =
         std::ranges::find_if(kMarks, [&](std::string_view mark) { return left.ends_with(mark); });
@@ -258,10 +286,20 @@ std::string_view withoutBlanks(std::string_view text) {
     return text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
-/// 1 for days, 2 for hours, … 7 for nanoseconds.
+/// How far down a unit of time stands, from weeks to nanoseconds.
 std::size_t rankOfTime(std::string_view unit) {
-    const std::size_t rank = std::string_view("dhms").find(unit[0]) + 1;
-    return unit == "ms" ? 5 : unit == "ns" ? 7 : rank == 0 ? 6 : rank;
+    static constexpr std::string_view kBegins[] = {"w", "d", "h", "m", "s", "ms", "us", "n"};
+    static constexpr std::pair<std::string_view, std::size_t> kOthers[] = {
+        {"std", 2}, {"milli", 5}, {"msec", 5}, {"micro", 6}, {"\u00B5", 6}, {"\u03BC", 6}};
+    const std::string lower = lowered(unit);
+    const auto begins = [&](const auto& each) { return lower.starts_with(each.first); };
+    const auto other = std::ranges::find_if(kOthers, begins);
+    if (other != std::end(kOthers)) return other->second;
+    std::size_t rank = 0;
+    for (std::size_t i = 0; i < std::size(kBegins); ++i) {
+        if (lower.starts_with(kBegins[i])) rank = i;
+    }
+    return rank;
 }
 
 /// As bytesBeside(), of a time: 1h 2m 3s. A pattern takes a part of it where it names the larger
@@ -270,12 +308,15 @@ std::pair<std::size_t, std::size_t> bytesOfTime(const std::string& left, const s
                                                 std::string_view named,
                                                 std::string_view namedBehind) {
     static const std::string kUnits =
-        "(days?|d|hours?|hrs?|h|minutes?|mins?|m|seconds?|secs?|s|ms|us|\u00B5s|\u03BCs|ns)";
-    static const std::string kJoint = "(?:,? and|,)? ?", kEnd = "(?![A-Za-z0-9])";
-    static const std::regex kLarger("(?:^|[^-+0-9A-Za-z_.])((?:[0-9]+ ?" + kUnits + kJoint +
-                                    ")+)$");
-    static const std::regex kOwn("^ ?" + kUnits + kEnd);
-    static const std::regex kRest("^ ?" + kUnits + kJoint + "[0-9.]+ ?" + kUnits + kEnd);
+        "(weeks?|w|days?|d|hours?|hrs?|h|std|minutes?|mins?|m|seconds?|secs?|sek|s|milliseconds?|"
+        "msecs?|ms|microseconds?|usecs?|us|\u00B5s|\u03BCs|nanoseconds?|ns)";
+    static const std::string kJoint = "[.]?(?:,? and|[ ]?[,;:+])? {0,2}", kEnd = "(?![A-Za-z0-9])";
+    static const auto kKind = std::regex::ECMAScript | std::regex::icase;
+    static const std::regex kLarger(
+        "(?:^|[^-+0-9A-Za-z_.])([-+]?(?:[0-9]+ ?" + kUnits + kJoint + ")+)$", kKind);
+    static const std::regex kOwn("^ ?" + kUnits + kEnd, kKind);
+    static const std::regex kRest(
+        "^ ?" + kUnits + kJoint + "(?:[0-9.]+ ?" + kUnits + kEnd + "|[0-9]+:[0-9]{2})", kKind);
     std::pair<std::size_t, std::size_t> bytes;
     std::smatch larger, own;
     if (std::regex_search(left, larger, kLarger) && std::regex_search(right, own, kOwn) &&
@@ -285,7 +326,7 @@ std::pair<std::size_t, std::size_t> bytesOfTime(const std::string& left, const s
                  static_cast<std::size_t>(own.length())};
     }
     if (std::regex_search(right, own, kRest) &&
-        rankOfTime(own[1].str()) < rankOfTime(own[2].str())) {
+        (!own[2].matched || rankOfTime(own[1].str()) < rankOfTime(own[2].str()))) {
         const std::string unit = own[1];
         const bool isNamed = namedBehind.size() > unit.size() && namedBehind[0] == unit[0];
         if (!isNamed) bytes.second = static_cast<std::size_t>(own.length());
@@ -297,16 +338,20 @@ std::pair<std::size_t, std::size_t> bytesOfTime(const std::string& left, const s
 /// most of them beyond a blank: 1 234, 12 5/8, 1.5 e-3, 1h 2m 3s, 3 million.
 std::pair<std::size_t, std::size_t> bytesBeside(const Found& found,
                                                 const config::ProgramPattern& pattern) {
-    static const std::regex kBefore("(?:^|[^-+0-9A-Za-z_.])([-+]?[0-9]{1,3}(?: [0-9]{3})* )$");
+    static const std::regex kColumns("[0-9] +$");
+    static const std::regex kBefore("(?:^|[^-+0-9A-Za-z_.:/])([-+]?[0-9]{1,3}(?: [0-9]{3})* )$");
     static const std::regex kMantissa(
-        "(?:^|[^-+0-9A-Za-z_.])([-+]?(?:[0-9]+[.]?[0-9]*|[.][0-9]+) ?[eE](?:[-+]|\u2212|\u2013)? "
-        "?)$");
+        "(?:^|[^-+0-9A-Za-z_.])([-+]?(?:[0-9]+[.]?[0-9]*|[.][0-9]+)"
+        "(?: ?[eEdD] ?(?:[-+]|\u2212|\u2013) ?|[eEdD] ))$");
     static const std::regex kThousands("^(?: [0-9]{3})+(?![0-9x])");
-    static const std::regex kFraction("^ (?:[0-9]+(?:/|\u2044)[0-9]+|\u00BC|\u00BD|\u00BE)");
+    static const std::regex kFraction("^ (?:[0-9]+(?:/|\u2044)[0-9]+)");
     static const std::regex kExponent(
-        "^(?:\\([0-9]+\\))? ?([eE]) ?(?:[-+]|\u2212|\u2013)? ?[0-9]+(?![A-Za-z0-9_])");
-    static const std::regex kFactor(
-        "^(?: ?([kKMGT]i|thousand|millions?|mio|billions?|mrd|bn)| ([kMGT]))(?![A-Za-z0-9])");
+        "^(?: ?\\([0-9.]+\\))? ?([eEdD])(?: ?(?:[-+]|\u2212|\u2013) ?| )?[0-9]+(?![A-Za-z0-9_])");
+    static const std::regex kFactor("^(?: ?([kKMGTP]i)| ([kMGTP]))(?![A-Za-z0-9])");
+    static const std::regex kFactorWord(
+        "^ ?(kilo|thousand|tsd|mega|millions?|mio|mln|giga|billions?|mrd|bn|tera|trillions?)"
+        "(?![A-Za-z0-9])",
+        std::regex::ECMAScript | std::regex::icase);
     const auto [before, behind] = besideGroup(pattern.regex);
     const std::string_view named = withoutBlanks(before), namedBehind = withoutBlanks(behind);
     const std::size_t from = found.begin - std::min(found.begin, kBytesBeside);
@@ -332,13 +377,20 @@ std::pair<std::size_t, std::size_t> bytesBeside(const Found& found,
         !namedBehind.starts_with(match.str(1))) {
         take(second, 0);
     }
-    if (finds(right, kFactor)) {
+    if (finds(right, kFactor) || finds(right, kFactorWord)) {
         const std::string factor = match.str(match[1].matched ? 1 : 2);
         if (!isScaleOf(factor, pattern.scale) && !namedBehind.starts_with(factor)) take(second, 0);
     }
     if (end < number.size() || behind.starts_with(' ')) return {first, second};
-    if (end - sign <= 3 && finds(right, kThousands)) take(second, 0);
+    // Of columns, the pattern names those before.
+    const std::string own(found.line.substr(found.matchBegin, found.begin - found.matchBegin));
+    if (end - sign <= 3 && !std::regex_search(own, kColumns) && finds(right, kThousands)) {
+        take(second, 0);
+    }
     if (finds(right, kFraction)) take(second, 0);
+    if (right.starts_with(' ') && isFraction(std::string_view(right).substr(1))) {
+        second = std::max(second, 1 + utf8Length(std::string_view(right).substr(1)));
+    }
     return {first, second};
 }
 
@@ -436,11 +488,13 @@ std::optional<double> numberFrom(std::string_view text) {
 std::string withoutColours(std::string_view text) {
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text.substr(i).starts_with("\x1b[")) {
-            i = std::min(text.find_first_not_of("0123456789;:?", i + 2), text.size());
-        } else {
+        if (!text.substr(i).starts_with("\x1b[")) {
             result += text[i];
+            continue;
         }
+        // The digits beside a colour are of one number, those beside a step of the cursor are not.
+        i = std::min(text.find_first_not_of("0123456789;:?<=>", i + 2), text.size());
+        if (i == text.size() || text[i] != 'm') result += ' ';
     }
     return result;
 }

@@ -312,6 +312,15 @@ TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
                            "m=" + text),
                   std::stod(text));
     }
+    for (const char* whole :
+         {"12 Mio", "3 Mrd", "1.2 Billion", "3 Thousand", "4 mln", "2 tsd", "5 Tera", "1.5P",
+          "1.5 D+3", "1.5 (12) e3", "1.5 10^3", "5*1000", "5 \u2153", "5\u2155", "1\u2005234",
+          "1\u205F234", "1\u00B4234", "1\u2032234"}) {
+        const std::string text(whole);
+        EXPECT_NE(errorOf("m=([0-9.]+)", "m=" + text + " rays"), "no error") << whole;
+    }
+    EXPECT_EQ(numberIn("m=12 Mio", {"m", digits, 1e6}), 12e6);
+    EXPECT_EQ(numberIn("m=12 Kilo", {"m", digits, 1000.0}), 12e3);
     EXPECT_EQ(numberIn("m=3Ki", {"m", digits, 1024.0}), 3072.0);
     EXPECT_EQ(numberIn("m=3 million", {"m", digits, 1e6}), 3e6);
     for (const char* text :
@@ -332,6 +341,20 @@ TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
     EXPECT_EQ(numberOf("^[0-9]+ ([0-9]+)\\s", "128 256 512"), 256.0);
     EXPECT_EQ(numberOf("^[0-9]+ +[0-9]+\\s+([0-9]+)", "128 256 512"), 512.0);
     EXPECT_EQ(numberOf("([0-9]+) ms", "GPU0 128 ms"), 128.0);
+    EXPECT_EQ(numberOf("([0-9]+) ms", "10:32:05 120 ms"), 120.0);
+    EXPECT_EQ(numberOf("([0-9]+) ms", "12/20 200 ms"), 200.0);
+    EXPECT_EQ(numberOf("scene\\s+[0-9]+\\s+([0-9]+)", "scene 1 5 100"), 5.0);
+    EXPECT_EQ(numberOf("([0-9]+) ms", "grid 4 e 3 ms"), 3.0);
+}
+
+TEST(MetricLines, WhatMovesTheCursorPartsNumbers) {
+    const std::string digits = "m=([0-9]+)";
+    EXPECT_EQ(numberOf(digits, "\x1b[1;32mm=\x1b[0m12\x1b[38:5:1m5\x1b[m"), 125.0);
+    for (const char* step : {"1C", "2D", "K", "5;10H", "A", "2J", "4P", "?25l"}) {
+        EXPECT_EQ(numberOf(digits, std::string("m=5\x1b[") + step + "6 x"), 5.0) << step;
+    }
+    EXPECT_EQ(numberOf(digits, "m=5\x1b[>4;1m6"), 56.0);
+    EXPECT_EQ(numberOf(digits, "m=5\x1b[4"), 5.0);
 }
 
 TEST(MetricLines, APatternTakesNoPartOfATimeOfSeveralUnits) {
@@ -354,6 +377,15 @@ TEST(MetricLines, APatternTakesNoPartOfATimeOfSeveralUnits) {
     EXPECT_EQ(errorOf("m=([0-9]+)", "m=1h 30m"), partOf("1", "1h 30m"));
     EXPECT_EQ(errorOf("m=([0-9]+)", "m=5d 3h"), partOf("5", "5d 3h"));
     EXPECT_EQ(errorOf("([0-9]+)m", "took 2m3s"), partOf("2", "2m3s"));
+    for (const char* whole :
+         {"3 sec 200 msec", "3 seconds 200 milliseconds", "3 s; 20 ms", "3s:200ms", "3 s + 20 ms",
+          "3 Min 5 Sek", "3 days, 2:03:04", "3 weeks 2 days", "3 s  200 ms"}) {
+        EXPECT_NE(errorOf("m=([0-9]+)", std::string("m=") + whole), "no error") << whole;
+    }
+    for (const char* whole : {"1 hr. 5 min. 3 s", "1 Min. 3 s", "1 Std 3 s", "1m:03 s", "1min+3 s",
+                              "-1m 3s", "1 week 3 s"}) {
+        EXPECT_NE(errorOf("([0-9]+) ?s$", std::string("took ") + whole), "no error") << whole;
+    }
     // Each with a pattern of its own, columns, and times of one unit.
     EXPECT_EQ(numberOf("([0-9]+)h [0-9]+m", "took 1h 2m 3s"), 1.0);
     EXPECT_EQ(numberOf("h ([0-9]+)m [0-9]+", "took 1h 2m 3s"), 2.0);
