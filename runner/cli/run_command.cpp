@@ -14,8 +14,6 @@
 #include "engine/core/hash.h"
 #include "engine/core/processors.h"
 #include "engine/gl/nvml.h"
-#include "engine/scene/height_map.h"
-#include "engine/scene/scene_reference.h"
 #include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
@@ -227,20 +225,6 @@ gl::DeviceInfo settleDevice(run::SchedulerOptions& scheduler, run::PhaseClock& p
     return device;
 }
 
-/// Of the user's own height maps: at a wrong scale one sees it after the run, in every picture.
-void warnOfSteepTerrain(const run::Plan& plan, const scene::Catalog& catalog) {
-    std::set<std::string> seen;
-    for (const config::Case& item : plan.cases) {
-        if (item.scene.isNull()) continue;
-        const std::string name = scene::sceneName(item.scene.text());
-        const bool isOwnMap = scene::isSceneFile(name) && scene::isHeightMapFile(name);
-        if (!isOwnMap || !seen.insert(item.scene.text()).second) continue;
-        for (const std::string& line : catalog.load(item.scene).warnings) {
-            tell("warning: {}: {}\n", name, line);
-        }
-    }
-}
-
 /// Of a plan that was not cut before. The whole of it stays beside the shard's own for the merge:
 /// shards that are cut by hand share no folder.
 void cutByHand(const RunOptions& options, const std::string& device,
@@ -277,7 +261,6 @@ Prepared prepareNew(const Context& context, const RunOptions& options, const run
     const gl::DeviceInfo device = settleDevice(scheduler, phases);
     run::Plan plan =
         planFor(context, request, selection.profile, scheduler.assetsFolder, deviceClassOf(device));
-    warnOfSteepTerrain(plan, openCatalog(context, selection.assets));
     fs::path path = options.resume.empty() ? options.out : options.resume;
     if (path.empty()) path = run::defaultRunPath(runSlug(plan));
     run::RunDirectory directory = run::RunDirectory::create(path);
@@ -372,7 +355,6 @@ Prepared prepareResumed(const Context& context, const RunOptions& options,
     Prepared run{std::move(stored.plan), std::move(directory), std::move(stored.manifest),
                  scheduler};
     if (!isBegun) {
-        warnOfSteepTerrain(run.plan, openCatalog(context, options.selection.assets));
         if (isRebound) run.plan.writeFile(run.directory.planFile());
         run.manifest = begunManifest(context, device, run.plan, run.directory);
         return run;

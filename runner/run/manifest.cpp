@@ -184,11 +184,16 @@ std::vector<std::string> notesOf(const Json& manifest) {
     return manifest.value("notes", std::vector<std::string>{});
 }
 
-void addScenes(Json& manifest, const std::vector<SceneUse>& scenes) {
-    for (const SceneUse& use : scenes) {
-        manifest["scenes"][use.reference] = {
+void addScenes(Json& manifest, const std::map<std::string, SceneUse>& scenes) {
+    std::set<std::string> warnings;
+    for (const auto& [reference, use] : scenes) {
+        manifest["scenes"][reference] = {
             {"kind", use.kind}, {"description", use.description}, {"sha256", use.sha256}};
+        for (const std::string& line : use.warnings) {
+            warnings.insert("scene '" + reference + "': " + line);
+        }
     }
+    addWarnings(manifest, warnings);
 }
 
 void addPrograms(Json& manifest, const std::set<ProgramUse>& programs) {
@@ -207,7 +212,7 @@ void addWarnings(Json& manifest, const std::set<std::string>& warnings) {
         std::ranges::replace_if(
             line, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
         if (known.size() > kMost || std::ranges::find(known, Json(line)) != known.end()) continue;
-        known.push_back(known.size() < kMost ? line : "further ones are in journal.jsonl");
+        known.push_back(known.size() < kMost ? line : "further ones are not listed");
     }
     if (!known.empty()) manifest["warnings"] = known;
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <istream>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -47,12 +48,12 @@ void noteMachines(Json& manifest);
 /// The manifest's notes, for people.
 std::vector<std::string> notesOf(const Json& manifest);
 
-/// Adds what workers loaded, one entry a reference.
-void addScenes(Json& manifest, const std::vector<SceneUse>& scenes);
+/// Adds what workers loaded, by reference, and what its loaders warned of.
+void addScenes(Json& manifest, const std::map<std::string, SceneUse>& scenes);
 /// Adds the programs that workers ran and the files that these read, each of its versions once.
 void addPrograms(Json& manifest, const std::set<ProgramUse>& programs);
 std::set<ProgramUse> programsOf(const Json& manifest);
-/// Adds what loaders, programs and drivers warned of, each once, for the report.
+/// Adds what techniques, programs and drivers warned of, each once, for the report.
 void addWarnings(Json& manifest, const std::set<std::string>& warnings);
 
 /// "Xeon, 2 cores, llvmpipe (LLVM 15), 4.5 Mesa 22.3.6", or "imported: " and what the importing

@@ -205,7 +205,7 @@ std::vector<SceneUse> scenesOfCase(const SceneCache& scenes) {
         if (!entry.isOfThisCase) continue;
         const scene::Origin& origin = entry.scene.origin;
         used.push_back({entry.reference, std::string(scene::kindName(origin.kind)),
-                        origin.description, origin.sha256});
+                        origin.description, origin.sha256, entry.scene.warnings});
     }
     return used;
 }

@@ -36,7 +36,8 @@ constexpr JsonKind kSample[] = {JsonKind::Int,    JsonKind::Int,  JsonKind::Text
 constexpr JsonKind kImage[] = {JsonKind::Text, JsonKind::Text, JsonKind::Int,  JsonKind::Text,
                                JsonKind::Text, JsonKind::Text, JsonKind::Text, JsonKind::Text,
                                JsonKind::Text, JsonKind::Text};
-constexpr JsonKind kScene[] = {JsonKind::Text, JsonKind::Text, JsonKind::Text, JsonKind::Text};
+constexpr JsonKind kScene[] = {JsonKind::Text, JsonKind::Text, JsonKind::Text, JsonKind::Text,
+                               JsonKind::Texts};
 constexpr JsonKind kProgram[] = {JsonKind::Text, JsonKind::Text, JsonKind::Text};
 
 /// What a worker says stands in no file.
@@ -120,7 +121,7 @@ Json toJson(const CaseResult& result) {
                                   i.truthOf, i.pngSha256, i.exrSha256});
     }
     for (const SceneUse& s : result.scenes) {
-        json["scenes"].push_back({s.reference, s.kind, s.description, s.sha256});
+        json["scenes"].push_back({s.reference, s.kind, s.description, s.sha256, s.warnings});
     }
     for (const ProgramUse& p : result.programs) {
         json["programs"].push_back({p.file, p.sha256, p.version});
@@ -148,7 +149,7 @@ CaseResult caseResultFromJson(const Json& json) {
                                  i.at(7), i.at(8), i.at(9)});
     }
     for (const Json& s : json.at("scenes")) {
-        result.scenes.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
+        result.scenes.push_back({s.at(0), s.at(1), s.at(2), s.at(3), s.at(4)});
     }
     for (const Json& p : json.at("programs")) {
         result.programs.push_back({p.at(0), p.at(1), p.at(2)});

@@ -42,6 +42,7 @@ struct SceneUse {
     std::string kind;  // "real" | "stand-in" | "generated"
     std::string description;
     std::string sha256;
+    std::vector<std::string> warnings;  // of its loader
 };
 
 /// A program that a case ran, or another file that decided what it did.

@@ -381,7 +381,8 @@ class Scheduler {
         }
         noteFailure(result.status);
         outcome_.voided += result.voidReason.empty() ? 0 : 1;
-        outcome_.scenes.insert(outcome_.scenes.end(), result.scenes.begin(), result.scenes.end());
+        for (const SceneUse& use : result.scenes)
+            outcome_.scenes.insert_or_assign(use.reference, use);
         outcome_.programs.insert(result.programs.begin(), result.programs.end());
     }
 

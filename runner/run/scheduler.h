@@ -62,12 +62,12 @@ struct RunOutcome {
     int shared = 0;    // of these: recorded from a twin's measurement
     int voided = 0;    // likewise, but their times are void: blank pictures or unequal work
     int failed = 0;    // others
-    std::set<std::string> warnings;         // of units
-    std::vector<std::string> timeWarnings;  // of tables
-    bool isInterrupted = false;             // by SIGINT, SIGTERM or SIGHUP
-    std::string stopReason;                 // of a stop before the end that nobody asked for then
-    bool isFull = false;                    // of these: the run's files take no more
-    std::vector<SceneUse> scenes;
+    std::set<std::string> warnings;          // of units
+    std::vector<std::string> timeWarnings;   // of tables
+    bool isInterrupted = false;              // by SIGINT, SIGTERM or SIGHUP
+    std::string stopReason;                  // of a stop before the end that nobody asked for then
+    bool isFull = false;                     // of these: the run's files take no more
+    std::map<std::string, SceneUse> scenes;  // by their references
     std::set<ProgramUse> programs;
 };
 

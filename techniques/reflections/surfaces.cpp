@@ -109,7 +109,6 @@ scene::PointLight madeUpLight(const scene::Box& box) {
 ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule& rule,
                                  TextureFilter filter)
     : scene_(scene), rule_(rule), filter_(filter) {
-    for (const std::string& line : scene_.warnings) warn(line);
     const int transmissiveCount = dropTransmissive(scene_);
     if (transmissiveCount > 0) {
         warn(fmt::format("{} of {} objects let light through and are left out", transmissiveCount,
@@ -147,7 +146,7 @@ ReflectiveScene::ReflectiveScene(const scene::Scene& scene, const ReflectorRule&
     }
     const auto masked = std::ranges::count_if(
         scene_.materials, [](const scene::Material& each) { return each.alphaCutoff > 0.0F; });
-    if (masked > 0) warn(fmt::format("{} materials with alphaMode MASK have no holes", masked));
+    if (masked > 0) warn(fmt::format("materials whose alphaMode MASK cuts no holes: {}", masked));
     addLights();
     fillLayers(textureLayers_);
     fillLayers(valueLayers_);

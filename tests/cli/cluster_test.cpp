@@ -107,7 +107,8 @@ TEST(Plan, NewestRunsTellAndBrokenOnesDoNotStop) {
 using Shards = test::FolderTest;
 
 TEST_F(Shards, MergeToTheTablesOfOneRun) {
-    const std::string config = writeNumbers(folder, 10);
+    folder.write("own.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nv 5 5 5\nf 1 2 3\n");
+    const std::string config = writeNumbers(folder, 10, "scene: own.obj\n");
     const std::string whole = folder.path() / "whole";
     const std::string merged = folder.path() / "merged";
     ASSERT_EQ(measure(config, whole).exitCode, 0);
@@ -145,6 +146,11 @@ TEST_F(Shards, MergeToTheTablesOfOneRun) {
                 HasSubstr("as " + merged + " tells\n"));
     EXPECT_EQ(mockGfxrepro(merge).exitCode, 0);
     expectSameTables(merged, whole);
+    // Each shard's loader warned of the same.
+    const std::string manifest = readFile(merged + "/manifest.json");
+    const std::string warning = "own.obj': left out: a vertex that no face uses";
+    ASSERT_THAT(manifest, HasSubstr(warning));
+    EXPECT_EQ(manifest.find(warning), manifest.rfind(warning));
 }
 
 TEST_F(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "engine/core/files.h"
+#include "engine/core/json_shape.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -171,6 +172,27 @@ TEST_F(RunCommand, WhatCasesWarnOfIsTold) {
     const std::size_t at = run.err.find(warning);
     ASSERT_NE(at, std::string::npos) << run.err;
     EXPECT_EQ(run.err.find(warning, at + 1), std::string::npos) << run.err;
+}
+
+/// Before the first case, once; the manifest and the report keep it.
+TEST_F(RunCommand, WhatLoadersWarnOfIsToldAndKept) {
+    folder.write("own.obj", "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 1\nv 5 5 5\nf 1 2 3\n");
+    const std::string config = writeMockConfig(
+        folder, "scene: own.obj\nsweep: {number: [1, 2]}\nmeasure: {lane: timing, processes: 2}\n");
+    const ProcessResult run =
+        endedWith(0, mockGfxrepro({"reproduce", config, "--device", "software", "--out", dir}));
+    const std::string unused = "left out: a vertex that no face uses";
+    const std::string absent =
+        "material file 'none.mtl' is not beside the model: its materials are grey";
+    const auto manifest = parseJsonObject(readFile(dir + "/manifest.json"), {});
+    const std::string scene = "scene '" + (folder.path() / "own.obj").string() + "': ";
+    EXPECT_EQ(manifest.at("warnings"), (Json{scene + unused, scene + absent}));
+    const std::string page = readFile(dir + "/report.html");
+    for (const std::string& line : {unused, absent}) {
+        EXPECT_THAT(run.err, HasSubstr("own.obj: " + line + '\n'));
+        EXPECT_EQ(run.err.find(line), run.err.rfind(line)) << run.err;
+        EXPECT_THAT(page, HasSubstr(line.substr(0, 13)));
+    }
 }
 
 TEST_F(RunCommand, SecondRunIntoOneFolderIsRefused) {

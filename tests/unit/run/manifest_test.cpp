@@ -41,7 +41,17 @@ TEST(Manifest, HoldsEachWarningOnce) {
     addWarnings(manifest, many);
     addWarnings(manifest, many);
     EXPECT_EQ(manifest.at("warnings").size(), 101U);
-    EXPECT_EQ(manifest.at("warnings").back(), "further ones are in journal.jsonl");
+    EXPECT_EQ(manifest.at("warnings").back(), "further ones are not listed");
+}
+
+TEST(Manifest, HoldsWhatLoadersWarnedOf) {
+    Json manifest = Json::object();
+    const SceneUse use{"/a.obj", "real", "a.obj", "0", {"left out: a", "left out: b"}};
+    addScenes(manifest, {{use.reference, use}});
+    addScenes(manifest, {{use.reference, use}});  // of a run that went on
+    EXPECT_EQ(manifest.at("warnings"),
+              (Json{"scene '/a.obj': left out: a", "scene '/a.obj': left out: b"}));
+    EXPECT_EQ(manifest.at("scenes").at("/a.obj").at("kind"), "real");
 }
 
 TEST(Manifest, OfAnEarlierVersionMayHaveMore) {
