@@ -1,6 +1,7 @@
 // OFF as Geomview describes it, in text.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
@@ -30,7 +31,7 @@ class OffParser {
         std::size_t linesBehind = 0;
         while (lines_.nextLine()) linesBehind += !lines_.word().empty();
         std::vector<std::string> warnings;
-        makeLinear(mesh_.colors, warnings);
+        settleColours(warnings);
         leftOut_.add(kOverlap, filler_.overlappingCount());
         leftOut_.add("a line behind the last face", linesBehind);
         Scene scene = sceneOfVertices(std::move(mesh_), leftOut_);
@@ -91,11 +92,24 @@ class OffParser {
         };
         if (hasNormals_) mesh_.normals.push_back(unitNormal(vector()));
         std::vector<float> rest;
-        if (hasColors_) mesh_.colors.push_back(vector());
+        if (hasColors_) {
+            glm::vec3 colour;
+            for (int i = 0; i < 3; ++i) {
+                hasPoint_ |= isNextWithPoint();
+                colour[i] = lines_.number();
+            }
+            mesh_.colors.push_back(colour);
+        }
+        const bool isWithPoint = isNextWithPoint();
         while (const auto value = lines_.optionalNumber()) rest.push_back(*value);
         const std::size_t texcoordAt = hasColors_ && rest.size() % 2 == 1 ? 1 : 0;  // behind alpha
-        if (texcoordAt == 1 && rest[0] != 1.0F && rest[0] != 255.0F)
-            leftOut_.add("the alpha of a vertex's colour");
+        if (texcoordAt == 1) {
+            hasPoint_ |= isWithPoint;
+            largestAlpha_ = std::max(largestAlpha_, rest[0]);
+            ++alphaCount_;
+            alphasOf1_ += rest[0] == 1.0F;
+            alphasOf255_ += rest[0] == 255.0F;
+        }
         std::size_t used = texcoordAt;
         if (hasTexcoords_) {
             if (rest.size() < used + 2) lines_.fail("the vertex lacks texture coordinates");
@@ -103,6 +117,26 @@ class OffParser {
             used += 2;
         }
         leftOut_.add("a number behind a vertex", rest.size() - used);
+    }
+
+    bool isNextWithPoint() {
+        const std::string_view rest = lines_.name();
+        return rest.substr(0, rest.find_first_of(" \t")).find_first_of(".eE") != rest.npos;
+    }
+
+    /// Integers are parts of 255, and numbers with a point parts of 1: red, green, blue and alpha.
+    void settleColours(std::vector<std::string>& warnings) {
+        float largest = 0.0F;
+        for (const glm::vec3& c : mesh_.colors) largest = std::max({largest, c.r, c.g, c.b});
+        const float ofAll = std::max(largest, largestAlpha_);
+        const bool areOf255 = ofAll > 2.0F || (ofAll > 1.0F && !hasPoint_);
+        if (!areOf255 && !hasPoint_ && largest == 1.0F) {
+            warnings.emplace_back(
+                "vertex colours of 0 and 1, without a point, are taken as parts of 1, not of 255");
+        }
+        makeLinear(mesh_.colors, warnings, areOf255);
+        leftOut_.add("the alpha of a vertex's colour",
+                     alphaCount_ - (areOf255 ? alphasOf255_ : alphasOf1_));
     }
 
     void parseFace() {
@@ -128,6 +162,9 @@ class OffParser {
     Anchor& anchor_;
     bool hasTexcoords_ = false, hasColors_ = false, hasNormals_ = false;
     std::uint64_t vertexCount_ = 0, faceCount_ = 0;
+    bool hasPoint_ = false;  // some number of a colour
+    float largestAlpha_ = 0.0F;
+    std::size_t alphaCount_ = 0, alphasOf1_ = 0, alphasOf255_ = 0;
     Mesh mesh_;
     PolygonFiller filler_;
     LeftOut& leftOut_;

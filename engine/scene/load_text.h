@@ -47,17 +47,20 @@ inline std::string inQuotes(std::string_view word) {
 }
 
 /// Vertex colours of OBJ, OFF and PLY are what a display shows (sRGB), as parts of 1, or, where any
-/// is above 2, of 255: makes them linear. Warns where the numbers do not tell which of the two.
-inline void makeLinear(std::vector<glm::vec3>& colors, std::vector<std::string>& warnings) {
+/// is above 2 or the file says so, of 255: makes them linear. Warns where the numbers do not tell
+/// which of the two.
+inline void makeLinear(std::vector<glm::vec3>& colors, std::vector<std::string>& warnings,
+                       bool areOf255 = false) {
     float largest = 0.0F;
     bool areInteger = true;
     for (const glm::vec3& c : colors) {
         largest = std::max({largest, c.r, c.g, c.b});
         areInteger = areInteger && c == glm::floor(c);
     }
-    const float whole = largest > 2.0F ? 255.0F : 1.0F;  // some round to a little above 1
-    const bool areBytes = areInteger && largest > 2.0F && largest <= 255.0F;
-    if (largest > 1.0F && !areBytes) {
+    areOf255 = areOf255 || largest > 2.0F;  // some round to a little above 1
+    const float whole = areOf255 ? 255.0F : 1.0F;
+    const bool areBytes = areInteger && areOf255 && largest <= 255.0F;
+    if ((largest > 1.0F || areOf255) && !areBytes) {
         warnings.push_back(
             fmt::format("vertex colours up to {:g} are taken as parts of {:g}", largest, whole));
     }

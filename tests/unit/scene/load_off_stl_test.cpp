@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/image/srgb.h"
 #include "engine/scene/load.h"
 #include "tests/support/support.h"
 
@@ -68,6 +69,31 @@ TEST_F(LoadOffStl, ReadsWhatOffSaysOfVertices) {
     EXPECT_NEAR(points.points.colors.at(0).r, 0.214F, 1e-3F);
     const Scene far = off("OFF\n3 1 0\n500000.25 0 0\n500000.5 0 0\n500000.25 1 0\n3 0 1 2\n");
     EXPECT_EQ(far.offset.x + double{far.bounds().min.x}, 500000.25);
+}
+
+TEST_F(LoadOffStl, TakesIntegersOfOffAsPartsOf255) {
+    const auto red = [&](const std::string& colour, const Lines& warnings = {}) {
+        const Scene scene = off("COFF\n2 0 0\n0 0 0 " + colour + "\n5 0 0 0 0 0\n");
+        EXPECT_EQ(scene.warnings, warnings) << colour;
+        return image::srgbOf(scene.points.colors.at(0).r);
+    };
+    const float part = 1.0F / 255.0F;
+    EXPECT_NEAR(red("1 0 0 255"), part, 1e-6F) << "alpha tells it";
+    EXPECT_NEAR(red("1 0 2"), part, 1e-6F);
+    EXPECT_NEAR(red("1 0 0 2", {"left out: the alpha of a vertex's colour"}), part, 1e-6F);
+    EXPECT_NEAR(red("255 0 0 1", {"left out: the alpha of a vertex's colour"}), 1.0F, 1e-6F);
+    for (const char* points : {"1.0 0 0", "1 0 0 1.0", "1e0 0 0", "1 .5 0 1"}) {
+        EXPECT_NEAR(red(points), 1.0F, 1e-6F) << points;
+    }
+    EXPECT_NEAR(red("1.001 0.5 0", {"vertex colours up to 1.001 are taken as parts of 1"}), 1.0F,
+                2e-3F);
+    EXPECT_NEAR(red("0.5 0 0 255", {"vertex colours up to 0.5 are taken as parts of 255"}),
+                0.5F * part, 1e-6F);
+    const Lines either{
+        "vertex colours of 0 and 1, without a point, are taken as parts of 1, not of 255"};
+    EXPECT_NEAR(red("1 0 0", either), 1.0F, 1e-6F);
+    EXPECT_NEAR(red("1 0 0 1", either), 1.0F, 1e-6F);
+    EXPECT_EQ(red("0 0 0 1"), 0.0F);
 }
 
 TEST_F(LoadOffStl, SaysWhatIsLeftOutOfOff) {
