@@ -32,30 +32,30 @@ constexpr std::array<std::string_view, 9> kSupportedExtensions{
     "KHR_mesh_quantization",   "KHR_node_visibility",        "KHR_texture_transform"};
 
 /// What the callbacks of tinygltf may open. It decodes URIs itself, some versions '+' to a blank,
-/// too, and gives them what comes out: they look it up.
+/// too, and gives them what comes out: they look up what the file has.
 struct Folder {
     std::filesystem::path path;
-    std::map<std::string, std::filesystem::path> files;  // by their URIs, decoded
-    std::string refused;                                 // the first URI that leaves the folder
+    std::map<std::string, std::string> names;  // by their URIs, as tinygltf decodes them
+    std::string refused;                       // the first name that leaves the folder
+    std::string absent;                        // the first one that is not there
     std::set<std::filesystem::path> opened;
 
     Folder(std::filesystem::path folder, std::string_view json) : path(std::move(folder)) {
         for (const std::string& uri : urisOfGltf(json)) {
-            std::string name = decodedUri(uri);
-            const auto file = fileInside(path, name);
-            if (!file) continue;
-            files.emplace(name, *file);
+            names.emplace(decodedUri(uri, true), decodedUri(uri));
             std::string spaced = uri;
             std::ranges::replace(spaced, '+', ' ');
-            files.emplace(decodedUri(spaced), *file);
+            names.emplace(decodedUri(spaced, true), decodedUri(uri));
         }
     }
 
     std::optional<std::filesystem::path> find(const std::string& uri) {
-        const auto found = files.find(uri);
-        if (found != files.end()) return found->second;
-        if (!pathInside(path, uri) && refused.empty()) refused = uri;
-        return std::nullopt;
+        const auto found = names.find(uri);
+        const std::string& name = found != names.end() ? found->second : uri;
+        const auto file = found != names.end() ? fileInside(path, name) : std::nullopt;
+        if (!file && absent.empty()) absent = name;
+        if (!file && refused.empty() && !pathInside(path, name)) refused = name;
+        return file;
     }
 };
 
@@ -219,8 +219,8 @@ File readFile(const std::filesystem::path& path) {
     const bool isParsed = parse(content, isBinary, folder, file.model, message);
     checkExtensions(file.model, file.name);  // the better reason, when it is one
     if (!folder.refused.empty()) {
-        throw Error(
-            fmt::format("{}: the URI '{}' leaves the file's folder", file.name, folder.refused));
+        throw Error(fmt::format("{}: the URI {} leaves the file's folder", file.name,
+                                inQuotes(folder.refused)));
     }
     const tinygltf::Asset& asset = file.model.asset;
     if (!asset.version.starts_with("2.")) {
@@ -230,6 +230,10 @@ File readFile(const std::filesystem::path& path) {
     if (!wrong.empty()) throw Error(fmt::format("{}: {}", file.name, wrong));
     if (!isParsed) {
         const std::string_view reason = trimmed(message);
+        if (reason.starts_with("File not found")) {
+            throw Error(fmt::format("{}: the file {} is not beside it", file.name,
+                                    inQuotes(folder.absent)));
+        }
         throw Error(fmt::format("{}: {}", file.name, reason.substr(0, reason.find('\n'))));
     }
     if (!asset.minVersion.empty() && asset.minVersion != "2.0") {

@@ -340,11 +340,12 @@ std::vector<std::string> urisOfGltf(std::string_view json) {
     return uris;
 }
 
-std::string decodedUri(std::string_view uri) {
+std::string decodedUri(std::string_view uri, bool takesAny) {
     std::string name;
     for (std::size_t i = 0; i < uri.size(); ++i) {
-        const int high = i + 2 < uri.size() ? hexDigit(uri[i + 1]) : -1;
-        const int low = i + 2 < uri.size() ? hexDigit(uri[i + 2]) : -1;
+        const int least = takesAny ? 0 : -1;
+        const int high = i + 2 < uri.size() ? std::max(hexDigit(uri[i + 1]), least) : -1;
+        const int low = i + 2 < uri.size() ? std::max(hexDigit(uri[i + 2]), least) : -1;
         const bool isEncoded = uri[i] == '%' && high >= 0 && low >= 0;
         name += isEncoded ? static_cast<char>(16 * high + low) : uri[i];
         if (isEncoded) i += 2;

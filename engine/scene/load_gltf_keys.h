@@ -20,8 +20,9 @@ std::string checkedKeys(std::string_view json, LeftOut& leftOut);
 /// The URIs of buffers and images as they are written, without those that hold the data.
 std::vector<std::string> urisOfGltf(std::string_view json);
 
-/// %20 becomes a blank.
-std::string decodedUri(std::string_view uri);
+/// %20 becomes a blank. What stands behind another '%' than that of two digits stays, or is lost
+/// (`takesAny`), as tinygltf has it.
+std::string decodedUri(std::string_view uri, bool takesAny = false);
 
 /// The files that a glTF file names (fileInside()), where they are there.
 std::set<std::filesystem::path> filesOfGltf(std::string_view json,

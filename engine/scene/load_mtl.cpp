@@ -103,7 +103,7 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
     while (lines.nextLine()) {
         const std::string_view key = lines.word();
         if (key == "newmtl") {
-            const std::string name(lines.name());
+            const std::string name = asUtf8(lines.name());
             const auto [found, isNew] = materials.try_emplace(name);
             current = isNew ? &found->second : nullptr;
             leftOut.add("a material of the name of one before it", isNew ? 0 : 1);

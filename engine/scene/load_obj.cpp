@@ -93,7 +93,7 @@ class ObjParser {
         } else if (key == "f" || key == "fo") {
             parseFace();
         } else if (key == "usemtl") {
-            useMaterial(std::string(lines_.name()));
+            useMaterial(asUtf8(lines_.name()));
         } else if (key == "mtllib") {
             std::string line(lines_.name());
             const bool isNew = libraries_.insert(line).second;

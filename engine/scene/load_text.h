@@ -40,9 +40,11 @@ inline char lineEndOf(std::string_view text) {
 /// at the first of them.
 inline std::string inQuotes(std::string_view word) {
     constexpr std::size_t kMostBytes = 100;
-    std::string text(word.substr(0, kMostBytes));
+    std::size_t shown = std::min(kMostBytes, word.size());
+    while (shown > 0 && shown < word.size() && (word[shown] & 0xC0) == 0x80) --shown;
+    std::string text = asUtf8(word.substr(0, shown));
     std::ranges::replace(text, '\0', '?');
-    if (word.size() == text.size()) return '\'' + text + '\'';
+    if (word.size() == shown) return '\'' + text + '\'';
     return '\'' + text + "…' (" + std::to_string(word.size()) + " bytes)";
 }
 

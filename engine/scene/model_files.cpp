@@ -12,6 +12,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/foreign_text.h"
 #include "engine/core/hash.h"
 #include "engine/image/formats.h"
 #include "engine/image/image.h"
@@ -93,9 +94,12 @@ namespace fs = std::filesystem;
 
 std::optional<fs::path> fileInside(const fs::path& folder, std::string name) {
     std::ranges::replace(name, '\\', '/');
-    const auto path = pathInside(folder, name);
-    std::error_code ignored;  // of a name that no file can have, such as one of 5,000 letters
-    return path && fs::is_regular_file(*path, ignored) ? path : std::nullopt;
+    for (const std::string& each : {name, asUtf8(name)}) {
+        const auto path = pathInside(folder, each);
+        std::error_code ignored;  // of a name that no file can have, such as one of 5,000 letters
+        if (path && fs::is_regular_file(*path, ignored)) return path;
+    }
+    return std::nullopt;
 }
 
 std::vector<fs::path> filesBeside(const fs::path& model) {

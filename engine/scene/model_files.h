@@ -37,8 +37,9 @@ std::optional<std::filesystem::path> pathInside(const std::filesystem::path& fol
                                                 const std::filesystem::path& name);
 
 /// The file of the folder, or below it, that a model's file calls `name`, with slashes of either
-/// kind. Nothing where it is not there or not inside. Loaders open, and filesBeside() lists, by
-/// this function alone.
+/// kind; where no file has these bytes, and they are Latin-1, the one of that name in UTF-8.
+/// Nothing where it is not there or not inside. Loaders open, and filesBeside() lists, by this
+/// function alone.
 std::optional<std::filesystem::path> fileInside(const std::filesystem::path& folder,
                                                 std::string name);
 

@@ -485,7 +485,25 @@ TEST_F(LoadGltf, DecodesPercentSignsAndStaysInItsFolder) {
     EXPECT_EQ(errorWith("buffers", R"([{"byteLength":76,"uri":"sub/%2e%2e/%2e%2e/x"}])"),
               "DIR/a.gltf: the URI 'sub/../../x' leaves the file's folder");
     EXPECT_EQ(errorWith("buffers", R"([{"byteLength":76,"uri":"gone.bin"}])"),
-              "DIR/a.gltf: File not found : gone.bin");
+              "DIR/a.gltf: the file 'gone.bin' is not beside it");
+}
+
+TEST_F(LoadGltf, FindsFilesByAnyName) {
+    const auto named = [](const std::string& uri) {
+        return R"([{"byteLength":76,"uri":")" + uri + R"("}])";
+    };
+    EXPECT_EQ(errorWith("buffers", named("100%.bin")),
+              "DIR/a.gltf: the file '100%.bin' is not beside it");
+    EXPECT_EQ(errorWith("buffers", named("%FC.bin")),
+              "DIR/a.gltf: the file '\u00FC.bin' is not beside it");
+    EXPECT_EQ(errorWith("buffers", named("%41+%zz.bin")),
+              "DIR/a.gltf: the file 'A+%zz.bin' is not beside it");
+    for (const char* name : {"100%.bin", "\u00FC.bin", "A+%zz.bin"}) {
+        folder_.write(name, squareBytes());
+    }
+    for (const char* uri : {"100%.bin", "%FC.bin", "%C3%BC.bin", "\u00FC.bin", "%41+%zz.bin"}) {
+        EXPECT_EQ(loadWith("buffers", named(uri)).triangleCount(), 2U) << uri;
+    }
 }
 
 // What lies outside is there and would serve: it is not looked at by the parser's own means either.

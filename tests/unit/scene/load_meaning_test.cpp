@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "engine/image/png_io.h"
 #include "engine/scene/load.h"
 #include "tests/support/support.h"
 #include "tests/unit/scene/gltf_document.h"
@@ -210,6 +212,25 @@ TEST_F(LoadMeaning, MatricesOfNodesArePlacesAndNoProjections) {
 }
 
 TEST_F(LoadMeaning, NamesOfLatin1AreMadeUtf8) {
+/// Files are found by their bytes, else by what these are in UTF-8; materials by the latter.
+TEST_F(LoadMeaning, NamesOfLatin1AreThoseOfUtf8) {
+    folder_.write("\u00FC.mtl", "newmtl \xFC\nmap_Kd \xE4.png\n");
+    folder_.write("\u00E4.png", image::encodePng(image::Image8(1, 1, 3)));
+    const auto path = folder_.write("a.obj",
+                                    "mtllib \xFC.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n"
+                                    "usemtl \u00FC\nf 1/1 2/1 3/1\n");
+    const Scene scene = loadScene(path);
+    EXPECT_EQ(scene.warnings, std::vector<std::string>{});
+    EXPECT_EQ(scene.materials.at(0).name, "\u00FC");
+    EXPECT_EQ(scene.materials.at(0).baseColorTexture, 0);
+    std::vector<std::filesystem::path> opened = scene.filesBeside;
+    std::ranges::sort(opened);
+    EXPECT_EQ(opened, filesBeside(path));
+    // That of its own bytes goes first.
+    folder_.write("\xFC.mtl", "newmtl \u00FC\nKd 0 1 0\n");
+    EXPECT_EQ(loadScene(path).materials.at(0).baseColor, glm::vec4(0, 1, 0, 1));
+}
+
     folder_.write("a.mtl", "newmtl gr\xFCn\nKd 0 1 0\nnewmtl \u00FC\nKd 1 0 0\nK\xFC 1\n");
     const Scene scene = loadScene(folder_.write("\xFC.obj",
                                                 "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
