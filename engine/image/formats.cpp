@@ -318,22 +318,27 @@ std::array<float, 3> factorsOfHdr(Bytes& file, std::vector<std::string>& notes) 
         return numbers;
     };
     for (std::string line = file.line(); !line.empty(); line = file.line()) {
-        if (line.starts_with("FORMAT=") && trimmed(line) != "FORMAT=32-bit_rle_rgbe") {
+        // What is indented is of a picture that this one was made of.
+        const std::size_t end = line.find('=');
+        const std::string_view key =
+            end == line.npos || line.starts_with(' ') || line.starts_with('\t')
+                ? std::string_view()
+                : trimmed(std::string_view(line).substr(0, end));
+        if (key == "FORMAT" && trimmed(line.substr(end + 1)) != "32-bit_rle_rgbe") {
             file.fail(line + " is not read; 32-bit_rle_rgbe is");
         }
-        const bool isExposure = line.starts_with("EXPOSURE=");
-        if (isExposure || line.starts_with("COLORCORR=")) {
+        const bool isExposure = key == "EXPOSURE";
+        if (isExposure || key == "COLORCORR") {
             const auto numbers = numbersOf(line, isExposure ? 1 : 3);
             for (std::size_t c = 0; c < 3; ++c) {
                 factors[c] *= numbers[isExposure ? 0 : c];
                 if (!(factors[c] > 0.0F)) file.fail("its header has '" + line + "'");
             }
         }
-        const bool isOfPixels = line.starts_with("PIXASPECT=");
-        if ((isOfPixels || line.starts_with("GAMMA=")) && numbersOf(line, 1)[0] != 1.0F) {
+        if ((key == "PIXASPECT" || key == "GAMMA") && numbersOf(line, 1)[0] != 1.0F) {
             notes.push_back("left out: " + line);
         }
-        if (line.starts_with("PRIMARIES=")) {
+        if (key == "PRIMARIES") {
             // Radiance's own, whose white is that of equal energy, everybody takes for sRGB's.
             const auto numbers = numbersOf(line, 8);
             for (std::size_t i = 0; i < numbers.size(); ++i) {

@@ -194,6 +194,14 @@ TEST_F(Formats, RadiancesPicturesAreLinear) {
     EXPECT_EQ(exposed.linear.at(2, 0, 0), 0.125F);
     EXPECT_EQ(exposed.linear.at(3, 0, 1), 0.03125F);
     const Picture zeros = readPicture(folder_.write(
+    // Blanks stand around '=', too. An indented line is of a picture that this one was made of.
+    const Picture spaced = readPicture(
+        folder_.write("c.hdr",
+                      "#?RADIANCE\nFORMAT = 32-bit_rle_rgbe\nEXPOSURE = 2.0\nEXPOSURE\t=\t4\n"
+                      "\tEXPOSURE=8\nGAMMA = 2.2\n" +
+                          pixels));
+    EXPECT_EQ(spaced.linear.at(2, 0, 0), 0.125F);
+    EXPECT_EQ(spaced.notes, std::vector<std::string>{"left out: GAMMA = 2.2"});
         "c.hdr", head + "EXPOSURE=02\n\n-Y 01 +X 04" + pixels.substr(pixels.find("+X 4") + 4)));
     EXPECT_EQ(zeros.linear.at(3, 0, 1), 0.25F);
     EXPECT_EQ(errorOf("d.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 4\n"),
