@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "engine/core/files.h"
+#include "engine/core/foreign_text.h"
 #include "engine/image/formats.h"
 
 namespace gfxrepro::image {
@@ -281,6 +282,22 @@ std::map<std::string, std::span<const std::byte>> chunksOf(std::span<const std::
 }
 
 }  // namespace
+
+PngPhysics pngPhysics(std::span<const std::byte> bytes) {
+    const auto chunks = chunksOf(bytes);
+    PngPhysics said;
+    said.hasValues = chunks.contains("pCAL");
+    const auto size = chunks.find("sCAL");
+    said.hasSize = size != chunks.end();
+    if (!said.hasSize || size->second.empty()) return said;
+    const std::string_view text = textOf(size->second);  // 1: metres; a number, a 0, a number
+    const std::size_t end = std::min(text.find('\0'), text.size() - 1);
+    const auto x = parsedNumber<float>(text.substr(1, std::max<std::size_t>(end, 1) - 1));
+    const auto y = parsedNumber<float>(text.substr(end + 1));
+    const bool isLength = text[0] == 1 && x && y && *x > 0.0F && std::isfinite(*x);
+    if (isLength && std::abs(*x - *y) <= 1e-3F * *x) said.pixelM = *x;
+    return said;
+}
 
 PngColours pngColours(std::span<const std::byte> bytes, const std::string& name) {
     constexpr std::size_t kSrgbGamma = 45455;

@@ -27,6 +27,14 @@ struct PngColours {
 /// A gamma of 1 / 2.2 is the standard's own number for sRGB. Of a broken file: as far as it goes.
 PngColours pngColours(std::span<const std::byte> bytes, const std::string& name);
 
+/// What a PNG file says of what it shows, by extensions of the standard.
+struct PngPhysics {
+    bool hasSize = false;         // that of a pixel (sCAL)
+    std::optional<float> pixelM;  // it, where it is in metres, and the same along x and y
+    bool hasValues = false;       // what its values mean (pCAL)
+};
+PngPhysics pngPhysics(std::span<const std::byte> bytes);
+
 /// 8-bit values, 1 to 4 channels; palettes and lower depths are expanded, 16-bit is an Error.
 /// Throws Error with the path and the decoder's reason; the memory stays bounded by what the header
 /// declares, and that as checkDeclaredSize() says of pictures.

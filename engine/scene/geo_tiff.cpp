@@ -17,7 +17,7 @@
 namespace gfxrepro::scene {
 namespace {
 
-constexpr std::uint16_t kModelType = 1024, kGeographic = 2;
+constexpr std::uint16_t kModelType = 1024, kProjectedModel = 1, kGeographic = 2;
 constexpr std::uint16_t kAngularUnit = 2054, kDegree = 9102, kDegreeOfSupplier = 9122;
 constexpr std::uint16_t kProjected = 3072, kVertical = 4096;
 constexpr std::uint16_t kLinearUnit = 3076, kLinearUnitSize = 3077, kVerticalUnit = 4099;
@@ -127,6 +127,13 @@ std::string takenAsMetres(const Keys& keys) {
                                         {3857, 3857}});
     if (keys.find(kLinearUnit) || isKnown) return "";
     return fmt::format("its coordinates, of EPSG {} and without a unit, are taken as metres", code);
+}
+
+/// What to say of other coordinates than those of maps, such as geocentric ones (3).
+std::string takenAsOfAMap(const Keys& keys) {
+    const std::uint16_t model = keys.find(kModelType).value_or(kProjectedModel);
+    if (model == kProjectedModel) return "";
+    return fmt::format("its coordinates, of model type {}, are taken as those of a map", model);
 }
 
 /// Likewise of heights: above the ellipsoid, EGM96, EGM2008, mean seas, Newlyn, NAVD88, EVRF.
@@ -255,14 +262,16 @@ GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
     units.scale = static_cast<float>(units.scale * heightM);
     units.offset = static_cast<float>(units.offset * heightM);
     const bool isGeographic = keys.find(kModelType) == kGeographic;
-    units.unitWarning = heightsTakenAsMetres(tags, keys);
+    units.unitWarning = units.scale == 0.0F ? "its scale of 0 makes all its heights the same"
+                                            : heightsTakenAsMetres(tags, keys);
     if (const std::optional<glm::dvec2> step = stepOf(tags, isGeographic, file)) {
         const double unitM = isGeographic ? keys.metresOfDegrees() : keys.metresOf(kLinearUnit);
         if (isGeographic) {
             const double east = std::cos(glm::radians(latitudeDeg(tags, step->y)));
             units.warning = unevenSpacing(step->x * unitM * east, step->y * unitM);
         } else {
-            units.warning = takenAsMetres(keys);
+            const std::string model = takenAsOfAMap(keys);
+            units.warning = model.empty() ? takenAsMetres(keys) : model;
         }
         const auto spacing = static_cast<float>(step->y * unitM);
         if (spacing > 0.0F && std::isfinite(spacing)) units.spacingM = spacing;

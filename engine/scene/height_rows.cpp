@@ -20,6 +20,7 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/core/node.h"
 #include "engine/image/formats.h"
 #include "engine/image/image.h"
@@ -65,6 +66,7 @@ class PngHeightRows : public HeightRows {
         canBeNan = rows_.channels() == 2;
         row_.resize(static_cast<std::size_t>(rows_.width()) *
                     static_cast<std::size_t>(rows_.channels()));
+        findScale(path);
     }
 
     void read(float* values) override {
@@ -78,6 +80,21 @@ class PngHeightRows : public HeightRows {
     }
 
   private:
+    void findScale(const fs::path& path) {
+        const image::PngPhysics said = image::pngPhysics(MappedFile(path).bytes());
+        spacingM = said.pixelM;
+        if (said.hasSize && !spacingM) {
+            spacingWarning =
+                "left out: the size of its pixels (chunk sCAL), which is none in metres that is "
+                "the same along x and y";
+        }
+        if (said.hasValues) {
+            unitWarning =
+                "left out: what its values mean (chunk pCAL): heights are the numbers that are "
+                "stored";
+        }
+    }
+
     image::PngRows rows_;
     int step_ = 257;
     std::vector<std::uint16_t> row_;

@@ -135,6 +135,11 @@ TEST_F(HeightUnits, UnitsThatAreNotKnownAreSaid) {
     EXPECT_EQ(
         warnings({}, {}, {0, 0, 0, 0, 0, 0, 8, 0, 0, 240, 0, 0}),
         Pair("its points on the ground (ModelTiepoint) are not used: they say no spacing", ""));
+    EXPECT_EQ(warnings({1, 1, 0, 1, 1024, 0, 1, 3}),
+              Pair("its coordinates, of model type 3, are taken as those of a map", ""))
+        << "geocentric";
+    writeGeoTiff(path, "<Item role=\"scale\">0</Item>", {30, 30, 0}, {});
+    EXPECT_EQ(loadHeightMap(path, {}).unitWarning, "its scale of 0 makes all its heights the same");
 }
 
 /// By ModelPixelScale and ModelTiepoint, or by ModelTransformation: 0, 10, 20, 30 are stored.
@@ -360,14 +365,16 @@ TEST_F(HeightUnits, SrtmTilesHaveTheSpacingOfTheirFormat) {
     EXPECT_NEAR(loadHeightMap(path, {}).spacingM, 30.87F, 0.01F);
 }
 
-/// Two rows of two samples, `bits` each.
-void writeGrey(const fs::path& path, int bits, unsigned char row) {
+/// Two rows of two samples, `bits` each. `describe(png, info)` adds chunks.
+template <class Describe>
+void writeGrey(const fs::path& path, int bits, unsigned char row, const Describe& describe) {
     std::FILE* file = std::fopen(path.c_str(), "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
     png_infop info = png_create_info_struct(png);
     png_init_io(png, file);
     png_set_IHDR(png, info, 2, 2, bits, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    describe(png, info);
     png_write_info(png, info);
     for (int y = 0; y < 2; ++y) png_write_row(png, &row);
     png_write_end(png, nullptr);
@@ -378,13 +385,42 @@ void writeGrey(const fs::path& path, int bits, unsigned char row) {
 TEST_F(HeightUnits, PngOfFewBitsHasTheNumbersThatItStores) {
     const fs::path path = folder.path() / "a.png";
     const auto heights = [&](int bits, unsigned char row) {
-        writeGrey(path, bits, row);
+        writeGrey(path, bits, row, [](png_structp, png_infop) {});
         const HeightMap map = loadHeightMap(path, {});
         return std::vector<float>{map.heightM(0, 0), map.heightM(1, 1)};
     };
     EXPECT_EQ(heights(4, 0xF3), (std::vector<float>{15, 3}));
     EXPECT_EQ(heights(2, 0x90), (std::vector<float>{2, 1}));
     EXPECT_EQ(heights(1, 0x40), (std::vector<float>{0, 1}));
+}
+
+TEST_F(HeightUnits, PngSaysHowLargeItsPixelsAre) {
+    const fs::path path = folder.path() / "a.png";
+    const auto loaded = [&](int unit, const char* x, const char* y) {
+        writeGrey(path, 4, 0xF3,
+                  [&](png_structp png, png_infop info) { png_set_sCAL_s(png, info, unit, x, y); });
+        return loadHeightMap(path, {});
+    };
+    const HeightMap map = loaded(PNG_SCALE_METER, "30.5", "3.05e1");
+    EXPECT_EQ(map.spacingM, 30.5F);
+    EXPECT_TRUE(map.isSpacingOfFile);
+    EXPECT_EQ(map.spacingWarning, "");
+    for (const HeightMap& other :
+         {loaded(PNG_SCALE_METER, "30", "60"), loaded(PNG_SCALE_RADIAN, "0.5", "0.5")}) {
+        EXPECT_EQ(other.spacingM, 1.0F);
+        EXPECT_EQ(other.spacingWarning,
+                  "left out: the size of its pixels (chunk sCAL), which is none in metres that is "
+                  "the same along x and y");
+    }
+    EXPECT_EQ(loadHeightMap(path, {30.0F, 1.0F, {}}).spacingWarning, "") << "given";
+    writeGrey(path, 4, 0xF3, [](png_structp png, png_infop info) {
+        char purpose[] = "height", unit[] = "m", zero[] = "0", one[] = "1";
+        char* parameters[] = {zero, one};
+        png_set_pCAL(png, info, purpose, 0, 15, PNG_EQUATION_LINEAR, 2, unit, parameters);
+    });
+    EXPECT_EQ(loadHeightMap(path, {}).unitWarning,
+              "left out: what its values mean (chunk pCAL): heights are the numbers that are "
+              "stored");
 }
 
 }  // namespace
