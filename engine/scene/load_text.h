@@ -115,9 +115,16 @@ class Anchor {
         const auto [place, isNew] = places_.number(std::bit_cast<std::array<std::uint32_t, 3>>(r));
         if (isNew) {
             first_.push_back(position);
-        } else if (first_[place] != position) {
+        } else if (areOthers(first_[place], position)) {
             ++joined;
         }
+    }
+
+    /// By more than doubles are rounded, or than what every float takes for 0.
+    static bool areOthers(const glm::dvec3& a, const glm::dvec3& b) {
+        constexpr double kRounding = 1e-12, kLeast = std::numeric_limits<float>::min();
+        return glm::any(glm::greaterThan(glm::abs(a - b),
+                                         glm::max(kRounding * glm::abs(a), glm::dvec3(kLeast))));
     }
 
     KeyTable<std::array<std::uint32_t, 3>> places_;
@@ -247,7 +254,20 @@ Scene nearOrigin(Load&& loadLess) {
     return moved;
 }
 
-/// The same, with a warning where the scene is too large for floats, wherever its origin lies.
+/// Whether two corners of some triangle are different vertices at one place.
+inline bool hasEmptyEdge(const Scene& scene) {
+    return std::ranges::any_of(scene.meshes, [](const Mesh& mesh) {
+        const auto areAtOnePlace = [&](std::uint32_t a, std::uint32_t b) {
+            return a != b && mesh.positions[a] == mesh.positions[b];
+        };
+        return std::ranges::any_of(mesh.triangles, [&](const glm::uvec3& t) {
+            return areAtOnePlace(t.x, t.y) || areAtOnePlace(t.y, t.z) || areAtOnePlace(t.z, t.x);
+        });
+    });
+}
+
+/// The same, with a warning where the scene is too large for floats, wherever its origin lies: they
+/// put vertices together, in a scene that is large or that has such an edge.
 template <class Load>
 Scene loadedNearOrigin(Load&& loadLess) {
     Scene scene = nearOrigin(loadLess);
@@ -255,13 +275,13 @@ Scene loadedNearOrigin(Load&& loadLess) {
     const Box box = scene.bounds();
     const glm::vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
     const float most = box.isEmpty() ? 0.0F : std::max({reach.x, reach.y, reach.z});
-    if (most < kCoarse) return scene;
+    if (most < kCoarse && !hasEmptyEdge(scene)) return scene;
     Anchor anchor(scene.offset, true);
     LeftOut ignored;
     loadLess(anchor, ignored);
     if (anchor.joined > 0) {
         scene.warnings.push_back(fmt::format(
-            "floats put {} of its vertices where others are: it reaches to {:.0f}, where their "
+            "floats put {} of its vertices where others are: it reaches to {:.6g}, where their "
             "steps are {:g}",
             anchor.joined, most, std::nextafter(most, 2.0F * most) - most));
     }

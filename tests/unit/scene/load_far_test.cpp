@@ -247,6 +247,14 @@ TEST_F(FarFiles, VerticesThatFallTogetherAreCounted) {
         stl += "endloop\nendfacet\n";
     }
     EXPECT_EQ(warnings("a.stl", stl + "endsolid\n"), two);
+    EXPECT_EQ(warnings("a.obj", "v -60000 0 0\nv 60000 0 0\nv 60000.001 0 0\nf 1 2 3\n"),
+              Lines{"floats put 1 of its vertices where others are: it reaches to 60000, where "
+                    "their steps are 0.00390625"})
+        << "a triangle without one of its edges";
+    for (const char* same : {"60000", "60000.00000000001"}) {
+        const std::string third = fmt::format("v {} 0 1e-50\n", same);
+        EXPECT_EQ(warnings("a.obj", "v -60000 0 0\nv 60000 0 0\n" + third + "f 1 2 3\n"), Lines{});
+    }
     EXPECT_EQ(warnings("a.obj", "v -400000 0 0\nv 400000 0 0\nv 400000 0.01 0\nf 1 2 3\n"),
               Lines{});
 }
