@@ -38,7 +38,8 @@ void noteAspect(double across, double down, std::vector<std::string>& notes) {
 void noteBehind(std::span<const std::byte> behind, std::vector<std::string>& notes) {
     constexpr std::string_view kFilling(" \t\r\n\0", 5);
     if (textOf(behind).find_first_not_of(kFilling) == std::string_view::npos) return;
-    notes.push_back(fmt::format("left out: {} bytes behind its end", behind.size()));
+    notes.push_back(fmt::format("left out: {} byte{} behind its end", behind.size(),
+                                behind.size() == 1 ? "" : "s"));
 }
 
 namespace {

@@ -28,6 +28,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -328,11 +329,25 @@ void noteOthers(const Imf::Header& header, ExrImage& image) {
 
 constexpr float kMostWhole = 0x1p24F;  // from there on floats pass over whole numbers
 
-void noteRounding(const ExrImage::Channel& channel, std::vector<std::string>& notes) {
-    const float largest = std::ranges::max(channel.values.values());
-    if (largest < kMostWhole) return;
+/// Before its values are repeated where the file has fewer.
+void noteRounding(const ExrImage::Channel& channel, Imf::InputFile& file,
+                  std::vector<std::string>& notes) {
+    if (std::ranges::max(channel.values.values()) < kMostWhole) return;
+    const Imf::Channel& stored = file.header().channels()[channel.name.c_str()];
+    const Imath::Box2i window = file.header().dataWindow();
+    std::vector<std::uint32_t> values(channel.values.values().size());  // as the file has them
+    Imf::FrameBuffer frameBuffer;
+    frameBuffer.insert(
+        channel.name,
+        Imf::Slice::Make(Imf::UINT, values.data(), window, sizeof(std::uint32_t),
+                         static_cast<std::size_t>(channel.values.width()) * sizeof(std::uint32_t),
+                         stored.xSampling, stored.ySampling));
+    file.setFrameBuffer(frameBuffer);
+    file.readPixels(window.min.y, window.max.y);
+    const std::uint32_t largest = std::ranges::max(values);
+    if (largest <= std::uint32_t{1} << 24) return;
     notes.push_back(
-        fmt::format("channel '{}' holds whole numbers up to {:.0f}; above {:.0f} they are rounded",
+        fmt::format("channel '{}' holds whole numbers up to {}; above {:.0f} they are rounded",
                     channel.name, largest, kMostWhole));
 }
 
@@ -370,7 +385,7 @@ ExrImage decoded(std::span<const std::byte> bytes, const std::string& name) {
     file.readPixels(window.min.y, window.max.y);
 
     for (ExrImage::Channel& channel : image.channels) {
-        if (channel.type == ExrPixelType::Uint) noteRounding(channel, image.notes);
+        if (channel.type == ExrPixelType::Uint) noteRounding(channel, file, image.notes);
         const Imf::Channel& stored = header.channels()[channel.name.c_str()];
         if (stored.xSampling == 1 && stored.ySampling == 1) continue;
         channel.values =

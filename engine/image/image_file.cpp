@@ -77,7 +77,7 @@ void makeSrgb(const PngColours& given, const std::string& name, Decoded& decoded
     if (toRec709) decoded.notes.emplace_back(kConvertedPrimaries);
     if (beyond > 0) {
         decoded.notes.push_back(
-            fmt::format("{} pixels have colours beyond Rec. 709, which are cut", beyond));
+            fmt::format("pixels of colours beyond Rec. 709, which are cut: {}", beyond));
     }
 }
 

@@ -226,10 +226,15 @@ void Lights::add(const tinygltf::Node& node, int index, const glm::mat4& worldFr
 
 void Lights::moveTo(Scene& scene) {
     if (spots_ > 0) {
-        scene.warnings.push_back(fmt::format("{} spot lights shine in all directions", spots_));
+        scene.warnings.push_back(fmt::format(
+            "{} in all directions",
+            spots_ == 1 ? "1 spot light shines" : fmt::format("{} spot lights shine", spots_)));
     }
     if (directional_ > 0) {
-        scene.warnings.push_back(fmt::format("{} directional lights are left out", directional_));
+        scene.warnings.push_back(fmt::format(
+            "{} left out", directional_ == 1
+                               ? "1 directional light is"
+                               : fmt::format("{} directional lights are", directional_)));
     }
     double sum = 0.0;
     for (const PointLight& light : lights_) {

@@ -547,10 +547,10 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file, An
     if (scene.meshes.empty()) scene.points.radii = std::move(vertices.radii);
     scene.warnings = std::move(vertices.warnings);
     if (reader.splitLines > 0) {
-        scene.warnings.push_back(
-            fmt::format("{} rows end within a line: their numbers are read in their order, "
-                        "whichever line has them",
-                        reader.splitLines));
+        scene.warnings.push_back(fmt::format(
+            "{} within a line: numbers are read in their order, whichever line has "
+            "them",
+            reader.splitLines == 1 ? "1 row ends" : fmt::format("{} rows end", reader.splitLines)));
     }
     return scene;
 }

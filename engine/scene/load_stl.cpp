@@ -150,7 +150,10 @@ Mesh textMesh(std::string_view text, const std::string& file, Anchor& anchor) {
         for (std::string word = lowerCase(lines.word()); !word.empty();
              word = lowerCase(lines.word())) {
             isWithin = word != "endsolid";
-            if (word == "solid" || word == "endsolid") {
+            // Its name may be anything; in a file of one line the next solid ends it.
+            while (!isWithin && !word.empty() && word != "solid") word = lowerCase(lines.word());
+            if (word.empty()) break;
+            if (word == "solid") {
                 if (!skipName(lines)) break;
                 isWithin = true;
                 word = "facet";

@@ -205,7 +205,7 @@ TEST_F(ColoursOfFiles, PrimariesOfPng) {
     EXPECT_EQ(
         wide.notes,
         (Lines{converted_[0], "R, G, B are converted from its chromaticities to those of Rec. 709",
-               "1 pixels have colours beyond Rec. 709, which are cut"}));
+               "pixels of colours beyond Rec. 709, which are cut: 1"}));
 }
 
 TEST_F(ColoursOfFiles, PrecedenceOfPng) {

@@ -166,6 +166,7 @@ TEST_F(Formats, WhatStandsBehindAPictureIsSaid) {
         EXPECT_EQ(notesOf(std::string("\r\n\0\0", 4)), std::vector<std::string>{}) << picture;
         EXPECT_EQ(notesOf("\nabc"), std::vector<std::string>{"left out: 4 bytes behind its end"})
             << picture;
+        EXPECT_EQ(notesOf("z"), std::vector<std::string>{"left out: 1 byte behind its end"});
     }
 }
 
@@ -193,7 +194,6 @@ TEST_F(Formats, RadiancesPicturesAreLinear) {
         folder_.write("c.hdr", head + "EXPOSURE=2\nEXPOSURE= 4\nCOLORCORR=1 2 1\n" + pixels));
     EXPECT_EQ(exposed.linear.at(2, 0, 0), 0.125F);
     EXPECT_EQ(exposed.linear.at(3, 0, 1), 0.03125F);
-    const Picture zeros = readPicture(folder_.write(
     // Blanks stand around '=', too. An indented line is of a picture that this one was made of.
     const Picture spaced = readPicture(
         folder_.write("c.hdr",
@@ -202,6 +202,7 @@ TEST_F(Formats, RadiancesPicturesAreLinear) {
                           pixels));
     EXPECT_EQ(spaced.linear.at(2, 0, 0), 0.125F);
     EXPECT_EQ(spaced.notes, std::vector<std::string>{"left out: GAMMA = 2.2"});
+    const Picture zeros = readPicture(folder_.write(
         "c.hdr", head + "EXPOSURE=02\n\n-Y 01 +X 04" + pixels.substr(pixels.find("+X 4") + 4)));
     EXPECT_EQ(zeros.linear.at(3, 0, 1), 0.25F);
     EXPECT_EQ(errorOf("d.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 4\n"),

@@ -409,8 +409,8 @@ TEST_F(LoadGltf, TakesPointLightsWithTheirShareOfWhatAllGive) {
     EXPECT_LT(glm::distance(scene.lights[0].intensity, glm::vec3(0.6F, 0.3F, 0)), 1e-6F);
     EXPECT_LT(glm::distance(scene.lights[1].intensity, glm::vec3(0.3F)), 1e-6F);
     EXPECT_FLOAT_EQ(scene.lights[1].radiusM, std::sqrt(0.5F));
-    EXPECT_EQ(scene.warnings, (std::vector<std::string>{"1 spot lights shine in all directions",
-                                                        "1 directional lights are left out"}));
+    EXPECT_EQ(scene.warnings, (std::vector<std::string>{"1 spot light shines in all directions",
+                                                        "1 directional light is left out"}));
 
     document["nodes"] = "[{\"mesh\":0}," + lamp("7", "[0,0,0]") + "]";
     document["scenes"] = R"([{"nodes":[0,1]}])";

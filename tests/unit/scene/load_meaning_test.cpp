@@ -9,6 +9,7 @@
 
 #include "engine/image/png_io.h"
 #include "engine/scene/load.h"
+#include "engine/scene/model_files.h"
 #include "tests/support/support.h"
 #include "tests/unit/scene/gltf_document.h"
 
@@ -211,7 +212,6 @@ TEST_F(LoadMeaning, MatricesOfNodesArePlacesAndNoProjections) {
     EXPECT_EQ(scene.instances.at(0).worldFromMesh, glm::mat4(1.0F));
 }
 
-TEST_F(LoadMeaning, NamesOfLatin1AreMadeUtf8) {
 /// Files are found by their bytes, else by what these are in UTF-8; materials by the latter.
 TEST_F(LoadMeaning, NamesOfLatin1AreThoseOfUtf8) {
     folder_.write("\u00FC.mtl", "newmtl \xFC\nmap_Kd \xE4.png\n");
@@ -231,6 +231,7 @@ TEST_F(LoadMeaning, NamesOfLatin1AreThoseOfUtf8) {
     EXPECT_EQ(loadScene(path).materials.at(0).baseColor, glm::vec4(0, 1, 0, 1));
 }
 
+TEST_F(LoadMeaning, NamesOfLatin1AreMadeUtf8) {
     folder_.write("a.mtl", "newmtl gr\xFCn\nKd 0 1 0\nnewmtl \u00FC\nKd 1 0 0\nK\xFC 1\n");
     const Scene scene = loadScene(folder_.write("\xFC.obj",
                                                 "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
@@ -281,9 +282,11 @@ TEST_F(PlyMeaning, PropertiesAreDeclaredOnce) {
 TEST_F(PlyMeaning, RowsAreLines) {
     EXPECT_EQ(warningsOf("a.ply", ply("", "0 0 0 \r\n1 0 0\n\n0 1 0\n3 0 1 2")), Lines{});
     const std::string told =
-        " rows end within a line: their numbers are read in their order, whichever line has them";
-    EXPECT_EQ(warningsOf("a.ply", ply("", "0 0 0 1 0 0\n0 1 0\n3 0 1 2\n")), Lines{"1" + told});
-    EXPECT_EQ(warningsOf("a.ply", ply("", "0 0\n0 1 0\n0 0 1 0\n3 0 1 2\n")), Lines{"2" + told});
+        " within a line: numbers are read in their order, whichever line has them";
+    EXPECT_EQ(warningsOf("a.ply", ply("", "0 0 0 1 0 0\n0 1 0\n3 0 1 2\n")),
+              Lines{"1 row ends" + told});
+    EXPECT_EQ(warningsOf("a.ply", ply("", "0 0\n0 1 0\n0 0 1 0\n3 0 1 2\n")),
+              Lines{"2 rows end" + told});
 }
 
 }  // namespace

@@ -158,6 +158,8 @@ TEST_F(LoadOffStl, ReadsBothFormsOfStl) {
         EXPECT_TRUE(mesh.normals.empty());
     }
     EXPECT_EQ(stl(two).warnings, Lines{});
+    const std::string named = "solid facet normal 0 0 1\n" + std::string(kFacet);
+    EXPECT_EQ(stl(named + "endsolid facet normal 0 0 1\n").triangleCount(), 1U);
     EXPECT_EQ(stl(binaryStl(2) + "12").triangleCount(), 2U);
 }
 
