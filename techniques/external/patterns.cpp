@@ -342,7 +342,7 @@ std::pair<std::size_t, std::size_t> bytesBeside(const Found& found,
     static const std::regex kBefore("(?:^|[^-+0-9A-Za-z_.:/])([-+]?[0-9]{1,3}(?: [0-9]{3})* )$");
     static const std::regex kMantissa(
         "(?:^|[^-+0-9A-Za-z_.])([-+]?(?:[0-9]+[.]?[0-9]*|[.][0-9]+)"
-        "(?: ?[eEdD] ?(?:[-+]|\u2212|\u2013) ?|[eEdD] ))$");
+        "(?: ?[eEdD] ?(?:[-+]|\u2212|\u2013) ?|[eEdD] | [eEdD]))$");
     static const std::regex kThousands("^(?: [0-9]{3})+(?![0-9x])");
     static const std::regex kFraction("^ (?:[0-9]+(?:/|\u2044)[0-9]+)");
     static const std::regex kExponent(
