@@ -58,6 +58,9 @@ Told tell(std::vector<double> rounds, Scale scale) {
         return {metrics::summarize(rounds, metrics::Statistic::Median),
                 *metrics::medianInterval(rounds)};
     }
+    // Equal ones are what they are: a logarithm and back would not be.
+    const auto [least, most] = std::ranges::minmax(rounds);
+    if (least == most) return {least, {least, least}};
     const bool isLogarithmic = scale == Scale::Logarithmic && arePositive(rounds);
     if (isLogarithmic) {
         for (double& value : rounds) value = std::log(value);

@@ -34,7 +34,7 @@ void sayUnread(const Context& context, const scene::Catalog& catalog, const std:
     const config::Experiment whole = loadExperiments({{file}, {}, {}, {}, ""}, "full").front();
     const std::vector<config::Case> cases =
         run::resolveParameters(whole, catalog, context.techniques, 1);
-    const tables::Table wholeTable = tables::buildTable(whole, cases, {});
+    const tables::Table wholeTable = tableBefore(context, whole, cases);
     for (const config::ClaimSpec& claim : experiment.claims) {
         const std::string absent = claims::whatIsAbsent(claim, table);
         const auto then = std::ranges::find(whole.claims, claim.id, &config::ClaimSpec::id);
@@ -369,7 +369,7 @@ std::vector<config::Case> checkFile(const Context& context, const Chosen& select
     const bool isReduced =
         !selection.sets.empty() || !selection.sweeps.empty() || selection.profile != "full";
     if (isReduced) {
-        sayUnread(context, catalog, file, experiment, tables::buildTable(experiment, cases, {}));
+        sayUnread(context, catalog, file, experiment, tableBefore(context, experiment, cases));
     }
     return cases;
 }

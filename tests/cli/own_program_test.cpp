@@ -125,6 +125,21 @@ TEST_F(OwnProgram, AnArgumentThatIsNotThereIsSaid) {
     EXPECT_THAT(said("{here}/beside.py"), testing::Not(HasSubstr("the command's")));
 }
 
+/// What rows a table that nobody laid out has is known with an override, too.
+TEST_F(OwnProgram, AnOverrideLeavesTheRowsThatClaimsCompare) {
+    const auto file = folder.write(
+        "mine.yaml",
+        "sweep_of: mine\ntitle: Mine\nprogram:\n  command: true {n} {pattern} {seed} {out}/p.pfm\n"
+        "  params: {n: 16, pattern: [even, odd]}\n"
+        "  images: {p: {file: p.pfm, truth: {n: 4096, seed: 99}}}\nsweep: {pattern: all}\n"
+        "claims: {c: {says: so, order: [odd, even], of: rmse}}\n");
+    for (const char* given : {"measure.processes=10", "measure.lane=quality"}) {
+        const ProcessResult result = gfxrepro({"check", file, "--set", given});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        EXPECT_THAT(result.out, testing::Not(HasSubstr("unmeasured")));
+    }
+}
+
 /// What a table that nobody laid out divides, a claim reads as a time, too.
 TEST_F(OwnProgram, AQuotientOfTimesIsATime) {
     const auto file = folder.write("mine.yaml",

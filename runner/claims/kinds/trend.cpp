@@ -39,7 +39,8 @@ void readTrend(const ClaimKeys& keys, ClaimSpec& claim) {
     if (directionOf(claim) == 0) keys.fail(*strictly, "strictly needs 'direction'");
 }
 
-/// The least-squares slope of log(operand) over log(x). Not-a-number unless all are positive.
+/// The least-squares slope of log(operand) over log(x), without the digits that logarithms round:
+/// what grows as x² has exactly 2. Not-a-number unless all are positive.
 double exponent(const GroupPoint& group) {
     const std::vector<double>& y = group.operands[0];
     if (!arePositive(group.x) || !arePositive(y)) return kNan;
@@ -55,7 +56,8 @@ double exponent(const GroupPoint& group) {
         covariance += dx * (std::log(y[i]) - meanY);
         variance += dx * dx;
     }
-    return variance > 0.0 ? covariance / variance : kNan;
+    constexpr double kKnown = 1e12;
+    return variance > 0.0 ? std::round(covariance / variance * kKnown) / kKnown : kNan;
 }
 
 /// With the rows sorted by x, the smallest step towards `direction`, relative to the larger of its

@@ -135,6 +135,12 @@ TEST(Claims, TrendExponentOverAxisAndColumn) {
               Verdict::Fails);
     result = judgePowers("trend: a, over: n * b, at_least: 0.4, at_most: 0.6", records);
     EXPECT_EQ(result.measured, "exponent 0.5");
+    for (const Function square : {Function([](double n) { return 3.0 * n * n; }),
+                                  Function([](double n) { return 7.0 * n * n; }),
+                                  Function([](double n) { return 10.0 * n * n; })}) {
+        EXPECT_EQ(judgePowers("trend: a, over: n, at_least: 2, at_most: 2", powers(square)).verdict,
+                  Verdict::Holds);
+    }
     const auto exponential = powers([](double n) { return std::exp2(-n); });
     EXPECT_EQ(judgePowers("trend: a, over: 2^n, at_least: -1, at_most: -1", exponential).measured,
               "exponent -1");

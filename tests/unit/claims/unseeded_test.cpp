@@ -79,6 +79,29 @@ TEST(Unseeded, WhatHasNoSeedBesideWhatHasOneDrawsNone) {
     EXPECT_EQ(resultOf(experimentOf(Of::Import, body), maker.records()).verdict, Verdict::Holds);
 }
 
+/// The logarithm of most integers, and back, is another number.
+TEST(Unseeded, EqualNumbersAreAtTheirBound) {
+    for (const double count : {3.0, 5.0, 8.0, 64.0, 100.0, 1000.0, 12345.0}) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})");
+        for (int process = 0; process < 6; ++process) {
+            maker.process(process).add("many", {1.0 + 0.01 * process}, "", "1");
+            maker.add("rays", {count}, "", "ray");
+        }
+        for (const auto& [limit, verdict] : {std::pair("at_most", Verdict::Holds),
+                                             {"at_least", Verdict::Holds},
+                                             {"more_than", Verdict::Fails},
+                                             {"less_than", Verdict::Fails}}) {
+            const std::string body = fmt::format(
+                "sweep: {{n: [1]}}\nlayout: {{rows: n, columns: {{rays: {{metric: rays}}, "
+                "many: {{metric: many}}}}}}\nclaims: {{C: {{says: so, bound: rays, {}: {}}}}}\n",
+                limit, count);
+            EXPECT_EQ(resultOf(experimentOf(Of::Import, body), maker.records()).verdict, verdict)
+                << limit << ' ' << count;
+        }
+    }
+}
+
 /// Memory differs in any program, and says nothing of what it computes.
 TEST(Unseeded, MemoryTellsOfMemoryAlone) {
     tables::RecordMaker maker;
