@@ -134,11 +134,11 @@ TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustFindWhatItFinds) {
         EXPECT_NE(blind.err.find("(code, tests, failures)"), std::string::npos) << blind.err;
         EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     }
-    // Nor where a reason is given; one that is slower is found, whatever it says itself.
+    // Nor where it is slower on purpose; one that is slower is found, whatever it says itself.
     const std::string slow = "export GFXREPRO_MOCK_EXTRA_MS=15\n" + kBlind[1];
+    isTimed = true;
     EXPECT_EQ(nightOf(slow, {"--accept", "it is right"}).exitCode, 2);
     EXPECT_FALSE(fs::exists(state + "/accepted.csv"));
-    isTimed = true;
     EXPECT_EQ(nightOf(slow).exitCode, 1);
     EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     // A judge that landed before, and ends with 0 whatever it found.
