@@ -11,7 +11,7 @@ namespace gfxrepro {
 namespace {
 
 char lower(char c) {
-    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
 /// Levenshtein distance, ignoring case.
@@ -73,6 +73,12 @@ std::string suggestion(std::string_view name, std::span<const std::string> candi
 std::string suggestionOrAll(std::string_view name, std::span<const std::string> candidates) {
     const std::string near = suggestion(name, candidates);
     return near.empty() ? "; allowed: " + joined(candidates) : near;
+}
+
+std::string lowerCase(std::string_view text) {
+    std::string result(text);
+    std::ranges::transform(result, result.begin(), lower);
+    return result;
 }
 
 std::string joined(std::span<const std::string> items, std::string_view separator) {

@@ -26,6 +26,8 @@ std::string joined(std::span<const std::string> items, std::string_view separato
 
 std::vector<std::string> split(std::string_view text, char separator);
 std::string_view trimmed(std::string_view text);
+/// Of ASCII letters.
+std::string lowerCase(std::string_view text);
 
 /// The whole text as a decimal number ("12", "-3", "1e-3"), independent of the locale; no leading
 /// zeros, no octal or hexadecimal forms, no infinities. Empty when it is anything else.

@@ -33,7 +33,7 @@ std::string gpuOf(std::string entry, const std::vector<std::string>& gpus) {
         const bool isThere = *index >= 0 && *index < static_cast<long long>(gpus.size());
         return isThere ? gpus[static_cast<std::size_t>(*index)] : "";
     }
-    std::ranges::transform(entry, entry.begin(), [](unsigned char c) { return std::tolower(c); });
+    entry = lowerCase(entry);
     if (!entry.starts_with("gpu-") || entry.size() == 4) return "";
     const auto found = std::ranges::find_if(
         gpus, [&](const std::string& uuid) { return uuid.starts_with(entry.substr(4)); });
@@ -242,7 +242,7 @@ struct Wanted {
 
 /// As DeviceInfo has it; nothing for what is no UUID.
 std::optional<std::string> parseUuid(std::string text) {
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    text = lowerCase(text);
     if (text.starts_with("gpu-")) text.erase(0, 4);
     constexpr std::string_view kForm = "xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx";
     const bool isUuid = std::ranges::equal(text, kForm, [](unsigned char c, char form) {

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "engine/core/text.h"
 
 namespace gfxrepro::gl {
 namespace {
@@ -85,8 +86,7 @@ class Nvml {
         std::array<char, 96> text{};
         const int status =
             call("nvmlDeviceGetUUID", device, text.data(), static_cast<Count>(text.size()));
-        std::string uuid = status == kSuccess ? text.data() : "";
-        std::ranges::transform(uuid, uuid.begin(), [](unsigned char c) { return std::tolower(c); });
+        std::string uuid = lowerCase(status == kSuccess ? text.data() : "");
         if (uuid.starts_with("gpu-")) uuid.erase(0, 4);
         return uuid;
     }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <string>

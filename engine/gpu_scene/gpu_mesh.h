@@ -1,9 +1,6 @@
 // Meshes and scenes on the device: the only place that knows both scene/ and gl/.
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "engine/gl/objects.h"
 #include "engine/gl/program.h"
 #include "engine/image/image.h"

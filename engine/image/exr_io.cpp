@@ -17,7 +17,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +31,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "engine/image/formats.h"
 #include "engine/image/image.h"
 
@@ -287,7 +287,7 @@ void takePrimaries(const Imf::Chromaticities& given, const std::string& name, Ex
 
 /// Whether a text of this name says in which space the colours are, and another than Rec. 709's
 /// light.
-bool isOtherSpace(const std::string& name, std::string space) {
+bool isOtherSpace(const std::string& name, const std::string& space) {
     static constexpr std::string_view kLinear[] = {"lin_rec709",
                                                    "lin_rec709_scene",
                                                    "lin_srgb",
@@ -300,8 +300,7 @@ bool isOtherSpace(const std::string& name, std::string space) {
                                                    "data",
                                                    "raw"};
     if (name != "colorInteropID" && name != "oiio:ColorSpace" && name != "colorSpace") return false;
-    for (char& c : space) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return std::ranges::find(kLinear, space) == std::end(kLinear);
+    return std::ranges::find(kLinear, lowerCase(space)) == std::end(kLinear);
 }
 
 /// Names what might change how the pixels are seen and is not used here.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -14,6 +13,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/text.h"
 #include "engine/scene/left_out.h"
 #include "engine/scene/load.h"
 #include "engine/scene/load_lines.h"
@@ -39,8 +39,7 @@ bool isTextStl(std::string_view bytes) {
     if (bytes.substr(0, 1024).find('\0') != bytes.npos) return false;
     bytes = withoutByteOrderMark(bytes);
     const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
-    return std::ranges::equal(bytes.substr(begin, 5), std::string_view("solid"), {},
-                              [](unsigned char c) { return std::tolower(c); });
+    return lowerCase(bytes.substr(begin, 5)) == "solid";
 }
 
 /// STL sets no colours; two ways are usual. Materialise's header has "COLOR=" and the whole's red,
@@ -123,12 +122,6 @@ Mesh binaryMesh(std::string_view bytes, const std::string& file, Anchor& anchor,
     }
     if (!mesh.colors.empty()) mesh.colors.resize(mesh.positions.size(), glm::vec3(1.0F));
     return mesh;
-}
-
-std::string lowerCase(std::string_view text) {
-    std::string result(text);
-    std::ranges::transform(result, result.begin(), [](unsigned char c) { return std::tolower(c); });
-    return result;
 }
 
 /// Goes behind a solid's name, which ends with its line, or, in a file of one line, before the next

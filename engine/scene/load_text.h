@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "engine/core/files.h"
 #include "engine/core/foreign_text.h"
 #include "engine/core/hash.h"
+#include "engine/core/text.h"
 #include "engine/image/formats.h"
 #include "engine/image/image.h"
 #include "engine/image/png_io.h"
@@ -69,10 +69,7 @@ bool isPngOrJpeg(std::span<const std::byte> bytes) {
 }
 
 std::string lowerCaseExtension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
+    return lowerCase(path.extension().string());
 }
 
 std::string_view jsonOfGlb(std::string_view file) {

@@ -1,7 +1,6 @@
 // One cell of a table: which records it takes, and what is written of the values that they give.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>

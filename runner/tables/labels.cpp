@@ -99,8 +99,7 @@ std::optional<Quantity> passOf(std::string_view own, std::string_view unit) {
 
 /// The unit that a name ends with, as "_level" of "rmse_level" where levels were recorded.
 bool endsWithUnit(std::string_view name, std::string_view unit) {
-    std::string ending = fmt::format("_{}", unit);
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string ending = "_" + lowerCase(unit);
     return !unit.empty() && name.size() > ending.size() && name.ends_with(ending);
 }
 

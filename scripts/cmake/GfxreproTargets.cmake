@@ -31,7 +31,8 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(GFXREPRO_TEST_OPTIONS -O0 -Wno-subobject-linkage)
 
 # gfxrepro_precompiled(TARGET COLD): where sources compile one by one, what most of them include is compiled once, in the two
-# ways that modules are optimized. `check_style` and preset `clang`, which compiles without, tell of a header that a source forgets.
+# ways that modules are optimized: headers of others alone, so that a header of ours still compiles without what its source includes.
+# Those of others that it forgets `check_style` names, and preset `clang`, which compiles without.
 function(gfxrepro_precompiled target cold)
     if(CMAKE_UNITY_BUILD OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         return()

@@ -1,8 +1,6 @@
 // Step 3.a of [xie2017] Algorithm 6: a camera a cluster (Sec. 4.4).
 #pragma once
 
-#include <vector>
-
 #include "techniques/clustered_reflections/clustering.h"
 #include "techniques/kit/view.h"
 #include "techniques/reflections/reflection_tracer.h"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "engine/gl/pass.h"
 #include "engine/gl/profiler.h"

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <span>
 
 #include "engine/gl/objects.h"
 #include "engine/gl/pass.h"

@@ -1,7 +1,6 @@
 // Draws tiles of terrain: tessellated to the screen, as plain grids, and as morphing grids.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>

@@ -5,7 +5,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "runner/technique/technique.h"
 #include "techniques/terrain_tessellation/patch_checks.h"

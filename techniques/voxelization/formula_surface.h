@@ -1,8 +1,6 @@
 // Surfaces given by formulas, voxelized without triangles. [zju2005] Sec. 2.4.1.
 #pragma once
 
-#include <array>
-
 #include "engine/gl/pass.h"
 #include "techniques/voxelization/expression.h"
 #include "techniques/voxelization/worksheet.h"
