@@ -6,8 +6,9 @@ target_include_directories(gfxrepro_options INTERFACE "${CMAKE_SOURCE_DIR}")
 # Expressions are evaluated as written: the CPU references are compared with shaders bit for bit.
 target_compile_options(gfxrepro_options INTERFACE -ffp-contract=off)
 if(GFXREPRO_SANITIZE)
+    # What goes through a null pointer AddressSanitizer reports, too.
     target_compile_options(gfxrepro_options INTERFACE
-        -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+        -fsanitize=address,undefined -fno-sanitize=null -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(gfxrepro_options INTERFACE -fsanitize=address,undefined)
 endif()
 if(GFXREPRO_SANITIZE_THREADS)
@@ -30,32 +31,38 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 # Tests take longer to compile than to run. As one unit, what is local to a source seems to be another one's.
 set(GFXREPRO_TEST_OPTIONS -O0 -Wno-subobject-linkage)
 
-# gfxrepro_precompiled(TARGET COLD): where sources compile one by one, what most of them include is compiled once, in the two
-# ways that modules are optimized: headers of others alone, so that a header of ours still compiles without what its source includes.
-# Those of others that it forgets `check_style` names, and preset `clang`, which compiles without.
-function(gfxrepro_precompiled target cold)
-    if(CMAKE_UNITY_BUILD OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+# gfxrepro_precompiled(TARGET COMMON OPTIONS … HEADERS … LINK …): what most sources of such targets include is compiled once, as
+# COMMON. It is headers of others alone, so that a header of ours still compiles without what its source includes. Those of others
+# that it forgets `check_style` names, and preset `clang`, which compiles without.
+function(gfxrepro_precompiled target common)
+    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         return()
     endif()
-    if(cold)
-        set(common gfxrepro_common_cold)
-        set(own <nlohmann/json.hpp>)
-    else()
-        set(common gfxrepro_common)
-        set(own <glm/glm.hpp>)
-    endif()
+    cmake_parse_arguments(arg "" "" "OPTIONS;HEADERS;LINK" ${ARGN})
     if(NOT TARGET ${common})
         file(CONFIGURE OUTPUT "${CMAKE_BINARY_DIR}/${common}.cpp" CONTENT "")
         add_library(${common} OBJECT "${CMAKE_BINARY_DIR}/${common}.cpp")
-        target_compile_options(${common} PRIVATE -fpch-preprocess $<$<AND:$<CONFIG:Release>,$<BOOL:${cold}>>:-O1>)
-        target_link_libraries(${common} PRIVATE gfxrepro_options fmt::fmt nlohmann_json::nlohmann_json glm::glm)
+        target_compile_options(${common} PRIVATE -fpch-preprocess ${arg_OPTIONS})
+        target_link_libraries(${common} PRIVATE gfxrepro_options fmt::fmt nlohmann_json::nlohmann_json ${arg_LINK})
         target_precompile_headers(${common} PRIVATE
             <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <sstream> <string> <vector>
-            <fmt/format.h> ${own})
+            <fmt/format.h> ${arg_HEADERS})
     endif()
     # GCC 12 takes the short form of a moved string for one that is read beyond its end.
     target_compile_options(${target} PRIVATE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
     target_precompile_headers(${target} REUSE_FROM ${common})
+endfunction()
+
+# gfxrepro_precompiled_sources(TARGET COLD): where sources compile one by one, in the two ways that modules are optimized.
+function(gfxrepro_precompiled_sources target cold)
+    if(CMAKE_UNITY_BUILD)
+        return()
+    endif()
+    if(cold)
+        gfxrepro_precompiled(${target} gfxrepro_common_cold OPTIONS $<$<CONFIG:Release>:-O1> HEADERS <nlohmann/json.hpp>)
+    else()
+        gfxrepro_precompiled(${target} gfxrepro_common HEADERS <glm/glm.hpp> LINK glm::glm)
+    endif()
 endfunction()
 
 # gfxrepro_verify_headers(TARGET [targets …]): every header beside the target's sources compiles alone, with the
@@ -92,7 +99,7 @@ function(gfxrepro_module name)
     if(arg_COLD)
         target_compile_options(gfxrepro_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
     endif()
-    gfxrepro_precompiled(gfxrepro_${name} ${arg_COLD})
+    gfxrepro_precompiled_sources(gfxrepro_${name} ${arg_COLD})
     target_link_libraries(gfxrepro_${name}
         PUBLIC gfxrepro_options ${arg_PUBLIC}
         PRIVATE gfxrepro_warnings ${arg_PRIVATE})
@@ -107,7 +114,7 @@ function(add_technique name)
     if(arg_COLD)
         target_compile_options(technique_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
     endif()
-    gfxrepro_precompiled(technique_${name} ${arg_COLD})
+    gfxrepro_precompiled_sources(technique_${name} ${arg_COLD})
     target_link_libraries(technique_${name}
         PUBLIC gfxrepro_technique techniques_kit
         PRIVATE gfxrepro_warnings gfxrepro_raycast gfxrepro_metrics gfxrepro_gpu_scene ${arg_PRIVATE})
@@ -140,10 +147,14 @@ function(gfxrepro_test name)
     cmake_parse_arguments(arg "COLD;SERIAL;WHOLE" "LABEL" "SOURCES;LINK" ${ARGN})
     add_executable(${name} ${arg_SOURCES})
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
-    target_compile_options(${name} PRIVATE ${GFXREPRO_TEST_OPTIONS})
+    set(options ${GFXREPRO_TEST_OPTIONS})
+    set(common gfxrepro_test_common)
     if(arg_LABEL STREQUAL "unit" AND NOT arg_COLD)  # computes and simulates by itself
-        target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+        list(APPEND options $<$<CONFIG:Release>:-O1>)
+        set(common gfxrepro_unit_common)
     endif()
+    target_compile_options(${name} PRIVATE ${options})
+    gfxrepro_precompiled(${name} ${common} OPTIONS ${options} HEADERS <nlohmann/json.hpp> <gmock/gmock.h> <gtest/gtest.h> LINK GTest::gmock)
     target_link_libraries(${name} PRIVATE gfxrepro_test_support ${arg_LINK} GTest::gmock GTest::gtest_main)
     include(GoogleTest)
     # Under ThreadSanitizer simulations of a minute take ten.

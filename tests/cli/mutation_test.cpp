@@ -2,6 +2,7 @@
 // and neither aborts nor hangs. GFXREPRO_TEST_MUTATIONS: with as many inputs of each kind.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <random>

@@ -1,5 +1,6 @@
 #include "engine/gl/objects.h"
 
+#include <algorithm>
 #include <array>
 #include <numeric>
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <glm/gtc/constants.hpp>
 
 #include "techniques/kit/view.h"

@@ -1,4 +1,6 @@
 // The compute splatter against the same two traversals on the host.
+#include <algorithm>
+
 #include "techniques/point_splatting/yardsticks.h"
 
 #include "tests/techniques/point_splatting/splat_fixture.h"

@@ -1,6 +1,7 @@
 // A device, models made of a few points, views, and pictures read back.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>

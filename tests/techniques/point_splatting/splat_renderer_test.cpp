@@ -1,6 +1,7 @@
 // Splats on the device against known pictures: planes, spheres, sheets, and what degenerates.
 #include "techniques/point_splatting/splat_renderer.h"
 
+#include <algorithm>
 #include <glm/gtc/constants.hpp>
 
 #include "tests/techniques/point_splatting/splat_fixture.h"

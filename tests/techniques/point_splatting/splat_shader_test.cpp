@@ -1,4 +1,5 @@
 // Decoding and screen covariance on the device against the host.
+#include <algorithm>
 #include <filesystem>
 
 #include "tests/techniques/point_splatting/splat_fixture.h"

@@ -1,6 +1,7 @@
 #include "tests/techniques/soft_shadows/reference_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <set>
 

@@ -1,6 +1,7 @@
 #include "tests/techniques/voxelization/shapes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <map>
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
+#include <algorithm>
+
 #include "tests/support/support.h"
 
 namespace gfxrepro::test {

@@ -4,6 +4,7 @@
 #include <stb/stb_image_write.h>
 #include <tiffio.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>

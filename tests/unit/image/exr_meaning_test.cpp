@@ -11,6 +11,7 @@
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/image/exr_io.h"
