@@ -154,7 +154,7 @@ function(gfxrepro_test name)
         set(common gfxrepro_unit_common)
     endif()
     target_compile_options(${name} PRIVATE ${options})
-    gfxrepro_precompiled(${name} ${common} OPTIONS ${options} HEADERS <nlohmann/json.hpp> <gmock/gmock.h> <gtest/gtest.h> LINK GTest::gmock)
+    gfxrepro_precompiled(${name} ${common} OPTIONS ${options} HEADERS <gmock/gmock.h> <gtest/gtest.h> LINK GTest::gmock)
     target_link_libraries(${name} PRIVATE gfxrepro_test_support ${arg_LINK} GTest::gmock GTest::gtest_main)
     include(GoogleTest)
     # Under ThreadSanitizer simulations of a minute take ten.
