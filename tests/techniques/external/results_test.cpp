@@ -172,7 +172,7 @@ TEST(MetricLines, APatternTakesNoPartOfANumber) {
     };
     const auto partOf = [](const std::string& part, const std::string& whole) {
         return "metric 'm': its pattern finds '" + part + "' of '" + whole +
-               "'; allowed: a whole number";
+               "'; allowed: a whole number, or a pattern that names what stands beside it";
     };
     const std::string digits = "m=([0-9]+)", decimal = "m=([0-9.]+)";
     EXPECT_EQ(errorOfPattern(decimal, "m=1.5e-03"), partOf("1.5", "1.5e-03"));
@@ -205,7 +205,7 @@ TEST(MetricLines, APatternTakesNoPartOfWhatFortranAndTypesettersWrite) {
         return errorText([&] {
                    numberIn(line, {"m", regex});
                })
-            .ends_with("; allowed: a whole number");
+            .ends_with("; allowed: a whole number, or a pattern that names what stands beside it");
     };
     const std::string decimal = "m=([0-9.]+)";
     for (const char* whole : {"1d-3", "1.5D+03", "1.5D3", "2.d0", "1.5\u00D710^3", "1.5 x 10^3",
@@ -222,7 +222,8 @@ TEST(MetricLines, APatternTakesNoPartOfWhatFortranAndTypesettersWrite) {
     EXPECT_EQ(errorText([] {
                   numberIn("m=1.5 x 10^3 s", {"m", "m=([0-9.]+)"});
               }),
-              "metric 'm': its pattern finds '1.5' of '1.5 x 10^3'; allowed: a whole number");
+              "metric 'm': its pattern finds '1.5' of '1.5 x 10^3'; allowed: a whole number, or a "
+              "pattern that names what stands beside it");
     // Read where the pattern takes all of it.
     EXPECT_EQ(numberOf("m=([0-9.dD+-]+)", "m=1.5D+03"), 1500.0);
     EXPECT_EQ(numberOf("m=([0-9.dD+-]+)", "m=25d-2 s"), 0.25);
@@ -249,7 +250,7 @@ TEST(MetricLines, APatternTakesNoPartOfATimeOrAFraction) {
     };
     const auto partOf = [](const std::string& part, const std::string& whole) {
         return "metric 'm': its pattern finds '" + part + "' of '" + whole +
-               "'; allowed: a whole number";
+               "'; allowed: a whole number, or a pattern that names what stands beside it";
     };
     const std::string digits = "m=([0-9]+)", decimal = "m=([0-9.]+)";
     for (const char* whole :
@@ -296,6 +297,9 @@ TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
     EXPECT_EQ(errorOf("m=(-?[0-9.]+)", "m=-1 234.5 s"), partOf("-1", "-1 234.5"));
     EXPECT_EQ(errorOf(digits, "m=12 5/8"), partOf("12", "12 5/8"));
     EXPECT_EQ(errorOf(digits, "m=12 \u00BD in"), partOf("12", "12 \u00BD"));
+    EXPECT_EQ(errorOf(digits, "m=5 / 8 in"), partOf("5", "5 / 8"));
+    EXPECT_EQ(errorOf(digits, "m=1&nbsp;234"), partOf("1", "1&nbsp;234"));
+    EXPECT_EQ(errorOf("([0-9]+) ms", "Frame 1 100 ms"), partOf("100", "1 100"));
     EXPECT_EQ(errorOf("([0-9]+)$", "m= 1 234"), partOf("234", "1 234"));
     EXPECT_EQ(errorOf("([0-9.]+) s", "took 12 345 678.5 s"), partOf("678.5", "12 345 678.5"));
     EXPECT_EQ(errorOf("([0-9]+).*rays", "m= 1 234 rays"), partOf("1", "1 234"));
@@ -345,6 +349,14 @@ TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
     EXPECT_EQ(numberOf("([0-9]+) ms", "12/20 200 ms"), 200.0);
     EXPECT_EQ(numberOf("scene\\s+[0-9]+\\s+([0-9]+)", "scene 1 5 100"), 5.0);
     EXPECT_EQ(numberOf("([0-9]+) ms", "grid 4 e 3 ms"), 3.0);
+    EXPECT_EQ(numberOf("Frame \\d+ (\\d+) ms", "Frame 1 100 ms"), 100.0);
+    EXPECT_EQ(numberOf("tile ([0-9]+) / ", "tile 3 / 10"), 3.0);
+    EXPECT_EQ(numberOf("\\[(\\d+)/\\d+\\]", "[3/10]"), 3.0);
+    EXPECT_EQ(numberOf("^(?:[^,]*,){2}([0-9.]+)", "a,1,2.5,3"), 2.5);
+    EXPECT_EQ(numberOf("\\(([0-9.]+) s\\)", "12 min (720.0 s)"), 720.0);
+    EXPECT_EQ(numberOf("rmse=([0-9.]+)", "rmse=0.5 psnr=30"), 0.5);
+    EXPECT_EQ(numberOf("([0-9]+)%", "12%"), 12.0);
+    EXPECT_EQ(numberOf("n=([0-9]+)\u00D7", "n=16\u00D716"), 16.0);
 }
 
 TEST(MetricLines, WhatMovesTheCursorPartsNumbers) {
@@ -382,8 +394,9 @@ TEST(MetricLines, APatternTakesNoPartOfATimeOfSeveralUnits) {
           "3 Min 5 Sek", "3 days, 2:03:04", "3 weeks 2 days", "3 s  200 ms"}) {
         EXPECT_NE(errorOf("m=([0-9]+)", std::string("m=") + whole), "no error") << whole;
     }
-    for (const char* whole : {"1 hr. 5 min. 3 s", "1 Min. 3 s", "1 Std 3 s", "1m:03 s", "1min+3 s",
-                              "-1m 3s", "1 week 3 s"}) {
+    for (const char* whole :
+         {"1 hr. 5 min. 3 s", "1 Min. 3 s", "1 Std 3 s", "1m:03 s", "1min+3 s", "-1m 3s",
+          "1 week 3 s", "1 h & 3 s", "1h_3s", "1h-3s", "1 h / 3 s", "1 h und 3 s"}) {
         EXPECT_NE(errorOf("([0-9]+) ?s$", std::string("took ") + whole), "no error") << whole;
     }
     // Each with a pattern of its own, columns, and times of one unit.
