@@ -56,6 +56,8 @@ std::optional<std::size_t> columnAt(std::string_view rest, Labels labels) {
         const bool isWhole = !label.empty() && rest.starts_with(label) &&
                              (rest.size() == label.size() || !isNamePart(rest[label.size()]));
         if (!isWhole || isNumber(label)) continue;
+        const bool isCalled = trimmed(rest.substr(label.size())).starts_with('(');
+        if (isCalled && std::ranges::count(kFunctions, label) > 0) continue;
         if (!best || label.size() > labels[*best].size()) best = i;
     }
     return best;

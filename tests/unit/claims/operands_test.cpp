@@ -62,6 +62,12 @@ TEST(ClaimOperands, OtherNamesAreNoColumns) {
     EXPECT_EQ(problemOf("squrt(a)"), "'squrt' is no function; did you mean 'sqrt'?");
 }
 
+TEST(ClaimOperands, AFunctionIsCalledBesideAColumnOfItsName) {
+    EXPECT_EQ(read("sqrt(log2)", {"log2"}), "sqrt([log2])");
+    EXPECT_EQ(read("log2 (log2) / log2", {"log2"}), "log2 ([log2]) / [log2]");
+    EXPECT_EQ(read("a (b)", {"a", "b"}), "[a] ([b])") << "no function";
+}
+
 TEST(ClaimOperands, SidesAreApartOutsideOfParenthesesAndColumns) {
     EXPECT_THAT(sidesOf("a_0.5 / a", " / ", kLabels), ElementsAre("a_0.5", "a"));
     EXPECT_THAT(sidesOf("(a / 2) / 'a / b'", " / ", kLabels), ElementsAre("(a / 2)", "'a / b'"));
