@@ -205,6 +205,9 @@ Difference compareAndKeep(const Pair& pair, const PictureRules& rules) {
         result.verdict = Verdict::CannotTell;
         result.reason +=
             "; processes of one side made other pictures, too, and no seed is declared";
+    } else if (result.picture && pair.before.isOnce && pair.after.isOnce) {
+        result.verdict = Verdict::CannotTell;
+        result.reason += "; one process of each side, and no seed is declared";
     }
     result.evidence = evidenceName(pair.after.png.empty() ? pair.after.exr : pair.after.png);
     const fs::path target = rules.folder / result.evidence;
@@ -233,7 +236,9 @@ Difference onlyOneSide(const SeriesKey& key, Verdict verdict, const char* reason
 PictureMap picturesOf(const fs::path& runDir, const std::vector<records::Record>& records,
                       const CaseParams& params, const std::set<std::string>& unseeded) {
     std::map<std::string, SeriesKey> cases;
+    std::set<std::string> again;  // of several processes
     for (const records::Record& record : records) {
+        if (record.process > 0) again.insert(record.caseId);
         cases.try_emplace(record.caseId, keyOf(record, params, kPictureMetric));
     }
     const std::vector<records::ImageEntry> entries = records::readImages(runDir);
@@ -256,7 +261,8 @@ PictureMap picturesOf(const fs::path& runDir, const std::vector<records::Record>
         // What the same program made once, as its truth, would be another if it were made again.
         const std::string& drawnName = entry.truthOf.empty() ? entry.name : entry.truthOf;
         const PictureFiles files{file(entry.exr), file(entry.png),
-                                 drawn.contains({entry.caseId, entry.frame, drawnName})};
+                                 drawn.contains({entry.caseId, entry.frame, drawnName}),
+                                 unseeded.contains(entry.caseId) && !again.contains(entry.caseId)};
         if (files.exr.empty() && files.png.empty()) continue;
         SeriesKey key = found->second;
         key.pass = frames[entry.caseId].size() == 1

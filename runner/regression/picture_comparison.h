@@ -18,6 +18,9 @@ struct PictureFiles {
     std::filesystem::path png;
     /// Processes of one run made several, and no seed says why: it tells nothing of a change.
     bool isDrawn = false;
+    /// One process made it, and no seed is declared: whether another would make another is not
+    /// known.
+    bool isOnce = false;
 };
 /// By case, as its records name it, and picture: "flat", "flat, frame 3" where there are several.
 using PictureMap = std::map<SeriesKey, PictureFiles>;
@@ -44,7 +47,8 @@ struct PictureRules {
 /// only `before` has, and Missing for those of `after`. Changed is what lies beyond FLIP's or the
 /// largest difference's tolerance, and what cannot be subtracted: a picture that cannot be read, is
 /// of another size or other channels, or holds a value that is not finite (where both are not the
-/// same). What is Changed by these, and drawn anew in each process, is CannotTell. Values of EXR
+/// same). What is Changed by these, and drawn anew in each process, is CannotTell; so is what one
+/// process a side made, where no seed is declared. Values of EXR
 /// files are compared, those of PNG files where a side has no other.
 std::vector<Difference> comparePictures(const PictureMap& before, const PictureMap& after,
                                         const PictureRules& rules);

@@ -119,6 +119,12 @@ TEST_F(Pictures, OneThatEachProcessMakesAlikeStillChanges) {
         record("a", "flat", kGrey);
         record("b", "flat", ImageF(16, 16, 3, 0.75F));
     }
+    const Difference once = only(true);
+    EXPECT_EQ(once.verdict, Verdict::CannotTell);
+    EXPECT_THAT(once.reason,
+                HasSubstr("(0 allowed); one process of each side, and no seed is declared"));
+    records["a"].push_back(records["a"].front());
+    records["a"].back().process = 1;
     EXPECT_EQ(only(true).verdict, Verdict::Changed);
 }
 
