@@ -272,8 +272,8 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
         areTooFew = values.size() < kFewestScenes;
     }
     judgement.verdict = verdictOf(interval, requirement);
-    // What is otherwise at times is exactly so in a few processes by chance, or in none of them.
-    const bool isByChance = requirement.isOfCounts && findIn(group, &Sampled::differs);
+    // What is otherwise at times is exactly so in a few of them by chance, or in none.
+    const bool isByChance = requirement.isOfCounts && isRandom(group);
     if (const std::string why = isByChance ? whyNoInterval(group) : ""; !why.empty()) {
         judgement.verdict = Verdict::Ambiguous;
         judgement.why = why;
@@ -348,7 +348,7 @@ std::string whyNoInterval(const Group& group) {
     }
     return fmt::format(
         "{} of random numbers; an interval needs {}: `measure: {{seeds: process, "
-        "processes: {}}}`",
+        "processes: {}}}`, or as many values of 'seed' in a sweep or an import",
         *fewest == 1 ? "one sample" : fmt::format("{} seeds", *fewest), metrics::kFewestForInterval,
         metrics::kFewestForInterval);
 }
@@ -377,7 +377,7 @@ void forgiveChance(std::span<Judgement* const> all) {
         if (one.verdict != Verdict::Fails || chance <= kOneEnd) return;
         one.verdict = Verdict::Ambiguous;
         one.why = fmt::format(
-            "fails by itself, but the farthest of {} comparisons is as far off by chance in {:.2g} "
+            "fails by itself, but the farthest of {} comparisons is as far off by chance in {:.3g} "
             "% of tables",
             count, 100.0 * std::min(chance, 1.0));
     };

@@ -131,6 +131,45 @@ int sayClaims(const std::vector<claims::ClaimResult>& claims) {
     return anyFails ? kExitClaimFailed : kExitOk;
 }
 
+/// Of each column or row that is empty for asking for what has other names that, once.
+std::map<std::string, std::string> misnamedIn(const tables::Table& table) {
+    const auto isEmptyCell = [](const tables::Cell& cell) { return cell.values.empty(); };
+    std::map<std::string, std::string> problems;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const bool isColumnEmpty = std::ranges::all_of(
+            table.rows, [&](const tables::TableRow& row) { return row.cells[i].values.empty(); });
+        for (std::size_t k = 0; k < table.rows.size(); ++k) {
+            const tables::TableRow& row = table.rows[k];
+            if (!row.cells[i].isMisnamed) continue;
+            if (!isColumnEmpty && !std::ranges::all_of(row.cells, isEmptyCell)) continue;
+            problems.emplace(isColumnEmpty ? fmt::format("column '{}'", table.columns[i].label)
+                                           : fmt::format("row '{}'", table.rowName(k)),
+                             row.cells[i].message);
+        }
+    }
+    return problems;
+}
+
+/// Says what tables, and claims about one that nobody laid out, call by no name that was recorded;
+/// the exit code then, else `code`.
+int codeOfNames(const std::vector<tables::Table>& tables,
+                const std::vector<config::Experiment>& experiments, int code) {
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        std::map<std::string, std::string> problems = misnamedIn(tables[i]);
+        const config::Experiment& experiment = experiments[i];
+        const bool isKnown = config::isMeasuredHere(experiment) || !experiment.hasDefaultLayout();
+        for (const config::ClaimSpec& claim : experiment.claims) {
+            const std::string absent = isKnown ? "" : claims::whatIsAbsent(claim, tables[i]);
+            if (!absent.empty()) problems.emplace(fmt::format("claim '{}'", claim.id), absent);
+        }
+        for (const auto& [name, problem] : problems) {
+            tell("error: {}: {}: {}\n", tables[i].id, name, problem);
+        }
+        if (!problems.empty()) code = kExitUsage;
+    }
+    return code;
+}
+
 /// Judges the records by configs that are not those that the run froze before it measured. What
 /// comes of it stands apart, below `out`, and says so.
 int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& configs,
@@ -170,7 +209,7 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     sayNotes(run.manifest);
     say("judged after the run: {}\n", (folder / "claims.csv").string());
     const int code = completenessCode(run);
-    return code == kExitOk ? verdict : code;
+    return codeOfNames(judged.tables, experiments, code == kExitOk ? verdict : code);
 }
 
 /// How much of the tables was measured as it is printed.
@@ -227,26 +266,6 @@ void sayPictures(std::size_t done, std::size_t all) {
     if (done % kEvery == 0 && done < all) tell("report: {} of {} pictures\n", done, all);
 }
 
-/// Says which columns name no pass of what was recorded of other passes; how many there are.
-std::size_t sayWithoutPass(const std::vector<tables::Table>& tables) {
-    std::size_t count = 0;
-    for (const tables::Table& table : tables) {
-        for (std::size_t i = 0; i < table.columns.size(); ++i) {
-            const tables::Cell* found = nullptr;
-            bool isEmpty = true;
-            for (const tables::TableRow& row : table.rows) {
-                isEmpty &= row.cells[i].values.empty();
-                if (row.cells[i].isOfOthers) found = &row.cells[i];
-            }
-            if (!isEmpty || !found) continue;
-            ++count;
-            tell("error: {}: column '{}' names no pass that it is of: {}\n", table.id,
-                 table.columns[i].label, found->message);
-        }
-    }
-    return count;
-}
-
 }  // namespace
 
 void requireReport(const fs::path& file) {
@@ -277,8 +296,8 @@ int conclude(const fs::path& runDir) {
         say("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());
     }
     sayReport(runDir / "report.html");
-    if (sayWithoutPass(results.tables) > 0) return kExitUsage;
-    return failing > 0 ? kExitClaimFailed : kExitOk;
+    return codeOfNames(results.tables, run.plan.experiments,
+                       failing > 0 ? kExitClaimFailed : kExitOk);
 }
 
 int table(const std::string& runDir, const std::string& out) {
@@ -296,7 +315,7 @@ int table(const std::string& runDir, const std::string& out) {
     }
     sayPrintedCells(results.printedCells);
     sayNotes(run.manifest);
-    return completenessCode(run);
+    return codeOfNames(results.tables, run.plan.experiments, completenessCode(run));
 }
 
 int claims(const std::string& runDir, const std::vector<std::string>& configs,
@@ -309,19 +328,19 @@ int claims(const std::string& runDir, const std::vector<std::string>& configs,
     sayPrintedCells(results.printedCells);
     sayNotes(run.manifest);
     const int code = completenessCode(run);
-    return code == kExitOk ? verdict : code;
+    return codeOfNames(results.tables, run.plan.experiments, code == kExitOk ? verdict : code);
 }
 
 int report(const std::vector<std::string>& runDirs, const std::string& out, bool embeds) {
     if (runDirs.size() == 1 && out.empty()) {
         run::StoredRun run = run::readRun(runDirs.front());
         run::noteChangedImages(run.manifest, runDirs.front());
-        outcome::writeResults(
+        const outcome::Results results = outcome::writeResults(
             runDirs.front(), run,
             {.tables = false, .claims = false, .embeds = embeds, .progress = sayPictures});
         sayNotes(run.manifest);
         (embeds ? saySentReport : sayReport)(fs::path(runDirs.front()) / "report.html");
-        return completenessCode(run);
+        return codeOfNames(results.tables, run.plan.experiments, completenessCode(run));
     }
     std::vector<report::ReportRun> runs;
     int code = kExitOk;

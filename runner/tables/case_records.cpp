@@ -1,5 +1,7 @@
 #include "runner/tables/case_records.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <climits>
 #include <cmath>
@@ -10,6 +12,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/text.h"
 #include "runner/config/experiment.h"
 #include "runner/records/csv.h"
 
@@ -318,7 +321,54 @@ void countSweptSeeds(LayoutCases& cases) {
     }
 }
 
+/// Which metrics there are, and which came to other values when they were taken again, with no
+/// seed declared.
+void lookAtMetrics(LayoutCases& cases) {
+    for (const CaseRecords& item : cases.cases) {
+        std::set<std::pair<std::string_view, std::string_view>> seen;
+        for (const auto& [number, attempt] : item.processes) {
+            const records::Record* last = nullptr;
+            for (const records::Record* row : attempt.rows) {
+                const bool isAgain = last && last->metric == row->metric && last->pass == row->pass;
+                last = row;
+                if (isAgain || !seen.emplace(row->metric, row->pass).second) continue;
+                const std::string& metric = row->metric;
+                cases.recorded.insert(metric);
+                const bool isSeeded = item.seeds != config::Measure::Seeds::None;
+                const bool isDeclared =
+                    isSeeded && !isOfSetup(attempt.values(metric, row->pass).front());
+                if (isDeclared || !item.scatters(metric, row->pass)) continue;
+                if (config::isTimeMetric(metric) || config::isOfDevice(metric)) continue;
+                cases.differing.insert(metric);
+                if (!cases.isOfProgram) continue;
+                (isOfMemory(row->unit) ? cases.isMemoryDoubted : cases.isDoubted) = true;
+            }
+        }
+    }
+}
+
 }  // namespace
+
+bool isOfMemory(std::string_view unit) {
+    static constexpr std::string_view kUnits[] = {"byte", "bytes", "B",   "kB",  "KB",  "MB",
+                                                  "GB",   "TB",    "KiB", "MiB", "GiB", "TiB"};
+    return std::ranges::find(kUnits, unit) != std::end(kUnits);
+}
+
+bool LayoutCases::isInDoubt(const std::string& metric, bool isSetup, bool isMemory) const {
+    if (config::isTimeMetric(metric) || config::isOfDevice(metric)) return false;
+    if (differing.contains(metric)) return true;
+    const bool isKnown =
+        config::isTestOfMeans(metric) || (!isOfElsewhere && config::isPictureError(metric));
+    if (!isOfProgram || isSetup || isKnown) return false;
+    return isDoubted || (isMemory && isMemoryDoubted);
+}
+
+std::string LayoutCases::recordedInstead(const std::string& metric) const {
+    if (!isOfElsewhere || recorded.empty() || recorded.contains(metric)) return "";
+    const std::vector<std::string> names(recorded.begin(), recorded.end());
+    return fmt::format("{} (recorded: {})", suggestion(metric, names), joined(names));
+}
 
 CaseIndex::CaseIndex(const std::vector<const AxisValues*>& cases) : caseCount_(cases.size()) {
     for (std::size_t place = 0; place < cases.size(); ++place) {
@@ -392,6 +442,7 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
     cases.isOfElsewhere = !config::isMeasuredHere(experiment);
     cases.isOfProgram = config::goesByClock(experiment);
     if (cases.isOfProgram) countSweptSeeds(cases);
+    lookAtMetrics(cases);
     std::vector<const AxisValues*> values;
     for (const CaseRecords& item : cases.cases) values.push_back(&item.axes);
     cases.index = CaseIndex(values);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -113,6 +114,9 @@ class CaseIndex {
     std::vector<Axis> axes_;
 };
 
+/// Whether a number of that unit is of memory.
+bool isOfMemory(std::string_view unit);
+
 /// The cases of a layout. `axes` names the sweep axes of its rows and columns and of all `where`
 /// selections, which are `namedAxes`, and behind them those that are swept beside; cases carry
 /// their values beside it.
@@ -125,6 +129,21 @@ struct LayoutCases {
     bool isOfElsewhere = false;
     bool isOfProgram = false;  // config::goesByClock: a program's, or measured elsewhere
     CaseIndex index;
+    std::set<std::string> recorded;  // metrics
+    /// Metrics that came to other values in some case when they were taken again, with no seed
+    /// declared, whatever the layout shows of them; of a program or an import whether there are
+    /// some, and of memory, which differs in any.
+    std::set<std::string> differing;
+    bool isDoubted = false, isMemoryDoubted = false;
+
+    /// Whether numbers of the metric are no surer than chance: they differ, or a program or an
+    /// import says them that says others which differ. Known without are what set-up recorded, and
+    /// errors of a picture that each process is known to make alike.
+    bool isInDoubt(const std::string& metric, bool isSetup, bool isMemory) const;
+
+    /// What there is where nothing that was measured elsewhere is called so; else empty: of what
+    /// is measured here `check` knows.
+    std::string recordedInstead(const std::string& metric) const;
 
     /// The place of an axis in `axes`.
     std::size_t indexOf(const std::string& axis) const;

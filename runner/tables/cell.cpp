@@ -34,6 +34,8 @@ void layOver(const config::Selection& part, config::Selection& selection, Where&
         std::vector<std::string> allowed = {canonicalText(value)};
         if (value.isSequence()) {
             for (const Node& item : value.items()) allowed.push_back(canonicalText(item));
+            // What draws nothing is the same whichever seeds are taken together.
+            if (axis == kSeedAxis) allowed.emplace_back(kLeftOut);
         }
         where[axis] = std::move(allowed);
     }
@@ -99,8 +101,7 @@ struct Gathered {  // what the records of a cell came to
     std::vector<std::string> caseIds;
     std::set<std::uint64_t> seeds;  // of random numbers that the values hang on
     std::size_t fewestSeeds = 0;    // of a curve's cases
-    bool scatters = false;          // as Cell::scatters
-    bool differs = false;           // as Cell::differs
+    bool isInDoubt = false;         // LayoutCases::isInDoubt
     std::size_t notRun = 0;         // further cases
     std::set<int> frames;
     std::vector<double> shareCounts;  // of shares that say so: how many samples each is a share of
@@ -152,9 +153,6 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
     using Seeds = config::Measure::Seeds;
     const bool differs = run.scatters(query.metric, query.pass);
     const bool isOfSeed = isRoundOfSeed(run, query);
-    gathered.differs |=
-        differs && !config::isTimeMetric(query.metric) && !config::isOfDevice(query.metric);
-    gathered.scatters |= gathered.differs && run.seeds == Seeds::None;
     for (const auto& [number, attempt] : run.processes) {
         // What differs between processes is no new number for each seed of another scene.
         if (run.isRepeated && differs && number >= records::kMostProcesses) break;
@@ -188,6 +186,12 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             all.insert(all.end(), values.begin(), values.end());
         }
     }
+}
+
+bool isInDoubt(const CellQuery& query, const LayoutCases& cases, const Gathered& gathered) {
+    const bool isOfSetup = gathered.frames == std::set<int>{records::kSetup};
+    return cases.isInDoubt(query.metric, isOfSetup,
+                           std::ranges::any_of(gathered.units, isOfMemory));
 }
 
 /// The passes for which the matching cases recorded the metric: for the message when the one that
@@ -237,8 +241,9 @@ std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
     const std::string wanted =
         "'" + query.metric + "'" + (query.pass.empty() ? "" : " of pass '" + query.pass + "'");
     const std::string passes = passesWith(query, cases);
-    return "no " + wanted + " was recorded" +
-           (passes.empty() ? "" : "; it is there for pass: " + passes);
+    return fmt::format(
+        "no {} was recorded{}", wanted,
+        passes.empty() ? cases.recordedInstead(query.metric) : "; it is there for pass: " + passes);
 }
 
 Gathered gather(const CellQuery& query, const LayoutCases& cases) {
@@ -255,6 +260,7 @@ Gathered gather(const CellQuery& query, const LayoutCases& cases) {
         if (isRoundOfSeed(*run, query)) unit[cases.indexOf(std::string(kSeedAxis))].reset();
         takeCase(*run, query, unitOfFrame[unit], unitCount, gathered);
     }
+    gathered.isInDoubt = isInDoubt(query, cases, gathered);
     return gathered;
 }
 
@@ -282,18 +288,21 @@ void boundShare(const CellQuery& query, const Gathered& gathered, Measured& meas
 /// Several processes of it are one sample.
 void takeAsOne(Measured& measured) {
     measured.rounds.clear();
+    measured.areDraws = false;
     measured.bounds = Bounds::None;
     measured.interval = {measured.value, measured.value};
 }
 
 /// Random numbers of one seed are one sample, however many processes drew them, and by how little
-/// these differ. A share that was counted once has the bounds of its count.
+/// these differ. A share that was counted once has the bounds of its count, unless another count
+/// would be another share.
 void countSeeds(const Gathered& gathered, Cell& cell) {
-    if (std::ranges::any_of(cell.values, &Measured::areDraws)) return;
-    cell.seedCount = gathered.seeds.size();
-    cell.scatters = gathered.scatters;
-    cell.differs = gathered.differs;
-    if (cell.isOfOneSeed()) std::ranges::for_each(cell.values, takeAsOne);
+    const bool areDraws = std::ranges::any_of(cell.values, &Measured::areDraws);
+    cell.seedCount = areDraws ? 0 : gathered.seeds.size();
+    cell.scatters = gathered.seeds.empty() && gathered.isInDoubt;
+    if (cell.isOfOneSeed() || (areDraws && cell.scatters)) {
+        std::ranges::for_each(cell.values, takeAsOne);
+    }
 }
 
 void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
@@ -370,7 +379,7 @@ struct CurveCase {
 
 /// The cases that have both; what is wrong with one is noted.
 std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRecords* const> along,
-                                  Gathered& gathered) {
+                                  const LayoutCases& layoutCases, Gathered& gathered) {
     CellQuery other = query;
     other.metric = query.equal->metric;
     other.scale = 1.0;
@@ -387,9 +396,8 @@ std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRe
         for (const Gathered* one : {&x, &y}) {
             gathered.note(one->worst, one->message);
             gathered.fewestSeeds = fewerSeeds(gathered.fewestSeeds, one->seeds.size());
-            gathered.scatters |= one->scatters;
-            gathered.differs |= one->differs;
         }
+        gathered.isInDoubt |= isInDoubt(other, layoutCases, x) || isInDoubt(query, layoutCases, y);
         gathered.units.merge(y.units);
         gathered.frames.merge(y.frames);
         if (x.samples.processes.empty() || y.samples.processes.empty()) continue;
@@ -399,8 +407,8 @@ std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRe
 }
 
 std::vector<Measured> equalValues(const CellQuery& query, std::span<const CaseRecords* const> along,
-                                  Gathered& gathered) {
-    const std::vector<CurveCase> cases = curveCases(query, along, gathered);
+                                  const LayoutCases& layoutCases, Gathered& gathered) {
+    const std::vector<CurveCase> cases = curveCases(query, along, layoutCases, gathered);
     if (cases.size() < 2) {
         gathered.note(records::Status::Missing,
                       fmt::format("equal needs two cases with '{}' and '{}'", query.equal->metric,
@@ -410,7 +418,7 @@ std::vector<Measured> equalValues(const CellQuery& query, std::span<const CaseRe
     // Of what differs between processes one of them is one sample.
     const bool isOnce = std::ranges::any_of(cases, [&](const CurveCase& one) {
         const auto isOne = [&](const Samples& samples, const std::string& metric) {
-            const bool differs = gathered.scatters || config::isTimeMetric(metric);
+            const bool differs = gathered.isInDoubt || config::isTimeMetric(metric);
             return differs && samples.processes.size() < 2;
         };
         return isOne(one.x, query.equal->metric) || isOne(one.y, query.metric);
@@ -453,7 +461,15 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
         gathered.note(records::Status::Missing,
                       "equal takes no swept seed: 'measure: {seeds: process}' draws several");
     }
-    if (!along.empty()) cell.values = equalValues(query, along, gathered);
+    for (const std::string& metric : {query.metric, query.equal->metric}) {
+        if (!cell.isPlanned || cases.recordedInstead(metric).empty()) continue;
+        CellQuery other = query;
+        other.metric = metric;
+        gathered.note(records::Status::Missing, whyNothing(other, cases));
+        cell.isMisnamed = true;
+        along.clear();
+    }
+    if (!along.empty()) cell.values = equalValues(query, along, cases, gathered);
     addSampled(query, cases, gathered.frames.size(), cell);
     cell.status = gathered.worst;
     cell.message = gathered.message;
@@ -461,11 +477,10 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
     if (!cell.values.empty()) {
         if (const auto other = byProcessTime(query)) {
             Gathered beside;
-            cell.byProcess = equalValues(*other, along, beside);
+            cell.byProcess = equalValues(*other, along, cases, beside);
         }
         cell.seedCount = gathered.fewestSeeds;
-        cell.scatters = gathered.scatters;
-        cell.differs = gathered.differs;
+        cell.scatters = cell.seedCount == 0 && gathered.isInDoubt;
         for (Measured& measured : cell.values) {
             if (cell.seedCount > 0 && cell.seedCount < measured.rounds.size()) takeAsOne(measured);
         }
@@ -519,8 +534,6 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     cell.isTime = config::isTimeMetric(query.metric);
     cell.timePower = config::timePower(query.metric);
     cell.pooled = pooledAt(query.where, cases);
-    cell.isSaid = cases.isOfProgram && isOfItsSeed(query.metric) &&
-                  (cases.isOfElsewhere || !config::isPictureError(query.metric));
     if (query.equal) {
         fillEqual(query, cases, cell);
         return cell;
@@ -539,8 +552,9 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     if (!hasSamples && gathered.worst == records::Status::Ok) {
         gathered.note(records::Status::Missing, whyNothing(query, cases));
         cell.isUnrecorded = true;
-        const bool mayBeOfOthers = query.pass.empty() || cell.isSaid;
-        cell.isOfOthers = mayBeOfOthers && !passesWith(query, cases).empty();
+        const bool mayBeOfOthers = query.pass.empty() || cases.isOfProgram;
+        cell.isMisnamed = !cases.recordedInstead(query.metric).empty() ||
+                          (mayBeOfOthers && !passesWith(query, cases).empty());
     }
     cell.status = gathered.worst;
     cell.message = gathered.message;

@@ -57,7 +57,7 @@ struct ClockRange {
 struct Cell {
     bool isPlanned = true;      // the sweep has such cases; if not, the cell is blank, not missing
     bool isUnrecorded = false;  // its cases ran, and none recorded it; blank where others did
-    bool isOfOthers = false;    // its metric was recorded, of other passes than it asks for
+    bool isMisnamed = false;    // what it asks for has other passes, or, of an import, is nowhere
     bool isPartial = false;  // some of the cases that it gathers failed; its values are the others'
     records::Status status = records::Status::Missing;  // the worst of its records
     std::string message;                                // why it is not ok
@@ -86,14 +86,9 @@ struct Cell {
     /// Of random numbers, other ones of which would give another value: how many different seeds it
     /// is of. 0 of what has none, as a time.
     std::size_t seedCount = 0;
-    /// No time, and of no declared seed, but repeats or processes came to different values: an
-    /// unseeded program, an import.
+    /// Of no declared seed, and no surer than chance (LayoutCases::isInDoubt): an unseeded
+    /// program, an import.
     bool scatters = false;
-    /// It, or what is of its column or metric, came to different values, whatever is declared.
-    bool differs = false;
-    /// What a program or an import says of itself, which its random numbers may move: no time, and
-    /// no error of a picture that each process is known to give alike.
-    bool isSaid = false;
     /// An input was fitted so that it comes out (config::isCalibrated).
     bool isCalibrated = false;
     /// Of a frame's or a pass's time or rate: the same by the process's CPU time, and as

@@ -105,7 +105,7 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
         const bool hasRounds = measured.rounds.size() > 1;
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
                          measured.areDraws, cell.seedCount > 0 || cell.scatters, cell.seedCount,
-                         cell.scatters, cell.differs, cell.isTime && !hasRounds,
+                         cell.scatters, cell.isTime && !hasRounds,
                          measured.isOverProcesses ? measured.statistic : ""});
         values.push_back(measured.value);
         result.seedCount = fewerSeeds(result.seedCount, cell.seedCount);
@@ -116,7 +116,6 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     result.areDraws = keepRoundsOrDraws(all);
     result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
     result.scatters = std::ranges::any_of(cells, &Sampled::scatters);
-    result.differs = std::ranges::any_of(cells, &Sampled::differs);
     result.isOnce = std::ranges::any_of(cells, &Sampled::isOnce);
     for (const Sampled& cell : cells) {
         if (result.overProcesses.empty()) result.overProcesses = cell.overProcesses;
@@ -240,7 +239,6 @@ void gatherFrom(const Cell& from, Cell& cell) {
     }
     cell.isCalibrated |= from.isCalibrated;
     cell.scatters |= from.scatters;
-    cell.differs |= from.differs;
     cell.isAtPrintedParameters &= from.isAtPrintedParameters;
     const auto add = [](const auto& items, auto& all) {
         for (const auto& item : items) {

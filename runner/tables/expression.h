@@ -23,7 +23,6 @@ struct Sampled {
     bool isRandom = false;  // another seed would give another value: it has no rounds of one seed
     std::size_t seedCount = 0;       // as Cell::seedCount
     bool scatters = false;           // as Cell::scatters; it is random, too
-    bool differs = false;            // as Cell::differs
     bool isOnce = false;             // a time, of one process: others of which differ
     std::string overProcesses = {};  // of "mean", "max", …: Summary::isOverProcesses
 

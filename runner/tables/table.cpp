@@ -134,50 +134,6 @@ bool isRecorded(const Cell& cell) {
     return !cell.values.empty() || cell.status == records::Status::Ambiguous;
 }
 
-/// Where numbers came to others when they were taken again.
-class Evidence {
-  public:
-    /// `tellsOfRow`: what a program or an import says in the same row may have done so, too.
-    void add(const TableRow& row, const Cell& cell, std::size_t column, bool tellsOfRow) {
-        columns_.insert(column);
-        if (!cell.metric.empty()) metrics_.insert(cell.metric);
-        if (tellsOfRow) rows_.emplace(&row, isOfMemory(cell));
-    }
-    bool isOf(const TableRow& row, const Cell& cell, std::size_t column) const {
-        // Memory differs in any program: it tells of what is in bytes alone.
-        const bool isBeside =
-            rows_.contains({&row, false}) || (isOfMemory(cell) && rows_.contains({&row, true}));
-        return columns_.contains(column) || metrics_.contains(cell.metric) ||
-               (cell.isSaid && isBeside);
-    }
-
-  private:
-    static bool isOfMemory(const Cell& cell) { return cell.unit == "byte"; }
-
-    std::set<std::size_t> columns_;
-    std::set<std::string> metrics_;
-    std::set<std::pair<const TableRow*, bool>> rows_;  // whether of memory
-};
-
-/// What differs when it is taken again did so by chance where it was taken once.
-void spreadScatter(Table& table) {
-    const auto visit = [&](const auto& take) {
-        for (TableRow& row : table.rows) {
-            for (std::size_t i = 0; i < row.cells.size(); ++i) take(row, row.cells[i], i);
-        }
-    };
-    Evidence differing, scattering;
-    visit([&](const TableRow& row, const Cell& cell, std::size_t column) {
-        if (cell.differs) differing.add(row, cell, column, table.goesByClock);
-        if (cell.scatters) scattering.add(row, cell, column, table.goesByClock);
-    });
-    visit([&](const TableRow& row, Cell& cell, std::size_t column) {
-        if (cell.isTime || cell.values.empty()) return;
-        cell.differs |= differing.isOf(row, cell, column);
-        cell.scatters |= cell.seedCount == 0 && scattering.isOf(row, cell, column);
-    });
-}
-
 /// What the cases of a cell did not record is blank where others of its row and of its column were
 /// recorded: other methods, or more images, have it. A whole row or column without a value is
 /// missing, as one of a misspelt metric, and so is what is printed.
@@ -331,7 +287,6 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     table.notes.insert(table.notes.end(), notes.begin(), notes.end());
     layPrintedBeside(experiment, table);
     blankWhatOthersHave(table);
-    spreadScatter(table);
     fillComputed(layout, table);
     if (std::string note = seedNote(table); !note.empty()) table.notes.push_back(std::move(note));
     compareRivals(rivals, against, table);

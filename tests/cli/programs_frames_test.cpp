@@ -119,8 +119,9 @@ TEST_F(Frames, WhatIsOfPassesAloneIsToldWithThem) {
     EXPECT_EQ(result.exitCode, 2);
     EXPECT_THAT(
         result.err,
-        HasSubstr("error: sweep/mine: column 'v' names no pass that it is of: no 'number' was "
-                  "recorded; it is there for pass: left, right\n"));
+        HasSubstr("error: sweep/mine: column 'v': no 'number' was recorded; it is there for pass: "
+                  "left, right\n"));
+    EXPECT_EQ(gfxrepro({"table", dir}).exitCode, 2);
     EXPECT_EQ(rowsOf(dir, "number").size(), 4U) << "nothing that was measured is lost";
     EXPECT_EQ(reproduced("{metric: number, pass: left}").exitCode, 0);
 }

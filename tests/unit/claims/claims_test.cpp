@@ -12,6 +12,7 @@
 #include <set>
 
 #include "engine/core/random.h"
+#include "runner/claims/judge.h"
 #include "runner/claims/kinds/operands.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
@@ -1037,7 +1038,9 @@ tables::Recorded twoSamplers(config::Measure::Seeds seeds, int processes, std::u
 
 TEST(Claims, RandomNumbersOfOneSeedDecideNothing) {
     using Seeds = config::Measure::Seeds;
-    const std::string more = "; an interval needs 6: `measure: {seeds: process, processes: 6}`";
+    const std::string more =
+        "; an interval needs 6: `measure: {seeds: process, processes: 6}`, or as many values of "
+        "'seed' in a sweep or an import";
     for (const char* claim :
          {"order: a < b", "order: b < a", "ratio: a / b, at_least: 0.5", "bound: a, at_most: 9"}) {
         const auto judge = [&](const tables::Recorded& records) {
@@ -1063,9 +1066,10 @@ TEST(Claims, RandomNumbersOfOneSeedDecideNothing) {
     EXPECT_EQ(result.verdict, Verdict::Holds);
     EXPECT_EQ(result.reason, "");
     EXPECT_THAT(result.measured, HasSubstr("["));
-    // A count is what it is, where nothing says that it is drawn.
+    // A count is what it is where nothing says that it is drawn.
     const std::string exact = "exact: a, equals: 9, at: {n: 1}";
-    EXPECT_EQ(judgePowers(exact, twoSamplers(Seeds::Case, 1, 1)).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers(exact, twoSamplers(Seeds::None, 1, 1)).verdict, Verdict::Fails);
+    EXPECT_EQ(judgePowers(exact, twoSamplers(Seeds::Case, 1, 1)).verdict, Verdict::Ambiguous);
     EXPECT_EQ(judgePowers(exact, twoSamplers(Seeds::Case, 6, 1)).verdict, Verdict::Ambiguous);
     EXPECT_EQ(judgePowers(exact, twoSamplers(Seeds::Process, 6, 1)).verdict, Verdict::Fails);
 }
@@ -1481,6 +1485,19 @@ TEST(Claims, WhatAVerdictRestsOn) {
     }
     result.restsOn = "normal_bins (of 5 tried)";
     EXPECT_TRUE(result.restsOnAssumption());
+}
+
+TEST(Claims, AChanceIsAPlainPercentage) {
+    for (const auto& [within, text] :
+         {std::pair(0.9, " is as far off by chance in 100 % of tables"), {0.02, " in 4 % of "}}) {
+        Judgement one, other;
+        one.verdict = Verdict::Fails;
+        one.drawsWithin = other.drawsWithin = within;
+        Judgement* both[] = {&one, &other};
+        forgiveChance(both);
+        EXPECT_EQ(one.verdict, Verdict::Ambiguous);
+        EXPECT_THAT(one.why, HasSubstr(text));
+    }
 }
 
 TEST(Claims, Summary) {

@@ -1,6 +1,7 @@
 // Verdicts on what a program or an import says of itself, where its numbers differ when they are
 // taken again, or its sweep has the seeds.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -29,14 +30,15 @@ ClaimResult resultOf(const config::Experiment& experiment, const tables::Recorde
 constexpr const char* kOneBesideMany =
     "one process of numbers that differ when they are taken again; an interval needs 6 processes";
 
-/// `one` in the first process alone, `many` in each of six, where it differs unless `isSure`.
+/// `one` in the first process alone, `many` in each of six, where it differs unless `isSure`;
+/// `one` of that frame.
 ClaimResult judgeOneBesideMany(Of of, const std::string& one, const std::string& claim,
-                               bool isSure = false) {
+                               bool isSure = false, int frame = 0) {
     tables::RecordMaker maker;
     maker.beginCase("", R"({"n":1})");
     for (int process = 0; process < 6; ++process) {
-        maker.process(process).add("many", {isSure ? 1.0 : 1.0 + 0.01 * process}, "", "1");
-        if (process == 0) maker.add(one, {0.5}, "", "1");
+        maker.process(process).frame(0).add("many", {isSure ? 1.0 : 1.0 + 0.01 * process}, "", "1");
+        if (process == 0) maker.frame(frame).add(one, {0.5}, "", "1");
     }
     const std::string body =
         "sweep: {n: [1]}\nlayout: {rows: n, columns: {one: {metric: " + one +
@@ -54,6 +56,48 @@ TEST(Unseeded, OneProcessOfAnotherMetricBesideManyDecidesNothing) {
             EXPECT_EQ(result.reason, kOneBesideMany) << claim;
             EXPECT_EQ(judgeOneBesideMany(of, "value", claim, true).verdict, Verdict::Holds)
                 << "what does not differ is certain: " << claim;
+        }
+    }
+}
+
+/// What stands under frame −1 is of the set-up, and draws nothing, unless it differs itself.
+TEST(Unseeded, WhatSetUpRecordedIsKnownBesideWhatDiffers) {
+    for (const char* claim : {"order: one < many", "ratio: one / many, at_most: 1",
+                              "bound: both, at_most: 1", "exact: one, equals: 0.5"}) {
+        EXPECT_EQ(judgeOneBesideMany(Of::Import, "value", claim, false, records::kSetup).verdict,
+                  Verdict::Holds)
+            << claim;
+    }
+}
+
+/// Rows a, b and c: `many` differs in a, of which the layout need not have a column; b and c share
+/// other metrics with it.
+TEST(Unseeded, WhatDiffersIsOfWhatWasMeasuredWhateverIsShown) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})");
+    for (int process = 0; process < 6; ++process) {
+        maker.process(process).add("many", {1.0 + 0.01 * process}, "", "1");
+        maker.add("seen", {2.0}, "", "1");
+    }
+    for (const int n : {2, 3}) {
+        maker.beginCase("", fmt::format(R"({{"n":{}}})", n)).process(0);
+        maker.add(n == 2 ? "seen" : "other", {2.0}, "", "1").add("one", {0.5}, "", "1");
+    }
+    for (const Of of : {Of::Import, Of::Program}) {
+        for (const char* columns : {"one: {metric: one}", "one: {metric: one, scale: 2}",
+                                    "one: {metric: one}, many: {metric: many}"}) {
+            for (const char* claim :
+                 {"bound: one, at_most: 1, at: {n: [2, 3]}", "exact: one, equals: 0.5, at: {n: 3}",
+                  "order: [n=2, n=3], of: one"}) {
+                const ClaimResult result = resultOf(
+                    experimentOf(of, fmt::format("sweep: {{n: [1, 2, 3]}}\nlayout: {{rows: n, "
+                                                 "columns: {{{}}}}}\nclaims: {{C: {{says: so, "
+                                                 "{}}}}}\n",
+                                                 columns, claim)),
+                    maker.records());
+                EXPECT_EQ(result.verdict, Verdict::Ambiguous) << columns << claim;
+                EXPECT_THAT(result.reason, testing::HasSubstr(kOneBesideMany)) << columns << claim;
+            }
         }
     }
 }
@@ -104,22 +148,24 @@ TEST(Unseeded, EqualNumbersAreAtTheirBound) {
 
 /// Memory differs in any program, and says nothing of what it computes.
 TEST(Unseeded, MemoryTellsOfMemoryAlone) {
-    tables::RecordMaker maker;
-    maker.beginCase("", R"({"n":1})");
-    for (int process = 0; process < 3; ++process) {
-        maker.process(process).add("heap", {1e6 + 10.0 * process}, "", "byte");
-        maker.add("rays", {4.0}, "", "ray").add("stack", {1e3}, "", "byte");
-    }
-    for (const auto& [column, verdict] : {std::pair("rays", Verdict::Holds),
-                                          {"stack", Verdict::Ambiguous},
-                                          {"heap", Verdict::Ambiguous}}) {
-        const std::string body = fmt::format(
-            "sweep: {{n: [1]}}\nlayout: {{rows: n, columns: {{rays: {{metric: rays}}, "
-            "heap: {{metric: heap}}, stack: {{metric: stack}}}}}}\n"
-            "claims: {{C: {{says: so, bound: {}, at_least: 1}}}}\n",
-            column);
-        EXPECT_EQ(resultOf(experimentOf(Of::Import, body), maker.records()).verdict, verdict)
-            << column;
+    for (const char* unit : {"byte", "kB", "MB", "GB", "MiB"}) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})");
+        for (int process = 0; process < 3; ++process) {
+            maker.process(process).add("heap", {1e6 + 10.0 * process}, "", unit);
+            maker.add("rays", {4.0}, "", "ray").add("stack", {1e3}, "", unit);
+        }
+        for (const auto& [column, verdict] : {std::pair("rays", Verdict::Holds),
+                                              {"stack", Verdict::Ambiguous},
+                                              {"heap", Verdict::Ambiguous}}) {
+            const std::string body = fmt::format(
+                "sweep: {{n: [1]}}\nlayout: {{rows: n, columns: {{rays: {{metric: rays}}, "
+                "heap: {{metric: heap}}, stack: {{metric: stack}}}}}}\n"
+                "claims: {{C: {{says: so, bound: {}, at_least: 1}}}}\n",
+                column);
+            EXPECT_EQ(resultOf(experimentOf(Of::Import, body), maker.records()).verdict, verdict)
+                << column << unit;
+        }
     }
 }
 
@@ -173,6 +219,55 @@ ClaimResult judgeSwept(const std::string& layout, int seeds, double ratio, Rando
     return resultOf(experimentOf(Of::Import, body), maker.records());
 }
 
+/// A number of two values, one as likely as the other, beside which nothing is known.
+Verdict exactOfSeeds(const std::string& layout, const std::string& at, int seeds, Random& random) {
+    tables::RecordMaker maker;
+    std::string values;
+    for (int seed = 0; seed < seeds; ++seed) {
+        values += fmt::format("{}{}", seed == 0 ? "" : ", ", seed);
+        maker.beginCase("", fmt::format(R"({{"seed":{}}})", seed));
+        maker.add("e", {double{random.uniform()} < 0.5 ? 4.0 : 5.0}, "", "1");
+    }
+    const std::string body = fmt::format(
+        "sweep: {{seed: [{}]}}\nlayout: {{{}}}\nclaims: {{C: {{says: so, exact: e, "
+        "equals: 4{}}}}}\n",
+        values, fmt::format(fmt::runtime(layout), values), at);
+    return resultOf(experimentOf(Of::Import, body), maker.records()).verdict;
+}
+
+TEST(Unseeded, ANumberOfASeedIsExactInSixOrMore) {
+    constexpr int kTrials = test::kIsSanitized ? 200 : 400;
+    Random random(3);
+    const std::string pooled = "columns: {{e: {{metric: e, where: {{seed: [{}]}}}}}}";
+    std::map<Verdict, int> six;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        for (const int seeds : {2, 3, 5}) {
+            EXPECT_EQ(exactOfSeeds(pooled, "", seeds, random), Verdict::Ambiguous) << seeds;
+        }
+        const std::string rows = "rows: seed, columns: {{e: {{metric: e}}}}";
+        EXPECT_EQ(exactOfSeeds(rows, ", at: {seed: 1}", 3, random), Verdict::Ambiguous);
+        ++six[exactOfSeeds(pooled, "", 6, random)];
+    }
+    EXPECT_LE(six[Verdict::Holds] + six[Verdict::Fails], 0.05 * kTrials);
+    EXPECT_GT(six[Verdict::Holds], 0) << "all of six";
+}
+
+/// A baseline that draws nothing stands beside each of the others' seeds.
+TEST(Unseeded, WhatTheSweepLeavesWithoutASeedIsCertain) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"m":"a"})").add("e", {0.4}, "", "1");
+    for (int seed = 0; seed < 6; ++seed) {
+        maker.beginCase("", fmt::format(R"({{"m":"b","seed":{}}})", seed));
+        maker.add("e", {0.5 + 0.01 * seed}, "", "1");
+    }
+    const std::string body =
+        "sweep: {m: [a, b], seed: [0, 1, 2, 3, 4, 5], when: {seed: {m: b}}}\n"
+        "layout: {rows: m, columns: {e: {metric: e, where: {seed: [0, 1, 2, 3, 4, 5]}}}}\n"
+        "claims: {C: {says: so, order: [a, b], of: e}}\n";
+    const ClaimResult result = resultOf(experimentOf(Of::Import, body), maker.records());
+    EXPECT_EQ(result.verdict, Verdict::Holds) << result.reason;
+}
+
 TEST(Unseeded, ValuesOfASweptSeedAreRounds) {
     constexpr int kTrials = test::kIsSanitized ? 60 : 400;
     const std::string pooled = "rows: m, columns: {{e: {{metric: e, where: {{seed: [{}]}}}}}}";
@@ -189,7 +284,7 @@ TEST(Unseeded, ValuesOfASweptSeedAreRounds) {
     EXPECT_EQ(few.verdict, Verdict::Ambiguous);
     EXPECT_EQ(few.reason,
               "4 seeds of random numbers; an interval needs 6: `measure: {seeds: process, "
-              "processes: 6}`");
+              "processes: 6}`, or as many values of 'seed' in a sweep or an import");
     EXPECT_EQ(judgeSwept("rows: [m, seed], columns: {{e: {{metric: e}}}}", 8, 1.1, random).verdict,
               Verdict::Ambiguous)
         << "one seed a row";

@@ -100,6 +100,19 @@ TEST(ShareDraws, ClaimsAreJudgedByTheIntervalOfWhatTheyCompare) {
     EXPECT_EQ(results[1].verdict, claims::Verdict::Holds) << results[1].measured;
 }
 
+/// Another count comes to another share by more than chance in counting.
+TEST(ShareDraws, AShareThatDiffersWhenItIsCountedAgainIsOneSample) {
+    RecordMaker maker = sharesCounted(200'000, 200'000);
+    maker.beginCase("models/tree").add("useful_pct", {0.5}, "a", "%");
+    maker.process(1).add("useful_pct", {0.6}, "a", "%");
+    const config::Experiment experiment = experimentFrom(kDrawnShares);
+    const Table table = buildTable(experiment, maker.records());
+    EXPECT_EQ(table.rows[0].cells[0].bounds(), Bounds::None);
+    const auto results =
+        claims::evaluateClaims(experiment, table, {"llvmpipe", "software", "quick", "abc", ""});
+    EXPECT_EQ(results[1].verdict, claims::Verdict::Ambiguous) << results[1].measured;
+}
+
 TEST(ShareDraws, ExactClaimsAreOfTheCountItself) {
     std::string body = kDrawnShares;
     body +=
