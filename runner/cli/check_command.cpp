@@ -27,11 +27,23 @@ namespace gfxrepro::cli {
 
 namespace {
 
+/// The file under a profile as it stands, but that the command line may have its times taken.
+config::Experiment asItStands(const config::Experiment& experiment, const std::string& profile) {
+    std::vector<std::string> sets;
+    const Node* measure = experiment.document.find("measure");
+    const Node* lane = measure && measure->isMap() ? measure->find("lane") : nullptr;
+    const bool isGiven = lane && lane->location().file.text().starts_with(config::kCommandLine);
+    if (isGiven && experiment.measure.lane == config::Measure::Lane::Timing) {
+        sets.emplace_back("measure.lane=timing");
+    }
+    return loadExperiments({{experiment.file.string()}, sets, {}, {}, ""}, profile).front();
+}
+
 /// Says which claims and plots the profile or an override leaves without what they read in the file
 /// as it stands: they will be unmeasured, or left out.
 void sayUnread(const Context& context, const scene::Catalog& catalog, const std::string& file,
                const config::Experiment& experiment, const tables::Table& table) {
-    const config::Experiment whole = loadExperiments({{file}, {}, {}, {}, ""}, "full").front();
+    const config::Experiment whole = asItStands(experiment, "full");
     const std::vector<config::Case> cases =
         run::resolveParameters(whole, catalog, context.techniques, 1);
     const tables::Table wholeTable = tableBefore(context, whole, cases);
@@ -69,12 +81,12 @@ std::vector<config::Case> casesOf(const Context& context, const scene::Catalog& 
 /// and for a printed row or value, or a `where` of the layout, that has no place in the table,
 /// whatever the profile.
 void requireProfiles(const Context& context, const scene::Catalog& catalog,
-                     const std::string& file) {
+                     const config::Experiment& experiment) {
     std::vector<config::Experiment> profiles;
     std::vector<std::vector<config::Case>> cases;
     std::vector<tables::Table> tables;
     for (const char* profile : {"full", "quick", "paper"}) {
-        config::Experiment one = loadExperiments({{file}, {}, {}, {}, ""}, profile).front();
+        config::Experiment one = asItStands(experiment, profile);
         if (one.technique.empty() || !one.layout.isGiven) continue;
         cases.push_back(casesOf(context, catalog, one));
         const bool areRowsKnown =
@@ -157,33 +169,26 @@ void requireScenes(const Context& context, const config::Experiment& experiment,
     }
 }
 
-/// Throws Error for a truth that is made as the case itself is, in whichever process.
-void requireOtherTruths(const config::Case& item) {
-    if (item.program.isNull()) return;
-    const config::ExternalProgram program = config::readProgram(item.program);
-    const bool isOfProcesses = item.measure.seeds == config::Measure::Seeds::Process;
-    const auto isOwn = [&](const Node::Entry& given) {
-        const auto& [name, value] = given;
-        if (name == config::placeholder::kFrame) {
-            return value.tryInteger().value_or(-1) < item.measure.frames;
-        }
-        const Node* own = item.params.find(name);
-        const auto seed = value.tryInteger(), ownSeed = own ? own->tryInteger() : std::nullopt;
-        if (name == config::placeholder::kSeed && isOfProcesses && seed && ownSeed) {
-            const long long beyond = *seed - *ownSeed;
-            return beyond >= 0 && beyond % config::kSeedsOfAProcess == 0 &&
-                   beyond / config::kSeedsOfAProcess < item.measure.processes;
-        }
-        return own && own->sameContent(value);
-    };
-    for (const config::ProgramPicture& picture : program.pictures) {
+/// Throws Error for a truth that is made as each case itself is, or with random numbers of a case:
+/// a case that is the truth of the others is said.
+void requireOtherTruths(const config::Experiment& experiment, std::span<const config::Case> cases) {
+    const Node& program = config::programOf(experiment);
+    if (program.isNull()) return;
+    for (const config::ProgramPicture& picture : config::readProgram(program).pictures) {
         const Node& truth = picture.truthParams;
-        if (truth.isNull() || !std::ranges::all_of(truth.entries(), isOwn)) continue;
+        if (truth.isNull()) continue;
+        const auto isOwn = [&](const config::Case& item) {
+            return config::isOwnTruth(item, truth);
+        };
+        const auto first = std::ranges::find_if(cases, isOwn);
+        const bool isOfChance =
+            truth.find(config::placeholder::kSeed) || truth.find(config::placeholder::kFrame);
+        if (first == cases.end() || (!isOfChance && !std::ranges::all_of(cases, isOwn))) continue;
         throw Error(truth.location(),
                     fmt::format("program: image '{}': truth: {} is what makes the case {} itself, "
                                 "whose error would be 0 whatever the program does; allowed: a "
                                 "parameter, 'seed' or 'frame' that no case has",
-                                picture.name, truth.toFlowText(), item.title()));
+                                picture.name, truth.toFlowText(), first->title()));
     }
 }
 
@@ -361,6 +366,8 @@ std::vector<config::Case> checkFile(const Context& context, const Chosen& select
     Size size = sizeOf(context, experiment, cases);
     size.planBytes = planBytesOf(experiment, cases, selection);
     sayAbsent(file, cases);
+    for (const std::string& line : config::ownTruths(experiment, cases))
+        say("{}: {}\n", file, line);
     say("{}: ok, {}, {} case{}, {} claim{}\n", file, experiment.id, cases.size(),
         cases.size() == 1 ? "" : "s", experiment.claims.size(),
         experiment.claims.size() == 1 ? "" : "s");
@@ -400,12 +407,12 @@ void requireSound(const Context& context, const scene::Catalog& catalog,
                   const config::Experiment& experiment, std::span<const config::Case> cases) {
     run::requireRanges(experiment, {cases.begin(), cases.end()}, catalog, context.techniques);
     requireScenes(context, experiment, cases, catalog);
-    requireProfiles(context, catalog, experiment.file);
+    requireProfiles(context, catalog, experiment);
     const bool isImported = experiment.technique == config::kImported;
     const tables::Table table =
         isImported ? tables::buildTable(experiment, casesOf(context, catalog, experiment), {})
                    : tableBefore(context, experiment, cases);
-    for (const config::Case& item : cases) requireOtherTruths(item);
+    requireOtherTruths(experiment, cases);
     requireTimesTaken(experiment, table);
     tables::requireToldApart(experiment, table);
     tables::requireStatistics(experiment, cases, table);

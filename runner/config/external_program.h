@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -105,6 +106,11 @@ ExternalProgram readProgram(const Node& node);
 /// Makes `program.here` of a config absolute: the folder of the file that names the command, where
 /// it says no other.
 void setProgramFolder(Node& document);
+
+/// Whether the parameters of a truth make what the case itself makes, in whichever process.
+bool isOwnTruth(const Case& item, const Node& truth);
+/// The sentences to say of truths that are some of the cases.
+std::vector<std::string> ownTruths(const Experiment& experiment, std::span<const Case> cases);
 
 /// A file that decides what the program does.
 struct ProgramFile {

@@ -56,6 +56,47 @@ void ExternalProgram::declare(Params& values) const {
     }
 }
 
+bool isOwnTruth(const Case& item, const Node& truth) {
+    const bool isOfProcesses = item.measure.seeds == Measure::Seeds::Process;
+    return std::ranges::all_of(truth.entries(), [&](const Node::Entry& given) {
+        const auto& [name, value] = given;
+        if (name == placeholder::kFrame)
+            return value.tryInteger().value_or(-1) < item.measure.frames;
+        const Node* own = item.params.find(name);
+        const auto seed = value.tryInteger(), ownSeed = own ? own->tryInteger() : std::nullopt;
+        if (name == placeholder::kSeed && isOfProcesses && seed && ownSeed) {
+            const long long beyond = *seed - *ownSeed;
+            return beyond >= 0 && beyond % kSeedsOfAProcess == 0 &&
+                   beyond / kSeedsOfAProcess < item.measure.mostRounds();
+        }
+        return own && own->sameContent(value);
+    });
+}
+
+std::vector<std::string> ownTruths(const Experiment& experiment, std::span<const Case> cases) {
+    const Node& program = programOf(experiment);
+    if (!program.isMap() || !program.find("images")) return {};
+    std::vector<std::string> sentences;
+    for (const ProgramPicture& picture : readProgram(program).pictures) {
+        const Node& truth = picture.truthParams;
+        std::vector<const Case*> own;
+        for (const Case& item : cases) {
+            const bool isOwn =
+                item.experiment == experiment.id && !truth.isNull() && isOwnTruth(item, truth);
+            if (isOwn) own.push_back(&item);
+        }
+        if (own.empty()) continue;
+        sentences.push_back(fmt::format(
+            "{} the truth of '{}' ({}) by itself: its errors are 0 whatever the "
+            "program does.",
+            own.size() == 1
+                ? own.front()->title() + " is"
+                : fmt::format("{} cases, {} the first, are each", own.size(), own.front()->title()),
+            picture.name, truth.toFlowText()));
+    }
+    return sentences;
+}
+
 fs::path findExecutable(const std::string& name, const fs::path& here) {
     const auto isProgram = [](const fs::path& path) {
         std::error_code isAbsent;

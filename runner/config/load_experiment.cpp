@@ -430,8 +430,13 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
     nameAxes(whole, document);
     for (auto& [name, overlay] : overlays) nameAxes(whole, overlay);
 
-    // The file as it stands must be right whatever is chosen: only there are all names known.
+    // The file as it stands must be right whatever is chosen: only there are all names known. But
+    // its times may be asked for by the command line alone.
     Node asItStands = document;
+    for (const Override& given : options.sets) {
+        const bool isTimed = given.value.isScalar() && given.value.text() == "timing";
+        if (given.key == "measure.lane" && isTimed) asItStands.setPath(given.key, given.value);
+    }
     resolveNames(asItStands);
     Experiment experiment = readWhole(asItStands, file, true, configsFolder);
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "engine/core/text.h"
+#include "runner/config/external_program.h"
 #include "runner/records/csv.h"
 #include "runner/tables/calibration.h"
 #include "runner/tables/default_layout.h"
@@ -291,6 +292,9 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     if (std::string note = seedNote(table); !note.empty()) table.notes.push_back(std::move(note));
     compareRivals(rivals, against, table);
     for (std::string& note : cellNotes(table)) table.notes.push_back(std::move(note));
+    for (std::string& note : config::ownTruths(experiment, planned)) {
+        table.notes.push_back(std::move(note));
+    }
     for (std::string& note : fitNotes(fitOf(experiment, table), table)) {
         table.notes.push_back(std::move(note));
     }

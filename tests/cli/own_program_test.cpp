@@ -105,9 +105,46 @@ TEST_F(OwnProgram, ATruthIsNoCase) {
               "has\n");
     EXPECT_THAT(of("{n: 16, seed: 5001}"), HasSubstr("makes the case")) << "of the sixth process";
     EXPECT_EQ(of("{n: 16, seed: 6001}"), "");
+    const std::string goesOn = "measure: {processes: 6, relative_error: 0.02}\n";
+    EXPECT_THAT(of("{n: 16, seed: 19001}", goesOn), HasSubstr("makes the case")) << "the last";
+    EXPECT_EQ(of("{n: 16, seed: 20001}", goesOn), "");
     EXPECT_EQ(of("{n: 16, seed: 2}"), "");
     EXPECT_EQ(of("{n: 64, seed: 1}"), "");
-    EXPECT_THAT(of("{n: 16}", "measure: {seeds: case}\n"), HasSubstr("makes the case"));
+    EXPECT_EQ(of("{pattern: even}"), "");
+    EXPECT_THAT(gfxrepro({"check", folder.path() / "mine.yaml", "--sweep", "pattern=even"}).err,
+                HasSubstr("makes the case"))
+        << "each of them";
+}
+
+/// One of the methods that are compared, or the most samples.
+TEST_F(OwnProgram, ACaseThatIsTheTruthOfOthersIsSaid) {
+    const auto of = [&](const std::string& truth) {
+        Parts parts;
+        parts.truth = truth;
+        const ProcessResult result = check("", parts);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return result.out;
+    };
+    EXPECT_THAT(
+        of("{pattern: even, n: 16}"),
+        HasSubstr("mine.yaml: sweep/mine pattern=even n=16 is the truth of 'p' ({pattern: "
+                  "even, n: 16}) by itself: its errors are 0 whatever the program does.\n"));
+    EXPECT_THAT(of("{n: 16}"),
+                HasSubstr("2 cases, sweep/mine pattern=even n=16 the first, are each "
+                          "the truth of 'p' ({n: 16}) by itself: "));
+    EXPECT_THAT(of("{n: 64}"), testing::Not(HasSubstr("by itself")));
+}
+
+TEST_F(OwnProgram, TheLaneOfTheCommandLineIsThatOfTheTable) {
+    for (const char* lines :
+         {"layout: {rows: [pattern, n], columns: {t: {metric: wall_time_ms}}}\n",
+          "claims: {c: {says: so, order: [even, odd], of: frame_ms}}\n"}) {
+        const std::string quality = fmt::format("measure: {{lane: quality}}\n{}", lines);
+        EXPECT_THAT(refusal(quality), HasSubstr("'lane: quality' takes no times"));
+        const auto file = folder.path() / "mine.yaml";
+        const ProcessResult result = gfxrepro({"check", file, "--set", "measure.lane=timing"});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+    }
 }
 
 TEST_F(OwnProgram, AnArgumentThatIsNotThereIsSaid) {
