@@ -42,6 +42,8 @@ tables::Table tableFor(const ClaimSpec& claim, const tables::Table& table) {
     const bool isOverExpression =
         claim.over && !table.findColumn(*claim.over) &&
         std::ranges::find(table.rowAxes, *claim.over) == table.rowAxes.end();
+    // What is not laid out is known of once it was measured.
+    if (table.columns.empty()) return table;
     if (!claim.across) return isOverExpression ? withAxesAsColumns(table) : table;
     const auto found = std::find(table.rowAxes.begin(), table.rowAxes.end(), *claim.across);
     if (found == table.rowAxes.end()) {

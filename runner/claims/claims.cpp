@@ -485,6 +485,7 @@ bool isOfGpu(const std::optional<ClaimSpec::TimeKind>& kind, const tables::Table
 }
 
 std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {
+    if (table.columns.empty()) return "";
     const tables::Table own = tableFor(claim, table);
     for (const auto& [axis, wanted] : claim.at) {
         if (!claim.across || axis != kColumnAxis) continue;

@@ -305,7 +305,9 @@ class ClaimParser {
         const std::string axis = lineOf(node, what_ + ": " + key);
         const auto found = std::ranges::find(names_.rowAxes, axis);
         if (found == names_.rowAxes.end()) {
-            throwNotAllowed(node, what_ + ": " + key, joined(names_.rowAxes, " | "));
+            throwNotAllowed(node, what_ + ": " + key,
+                            names_.rowAxes.empty() ? "an axis of 'sweep', or of 'layout: {rows}'"
+                                                   : joined(names_.rowAxes, " | "));
         }
         claim_.across = axis;
         names_.rowAxes.erase(found);

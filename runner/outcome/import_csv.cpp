@@ -13,6 +13,7 @@
 #include "engine/core/files.h"
 #include "engine/core/foreign_text.h"
 #include "engine/core/text.h"
+#include "runner/config/outputs.h"
 #include "runner/records/csv.h"
 
 namespace gfxrepro::outcome {
@@ -191,6 +192,8 @@ Record recordOf(const NamedCsv& csv) {
 /// Takes the rows in turn, and refuses what contradicts an earlier one.
 class Rows {
   public:
+    explicit Rows(const ImportFiles& files) : files_(files) {}
+
     void add(const NamedCsv& csv, std::size_t caseIndex, Record record, const std::string& column) {
         const int line = csv.where().line;
         const auto [unit, isNewMetric] =
@@ -216,7 +219,8 @@ class Rows {
                                     "process, seed, frame and repeat tell measurements apart",
                                     column, known->second));
         }
-        rows.push_back({caseIndex, std::move(record), line});
+        const bool hasSeed = !files_.isSeedSwept && !csv.cell(kSeed).empty();
+        rows.push_back({caseIndex, std::move(record), line, hasSeed});
     }
 
     std::vector<ImportedRow> rows;
@@ -224,7 +228,7 @@ class Rows {
   private:
     /// One value without a seed beside those of several would count as what never varies.
     void requireSeed(const NamedCsv& csv, const std::string& metric, int line) {
-        if (metric.empty()) return;
+        if (metric.empty() || files_.isSeedLeftOut) return;
         const auto said = [](const std::string& seed) {
             return seed.empty() ? "no seed" : "the seed '" + seed + "'";
         };
@@ -232,13 +236,17 @@ class Rows {
         const auto [first, isNew] = seeds_.try_emplace(metric, std::pair(seed, line));
         const auto& [firstSeed, firstLine] = first->second;
         if (isNew || firstSeed.empty() == seed.empty()) return;
-        throw Error(csv.where(),
-                    fmt::format("'{}' has {}; in line {} it has {}; allowed: one in all of its "
-                                "rows, or in none; what draws no random numbers has the same value "
-                                "with each",
-                                metric, said(seed), firstLine, said(firstSeed)));
+        throw Error(
+            csv.where(),
+            fmt::format(
+                "'{}' has {}; in line {} it has {}; allowed: one in all of its "
+                "rows, or in none; what draws no random numbers has the same value "
+                "with each{}",
+                metric, said(seed), firstLine, said(firstSeed),
+                files_.isSeedSwept ? ", or 'when: {seed: …}' in the sweep leaves it without" : ""));
     }
 
+    const ImportFiles& files_;
     using Key = std::tuple<std::size_t, int, int, int, std::string, std::string>;
     std::map<Key, int> lines_;
     std::map<std::string, std::pair<std::string, int>> units_;  // by metric: unit, line
@@ -366,12 +374,21 @@ void addRow(const NamedCsv& csv, const ImportFiles& files, std::size_t caseIndex
     rows.add(csv, caseIndex, std::move(record), "status");
 }
 
+/// What has no seed beside others that have is the set-up's: it draws no random numbers.
+void placeSeedless(ImportedNumbers& numbers) {
+    if (std::ranges::none_of(numbers.cases, &ImportedCase::hasSeeds)) return;
+    for (ImportedRow& row : numbers.rows) {
+        const bool isOfSetup = !row.hasSeed && !config::isTimeMetric(row.record.metric);
+        if (isOfSetup) row.record.frame = records::kSetup;
+    }
+}
+
 /// Where no two cases share a seed but share all, the processes of each are counted from 0; else a
 /// case lacks those of the seeds that others have.
 void countSeeds(ImportedNumbers& numbers) {
     std::vector<std::set<int>> seeds(numbers.cases.size());
     for (const ImportedRow& row : numbers.rows) {
-        if (numbers.cases[row.caseIndex].hasSeeds) seeds[row.caseIndex].insert(row.record.process);
+        if (row.hasSeed) seeds[row.caseIndex].insert(row.record.process);
     }
     std::map<int, const std::set<int>*> first;
     for (const std::set<int>& own : seeds) {
@@ -381,7 +398,7 @@ void countSeeds(ImportedNumbers& numbers) {
     }
     for (ImportedRow& row : numbers.rows) {
         const std::set<int>& own = seeds[row.caseIndex];
-        if (own.empty()) continue;
+        if (!row.hasSeed) continue;
         row.record.process =
             static_cast<int>(std::distance(own.begin(), own.find(row.record.process)));
     }
@@ -405,7 +422,7 @@ ImportedNumbers readImport(const ImportFiles& files) {
     const Names columns = caseColumns(csv, files);
     requireNoParts(csv, columns);
     if (files.cases.empty()) numbers.columns = columns;
-    Rows rows;
+    Rows rows(files);
     std::map<std::string, int> seeds;  // in the order of the file
     while (csv.next()) {
         std::string key = csv.cell(kCaseId);
@@ -427,6 +444,7 @@ ImportedNumbers readImport(const ImportFiles& files) {
     }
     if (rows.rows.empty()) throw Error({files.file.string(), 0, 0}, "has a header and no row");
     numbers.rows = std::move(rows.rows);
+    if (!csv.has("frame")) placeSeedless(numbers);
     countSeeds(numbers);
     return numbers;
 }

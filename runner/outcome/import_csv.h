@@ -14,15 +14,17 @@ namespace gfxrepro::outcome {
 
 /// What is imported. The file has a number a row: columns `metric` and `value`, perhaps `unit`,
 /// `pass`, `frame`, `repeat`, `process`, `lane`, `status`, `message`, or in the place of `process`
-/// the `seed` of random numbers; every other column is a parameter of the case, or `experiment`,
-/// `technique`, `scene`. With `metrics` it has a column for each of these instead of `metric`,
-/// `value` and `unit`. With `cases` it has `case_id`, and what a case is stands in that file (as
-/// `gfxrepro export --tidy` writes both).
+/// the `seed` of random numbers (without column `frame` a number that has none beside others that
+/// have, and is no time, is the set-up's); every other column is a parameter of the case, or
+/// `experiment`, `technique`, `scene`. With `metrics` it has a column for each of these instead of
+/// `metric`, `value` and `unit`. With `cases` it has `case_id`, and what a case is stands in that
+/// file (as `gfxrepro export --tidy` writes both).
 struct ImportFiles {
     std::filesystem::path file;
     std::filesystem::path cases = {};                               // empty: none
     std::vector<std::pair<std::string, std::string>> metrics = {};  // column, unit
-    bool isSeedSwept = false;  // `seed` is an axis of the config, and so a parameter
+    bool isSeedSwept = false;    // `seed` is an axis of the config, and so a parameter
+    bool isSeedLeftOut = false;  // of some cases, by `when` of its sweep
 };
 
 /// The cells of a case that are not empty, by column, in the order of the columns.
@@ -40,6 +42,7 @@ struct ImportedRow {
     std::size_t caseIndex = 0;
     records::Record record;
     int line = 0;
+    bool hasSeed = false;
 };
 
 struct ImportedNumbers {

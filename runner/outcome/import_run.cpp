@@ -159,6 +159,11 @@ bool isSeedSwept(const Experiment& experiment) {
            std::ranges::any_of(layout.rows, isSeed) || std::ranges::any_of(layout.columns, isSeed);
 }
 
+bool isSeedLeftOut(const Experiment& experiment) {
+    const Node* when = experiment.sweep.isMap() ? experiment.sweep.find("when") : nullptr;
+    return when && when->isMap() && when->find("seed");
+}
+
 /// The value of an axis; null where the case has none.
 Node axisOf(const config::Case& item, const std::string& axis) {
     if (axis == "scene") return item.standsFor.isNull() ? item.scene : item.standsFor;
@@ -216,16 +221,31 @@ std::string laneName(config::Measure::Lane lane) {
     return lane == config::Measure::Lane::Timing ? "timing" : "quality";
 }
 
-/// Claims know a time by its name: one of another name would be judged as what never varies.
-void requireTimeNames(const ImportedNumbers& numbers, const run::Plan& plan, const fs::path& file) {
-    std::set<std::string> own;  // of experiments whose metrics no technique declares
+/// Claims know a time by its name: one of another name would be judged as what never varies. Those
+/// of a config know an axis by its name, too.
+void requireNames(const ImportedNumbers& numbers, const run::Plan& plan, const fs::path& file) {
+    const bool isPlain = plan.request.configs.empty();
+    // Of experiments whose metrics no technique declares.
+    std::map<std::string, std::set<std::string>> axes;
     for (const Experiment& experiment : plan.experiments) {
-        if (!config::isMeasuredHere(experiment)) own.insert(experiment.id);
+        if (config::isMeasuredHere(experiment)) continue;
+        std::set<std::string>& own = axes[experiment.id];
+        if (!isPlain) own = {"scene", "seed", "frame"};
+    }
+    for (const config::Case& item : plan.cases) {
+        const auto own = axes.find(item.experiment);
+        if (isPlain || own == axes.end()) continue;
+        for (const auto& [axis, value] : item.axes.entries()) own->second.insert(axis);
     }
     for (const ImportedRow& row : numbers.rows) {
         const records::Record& record = row.record;
-        if (!own.contains(plan.cases[row.caseIndex].experiment)) continue;
-        const std::string why = config::whyNoTimeName(record.metric, record.unit);
+        const auto own = axes.find(plan.cases[row.caseIndex].experiment);
+        if (own == axes.end()) continue;
+        std::string why = config::whyNoTimeName(record.metric, record.unit);
+        if (own->second.contains(record.metric)) {
+            why = fmt::format("metric '{}' has the name of an axis; allowed: another",
+                              record.metric.string());
+        }
         if (!why.empty()) throw Error({file.string(), row.line, 0}, why);
     }
 }
@@ -312,6 +332,7 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
                          std::span<const technique::TechniqueInfo> techniques) {
     ImportFiles files = request.files;
     files.isSeedSwept = std::ranges::any_of(request.experiments, isSeedSwept);
+    files.isSeedLeftOut = std::ranges::any_of(request.experiments, isSeedLeftOut);
     const ImportedNumbers numbers = readImport(files);
     run::StoredRun run;
     run::Plan& plan = run.plan;
@@ -331,9 +352,9 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
         plan.cases.push_back(caseFrom(
             given, isPlain ? plan.experiments.front() : experimentOf(given, plan.experiments)));
     }
-    requireTimeNames(numbers, plan, request.files.file);
     takeMeasures(numbers, plan.cases);
     takeAxes(numbers, plan);
+    requireNames(numbers, plan, request.files.file);
     for (Experiment& experiment : plan.experiments) {
         experiment.paperCases = run::resolvePaperCases(experiment, catalog, techniques);
         if (config::isMeasuredHere(experiment) && experiment.hasDefaultLayout()) {

@@ -244,6 +244,107 @@ TEST_F(Data, WhatCheckRefusesIsNotImported) {
                 EndsWith(": claim 'C' has a 'kind' and reads no time\n"));
 }
 
+/// Whatever asks for it: nothing of it is measured, which is no missing measurement.
+TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
+    const std::string csv = folder_.write("t.csv",
+                                          "m,metric,value,unit,pass\na,err,1,1,p\nb,err,2,1,p\n"
+                                          "a,t_ms,1,ms,p\nb,t_ms,2,ms,p\na,n,3,1,\nb,n,4,1,\n");
+    const auto errorsOf = [&](const std::string& lines) {
+        std::filesystem::remove_all(dir("t"));
+        const std::string config = folder_.write(
+            "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n" + lines);
+        const std::string imported =
+            endedWith(2, mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")})).err;
+        for (const char* command : {"table", "claims", "report"}) {
+            EXPECT_EQ(endedWith(2, mockGfxrepro({command, dir("t")})).err, imported) << command;
+        }
+        return imported;
+    };
+    const std::string recorded = " was recorded; did you mean 'err'? (recorded: err, n, t_ms)\n";
+    EXPECT_EQ(errorsOf("layout: {rows: m, columns: {e: {metric: errr}, n: {metric: n}}}\n"),
+              "error: sweep/t: column 'e': no 'errr'" + recorded);
+    EXPECT_EQ(errorsOf("layout: {rows: {x: {metric: n}, y: {metric: errr}}, columns: "
+                       "{a: {where: {m: a}}}}\n"),
+              "error: sweep/t: row 'y': no 'errr'" + recorded);
+    for (const char* metric : {"err", "t_ms"}) {
+        EXPECT_EQ(errorsOf(fmt::format("layout: {{rows: m, columns: {{e: {{metric: {}, pass: q}}, "
+                                       "n: {{metric: n}}}}}}\n",
+                                       metric)),
+                  fmt::format("error: sweep/t: column 'e': no '{}' of pass 'q' was recorded; it is "
+                              "there for pass: p\n",
+                              metric));
+    }
+    EXPECT_THAT(errorsOf("claims: {c: {says: so, bound: errr, at_most: 1}}\n"),
+                testing::StartsWith("error: sweep/t: claim 'c': 'errr' is no column"));
+}
+
+TEST_F(Data, ValuesOfAnAxisAreComparedWithoutALayout) {
+    const std::string csv = folder_.write("t.csv", "m,metric,value\na,err,1\nb,err,2\n");
+    const std::string head = "sweep_of: t\ntitle: T\ntechnique: imported\n";
+    const std::string claim = "claims: {c: {says: so, order: [m=a, m=b], of: err}}\n";
+    const std::string config = folder_.write("t.yaml", head + "sweep: {m: [a, b]}\n" + claim);
+    endedWith(0, mockGfxrepro({"check", config}));
+    endedWith(0, mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")}));
+    EXPECT_THAT(verdicts("t"), testing::Contains("c holds"));
+    EXPECT_THAT(
+        refusal({"check", folder_.write("u.yaml", head + claim)}),
+        HasSubstr("axis of order is m; allowed: an axis of 'sweep', or of 'layout: {rows}'"));
+}
+
+/// A claim could mean either.
+TEST_F(Data, AnImportedMetricHasANameOfItsOwn) {
+    const std::string config =
+        folder_.write("t.yaml",
+                      "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a]}\n"
+                      "layout: {rows: m, columns: {e: {metric: err}}}\n");
+    for (const char* metric : {"m", "seed", "scene", "frame"}) {
+        const std::string csv =
+            folder_.write("t.csv", fmt::format("m,metric,value\na,err,1\na,{},2\n", metric));
+        EXPECT_EQ(
+            refusal({"import", csv, "--config", config, "--out", dir("t")}),
+            fmt::format("gfxrepro: DIR/t.csv:3: metric '{}' has the name of an axis; allowed: "
+                        "another\n",
+                        metric));
+        endedWith(0, mockGfxrepro({"import", csv, "--out", dir(metric)}));
+    }
+}
+
+/// A count that has no seed beside errors that have, and a baseline that has none in the sweep.
+TEST_F(Data, WhatHasNoSeedDrawsNone) {
+    const auto verdictOf = [&](const std::string& csv, const std::string& sweep,
+                               const std::string& column, const std::string& claim) {
+        std::filesystem::remove_all(dir("t"));
+        const std::string config = folder_.write(
+            "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]" + sweep +
+                          "}\nlayout: {rows: m, columns: {c: {" + column +
+                          "}}}\nclaims: {C: {says: so, " + claim + "}}\n");
+        const ProcessResult result = mockGfxrepro(
+            {"import", folder_.write("t.csv", csv), "--config", config, "--out", dir("t")});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return verdicts("t").back();
+    };
+    std::string text = "m,seed,metric,value\na,,n,4\nb,,n,5\n";
+    std::string swept = "m,seed,metric,value\na,,e,0.4\n", seeds = "[";
+    for (int seed = 1; seed <= 6; ++seed) {
+        const std::string of = fmt::format("b,{},e,{}\n", seed, 0.5 + 0.01 * seed);
+        text += fmt::format("{}a,{},e,0.4\n", of, seed);
+        swept += of;
+        seeds += fmt::format("{}{}", seed == 1 ? "" : ", ", seed);
+    }
+    seeds += "]";
+    EXPECT_EQ(verdictOf(text, "", "metric: n", "order: [a, b], of: c"), "C holds");
+    EXPECT_EQ(verdictOf(text, "", "metric: n", "exact: c, equals: 4, at: {m: a}"), "C holds");
+    EXPECT_EQ(verdictOf(swept, ", seed: " + seeds + ", when: {seed: {m: b}}",
+                        "metric: e, where: {seed: " + seeds + "}", "order: [a, b], of: c"),
+              "C holds");
+    const std::string without = folder_.write(
+        "u.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b], seed: " + seeds +
+                      "}\nlayout: {rows: [m, seed], columns: {c: {metric: e}}}\n");
+    EXPECT_THAT(
+        refusal({"import", folder_.write("u.csv", swept), "--config", without, "--out", dir("u")}),
+        EndsWith(", or 'when: {seed: …}' in the sweep leaves it without\n"));
+}
+
 /// A column of the file that the config's sweep does not name.
 TEST_F(Data, WhatDiffersBesideTheSweepIsSaid) {
     const std::string csv =
