@@ -100,7 +100,7 @@ class TiffReader {
                                        : format == SAMPLEFORMAT_UINT && (bits_ == 8 || bits_ == 16);
         if (!isOfColours || !isOfBits) {
             throw Error(fmt::format(
-                "{}: {} channels of {} bits (sample format {}, photometric {}); allowed: grey or "
+                "{}: {} × {} bits a pixel (sample format {}, photometric {}); allowed: grey or "
                 "RGB, with or without alpha, of 8 or 16 bits or 16 or 32 bit floats",
                 path_.string(), channels_, bits_, format, colours));
         }

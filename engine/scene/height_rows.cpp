@@ -311,8 +311,8 @@ class TiffRows : public HeightRows {
             kKinds, [&](const Kind& each) { return each.bits == bits && each.format == format; });
         if (channels != 1 || kind == std::end(kKinds)) {
             throw Error(
-                fmt::format("{}: {} channels of {} bits (sample format {}); allowed: one "
-                            "of 8 or 16 bit integers or 32 bit floats",
+                fmt::format("{}: {} × {} bits a sample (sample format {}); allowed: one number, "
+                            "an integer of 8 or 16 bits or a float of 32",
                             name_, channels, bits, format));
         }
         type_ = kind->type;

@@ -1,4 +1,5 @@
 // Pictures of programs in other formats than EXR and PNG.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <stb/stb_image_write.h>
@@ -464,8 +465,15 @@ TEST_F(Formats, OtherTiffFilesAreRefused) {
         return errorText([&] { readPicture(path("a.tif")); }, folder_.path());
     };
     EXPECT_EQ(refusalOf({.bits = 32}),
-              "DIR/a.tif: 3 channels of 32 bits (sample format 1, photometric 2); allowed: grey or "
+              "DIR/a.tif: 3 × 32 bits a pixel (sample format 1, photometric 2); allowed: grey or "
               "RGB, with or without alpha, of 8 or 16 bits or 16 or 32 bit floats");
+    for (const int bits : {1, 2, 4, 12}) {
+        EXPECT_EQ(refusalOf({.channels = 1, .bits = bits}),
+                  fmt::format("DIR/a.tif: 1 × {} bits a pixel (sample format 1, photometric 1); "
+                              "allowed: grey or RGB, with or without alpha, of 8 or 16 bits or 16 "
+                              "or 32 bit floats",
+                              bits));
+    }
     EXPECT_EQ(refusalOf({.bits = 32, .isFloat = 1, .orientation = ORIENTATION_RIGHTTOP}),
               "DIR/a.tif: orientation 6; allowed: 1 (from the top) and 4 (from the bottom)");
     EXPECT_EQ(refusalOf({.bits = 32, .isFloat = 1, .pages = 3}),

@@ -1,4 +1,5 @@
 // What files say of their heights' units.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <png.h>
 #include <tiffio.h>
@@ -254,16 +255,16 @@ TEST_F(HeightUnits, SamplesThatStandOnNoSquaresAreRefused) {
         << "turned about";
 }
 
-TEST_F(HeightUnits, OfSeveralPagesAndTurnedRowsNoneIsTaken) {
+TEST_F(HeightUnits, OtherPagesRowsAndBitsAreRefused) {
     const fs::path path = folder.path() / "a.tif";
     const auto error = [&](int pages, std::uint32_t kind, int orientation,
-                           int colours = PHOTOMETRIC_MINISBLACK) {
+                           int colours = PHOTOMETRIC_MINISBLACK, int bits = 8) {
         TIFF* tiff = TIFFOpen(path.c_str(), "w");
         for (int page = 0; page < pages; ++page) {
             for (const int tag : {TIFFTAG_IMAGEWIDTH, TIFFTAG_IMAGELENGTH}) {
                 TIFFSetField(tiff, tag, 2);
             }
-            TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+            TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
             TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
             TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, colours);
             if (colours == PHOTOMETRIC_PALETTE) {
@@ -272,7 +273,7 @@ TEST_F(HeightUnits, OfSeveralPagesAndTurnedRowsNoneIsTaken) {
             }
             TIFFSetField(tiff, TIFFTAG_ORIENTATION, orientation);
             if (page > 0) TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, kind);
-            std::uint8_t row[2] = {1, 2};
+            std::uint8_t row[8] = {1, 2};
             for (std::uint32_t y = 0; y < 2; ++y) TIFFWriteScanline(tiff, row, y, 0);
             TIFFWriteDirectory(tiff);
         }
@@ -284,6 +285,12 @@ TEST_F(HeightUnits, OfSeveralPagesAndTurnedRowsNoneIsTaken) {
     EXPECT_EQ(error(1, 0, 4), "DIR/a.tif: orientation 4; allowed: 1 (rows from the top)");
     EXPECT_EQ(error(1, 0, 1, PHOTOMETRIC_PALETTE),
               "DIR/a.tif: a palette of colours; a height map is grey");
+    for (const int bits : {1, 2, 4, 12, 24, 32}) {
+        EXPECT_EQ(error(1, 0, 1, PHOTOMETRIC_MINISBLACK, bits),
+                  fmt::format("DIR/a.tif: 1 × {} bits a sample (sample format 1); allowed: one "
+                              "number, an integer of 8 or 16 bits or a float of 32",
+                              bits));
+    }
 }
 
 TEST_F(HeightUnits, DegreesThatAreNoSquaresOnTheGroundAreSaid) {
