@@ -27,6 +27,7 @@ class LineReader {
     /// False at the end of the text.
     bool nextLine() {
         line_ = nextLine_;
+        isWordContinued_ = false;
         if (text_.empty()) return false;
         rest_ = takeLine();
         if (isContinued(rest_)) joinContinuations();
@@ -51,6 +52,12 @@ class LineReader {
         std::string_view name(rest_.data(), static_cast<std::size_t>(lineEnd_ - rest_.data()));
         while (!name.empty() && isBlank(name.back())) name.remove_suffix(1);
         return name;
+    }
+
+    /// Of a line with a name: says where this ends in a backslash, as a folder's path does, and so
+    /// takes the next line.
+    void noteName(LeftOut& leftOut) const {
+        if (isWordContinued_) leftOut.add("a line that a name takes, as it ends in '\\'");
     }
 
     /// What stands before a comment.
@@ -155,6 +162,7 @@ class LineReader {
         joined_.clear();
         while (isContinued(rest_)) {
             joined_ += rest_.substr(0, rest_.rfind('\\'));
+            isWordContinued_ |= !joined_.empty() && !isBlank(joined_.back());
             joined_ += ' ';
             rest_ = text_.empty() ? std::string_view{} : takeLine();
         }
@@ -168,6 +176,7 @@ class LineReader {
     std::string_view rest_;
     const char* lineEnd_ = nullptr;  // behind its comment
     std::string joined_;
+    bool isWordContinued_ = false;
     int line_ = 1;
     int nextLine_ = 1;
 };

@@ -102,6 +102,9 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
     MtlMaterial* current = nullptr;
     while (lines.nextLine()) {
         const std::string_view key = lines.word();
+        const bool isOfNumbers =
+            key == "Kd" || key == "Ke" || key == "Ns" || key == "Ni" || key == "d" || key == "Tr";
+        if (!isOfNumbers && key != "Ka" && key != "Ks" && key != "Tf") lines.noteName(leftOut);
         if (key == "newmtl") {
             const std::string name = asUtf8(lines.name());
             const auto [found, isNew] = materials.try_emplace(name);
@@ -117,8 +120,6 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
             continue;
         }
         Material& material = current->material;
-        const bool isOfNumbers =
-            key == "Kd" || key == "Ke" || key == "Ns" || key == "Ni" || key == "d" || key == "Tr";
         if (key == "Kd" || key == "Ke") {
             const auto read = colour(lines, leftOut);
             if (!read) leftOut.add(fmt::format("'{}' by a spectrum in a material file", key));

@@ -77,6 +77,9 @@ class ObjParser {
 
   private:
     void parseLine(std::string_view key) {
+        if (key == "usemtl" || key == "mtllib" || key == "g" || key == "o") {
+            lines_.noteName(leftOut_);
+        }
         if (key == "v") {
             parseVertex();
         } else if (key == "vt") {

@@ -291,6 +291,26 @@ TEST_F(LoadObj, CommentsAreNotContinued) {
     EXPECT_EQ(scene.warnings, std::vector<std::string>{});
 }
 
+/// By the format, and as other readers have it, a backslash continues every line of an OBJ file.
+TEST_F(LoadObj, NamesThatTakeTheNextLineAreSaid) {
+    const std::string head = "mtllib a.mtl\n" + kSquare;
+    folder_.write("a.mtl", "newmtl a\nmap_Kd C:\\tex\\\nKd 1 0 0\nKs 1 1\\\n 1\n");
+    const std::string said = "left out: a line that a name takes, as it ends in '\\'";
+    for (const char* line : {"g C:\\part\\", "o part\\ ", "g part\\\r"}) {
+        const Scene scene = load(kSquare + line + "\nf 1 2 3\nf 1 3 4\n");
+        EXPECT_EQ(scene.triangleCount(), 1U) << line;
+        EXPECT_EQ(scene.warnings.at(0), said) << line;
+    }
+    EXPECT_EQ(
+        load(head + "usemtl b\\\nf 1 2 3\ng c\\\nf 1 2 3\nusemtl a\nf 1 2 3\nf 1 3 4\n").warnings,
+        (std::vector<std::string>{
+            "left out: 'Ks' of a material file", said + " (3 times)",
+            "left out: the texture 'C:\\tex Kd 1 0 0', which is not beside the model"}));
+    // Names on two lines, and numbers, are continued as they are meant.
+    EXPECT_EQ(load(kSquare + "g a \\\nb\nf 1 2\\\n 3\nf 1 3 4\n").warnings,
+              std::vector<std::string>{});
+}
+
 TEST_F(LoadObj, SaysWhereItIsWrong) {
     EXPECT_EQ(error("v 0 0\n"), "DIR/a.obj:1: the line lacks a number");
     EXPECT_EQ(error("v 0 \\\n0\n\nv 0 zero 0\n"), "DIR/a.obj:1: the line lacks a number");
