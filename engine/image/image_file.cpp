@@ -97,6 +97,11 @@ Decoded decodedPng(const std::filesystem::path& path) {
     const PngColours colours = pngColours(file.bytes(), path.string());
     result.notes = colours.notes;
     result.notes.insert(result.notes.end(), colours.notesOfFile.begin(), colours.notesOfFile.end());
+    if (colours.beyondPalette > 0) {
+        result.notes.push_back(
+            fmt::format("pixels of colours that its palette has not: {}; they are black",
+                        colours.beyondPalette));
+    }
     makeSrgb(colours, path.string(), result);
     if (!colours.exif.empty()) values = turnedAsExif(values, colours.exif);
     return result;

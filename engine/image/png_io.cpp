@@ -321,11 +321,7 @@ PngColours pngColours(std::span<const std::byte> bytes, const std::string& name)
         noteBehind(bytes.subspan(behind + end->second.size()), colours.notesOfFile);
     }
     if (chunks.contains("PLTE")) {
-        const std::size_t count = Reader(bytes, name, ImageUse::Picture).pixelsBeyondPalette();
-        if (count > 0) {
-            colours.notesOfFile.push_back(fmt::format(
-                "pixels of colours that its palette has not: {}; they are black", count));
-        }
+        colours.beyondPalette = Reader(bytes, name, ImageUse::Picture).pixelsBeyondPalette();
     }
     if (chunks.contains("acTL")) colours.notes.emplace_back("left out: all but its first frame");
     if (has("cICP", 4)) {

@@ -23,6 +23,7 @@ struct PngColours {
     std::span<const std::byte> exif;
     std::vector<std::string> notes;        // what is left out
     std::vector<std::string> notesOfFile;  // likewise, but of no colours
+    std::size_t beyondPalette = 0;         // pixels of numbers that its palette has not: black
 };
 /// A gamma of 1 / 2.2 is the standard's own number for sRGB. Of a broken file: as far as it goes.
 PngColours pngColours(std::span<const std::byte> bytes, const std::string& name);

@@ -103,13 +103,13 @@ class TextureTable {
                 from.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST};
     }
 
-    image::Image8 decoded(int index) const {
+    image::Image8 decoded(int index) {
         const std::string where = fmt::format("{}: image {}", file_.name, index);
         const tinygltf::Image& image = elementOf(file_.model.images, index, "{}", where);
         std::span<const unsigned char> bytes = image.image;
         if (image.bufferView >= 0) bytes = accessors_.view(image.bufferView);
         if (bytes.empty()) throw Error(fmt::format("{}: '{}' cannot be read", where, image.uri));
-        return decodeTexture(std::as_bytes(bytes), where);
+        return decodeTexture(std::as_bytes(bytes), where, leftOut_);
     }
 
     const File& file_;

@@ -380,7 +380,7 @@ class MaterialTable {
         const MappedFile file(*path);
         scene_.filesBeside.push_back(*path);
         if (isPngOrJpeg(file.bytes())) {
-            scene_.textures.push_back(decodeTexture(file.bytes(), path->string()));
+            scene_.textures.push_back(decodeTexture(file.bytes(), path->string(), leftOut_));
             if (!isPlainSrgb(file.bytes(), path->string())) {
                 leftOut_.add("the gamma, primaries or colour profile of a texture");
             }

@@ -17,6 +17,7 @@
 #include "engine/image/formats.h"
 #include "engine/image/image.h"
 #include "engine/image/png_io.h"
+#include "engine/scene/left_out.h"
 #include "engine/scene/load_gltf_keys.h"
 #include "engine/scene/load_obj.h"
 
@@ -48,11 +49,16 @@ image::Image8 asColour(const image::Image8& image) {
 
 }  // namespace
 
-image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string& name) {
+image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string& name,
+                            LeftOut& leftOut) {
     if (beginsWith(bytes, kPng)) {
         constexpr std::size_t kBitDepthAt = 24;  // signature, length, "IHDR", width, height
         const bool isDeep = bytes.size() > kBitDepthAt && bytes[kBitDepthAt] == std::byte{16};
-        return asColour(isDeep ? image::decodeByStb(bytes, name) : image::decodePng8(bytes, name));
+        if (isDeep) return asColour(image::decodeByStb(bytes, name));
+        image::Image8 decoded = asColour(image::decodePng8(bytes, name));
+        leftOut.add("a colour that a texture's palette has not: its pixel is black",
+                    image::pngColours(bytes, name).beyondPalette);
+        return decoded;
     }
     if (beginsWith(bytes, kJpeg)) return asColour(image::decodeByStb(bytes, name));
     throw Error(name + ": neither a PNG nor a JPEG image");

@@ -14,9 +14,12 @@
 
 namespace gfxrepro::scene {
 
+class LeftOut;
+
 /// A PNG or JPEG file in memory as 3 or 4 channels of 8 bits. Throws Error; `name` stands in the
 /// message. Memory is bounded as in engine/image/png_io.h.
-image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string& name);
+image::Image8 decodeTexture(std::span<const std::byte> bytes, const std::string& name,
+                            LeftOut& leftOut);
 
 /// Whether a PNG or JPEG file says no other colours than sRGB: decodeTexture() does not look, as
 /// glTF wants it.

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/image/png_io.h"
+#include "engine/scene/left_out.h"
 #include "engine/scene/load.h"
 #include "tests/support/support.h"
 #include "tests/unit/scene/gltf_document.h"
@@ -157,18 +159,49 @@ constexpr std::string_view kStuffedJpeg =
     "00a1ffda0008010301013f109effc4001511010100000000000000000000000000000031ffda000801020101"
     "3f10b1ffc40015100101000000000000000000000000000000f1ffda0008010100013f1094848494ffd9";
 
-TEST(DecodeTexture, SkipsStuffedBytesBehindAScan) {
+std::vector<std::byte> bytesOf(std::string_view hex) {
     std::vector<std::byte> bytes;
-    for (std::size_t i = 0; i < kStuffedJpeg.size(); i += 2) {
-        const std::string digits(kStuffedJpeg.substr(i, 2));
+    for (std::size_t i = 0; i < hex.size(); i += 2) {
+        const std::string digits(hex.substr(i, 2));
         bytes.push_back(static_cast<std::byte>(std::stoi(digits, nullptr, 16)));
     }
-    const image::Image8 texture = decodeTexture(bytes, "a.jpg");
+    return bytes;
+}
+
+TEST_F(ModelFiles, ColoursThatAPaletteOfATextureHasNotAreSaid) {
+    // Pixels 0, 1, 5, 2 of a red and a green.
+    const std::vector<std::byte> png = bytesOf(
+        "89504e470d0a1a0a0000000d4948445200000004000000010803000000cee2ffff00000006504c54"
+        "45ff000000ff00d287ef710000000d4944415478da6360606465020000140009f22d967300000000"
+        "49454e44ae426082");
+    folder.write("a.png", {reinterpret_cast<const char*>(png.data()), png.size()});
+    folder.write("a.mtl", "newmtl a\nmap_Kd a.png\n");
+    const Scene obj = loadScene(folder.write(
+        "a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n"));
+    const std::vector<std::string> said{
+        "left out: a colour that a texture's palette has not: its pixel is black (2 times)"};
+    EXPECT_EQ(obj.textures.at(0).at(1, 0, 1), 255);
+    EXPECT_EQ(obj.textures[0].at(2, 0, 1), 0);
+    EXPECT_EQ(obj.warnings, said);
+    folder.write("square.bin", squareBytes());
+    Document document = square();
+    document["images"] = R"([{"uri":"a.png"}])";
+    document["textures"] = R"([{"source":0}])";
+    document["materials"] = R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+    document["meshes"] =
+        R"([{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":3},"indices":1,"material":0}]}])";
+    EXPECT_EQ(loadScene(folder.write("a.gltf", text(document))).warnings, said);
+}
+
+TEST(DecodeTexture, SkipsStuffedBytesBehindAScan) {
+    std::vector<std::byte> bytes = bytesOf(kStuffedJpeg);
+    LeftOut leftOut;
+    const image::Image8 texture = decodeTexture(bytes, "a.jpg", leftOut);
     EXPECT_EQ(texture.width(), 16);
     const auto stuffed = kStuffedJpeg.find("5aff00ffc4") / 2 + 1;
     bytes.erase(bytes.begin() + static_cast<long>(stuffed),
                 bytes.begin() + static_cast<long>(stuffed) + 2);
-    EXPECT_EQ(texture, decodeTexture(bytes, "a.jpg")) << "as without them";
+    EXPECT_EQ(texture, decodeTexture(bytes, "a.jpg", leftOut)) << "as without them";
 }
 
 }  // namespace
