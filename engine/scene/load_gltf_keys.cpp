@@ -207,7 +207,12 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
     }
 
     bool key(string_t& key) override {
-        if (skippedDepth_ > 0) return true;
+        if (!skipped_.empty()) {
+            if (!skipped_.back().insert(key).second) {
+                on_.onWrong(fmt::format("{} has {} twice; allowed: once", place(), inQuotes(key)));
+            }
+            return true;
+        }
         Open& object = open_.back();
         object.key = key;
         const bool isFree = key == "name" || key == "extras" ||
@@ -239,7 +244,7 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
         std::set<std::string> seen = {};
     };
 
-    bool isLookedAt() const { return !open_.empty() && skippedDepth_ == 0 && !skipsValue_; }
+    bool isLookedAt() const { return !open_.empty() && skipped_.empty() && !skipsValue_; }
 
     /// A value with the letters of its shapes.
     bool take(std::string_view letters, const std::string& found, bool isList = false) {
@@ -254,21 +259,26 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
         return true;
     }
 
-    void say(const std::string& found, const std::string& allowed) {
-        std::string place;  // nodes[3].translation
+    /// "nodes[3].translation"
+    std::string place() const {
+        std::string text;
         for (const Open& open : open_) {
-            if (open.isObject && !place.empty()) place += '.';
-            place += open.isObject ? open.key.substr(0, 100) : fmt::format("[{}]", open.count - 1);
+            if (open.isObject && !text.empty()) text += '.';
+            text += open.isObject ? open.key.substr(0, 100) : fmt::format("[{}]", open.count - 1);
         }
-        on_.onWrong(fmt::format("{} is {}; allowed: {}", place, found, allowed));
+        return text;
+    }
+
+    void say(const std::string& found, const std::string& allowed) {
+        on_.onWrong(fmt::format("{} is {}; allowed: {}", place(), found, allowed));
     }
 
     /// False where the parsing ends: the loader refuses what is nested so deeply.
     bool enter(bool isObject) {
         constexpr std::size_t kMostDepth = 256;
-        if (open_.size() + skippedDepth_ >= kMostDepth) return false;
-        if (skippedDepth_ > 0 || skipsValue_) {
-            ++skippedDepth_;
+        if (open_.size() + skipped_.size() >= kMostDepth) return false;
+        if (!skipped_.empty() || skipsValue_) {
+            skipped_.emplace_back();
             return true;
         }
         std::string path;
@@ -287,8 +297,8 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
     }
 
     bool leave() {
-        if (skippedDepth_ > 0) {
-            --skippedDepth_;
+        if (!skipped_.empty()) {
+            skipped_.pop_back();
         } else {
             Open& closed = open_.back();
             const auto has = [&](const char* key) { return closed.seen.contains(key); };
@@ -303,14 +313,14 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
                 say(fmt::format("a list of {}", count), allowedBy(std::to_string(length)));
             }
         }
-        if (skippedDepth_ == 0) skipsValue_ = false;
+        if (skipped_.empty()) skipsValue_ = false;
         return true;
     }
 
     Callbacks on_;
     std::vector<Open> open_;
-    bool skipsValue_ = false;  // nobody looks into it
-    std::size_t skippedDepth_ = 0;
+    bool skipsValue_ = false;                     // nobody looks into it, but for
+    std::vector<std::set<std::string>> skipped_;  // the keys of what is open there
 };
 
 int hexDigit(char c) {

@@ -113,7 +113,11 @@ TEST_F(LoadMeaning, OtherValuesOfGltfAreThoseThatItHas) {
 TEST_F(LoadMeaning, OfGltfNothingStandsTwice) {
     EXPECT_EQ(nodeError(R"("scale":[1,1,1],"scale":[2,2,2])"),
               "nodes[1].scale is there twice; allowed: once");
-    EXPECT_EQ(materialError(R"("extras":{"a":1,"a":2})"), "no error") << "nobody reads it";
+    // glTF 2.0, Sec. 2.7: wherever it stands. Extras have paths of cameras, and motions.
+    EXPECT_EQ(gltfError("scenes", R"([{"nodes":[0],"extras":{"a":1,"a":2}}])"),
+              "scenes[0].extras has 'a' twice; allowed: once");
+    EXPECT_EQ(materialError(R"("unknown":[{"a":1},{"a":1,"b":{"c":1,"a":1,"c":2}}])"),
+              "materials[0].unknown has 'c' twice; allowed: once");
     const std::string both = R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],)";
     for (const char* part : {R"("translation":[1,0,0])", R"("scale":[1,1,1])"}) {
         EXPECT_EQ(gltfError("nodes", "[" + both + part + "}]"),
