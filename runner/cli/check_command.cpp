@@ -126,13 +126,17 @@ void requireTaken(const Context& context, const config::Case& item, const Node& 
     }
 }
 
-/// The scene; what may be wrong in a user's own file is said.
-scene::Scene loadScene(const Node& reference, const scene::Catalog& catalog) {
+/// The scene; what may be wrong in a user's own file is said, each once.
+scene::Scene loadScene(const Node& reference, const scene::Catalog& catalog,
+                       std::set<std::string>& told) {
     try {
         scene::Scene scene = catalog.load(reference);
         const std::string name = scene::sceneName(reference.text());
         if (!scene::isSceneFile(name)) return scene;
-        for (const std::string& line : scene.warnings) tell("warning: {}: {}\n", name, line);
+        for (const std::string& warning : scene.warnings) {
+            const std::string line = fmt::format("warning: {}: {}\n", name, warning);
+            if (told.insert(line).second) tell("{}", line);
+        }
         return scene;
     } catch (const Error& error) {
         throw Error(reference.location(), error.what());
@@ -142,7 +146,8 @@ scene::Scene loadScene(const Node& reference, const scene::Catalog& catalog) {
 /// Reads the user's own files, and the scenes of an experiment that nobody has laid out, each once:
 /// what is wrong in one, or what the technique cannot take, the first case would find.
 void requireScenes(const Context& context, const config::Experiment& experiment,
-                   std::span<const config::Case> cases, const scene::Catalog& catalog) {
+                   std::span<const config::Case> cases, const scene::Catalog& catalog,
+                   std::set<std::string>& told) {
     struct Use {
         const Node* reference;
         const config::Case* item;
@@ -164,7 +169,7 @@ void requireScenes(const Context& context, const config::Experiment& experiment,
         const bool isOwn =
             scene::isSceneFile(name) || (experiment.hasDefaultLayout() && !source.heightMap);
         if (!isOwn) continue;
-        const scene::Scene scene = loadScene(first, catalog);
+        const scene::Scene scene = loadScene(first, catalog, told);
         for (const Use& use : users) requireTaken(context, *use.item, *use.reference, scene);
     }
 }
@@ -357,12 +362,12 @@ double planBytesOf(const config::Experiment& experiment, std::vector<config::Cas
 /// Says what a file comes to, and gives its cases; adds its size.
 std::vector<config::Case> checkFile(const Context& context, const Chosen& selection,
                                     const scene::Catalog& catalog, const std::string& file,
-                                    Size& all) {
+                                    Size& all, std::set<std::string>& told) {
     const run::Request request{{file}, selection.sets, selection.sweeps, {}, selection.device};
     config::Experiment experiment = loadExperiments(request, selection.profile).front();
     std::vector<config::Case> cases = run::resolveCases(experiment, catalog, context.techniques, 1);
     run::bindAssumptions(experiment, cases, catalog, context.techniques);
-    requireSound(context, catalog, experiment, cases);
+    requireSound(context, catalog, experiment, cases, told);
     Size size = sizeOf(context, experiment, cases);
     size.planBytes = planBytesOf(experiment, cases, selection);
     sayAbsent(file, cases);
@@ -404,9 +409,10 @@ tables::Table tableBefore(const Context& context, const config::Experiment& expe
 }
 
 void requireSound(const Context& context, const scene::Catalog& catalog,
-                  const config::Experiment& experiment, std::span<const config::Case> cases) {
+                  const config::Experiment& experiment, std::span<const config::Case> cases,
+                  std::set<std::string>& told) {
     run::requireRanges(experiment, {cases.begin(), cases.end()}, catalog, context.techniques);
-    requireScenes(context, experiment, cases, catalog);
+    requireScenes(context, experiment, cases, catalog, told);
     requireProfiles(context, catalog, experiment);
     const bool isImported = experiment.technique == config::kImported;
     const tables::Table table =
@@ -424,10 +430,12 @@ int check(const Context& context, const Chosen& selection) {
     const scene::Catalog catalog = openCatalog(context, selection.assets);
     run::Plan all;
     Size size;
+    std::set<std::string> told;
     int code = kExitOk;
     for (const std::string& file : selection.names) {
         try {
-            std::vector<config::Case> cases = checkFile(context, selection, catalog, file, size);
+            std::vector<config::Case> cases =
+                checkFile(context, selection, catalog, file, size, told);
             if (!selection.only.empty()) std::ranges::move(cases, std::back_inserter(all.cases));
         } catch (const Error& error) {
             // What is wrong in one file says nothing of the next.

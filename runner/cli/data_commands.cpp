@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <set>
+#include <string>
 
 #include "engine/core/text.h"
 #include "runner/cli/commands.h"
@@ -141,9 +143,10 @@ int importRun(const Context& context, const ImportOptions& options) {
             requestOf(selection, findPaperConfigs(options.configs)), options.profile);
     }
     const scene::Catalog catalog = openCatalog(context, options.assets);
+    std::set<std::string> told;
     for (const config::Experiment& experiment : request.experiments) {
         requireSound(context, catalog, experiment,
-                     run::resolveCases(experiment, catalog, context.techniques, 1));
+                     run::resolveCases(experiment, catalog, context.techniques, 1), told);
     }
     const run::StoredRun run = outcome::importRun(request, catalog, context.techniques);
     const fs::path dir =

@@ -209,13 +209,14 @@ run::Plan planFor(const Context& context, const run::Request& request, const std
     run::Plan plan = run::makePlan(experiments, catalog, context.techniques, profile,
                                    needsNone ? "software" : deviceClass, kSeed);
     plan.request = request;
+    std::set<std::string> told;
     for (const config::Experiment& experiment : plan.experiments) {
         const auto isOwn = [&](const config::Case& item) {
             return item.experiment == experiment.id;
         };
         const auto first = std::ranges::find_if(plan.cases, isOwn);
         const auto end = std::find_if_not(first, plan.cases.end(), isOwn);
-        requireSound(context, catalog, experiment, std::span(first, end));
+        requireSound(context, catalog, experiment, std::span(first, end), told);
     }
     run::keepOnly(plan, request.only);
     run::requirePlanBytes(plan, run::planBytes(plan));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,9 +59,10 @@ tables::Table tableBefore(const Context& context, const config::Experiment& expe
                           std::span<const config::Case> cases);
 
 /// Throws Error for what is wrong in an experiment of these cases, all that it has, so that nothing
-/// is measured in vain.
+/// is measured in vain. What loaders warn of goes to standard error, and to `told`, once.
 void requireSound(const Context& context, const scene::Catalog& catalog,
-                  const config::Experiment& experiment, std::span<const config::Case> cases);
+                  const config::Experiment& experiment, std::span<const config::Case> cases,
+                  std::set<std::string>& told);
 
 /// Of sound experiments.
 run::Plan planFor(const Context& context, const run::Request& request, const std::string& profile,

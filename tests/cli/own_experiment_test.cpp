@@ -114,6 +114,27 @@ const FiveLines kFiveLines[] = {
 INSTANTIATE_TEST_SUITE_P(Each, OwnExperimentOf, testing::ValuesIn(kFiveLines),
                          [](const auto& each) { return std::string(each.param.technique); });
 
+TEST_F(OwnExperiment, WhatIsSaidOfAModelIsSaidOnce) {
+    folder.write("m.obj",
+                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nl 1 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"
+                 "f 2 3 4\n");
+    const auto config = [&](const std::string& name) {
+        return folder
+            .write(name + ".yaml", "sweep_of: " + name +
+                                       "\ntitle: T\ntechnique: voxelization\n"
+                                       "sweep: {scene: [m.obj, 'm.obj?up=z']}\n")
+            .string();
+    };
+    const std::string a = config("a"), b = config("b");
+    const std::string said =
+        "warning: " + (folder.path() / "m.obj").string() + ": left out: the line 'l'\n";
+    for (const char* command : {"check", "plan"}) {
+        const std::string err = endedWith(0, gfxrepro({command, a, b, "--device", "software"})).err;
+        EXPECT_THAT(err, HasSubstr(said)) << command;
+        EXPECT_EQ(err.find(said), err.rfind(said)) << command;
+    }
+}
+
 TEST_F(OwnExperiment, RoundsOfWhoNamesNoLaneEndWithTheirBudget) {
     const std::string config =
         folder.write("mine.yaml",
