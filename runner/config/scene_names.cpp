@@ -142,7 +142,13 @@ Node withSceneFileKeys(const Node& map) {
     Node result = Node::map({}, map.location());
     for (const auto& [scene, value] : map.entries()) {
         const SourceLocation& where = map.keyLocation(scene);
-        result.set(withSceneFile(Node::scalar(scene, where)).text(), value, where);
+        const std::string name = withSceneFile(Node::scalar(scene, where)).text();
+        if (result.find(name)) {
+            throw Error(
+                where,
+                fmt::format("params_by_scene has the scene '{}' twice; allowed: once", scene));
+        }
+        result.set(name, value, where);
     }
     return result;
 }

@@ -413,6 +413,8 @@ TEST_F(ExperimentTest, SceneFilesStandBesideTheirConfig) {
     EXPECT_EQ(cases[0].scene.text(), file);
     EXPECT_EQ(cases[1].scene.text(), "models/duck");
     EXPECT_EQ(table.claims[0].at[0].second[0].text(), file);
+    EXPECT_EQ(errorWith("params_by_scene: {a.ply: {n: 1}, ./a.ply: {n: 2}}\n"),
+              "DIR/zju/a.yaml:4:34: params_by_scene has the scene './a.ply' twice; allowed: once");
     EXPECT_EQ(table.layout.columns[0].labels[0].second.where[0].value.text(), file);
 }
 
