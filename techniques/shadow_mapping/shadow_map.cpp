@@ -119,6 +119,13 @@ gl::Program makeDepthProgram(const gl::ShaderLibrary& shaders, const StepDeclara
     return {shaders, files, defines};
 }
 
+/// One comparison reads a texel whose centre is at most half a texel away, PCF as many times as far
+/// as its square is texels wide: with the bias of one its outer texels shade every slope.
+float slopeScaleOf(const ShadowMapSettings& settings) {
+    const int texels = settings.filter == Filter::Pcf ? kFilterTexels : 1;
+    return settings.bias.slopeScale * static_cast<float>(texels);
+}
+
 gl::Framebuffer framebufferOf(const gl::Texture& colour, const gl::Texture* depth = nullptr) {
     const gl::Texture* colours[] = {&colour};
     return gl::Framebuffer(colours, depth);
@@ -195,14 +202,15 @@ void ShadowMapRenderer::drawDepth(const kit::DrawableScene& scene, const ShadowM
     map.framebuffer.clearDepth(1.0F);
     if (step.colourWrites) map.framebuffer.clearColour(0, glm::vec4(1.0F));
     depthProgram_.use();
-    if (settings_.bias.slopeScale > 0.0F) {
+    const float slopeScale = slopeScaleOf(settings_);
+    if (slopeScale > 0.0F) {
         glEnable(GL_POLYGON_OFFSET_FILL);
-        glPolygonOffset(settings_.bias.slopeScale, 0.0F);
+        glPolygonOffset(slopeScale, 0.0F);
     }
     for (const LightView& view : map.views) {
         glViewport(view.tilePx.x, view.tilePx.y, view.tileSizePx.x, view.tileSizePx.y);
         depthProgram_.set("clipFromWorld", view.clipFromWorld);
-        depthProgram_.setIfActive("slopeScale", settings_.bias.slopeScale);
+        depthProgram_.setIfActive("slopeScale", slopeScale);
         depthProgram_.setIfActive("planes", glm::vec3(view.nearM, view.farM, view.isPerspective));
         scene.drawDepthOnly();
     }

@@ -35,7 +35,8 @@ enum class Filter {
 /// Side of the square of texels that Pcf compares and Variance is blurred over: ours.
 constexpr int kFilterTexels = 5;
 
-/// What hides the difference between a surface and its own texels in the map.
+/// What hides the difference between a surface and its own texels in the map; the slope's is that
+/// of one comparison, which Pcf takes over its square.
 struct Bias {
     float constant = 0.0F;    // ε of [zju2005] Sec. 4.3, in window z (0 … 1)
     float slopeScale = 0.0F;  // times the caster's steepest change of window z a texel

@@ -132,7 +132,8 @@ ShadowMappingParams::ShadowMappingParams(Params& params) {
                {"ε: how much is taken from the receiver's window depth", "1", 0.0, 1.0});
     maps.bias.slopeScale = number(
         params, "slope_bias", 1.0,
-        {"how many times the caster's change of depth from texel to texel is added to the bias",
+        {"how many times the caster's change of depth from texel to texel (pcf: over its 5) is "
+         "added to the bias",
          "1", 0.0, 100.0});
     readLights(params, *this);
     view = params.getText("view", "",

@@ -186,6 +186,19 @@ TEST_F(ShadowMapsTest, WithoutACasterAllIsLit) {
     }
 }
 
+TEST_F(ShadowMapsTest, PcfHasNoStripesWhereOneComparisonHasNone) {
+    for (const Storage storage : {Storage::Standard, Storage::Hardware}) {
+        const Terms terms =
+            termsOf({.storage = storage, .filter = Filter::Pcf, .sizePx = 64, .bias = kBias},
+                    {spotLight(), directionalLight(), pointLight()}, false);
+        for (std::size_t i = 0; i < terms.shadow.size(); ++i) {
+            const glm::vec4 at = terms.position[i];
+            ASSERT_EQ(terms.shadow[i], glm::vec4(1.0F))
+                << static_cast<int>(storage) << " at " << at.x << ' ' << at.y << ' ' << at.z;
+        }
+    }
+}
+
 TEST_F(ShadowMapsTest, PcssOfALightWithoutSizeIsNearest) {
     for (const Storage storage : {Storage::Standard, Storage::Hardware}) {
         ShadowMapSettings settings{.storage = storage, .sizePx = 64, .bias = {.constant = 4e-3F}};
