@@ -59,7 +59,7 @@ function(gfxrepro_precompiled_sources target cold)
         return()
     endif()
     if(cold)
-        gfxrepro_precompiled(${target} gfxrepro_common_cold OPTIONS $<$<CONFIG:Release>:-O1> HEADERS <nlohmann/json.hpp>)
+        gfxrepro_precompiled(${target} gfxrepro_common_cold OPTIONS ${GFXREPRO_COLD_OPTIONS} HEADERS <nlohmann/json.hpp>)
     else()
         gfxrepro_precompiled(${target} gfxrepro_common HEADERS <glm/glm.hpp> LINK glm::glm)
     endif()
@@ -91,13 +91,16 @@ function(gfxrepro_verify_headers target)
     endif()
 endfunction()
 
+# Of what no technique spends its time in. Sanitized it takes longer to build than to run.
+set(GFXREPRO_COLD_OPTIONS $<$<CONFIG:Release>:-O1> $<$<BOOL:${GFXREPRO_SANITIZE}>:-O0>)
+
 # gfxrepro_module(NAME [COLD] SOURCES … [PUBLIC targets …] [PRIVATE targets …]) → library gfxrepro_NAME
 # COLD: no technique spends its time in it, and so it is optimized less, which builds faster.
 function(gfxrepro_module name)
     cmake_parse_arguments(arg "COLD" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
     add_library(gfxrepro_${name} STATIC ${arg_SOURCES})
     if(arg_COLD)
-        target_compile_options(gfxrepro_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+        target_compile_options(gfxrepro_${name} PRIVATE ${GFXREPRO_COLD_OPTIONS})
     endif()
     gfxrepro_precompiled_sources(gfxrepro_${name} ${arg_COLD})
     target_link_libraries(gfxrepro_${name}
@@ -112,7 +115,7 @@ function(add_technique name)
     cmake_parse_arguments(arg "COLD" "" "SOURCES;SHADERS;PRIVATE" ${ARGN})
     add_library(technique_${name} STATIC ${arg_SOURCES})
     if(arg_COLD)
-        target_compile_options(technique_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+        target_compile_options(technique_${name} PRIVATE ${GFXREPRO_COLD_OPTIONS})
     endif()
     gfxrepro_precompiled_sources(technique_${name} ${arg_COLD})
     target_link_libraries(technique_${name}
