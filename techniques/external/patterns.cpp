@@ -188,9 +188,10 @@ std::regex timeGrammar() {
 /// with an exponent, of which Fortran leaves the letter out where it has three digits.
 std::regex numberGrammar() {
     const std::string digits = "[0-9]+", blank = "[ \1]";
-    // Behind 2.5 a cm2 or ft3 is a unit.
-    const std::string joint = "(?:[.,'_:/*]|\\*\\*|\\^[-+]?|" + blank + "/" + blank + "?|/" +
-                              blank + "|(?![A-Za-z]*[mt][23](?![A-Za-z0-9.]))[A-Za-z]+)";
+    // No power of ten, which comes behind; and behind 2.5 a cm2 or ft3 is a unit.
+    const std::string joint = "(?![xX*]10(?:\\^|\\*\\*|[-+][0-9]))(?:[.,'_:/*]|\\*\\*|\\^[-+]?|" +
+                              blank + "/" + blank + "?|/" + blank +
+                              "|(?![A-Za-z]*[mt][23](?![A-Za-z0-9.]))[A-Za-z]+)";
     const std::string exponent = "(?:[eEdD][-+]?[0-9]+|(?:" + blank + "?[eEdD]" + blank + "?[-+]" +
                                  blank + "?|[eEdD]" + blank + "|" + blank +
                                  "[eEdD])[0-9]+(?![A-Za-z0-9_]))";

@@ -383,7 +383,7 @@ TEST(MetricLines, APatternTakesNoPartOfATimeOfSeveralUnits) {
     EXPECT_EQ(errorOf("real ([0-9.]+)", "real 0m1.234s"), partOf("0", "0m1.234s"));
     EXPECT_EQ(errorOf(seconds, "real\t1m 2.35s"), partOf("2.35", "1m 2.35s"));
     EXPECT_EQ(errorOf(seconds, "2 minutes and 5 seconds"), partOf("5", "2 minutes and 5 seconds"));
-    EXPECT_EQ(errorOf(seconds, "took 3 min, 2.5 s."), partOf("2.5", "3 min, 2.5 s."));
+    EXPECT_EQ(errorOf(seconds, "took 3 min, 2.5 s."), partOf("2.5", "3 min, 2.5 s"));
     EXPECT_EQ(errorOf("([0-9.]+) ms", "2 s 300 ms"), partOf("300", "2 s 300 ms"));
     EXPECT_EQ(errorOf("([0-9.]+) us", "2 ms 300 us"), partOf("300", "2 ms 300 us"));
     EXPECT_EQ(errorOf("m=([0-9]+)", "m=1h 30m"), partOf("1", "1h 30m"));
