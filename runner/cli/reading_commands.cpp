@@ -351,8 +351,10 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
         }
         run::StoredRun run = run::readRun(dir);
         run::noteChangedImages(run.manifest, dir);
-        runs.push_back(outcome::reportRun(dir, run, outcome::resultsOf(run)));
-        if (completenessCode(run) != kExitOk) code = kExitIncomplete;
+        const outcome::Results results = outcome::resultsOf(run);
+        runs.push_back(outcome::reportRun(dir, run, results));
+        if (code == kExitOk) code = completenessCode(run);
+        code = codeOfNames(results.tables, run.plan.experiments, code);
     }
     noteOtherMachines(runs);
     for (const report::ReportRun& run : runs) sayNotes(run.manifest);

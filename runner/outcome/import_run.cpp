@@ -14,6 +14,7 @@
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
 #include "runner/config/experiment.h"
+#include "runner/config/external_program.h"
 #include "runner/outcome/tidy.h"
 #include "runner/run/ledger.h"
 #include "runner/run/manifest.h"
@@ -358,8 +359,9 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
     for (Experiment& experiment : plan.experiments) {
         experiment.paperCases = run::resolvePaperCases(experiment, catalog, techniques);
         if (config::isMeasuredHere(experiment) && experiment.hasDefaultLayout()) {
-            experiment.outputs = technique::outputsOf(
-                technique::findTechnique(techniques, experiment.technique, {}));
+            experiment.outputs =
+                technique::outputsOf(technique::findTechnique(techniques, experiment.technique, {}),
+                                     config::programOf(experiment));
         }
         std::vector<config::Case> own;
         std::ranges::copy_if(plan.cases, std::back_inserter(own), [&](const config::Case& item) {

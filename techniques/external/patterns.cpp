@@ -147,11 +147,15 @@ Plain plain(std::string_view text) {
         {"\u2004", "\1"},  {"\u2005", "\1"}, {"\u2006", "\1"}, {"\u2007", "\1"}, {"\u2008", "\1"},
         {"\u2009", "\1"},  {"\u200A", "\1"}, {"\u202F", "\1"}, {"\u205F", "\1"}, {"&nbsp;", "\1"}};
     Plain result;
+    bool isOfPower = false;
     for (std::size_t i = 0; i < text.size();) {
         const auto mark = std::ranges::find_if(
             kMarks, [&](const auto& each) { return text.substr(i).starts_with(each.first); });
         const bool isMark = mark != std::end(kMarks);
-        const std::string_view written = isMark ? mark->second : text.substr(i, 1);
+        std::string_view written = isMark ? mark->second : text.substr(i, 1);
+        const bool goesOn = isMark && isOfPower && written.starts_with('^');
+        isOfPower = isMark && written.starts_with('^');
+        if (goesOn) written.remove_prefix(1);
         result.text += written;
         result.places.insert(result.places.end(), written.size(), i);
         i += isMark ? mark->first.size() : 1;
@@ -162,14 +166,14 @@ Plain plain(std::string_view text) {
 
 /// Times of several units, larger ones first: 1h 2m 3.5s, 3 days, 2:03:04.
 std::regex timeGrammar() {
-    static constexpr std::string_view kUnits[] = {"weeks?|w",
-                                                  "days?|d",
-                                                  "hours?|hrs?|h|std",
-                                                  "minutes?|mins?|m",
-                                                  "seconds?|secs?|sek|s",
-                                                  "milliseconds?|msecs?|ms",
-                                                  "microseconds?|usecs?|us|\u00B5s|\u03BCs",
-                                                  "nanoseconds?|ns"};
+    static constexpr std::string_view kUnits[] = {"[Ww]eeks?|w",
+                                                  "[Dd]ays?|d",
+                                                  "[Hh]ours?|hrs?|h|[Ss]td|[Ss]tunden?",
+                                                  "[Mm]inutes?|[Mm]inuten|[Mm]ins?|m",
+                                                  "[Ss]econds?|[Ss]ecs?|[Ss]ekunden?|[Ss]ek|s",
+                                                  "[Mm]illiseconds?|[Mm]secs?|ms",
+                                                  "[Mm]icroseconds?|[Uu]secs?|us|\u00B5s|\u03BCs",
+                                                  "[Nn]anoseconds?|ns"};
     const std::string joint = "[ \1,;:+.&/_-]{0,3}(?:(?:and|und|plus) )?";
     std::string times, smaller;
     for (std::size_t i = std::size(kUnits); i-- > 0;) {
@@ -181,7 +185,7 @@ std::regex timeGrammar() {
         }
         smaller = fmt::format("{}{}{}", kUnits[i], smaller.empty() ? "" : "|", smaller);
     }
-    return std::regex("-?(?:" + times + ")", std::regex::ECMAScript | std::regex::icase);
+    return std::regex("-?(?:" + times + ")");
 }
 
 /// Names, the first group, and numbers: 1 234.5, 12 5/8, 1:23.4, 2^10, 0x1F, 16#FF, 1.#INF, and
@@ -189,9 +193,9 @@ std::regex timeGrammar() {
 std::regex numberGrammar() {
     const std::string digits = "[0-9]+", blank = "[ \1]";
     // No power of ten, which comes behind; and behind 2.5 a cm2 or ft3 is a unit.
-    const std::string joint = "(?![xX*]10(?:\\^|\\*\\*|[-+][0-9]))(?:[.,'_:/*]|\\*\\*|\\^[-+]?|" +
-                              blank + "/" + blank + "?|/" + blank +
-                              "|(?![A-Za-z]*[mt][23](?![A-Za-z0-9.]))[A-Za-z]+)";
+    const std::string joint = "(?![xX*]10(?:\\^|\\*\\*|[-+][0-9]))(?:[.,'_:/*]|" + blank +
+                              "?(?:\\*\\*|\\^)" + blank + "?[-+]?|" + blank + "/" + blank + "?|/" +
+                              blank + "|(?![A-Za-z]*[mt][23](?![A-Za-z0-9.]))[A-Za-z]+)";
     const std::string exponent = "(?:[eEdD][-+]?[0-9]+|(?:" + blank + "?[eEdD]" + blank + "?[-+]" +
                                  blank + "?|[eEdD]" + blank + "|" + blank +
                                  "[eEdD])[0-9]+(?![A-Za-z0-9_]))";
@@ -199,9 +203,9 @@ std::regex numberGrammar() {
     const std::string thousands = "[0-9]{1,3}(?:" + blank + "[0-9]{3})+(?![0-9xX])(?:\\.[0-9]*)?";
     return std::regex(
         "([A-Za-z_][A-Za-z0-9_]*(?:\\.[0-9]+)*)|-?(?:0[xX][0-9A-Fa-f.]+(?:[pP][-+]?[0-9]+)?|" +
-        fraction + "|(?:" + thousands + "|\\.?" + digits + "(?:" + joint + digits + ")*)" +
-        "(?:\\.?#[A-Za-z0-9]+|\\.?(?:" + blank + "?\\([0-9.]+\\))?" + exponent +
-        "|\\.?[-+][0-9]{3}(?![0-9.]))?)");
+        fraction + "|[0-9]*\\.[0-9]*[-+][0-9]{3}(?![0-9.])|(?:" + thousands + "|\\.?" + digits +
+        "(?:" + joint + digits + ")*)" + "(?:\\.?#[A-Za-z0-9]+|\\.?(?:" + blank +
+        "?\\([0-9.]+\\))?" + exponent + ")?)");
 }
 
 /// Whether the scale is what is written behind a number, as k, Ki or million.
@@ -270,9 +274,46 @@ std::optional<Written> writtenIn(const std::string& text, std::size_t from, doub
     return found;
 }
 
-/// What the pattern has directly before its first group, or behind it: a blank where there must be
-/// one, and none where there may be.
-std::pair<std::string, std::string> besideGroup(std::string_view regex) {
+constexpr char kOther = '\2';  // no letter of a pattern
+
+/// The letters that a pattern asks for, one by one: a blank for any blanks, none for blanks that
+/// may be left out, and kOther for all else.
+std::string lettersOf(std::string_view regex) {
+    std::string letters;
+    for (std::size_t i = 0; i < regex.size();) {
+        char letter = regex[i++];
+        const bool isCloser = letter == ')';
+        if (letter == '(') {
+            i += regex.substr(i).starts_with("?:") ? 2 : 0;
+            continue;
+        }
+        if (letter == '\\' && i < regex.size()) {
+            letter = regex[i++];
+            const bool isClass = isLetter(letter) || isDigit(letter);
+            if (isClass) letter = letter == 's' || letter == 't' ? ' ' : kOther;
+        } else if (letter == '[') {
+            std::size_t end = std::min(regex.find(']', i), regex.size() - 1);
+            if (regex.substr(i).starts_with("[:")) end = std::min(end + 1, regex.size() - 1);
+            const std::string_view all = regex.substr(i, end - i);
+            const bool isBlank = all == "[:space:]" || all == " \\t" || all == "\\s";
+            letter = isBlank ? ' ' : all.size() == 1 ? all[0] : kOther;
+            i = end + 1;
+        } else if (letter == '.' || letter == '|' || letter == '^' || letter == '$') {
+            letter = kOther;
+        }
+        const std::string_view rest = regex.substr(std::min(i, regex.size()));
+        const bool isOptional =
+            rest.starts_with('?') || rest.starts_with('*') || rest.starts_with("{0");
+        if (rest.starts_with('{')) i = std::min(regex.find('}', i), regex.size() - 1) + 1;
+        while (i < regex.size() && (regex[i] == '?' || regex[i] == '*' || regex[i] == '+')) ++i;
+        if (isOptional && letter != ' ') letters += kOther;
+        if (!isOptional && !isCloser) letters += letter;
+    }
+    return letters;
+}
+
+/// What the pattern has before its first group, and behind it.
+std::pair<std::string_view, std::string_view> besideGroup(std::string_view regex) {
     std::size_t begin = regex.npos, end = regex.npos;
     std::vector<std::size_t> open;
     bool isClass = false;
@@ -290,48 +331,59 @@ std::pair<std::string, std::string> besideGroup(std::string_view regex) {
         }
     }
     if (end == regex.npos) return {};
-    static const std::regex kMayBefore("(?:(?:\\\\s| )[*?])?$"),
-        kMayBehind("^(?:(?:\\\\s| )[*?])?");
-    static const std::regex kMustBefore("(?:\\\\s| )[+]?$"), kMustBehind("^(?:\\\\s| )[+]?");
-    static const std::regex kCloses("(?:[)][+]?|[{][0-9]+[}])+$");
-    std::string before(regex.substr(0, begin)), behind(regex.substr(end + 1));
-    before = std::regex_replace(std::regex_replace(before, kCloses, ""), kMayBefore, "");
-    before = std::regex_replace(before, kMustBefore, " ");
-    behind = std::regex_replace(std::regex_replace(behind, kMayBehind, ""), kMustBehind, " ");
-    if (behind.starts_with('\\')) behind.erase(0, 1);
-    return {before, behind};
+    return {regex.substr(0, begin), regex.substr(end + 1)};
 }
 
-bool endsWith(std::string_view text, std::string_view end) {
-    return text.ends_with(end) ||
-           (end.size() > 1 && end.ends_with(' ') && text.ends_with(end.substr(0, end.size() - 1)));
+/// The rest of a number on both sides of the group, and whether all of it is matched, too.
+struct Rest {
+    std::string left, right;
+    bool isLeftMatched = false, isRightMatched = false;
+};
+
+/// Whether the pattern names what stands before the group: the letters or the mark beside it. A
+/// blank and the colon of a clock name nothing unless the pattern matches the rest, too.
+bool namesLeft(std::string_view before, const Rest& rest) {
+    const std::string_view left = rest.left;
+    const bool isBlank = left.ends_with(' ') && (left.size() < 2 || !isLetter(left.end()[-2]));
+    std::size_t begin = left.size() - (left.ends_with(' ') && !isBlank ? 1 : 0);
+    if (!isLetter(left[begin - 1])) --begin;
+    while (begin > 0 && isLetter(left[begin - 1])) --begin;
+    const std::string_view word = left.substr(begin);
+    const bool isNamed =
+        before.ends_with(word) || (word.size() > 1 && word.ends_with(' ') &&
+                                   before.ends_with(word.substr(0, word.size() - 1)));
+    return isNamed && (rest.isLeftMatched || (!isBlank && word != ":"));
 }
 
-/// Whether the pattern names what stands between its group and the rest of the number: the letters
-/// or the mark beside it. Of a time that goes on behind the unit it must name more than the unit.
-bool namesRest(const Found& found, std::string_view regex, std::string_view left,
-               std::string_view right, bool isTime) {
-    const auto [before, behind] = besideGroup(plain(regex).text);
-    const bool namesCommas = before.ends_with(',') || behind.starts_with(',');
-    if (!left.empty() && !(namesCommas && left.ends_with(','))) {
-        std::size_t begin = left.size() - (left.size() > 1 && left.ends_with(' ') ? 1 : 0);
-        if (begin > 0 && !isLetter(left[begin - 1])) begin = left.size() - 1;
-        while (begin > 0 && isLetter(left[begin - 1])) --begin;
-        if (!endsWith(before, left.substr(begin))) return false;
-    }
-    if (right.empty() || (namesCommas && right.starts_with(','))) return true;
-    // Of columns, the pattern names those before.
-    static const std::regex kColumn("[0-9] +$");
-    const std::string own(found.line.substr(found.matchBegin, found.begin - found.matchBegin));
-    if (right[0] == ' ' && std::regex_search(own, kColumn)) return true;
+/// The same behind it. A unit of a time that goes on names nothing without digits of the pattern.
+bool namesRight(std::string_view behind, bool asksForDigits, const Rest& rest, bool isTime) {
+    const std::string_view right = rest.right;
     const std::string_view word = right.substr(right[0] == ' ' && right.size() > 1 ? 1 : 0);
     const std::string_view letters = word.substr(
         0, static_cast<std::size_t>(std::ranges::find_if_not(word, isLetter) - word.begin()));
-    const std::string_view named = std::string_view(behind).substr(behind.starts_with(' ') ? 1 : 0);
-    if (!letters.empty()) {
-        return named.starts_with(letters) && (!isTime || named.size() > letters.size());
+    const std::string_view named = behind.substr(behind.starts_with(' ') ? 1 : 0);
+    if (!letters.empty()) return named.starts_with(letters) && (!isTime || asksForDigits);
+    if (!isDigit(word[0])) return named.starts_with(word[0]);
+    return behind.starts_with(' ') && rest.isRightMatched;
+}
+
+bool namesRest(const Found& found, std::string_view pattern, const Rest& rest, bool isTime) {
+    const std::string regex = plain(pattern).text;
+    const auto [regexBefore, regexBehind] = besideGroup(regex);
+    const std::string before = lettersOf(regexBefore), behind = lettersOf(regexBehind);
+    const bool namesCommas = before.ends_with(',') || behind.starts_with(',');
+    const auto isComma = [&](char beside) { return namesCommas && beside == ','; };
+    if (!rest.left.empty() && !isComma(rest.left.back()) && !namesLeft(before, rest)) return false;
+    if (rest.right.empty() || isComma(rest.right[0])) return true;
+    // Of columns, the pattern names those before.
+    static const std::regex kColumn("(?:^| )[-+0-9.]+ +$"), kGroups("(?: [0-9]{3})+(?:\\.[0-9]*)?");
+    const std::string own(found.line.substr(found.matchBegin, found.begin - found.matchBegin));
+    if (!isTime && std::regex_match(rest.right, kGroups) && std::regex_search(own, kColumn)) {
+        return true;
     }
-    return behind.starts_with(right[0]) || (!isDigit(word[0]) && named.starts_with(word[0]));
+    const bool asksForDigits = regexBehind.find_first_of("0123456789") != regexBehind.npos ||
+                               regexBehind.find("\\d") != regexBehind.npos;
+    return namesRight(behind, asksForDigits, rest, isTime);
 }
 
 constexpr std::size_t kBytesBeside = 64;  // of a group, in which its number is looked for
@@ -340,8 +392,10 @@ constexpr std::size_t kBytesBeside = 64;  // of a group, in which its number is 
 std::optional<std::string_view> wholeOf(const Found& found, const config::ProgramPattern& pattern) {
     const std::size_t from = found.begin - std::min(found.begin, kBytesBeside);
     const std::string_view part = found.line.substr(from, found.end - from + kBytesBeside);
-    const auto [text, places] = plain(part);
-    const auto placeOf = [&places = places, from](std::size_t byte) {
+    const Plain line = plain(part);
+    const std::string& text = line.text;
+    const std::vector<std::size_t>& places = line.places;
+    const auto placeOf = [&](std::size_t byte) {
         return static_cast<std::size_t>(std::ranges::lower_bound(places, byte - from) -
                                         places.begin());
     };
@@ -351,24 +405,38 @@ std::optional<std::string_view> wholeOf(const Found& found, const config::Progra
         if (written->end > begin) break;
     }
     if (!written || written->begin >= end) return std::nullopt;
-    const auto between = [&text = text](std::size_t first, std::size_t last) {
+    const auto between = [&](std::size_t first, std::size_t last) {
         std::string result = first < last ? text.substr(first, last - first) : "";
         std::ranges::replace(result, kThinBlank, ' ');
         return result;
     };
-    const std::string left = between(written->begin, begin);
-    std::string right = between(end, written->end);
-    if (written->isTime && std::ranges::none_of(right, isDigit)) right.clear();  // its own unit
-    const auto isPartOfDigits = [](std::string_view rest) {  // of what stands in a name
-        return !rest.empty() &&
-               (isDigit(rest[0]) || (rest[0] == '.' && rest.size() > 1 && isDigit(rest[1])));
+    const auto placesFrom = [&](std::size_t first) {
+        return part.substr(places[first], places[written->end] - places[first]);
     };
-    const bool isWhole =
-        written->isName
-            ? !isPartOfDigits(right) && !isPartOfDigits(std::string(left.rbegin(), left.rend()))
-            : namesRest(found, pattern.regex, left, right, written->isTime);
-    if (isWhole) return std::nullopt;
-    return part.substr(places[written->begin], places[written->end] - places[written->begin]);
+    if (written->begin > begin) {  // the dash of a range or a name is no sign
+        std::size_t word = begin;
+        while (word > 0 && text[word - 1] != ' ') --word;
+        return placesFrom(word);
+    }
+    Rest rest{between(written->begin, begin), between(end, written->end),
+              found.matchBegin <= from + places[written->begin],
+              found.matchEnd >= from + places[written->end]};
+    if (written->isTime && std::ranges::none_of(rest.right, isDigit)) rest.right.clear();
+    if (!written->isName) {
+        if (namesRest(found, pattern.regex, rest, written->isTime)) return std::nullopt;
+        return placesFrom(written->begin);
+    }
+    // A name may have digits at its ends.
+    const auto [before, behind] = besideGroup(pattern.regex);
+    const auto goesOn = [](std::string_view digits, bool isPointNamed) {
+        return !digits.empty() && (isDigit(digits[0]) || (digits[0] == '.' && !isPointNamed &&
+                                                          digits.size() > 1 && isDigit(digits[1])));
+    };
+    const std::string backwards(rest.left.rbegin(), rest.left.rend());
+    const bool isPart = (text[begin] == '.' && !rest.left.empty()) ||
+                        goesOn(rest.right, lettersOf(behind).starts_with('.')) ||
+                        goesOn(backwards, lettersOf(before).ends_with('.'));
+    return isPart ? std::optional(placesFrom(written->begin)) : std::nullopt;
 }
 
 /// Also with zeros before it, as of a clock, with Fortran's exponents, 1.5D+03 and 1.5-103, and a

@@ -258,6 +258,9 @@ TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
         for (const char* command : {"table", "claims", "report"}) {
             EXPECT_EQ(endedWith(2, mockGfxrepro({command, dir("t")})).err, imported) << command;
         }
+        const std::string page = folder_.path() / "page.html";
+        EXPECT_EQ(endedWith(2, mockGfxrepro({"report", dir("t"), "--embed", "--out", page})).err,
+                  imported);
         return imported;
     };
     const std::string recorded = " was recorded; did you mean 'err'? (recorded: err, n, t_ms)\n";
@@ -276,6 +279,25 @@ TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
     }
     EXPECT_THAT(errorsOf("claims: {c: {says: so, bound: errr, at_most: 1}}\n"),
                 testing::StartsWith("error: sweep/t: claim 'c': 'errr' is no column"));
+}
+
+TEST_F(Data, WhatAProgramSaysIsAColumnOfItsExportToo) {
+    const std::string config = folder_.write(
+        "own.yaml",
+        "sweep_of: own\ntitle: T\nprogram:\n  command: [sh, -c, 'echo nodes {n}']\n"
+        "  params: {n: 1}\n  metrics: {nodes: {unit: node, pattern: 'nodes ([0-9]+)'}}\n"
+        "sweep: {n: [1, 2]}\nclaims: {c: {says: so, bound: nodes, at_most: 2}}\n");
+    endedWith(0, gfxrepro({"run", config, "--out", dir("own")}));
+    EXPECT_THAT(endedWith(0, gfxrepro({"claims", dir("own")})).out, testing::HasSubstr("holds"));
+    endedWith(0, gfxrepro({"export", dir("own"), "--tidy", "--out", dir("own-tidy")}));
+    const ProcessResult imported = endedWith(
+        0,
+        gfxrepro({"import", dir("own-tidy") + "/records.csv", "--cases",
+                  dir("own-tidy") + "/cases.csv", "--config", config, "--out", dir("own-back")}));
+    EXPECT_EQ(imported.err.find("unmeasured"), std::string::npos) << imported.err;
+    EXPECT_THAT(endedWith(0, gfxrepro({"claims", dir("own-back")})).out,
+                testing::AllOf(testing::HasSubstr("holds"),
+                               testing::Not(testing::HasSubstr("1 unmeasured"))));
 }
 
 TEST_F(Data, ValuesOfAnAxisAreComparedWithoutALayout) {

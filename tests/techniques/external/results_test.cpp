@@ -340,8 +340,8 @@ TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
     }
     EXPECT_EQ(numberOf("m=([0-9.]+)", "m=12.5 128"), 12.5);
     EXPECT_EQ(numberOf(digits, "m=1024 128"), 1024.0);
-    EXPECT_EQ(numberOf("^([0-9]+) ", "128 256 512"), 128.0);
-    EXPECT_EQ(numberOf("^([0-9]+)\\s+[0-9]+", "128 256 512"), 128.0);
+    EXPECT_EQ(errorOf("^([0-9]+) ", "128 256 512"), partOf("128", "128 256 512"));
+    EXPECT_EQ(numberOf("^([0-9]+)\\s+[0-9]+ +[0-9]+", "128 256 512"), 128.0);
     EXPECT_EQ(numberOf("^[0-9]+ ([0-9]+)\\s", "128 256 512"), 256.0);
     EXPECT_EQ(numberOf("^[0-9]+ +[0-9]+\\s+([0-9]+)", "128 256 512"), 512.0);
     EXPECT_EQ(numberOf("([0-9]+) ms", "GPU0 128 ms"), 128.0);
@@ -350,6 +350,43 @@ TEST(MetricLines, APatternTakesNoPartOfWhatHasBlanks) {
     EXPECT_EQ(numberOf("scene\\s+[0-9]+\\s+([0-9]+)", "scene 1 5 100"), 5.0);
     EXPECT_EQ(numberOf("([0-9]+) ms", "grid 4 e 3 ms"), 3.0);
     EXPECT_EQ(numberOf("Frame \\d+ (\\d+) ms", "Frame 1 100 ms"), 100.0);
+    // What may be absent, a blank, a colon and a unit of time name nothing.
+    for (const auto& [regex, line] : std::vector<std::pair<std::string, std::string>>{
+             {"time: ([0-9]+).*ms", "time: 12.5 ms"},
+             {"m=([0-9.]+)\\D", "m=1.5D+03"},
+             {"m=([0-9]+),?", "m=1,234"},
+             {"m=([0-9]+)\\.?", "m=12.5"},
+             {"m=([0-9]+)k?", "m=5k"},
+             {"([0-9]+) minutes?", "2 minutes 3 seconds"},
+             {"([0-9]+)m\\b", "2m 3s"},
+             {"GPU0 ([0-9.]+)", "GPU0 2 min 3 s"},
+             {"GPU0 ([0-9.]+)", "GPU0 5 million rays"},
+             {"GPU0 ([0-9.]+)", "GPU0 1 234 rays"},
+             {"Frame [0-9]+ ([0-9.]+)", "Frame 12 1.5 e-3 s"},
+             {"(-?[0-9.]+) ms", "10-20 ms"},
+             {"(-?[0-9]+)$", "img-0005"},
+             {"([0-9.]+)$", "out.12"},
+             {" ([0-9]+) ms", "took 1 234 ms"},
+             {"m=([0-9]+)\\s", "m=1 234 rays"},
+             {" ([0-9.]+) s", "took 2 min, 30 s"},
+             {":\\s*([0-9.]+)$", "took: 1:23.45"},
+             {"m=([0-9]+)", "m=10\u207B\u2075"},
+             {"m=([0-9]+)", "m=10**-3"},
+             {"m=([0-9]+)", "m=10 ^ 3"},
+             {"m=([0-9]+)", "m=2 Minuten 5 s"}}) {
+        EXPECT_NE(errorOf(regex, line), "no error") << regex << " of " << line;
+    }
+    for (const auto& [regex, line] :
+         std::vector<std::pair<std::string, std::string>>{{"v4\\.([0-9]+)", "v4.12"},
+                                                          {"shot1[.]([0-9]+)", "shot1.12.exr"},
+                                                          {"[/]([0-9]+)", "3/12"},
+                                                          {"([0-9.]+) ms", "GPU: 250 W, 12 ms"},
+                                                          {"([0-9]+) ms", "16M 12 ms"},
+                                                          {"FFT 3D ([0-9]+)", "FFT 3D 12 ms"},
+                                                          {"-([0-9]+)", "0-12"},
+                                                          {"^([0-9]+)-", "12-255"}}) {
+        EXPECT_EQ(numberOf(regex, line), 12.0) << regex << " of " << line;
+    }
     EXPECT_EQ(numberOf("tile ([0-9]+) / ", "tile 3 / 10"), 3.0);
     EXPECT_EQ(numberOf("\\[(\\d+)/\\d+\\]", "[3/10]"), 3.0);
     EXPECT_EQ(numberOf("^(?:[^,]*,){2}([0-9.]+)", "a,1,2.5,3"), 2.5);
