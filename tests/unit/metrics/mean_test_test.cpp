@@ -128,7 +128,7 @@ const std::vector<Shape>& noiseShapes() {
 constexpr double kLevel = 0.05;
 
 TEST(MeanTest, GivesNoMoreFalseAlarmsThanDeclaredWhateverTheNoise) {
-    constexpr int kTrials = 400;
+    constexpr int kTrials = test::kIsSanitized ? 50 : 400;
     for (const auto& [name, noise, hasHeavyTail] : noiseShapes()) {
         const Count count = countOf(name, kTrials, kLevel, noise, 2, 2);
         EXPECT_LE(count.alarms, mostAlarms(kTrials, kLevel)) << name;
@@ -138,7 +138,7 @@ TEST(MeanTest, GivesNoMoreFalseAlarmsThanDeclaredWhateverTheNoise) {
 
 /// Four times the pictures of a quarter of the samples have the same noise.
 TEST(MeanTest, HoldsManyOfFewSamplesAgainstFewOfMany) {
-    constexpr int kTrials = 200;
+    constexpr int kTrials = test::kIsSanitized ? 25 : 200;
     for (const auto& [name, noise, hasHeavyTail] : noiseShapes()) {
         const Count count = countOf(name, kTrials, kLevel, noise, 1, 4, 0.0, 4 * kSeeds);
         EXPECT_LE(count.alarms, mostAlarms(kTrials, kLevel)) << name;
