@@ -137,6 +137,7 @@ void setUp(Technique& technique, SetupContext& context) {
 }
 
 bool needsDevice(const TechniqueInfo& info, const Node& program) {
+    if (info.isOnCpu) return false;
     return !info.createFrom || program.isNull() || config::readProgram(program).usesGpu;
 }
 

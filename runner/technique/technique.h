@@ -167,6 +167,8 @@ struct TechniqueInfo {
     /// Of a technique that is made of a program, as `program` of its config says
     /// (config/external_program.h): what that declares comes to parameters and outputs.
     std::unique_ptr<Technique> (*createFrom)(const Node& program, Params& params) = nullptr;
+    /// Its setup() may draw nothing: the device may be none.
+    bool isOnCpu = false;
 };
 
 /// The technique with the program of its config, null for none. Throws Error where it takes one and

@@ -39,12 +39,12 @@ std::string refusalOf(const ProcessResult& result, const TemporaryFolder& folder
     return errorText([&] { throw Error(result.err); }, folder.path());
 }
 
-std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines) {
+std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines,
+                                      const std::string& technique) {
     const bool hasScene = lines.find("scene: ") != lines.npos;
     return folder.write(
         "mock.yaml",
-        "sweep_of: mock\ntitle: A mock\ntechnique: mock" +
-            std::string(hasScene ? "_of_scenes" : "") +
+        "sweep_of: mock\ntitle: A mock\ntechnique: " + technique + (hasScene ? "_of_scenes" : "") +
             "\n"
             "output: {width: 8, height: 8}\n" +
             lines +

@@ -32,8 +32,9 @@ ProcessResult endedWith(int exitCode, ProcessResult result, int line = __builtin
 /// Standard error of what must end with exit code 2, with the folder's path as DIR.
 std::string refusalOf(const ProcessResult& result, const TemporaryFolder& folder);
 
-/// A config for the mock technique with these lines behind its head.
-std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines);
+/// A config for a mock technique with these lines behind its head.
+std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines,
+                                      const std::string& technique = "mock");
 
 /// Rows of a metric.
 std::vector<records::Record> rowsOf(const std::filesystem::path& runDir, const std::string& metric);

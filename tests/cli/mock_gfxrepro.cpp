@@ -97,12 +97,12 @@ class Mock : public technique::Technique {
         if (frameCount > 500) throw Error("the mock has 500 frames");
     }
 
-    void setup(technique::SetupContext&) override {
+    void setup(technique::SetupContext& context) override {
         const Logged logged("setup", number_);
         if (const char* pause = std::getenv("GFXREPRO_MOCK_SETUP_MS")) {
             std::this_thread::sleep_for(std::chrono::milliseconds(std::atoi(pause)));
         }
-        image_ = gl::Texture::make2D(GL_R32F, {8, 8});
+        if (!context.device.isNone()) image_ = gl::Texture::make2D(GL_R32F, {8, 8});
         if (const char* warning = std::getenv("GFXREPRO_MOCK_WARNING")) {
             std::fprintf(stderr, "warning: %s\n", warning);
         }
@@ -176,11 +176,12 @@ class Mock : public technique::Technique {
         recorder.image("truth", image::ImageF(4, 4, 3, 0.25F), {.truthOf = "flat"});
     }
 
-    const gl::Texture* frameImage() const override { return &image_; }
+    const gl::Texture* frameImage() const override { return image_.id() == 0 ? nullptr : &image_; }
 
   private:
     /// The first `count` pixels are white.
     void show(std::size_t count) {
+        if (!frameImage()) return;
         std::vector<float> pixels(64, 0.0F);
         std::fill_n(pixels.begin(), count, 1.0F);
         image_.upload(GL_RED, GL_FLOAT, pixels.data());
@@ -262,6 +263,7 @@ int main(int argc, char** argv) {
     }
     const technique::TechniqueInfo techniques[] = {
         {"mock", "fails on demand", technique::make<Mock>, outputs},
+        {"mock_on_cpu", "likewise, with no device", technique::make<Mock>, outputs, nullptr, true},
         {"mock_of_scenes", "likewise, with a scene", technique::make<MockOfScenes>, outputs},
         {"dice", "throws", technique::make<Dice>, diceOutputs},
         external::kExternal};

@@ -13,6 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// To open a device is most of what a short night takes.
+constexpr const char* kTechnique = "mock_on_cpu";
+
 class Nightly : public ::testing::Test {
   protected:
     /// What nights look for in most tests shows without times.
@@ -39,7 +42,8 @@ class Nightly : public ::testing::Test {
                                               GFXREPRO_SOURCE "/scripts/nightly"};
         if (isFix) arguments.emplace_back("--fix");
         if (!reason.empty()) arguments.insert(arguments.end(), {"--accept", reason});
-        const fs::path config = writeMockConfig(folder, "params: {busy_ms: 20}\n" + measure());
+        const fs::path config =
+            writeMockConfig(folder, "params: {busy_ms: 20}\n" + measure(), kTechnique);
         arguments.insert(arguments.end(), {"--rounds", isTimed ? "8" : "2", "--cases", "1",
                                            "--program", bundle(extraUs), config});
         return runProgram(arguments);
@@ -49,7 +53,8 @@ class Nightly : public ::testing::Test {
                           const std::vector<std::string>& options = {"--cases", "2"}) const {
         const fs::path program = folder.write("broken/gfxrepro", "#!/bin/sh\n" + script);
         fs::permissions(program, fs::perms::owner_all);
-        const fs::path config = writeMockConfig(folder, "sweep: {busy_ms: [18, 22]}\n" + measure());
+        const fs::path config =
+            writeMockConfig(folder, "sweep: {busy_ms: [18, 22]}\n" + measure(), kTechnique);
         std::vector<std::string> arguments = {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,
                                               GFXREPRO_SOURCE "/scripts/nightly"};
         arguments.insert(arguments.end(), options.begin(), options.end());
@@ -155,7 +160,7 @@ TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustFindWhatItFinds) {
 TEST_F(Nightly, AJudgeOfTheFirstConfigAloneIsNone) {
     second = folder.write(
         "second.yaml",
-        "sweep_of: second\ntitle: t\ntechnique: mock\nsweep: {busy_ms: [5]}\n" + measure());
+        "sweep_of: second\ntitle: t\ntechnique: mock_on_cpu\nsweep: {busy_ms: [5]}\n" + measure());
     const std::string half =
         "case \"$*\" in *--binaries*second.yaml*) exit 0;; esac\nexec " + kMock + '\n';
     EXPECT_EQ(nightOf(half, {"--cases", "3"}).exitCode, 2);

@@ -487,6 +487,16 @@ TEST(NoDevice, IsNoneForATechniqueThatDraws) {
                 ElementsAre("ok: unsupported (technique 'mock' needs a graphics device)"));
 }
 
+TEST(NoDevice, IsOpenedForWhatWorksOnTheCpu) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(folder, "sweep: {behaviour: [ok]}\n", "mock_on_cpu");
+    const std::string dir = folder.path() / "run";
+    endedWith(0, runProgram({GFXREPRO_MOCK_PROGRAM, "run", config, "--out", dir}));
+    EXPECT_THAT(statusLines(dir), ElementsAre("ok: ok"));
+    const auto manifest = nlohmann::json::parse(readFile(dir + "/manifest.json"));
+    EXPECT_EQ(manifest["gl"]["renderer"], "no graphics device");
+}
+
 TEST_F(ExternalProgram, TakesASceneOfTheCatalogue) {
     fs::permissions(folder.write("renderer.sh",
                                  "#!/bin/sh\nprintf '{\"metric\": \"number\", \"value\": %s, "
