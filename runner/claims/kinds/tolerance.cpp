@@ -28,10 +28,27 @@ double largestDeviation(const GroupPoint& group) {
     return largest;
 }
 
+/// Of each row its own, with its sign: without, noise alone is a deviation.
+Contrasts deviations(Requirement within) {
+    within.low = -within.high;
+    return [within](const GroupPoint& group) {
+        std::vector<Contrast> contrasts;
+        for (std::size_t row = 0; row < group.operands[0].size(); ++row) {
+            const GroupNumber deviation = [row](const GroupPoint& one) {
+                const double value = one.operands[0][row], expected = one.operands[1][row];
+                return value == expected ? 0.0 : (value - expected) / std::abs(expected);
+            };
+            contrasts.push_back(asItself("deviation", deviation, within, Scale::Linear)(group)[0]);
+        }
+        return contrasts;
+    };
+}
+
 std::vector<ClaimPart> toleranceParts(const ClaimSpec& claim) {
     ClaimPart part{
         {0}, largestDeviation, rangeOf(claim, "deviation from printed", true), "largest deviation"};
     part.needsExpected = true;
+    part.onTimes = deviations(part.requirement);
     return {part};
 }
 
