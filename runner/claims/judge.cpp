@@ -45,33 +45,6 @@ double ratioToBound(double value, const Requirement& requirement) {
     return nearest;
 }
 
-/// The value in the middle of the rounds and its interval, on the contrast's scale.
-struct Told {
-    double middle = 0.0;
-    metrics::Interval interval;
-};
-
-Told tell(std::vector<double> rounds, Scale scale) {
-    const bool isFinite =
-        std::ranges::all_of(rounds, [](double value) { return std::isfinite(value); });
-    if (scale == Scale::Ranks || !isFinite) {
-        return {metrics::summarize(rounds, metrics::Statistic::Median),
-                *metrics::medianInterval(rounds)};
-    }
-    // Equal ones are what they are: a logarithm and back would not be.
-    const auto [least, most] = std::ranges::minmax(rounds);
-    if (least == most) return {least, {least, least}};
-    const bool isLogarithmic = scale == Scale::Logarithmic && arePositive(rounds);
-    if (isLogarithmic) {
-        for (double& value : rounds) value = std::log(value);
-    }
-    Told told{metrics::centre(rounds), *metrics::centreInterval(rounds)};
-    if (isLogarithmic) {
-        told = {std::exp(told.middle), {std::exp(told.interval.low), std::exp(told.interval.high)}};
-    }
-    return told;
-}
-
 /// How far the rounds lie beyond the nearer bound: on a scale of which nothing is known, and of
 /// what is infinite, only on which side.
 std::map<int, double> beyondBound(const std::map<int, double>& rounds,
@@ -104,14 +77,14 @@ std::map<int, double> beyondBound(const std::map<int, double>& rounds,
 }
 
 /// A verdict, where times are far enough apart for one.
-void decide(const Contrast& contrast, const Told& told, double distance, double noise,
-            Judgement& judgement) {
-    judgement.verdict = verdictOf(told.interval, contrast.requirement);
+void decide(const Contrast& contrast, const metrics::Interval& interval, double distance,
+            double noise, Judgement& judgement) {
+    judgement.verdict = verdictOf(interval, contrast.requirement);
     if (contrast.isRefutation) {
         // Only what surely contradicts counts; within the noise it leaves the claim open.
         if (judgement.verdict != Verdict::Fails) {
             judgement.verdict = Verdict::Holds;
-        } else if (distanceToBound(told.interval.high, contrast.requirement) <= noise) {
+        } else if (distanceToBound(interval.high, contrast.requirement) <= noise) {
             judgement.verdict = Verdict::Ambiguous;
             judgement.why = "a step back in every round, within the noise of these times";
         }
@@ -154,20 +127,19 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
         judgement.why = whyTooFew(values.size(), group);
         metrics::Interval range{middle, middle};
         if (values.size() > 1) range = {std::ranges::min(values), std::ranges::max(values)};
-        judgement.measured =
-            boundedText(middle, values.size() > 1 ? tables::Bounds::Range : tables::Bounds::None,
-                        range, requirement);
+        const bool isRange = range.low < range.high;
+        judgement.measured = boundedText(
+            middle, isRange ? tables::Bounds::Range : tables::Bounds::None, range, requirement);
     } else {
-        const Told told = tell(values, contrast.scale);
-        middle = told.middle;
+        const metrics::Interval interval = *metrics::medianInterval(values);
+        middle = metrics::median(values);
         const double distance = contrast.distance ? contrast.distance(whole, middle)
                                                   : ratioToBound(middle, requirement);
-        decide(contrast, told, distance, noise, judgement);
-        if (verdictOf(told.interval, requirement) != Verdict::Holds) {
+        decide(contrast, interval, distance, noise, judgement);
+        if (verdictOf(interval, requirement) != Verdict::Holds) {
             judgement.beyond = beyondBound(byRound, requirement, contrast.scale);
         }
-        judgement.measured =
-            boundedText(middle, tables::Bounds::Interval, told.interval, requirement);
+        judgement.measured = boundedText(middle, tables::Bounds::Interval, interval, requirement);
     }
     if (!contrast.name.empty()) judgement.measured = contrast.name + " " + judgement.measured;
     judgement.isBeside = contrast.isRefutation || contrast.isCondition;

@@ -2,10 +2,11 @@
 //
 // Times are judged on rounds, in which all that is compared was measured alternately. A quantity
 // is computed in each round of its own: what slows a whole round, an hour or a
-// neighbour, falls out of a ratio of two times of that round. The interval is over rounds, by
-// Wilcoxon's signed ranks (metrics::centreInterval) on the scale on which they scatter evenly: a
-// ratio of two equally noisy times is as likely 1.1 as 1 / 1.1. It holds the truth in 95 % from
-// six rounds on, which tests/unit/claims/coverage_test.cpp shows.
+// neighbour, falls out of a ratio of two times of that round. Judged is what a column of the
+// quantity shows: its median over rounds, by the same interval (metrics::medianInterval). It holds
+// the truth in 95 % from six rounds on whatever the distribution, which
+// tests/unit/claims/coverage_test.cpp shows. Wilcoxon's signed ranks would need a third fewer
+// rounds, but hold another number where rounds scatter more to one side.
 //
 // Extreme values (the smallest of many gaps or steps, the spread) move with the number of rows and
 // the noise; times are judged without them, each comparison by its own interval. That all must
@@ -13,7 +14,8 @@
 // hypothesis testing and acceptance sampling", Technometrics 24). That one fails is the union of
 // theirs: among k comparisons on their bounds up to k times the 2.5 % of one end. So one fails only
 // where it is sure by itself and among all of its claim that are not surely within their bounds
-// (metrics::jointChances, forgiveChance()): together they fail by chance in 2.5 %.
+// (metrics::jointChances, forgiveChance()): together they fail by chance in 2.5 %. That takes
+// rounds to scatter evenly about a bound at which many rows lie, as those of equal things do.
 //
 // Random numbers whose seed is another in each round are judged likewise, and nothing is decided of
 // those of one seed: however many processes drew them, they are one sample.

@@ -44,13 +44,13 @@ double halfWidth(const metrics::Interval& interval) {
 std::vector<double> noiseWidths(const std::vector<std::map<int, double>>& cases) {
     std::vector<double> widths;
     for (std::size_t i = 1; i < cases.size(); ++i) {
-        const auto interval = metrics::centreInterval(logRatios(cases[i - 1], cases[i]));
+        const auto interval = metrics::medianInterval(logRatios(cases[i - 1], cases[i]));
         if (interval) widths.push_back(halfWidth(*interval));
     }
     if (cases.size() == 1) {
         std::vector<double> logs = roundValues(cases[0]);
         for (double& value : logs) value = std::log(value);
-        const auto interval = metrics::centreInterval(logs);
+        const auto interval = metrics::medianInterval(logs);
         if (interval) widths.push_back(std::numbers::sqrt2 * halfWidth(*interval));
     }
     return widths;

@@ -56,7 +56,7 @@ class FrameTimes {
     /// rounds, 91 % hold the truth. tests/unit/claims/coverage_test.cpp has what this comes to.
     bool isKnownTo(double relativeError, int asked) const;
     /// By how much two equal cases of the table would differ, as a share: the half width of the
-    /// 95 % interval (centreInterval) of the log ratio of two neighbouring cases, measured in pairs
+    /// 95 % interval (medianInterval) of the log ratio of two neighbouring cases, measured in pairs
     /// by turns, the median over all such neighbours. Of one case alone √2 of its own. None with
     /// too few rounds, nor by CPU time of what goes by the clock.
     std::optional<double> noise(Clock clock) const;

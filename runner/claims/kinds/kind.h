@@ -44,8 +44,10 @@ struct Requirement {
     bool isPercent = false;          // shown ×100 with a percent sign
 };
 
-/// On which scale a quantity scatters evenly. Logarithmic where all of its values are positive,
-/// else linear. Ranks: on none that is known; only the order of the rounds counts (medianInterval).
+/// On which scale rounds scatter evenly, where many rows are looked at together
+/// (metrics::jointChances): a ratio of two equally noisy times is as likely 1.1 as 1 / 1.1.
+/// Logarithmic where all values are positive, else linear. Ranks: on none that is known; only on
+/// which side of a bound a round lies counts.
 enum class Scale { Linear, Logarithmic, Ranks };
 
 /// One comparison of times.

@@ -762,6 +762,54 @@ TEST(Claims, TimesAreComparedWithinTheirRound) {
               Verdict::Ambiguous);
 }
 
+/// What a column shows of a quantity and what a claim says of it are one number and one interval.
+TEST(Claims, JudgeTheMedianThatTheirColumnShows) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})").seeds(config::Measure::Seeds::Process);
+    int process = 0;
+    for (const double value : {1.0, 1.01, 1.02, 1.03, 1.04, 1.05, 1.06, 3.0, 4.0, 5.0}) {
+        maker.process(process++).add("a", {value}, "", "1").add("b", {2.0}, "", "1");
+        maker.add("c", {1.0 + 0.01 * process}, "", "1");
+    }
+    const auto records = maker.records();
+    const config::Experiment experiment = tables::experimentFrom(
+        "sweep: {n: [1]}\nlayout: {rows: n, columns: {a: {metric: a}, b: {metric: b}, c: {metric: "
+        "c}, q: {of: a / c}}, cell: \"{median:.4g}\"}\n"
+        "claims: {A: {says: so, bound: a, at_most: 2}, Q: {says: so, bound: q, at_most: 2}, "
+        "R: {says: so, ratio: a / c, at_most: 2}, E: {says: so, bound: a / c, at_most: 2}}\n");
+    const tables::Table table = tables::buildTable(experiment, records);
+    const auto results = evaluateClaims(experiment, table, kSoftware);
+    const auto shown = [&](std::size_t column) {
+        const tables::Cell& cell = table.rows[0].cells[column];
+        return fmt::format("{} [{}, {}]", cell.measured, cell.low, cell.high);
+    };
+    EXPECT_EQ(results[0].measured, "1.045 [1.01, 4]");
+    EXPECT_EQ(results[0].measured, shown(0));
+    for (const std::size_t i : {1U, 2U, 3U}) EXPECT_EQ(results[i].measured, shown(3)) << i;
+}
+
+/// Noise about the printed number is no deviation from it.
+TEST(Claims, ADeviationHasItsSignWhereRoundsDiffer) {
+    const auto judge = [](double middle) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})").seeds(config::Measure::Seeds::Process);
+        int process = 0;
+        for (const double share : {-0.2, 0.2, -0.15, 0.15, -0.1, 0.1, -0.05, 0.05}) {
+            maker.process(process++).add("a", {middle * (1.0 + share)}, "", "1");
+        }
+        return judgeOne(
+            "sweep: {n: [1]}\nlayout: {rows: n, columns: {a: {metric: a}}}\nprinted: {values: "
+            "\"n,a\\n1,10\"}\nclaims: {T: {says: so, tolerance: a, at_most: 4%}}\n",
+            maker.records());
+    };
+    ClaimResult result = judge(10.0);
+    EXPECT_EQ(result.verdict, Verdict::Ambiguous);
+    EXPECT_EQ(result.measured, "deviation 0 % [-20 %, 20 %]");
+    result = judge(5.0);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "deviation -50 % [-60 %, -40 %]");
+}
+
 TEST(Claims, TimesRiseOnTheWhole) {
     const std::string rising = "trend: ms, over: n, direction: increasing";
     ClaimResult result =
