@@ -201,6 +201,13 @@ const Sampled* findIn(const Group& group, const std::function<bool(const Sampled
 /// Seeds of a scene: with five, the range misses the median of all in 6 % of cases, with two in 50.
 constexpr std::size_t kFewestScenes = 5;
 
+/// Whether its rounds are seeds of scenes; else they are processes.
+bool isOfScenes(const Group& group) {
+    return findIn(group, [](const Sampled& value) {
+        return !value.rounds.empty() && value.rounds.rbegin()->first >= records::kMostProcesses;
+    });
+}
+
 }  // namespace
 
 Judgement judge(Group group, const GroupNumber& quantity, const Requirement& requirement) {
@@ -228,6 +235,7 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
     metrics::Interval interval{point, point};
     tables::Bounds bounds = tables::Bounds::None;
     const bool isEqual = std::ranges::all_of(values, [&](double value) { return value == point; });
+    const std::size_t fewest = isOfScenes(group) ? kFewestScenes : metrics::kFewestForInterval;
     bool areTooFew = false;
     if (!isEqual && requirement.isOfCounts) {  // it is that in all of them, or in none
         const auto [low, high] = std::ranges::minmax(values);
@@ -241,7 +249,7 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
         const auto [low, high] = std::ranges::minmax(values);
         bounds = told ? tables::Bounds::Interval : tables::Bounds::Range;
         interval = told.value_or(metrics::Interval{low, high});
-        areTooFew = values.size() < kFewestScenes;
+        areTooFew = values.size() < fewest;
     }
     judgement.verdict = verdictOf(interval, requirement);
     // What is otherwise at times is exactly so in a few of them by chance, or in none.
@@ -252,8 +260,10 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
     }
     if (areTooFew && judgement.verdict != Verdict::Unmeasured) {
         judgement.verdict = Verdict::Ambiguous;
-        judgement.why = fmt::format("{} scenes that differ; {} are the fewest that decide",
-                                    values.size(), kFewestScenes);
+        judgement.why = fewest == kFewestScenes
+                            ? fmt::format("{} scenes that differ; {} are the fewest that decide",
+                                          values.size(), fewest)
+                            : whyTooFew(values.size(), group);
     }
     if (bounds == tables::Bounds::Interval && judgement.verdict != Verdict::Holds) {
         if (areDraws) {
@@ -299,12 +309,14 @@ std::string whyNoInterval(const Group& group) {
     }
     if (findIn(group, &Sampled::isOnce)) return "one sample of a time decides nothing";
     std::optional<std::size_t> fewest;
-    bool isDeclared = true;
+    bool isDeclared = true, areEqual = true;
     const auto count = [&](const std::vector<Sampled>& values) {
         for (const Sampled& value : values) {
             if (!value.isRandom) continue;
             const std::size_t seeds = std::max<std::size_t>(value.rounds.size(), 1);
             if (!fewest || seeds < *fewest) isDeclared = !value.scatters;
+            areEqual &= std::ranges::all_of(
+                value.rounds, [&](const auto& round) { return round.second == value.point; });
             fewest = std::min(fewest.value_or(seeds), seeds);
         }
     };
@@ -312,11 +324,13 @@ std::string whyNoInterval(const Group& group) {
     count(group.x);
     if (!fewest || *fewest >= metrics::kFewestForInterval) return "";
     if (!isDeclared) {
-        return fmt::format("{}; an interval needs {} processes",
-                           *fewest == 1
-                               ? "one process of numbers that differ when they are taken again"
-                               : fmt::format("{} processes came to different numbers", *fewest),
-                           metrics::kFewestForInterval);
+        return fmt::format(
+            "{}; an interval needs {} processes",
+            *fewest == 1 ? "one process of numbers that differ when they are taken again"
+                         : fmt::format("{}{}", *fewest,
+                                       areEqual ? " equal processes beside numbers that differ"
+                                                : " processes came to different numbers"),
+            metrics::kFewestForInterval);
     }
     return fmt::format(
         "{} of random numbers; an interval needs {}: `measure: {{seeds: process, "

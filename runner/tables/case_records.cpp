@@ -16,6 +16,7 @@
 #include "runner/config/experiment.h"
 #include "runner/records/csv.h"
 
+#include "runner/tables/summary.h"
 namespace gfxrepro::tables {
 
 // The records of each case.
@@ -137,19 +138,13 @@ std::string CaseRecords::passOf(std::string_view metric) const {
 }
 
 bool CaseRecords::scatters(std::string_view metric, std::string_view pass) const {
-    constexpr double kRounding = 1e-12;  // of a sum of doubles in another order
-    const auto differ = [](double a, double b) {
-        if (a == b) return false;
-        const double largest = std::max(std::abs(a), std::abs(b));
-        return std::isinf(largest) || std::abs(a - b) > kRounding * largest;
-    };
     std::map<std::pair<int, int>, double> first;  // by the scene's seed and the frame
     for (const auto& [number, attempt] : processes) {
         if (attempt.failure) continue;
         for (const records::Record* row : attempt.values(metric, pass)) {
             const auto [found, isNew] =
                 first.try_emplace({number / records::kMostProcesses, row->frame}, row->value);
-            if (differ(found->second, row->value)) return true;
+            if (!areAlike(found->second, row->value)) return true;
         }
     }
     return false;

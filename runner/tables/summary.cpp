@@ -63,8 +63,12 @@ metrics::Interval rangeOf(const std::vector<double>& values) {
 }
 
 /// Value and bounds of what each process came to, at least one.
-void fillFromRounds(const std::vector<double>& values, Summary& summary) {
+void fillFromRounds(std::vector<double> values, Summary& summary) {
     summary.value = metrics::summarize(values, Statistic::Median);
+    if (std::ranges::all_of(values, [&](double value) { return areAlike(value, summary.value); })) {
+        std::ranges::fill(values, summary.value);
+        for (auto& [round, value] : summary.rounds) value = summary.value;
+    }
     summary.interval = rangeOf(values);
     if (values.size() > 1) summary.bounds = Bounds::Range;
     if (const auto interval = metrics::medianInterval(values)) {
@@ -93,6 +97,13 @@ std::optional<double> overProcesses(const Samples& samples, Statistic statistic)
 
 }  // namespace
 
+bool areAlike(double a, double b) {
+    constexpr double kRounding = 1e-12;
+    if (a == b) return true;
+    const double largest = std::max(std::abs(a), std::abs(b));
+    return !std::isinf(largest) && std::abs(a - b) <= kRounding * largest;
+}
+
 std::string_view boundsName(Bounds bounds) {
     constexpr std::string_view kNames[] = {"", "range", "95 % interval"};
     return kNames[static_cast<std::size_t>(bounds)];
@@ -115,12 +126,13 @@ Summary summarize(const Samples& samples, Statistic statistic) {
     }
     summary.value = summarizeUnits(all, statistic);
     summary.interval = {summary.value, summary.value};
-    if (!values.empty()) fillFromRounds(values, summary);
+    const std::size_t processes = values.size();
+    if (!values.empty()) fillFromRounds(std::move(values), summary);
     // A sum, a count or a spread of repeats is not what one of them gives.
     const bool isOfRepeats =
         all.size() == 1 &&
         (statistic == Statistic::Sum || statistic == Statistic::Count || isSpread(statistic));
-    if (values.size() != 1 || isOfRepeats) return summary;
+    if (processes != 1 || isOfRepeats) return summary;
     const std::vector<double> repeats = byRepeat(all, statistic);
     if (repeats.size() < 2) return summary;
     summary.bounds = Bounds::Range;
@@ -136,7 +148,7 @@ Summary summaryOf(double value, std::map<int, double> rounds, bool areDraws) {
         summary.bounds = Bounds::Interval;
         summary.interval = drawsInterval(std::move(values));
     } else if (!values.empty()) {
-        fillFromRounds(values, summary);
+        fillFromRounds(std::move(values), summary);
     }
     return summary;
 }
