@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <regex>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -15,8 +16,8 @@
 #include "engine/core/text.h"
 #include "runner/config/experiment.h"
 #include "runner/records/csv.h"
-
 #include "runner/tables/summary.h"
+
 namespace gfxrepro::tables {
 
 // The records of each case.
@@ -336,7 +337,7 @@ void lookAtMetrics(LayoutCases& cases) {
                 if (config::isTimeMetric(metric) || config::isOfDevice(metric)) continue;
                 cases.differing.insert(metric);
                 if (!cases.isOfProgram) continue;
-                (isOfMemory(row->unit) ? cases.isMemoryDoubted : cases.isDoubted) = true;
+                (isOfMachine(metric, row->unit) ? cases.isMachineDoubted : cases.isDoubted) = true;
             }
         }
     }
@@ -344,19 +345,22 @@ void lookAtMetrics(LayoutCases& cases) {
 
 }  // namespace
 
-bool isOfMemory(std::string_view unit) {
-    static constexpr std::string_view kUnits[] = {"byte", "bytes", "B",   "kB",  "KB",  "MB",
-                                                  "GB",   "TB",    "KiB", "MiB", "GiB", "TiB"};
-    return std::ranges::find(kUnits, unit) != std::end(kUnits);
+bool isOfMachine(std::string_view metric, std::string_view unit) {
+    static const std::regex kUnits(
+        "([kmgt]i?)?(b|bytes?)|(kilo|mega|giga|tera|kibi|mebi|gibi|tebi)bytes?|[kmgt]i"
+        "|([numkg]|µ)?(j|w|wh|hz)|joules?|watts?|°c|degc|celsius",
+        std::regex::icase);
+    return metric.find("memory") != metric.npos ||
+           std::regex_match(unit.begin(), unit.end(), kUnits);
 }
 
-bool LayoutCases::isInDoubt(const std::string& metric, bool isSetup, bool isMemory) const {
+bool LayoutCases::isInDoubt(const std::string& metric, bool isSetup, bool isMachine) const {
     if (config::isTimeMetric(metric) || config::isOfDevice(metric)) return false;
     if (differing.contains(metric)) return true;
     const bool isKnown =
         config::isTestOfMeans(metric) || (!isOfElsewhere && config::isPictureError(metric));
     if (!isOfProgram || isSetup || isKnown) return false;
-    return isDoubted || (isMemory && isMemoryDoubted);
+    return isDoubted || (isMachine && isMachineDoubted);
 }
 
 std::string LayoutCases::recordedInstead(const std::string& metric) const {

@@ -114,8 +114,9 @@ class CaseIndex {
     std::vector<Axis> axes_;
 };
 
-/// Whether a number of that unit is of memory.
-bool isOfMemory(std::string_view unit);
+/// Whether a number is of memory, energy, power, heat or a rate in hertz: by its unit, of memory by
+/// its name, too. They differ in any program, and tell nothing of what it computes.
+bool isOfMachine(std::string_view metric, std::string_view unit);
 
 /// The cases of a layout. `axes` names the sweep axes of its rows and columns and of all `where`
 /// selections, which are `namedAxes`, and behind them those that are swept beside; cases carry
@@ -132,14 +133,14 @@ struct LayoutCases {
     std::set<std::string> recorded;  // metrics
     /// Metrics that came to other values in some case when they were taken again, with no seed
     /// declared, whatever the layout shows of them; of a program or an import whether there are
-    /// some, and of memory, which differs in any.
+    /// some, and of what isOfMachine, which differs in any.
     std::set<std::string> differing;
-    bool isDoubted = false, isMemoryDoubted = false;
+    bool isDoubted = false, isMachineDoubted = false;
 
     /// Whether numbers of the metric are no surer than chance: they differ, or a program or an
     /// import says them that says others which differ. Known without are what set-up recorded, and
     /// errors of a picture that each process is known to make alike.
-    bool isInDoubt(const std::string& metric, bool isSetup, bool isMemory) const;
+    bool isInDoubt(const std::string& metric, bool isSetup, bool isMachine) const;
 
     /// What there is where nothing that was measured elsewhere is called so; else empty: of what
     /// is measured here `check` knows.

@@ -189,9 +189,9 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
 }
 
 bool isInDoubt(const CellQuery& query, const LayoutCases& cases, const Gathered& gathered) {
-    const bool isOfSetup = gathered.frames == std::set<int>{records::kSetup};
-    return cases.isInDoubt(query.metric, isOfSetup,
-                           std::ranges::any_of(gathered.units, isOfMemory));
+    const auto isMachine = [&](const std::string& unit) { return isOfMachine(query.metric, unit); };
+    return cases.isInDoubt(query.metric, gathered.frames == std::set<int>{records::kSetup},
+                           std::ranges::any_of(gathered.units, isMachine));
 }
 
 /// The passes for which the matching cases recorded the metric: for the message when the one that

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <vector>
 
 #include "engine/core/random.h"
 #include "tests/support/support.h"
@@ -146,27 +148,92 @@ TEST(Unseeded, EqualNumbersAreAtTheirBound) {
     }
 }
 
-/// Memory differs in any program, and says nothing of what it computes.
-TEST(Unseeded, MemoryTellsOfMemoryAlone) {
-    for (const char* unit : {"byte", "kB", "MB", "GB", "MiB"}) {
-        tables::RecordMaker maker;
-        maker.beginCase("", R"({"n":1})");
-        for (int process = 0; process < 3; ++process) {
-            maker.process(process).add("heap", {1e6 + 10.0 * process}, "", unit);
-            maker.add("rays", {4.0}, "", "ray").add("stack", {1e3}, "", unit);
-        }
-        for (const auto& [column, verdict] : {std::pair("rays", Verdict::Holds),
-                                              {"stack", Verdict::Ambiguous},
-                                              {"heap", Verdict::Ambiguous}}) {
-            const std::string body = fmt::format(
-                "sweep: {{n: [1]}}\nlayout: {{rows: n, columns: {{rays: {{metric: rays}}, "
-                "heap: {{metric: heap}}, stack: {{metric: stack}}}}}}\n"
-                "claims: {{C: {{says: so, bound: {}, at_least: 1}}}}\n",
-                column);
-            EXPECT_EQ(resultOf(experimentOf(Of::Import, body), maker.records()).verdict, verdict)
-                << column << unit;
+/// `heap` differs in three processes; the verdict on the other number.
+Verdict besideWhatDiffers(const std::string& name, const std::string& unit,
+                          const std::string& other, const std::string& otherUnit) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})");
+    for (int process = 0; process < 3; ++process) {
+        maker.process(process).add(name, {1e6 + 10.0 * process}, "", unit);
+        maker.add(other, {4.0}, "", otherUnit);
+    }
+    const std::string body = fmt::format(
+        "sweep: {{n: [1]}}\nlayout: {{rows: n, columns: {{other: {{metric: {}}}}}}}\n"
+        "claims: {{C: {{says: so, bound: other, at_least: 1}}}}\n",
+        other);
+    return resultOf(experimentOf(Of::Import, body), maker.records()).verdict;
+}
+
+/// Memory, energy, power, heat and clocks differ in any program, and say nothing of what it
+/// computes.
+TEST(Unseeded, MemoryAndEnergyTellOfTheirLikeAlone) {
+    for (const char* unit :
+         {"byte",      "bytes", "Byte", "B",   "kB",  "kb", "KB",  "KBytes",    "MB",  "mb",
+          "megabytes", "GB",    "TB",   "KiB", "MiB", "Mi", "GiB", "gibibytes", "J",   "kJ",
+          "Wh",        "kWh",   "W",    "mW",  "°C",  "Hz", "MHz", "GHz",       "watt"}) {
+        EXPECT_EQ(besideWhatDiffers("heap", unit, "rays", "ray"), Verdict::Holds) << unit;
+        EXPECT_EQ(besideWhatDiffers("heap", unit, "stack", "kB"), Verdict::Ambiguous) << unit;
+    }
+    EXPECT_EQ(besideWhatDiffers("peak_memory_mb", "1", "rays", "ray"), Verdict::Holds);
+    EXPECT_EQ(besideWhatDiffers("peak_memory_mb", "1", "stack", "kB"), Verdict::Ambiguous);
+    for (const char* unit : {"1", "%", "ray", "kbit", "m", "Gray"}) {
+        EXPECT_EQ(besideWhatDiffers("heap", unit, "rays", "ray"), Verdict::Ambiguous) << unit;
+    }
+}
+
+/// A sum in another order is the same number.
+TEST(Unseeded, NumbersThatDifferByTheirRoundingAreEqual) {
+    for (const int processes : {2, 3, 5, 6}) {
+        for (const bool isBesideNoise : {false, true}) {
+            tables::RecordMaker maker;
+            for (const int n : {1, 2}) {
+                maker.beginCase("", fmt::format(R"({{"n":{}}})", n));
+                for (int process = 0; process < processes; ++process) {
+                    const double rounding = 1.0 + 2e-16 * process;
+                    maker.process(process).add("e", {(n == 1 ? 0.4 : 0.5) * rounding}, "", "1");
+                    if (isBesideNoise) maker.add("noise", {1.0 + 0.1 * process}, "", "1");
+                }
+            }
+            for (const char* claim : {"order: [n=1, n=2], of: e", "bound: e, at_least: 0.3",
+                                      "ratio: n=1 / n=2, of: e, at_most: 0.81"}) {
+                const ClaimResult result = resultOf(
+                    experimentOf(Of::Import,
+                                 fmt::format("sweep: {{n: [1, 2]}}\nlayout: {{rows: n, columns: "
+                                             "{{e: {{metric: e}}}}}}\n"
+                                             "claims: {{C: {{says: so, {}}}}}\n",
+                                             claim)),
+                    maker.records());
+                const bool isOpen = isBesideNoise && processes < 6;
+                EXPECT_EQ(result.verdict, isOpen ? Verdict::Ambiguous : Verdict::Holds) << claim;
+                EXPECT_EQ(result.reason,
+                          isOpen
+                              ? fmt::format("{}{} equal processes beside numbers that differ; an "
+                                            "interval needs 6 processes",
+                                            claim[0] == 'b' ? "worst at n 1; " : "", processes)
+                              : std::string(claim[0] == 'b' ? "worst at n 1" : ""))
+                    << claim;
+                EXPECT_THAT(result.measured, testing::Not(testing::HasSubstr("…"))) << claim;
+            }
         }
     }
+}
+
+/// What a device counts may differ between processes, which are no scenes.
+TEST(Unseeded, CountsOfADeviceThatDifferNeedSixProcesses) {
+    const auto judge = [](int processes) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})");
+        for (int process = 0; process < processes; ++process) {
+            maker.process(process).add("work_fragments", {100.0 + process}, "", "1");
+        }
+        return resultOf(tables::experimentFrom(
+                            "sweep: {n: [1]}\nlayout: {rows: n, columns: {w: {metric: "
+                            "work_fragments}}}\nclaims: {C: {says: so, bound: w, at_least: 1}}\n"),
+                        maker.records());
+    };
+    EXPECT_EQ(judge(5).verdict, Verdict::Ambiguous);
+    EXPECT_EQ(judge(5).reason, "a range of 5 processes; an interval needs 6");
+    EXPECT_EQ(judge(6).verdict, Verdict::Holds);
 }
 
 /// Numbers of two values, one as likely as the other, beside one that always differs: how often
