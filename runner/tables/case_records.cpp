@@ -306,14 +306,41 @@ std::vector<std::size_t> candidates(const LayoutCases& cases, const Where& where
     return all;
 }
 
+/// Counts the values of a swept seed: all together where some are shared, but from 0 among cases
+/// that share none with others. These are independent, and stand beside each other in any order.
 void countSweptSeeds(LayoutCases& cases) {
     const auto axis = std::ranges::find(cases.axes, kSeedAxis) - cases.axes.begin();
     if (axis == std::ssize(cases.axes)) return;
-    std::map<std::string, int> places;
+    const auto seedOf = [axis](CaseRecords& item) -> std::optional<std::string>& {
+        return item.axes[static_cast<std::size_t>(axis)];
+    };
+    std::map<AxisValues, std::vector<CaseRecords*>> alike;  // but for the seed
     for (CaseRecords& item : cases.cases) {
-        const auto& value = item.axes[static_cast<std::size_t>(axis)];
-        if (!value || *value == kLeftOut) continue;
-        item.sweptSeed = places.try_emplace(*value, static_cast<int>(places.size())).first->second;
+        if (item.processes.empty() || seedOf(item).value_or(std::string(kLeftOut)) == kLeftOut)
+            continue;
+        AxisValues others = item.axes;
+        others[static_cast<std::size_t>(axis)].reset();
+        alike[others].push_back(&item);
+    }
+    std::map<std::string, int> families;  // of each seed
+    int next = 0;
+    bool isTakenOnce = true;
+    for (const auto& [others, items] : alike) {
+        const int own = next++;
+        for (CaseRecords* item : items) {
+            isTakenOnce &= item->processes.size() == 1;
+            const int family = families.try_emplace(*seedOf(*item), own).first->second;
+            if (family == own) continue;
+            for (auto& [seed, one] : families) one = one == family ? own : one;
+        }
+    }
+    std::map<int, std::map<std::string, int>> places;
+    for (CaseRecords& item : cases.cases) {
+        const auto family = families.find(seedOf(item).value_or(""));
+        if (family == families.end() || item.processes.empty()) continue;
+        std::map<std::string, int>& own = places[family->second];
+        item.sweptSeed = own.try_emplace(family->first, static_cast<int>(own.size())).first->second;
+        item.isSeedARun = isTakenOnce;
     }
 }
 

@@ -73,6 +73,7 @@ struct CaseRecords {
     bool isRepeated = false;
     /// Of a program or an import whose sweep has an axis `seed`: which of its values, from 0.
     std::optional<int> sweptSeed = {};
+    bool isSeedARun = false;  // each of them was taken in one process, which timed it
 
     std::uint64_t seedOf(int process) const {
         if (sweptSeed && seeds == config::Measure::Seeds::None)

@@ -140,12 +140,14 @@ bool isOfItsSeed(const std::string& metric) {
            !config::isTestOfMeans(metric);
 }
 
-/// Whether each value of a swept seed is a round of its own, as a process with its seed is.
+/// Whether each value of a swept seed is a round of its own, as a process with its seed is; of a
+/// time, where it is a process.
 bool isRoundOfSeed(const CaseRecords& run, const CellQuery& query) {
     using Seeds = config::Measure::Seeds;
-    const bool isDrawn = run.sweptSeed && run.sceneSeeds == 1 && isOfItsSeed(query.metric);
-    return isDrawn && (run.seeds == Seeds::None ? !run.scatters(query.metric, query.pass)
-                                                : run.seeds == Seeds::Case);
+    if (!run.sweptSeed || run.sceneSeeds > 1) return false;
+    if (!isOfItsSeed(query.metric)) return config::isTimeMetric(query.metric) && run.isSeedARun;
+    return run.seeds == Seeds::None ? !run.scatters(query.metric, query.pass)
+                                    : run.seeds == Seeds::Case;
 }
 
 void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>& unitOfFrame,
@@ -161,7 +163,7 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             continue;
         }
         std::map<int, std::vector<double>> process;
-        bool isRandom = isOfSeed || (run.seeds != Seeds::None && isOfItsSeed(query.metric));
+        bool isRandom = isOfItsSeed(query.metric) && (isOfSeed || run.seeds != Seeds::None);
         for (const records::Record* record : attempt.values(query.metric, query.pass)) {
             if (!matchesFrame(query.where, record->frame)) continue;
             const auto [unit, isNew] = unitOfFrame.try_emplace(record->frame, unitCount);

@@ -337,6 +337,59 @@ TEST(Unseeded, WhatTheSweepLeavesWithoutASeedIsCertain) {
 
 TEST(Unseeded, ValuesOfASweptSeedAreRounds) {
     constexpr int kTrials = test::kIsSanitized ? 60 : 400;
+/// Rows a and b of so many seeds each, those of b from `first` on, with a time in so many
+/// processes.
+ClaimResult judgeSeedsOf(const std::string& metric, int seeds, int first, int processes) {
+    tables::RecordMaker maker;
+    Random random(5);
+    std::string values;
+    for (const char* m : {"a", "b"}) {
+        for (int i = 0; i < seeds; ++i) {
+            const int seed = i + (m[0] == 'b' ? first : 0);
+            if (m[0] == 'a' || seed >= seeds) {
+                values += fmt::format("{}{}", values.empty() ? "" : ", ", seed);
+            }
+            maker.beginCase("", fmt::format(R"({{"m":"{}","seed":{}}})", m, seed));
+            for (int process = 0; process < processes; ++process) {
+                const double value = (m[0] == 'a' ? 1.0 : 1.2) + 0.05 * double{random.uniform()};
+                maker.process(process).add(metric, {value}, "", metric == "e" ? "1" : "ms");
+            }
+        }
+    }
+    const config::Experiment experiment = experimentOf(
+        Of::Import,
+        fmt::format("sweep: {{m: [a, b], seed: [{0}]}}\nlayout: {{rows: m, columns: {{x: "
+                    "{{metric: {1}, where: {{seed: [{0}]}}}}}}}}\n"
+                    "claims: {{C: {{says: so, order: [a, b], of: x}}}}\n",
+                    values, metric));
+    // Of an import there are the cases of the file alone.
+    std::vector<config::Case> planned = tables::planOf(experiment, maker.records());
+    std::erase_if(planned, [&](const config::Case& item) {
+        return std::ranges::find(maker.records().cases, item.id, &config::Case::id) ==
+               maker.records().cases.end();
+    });
+    return evaluateClaims(experiment, tables::buildTable(experiment, planned, maker.records()),
+                          {"llvmpipe", "software", "quick", "abc", ""})[0];
+}
+
+TEST(Unseeded, ATimeOfEachSweptSeedIsOneProcess) {
+    EXPECT_EQ(judgeSeedsOf("t_ms", 8, 0, 1).verdict, Verdict::Holds);
+    EXPECT_EQ(judgeSeedsOf("t_ms", 4, 0, 1).verdict, Verdict::Ambiguous);
+    EXPECT_EQ(judgeSeedsOf("t_ms", 4, 0, 1).reason, "a range of 4 processes; an interval needs 6");
+    EXPECT_EQ(judgeSeedsOf("t_ms", 8, 0, 3).reason, "a range of 3 processes; an interval needs 6")
+        << "rounds are of processes where there are several";
+}
+
+/// Rounds of seeds that nobody shares are independent; of shared ones each is one.
+TEST(Unseeded, SweptSeedsMayBeOthersForEach) {
+    for (const int first : {0, 6, 100}) {
+        const ClaimResult result = judgeSeedsOf("e", 6, first, 1);
+        EXPECT_EQ(result.verdict, Verdict::Holds) << first << result.reason;
+    }
+    EXPECT_THAT(judgeSeedsOf("e", 8, 3, 1).reason, testing::HasSubstr("a range of 5 processes"))
+        << "five seeds in common";
+}
+
     const std::string pooled = "rows: m, columns: {{e: {{metric: e, where: {{seed: [{}]}}}}}}";
     Random random(2);
     int alarms = 0, found = 0;
