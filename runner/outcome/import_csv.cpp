@@ -220,7 +220,7 @@ class Rows {
                                     column, known->second));
         }
         const bool hasSeed = !files_.isSeedSwept && !csv.cell(kSeed).empty();
-        rows.push_back({caseIndex, std::move(record), line, hasSeed});
+        rows.push_back({caseIndex, std::move(record), line, hasSeed, !csv.cell("frame").empty()});
     }
 
     std::vector<ImportedRow> rows;
@@ -374,31 +374,33 @@ void addRow(const NamedCsv& csv, const ImportFiles& files, std::size_t caseIndex
     rows.add(csv, caseIndex, std::move(record), "status");
 }
 
-/// What has no seed beside others that have is the set-up's: it draws no random numbers.
+/// What has neither a seed, beside others that have, nor a frame is the set-up's: it draws no
+/// random numbers.
 void placeSeedless(ImportedNumbers& numbers) {
     if (std::ranges::none_of(numbers.cases, &ImportedCase::hasSeeds)) return;
     for (ImportedRow& row : numbers.rows) {
-        const bool isOfSetup = !row.hasSeed && !config::isTimeMetric(row.record.metric);
-        if (isOfSetup) row.record.frame = records::kSetup;
+        const bool isOfFrame = row.hasFrame || config::isTimeMetric(row.record.metric);
+        if (!row.hasSeed && !isOfFrame) row.record.frame = records::kSetup;
     }
 }
 
-/// Where no two cases share a seed but share all, the processes of each are counted from 0; else a
-/// case lacks those of the seeds that others have.
-void countSeeds(ImportedNumbers& numbers) {
-    std::vector<std::set<int>> seeds(numbers.cases.size());
+/// Where no two cases share a process, or a seed, but share all, those of each are counted from 0;
+/// else a case lacks those that others have.
+void countProcesses(ImportedNumbers& numbers) {
+    const bool areSeeds = std::ranges::any_of(numbers.cases, &ImportedCase::hasSeeds);
+    std::vector<std::set<int>> processes(numbers.cases.size());
     for (const ImportedRow& row : numbers.rows) {
-        if (row.hasSeed) seeds[row.caseIndex].insert(row.record.process);
+        if (row.hasSeed == areSeeds) processes[row.caseIndex].insert(row.record.process);
     }
     std::map<int, const std::set<int>*> first;
-    for (const std::set<int>& own : seeds) {
-        for (const int seed : own) {
-            if (*first.try_emplace(seed, &own).first->second != own) return;
+    for (const std::set<int>& own : processes) {
+        for (const int process : own) {
+            if (*first.try_emplace(process, &own).first->second != own) return;
         }
     }
     for (ImportedRow& row : numbers.rows) {
-        const std::set<int>& own = seeds[row.caseIndex];
-        if (!row.hasSeed) continue;
+        const std::set<int>& own = processes[row.caseIndex];
+        if (row.hasSeed != areSeeds) continue;
         row.record.process =
             static_cast<int>(std::distance(own.begin(), own.find(row.record.process)));
     }
@@ -444,8 +446,8 @@ ImportedNumbers readImport(const ImportFiles& files) {
     }
     if (rows.rows.empty()) throw Error({files.file.string(), 0, 0}, "has a header and no row");
     numbers.rows = std::move(rows.rows);
-    if (!csv.has("frame")) placeSeedless(numbers);
-    countSeeds(numbers);
+    placeSeedless(numbers);
+    countProcesses(numbers);
     return numbers;
 }
 

@@ -42,7 +42,7 @@ struct ImportedRow {
     std::size_t caseIndex = 0;
     records::Record record;
     int line = 0;
-    bool hasSeed = false;
+    bool hasSeed = false, hasFrame = false;
 };
 
 struct ImportedNumbers {

@@ -49,6 +49,15 @@ TEST_F(ImportCsv, ASeedNumbersProcesses) {
         "method,seed,metric,value\na,1,rmse,1\na,2,rmse,2\na,3,rmse,3\nb,2,rmse,4\nb,3,rmse,5\n");
     EXPECT_EQ(parts.rows[3].record.process, 1) << "as of the same seed elsewhere";
     EXPECT_EQ(parts.rows[4].record.process, 2);
+    const ImportedNumbers apart =
+        read("method,process,metric,value\na,2,rmse,1\na,4,rmse,2\nb,5,rmse,3\nb,7,rmse,4\n");
+    EXPECT_EQ(apart.rows[2].record.process, 0) << "processes that nobody shares";
+    EXPECT_EQ(apart.rows[3].record.process, 1);
+    const ImportedNumbers framed = read(
+        "method,seed,frame,metric,value\na,7,0,rmse,1\na,,,rays,5\na,,0,nodes,5\na,,,t_ms,5\n");
+    std::vector<int> frames;
+    for (const ImportedRow& row : framed.rows) frames.push_back(row.record.frame);
+    EXPECT_EQ(frames, (std::vector<int>{0, records::kSetup, 0, 0})) << "of no seed and no frame";
     EXPECT_EQ(refusal("method,seed,metric,value\na,7,rmse,1\nb,,rmse,2\n"),
               "DIR/a.csv:3: 'rmse' has no seed; in line 2 it has the seed '7'; allowed: one in all "
               "of its rows, or in none; what draws no random numbers has the same value with each");
