@@ -37,7 +37,7 @@ constexpr std::chrono::hours kRunLimit{24};
 /// A run's series with what they were measured on.
 struct Measured {
     regression::SeriesMap series;
-    regression::CaseTexts failures, voidTimes;
+    regression::CaseTexts failures, voidTimes, once;  // the latter without a seed
     std::size_t untimedCases = 0;
     std::string machine;
     std::string commit;
@@ -71,6 +71,7 @@ Measured readMeasured(const fs::path& runDir) {
     Measured measured{regression::seriesOf(run.records, params, byClock),
                       regression::failuresOf(run.records, params),
                       regression::voidTimesOf(run.records, params),
+                      regression::onceOf(run.records, params, unseeded),
                       regression::untimedCases(run.records),
                       run::machineName(run.manifest),
                       run.manifest.at("commit").get<std::string>(),
@@ -206,6 +207,7 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
         older.series, newer.series, Pairing::Apart, {.byProcess = newer.byProcess});
     regression::noteFailures(differences, older.failures, newer.failures);
     regression::noteVoidTimes(differences, older.voidTimes, newer.voidTimes);
+    regression::noteOnce(differences, older.once, newer.once);
     for (const auto& [file, now] : newer.programs) {
         const auto then = older.programs.find(file);
         if (then == older.programs.end() || then->second == now) continue;

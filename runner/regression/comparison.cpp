@@ -487,4 +487,18 @@ void noteVoidTimes(std::vector<Difference>& differences, const CaseTexts& before
     }
 }
 
+void noteOnce(std::vector<Difference>& differences, const CaseTexts& before,
+              const CaseTexts& after) {
+    if (before.empty() || after.empty()) return;
+    const Cases cases(differences, before, after);
+    const CaseTexts earlier = cases.matched(before), later = cases.matched(after);
+    for (Difference& one : differences) {
+        const SeriesKey key = cases.of(one.key);
+        const bool isOnce = textOf(earlier, key) && textOf(later, key);
+        if (one.verdict != Verdict::Changed || !isOnce) continue;
+        one.verdict = Verdict::CannotTell;
+        one.reason = kOnce;
+    }
+}
+
 }  // namespace gfxrepro::regression

@@ -98,6 +98,14 @@ void noteFailures(std::vector<Difference>& differences, const CaseTexts& before,
 void noteVoidTimes(std::vector<Difference>& differences, const CaseTexts& before,
                    const CaseTexts& after);
 
+/// Where nothing says whether another process would make another.
+inline constexpr const char* kOnce =
+    "one process of each side, and no seed is declared; two a side tell whether they differ";
+
+/// What changed of a case that one process of each side told, without a seed, is CannotTell.
+void noteOnce(std::vector<Difference>& differences, const CaseTexts& before,
+              const CaseTexts& after);
+
 /// Adds what became of the pictures. Those that are lost with all that was measured of their case
 /// are Missing: the case is an alarm already. In the order of their keys.
 void addPictures(std::vector<Difference>& differences, std::vector<Difference> pictures);

@@ -207,7 +207,7 @@ Difference compareAndKeep(const Pair& pair, const PictureRules& rules) {
             "; processes of one side made other pictures, too, and no seed is declared";
     } else if (result.picture && pair.before.isOnce && pair.after.isOnce) {
         result.verdict = Verdict::CannotTell;
-        result.reason += "; one process of each side, and no seed is declared";
+        result.reason += fmt::format("; {}", kOnce);
     }
     result.evidence = evidenceName(pair.after.png.empty() ? pair.after.exr : pair.after.png);
     const fs::path target = rules.folder / result.evidence;

@@ -178,6 +178,17 @@ CaseTexts failuresOf(const std::vector<records::Record>& records, const CasePara
     return failures;
 }
 
+CaseTexts onceOf(const std::vector<records::Record>& records, const CaseParams& params,
+                 const std::set<std::string>& cases) {
+    CaseTexts once, again;
+    for (const records::Record& record : records) {
+        if (!cases.contains(record.caseId)) continue;
+        (record.process > 0 ? again : once).try_emplace(keyOf(record, params, "status"), "");
+    }
+    std::erase_if(once, [&](const auto& one) { return again.contains(one.first); });
+    return once;
+}
+
 CaseTexts voidTimesOf(const std::vector<records::Record>& records, const CaseParams& params) {
     CaseTexts texts;
     for (const records::Record& record : records) {

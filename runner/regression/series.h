@@ -71,6 +71,9 @@ using CaseTexts = std::map<SeriesKey, std::string>;
 CaseTexts failuresOf(const std::vector<records::Record>& records, const CaseParams& params);
 /// Why times of cases are void: "frame 0: the picture of repeat 0 is blank: …".
 CaseTexts voidTimesOf(const std::vector<records::Record>& records, const CaseParams& params);
+/// Those of these cases that one process measured.
+CaseTexts onceOf(const std::vector<records::Record>& records, const CaseParams& params,
+                 const std::set<std::string>& cases);
 /// How many cases ran side by side in the quality lane, so that their times are not compared.
 std::size_t untimedCases(const std::vector<records::Record>& records);
 

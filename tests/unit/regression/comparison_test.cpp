@@ -283,6 +283,43 @@ TEST(Comparison, NumbersThatScatterAreNotChangedByChance) {
     EXPECT_EQ(told({1, 1, 1}, {2, 2, 2}).verdict, Verdict::Changed);
 }
 
+/// As the pictures beside it; of a case that declares a seed, or was measured again, it is a
+/// change.
+TEST(Comparison, ANumberOfOneProcessASideWithoutASeedCannotTell) {
+    records::Record record;
+    record.table = "t";
+    record.technique = "external";
+    record.caseId = "a";
+    record.lane = "quality";
+    record.metric = "rmse";
+    record.unit = "1";
+    const auto sideOf = [&](std::vector<double> values) {
+        std::vector<records::Record> side;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            record.process = static_cast<int>(i);
+            record.value = values[i];
+            side.push_back(record);
+        }
+        return side;
+    };
+    const auto told = [](const std::vector<records::Record>& before,
+                         const std::vector<records::Record>& after,
+                         const std::set<std::string>& unseeded) {
+        std::vector<Difference> differences =
+            compare(seriesOf(before, {}), seriesOf(after, {}), Pairing::Apart);
+        noteOnce(differences, onceOf(before, {}, unseeded), onceOf(after, {}, unseeded));
+        return differences.front();
+    };
+    const Difference once = told(sideOf({0.5}), sideOf({0.6}), {"a"});
+    EXPECT_EQ(once.verdict, Verdict::CannotTell);
+    EXPECT_EQ(once.reason,
+              "one process of each side, and no seed is declared; two a side tell whether they "
+              "differ");
+    EXPECT_EQ(told(sideOf({0.5}), sideOf({0.6}), {}).verdict, Verdict::Changed) << "of a seed";
+    EXPECT_EQ(told(sideOf({0.5, 0.5}), sideOf({0.6}), {"a"}).verdict, Verdict::Changed);
+    EXPECT_EQ(told(sideOf({0.5}), sideOf({0.5}), {"a"}).verdict, Verdict::Same);
+}
+
 TEST(Comparison, TellsWhyRunsMeasuredApartCannotDecide) {
     const auto reason = [](const Series& after) {
         SeriesMap before, later;

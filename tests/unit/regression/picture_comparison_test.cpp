@@ -122,7 +122,8 @@ TEST_F(Pictures, OneThatEachProcessMakesAlikeStillChanges) {
     const Difference once = only(true);
     EXPECT_EQ(once.verdict, Verdict::CannotTell);
     EXPECT_THAT(once.reason,
-                HasSubstr("(0 allowed); one process of each side, and no seed is declared"));
+                HasSubstr("(0 allowed); one process of each side, and no seed is declared; two a "
+                          "side tell whether they differ"));
     records["a"].push_back(records["a"].front());
     records["a"].back().process = 1;
     EXPECT_EQ(only(true).verdict, Verdict::Changed);
