@@ -85,7 +85,8 @@ const KeyTable<ContentKeys>& contentTable() {
          {&C::sweep, "sweep", "{axis: values}", "{}", "axes multiply: each point is a case",
           refTo("sweep")},
          {&C::measure, "measure", "map",
-          "once; where times are shown, and of sweep_of without layout: six rounds, or a minute",
+          "once, a program without {seed} twice; where times are shown, and of sweep_of without "
+          "layout: six rounds, or a minute",
           "lane, warm-up, repeats and processes", refTo("measure")},
          {&C::shows, "shows", "[name]", "those with a truth",
           "pictures that the document shows, by the names that the technique gives them (`classes` "
@@ -381,6 +382,10 @@ void readLane(const Node& document, const ContentKeys& keys, Experiment& experim
     const bool isByProcess = given ? given->isScalar() && given->text() == "process"
                                    : defaults.seeds == Measure::Seeds::Process;
     if (isByProcess) defaults.processes = kFewestRounds;
+    // One run of a program without a seed does not tell whether another comes to the same.
+    const bool isUnseeded =
+        !programOf(experiment).isNull() && defaults.seeds == Measure::Seeds::None;
+    if (isUnseeded) defaults.processes = 2;
     Params params(node ? *node : Node(), "measure");
     experiment.measure = readMeasure(params, defaults);
     requireTold(document, keys, experiment);

@@ -97,7 +97,7 @@ const std::string kPicture =
 /// As init systems and wrappers of jobs leave it.
 TEST_F(ExternalProgram, FailuresAreSeenWhereTheEndsOfChildrenWereIgnored) {
     const std::string config =
-        write("sweep: {behaviour: [ok, crash, fails]}\nmeasure: {lane: quality}\n");
+        write("sweep: {behaviour: [ok, crash, fails]}\nmeasure: {lane: quality, processes: 1}\n");
     EXPECT_THAT(
         endedWith(4, runProgram({"/bin/sh", "-c", "trap '' CHLD; exec \"$0\" \"$@\"",
                                  GFXREPRO_PROGRAM, "run", config, "--jobs", "1", "--out", dir}))
@@ -109,7 +109,7 @@ TEST_F(ExternalProgram, FailuresAreSeenWhereTheEndsOfChildrenWereIgnored) {
 
 TEST_F(ExternalProgram, ALongMessageIsShortOnTheConsole) {
     const ProcessResult result =
-        run(write("params: {behaviour: long}\nmeasure: {lane: quality}\n"));
+        run(write("params: {behaviour: long}\nmeasure: {lane: quality, processes: 1}\n"));
     EXPECT_THAT(result.err, HasSubstr("xxx … (journal.jsonl)\n"));
     EXPECT_LT(result.err.size(), 800U);
     EXPECT_THAT(readFile(dir + "/journal.jsonl"), HasSubstr(std::string(2500, 'x')));
@@ -120,7 +120,7 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
         write(kPicture +
               "sweep: {behaviour: [ok, crash, fails, hangs, silent, not_a_number, wrong_unit, "
               "undeclared, deep, no_json, twice, no_picture, half_picture, other_size, flatters]}\n"
-              "measure: {lane: quality, time_limit_s: 2}\n");
+              "measure: {lane: quality, processes: 1, time_limit_s: 2}\n");
     const ProcessResult result = endedWith(4, run(config, {"--jobs", "2"}));
     EXPECT_THAT(result.out, HasSubstr("1 of 15 finished, 14 failed; "));
     std::vector<std::string> lines = statusLines(dir);
@@ -166,7 +166,7 @@ TEST_F(ExternalProgram, ATimeBelowZeroIsNoneAndItsLastLinesAreKept) {
     head.insert(head.find(metrics) + metrics.size(), ", own_ms: {unit: ms, optional: true}");
     const std::string config =
         folder.write("mine.yaml", head + "sweep: {behaviour: [ok, early, talks]}\n").string();
-    EXPECT_EQ(run(config, {"--set", "measure.lane=quality"}).exitCode, 4);
+    EXPECT_EQ(run(config, {"--set", "measure={lane: quality, processes: 1}"}).exitCode, 4);
     std::vector<std::string> lines = statusLines(dir);
     std::ranges::sort(lines);
     EXPECT_THAT(
@@ -178,7 +178,7 @@ TEST_F(ExternalProgram, ATimeBelowZeroIsNoneAndItsLastLinesAreKept) {
 
 TEST_F(ExternalProgram, RecordsWhatItSaysAndHowFarItsPictureIsFromTheTruth) {
     const ProcessResult result =
-        run(write(kPicture + "sweep: {given: [3, 5]}\nmeasure: {lane: quality}\n"));
+        run(write(kPicture + "sweep: {given: [3, 5]}\nmeasure: {lane: quality, processes: 1}\n"));
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_EQ(rowsOf(dir, "number").size(), 2U);
     EXPECT_EQ(rowsOf(dir, "number").at(0).unit, "1");
@@ -271,10 +271,10 @@ TEST_F(ExternalProgram, AChangedOneIsNotResumed) {
 }
 
 TEST_F(ExternalProgram, OneThatIsNotHereIsUnsupported) {
-    const std::string config =
-        folder.write("none.yaml",
-                     "sweep_of: none\ntitle: T\ntechnique: external\n"
-                     "program: {command: no-such-program-anywhere}\nmeasure: {lane: quality}\n");
+    const std::string config = folder.write(
+        "none.yaml",
+        "sweep_of: none\ntitle: T\ntechnique: external\n"
+        "program: {command: no-such-program-anywhere}\nmeasure: {lane: quality, processes: 1}\n");
     EXPECT_THAT(endedWith(0, gfxrepro({"check", config})).out,
                 HasSubstr("the program 'no-such-program-anywhere' is not on this "
                           "machine: its cases will be unsupported"));
@@ -296,7 +296,7 @@ TEST_F(ExternalProgram, TheTruthIsMadeOnce) {
     const std::string config = write(
         "  images: {result: {file: result.png, truth: {given: 99}}}\n"
         "output: {width: 32, height: 16}\n"
-        "sweep: {given: [1, 2, 3]}\nmeasure: {lane: quality}\n");
+        "sweep: {given: [1, 2, 3]}\nmeasure: {lane: quality, processes: 1}\n");
     ASSERT_EQ(run(config, {"--jobs", "1"}).exitCode, 0);
     EXPECT_EQ(readFile(folder.path() / "runs"), "1\n99\n2\n3\n");
     for (const records::Record& row : rowsOf(dir, "mse")) EXPECT_EQ(row.value, 0.0);
@@ -323,7 +323,8 @@ void waitFor(Condition&& condition) {
 }
 
 TEST_F(ExternalProgram, AllThatItStartedDiesWithItsWorkerAndWithAnInterruptedRun) {
-    const std::string config = write("params: {behaviour: hangs}\nmeasure: {lane: quality}\n");
+    const std::string config =
+        write("params: {behaviour: hangs}\nmeasure: {lane: quality, processes: 1}\n");
     BackgroundProgram run({GFXREPRO_PROGRAM, "run", config, "--out", dir});
     waitFor([&] { return processesIn(dir).size() == 2; });  // the shell and its child
     const std::vector<pid_t> first = processesIn(dir);
@@ -344,7 +345,7 @@ TEST_F(ExternalProgram, AllThatItStartedDiesWithItsWorkerAndWithAnInterruptedRun
 
 TEST_F(ExternalProgram, DiesWithAKilledRunWhoseLeftoversHarmNobody) {
     folder.write("renderer.sh", "#!/bin/sh\nln -s / link\nexec sleep 100\n");
-    const std::string config = write("measure: {lane: quality}\n");
+    const std::string config = write("measure: {lane: quality, processes: 1}\n");
     BackgroundProgram run({GFXREPRO_PROGRAM, "run", config, "--out", dir});
     waitFor([&] { return processesIn(dir).size() == 1; });
     run.signal(SIGKILL);
@@ -506,7 +507,7 @@ TEST_F(ExternalProgram, TakesASceneOfTheCatalogue) {
         "scene.yaml",
         "sweep_of: scene\ntitle: T\ntechnique: external\n"
         "program: {command: \"{here}/renderer.sh {scene}\", metrics: {number: \"1\"}}\n"
-        "scene: shapes/sphere\nmeasure: {lane: quality}\n");
+        "scene: shapes/sphere\nmeasure: {lane: quality, processes: 1}\n");
     endedWith(0, run(config));
     EXPECT_GT(rowsOf(dir, "number").at(0).value, 1000.0);
     EXPECT_EQ(rowsOf(dir, "scene_triangles").size(), 1U);
@@ -516,10 +517,11 @@ TEST_F(ExternalProgram, SaysWhatTheFileOfItsSceneLeavesOut) {
     folder.write("a.ply",
                  "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
                  "property float z\nproperty float radius\nend_header\n0 0 0 1\n1 1 1 1\n");
-    const std::string config = folder.write("scene.yaml",
-                                            "sweep_of: scene\ntitle: T\ntechnique: external\n"
-                                            "program: {command: \"test -s {scene}\"}\n"
-                                            "scene: a.ply\nmeasure: {lane: quality}\n");
+    const std::string config =
+        folder.write("scene.yaml",
+                     "sweep_of: scene\ntitle: T\ntechnique: external\n"
+                     "program: {command: \"test -s {scene}\"}\n"
+                     "scene: a.ply\nmeasure: {lane: quality, processes: 1}\n");
     const ProcessResult result = run(config);
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_THAT(result.err,
