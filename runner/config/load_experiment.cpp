@@ -434,8 +434,10 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
     // its times may be asked for by the command line alone.
     Node asItStands = document;
     for (const Override& given : options.sets) {
-        const bool isTimed = given.value.isScalar() && given.value.text() == "timing";
-        if (given.key == "measure.lane" && isTimed) asItStands.setPath(given.key, given.value);
+        const Node* lane = given.key == "measure.lane" ? &given.value : nullptr;
+        if (given.key == "measure" && given.value.isMap()) lane = given.value.find("lane");
+        const bool isTimed = lane && lane->isScalar() && lane->text() == "timing";
+        if (isTimed) asItStands.setPath("measure.lane", *lane);
     }
     resolveNames(asItStands);
     Experiment experiment = readWhole(asItStands, file, true, configsFolder);

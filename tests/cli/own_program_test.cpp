@@ -142,8 +142,10 @@ TEST_F(OwnProgram, TheLaneOfTheCommandLineIsThatOfTheTable) {
         const std::string quality = fmt::format("measure: {{lane: quality}}\n{}", lines);
         EXPECT_THAT(refusal(quality), HasSubstr("'lane: quality' takes no times"));
         const auto file = folder.path() / "mine.yaml";
-        const ProcessResult result = gfxrepro({"check", file, "--set", "measure.lane=timing"});
-        EXPECT_EQ(result.exitCode, 0) << result.err;
+        for (const char* set : {"measure.lane=timing", "measure={lane: timing}"}) {
+            const ProcessResult result = gfxrepro({"check", file, "--set", set});
+            EXPECT_EQ(result.exitCode, 0) << result.err;
+        }
     }
 }
 
