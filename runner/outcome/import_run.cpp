@@ -262,6 +262,50 @@ void takeMeasures(const ImportedNumbers& numbers, std::vector<config::Case>& cas
     }
 }
 
+/// Whether `when` of its sweep leaves the case without a seed.
+bool isLeftWithoutSeed(const config::Case& item, const Node& when) {
+    config::AxisPoint point = item.axes.entries();
+    if (!item.axes.find("seed")) point.emplace_back("seed", Node::scalar("0"));
+    config::applyWhen(when, point);
+    return std::ranges::none_of(point, [](const auto& axis) { return axis.key() == "seed"; });
+}
+
+/// Where `when` leaves cases without a seed, these have none, and of a metric with seeds all others
+/// have one: a case without it would count as what never varies.
+void requireSeeds(const ImportedNumbers& numbers, const run::Plan& plan, const fs::path& file) {
+    std::map<std::string, int> seeded;  // by metric its first line with a seed
+    std::vector<std::optional<bool>> isLeftOut(plan.cases.size());
+    const auto hasSeed = [&](const ImportedRow& row) {
+        return plan.cases[row.caseIndex].axes.find("seed") != nullptr;
+    };
+    for (const ImportedRow& row : numbers.rows) {
+        if (hasSeed(row)) seeded.try_emplace(row.record.metric, row.line);
+    }
+    for (const ImportedRow& row : numbers.rows) {
+        const config::Case& item = plan.cases[row.caseIndex];
+        const auto experiment =
+            std::ranges::find(plan.experiments, item.experiment, &Experiment::id);
+        if (!isSeedLeftOut(*experiment)) continue;
+        std::optional<bool>& isOut = isLeftOut[row.caseIndex];
+        if (!isOut) isOut = isLeftWithoutSeed(item, *experiment->sweep.find("when"));
+        const auto refuse = [&](const std::string& what) {
+            throw Error({file.string(), row.line, 0}, "column 'seed': " + what);
+        };
+        if (*isOut && hasSeed(row)) {
+            refuse(
+                fmt::format("'{}'; allowed: nothing, as 'when' of the sweep leaves this case "
+                            "without one",
+                            item.axes.find("seed")->text()));
+        }
+        const auto other = seeded.find(row.record.metric);
+        if (*isOut || hasSeed(row) || other == seeded.end()) continue;
+        refuse(
+            fmt::format("is empty, and '{}' has one in line {}; allowed: nothing only where "
+                        "'when' of the sweep leaves a case without one",
+                        other->first, other->second));
+    }
+}
+
 void takeAxes(const ImportedNumbers& numbers, run::Plan& plan) {
     for (const Experiment& experiment : plan.experiments) {
         std::vector<config::Case*> own;
@@ -275,6 +319,41 @@ void takeAxes(const ImportedNumbers& numbers, run::Plan& plan) {
                 }
             }
         }
+    }
+}
+
+/// The first parameter in which they differ.
+std::string differenceOf(const config::Case& a, const config::Case& b) {
+    for (const config::Case* one : {&a, &b}) {
+        for (const auto& [name, value] : one->params.entries()) {
+            const Node* other = (one == &a ? b : a).params.find(name);
+            if (!other || !other->sameContent(value)) return name;
+        }
+    }
+    return "scene";
+}
+
+/// What is measured here, too, has a case at each point of its sweep: one of two would go into the
+/// other's cells.
+void requireOnePerPoint(const ImportedNumbers& numbers, const run::Plan& plan) {
+    std::map<std::string, std::size_t> first;
+    for (std::size_t i = 0; i < plan.cases.size(); ++i) {
+        const config::Case& item = plan.cases[i];
+        const auto experiment =
+            std::ranges::find(plan.experiments, item.experiment, &Experiment::id);
+        if (!config::isMeasuredHere(*experiment)) continue;
+        const std::string point =
+            fmt::format("{} {} {} {}", item.experiment, item.axes.toJson().dump(),
+                        item.recordedScene(), item.sceneSample.value_or(-1));
+        const auto [other, isNew] = first.try_emplace(point, i);
+        if (isNew) continue;
+        throw Error(
+            numbers.cases[i].where,
+            fmt::format("differs from line {} by '{}', which the sweep of {} does not have; "
+                        "allowed: one case at each point of it; what repeats a case has "
+                        "its number in the column 'process'",
+                        numbers.cases[other->second].where.line,
+                        differenceOf(plan.cases[other->second], item), item.experiment));
     }
 }
 
@@ -355,6 +434,7 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
     }
     takeMeasures(numbers, plan.cases);
     takeAxes(numbers, plan);
+    requireSeeds(numbers, plan, request.files.file);
     requireNames(numbers, plan, request.files.file);
     for (Experiment& experiment : plan.experiments) {
         experiment.paperCases = run::resolvePaperCases(experiment, catalog, techniques);
@@ -370,6 +450,7 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
         run::bindAssumptions(experiment, own, catalog, techniques);
     }
     identify(numbers, plan);
+    requireOnePerPoint(numbers, plan);
     for (const ImportedRow& row : numbers.rows) {
         const config::Case& item = plan.cases[row.caseIndex];
         records::Record record = row.record;
