@@ -72,10 +72,10 @@ ClaimReader::ClaimReader(const ClaimSpec& claim, const tables::Table& table)
     if (areColumnsWords && std::ranges::all_of(operands_, [](const Operand& operand) {
             return operand.columns().empty();
         })) {
-        throw ExpressionError(claim.location,
-                              fmt::format("{}: '{}' reads no column; the rows of an axis are "
+        throw ExpressionError(claim.location, owner,
+                              fmt::format("'{}' reads no column; the rows of an axis are "
                                           "compared with 'across: AXIS'",
-                                          owner, joined(claim.operands, "', '")));
+                                          joined(claim.operands, "', '")));
     }
     for (const auto& [axis, values] : claim.at) rowAxis(axis, "at");
     if (!claim.over) return;

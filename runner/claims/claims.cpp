@@ -239,6 +239,13 @@ std::string calibratedNote(const ClaimSpec& claim, const ClaimReader& reader) {
                                     : "some of what it reads is calibrated";
 }
 
+/// That nothing could have made what it reads worse; else empty.
+std::string ownTruthNote(const ClaimReader& reader) {
+    return reader.readsSome(&tables::Cell::isOwnTruth)
+               ? "reads an error of a case against itself, 0 whatever the program does"
+               : "";
+}
+
 /// What the run and the profile `paper` lay out of their cases, without a measurement.
 struct Laid {
     config::Experiment paper;
@@ -387,7 +394,8 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& given,
         return result;
     }
     const std::string part = result.rows.empty() ? "" : fmt::format("on {}", result.rows);
-    for (const std::string& note : {unfit, clock, calibratedNote(claim, reader), part}) {
+    for (const std::string& note :
+         {unfit, clock, calibratedNote(claim, reader), ownTruthNote(reader), part}) {
         if (!note.empty()) result.reason += (result.reason.empty() ? "" : "; ") + note;
     }
     return result;
@@ -404,6 +412,8 @@ ClaimResult evaluateWhatIsThere(const ClaimSpec& claim, const tables::Table& tab
         }
     } catch (const AbsentColumnError& error) {
         why = "not among what was measured: " + error.text();
+    } catch (const ExpressionError& error) {  // where no table was known before
+        why = error.text();
     }
     ClaimResult result = unjudged(claim, table, context);
     if (result.verdict != Verdict::NotApplicable) result.reason = why;
@@ -506,6 +516,8 @@ std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {
                 return error.text() + acrossHint(label, own.rowAxes[axis]);
             }
         }
+        return error.text();
+    } catch (const ExpressionError& error) {
         return error.text();
     }
 }

@@ -307,6 +307,14 @@ std::string whyNoInterval(const Group& group) {
             "'{{median}}' has one",
             over->overProcesses);
     }
+    const auto isOnceAlong = [](const Sampled& value) { return !value.onceAlong.empty(); };
+    if (const Sampled* one = findIn(group, isOnceAlong)) {
+        return fmt::format(
+            "takes values of '{0}' together that were measured once each, and may repeat one case: "
+            "an axis of rows tells them apart; what repeats a case is its processes (of an import "
+            "the column 'process', or 'seed')",
+            one->onceAlong);
+    }
     if (findIn(group, &Sampled::isOnce)) return "one sample of a time decides nothing";
     std::optional<std::size_t> fewest;
     bool isDeclared = true, areEqual = true;

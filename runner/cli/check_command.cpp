@@ -426,6 +426,20 @@ void requireSound(const Context& context, const scene::Catalog& catalog,
     run::resolvePaperCases(experiment, catalog, context.techniques);
 }
 
+void requireLaidOut(const Context& context, const scene::Catalog& catalog,
+                    const run::StoredRun& imported) {
+    const run::Plan& plan = imported.plan;
+    for (const config::Experiment& experiment : plan.experiments) {
+        if (config::isMeasuredHere(experiment)) continue;
+        const std::vector<config::Case> swept = casesOf(context, catalog, experiment);
+        tables::requireCases(experiment,
+                             std::vector{tables::gatherCases(experiment, swept, {}),
+                                         tables::gatherCases(experiment, plan.cases, {})});
+        tables::requireToldApart(experiment,
+                                 tables::buildTable(experiment, plan.cases, imported.records));
+    }
+}
+
 int check(const Context& context, const Chosen& selection) {
     const scene::Catalog catalog = openCatalog(context, selection.assets);
     run::Plan all;

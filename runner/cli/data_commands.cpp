@@ -149,6 +149,7 @@ int importRun(const Context& context, const ImportOptions& options) {
                      run::resolveCases(experiment, catalog, context.techniques, 1), told);
     }
     const run::StoredRun run = outcome::importRun(request, catalog, context.techniques);
+    if (!options.configs.empty()) requireLaidOut(context, catalog, run);
     const fs::path dir =
         options.out.empty() ? run::defaultRunPath(runSlug(run.plan)) : fs::path(options.out);
     {

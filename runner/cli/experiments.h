@@ -9,7 +9,7 @@
 
 #include "engine/scene/catalog.h"
 #include "runner/cli/commands.h"
-#include "runner/run/plan.h"
+#include "runner/run/run.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::cli {
@@ -63,6 +63,11 @@ tables::Table tableBefore(const Context& context, const config::Experiment& expe
 void requireSound(const Context& context, const scene::Catalog& catalog,
                   const config::Experiment& experiment, std::span<const config::Case> cases,
                   std::set<std::string>& told);
+
+/// Throws Error where what was measured elsewhere is not what its config, a sound one, lays out: it
+/// tells cases apart that the config does not, or lacks those that a `where` asks for.
+void requireLaidOut(const Context& context, const scene::Catalog& catalog,
+                    const run::StoredRun& imported);
 
 /// Of sound experiments.
 run::Plan planFor(const Context& context, const run::Request& request, const std::string& profile,

@@ -273,7 +273,8 @@ Results resultsOf(const run::StoredRun& run) {
 Results resultsOf(const run::StoredRun& run, const Experiments& experiments) {
     Results results;
     results.context = contextOf(run, experiments);
-    results.tables = tables::buildTables(experiments, run.plan.cases, run.records);
+    results.tables =
+        tables::buildTables(experiments, run.plan.cases, run.records, run.plan.experiments);
     tables::addNotes(results.context.tableNotes, results.tables);
     const tables::MovedClocks clocks = run::movedClocks(run.manifest);
     for (tables::Table& table : results.tables) {

@@ -15,6 +15,7 @@
 #include "engine/core/error.h"
 #include "engine/core/text.h"
 #include "runner/config/experiment.h"
+#include "runner/config/external_program.h"
 #include "runner/records/csv.h"
 #include "runner/tables/summary.h"
 
@@ -149,6 +150,29 @@ bool CaseRecords::scatters(std::string_view metric, std::string_view pass) const
         }
     }
     return false;
+}
+
+bool CaseRecords::isTakenAgain(std::string_view metric, std::string_view pass) const {
+    std::map<std::pair<int, int>, std::size_t> counts;  // by the scene's seed and the frame
+    for (const auto& [number, attempt] : processes) {
+        for (const records::Record* row : attempt.values(metric, pass)) {
+            ++counts[{number / records::kMostProcesses, row->frame}];
+        }
+    }
+    const bool isOfEach =
+        std::ranges::all_of(counts, [](const auto& entry) { return entry.second > 1; });
+    return isOfEach || (!isOfElsewhere && processes.size() > 1);
+}
+
+bool CaseRecords::isWithout(std::string_view metric, std::string_view pass) const {
+    return !processes.empty() && std::ranges::all_of(processes, [&](const auto& process) {
+        return !process.second.failure && process.second.values(metric, pass).empty();
+    });
+}
+
+bool CaseRecords::isOfItsSeed(std::string_view metric) const {
+    const bool isOurs = config::isOfDevice(metric) || config::isTestOfMeans(metric);
+    return !config::isTimeMetric(metric) && (isOfElsewhere || !isOurs);
 }
 
 std::vector<CaseRecords> groupByCase(std::span<const config::Case> planned,
@@ -307,7 +331,8 @@ std::vector<std::size_t> candidates(const LayoutCases& cases, const Where& where
 }
 
 /// Counts the values of a swept seed: all together where some are shared, but from 0 among cases
-/// that share none with others. These are independent, and stand beside each other in any order.
+/// that share none with others. These are independent, and stand beside each other in any order. A
+/// case that the sweep leaves without a seed draws nothing.
 void countSweptSeeds(LayoutCases& cases) {
     const auto axis = std::ranges::find(cases.axes, kSeedAxis) - cases.axes.begin();
     if (axis == std::ssize(cases.axes)) return;
@@ -316,8 +341,8 @@ void countSweptSeeds(LayoutCases& cases) {
     };
     std::map<AxisValues, std::vector<CaseRecords*>> alike;  // but for the seed
     for (CaseRecords& item : cases.cases) {
-        if (item.processes.empty() || seedOf(item).value_or(std::string(kLeftOut)) == kLeftOut)
-            continue;
+        if (seedOf(item) == kLeftOut) item.seeds = config::Measure::Seeds::None;
+        if (item.processes.empty() || !seedOf(item) || seedOf(item) == kLeftOut) continue;
         AxisValues others = item.axes;
         others[static_cast<std::size_t>(axis)].reset();
         alike[others].push_back(&item);
@@ -344,6 +369,20 @@ void countSweptSeeds(LayoutCases& cases) {
     }
 }
 
+void findOwnTruths(const config::Experiment& experiment, std::span<const config::Case> planned,
+                   LayoutCases& cases) {
+    const Node& program = config::programOf(experiment);
+    if (!program.isMap() || !program.find("images")) return;
+    for (const config::ProgramPicture& picture : config::readProgram(program).pictures) {
+        if (picture.truthParams.isNull()) continue;
+        for (const config::Case& item : planned) {
+            const bool isOwn =
+                item.experiment == experiment.id && config::isOwnTruth(item, picture.truthParams);
+            if (isOwn) cases.ownTruths.emplace(item.id, picture.name);
+        }
+    }
+}
+
 /// Which metrics there are, and which came to other values when they were taken again, with no
 /// seed declared.
 void lookAtMetrics(LayoutCases& cases) {
@@ -361,10 +400,12 @@ void lookAtMetrics(LayoutCases& cases) {
                 const bool isDeclared =
                     isSeeded && !isOfSetup(attempt.values(metric, row->pass).front());
                 if (isDeclared || !item.scatters(metric, row->pass)) continue;
-                if (config::isTimeMetric(metric) || config::isOfDevice(metric)) continue;
-                cases.differing.insert(metric);
-                if (!cases.isOfProgram) continue;
-                (isOfMachine(metric, row->unit) ? cases.isMachineDoubted : cases.isDoubted) = true;
+                if (!item.isOfItsSeed(metric)) continue;
+                cases.doubt.differing.insert(metric);
+                // The order of parallel work moves what a device counts, and says nothing else.
+                if (!cases.isOfProgram || config::isOfDevice(metric)) continue;
+                (isOfMachine(metric, row->unit) ? cases.doubt.isOfMachine : cases.doubt.isOfAll) =
+                    true;
             }
         }
     }
@@ -381,13 +422,20 @@ bool isOfMachine(std::string_view metric, std::string_view unit) {
            std::regex_match(unit.begin(), unit.end(), kUnits);
 }
 
+void Doubt::add(const Doubt& other) {
+    differing.insert(other.differing.begin(), other.differing.end());
+    isOfAll |= other.isOfAll;
+    isOfMachine |= other.isOfMachine;
+}
+
 bool LayoutCases::isInDoubt(const std::string& metric, bool isSetup, bool isMachine) const {
-    if (config::isTimeMetric(metric) || config::isOfDevice(metric)) return false;
-    if (differing.contains(metric)) return true;
+    const bool isOfDevice = !isOfElsewhere && config::isOfDevice(metric);
+    if (config::isTimeMetric(metric) || isOfDevice) return false;
+    if (doubt.differing.contains(metric)) return true;
     const bool isKnown =
-        config::isTestOfMeans(metric) || (!isOfElsewhere && config::isPictureError(metric));
+        !isOfElsewhere && (config::isTestOfMeans(metric) || config::isPictureError(metric));
     if (!isOfProgram || isSetup || isKnown) return false;
-    return isDoubted || (isMachine && isMachineDoubted);
+    return doubt.isOfAll || (isMachine && doubt.isOfMachine);
 }
 
 std::string LayoutCases::recordedInstead(const std::string& metric) const {
@@ -467,12 +515,24 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
     cases.frameCount = experiment.measure.frames;
     cases.isOfElsewhere = !config::isMeasuredHere(experiment);
     cases.isOfProgram = config::goesByClock(experiment);
+    for (CaseRecords& item : cases.cases) item.isOfElsewhere = cases.isOfElsewhere;
     if (cases.isOfProgram) countSweptSeeds(cases);
     lookAtMetrics(cases);
+    findOwnTruths(experiment, planned, cases);
     std::vector<const AxisValues*> values;
     for (const CaseRecords& item : cases.cases) values.push_back(&item.axes);
     cases.index = CaseIndex(values);
     return cases;
+}
+
+Doubt doubtOf(std::span<const config::Experiment> experiments,
+              std::span<const config::Case> planned, const std::vector<records::Record>& records) {
+    Doubt all;
+    for (const config::Experiment& experiment : experiments) {
+        if (experiments.size() < 2 || !config::goesByClock(experiment)) continue;
+        all.add(gatherCases(experiment, planned, records).doubt);
+    }
+    return all;
 }
 
 std::vector<Key> collectKeys(const std::vector<config::LayoutAxis>& layoutAxes,

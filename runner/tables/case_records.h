@@ -11,6 +11,7 @@
 #include <string_view>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "runner/config/case.h"
@@ -57,6 +58,14 @@ struct CaseRecords {
     /// Whether repeats or processes of one scene and frame came to values of it that differ by more
     /// than rounding. Where no random numbers are declared, it was measured more than once.
     bool scatters(std::string_view metric, std::string_view pass) const;
+    /// Whether processes or repeats tell that it came out alike, or did not. A program says all in
+    /// each process.
+    bool isTakenAgain(std::string_view metric, std::string_view pass) const;
+    /// Whether it ran, and recorded no such number.
+    bool isWithout(std::string_view metric, std::string_view pass) const;
+    /// Whether other random numbers could give another value of the metric: it is neither a time,
+    /// nor, of what is measured here, a count of the device or a test of several seeds.
+    bool isOfItsSeed(std::string_view metric) const;
 
     /// The first pass of which it is recorded; empty also where that is none.
     std::string passOf(std::string_view metric) const;
@@ -71,6 +80,7 @@ struct CaseRecords {
     int sceneSeeds = 1;      // at how many its scene is taken
     /// Its scene has no seeds, where others have: its processes stand there once for each of these.
     bool isRepeated = false;
+    bool isOfElsewhere = false;  // LayoutCases
     /// Of a program or an import whose sweep has an axis `seed`: which of its values, from 0.
     std::optional<int> sweptSeed = {};
     bool isSeedARun = false;  // each of them was taken in one process, which timed it
@@ -119,6 +129,16 @@ class CaseIndex {
 /// its name, too. They differ in any program, and tell nothing of what it computes.
 bool isOfMachine(std::string_view metric, std::string_view unit);
 
+/// Metrics that came to other values in some case when they were taken again, with no seed
+/// declared, whatever a layout shows of them; of a program or an import whether there are some, and
+/// of what isOfMachine, which differs in any.
+struct Doubt {
+    std::set<std::string> differing;
+    bool isOfAll = false, isOfMachine = false;
+
+    void add(const Doubt& other);
+};
+
 /// The cases of a layout. `axes` names the sweep axes of its rows and columns and of all `where`
 /// selections, which are `namedAxes`, and behind them those that are swept beside; cases carry
 /// their values beside it.
@@ -132,11 +152,9 @@ struct LayoutCases {
     bool isOfProgram = false;  // config::goesByClock: a program's, or measured elsewhere
     CaseIndex index;
     std::set<std::string> recorded;  // metrics
-    /// Metrics that came to other values in some case when they were taken again, with no seed
-    /// declared, whatever the layout shows of them; of a program or an import whether there are
-    /// some, and of what isOfMachine, which differs in any.
-    std::set<std::string> differing;
-    bool isDoubted = false, isMachineDoubted = false;
+    /// By id and picture the cases that are its truth themselves.
+    std::set<std::pair<std::string, std::string>> ownTruths;
+    Doubt doubt;
 
     /// Whether numbers of the metric are no surer than chance: they differ, or a program or an
     /// import says them that says others which differ. Known without are what set-up recorded, and
@@ -158,6 +176,10 @@ std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& c
 
 LayoutCases gatherCases(const config::Experiment& experiment, std::span<const config::Case> planned,
                         const std::vector<records::Record>& records);
+
+/// What programs, or imports, came to in any table of a run is in doubt in all of theirs.
+Doubt doubtOf(std::span<const config::Experiment> experiments,
+              std::span<const config::Case> planned, const std::vector<records::Record>& records);
 
 /// The combinations of `layoutAxes`: on sweep axes those that occur in the plan; on labelled axes
 /// all. Sorted by axis, then by the order in which

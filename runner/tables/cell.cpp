@@ -134,18 +134,12 @@ void takeRow(const records::Record& record, const CellQuery& query, int unit,
     process[unit].push_back(value * query.scale);
 }
 
-/// Neither a time, nor what the device counted, nor a test of several seeds.
-bool isOfItsSeed(const std::string& metric) {
-    return !config::isTimeMetric(metric) && !config::isOfDevice(metric) &&
-           !config::isTestOfMeans(metric);
-}
-
 /// Whether each value of a swept seed is a round of its own, as a process with its seed is; of a
 /// time, where it is a process.
 bool isRoundOfSeed(const CaseRecords& run, const CellQuery& query) {
     using Seeds = config::Measure::Seeds;
     if (!run.sweptSeed || run.sceneSeeds > 1) return false;
-    if (!isOfItsSeed(query.metric)) return config::isTimeMetric(query.metric) && run.isSeedARun;
+    if (!run.isOfItsSeed(query.metric)) return config::isTimeMetric(query.metric) && run.isSeedARun;
     return run.seeds == Seeds::None ? !run.scatters(query.metric, query.pass)
                                     : run.seeds == Seeds::Case;
 }
@@ -163,7 +157,7 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
             continue;
         }
         std::map<int, std::vector<double>> process;
-        bool isRandom = isOfItsSeed(query.metric) && (isOfSeed || run.seeds != Seeds::None);
+        bool isRandom = run.isOfItsSeed(query.metric) && (isOfSeed || run.seeds != Seeds::None);
         for (const records::Record* record : attempt.values(query.metric, query.pass)) {
             if (!matchesFrame(query.where, record->frame)) continue;
             const auto [unit, isNew] = unitOfFrame.try_emplace(record->frame, unitCount);
@@ -212,22 +206,6 @@ std::string passesWith(const CellQuery& query, const LayoutCases& cases) {
     return joined(std::vector<std::string>(passes.begin(), passes.end()));
 }
 
-/// The axes along which the cases that lie there differ.
-std::vector<Pooled> pooledAt(const Where& where, const LayoutCases& cases) {
-    const std::vector<const CaseRecords*> found = casesAt(where, cases);
-    std::vector<Pooled> all;
-    for (std::size_t axis = 0; axis < cases.axes.size() && found.size() > 1; ++axis) {
-        Pooled pooled{cases.axes[axis], {}, axis < cases.namedAxes};
-        std::set<std::string> seen;
-        for (const CaseRecords* item : found) {
-            const std::string value = item->axes[axis].value_or(std::string(kLeftOut));
-            if (seen.insert(value).second) pooled.values.push_back(value);
-        }
-        if (pooled.values.size() > 1) all.push_back(std::move(pooled));
-    }
-    return all;
-}
-
 /// What else the cell takes together: seeds of scenes, and frames, as `measure` asks for.
 void addSampled(const CellQuery& query, const LayoutCases& cases, std::size_t frames, Cell& cell) {
     std::size_t seeds = 1;
@@ -237,6 +215,7 @@ void addSampled(const CellQuery& query, const LayoutCases& cases, std::size_t fr
     for (const auto& [axis, count] : {std::pair("scene_seed", seeds), std::pair("frame", frames)}) {
         if (count > 1) cell.pooled.push_back({axis, {fmt::format("{} of them", count)}, true});
     }
+    cell.onceAlong = onceAlong(query, cases, cell.pooled);
 }
 
 std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
@@ -535,7 +514,7 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     Cell cell;
     cell.isTime = config::isTimeMetric(query.metric);
     cell.timePower = config::timePower(query.metric);
-    cell.pooled = pooledAt(query.where, cases);
+    cell.pooled = pooledAt(query, cases);
     if (query.equal) {
         fillEqual(query, cases, cell);
         return cell;
@@ -561,6 +540,10 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
     cell.status = gathered.worst;
     cell.message = gathered.message;
     cell.caseIds = gathered.caseIds;
+    cell.isOwnTruth = config::isPictureError(query.metric) &&
+                      std::ranges::any_of(cell.caseIds, [&](const std::string& id) {
+                          return cases.ownTruths.contains({id, query.pass});
+                      });
     if (!query.isScaled) {
         cell.metric = query.metric;
         if (gathered.units.size() == 1) cell.unit = *gathered.units.begin();

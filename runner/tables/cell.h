@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -89,6 +90,11 @@ struct Cell {
     /// Of no declared seed, and no surer than chance (LayoutCases::isInDoubt): an unseeded
     /// program, an import.
     bool scatters = false;
+    /// Of a program or an import: the axis along which it takes together what was measured once
+    /// each. Whether they repeat one, as trials do, or are others, as scenes are, nobody
+    /// knows.
+    std::string onceAlong;
+    bool isOwnTruth = false;  // an error, 0 whatever the program does: LayoutCases::ownTruths
     /// An input was fitted so that it comes out (config::isCalibrated).
     bool isCalibrated = false;
     /// Of a frame's or a pass's time or rate: the same by the process's CPU time, and as
@@ -138,6 +144,12 @@ struct CellQuery {
 
 /// Throws Error at the selection's place when no part gives a metric, or for a bad format.
 CellQuery makeQuery(const config::Layout& layout, const Key& row, const Key& column);
+
+/// The axes along which the cases differ that it takes together.
+std::vector<Pooled> pooledAt(const CellQuery& query, const LayoutCases& cases);
+/// Of these the one along which they were measured once each (Cell::onceAlong), or none.
+std::string onceAlong(const CellQuery& query, const LayoutCases& cases,
+                      std::span<const Pooled> pooled);
 
 /// With `equal`: in each process a curve through the cell's cases, of its metric over the other
 /// one, read at the value. On logarithmic scales where both are positive, so that what falls as a

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <set>
 
 #include "engine/core/checks.h"
@@ -22,6 +24,17 @@ std::vector<const config::Selection*> choosing(const config::Layout& layout) {
     }
     std::erase_if(all, [](const config::Selection* one) { return one->where.empty(); });
     return all;
+}
+
+constexpr std::size_t kMostSaid = 12;
+
+/// The values, or the first of many.
+std::string shortened(std::vector<std::string> values, const char* separator) {
+    if (values.size() > kMostSaid) {
+        values.resize(kMostSaid);
+        values.emplace_back("…");
+    }
+    return joined(values, separator);
 }
 
 /// Of the axis the values that some case has; of `frame` those of the longest path.
@@ -45,7 +58,6 @@ std::vector<std::string> valuesOn(const std::string& axis, std::span<const Layou
 }
 
 void requireValues(const config::Selection& selection, std::span<const LayoutCases> profiles) {
-    constexpr std::size_t kMostSaid = 12;
     for (const auto& [axis, wanted] : selection.where) {
         std::vector<std::string> values = valuesOn(axis, profiles);
         const auto isThere = [&](const Node& value) {
@@ -54,11 +66,7 @@ void requireValues(const config::Selection& selection, std::span<const LayoutCas
         if (isThere(wanted)) continue;
         for (const Node& one : wanted.isSequence() ? wanted.items() : Node::Sequence{wanted}) {
             if (isThere(one)) continue;
-            if (values.size() > kMostSaid) {
-                values.resize(kMostSaid);
-                values.emplace_back("…");
-            }
-            throwNotAllowed(one, "layout: where." + axis, joined(values, " | "));
+            throwNotAllowed(one, "layout: where." + axis, shortened(values, " | "));
         }
     }
 }
@@ -104,6 +112,50 @@ void requireEachPlanned(const config::Layout& layout, std::span<const LayoutCase
     require(rows, "row");
 }
 
+/// What a column may be called of which no config knows.
+constexpr const char* kRepetitions =
+    "; what repeats a case has its number in the column 'process', or in 'seed' where each has "
+    "random numbers of its own";
+
+bool isNamed(const std::string& axis, const Node& sweep) {
+    return std::ranges::any_of(config::expandSweep(sweep), [&](const config::AxisPoint& point) {
+        return std::ranges::any_of(point, [&](const auto& one) { return one.key() == axis; });
+    });
+}
+
+/// Throws Error where two such rows have a number of one column each.
+void requireOtherNumbers(const config::Experiment& experiment, const Table& table,
+                         const TableRow& a, const TableRow& b) {
+    const auto isOfBoth = [](const Cell& one, const Cell& other) {
+        return !one.values.empty() && !other.values.empty();
+    };
+    if (!std::ranges::equal(a.cells, b.cells, std::not_fn(isOfBoth))) {
+        const auto apart = std::ranges::mismatch(a.labels, b.labels).in1 - a.labels.begin();
+        const auto axis = static_cast<std::size_t>(apart);
+        throw Error(experiment.document.keyLocation("claims"),
+                    fmt::format("claims: rows that are alike in 'sweep' differ by '{}' ({}, {}), a "
+                                "column of the file; allowed: in 'sweep', as a parameter{}",
+                                table.rowAxes[axis], a.labels[axis], b.labels[axis], kRepetitions));
+    }
+}
+
+/// Rows of imported numbers that nobody laid out, and that claims read, are told apart by what the
+/// sweep names: two that differ by another column alone may be one number twice.
+void requireNamedRows(const config::Experiment& experiment, const Table& table) {
+    if (config::isMeasuredHere(experiment) || experiment.claims.empty()) return;
+    if (!experiment.sweep.isMap()) return;
+    std::map<Key, std::vector<const TableRow*>> alike;  // by the labels on the axes that are named
+    for (const TableRow& row : table.rows) {
+        Key labels;
+        for (std::size_t axis = 0; axis < row.labels.size(); ++axis) {
+            if (isNamed(table.rowAxes[axis], experiment.sweep)) labels.push_back(row.labels[axis]);
+        }
+        std::vector<const TableRow*>& others = alike[labels];
+        for (const TableRow* other : others) requireOtherNumbers(experiment, table, *other, row);
+        others.push_back(&row);
+    }
+}
+
 }  // namespace
 
 void requireCases(const config::Experiment& experiment, std::span<const LayoutCases> profiles) {
@@ -114,7 +166,10 @@ void requireCases(const config::Experiment& experiment, std::span<const LayoutCa
 }
 
 void requireToldApart(const config::Experiment& experiment, const Table& table) {
-    if (!experiment.layout.isGiven) return;
+    if (!experiment.layout.isGiven) {
+        requireNamedRows(experiment, table);
+        return;
+    }
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
         const auto isSuch = [&](bool lacksCurve) {
             return std::ranges::any_of(table.rows, [&](const TableRow& row) {
@@ -132,11 +187,16 @@ void requireToldApart(const config::Experiment& experiment, const Table& table) 
         for (const Cell& cell : row.cells) {
             const auto silent = std::ranges::find(cell.pooled, false, &Pooled::isAsked);
             if (silent == cell.pooled.end()) continue;
+            const bool isImported = !config::isMeasuredHere(experiment);
+            const bool isSwept = !isImported || isNamed(silent->axis, experiment.sweep);
             throw Error(experiment.document.keyLocation("layout"),
                         fmt::format("layout: each number would be taken over {0} ({1}), which is "
-                                    "swept; allowed: as an axis of rows or columns, or in a "
-                                    "'where': {{{0}: [{1}]}} takes its values together",
-                                    silent->axis, joined(silent->values)));
+                                    "{2}as an axis of rows or columns, or in a 'where': {{{0}: "
+                                    "[{1}]}} takes its values together{3}",
+                                    silent->axis, shortened(silent->values, ", "),
+                                    isSwept ? "swept; allowed: "
+                                            : "a column of the file; allowed: in 'sweep', and ",
+                                    isImported ? kRepetitions : ""));
         }
     }
 }

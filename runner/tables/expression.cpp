@@ -57,9 +57,11 @@ Operand::Operand(const std::string& text, const Table& table, const SourceLocati
     isColumn_ = pieces.size() == 1 && pieces[0].column.has_value();
     std::string expression;  // with a variable for each column
     for (const OperandPiece& piece : pieces) {
-        if (piece.isFunction) throw ExpressionError(where, owner + ": " + piece.problem);
+        const bool isBad = piece.isFunction && !labels.empty();
+        if (isBad) throw ExpressionError(where, owner, piece.problem);
         if (!piece.problem.empty()) throw AbsentColumnError(where, owner, piece.problem);
         if (!piece.column) {
+            if (piece.text == "(") expression.erase(trimmed(expression).size());  // of a call
             expression += piece.text;
             continue;
         }
@@ -82,8 +84,9 @@ Operand::Operand(const std::string& text, const Table& table, const SourceLocati
             if (at == message.npos) continue;
             message.replace(at, variable.size(), '"' + labels[columns_[i]] + '"');
         }
-        throw ExpressionError(where,
-                              fmt::format("{}: '{}' is no expression: {}", owner, whole, message));
+        message = fmt::format("'{}' is no expression: {}", whole, message);
+        if (labels.empty()) throw AbsentColumnError(where, owner, message);
+        throw ExpressionError(where, owner, message);
     }
 }
 
@@ -102,10 +105,11 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
         const Measured* named = cell.find(statistic, own);
         const Measured& measured = named ? *named : *cell.find("", own);
         // A single round tells no more than the value.
-        const bool hasRounds = measured.rounds.size() > 1;
+        const bool isOnceAlong = !cell.onceAlong.empty();
+        const bool hasRounds = measured.rounds.size() > 1 && !isOnceAlong;
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
-                         measured.areDraws, cell.seedCount > 0 || cell.scatters, cell.seedCount,
-                         cell.scatters, cell.isTime && !hasRounds,
+                         measured.areDraws, cell.seedCount > 0 || cell.scatters || isOnceAlong,
+                         cell.seedCount, cell.scatters, cell.isTime && !hasRounds, cell.onceAlong,
                          measured.isOverProcesses ? measured.statistic : ""});
         values.push_back(measured.value);
         result.seedCount = fewerSeeds(result.seedCount, cell.seedCount);
@@ -119,6 +123,7 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     result.isOnce = std::ranges::any_of(cells, &Sampled::isOnce);
     for (const Sampled& cell : cells) {
         if (result.overProcesses.empty()) result.overProcesses = cell.overProcesses;
+        if (result.onceAlong.empty()) result.onceAlong = cell.onceAlong;
     }
     // One sample of a part is one of the whole, however often the rest was measured.
     const auto isOne = [](const Sampled& cell) {
@@ -238,7 +243,9 @@ void gatherFrom(const Cell& from, Cell& cell) {
         cell.message = from.message;
     }
     cell.isCalibrated |= from.isCalibrated;
+    cell.isOwnTruth |= from.isOwnTruth;
     cell.scatters |= from.scatters;
+    if (cell.onceAlong.empty()) cell.onceAlong = from.onceAlong;
     cell.isAtPrintedParameters &= from.isAtPrintedParameters;
     const auto add = [](const auto& items, auto& all) {
         for (const auto& item : items) {

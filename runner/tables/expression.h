@@ -24,6 +24,7 @@ struct Sampled {
     std::size_t seedCount = 0;       // as Cell::seedCount
     bool scatters = false;           // as Cell::scatters; it is random, too
     bool isOnce = false;             // a time, of one process: others of which differ
+    std::string onceAlong = {};      // as Cell::onceAlong; it is random, too, and has no rounds
     std::string overProcesses = {};  // of "mean", "max", …: Summary::isOverProcesses
 
     double at(int round) const { return rounds.empty() ? point : rounds.at(round); }
@@ -36,12 +37,10 @@ bool keepRoundsOrDraws(std::span<Sampled* const> values);
 /// The rounds that all of them have but those that are certain.
 std::vector<int> commonRounds(std::span<const Sampled> values);
 
-/// A name that is no column of the table, or may be one: a profile or an override may have taken it
-/// away, or brought a column that looks like a number.
-class AbsentColumnError : public Error {
+/// What is no expression over the table's columns.
+class OperandError : public Error {
   public:
-    AbsentColumnError(const SourceLocation& where, const std::string& owner,
-                      const std::string& text)
+    OperandError(const SourceLocation& where, const std::string& owner, const std::string& text)
         : Error(where, owner + ": " + text), text_(text) {}
     /// Without the place and the owner.
     const std::string& text() const { return text_; }
@@ -50,10 +49,18 @@ class AbsentColumnError : public Error {
     std::string text_;
 };
 
-/// What no table makes readable: bad syntax, or a claim that reads no column.
-class ExpressionError : public Error {
+/// A name that is no column of the table, or may be one: a profile or an override may have taken it
+/// away, or brought a column that looks like a number; and of a table without columns what may be
+/// one of any name.
+class AbsentColumnError : public OperandError {
   public:
-    using Error::Error;
+    using OperandError::OperandError;
+};
+
+/// What no table makes readable: bad syntax, or a claim that reads no column.
+class ExpressionError : public OperandError {
+  public:
+    using OperandError::OperandError;
 };
 
 /// The arithmetic of claims and of columns: an expression over the columns of a table

@@ -1,5 +1,5 @@
-// What is said of cells below their table: that they take several cases together, and of which
-// statistics they are.
+// That cells take several cases together: along which axes, and what is said of it below their
+// table; and of which statistics they are.
 #include <fmt/format.h>
 #include <algorithm>
 #include <map>
@@ -162,6 +162,46 @@ std::vector<std::string> statisticNotes(const Table& table) {
 }
 
 }  // namespace
+
+std::vector<Pooled> pooledAt(const CellQuery& query, const LayoutCases& cases) {
+    std::vector<const CaseRecords*> found = casesAt(query.where, cases);
+    // A file may tell one metric of some cases, and another of others.
+    if (cases.isOfElsewhere && !query.equal) {
+        std::erase_if(found, [&](const CaseRecords* one) {
+            return one->isWithout(query.metric, query.pass);
+        });
+    }
+    std::vector<Pooled> all;
+    for (std::size_t axis = 0; axis < cases.axes.size() && found.size() > 1; ++axis) {
+        Pooled pooled{cases.axes[axis], {}, axis < cases.namedAxes};
+        std::set<std::string> seen;
+        for (const CaseRecords* item : found) {
+            const std::string value = item->axes[axis].value_or(std::string(kLeftOut));
+            if (seen.insert(value).second) pooled.values.push_back(value);
+        }
+        if (pooled.values.size() > 1) all.push_back(std::move(pooled));
+    }
+    return all;
+}
+
+std::string onceAlong(const CellQuery& query, const LayoutCases& cases,
+                      std::span<const Pooled> pooled) {
+    // Other scenes, sizes of a picture and frames that are asked for here are no repetitions.
+    const auto isOther = [&](const Pooled& one) {
+        const bool isFrame = one.axis == "frame" && !cases.isOfElsewhere;
+        return isFrame || one.axis == kSeedAxis || one.axis == "scene" ||
+               one.axis == "scene_seed" || one.axis.starts_with("output.") ||
+               one.axis.starts_with(config::kSceneAxisPrefix);
+    };
+    const auto axis = std::ranges::find_if_not(pooled, isOther);
+    if (!cases.isOfProgram || axis == pooled.end()) return "";
+    const auto isOnce = [&](const CaseRecords* one) {
+        const bool isSeeded = one->seeds != config::Measure::Seeds::None || one->sweptSeed;
+        return !isSeeded && !one->isWithout(query.metric, query.pass) &&
+               one->isOfItsSeed(query.metric) && !one->isTakenAgain(query.metric, query.pass);
+    };
+    return std::ranges::any_of(casesAt(query.where, cases), isOnce) ? axis->axis : "";
+}
 
 std::vector<std::string> cellNotes(const Table& table) {
     std::vector<std::string> notes = statisticNotes(table);

@@ -237,7 +237,7 @@ Table transposed(const Table& table, std::size_t rowAxis) {
 }
 
 Table buildTable(const config::Experiment& given, std::span<const config::Case> planned,
-                 const std::vector<records::Record>& records) {
+                 const std::vector<records::Record>& records, const Doubt& doubt) {
     config::Experiment experiment = given;
     Table table;
     std::vector<std::string> notes, against;
@@ -262,7 +262,8 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     if (!experiment.layout.isGiven) return table;
 
     const config::Layout& layout = experiment.layout;
-    const LayoutCases cases = gatherCases(experiment, planned, records);
+    LayoutCases cases = gatherCases(experiment, planned, records);
+    if (cases.isOfProgram) cases.doubt.add(doubt);
     const std::vector<Key> columns = collectKeys(layout.columns, cases);
     table.rowAxes = axisNames(layout.rows);
     for (const Key& column : columns) {
@@ -350,10 +351,12 @@ void showProcessTimes(const std::vector<std::string>& labels, Table& table) {
 
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
                                std::span<const config::Case> planned,
-                               const std::vector<records::Record>& records) {
+                               const std::vector<records::Record>& records,
+                               std::span<const config::Experiment> measured) {
+    const Doubt doubt = doubtOf(measured.empty() ? experiments : measured, planned, records);
     std::vector<Table> tables;
     for (const config::Experiment& experiment : experiments) {
-        tables.push_back(buildTable(experiment, planned, records));
+        tables.push_back(buildTable(experiment, planned, records, doubt));
     }
     return tables;
 }

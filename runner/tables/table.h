@@ -110,9 +110,10 @@ Table transposed(const Table& table, std::size_t rowAxis);
 /// rows, no cell planned.
 ///
 /// A cell whose metric is a time or a frame rate never shows a record of the quality lane. Throws
-/// Error with the layout's place for an unknown statistic or axis.
+/// Error with the layout's place for an unknown statistic or axis. `doubt` is of the other tables
+/// of the run (doubtOf).
 Table buildTable(const config::Experiment& experiment, std::span<const config::Case> planned,
-                 const std::vector<records::Record>& records);
+                 const std::vector<records::Record>& records, const Doubt& doubt = {});
 
 /// Puts the CPU times of these columns into columns of their own beside them: "cpu_draw_ms" behind
 /// "draw_ms".
@@ -126,10 +127,12 @@ std::vector<config::PlotSpec> defaultPlots(const Table& table);
 /// cells, of the machine while it was timed. By table.
 using TableNotes = std::map<std::string, std::vector<std::string>>;
 
-/// The tables of a run, beside `experiments`; `planned` are the cases of its plan.
+/// The tables of a run, beside `experiments`; `planned` are the cases of its plan, `measured` what
+/// it has measured, where these are some of it.
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
                                std::span<const config::Case> planned,
-                               const std::vector<records::Record>& records);
+                               const std::vector<records::Record>& records,
+                               std::span<const config::Experiment> measured = {});
 
 // What is said of cells, below their table.
 

@@ -365,20 +365,110 @@ TEST_F(Data, WhatHasNoSeedDrawsNone) {
     EXPECT_THAT(
         refusal({"import", folder_.write("u.csv", swept), "--config", without, "--out", dir("u")}),
         EndsWith(", or 'when: {seed: …}' in the sweep leaves it without\n"));
+    const auto refused = [&](const std::string& row) {
+        return refusal({"import", folder_.write("u.csv", swept + row), "--config",
+                        (folder_.path() / "t.yaml").string(), "--out", dir("u")});
+    };
+    EXPECT_EQ(refused("b,,e,0.1\n"),
+              "gfxrepro: DIR/u.csv:9: column 'seed': is empty, and 'e' has one in line 3; allowed: "
+              "nothing only where 'when' of the sweep leaves a case without one\n");
+    EXPECT_EQ(refused("a,3,e,0.1\n"),
+              "gfxrepro: DIR/u.csv:9: column 'seed': '3'; allowed: nothing, as 'when' of the sweep "
+              "leaves this case without one\n");
 }
 
-/// A column of the file that the config's sweep does not name.
-TEST_F(Data, WhatDiffersBesideTheSweepIsSaid) {
-    const std::string csv =
-        folder_.write("t.csv", "method,scene,frame_t_ms\na,x,1\na,y,5\nb,x,2\nb,y,7\n");
-    const std::string config =
-        folder_.write("t.yaml",
-                      "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {method: [a, b]}\n"
-                      "layout: {rows: method, columns: {t: {metric: frame_t_ms}}}\n");
-    endedWith(0, mockGfxrepro({"import", csv, "--metric", "frame_t_ms=ms", "--machine", "X",
-                               "--config", config, "--out", dir("t")}));
+/// A column of the file that the config does not name: nothing says whether its rows are other
+/// cases or the same again.
+TEST_F(Data, WhatDiffersBesideTheConfigIsRefused) {
+    const std::string others =
+        folder_.write("t.csv",
+                      "method,trial,host,metric,value\na,0,,e,1\na,1,,e,5\nb,0,,e,2\nb,1,,e,7\n"
+                      "a,,x,n,3\nb,,x,n,4\n");
+    const std::string trials =
+        folder_.write("u.csv", "method,trial,metric,value\na,0,e,1\na,1,e,5\nb,0,e,2\nb,1,e,7\n");
+    const auto import = [&](const std::string& lines, const std::string& csv) {
+        std::filesystem::remove_all(dir("t"));
+        const std::string config = folder_.write(
+            "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {method: [a, b]" + lines);
+        return mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
+    };
+    const std::string how =
+        "; what repeats a case has its number in the column 'process', or in 'seed' where each has "
+        "random numbers of its own\n";
+    EXPECT_THAT(
+        endedWith(2, import("}\nlayout: {rows: method, columns: {e: {metric: e}}}\n", trials)).err,
+        EndsWith("t.yaml:5:1: layout: each number would be taken over trial (0, 1), which "
+                 "is a column of the file; allowed: in 'sweep', and as an axis of rows or "
+                 "columns, or in a 'where': {trial: [0, 1]} takes its values together" +
+                 how));
+    EXPECT_FALSE(fs::exists(dir("t")));
+    EXPECT_THAT(
+        endedWith(2, import("}\nclaims: {c: {says: so, order: [a, b], of: e}}\n", trials)).err,
+        EndsWith("t.yaml:5:1: claims: rows that are alike in 'sweep' differ by 'trial' (0, "
+                 "1), a column of the file; allowed: in 'sweep', as a parameter" +
+                 how));
+    endedWith(0, import("}\nlayout: {rows: method, columns: {n: {metric: n}}}\n", others));
+    endedWith(0, import("}\nclaims: {}\n", trials));
+    endedWith(0, import(", trial: [0, 1]}\nlayout: {rows: method, columns: {e: {metric: e, where: "
+                        "{trial: [0, 1]}}}}\n"
+                        "claims: {c: {says: so, order: [a, b], of: e}}\n",
+                        trials));
     EXPECT_THAT(readFile(dir("t") + "/tables/sweep-t.md"),
-                HasSubstr("Each number is taken over scene (x, y)."));
+                HasSubstr("Each number is taken over trial (0, 1)."));
+    EXPECT_THAT(verdicts("t"), testing::Contains("c ambiguous"));
+}
+
+/// Of a config whose technique is here, too.
+TEST_F(Data, APointOfASweepIsImportedOnce) {
+    const std::string config = writeMockConfig(
+        folder_, "layout: {rows: number, columns: {n: {metric: number}}}\nsweep: {number: [1]}\n");
+    const std::string csv =
+        folder_.write("t.csv", "number,trial,metric,value\n1,0,number,5\n1,1,number,6\n");
+    EXPECT_EQ(
+        refusal({"import", csv, "--config", config, "--out", dir("t")}),
+        "gfxrepro: DIR/t.csv:3: differs from line 2 by 'trial', which the sweep of sweep/mock "
+        "does not have; allowed: one case at each point of it; what repeats a case has its "
+        "number in the column 'process'\n");
+}
+
+/// The same of a value that no case has.
+TEST_F(Data, AWrongValueOfAnImportsWhereIsRefused) {
+    const std::string csv = folder_.write("t.csv", "m,metric,value\na,e,1\nb,e,2\n");
+    const auto refused = [&](const std::string& where) {
+        const std::string config =
+            folder_.write("t.yaml",
+                          "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, c]}\n"
+                          "layout: {rows: m, columns: {e: {metric: e, where: " +
+                              where + "}}}\n");
+        return refusal({"import", csv, "--config", config, "--out", dir("t")});
+    };
+    EXPECT_EQ(refused("{m: d}"),
+              "gfxrepro: DIR/t.yaml:5:55: layout: where.m is d; allowed: a | c | b\n");
+    EXPECT_THAT(refused("{m: [a, d]}"), HasSubstr(": layout: where.m is d; allowed: a | c | b\n"));
+}
+
+/// Which a claim reads by its label, as a report shows it.
+TEST_F(Data, AColumnMayHaveAnyName) {
+    for (const char* metric : {"Δ", "error (mean)", "err/px", "log2"}) {
+        const std::string csv =
+            folder_.write("t.csv", fmt::format("m,metric,value\na,{0},1\nb,{0},2\n", metric));
+        const auto import = [&](const std::string& bound) {
+            std::filesystem::remove_all(dir("t"));
+            const std::string config =
+                folder_.write("t.yaml",
+                              "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n"
+                              "claims: {c: {says: so, bound: \"" +
+                                  bound + "\", at_most: 3}}\n");
+            return mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
+        };
+        endedWith(0, import(metric));
+        EXPECT_THAT(verdicts("t"), testing::Contains("c holds")) << metric;
+        endedWith(0, import(fmt::format("log2 ('{}') + 1", metric)));
+        EXPECT_THAT(verdicts("t"), testing::Contains("c holds")) << metric;
+        EXPECT_THAT(endedWith(2, import(fmt::format("'{}' +", metric))).err,
+                    HasSubstr("error: sweep/t: claim 'c': ''" + std::string(metric) +
+                              "' +' is no expression: "));
+    }
 }
 
 TEST_F(Data, WhatIsMissingOfAnImportMakesItIncomplete) {

@@ -113,7 +113,8 @@ void ClaimKeys::addOperands(const Node& at, const Texts& texts, ClaimSpec& claim
     for (const std::string& operand : texts) {
         if (operand.empty()) refuse(at, "", "an expression over columns");
         for (const OperandPiece& piece : operandPieces(operand, columns)) {
-            if (piece.problem.empty() || (!hasAllColumns && !piece.isFunction)) continue;
+            const bool isKnown = hasAllColumns || (piece.isFunction && !columns.empty());
+            if (piece.problem.empty() || !isKnown) continue;
             fail(at, piece.problem + acrossHint({operand, std::string(piece.text)}));
         }
         if (std::ranges::find(claim.operands, operand) != claim.operands.end()) {

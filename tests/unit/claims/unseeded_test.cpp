@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "engine/core/random.h"
@@ -321,20 +322,213 @@ TEST(Unseeded, ANumberOfASeedIsExactInSixOrMore) {
     EXPECT_GT(six[Verdict::Holds], 0) << "all of six";
 }
 
-/// A baseline that draws nothing stands beside each of the others' seeds.
+/// A baseline that draws nothing stands beside each of the others' seeds; the plan of a program
+/// says that all of its cases have seeds.
 TEST(Unseeded, WhatTheSweepLeavesWithoutASeedIsCertain) {
-    tables::RecordMaker maker;
-    maker.beginCase("", R"({"m":"a"})").add("e", {0.4}, "", "1");
-    for (int seed = 0; seed < 6; ++seed) {
-        maker.beginCase("", fmt::format(R"({{"m":"b","seed":{}}})", seed));
-        maker.add("e", {0.5 + 0.01 * seed}, "", "1");
-    }
+    using Seeds = config::Measure::Seeds;
+    const auto recorded = [](Seeds seeds) {
+        tables::RecordMaker maker;
+        const int processes = seeds == Seeds::Process ? 6 : 1;
+        for (int seed = -1; seed < 6; ++seed) {
+            const bool isLeft = seed < 0;
+            maker.beginCase(
+                "", isLeft ? R"({"m":"a"})" : fmt::format(R"({{"m":"b","seed":{}}})", seed));
+            maker.seeds(seeds);
+            for (int process = 0; process < processes; ++process) {
+                const double value = isLeft ? 0.4 : 0.5 + 0.01 * (seed + process);
+                maker.process(process).add("e", {value}, "", "1");
+            }
+        }
+        tables::Recorded records = maker.records();
+        for (std::size_t i = 1; i < records.cases.size(); ++i) records.cases[i].seed = i - 1;
+        return records;
+    };
     const std::string body =
         "sweep: {m: [a, b], seed: [0, 1, 2, 3, 4, 5], when: {seed: {m: b}}}\n"
         "layout: {rows: m, columns: {e: {metric: e, where: {seed: [0, 1, 2, 3, 4, 5]}}}}\n"
         "claims: {C: {says: so, order: [a, b], of: e}}\n";
-    const ClaimResult result = resultOf(experimentOf(Of::Import, body), maker.records());
-    EXPECT_EQ(result.verdict, Verdict::Holds) << result.reason;
+    for (const auto& [of, seeds] : {std::pair(Of::Import, Seeds::None),
+                                    {Of::Program, Seeds::Case},
+                                    {Of::Program, Seeds::Process}}) {
+        const ClaimResult result = resultOf(experimentOf(of, body), recorded(seeds));
+        EXPECT_EQ(result.verdict, Verdict::Holds) << result.reason;
+    }
+}
+
+/// Two methods, each with `processes` values at each of six values of an axis that rows do not
+/// name.
+ClaimResult judgeTogether(Of of, const std::string& axis, int processes, const std::string& claim,
+                          double apart = 0.0) {
+    tables::RecordMaker maker;
+    for (const char* m : {"b", "c"}) {
+        for (int trial = 0; trial < 6; ++trial) {
+            const std::string name = axis == "scene" ? "other" : axis;
+            maker.beginCase(axis == "scene" ? fmt::format("s{}", trial) : "",
+                            fmt::format(R"({{"m":"{}","{}":{}}})", m, name, trial));
+            for (int process = 0; process < processes; ++process) {
+                maker.process(process).add(
+                    "e", {(m[0] == 'b' ? 0.4 : 0.5) + 0.01 * trial + apart * process}, "", "1");
+            }
+        }
+    }
+    const bool isScene = axis == "scene";
+    const std::string values = isScene ? "[s0, s1, s2, s3, s4, s5]" : "[0, 1, 2, 3, 4, 5]";
+    return resultOf(
+        experimentOf(of, fmt::format("sweep: {{m: [b, c], {0}: {1}}}\nlayout: {{rows: m, columns: "
+                                     "{{e: {{metric: e, where: {{{0}: {1}}}}}, half: {{of: e / "
+                                     "2}}}}}}\nclaims: {{C: {{says: so, {2}}}}}\n",
+                                     axis, values, claim)),
+        maker.records());
+}
+
+/// Whatever the axis is called: it may be a number of trials.
+TEST(Unseeded, WhatIsTakenTogetherOfCasesMeasuredOnceDecidesNothing) {
+    const std::string order = "order: [b, c], of: e";
+    for (const Of of : {Of::Import, Of::Program}) {
+        for (const std::string claim :
+             {order, std::string("order: [b, c], of: half"), std::string("bound: e, at_most: 1"),
+              std::string("ratio: m=b / m=c, of: e, at_most: 1"),
+              std::string("exact: e, equals: 0.425, at: {m: b}")}) {
+            const ClaimResult once = judgeTogether(of, "run", 1, claim);
+            EXPECT_EQ(once.verdict, Verdict::Ambiguous) << claim;
+            EXPECT_THAT(once.reason,
+                        testing::HasSubstr(
+                            "takes values of 'run' together that were measured once each, and may "
+                            "repeat one case: an axis of rows tells them apart; what repeats a "
+                            "case is its processes (of an import the column 'process', or 'seed')"))
+                << claim;
+        }
+        EXPECT_EQ(judgeTogether(of, "run", 2, order).verdict, Verdict::Holds) << "known by now";
+        EXPECT_EQ(judgeTogether(of, "run", 2, order, 0.01).verdict, Verdict::Ambiguous);
+        EXPECT_EQ(judgeTogether(of, "run", 6, order, 0.01).verdict, Verdict::Holds);
+        EXPECT_EQ(judgeTogether(of, "scene", 1, order).verdict, Verdict::Holds);
+    }
+}
+
+/// Frames that a file tells apart may be repetitions, too; those of our own are a path.
+TEST(Unseeded, FramesOfAnImportThatWereMeasuredOnceDecideNothing) {
+    for (const auto& [of, verdict] :
+         {std::pair(Of::Import, Verdict::Ambiguous), {Of::Program, Verdict::Holds}}) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})");
+        for (int frame = 0; frame < 6; ++frame) {
+            maker.frame(frame).add("e", {0.4 + 0.01 * frame}, "", "1");
+        }
+        const std::string body =
+            "sweep: {n: [1]}\nlayout: {rows: n, columns: {e: {metric: e}}}\nclaims: {C: {says: so, "
+            "bound: e, at_most: 1}}\n";
+        EXPECT_EQ(resultOf(experimentOf(of, body), maker.records()).verdict, verdict);
+    }
+}
+
+/// What differs in one table of a run is in doubt in each.
+TEST(Unseeded, DoubtIsOfAllTablesOfARun) {
+    tables::RecordMaker maker;
+    maker.beginCase("", R"({"n":1})");
+    for (int process = 0; process < 3; ++process) {
+        maker.process(process).add("e", {1.0 + 0.01 * process}, "", "1");
+    }
+    tables::Recorded records = maker.records();
+    tables::RecordMaker other;
+    other.beginCase("", R"({"n":2})").add("f", {0.5}, "", "1");
+    for (records::Record record : other.records()) {
+        record.table = "zju2005/9.8";
+        records.push_back(record);
+    }
+    records.cases.push_back(other.records().cases.front());
+    records.cases.back().experiment = "zju2005/9.8";
+    for (const auto& [of, verdict] :
+         {std::pair(Of::Import, Verdict::Ambiguous), {Of::Program, Verdict::Ambiguous}}) {
+        const config::Experiment first =
+            experimentOf(of, "sweep: {n: [1]}\nlayout: {rows: n, columns: {e: {metric: e}}}\n");
+        config::Experiment second = experimentOf(
+            of,
+            "sweep: {n: [2]}\nlayout: {rows: n, columns: {f: {metric: f}}}\nclaims: {C: {says: so, "
+            "bound: f, at_most: 1}}\n");
+        second.id = "zju2005/9.8";
+        const auto judge = [&](std::span<const config::Experiment> measured) {
+            const std::vector<config::Experiment> shown = {second};
+            const auto tables = tables::buildTables(shown, records.cases, records, measured);
+            return evaluateClaims(second, tables[0], {"llvmpipe", "software", "quick", "abc", ""})
+                .front();
+        };
+        EXPECT_EQ(judge({}).verdict, Verdict::Holds) << "nothing of it alone";
+        const std::vector<config::Experiment> both = {first, second};
+        EXPECT_EQ(judge(both).verdict, verdict);
+        EXPECT_THAT(judge(both).reason, testing::HasSubstr(kOneBesideMany));
+    }
+}
+
+/// As of a sum in another order.
+TEST(Unseeded, WhatDiffersByRoundingIsOneNumber) {
+    tables::RecordMaker maker;
+    for (const char* m : {"b", "c"}) {
+        maker.beginCase("", fmt::format(R"({{"m":"{}"}})", m));
+        for (int process = 0; process < 3; ++process) {
+            const double value = (m[0] == 'b' ? 0.4 : 0.5) * (1.0 + 2e-16 * process);
+            maker.process(process).add("e", {value}, "", "1");
+        }
+    }
+    for (const char* claim : {"order: [b, c], of: e", "bound: e, at_most: 0.41, at: {m: b}",
+                              "exact: e, equals: 0.4, "
+                              "at: {m: b}"}) {
+        const ClaimResult result = resultOf(
+            experimentOf(Of::Import,
+                         fmt::format("sweep: {{m: [b, c]}}\nlayout: {{rows: m, columns: {{e: "
+                                     "{{metric: e}}}}}}\nclaims: {{C: {{says: so, {}}}}}\n",
+                                     claim)),
+            maker.records());
+        EXPECT_EQ(result.verdict, Verdict::Holds) << claim << ": " << result.reason;
+    }
+}
+
+/// Our own counts of work are the device's; those of another program are what it says.
+TEST(Unseeded, NoNameKeepsAnImportFromDoubt) {
+    for (const char* metric : {"work_fragments", "work_image_digest", "bias_seen", "same_mean_p"}) {
+        for (const int processes : {3, 5}) {
+            tables::RecordMaker maker;
+            maker.beginCase("", R"({"n":1})");
+            for (int process = 0; process < processes; ++process) {
+                maker.process(process).add(metric, {1.0 + 0.01 * process}, "", "1");
+            }
+            const std::string body = fmt::format(
+                "sweep: {{n: [1]}}\nlayout: {{rows: n, columns: {{w: {{metric: {}}}}}}}\n"
+                "claims: {{C: {{says: so, bound: w, at_most: 2}}}}\n",
+                metric);
+            const ClaimResult result = resultOf(experimentOf(Of::Import, body), maker.records());
+            EXPECT_EQ(result.verdict, Verdict::Ambiguous) << metric;
+            EXPECT_EQ(result.reason,
+                      fmt::format("{} processes came to different numbers; an interval needs 6 "
+                                  "processes",
+                                  processes));
+        }
+    }
+}
+
+/// A case that is its own truth has the error 0 whatever the program does.
+TEST(Unseeded, AnErrorAgainstItselfIsSaidOfAClaim) {
+    tables::RecordMaker maker;
+    for (const int n : {1, 4}) {
+        maker.beginCase("", fmt::format(R"({{"n":{}}})", n));
+        maker.add("rmse", {n == 4 ? 0.0 : 0.1}, "r", "1");
+    }
+    for (const auto& [at, isSaid] : {std::pair("", true), {", at: {n: 1}", false}}) {
+        config::Experiment experiment = experimentOf(
+            Of::Program, fmt::format("sweep: {{n: [1, 4]}}\nlayout: {{rows: n, columns: {{e: "
+                                     "{{metric: rmse, pass: r}}, d: {{of: 2 * e}}}}}}\nclaims: "
+                                     "{{C: {{says: so, bound: d, at_most: 1{}}}}}\n",
+                                     at));
+        experiment.document.set(
+            "program", parseYaml("{command: \"x {n} {out}\", params: {n: 1}, images: {r: {file: "
+                                 "r.pfm, truth: {n: 4}}}}",
+                                 "t.yaml"));
+        const ClaimResult result = resultOf(experiment, maker.records());
+        EXPECT_EQ(result.verdict, Verdict::Holds);
+        EXPECT_EQ(result.reason.find("reads an error of a case against itself, 0 whatever the "
+                                     "program does") != std::string::npos,
+                  isSaid)
+            << result.reason;
+    }
 }
 
 /// Rows a and b of so many seeds each, those of b from `first` on, with a time in so many

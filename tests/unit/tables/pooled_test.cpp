@@ -117,6 +117,39 @@ TEST(Pooled, AnAxisThatTheLayoutDoesNotNameIsRefused) {
         << "an average beside what it is of";
 }
 
+/// A column of the file may number trials: what says so is told.
+TEST(Pooled, AColumnOfAnImportThatTheConfigDoesNotNameIsRefused) {
+    RecordMaker maker;
+    for (const char* method : {"oct", "snorm"}) {
+        for (const int trial : {0, 1}) {
+            maker.beginCase("", fmt::format(R"({{"method":"{}","trial":{}}})", method, trial));
+            maker.add("error", {1.0 + trial}, "", "1");
+        }
+    }
+    Recorded records = maker.records();
+    for (config::Case& item : records.cases) item.axes = item.params;
+    const auto refusal = [&](const std::string& lines) {
+        config::Experiment experiment =
+            experimentFrom("sweep: {method: [oct, snorm]}\n" + lines + "\n");
+        experiment.technique = config::kImported;
+        const Table table = tables::buildTable(experiment, records.cases, records);
+        const std::string text = test::errorText([&] { requireToldApart(experiment, table); });
+        const std::size_t at = text.find(".yaml:");
+        return at == std::string::npos ? text : text.substr(at + 6);
+    };
+    const std::string what =
+        "; what repeats a case has its number in the column 'process', or in 'seed' where each has "
+        "random numbers of its own";
+    EXPECT_EQ(refusal("layout: {rows: method, columns: {e: {metric: error}}}"),
+              "5:1: layout: each number would be taken over trial (0, 1), which is a column of the "
+              "file; allowed: in 'sweep', and as an axis of rows or columns, or in a 'where': "
+              "{trial: [0, 1]} takes its values together" +
+                  what);
+    EXPECT_EQ(refusal("layout: {rows: method, columns: {e: {metric: error, pass: other}}}"),
+              "no error")
+        << "of no case";
+}
+
 /// Its cells would all be missing.
 TEST(Pooled, AColumnAtEqualErrorNeedsACurve) {
     const std::string columns = ", columns: {at: {metric: ms, equal: {metric: error, is: 1}}}}";
