@@ -26,12 +26,12 @@ std::vector<const config::Selection*> choosing(const config::Layout& layout) {
     return all;
 }
 
-constexpr std::size_t kMostSaid = 12;
+constexpr std::size_t kMostListed = 12;
 
 /// The values, or the first of many.
 std::string shortened(std::vector<std::string> values, const char* separator) {
-    if (values.size() > kMostSaid) {
-        values.resize(kMostSaid);
+    if (values.size() > kMostListed) {
+        values.resize(kMostListed);
         values.emplace_back("…");
     }
     return joined(values, separator);
