@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <regex>
-#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -46,9 +45,6 @@ class PatternSearch {
         return last;
     }
 
-  private:
-    using Match = std::match_results<std::string_view::const_iterator>;
-
     std::optional<Found> firstIn(std::string_view line, std::size_t from) {
         using namespace std::regex_constants;
         std::size_t end = line.size();
@@ -87,6 +83,9 @@ class PatternSearch {
         return found;
     }
 
+  private:
+    using Match = std::match_results<std::string_view::const_iterator>;
+
     /// '^' is the line's begin alone.
     static std::regex_constants::match_flag_type before(std::size_t from) {
         return from > 0 ? std::regex_constants::match_prev_avail
@@ -122,7 +121,12 @@ bool isLetter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
+bool isOneOf(char c, std::string_view letters) {
+    return letters.find(c) != letters.npos;
+}
+
 constexpr char kThinBlank = '\1';  // parts digits; others part words, too
+constexpr char kUnread = '\3';     // a mark that is not known: beside a number it is a part of it
 
 /// A text as ASCII, and where in the text each of its letters stands.
 struct Plain {
@@ -130,96 +134,169 @@ struct Plain {
     std::vector<std::size_t> places;
 };
 
+/// What a character beyond ASCII means in numbers and beside them.
+std::string plainOf(char32_t c) {
+    // Firsts and lasts of ranges; of several that have a character, the first counts.
+    static constexpr std::pair<char, std::u32string_view> kMeanings[] = {
+        {kThinBlank,
+         U"\u00A0\u00A0\u00AD\u00AD\u2000\u200D\u202F\u202F\u205F\u2064\u3000\u3000\uFEFF\uFEFF"},
+        {'-', U"\u00AF\u00AF\u2010\u2015\u2212\u2212\uFE58\uFE63"},
+        {'\'', U"\u00B4\u00B4\u02B9\u02BC\u02C8\u02C8\u2018\u2019\u2032\u2032"},
+        {'*', U"\u00B7\u00B7\u00D7\u00D7\u2022\u2022\u2217\u2219\u22C5\u22C5\u2A2F\u2A2F"},
+        {'/', U"\u00F7\u00F7\u2044\u2044\u2215\u2215"},
+        {'2', U"\u00BC\u00BE\u2150\u215F\u2189\u2189"},
+        {'^', U"\u00B2\u00B3\u00B9\u00B9\u2070\u207B"},
+        {',', U"\u060C\u060C\u066B\u066C"},
+        {'.', U"\u02D9\u02D9\u2396\u2396"},
+        {':', U"\u2236\u2236"},
+        {'~', U"\u00B1\u00B1"},
+        {'u', U"\u00B5\u00B5\u03BC\u03BC"},
+        {kUnread, U"\u0660\u0669\u06F0\u06F9\u4E07\u4E07\u4EBF\u4EBF\u5104\u5104"},
+        {'z',
+         U"\u00AA\u00AA\u00B0\u00B0\u00BA\u00BA\u00C0\u024F\u0370\u1FFF\u2100\u214F\u3040\uD7FF"},
+        {';',
+         U"\u00A1\u00BF\u201C\u2031\u20A0\u20BF\u2190\u21FF\u2248\u2265\u23E9\u23FF\u2500\u27BF"
+         U"\u2900\u297F\u2B00\u2BFF\uFE00\uFE0F\U0001F000\U0001FAFF"}};
+    if (c >= 0xFF01 && c <= 0xFF5E) return {static_cast<char>(c - 0xFF01 + '!')};
+    for (const auto& [meaning, ranges] : kMeanings) {
+        for (std::size_t i = 0; i < ranges.size(); i += 2) {
+            if (c < ranges[i] || c > ranges[i + 1]) continue;
+            if (meaning == '2') return "/2";
+            if (meaning != '^') return {meaning};
+            return {'^', c == 0x207A ? '+' : c == 0x207B ? '-' : '2'};
+        }
+    }
+    return {kUnread};
+}
+
+/// How many bytes a character takes, and which it is; what is no UTF-8 is taken for Latin-1.
+std::pair<std::size_t, char32_t> characterOf(std::string_view text) {
+    const std::size_t length = utf8Length(text);
+    const auto byte = static_cast<unsigned char>(text[0]);
+    char32_t c = length < 2 ? byte : byte & (0xFF >> (length + 1));
+    for (std::size_t i = 1; i < length; ++i)
+        c = c << 6 | (static_cast<unsigned char>(text[i]) & 63);
+    return {std::max<std::size_t>(length, 1), c};
+}
+
 /// What typesetters write, as programs do: minus and what is taken for it, apostrophes, marks of
 /// products, powers, fractions, and the blanks that part digits.
 Plain plain(std::string_view text) {
     static constexpr std::pair<std::string_view, std::string_view> kMarks[] = {
-        {"\u2212", "-"},   {"\u2010", "-"},  {"\u2011", "-"},  {"\u2012", "-"},  {"\u2013", "-"},
-        {"\uFE63", "-"},   {"\uFF0D", "-"},  {"\u2019", "'"},  {"\u2018", "'"},  {"\u02BC", "'"},
-        {"\u00B4", "'"},   {"\u2032", "'"},  {"\u066B", ","},  {"\u066C", ","},  {"\u00D7", "*"},
-        {"\u00B7", "*"},   {"\u22C5", "*"},  {"\u2044", "/"},  {"\u2070", "^0"}, {"\u00B9", "^1"},
-        {"\u00B2", "^2"},  {"\u00B3", "^3"}, {"\u2074", "^4"}, {"\u2075", "^5"}, {"\u2076", "^6"},
-        {"\u2077", "^7"},  {"\u2078", "^8"}, {"\u2079", "^9"}, {"\u207A", "^+"}, {"\u207B", "^-"},
-        {"\u00BC", "/4"},  {"\u00BD", "/2"}, {"\u00BE", "/4"}, {"\u2150", "/7"}, {"\u2151", "/9"},
-        {"\u2152", "/10"}, {"\u2153", "/3"}, {"\u2154", "/3"}, {"\u2155", "/5"}, {"\u2156", "/5"},
-        {"\u2157", "/5"},  {"\u2158", "/5"}, {"\u2159", "/6"}, {"\u215A", "/6"}, {"\u215B", "/8"},
-        {"\u215C", "/8"},  {"\u215D", "/8"}, {"\u215E", "/8"}, {"\u00A0", "\1"}, {"\u2002", "\1"},
-        {"\u2004", "\1"},  {"\u2005", "\1"}, {"\u2006", "\1"}, {"\u2007", "\1"}, {"\u2008", "\1"},
-        {"\u2009", "\1"},  {"\u200A", "\1"}, {"\u202F", "\1"}, {"\u205F", "\1"}, {"&nbsp;", "\1"}};
+        {"&nbsp;", "\1"}, {"&thinsp;", "\1"}, {"&minus;", "-"}, {"&times;", "*"},
+        {"&lt;", ";"},    {"&gt;", ";"},      {"&amp;", ";"},   {"&quot;", ";"},
+        {"\\times", "*"}, {"\\cdot", "*"},    {"\\,", "\1"},    {"\\ ", "\1"},
+        {"{,}", ","},     {"^{", "^"},        {"^(", "^"},      {"`", "'"}};
+    static const std::regex kEntity("&#?[A-Za-z0-9]{2,8};");
     Plain result;
     bool isOfPower = false;
     for (std::size_t i = 0; i < text.size();) {
+        const std::string_view rest = text.substr(i);
+        auto [length, c] = characterOf(rest);
+        std::string written = c >= 0x80                             ? plainOf(c)
+                              : (c < ' ' && c != '\t') || c == 0x7F ? std::string{kUnread}
+                                                                    : std::string{rest[0]};
+        std::match_results<std::string_view::const_iterator> entity;
         const auto mark = std::ranges::find_if(
-            kMarks, [&](const auto& each) { return text.substr(i).starts_with(each.first); });
-        const bool isMark = mark != std::end(kMarks);
-        std::string_view written = isMark ? mark->second : text.substr(i, 1);
-        const bool goesOn = isMark && isOfPower && written.starts_with('^');
-        isOfPower = isMark && written.starts_with('^');
-        if (goesOn) written.remove_prefix(1);
+            kMarks, [&](const auto& each) { return rest.starts_with(each.first); });
+        if (mark != std::end(kMarks)) {
+            std::tie(length, written) = std::pair(mark->first.size(), mark->second);
+        } else if (c == '&' && std::regex_search(rest.begin(), rest.end(), entity, kEntity,
+                                                 std::regex_constants::match_continuous)) {
+            std::tie(length, written) =
+                std::pair(static_cast<std::size_t>(entity.length()), std::string{kUnread});
+        }
+        const bool goesOn = c >= 0x80 && isOfPower && written.starts_with('^');
+        isOfPower = c >= 0x80 && written.starts_with('^');
+        if (goesOn) written.erase(0, 1);
         result.text += written;
         result.places.insert(result.places.end(), written.size(), i);
-        i += isMark ? mark->first.size() : 1;
+        i += length;
     }
     result.places.push_back(text.size());
     return result;
 }
 
-/// Times of several units, larger ones first: 1h 2m 3.5s, 3 days, 2:03:04.
+/// Times of several units, larger ones first: 1h 2m 3.5s, 3 days, 2:03:04, 1 h 30.
 std::regex timeGrammar() {
-    static constexpr std::string_view kUnits[] = {"[Ww]eeks?|w",
-                                                  "[Dd]ays?|d",
-                                                  "[Hh]ours?|hrs?|h|[Ss]td|[Ss]tunden?",
-                                                  "[Mm]inutes?|[Mm]inuten|[Mm]ins?|m",
-                                                  "[Ss]econds?|[Ss]ecs?|[Ss]ekunden?|[Ss]ek|s",
-                                                  "[Mm]illiseconds?|[Mm]secs?|ms",
-                                                  "[Mm]icroseconds?|[Uu]secs?|us|\u00B5s|\u03BCs",
-                                                  "[Nn]anoseconds?|ns"};
-    const std::string joint = "[ \1,;:+.&/_-]{0,3}(?:(?:and|und|plus) )?";
+    // Behind 10 m, milliseconds are a time of their own.
+    static constexpr std::string_view kUnits[] = {
+        "[Yy]ears?|yrs?|y",
+        "[Mm]onths?",
+        "[Ww]eeks?|wk|w",
+        "[Dd]ays?|d|[Tt]age?",
+        "[Hh]ours?|hrs?|h|[Ss]td|[Ss]tunden?",
+        "[Mm]inutes?|[Mm]inuten|[Mm]ins?|m(?![^0-9]*[0-9.,]+[ \1]?[mun]s(?![A-Za-z]))",
+        "[Ss]econds?|[Ss]ecs?|[Ss]ekunden?|[Ss]ek|s",
+        "[Mm]illiseconds?|[Mm]secs?|ms",
+        "[Mm]icroseconds?|[Uu]secs?|us",
+        "[Nn]anoseconds?|ns"};
+    constexpr std::size_t kHours = 4, kMinutes = 5;
+    const std::string number = "[0-9][0-9.,]*[ \1]?", blanks = "[ \1\t]*";
     std::string times, smaller;
     for (std::size_t i = std::size(kUnits); i-- > 0;) {
+        // 10 s / 5 ms are two times, and so are 1.5 s 300 ms.
+        const std::string joint =
+            fmt::format("(?:\\(s\\))?\\.?{0}[,;:+&_{1}-]?{0}(?:(?:and|und|plus|then){0})*", blanks,
+                        i <= kMinutes ? "/" : "");
         if (!smaller.empty()) {
             times += fmt::format(
-                "{0}[0-9]+[ \1]?(?:{1}){2}(?:[0-9]+[ \1]?(?:{3}){2})*"
-                "(?:[0-9]+:[0-9][0-9:.]*|[0-9.]+[ \1]?(?:{3})(?![A-Za-z0-9]))",
-                times.empty() ? "" : "|", kUnits[i], joint, smaller);
+                "{0}{6}(?:{1}){2}(?:{5}(?:{3}){2})*"
+                "(?:[0-9]+:[0-9][0-9:.]*|[.]?{5}(?:{3})(?![A-Za-z0-9/]|{4}per ))",
+                times.empty() ? "" : "|", kUnits[i], joint, smaller, blanks, number,
+                i <= kMinutes ? number : "[0-9]+[ \1]?");
+        }
+        if (i == kHours || i == kMinutes) {
+            const std::string_view words = kUnits[i].substr(0, kUnits[i].rfind("|m("));
+            times += fmt::format("|{}(?:{}){}[0-5]?[0-9](?={}(?:$|[,;)\\]]))", number, words,
+                                 blanks, blanks);
         }
         smaller = fmt::format("{}{}{}", kUnits[i], smaller.empty() ? "" : "|", smaller);
     }
     return std::regex("-?(?:" + times + ")");
 }
 
-/// Names, the first group, and numbers: 1 234.5, 12 5/8, 1:23.4, 2^10, 0x1F, 16#FF, 1.#INF, and
-/// with an exponent, of which Fortran leaves the letter out where it has three digits.
+/// Names, the first group, and numbers: 1 234.5, 0.000 012, 12 5/8, 1:23.4, 1-02:03:04, 2^10, 0x1F,
+/// 1.#INF, 3+4i, and with an exponent, whose letter Fortran leaves out where it has three digits.
 std::regex numberGrammar() {
     const std::string digits = "[0-9]+", blank = "[ \1]";
     // No power of ten, which comes behind; and behind 2.5 a cm2 or ft3 is a unit.
-    const std::string joint = "(?![xX*]10(?:\\^|\\*\\*|[-+][0-9]))(?:[.,'_:/*]|" + blank +
-                              "?(?:\\*\\*|\\^)" + blank + "?[-+]?|" + blank + "/" + blank + "?|/" +
-                              blank + "|(?![A-Za-z]*[mt][23](?![A-Za-z0-9.]))[A-Za-z]+)";
-    const std::string exponent = "(?:[eEdD][-+]?[0-9]+|(?:" + blank + "?[eEdD]" + blank + "?[-+]" +
-                                 blank + "?|[eEdD]" + blank + "|" + blank +
-                                 "[eEdD])[0-9]+(?![A-Za-z0-9_]))";
-    const std::string fraction = digits + blank + digits + blank + "?/" + blank + "?" + digits;
+    const std::string joint =
+        "(?![xX*]10(?:\\^|\\*\\*|[-+][0-9]))(?:\3*[.,'_:/*\3]|" + blank + "?(?:\\*\\*|\\*?\\^)" +
+        blank + "?[-+]?|" + blank + "/" + blank + "?|/" + blank +
+        "|-(?=[0-9]{1,2}:[0-9]{2}:[0-9]{2})|\\.\\(|"
+        "(?!(?:[A-Za-z]*(?:[mt]|CO)|in|yd|mi)[23](?![A-Za-z0-9]|\\.[0-9]))[A-Za-z]+)";
+    const std::string exponent = "(?:[eEdDqQ][-+_^~\3]{0,2}[0-9]+|[bB][-+][0-9]+|(?:" + blank +
+                                 "?[eEdDqQ]" + blank + "?[-+]" + blank + "?|[eE]" + blank + "|" +
+                                 blank + "[eEdD])[0-9]+(?![A-Za-z0-9_]|\\.[0-9]))";
+    const std::string fraction = digits + "(?:" + blank + "|[-+]|" + blank + "(?:and|und|plus|&)" +
+                                 blank + ")" + digits + blank + "?/" + blank + "?" + digits +
+                                 "(?![0-9/])";
     const std::string thousands = "[0-9]{1,3}(?:" + blank + "[0-9]{3})+(?![0-9xX])(?:\\.[0-9]*)?";
-    return std::regex(
-        "([A-Za-z_][A-Za-z0-9_]*(?:\\.[0-9]+)*)|-?(?:0[xX][0-9A-Fa-f.]+(?:[pP][-+]?[0-9]+)?|" +
-        fraction + "|[0-9]*\\.[0-9]*[-+][0-9]{3}(?![0-9.])|(?:" + thousands + "|\\.?" + digits +
-        "(?:" + joint + digits + ")*)" + "(?:\\.?#[A-Za-z0-9]+|\\.?(?:" + blank +
-        "?\\([0-9.]+\\))?" + exponent + ")?)");
+    const std::string thousandths =
+        "[0-9]*\\.[0-9]{3}(?:(?: [0-9]{3})+|(?:\1[0-9]{1,3})+)(?![0-9xX]|\\.[0-9])";
+    return std::regex("([A-Za-z_][A-Za-z0-9_]*)|[-\3]?(?:0[xX][0-9A-Fa-f.]+(?:[pP][-+]?[0-9]+)?|" +
+                      fraction + "|[0-9]*\\.[0-9]*[-+][0-9]{3}(?![0-9.])|(?:" + thousandths + "|" +
+                      thousands + "|\\.?" + digits + "(?:" + joint + digits +
+                      ")*)(?:\\.?#[A-Za-z0-9]+|\\.?(?:" + blank + "?\\([0-9.]+\\))?" + exponent +
+                      ")?(?:" + blank + "?[-+]" + blank + "?[0-9.]+[ij](?![A-Za-z0-9]))?)\3*");
 }
 
 /// Whether the scale is what is written behind a number, as k, Ki or million.
 bool isScaleOf(std::string factor, double scale) {
-    static constexpr std::pair<std::string_view, int> kPowers[] = {{"th", 1}, {"ts", 1}, {"mrd", 3},
-                                                                   {"k", 1},  {"m", 2},  {"g", 3},
-                                                                   {"b", 3},  {"t", 4},  {"p", 5}};
+    static constexpr std::pair<std::string_view, double> kFactors[] = {
+        {"hu", 1e2},     {"do", 12},   {"du", 12},  {"ta", 1e3},      {"th", 1e3},
+        {"ts", 1e3},     {"la", 1e5},  {"cr", 1e7}, {"milliar", 1e9}, {"mille", 1e3},
+        {"millie", 1e3}, {"mrd", 1e9}, {"k", 1e3},  {"m", 1e6},       {"g", 1e9},
+        {"billio", 1e9}, {"bn", 1e9},  {"t", 1e12}, {"p", 1e15},      {"e", 1e18}};
     factor = lowerCase(factor);
-    const int power = std::ranges::find_if(kPowers, [&](const auto& each) {
-                          return factor.starts_with(each.first);
-                      })->second;
+    const double value = std::ranges::find_if(kFactors, [&](const auto& each) {
+                             return factor.starts_with(each.first);
+                         })->second;
     const bool isBinary = factor.size() == 2 && factor[1] == 'i';
-    return (!isBinary && scale == std::pow(1000.0, power)) ||
-           ((isBinary || factor.size() == 1) && scale == std::pow(1024.0, power));
+    return (!isBinary && scale == value && !factor.ends_with("onen")) ||
+           ((isBinary || factor.size() == 1) &&
+            scale == std::pow(1024.0, std::round(std::log10(value) / 3)));
 }
 
 /// A number, or a name, as a text has it.
@@ -228,245 +305,272 @@ struct Written {
     bool isName = false, isTime = false;
 };
 
-/// The first one from a place on.
-std::optional<Written> writtenIn(const std::string& text, std::size_t from, double scale) {
-    static const std::regex kNumber = numberGrammar(), kTime = timeGrammar();
-    static const std::regex kPower(
-        "[ \1]?(?:[xX*][ \1]?)?10(?:\\^|\\*\\*|(?=[-+][0-9]))[-+]?[0-9]*");
-    static const std::regex kFactor("[ \1]?([kKMGTP]i|[kMGTP])(?![A-Za-z0-9])|(K)(?![A-Za-z0-9])");
-    static const std::regex kFactorWord(
-        "[ \1]?(kilo|thousand|tsd|mega|millions?|mio|mln|giga|billions?|mrd|bn|tera|trillions?)"
-        "(?![A-Za-z0-9])",
-        std::regex::ECMAScript | std::regex::icase);
-    std::smatch match;
-    const auto continues = [&](std::size_t place, const std::regex& grammar) {
-        return std::regex_search(text.begin() + static_cast<std::ptrdiff_t>(place), text.end(),
-                                 match, grammar, std::regex_constants::match_continuous);
-    };
-    if (!std::regex_search(text.begin() + static_cast<std::ptrdiff_t>(from), text.end(), match,
-                           kNumber)) {
-        return std::nullopt;
-    }
-    Written found;
-    found.begin = from + static_cast<std::size_t>(match.position());
-    found.end = found.begin + static_cast<std::size_t>(match.length());
-    found.isName = match[1].matched;
-    if (found.isName) return found;
-    const std::size_t first = found.begin;
-    const char before = first > 0 ? text[first - 1] : ' ';
-    const auto take = [&](std::size_t place) {
-        found.end = std::max(found.end, place + static_cast<std::size_t>(match.length()));
-    };
-    if (continues(first, kTime)) {
-        found.isTime = first + static_cast<std::size_t>(match.length()) >= found.end;
-        take(first);
-    }
-    if (!found.isTime && continues(found.end, kPower)) take(found.end);
-    if (!found.isTime && (continues(found.end, kFactor) || continues(found.end, kFactorWord)) &&
-        !isScaleOf(match[1].matched ? match.str(1) : match.str(2), scale)) {
-        take(found.end);
-    }
-    const bool isOfWord = isDigit(before) || isLetter(before) || before == '.';
-    if (text[first] == '-' && (isOfWord || before == '_' || before == ')' || before == '-')) {
-        ++found.begin;  // a range, a name, a dash
-    }
-    if (text[first] == '.' && isOfWord) ++found.begin;  // leaders
-    return found;
-}
+/// Searches a text for what is written in it.
+class Writing {
+  public:
+    Writing(const std::string& text, double scale) : text_(text), scale_(scale) {}
 
-constexpr char kOther = '\2';  // no letter of a pattern
-
-/// The letters that a pattern asks for, one by one: a blank for any blanks, none for blanks that
-/// may be left out, and kOther for all else.
-std::string lettersOf(std::string_view regex) {
-    std::string letters;
-    for (std::size_t i = 0; i < regex.size();) {
-        char letter = regex[i++];
-        const bool isCloser = letter == ')';
-        if (letter == '(') {
-            i += regex.substr(i).starts_with("?:") ? 2 : 0;
-            continue;
+    /// The first number or name from a place on.
+    std::optional<Written> next(std::size_t from) {
+        static const std::regex kNumber = numberGrammar();
+        static const std::regex kDuration(
+            "P(?:[0-9.]+[YMWD])*T(?:[0-9.,]+[HMS])+(?![A-Za-z0-9])|P(?:[0-9.]+[YMWD]){2,}");
+        if (!std::regex_search(at(from), text_.end(), match_, kNumber)) return std::nullopt;
+        Written found;
+        found.begin = from + static_cast<std::size_t>(match_.position());
+        found.end = found.begin + static_cast<std::size_t>(match_.length());
+        found.isName = match_[1].matched;
+        if (!found.isName) {
+            withWhatFollows(found);
+        } else if (continues(found.begin, kDuration)) {
+            found.isName = false;
+            found.isTime = true;
+            take(found, found.begin);
+        } else if (isDigit(text_[found.end - 1]) && isPartedBehind(found.end)) {  // t1,234
+            std::size_t digits = found.end;
+            while (isDigit(text_[digits - 1])) --digits;
+            return next(digits);
         }
-        if (letter == '\\' && i < regex.size()) {
-            letter = regex[i++];
-            const bool isClass = isLetter(letter) || isDigit(letter);
-            if (isClass) letter = letter == 's' || letter == 't' ? ' ' : kOther;
-        } else if (letter == '[') {
-            std::size_t end = std::min(regex.find(']', i), regex.size() - 1);
-            if (regex.substr(i).starts_with("[:")) end = std::min(end + 1, regex.size() - 1);
-            const std::string_view all = regex.substr(i, end - i);
-            const bool isBlank = all == "[:space:]" || all == " \\t" || all == "\\s";
-            letter = isBlank ? ' ' : all.size() == 1 ? all[0] : kOther;
-            i = end + 1;
-        } else if (letter == '.' || letter == '|' || letter == '^' || letter == '$') {
-            letter = kOther;
-        }
-        const std::string_view rest = regex.substr(std::min(i, regex.size()));
-        const bool isOptional =
-            rest.starts_with('?') || rest.starts_with('*') || rest.starts_with("{0");
-        if (rest.starts_with('{')) i = std::min(regex.find('}', i), regex.size() - 1) + 1;
-        while (i < regex.size() && (regex[i] == '?' || regex[i] == '*' || regex[i] == '+')) ++i;
-        if (isOptional && letter != ' ') letters += kOther;
-        if (!isOptional && !isCloser) letters += letter;
+        return found;
     }
-    return letters;
-}
 
-/// What the pattern has before its first group, and behind it.
-std::pair<std::string_view, std::string_view> besideGroup(std::string_view regex) {
-    std::size_t begin = regex.npos, end = regex.npos;
-    std::vector<std::size_t> open;
-    bool isClass = false;
-    for (std::size_t i = 0; i < regex.size() && end == regex.npos; ++i) {
-        if (regex[i] == '\\') {
-            ++i;
-        } else if (isClass || regex[i] == '[') {
-            isClass = regex[i] != ']';
-        } else if (regex[i] == '(') {
-            if (begin == regex.npos && regex.substr(i + 1, 1) != "?") begin = i;
-            open.push_back(i);
-        } else if (regex[i] == ')' && !open.empty()) {
-            if (open.back() == begin) end = i;
-            open.pop_back();
-        }
+  private:
+    std::string::const_iterator at(std::size_t place) const {
+        return text_.begin() + static_cast<std::ptrdiff_t>(place);
     }
-    if (end == regex.npos) return {};
-    return {regex.substr(0, begin), regex.substr(end + 1)};
-}
+    bool continues(std::size_t place, const std::regex& grammar) {
+        return std::regex_search(at(place), text_.end(), match_, grammar,
+                                 std::regex_constants::match_continuous);
+    }
+    void take(Written& found, std::size_t place) const {
+        found.end = std::max(found.end, place + static_cast<std::size_t>(match_.length()));
+    }
+    bool isPartedBehind(std::size_t place) const {
+        return place + 1 < text_.size() && isDigit(text_[place + 1]) &&
+               isOneOf(text_[place], ".,'\1\3");
+    }
 
-/// The rest of a number on both sides of the group, and whether all of it is matched, too.
-struct Rest {
-    std::string left, right;
-    bool isLeftMatched = false, isRightMatched = false;
+    /// Powers of ten, words of size, the units of a time.
+    void withWhatFollows(Written& found) {
+        static const std::regex kTime = timeGrammar();
+        static const std::string ten = "10(?:[ \1]?(?:\\^|\\*\\*)[ \1]?|(?=[-+][0-9]))[-+]?[0-9]*";
+        static const std::regex kPower(
+            "(?:[ \1]?(?:\\([0-9.]+\\)|(?:~|\\+/?-)[ \1]?[0-9.]+))?(?:[ \1]?(?:[xX*.\3][ \1]?)?" +
+            ten + "|[)\\]]?[ \1]?[xX*][ \1]?(?:" + ten +
+            "|[0-9.]+(?:\\^|\\*\\*|[eE])[-+]?[0-9]+)|[)\\]][eE][-+]?[0-9]+)");
+        static const std::regex kFactor(
+            "[ \1]?([kKMGTPE]i|[kMGP])(?![A-Za-z0-9])|([KT])(?![A-Za-z0-9])");
+        static const std::regex kFactorWord(
+            "[ \1]?-?(kilo|thousand|tausend|tsd|hundred|hundert|dozen|dutzend|lakh|crore|mega|mio|"
+            "mln|mill|mille|milli(?:on|ard|er)[a-z]*|giga|billion[a-z]*|mrd|bn|tera|trillion[a-z]*)"
+            "(?![A-Za-z0-9])",
+            std::regex::ECMAScript | std::regex::icase);
+        const std::size_t first = found.begin;
+        const char before = first > 0 ? text_[first - 1] : ' ';
+        const bool isOfWord = isDigit(before) || isLetter(before) || before == '.';
+        const bool isDash = text_[first] == '-' && (isOfWord || isOneOf(before, "_)-+"));
+        if (isDash ||
+            isOneOf(before, "/\\@#")) {  // of a range, a name, a date or a path: blanks end it
+            found.end = std::min(found.end, text_.find(' ', first));
+        }
+        if (continues(first, kTime)) {
+            found.isTime = first + static_cast<std::size_t>(match_.length()) >= found.end;
+            take(found, first);
+        }
+        // Of 6500K, the K are kelvins.
+        const bool isLarge =
+            found.end - first > 3 && std::all_of(at(first), at(found.end), isDigit);
+        if (!found.isTime && continues(found.end, kPower)) take(found, found.end);
+        if (!found.isTime && (continues(found.end, kFactor) || continues(found.end, kFactorWord))) {
+            const std::string factor = match_.str(match_[1].matched ? 1 : 2);
+            const bool isKelvin = isLarge && factor == "K" && match_[2].matched;
+            if (!isKelvin && !isScaleOf(factor, scale_)) take(found, found.end);
+        }
+        if (isDash || (text_[first] == '.' && isOfWord)) ++found.begin;  // leaders
+    }
+
+    const std::string& text_;
+    double scale_;
+    std::smatch match_;
 };
 
-/// Whether the pattern names what stands before the group: the letters or the mark beside it. A
-/// blank and the colon of a clock name nothing unless the pattern matches the rest, too.
-bool namesLeft(std::string_view before, const Rest& rest) {
-    const std::string_view left = rest.left;
-    const bool isBlank = left.ends_with(' ') && (left.size() < 2 || !isLetter(left.end()[-2]));
-    std::size_t begin = left.size() - (left.ends_with(' ') && !isBlank ? 1 : 0);
-    if (!isLetter(left[begin - 1])) --begin;
-    while (begin > 0 && isLetter(left[begin - 1])) --begin;
-    const std::string_view word = left.substr(begin);
-    const bool isNamed =
-        before.ends_with(word) || (word.size() > 1 && word.ends_with(' ') &&
-                                   before.ends_with(word.substr(0, word.size() - 1)));
-    return isNamed && (rest.isLeftMatched || (!isBlank && word != ":"));
-}
-
-/// The same behind it. A unit of a time that goes on names nothing without digits of the pattern.
-bool namesRight(std::string_view behind, bool asksForDigits, const Rest& rest, bool isTime) {
-    const std::string_view right = rest.right;
-    const std::string_view word = right.substr(right[0] == ' ' && right.size() > 1 ? 1 : 0);
-    const std::string_view letters = word.substr(
-        0, static_cast<std::size_t>(std::ranges::find_if_not(word, isLetter) - word.begin()));
-    const std::string_view named = behind.substr(behind.starts_with(' ') ? 1 : 0);
-    if (!letters.empty()) return named.starts_with(letters) && (!isTime || asksForDigits);
-    if (!isDigit(word[0])) return named.starts_with(word[0]);
-    return behind.starts_with(' ') && rest.isRightMatched;
-}
-
-bool namesRest(const Found& found, std::string_view pattern, const Rest& rest, bool isTime) {
-    const std::string regex = plain(pattern).text;
-    const auto [regexBefore, regexBehind] = besideGroup(regex);
-    const std::string before = lettersOf(regexBefore), behind = lettersOf(regexBehind);
-    const bool namesCommas = before.ends_with(',') || behind.starts_with(',');
-    const auto isComma = [&](char beside) { return namesCommas && beside == ','; };
-    if (!rest.left.empty() && !isComma(rest.left.back()) && !namesLeft(before, rest)) return false;
-    if (rest.right.empty() || isComma(rest.right[0])) return true;
-    // Of columns, the pattern names those before.
-    static const std::regex kColumn("(?:^| )[-+0-9.]+ +$"), kGroups("(?: [0-9]{3})+(?:\\.[0-9]*)?");
-    const std::string own(found.line.substr(found.matchBegin, found.begin - found.matchBegin));
-    if (!isTime && std::regex_match(rest.right, kGroups) && std::regex_search(own, kColumn)) {
-        return true;
+/// A group, what is written around it, and whether the pattern names what of that it leaves out.
+class Group {
+  public:
+    Group(PatternSearch& search, const Found& found, double scale)
+        : search_(search),
+          found_(found),
+          from_(found.begin - std::min(found.begin, kBytesBeside)),
+          part_(found.line.substr(from_, found.end - from_ + kBytesBeside)),
+          line_(plain(part_)),
+          begin_(placeOf(found.begin)),
+          end_(placeOf(found.end)) {
+        Writing writing(text_, scale);
+        std::optional<Written> written;
+        for (std::size_t i = 0; (written = writing.next(i)); i = written->end) {
+            if (written->end > begin_) break;
+        }
+        if (written && written->isName && begin_ > written->begin && !isDigit(text_[begin_ - 1])) {
+            written = writing.next(begin_);  // the number of a name
+        }
+        written_ = written.value_or(Written{begin_, end_});
     }
-    const bool asksForDigits = regexBehind.find_first_of("0123456789") != regexBehind.npos ||
-                               regexBehind.find("\\d") != regexBehind.npos;
-    return namesRight(behind, asksForDigits, rest, isTime);
-}
 
-constexpr std::size_t kBytesBeside = 64;  // of a group, in which its number is looked for
+    /// What the group is a part of, and what the pattern lacks, where it is such a part.
+    std::optional<std::pair<std::string_view, std::string>> whole() const {
+        if (written_.begin >= end_) return std::nullopt;
+        std::size_t left = std::min(written_.begin, begin_), right = std::max(written_.end, end_);
+        if (written_.isTime && !hasDigits(left, begin_)) left = begin_;
+        if (written_.isTime && !hasDigits(end_, right)) right = end_;
+        std::string before = asPattern(left, begin_), behind = asPattern(end_, right);
+        std::size_t first = left;
+        if (written_.begin > begin_) {  // behind the dash of a range or a name, which is no sign
+            before = asPattern(begin_, written_.begin);
+            while (first > 0 && text_[first - 1] != ' ') --first;
+        } else if (namesBoth(left, right)) {
+            return std::nullopt;
+        }
+        const std::string_view all = bytes(first, std::max(written_.end, end_));
+        if (before.ends_with("[0-9]+") || behind.starts_with("[0-9]+")) return std::pair(all, "");
+        before = before.empty() ? "" : fmt::format("'{}' before", before);
+        behind = behind.empty() ? "" : fmt::format("'{}' behind", behind);
+        const char* both = before.empty() || behind.empty() ? "" : " and ";
+        return std::pair(all,
+                         fmt::format(", or a pattern with {}{}{} its group", before, both, behind));
+    }
 
-/// The number that the group is a part of, where it is a part that the pattern does not name.
-std::optional<std::string_view> wholeOf(const Found& found, const config::ProgramPattern& pattern) {
-    const std::size_t from = found.begin - std::min(found.begin, kBytesBeside);
-    const std::string_view part = found.line.substr(from, found.end - from + kBytesBeside);
-    const Plain line = plain(part);
-    const std::string& text = line.text;
-    const std::vector<std::size_t>& places = line.places;
-    const auto placeOf = [&](std::size_t byte) {
-        return static_cast<std::size_t>(std::ranges::lower_bound(places, byte - from) -
-                                        places.begin());
-    };
-    const std::size_t begin = placeOf(found.begin), end = placeOf(found.end);
-    std::optional<Written> written;
-    for (std::size_t i = 0; (written = writtenIn(text, i, pattern.scale)); i = written->end) {
-        if (written->end > begin) break;
-    }
-    if (!written || written->begin >= end) return std::nullopt;
-    const auto between = [&](std::size_t first, std::size_t last) {
-        std::string result = first < last ? text.substr(first, last - first) : "";
-        std::ranges::replace(result, kThinBlank, ' ');
-        return result;
-    };
-    const auto placesFrom = [&](std::size_t first) {
-        return part.substr(places[first], places[written->end] - places[first]);
-    };
-    if (written->begin > begin) {  // the dash of a range or a name is no sign
-        std::size_t word = begin;
-        while (word > 0 && text[word - 1] != ' ') --word;
-        return placesFrom(word);
-    }
-    Rest rest{between(written->begin, begin), between(end, written->end),
-              found.matchBegin <= from + places[written->begin],
-              found.matchEnd >= from + places[written->end]};
-    if (written->isTime && std::ranges::none_of(rest.right, isDigit)) rest.right.clear();
-    if (!written->isName) {
-        if (namesRest(found, pattern.regex, rest, written->isTime)) return std::nullopt;
-        return placesFrom(written->begin);
-    }
-    // A name may have digits at its ends.
-    const auto [before, behind] = besideGroup(pattern.regex);
-    const auto goesOn = [](std::string_view digits, bool isPointNamed) {
-        return !digits.empty() && (isDigit(digits[0]) || (digits[0] == '.' && !isPointNamed &&
-                                                          digits.size() > 1 && isDigit(digits[1])));
-    };
-    const std::string backwards(rest.left.rbegin(), rest.left.rend());
-    const bool isPart = (text[begin] == '.' && !rest.left.empty()) ||
-                        goesOn(rest.right, lettersOf(behind).starts_with('.')) ||
-                        goesOn(backwards, lettersOf(before).ends_with('.'));
-    return isPart ? std::optional(placesFrom(written->begin)) : std::nullopt;
-}
+  private:
+    static constexpr std::size_t kBytesBeside = 64;  // in which the number is looked for
+    // Put where the pattern may or may not ask for what is there.
+    static constexpr char kNothing = '\0';
+    static constexpr std::string_view kOthers{"\2vV!\0", 5}, kNoDigits = " v\2";
 
-/// Also with zeros before it, as of a clock, with Fortran's exponents, 1.5D+03 and 1.5-103, and a
-/// typesetter's minus.
+    static bool isBlank(char c) { return c == ' ' || c == '\t' || c == kThinBlank; }
+    static bool isMark(char c) { return !isBlank(c); }
+
+    std::size_t placeOf(std::size_t byte) const {
+        return static_cast<std::size_t>(std::ranges::lower_bound(line_.places, byte - from_) -
+                                        line_.places.begin());
+    }
+    std::string_view bytes(std::size_t first, std::size_t last) const {
+        return part_.substr(line_.places[first], line_.places[last] - line_.places[first]);
+    }
+    std::string_view text(std::size_t first, std::size_t last) const {
+        return std::string_view(text_).substr(first, last - first);
+    }
+    bool hasDigits(std::size_t first, std::size_t last) const {
+        return std::ranges::any_of(text(first, last), isDigit);
+    }
+
+    /// As a pattern that asks for it.
+    std::string asPattern(std::size_t first, std::size_t last) const {
+        std::string pattern;
+        for (const char c : bytes(first, last)) {
+            const bool isNext = isDigit(c) && pattern.ends_with("[0-9]+");
+            if (!isNext && isOneOf(c, ".^$*+?()[]{}|\\")) pattern += '\\';
+            if (!isNext) pattern += isDigit(c) ? "[0-9]+" : std::string{c};
+        }
+        return shown(pattern);
+    }
+
+    /// Whether with others in the place of some letters, or none, the pattern finds another group.
+    bool asksFor(std::size_t first, std::size_t last, bool (*isSome)(char),
+                 std::string_view others) const {
+        std::vector<std::size_t> asked;  // bytes of the line, the last one first
+        for (std::size_t i = last; i-- > first;) {
+            const std::size_t place = line_.places[i];
+            if (!isSome(text_[i]) || (!asked.empty() && asked.back() == from_ + place)) continue;
+            for (std::size_t byte = *std::ranges::upper_bound(line_.places, place);
+                 byte-- > place;) {
+                asked.push_back(from_ + byte);
+            }
+        }
+        return std::ranges::none_of(others, [&](char other) {
+            std::string line(found_.line);
+            std::size_t begin = found_.begin, matchBegin = found_.matchBegin;
+            for (const std::size_t byte : asked) {
+                line.replace(byte, 1, other == kNothing ? 0 : 1, other);
+                if (other == kNothing && byte < found_.begin) --begin;
+                if (other == kNothing && byte < found_.matchBegin) --matchBegin;
+            }
+            const std::optional<Found> found = search_.firstIn(line, matchBegin);
+            return found && found->begin == begin && found->number() == found_.number();
+        });
+    }
+
+    /// Of the rest on one side: it is matched, and asked for; of blanks and colons, and of what
+    /// goes on behind it as a time or a power, also the digits are.
+    bool names(std::size_t first, std::size_t last, bool isLeft) const {
+        const std::string_view rest = text(first, last), digits = "0123456789";
+        // Of what joins it to the group.
+        std::size_t begin = isLeft ? first + rest.find_last_of(digits) + 1 : first;
+        std::size_t end = isLeft ? last : first + std::min(rest.find_first_of(digits), rest.size());
+        if (begin == end) return rest.empty();
+        const std::string_view joint = text(begin, end);
+        if (std::ranges::all_of(joint, isBlank)) {
+            return found_.matchBegin <= from_ + line_.places[first] &&
+                   found_.matchEnd >= from_ + line_.places[last] &&
+                   asksFor(first, last, isDigit, " ");
+        }
+        const bool isWord = std::ranges::any_of(joint, isLetter);
+        if (isWord && !written_.isTime) {  // the letter that is farthest: 5 million is no 5 m
+            while (isLeft && !isLetter(text_[begin])) ++begin;
+            while (!isLeft && !isLetter(text_[end - 1])) --end;
+            (isLeft ? end : begin) = isLeft ? begin + 1 : end - 1;
+        }
+        if (!asksFor(begin, end, isWord ? isLetter : isMark, kOthers)) return false;
+        static const std::regex kGoesOn("[ \1]*(?::|[eEdDqQbB])[ \1]*[-+]*");
+        const bool goesOn = !isLeft && (written_.isTime || rest.find('^') < last);
+        return !(goesOn || std::regex_match(joint.begin(), joint.end(), kGoesOn)) ||
+               asksFor(first, last, isDigit, kNoDigits);
+    }
+
+    /// Of rests on both sides one may name the other: a comma on both, columns, 3/100 of 2 3/100.
+    bool namesBoth(std::size_t left, std::size_t right) const {
+        const bool isLeft = names(left, begin_, true), isRight = names(end_, right, false);
+        if (isLeft && isRight) return true;
+        const char before = begin_ > 0 ? text_[begin_ - 1] : ' ';
+        const char behind = end_ < text_.size() ? text_[end_] : ' ';
+        if (behind == before && !isBlank(behind) && !isDigit(behind) && !isLetter(behind)) {
+            return asksFor(begin_ - 1, begin_, isMark, kOthers) ||
+                   asksFor(end_, end_ + 1, isMark, kOthers);
+        }
+        if (isRight && isBlank(before)) return behind == '/' && right > end_;
+        static const std::regex kColumn("(?:^| )([-+0-9.]+) +$");
+        const bool isOfGroups = text(end_, right).find_first_not_of(" .0123456789") > right;
+        const std::string own(
+            found_.line.substr(found_.matchBegin, found_.begin - found_.matchBegin));
+        std::smatch column;
+        if (!isLeft || !isOfGroups || !std::regex_search(own, column, kColumn)) return false;
+        const std::size_t first = found_.matchBegin + static_cast<std::size_t>(column.position(1));
+        if (first < from_) return false;
+        const std::size_t begin = placeOf(first);
+        const std::size_t end = begin + static_cast<std::size_t>(column.length(1));
+        return asksFor(begin, end, isDigit, " ") && !asksFor(begin, end, isDigit, "3") &&
+               !asksFor(begin, end, isDigit, "7");  // any, not that of a name
+    }
+
+    PatternSearch& search_;
+    const Found& found_;
+    std::size_t from_;       // in the line
+    std::string_view part_;  // of the line, from there on
+    Plain line_;
+    const std::string& text_ = line_.text;
+    std::size_t begin_, end_;  // of the group
+    Written written_;
+};
+
+/// Also with zeros before it, as of a clock, with Fortran's exponent, 1.5D+03, and a typesetter's
+/// minus. What may be a range, 0.5-100, is none.
 std::optional<double> numberFrom(std::string_view text) {
     std::string number = plain(text).text;
     if (const std::size_t at = number.find_first_of("dD"); at != number.npos) number[at] = 'e';
-    const std::size_t sign = number.find_last_of("+-");
-    const bool isBare = sign != number.npos && sign > 0 && number.size() - sign == 4 &&
-                        number.find('.') < sign && number.find_first_of("eE") == number.npos;
-    if (isBare) number.insert(sign, "e");
+    if (number.ends_with('.') && number.find('.') + 1 < number.size()) number.pop_back();  // a stop
     const std::optional<double> value = parsedNumber<double>(number);
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 }  // namespace
-
-std::string withoutColours(std::string_view text) {
-    std::string result;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (!text.substr(i).starts_with("\x1b[")) {
-            result += text[i];
-            continue;
-        }
-        // The digits beside a colour are of one number, those beside a step of the cursor are not.
-        i = std::min(text.find_first_not_of("0123456789;:?<=>", i + 2), text.size());
-        if (i == text.size() || text[i] != 'm') result += ' ';
-    }
-    return result;
-}
 
 std::optional<double> numberIn(std::string_view printed, const config::ProgramPattern& pattern) {
     PatternSearch search(pattern);
@@ -484,11 +588,10 @@ std::optional<double> numberIn(std::string_view printed, const config::ProgramPa
         throw Error(fmt::format("metric '{}': its pattern finds '{}'; allowed: a number",
                                 pattern.metric, shown(last->number())));
     }
-    if (const std::optional<std::string_view> whole = wholeOf(*last, pattern)) {
-        throw Error(fmt::format(
-            "metric '{}': its pattern finds '{}' of '{}'; allowed: a whole number, or a pattern "
-            "that names what stands beside it",
-            pattern.metric, shown(last->number()), shown(*whole)));
+    if (const auto whole = Group(search, *last, pattern.scale).whole()) {
+        throw Error(
+            fmt::format("metric '{}': its pattern finds '{}' of '{}'; allowed: a whole number{}",
+                        pattern.metric, shown(last->number()), shown(whole->first), whole->second));
     }
     return *number * pattern.scale;
 }

@@ -93,6 +93,22 @@ std::string shown(std::string_view line) {
                                         : std::string(line.substr(0, kLongestShown)) + "…";
 }
 
+std::string withoutColours(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (!text.substr(i).starts_with("\x1b[")) {
+            const bool isCharset = text.substr(i).starts_with("\x1b(");
+            if (isCharset) i += 2;  // as of `tput sgr0`
+            if (!isCharset && text[i] != '\x0f') result += text[i];
+            continue;
+        }
+        // The digits beside a colour are of one number, those beside a step of the cursor are not.
+        i = std::min(text.find_first_not_of("0123456789;:?<=>", i + 2), text.size());
+        if (i == text.size() || text[i] != 'm') result += ' ';
+    }
+    return result;
+}
+
 std::vector<GivenMetric> metricsIn(const std::filesystem::path& file, int frame, int count) {
     std::error_code isAbsent;
     if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, isAbsent))) {
