@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,7 +30,7 @@ class LineReader {
     /// False at the end of the text.
     bool nextLine() {
         line_ = nextLine_;
-        isWordContinued_ = false;
+        takesLine_ = false;
         if (text_.empty()) return false;
         rest_ = takeLine();
         if (isContinued(rest_)) joinContinuations();
@@ -54,10 +57,9 @@ class LineReader {
         return name;
     }
 
-    /// Of a line with a name: says where this ends in a backslash, as a folder's path does, and so
-    /// takes the next line.
-    void noteName(LeftOut& leftOut) const {
-        if (isWordContinued_) leftOut.add("a line that a name takes, as it ends in '\\'");
+    /// Says that the line ends in a backslash, as a folder's path does, and so takes another one.
+    void noteTakenLine(LeftOut& leftOut) const {
+        if (takesLine_) leftOut.add("a line that the one before takes, as that ends in '\\'");
     }
 
     /// What stands before a comment.
@@ -158,13 +160,26 @@ class LineReader {
         return line;
     }
 
+    /// Whether it is a line of its own: with a key of OBJ and MTL files; behind a word that ends in
+    /// the backslash also with another one. Names and numbers go on otherwise.
+    static bool beginsWithKey(std::string_view line, bool isOfWord) {
+        constexpr std::string_view kKeys[] = {
+            "v",  "vt", "vn", "f", "l",  "g",     "o",      "s",      "Ka",     "Kd",    "Ks",
+            "Ke", "Ns", "Ni", "d", "Tr", "illum", "map_Kd", "newmtl", "usemtl", "mtllib"};
+        while (!line.empty() && isBlank(line.front())) line.remove_prefix(1);
+        const std::string_view word = line.substr(0, line.find_first_of(" \t\r"));
+        if (isOfWord) return !word.empty() && std::isalpha(static_cast<unsigned char>(word[0]));
+        return word.size() < line.size() && std::ranges::find(kKeys, word) != std::end(kKeys);
+    }
+
     void joinContinuations() {
         joined_.clear();
         while (isContinued(rest_)) {
             joined_ += rest_.substr(0, rest_.rfind('\\'));
-            isWordContinued_ |= !joined_.empty() && !isBlank(joined_.back());
+            const bool isOfWord = !joined_.empty() && !isBlank(joined_.back());
             joined_ += ' ';
             rest_ = text_.empty() ? std::string_view{} : takeLine();
+            takesLine_ |= beginsWithKey(rest_, isOfWord);
         }
         joined_ += rest_;
         rest_ = joined_;
@@ -176,7 +191,7 @@ class LineReader {
     std::string_view rest_;
     const char* lineEnd_ = nullptr;  // behind its comment
     std::string joined_;
-    bool isWordContinued_ = false;
+    bool takesLine_ = false;
     int line_ = 1;
     int nextLine_ = 1;
 };

@@ -104,7 +104,7 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
         const std::string_view key = lines.word();
         const bool isOfNumbers =
             key == "Kd" || key == "Ke" || key == "Ns" || key == "Ni" || key == "d" || key == "Tr";
-        if (!isOfNumbers && key != "Ka" && key != "Ks" && key != "Tf") lines.noteName(leftOut);
+        lines.noteTakenLine(leftOut);
         if (key == "newmtl") {
             const std::string name = asUtf8(lines.name());
             const auto [found, isNew] = materials.try_emplace(name);

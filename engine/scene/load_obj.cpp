@@ -77,9 +77,7 @@ class ObjParser {
 
   private:
     void parseLine(std::string_view key) {
-        if (key == "usemtl" || key == "mtllib" || key == "g" || key == "o") {
-            lines_.noteName(leftOut_);
-        }
+        lines_.noteTakenLine(leftOut_);
         if (key == "v") {
             parseVertex();
         } else if (key == "vt") {
