@@ -7,6 +7,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -178,10 +179,10 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
         nlohmann::json::sax_parse(withoutByteOrderMark(json), &walker);
     }
 
-    bool null() override {  // as if the key was not there
+    bool null() override {  // as if the key was not there, but once
         if (!isLookedAt()) return true;
         if (!open_.back().isObject) return take("", "null");
-        open_.back().seen.erase(open_.back().key);
+        open_.back().hasValue[open_.back().key] = false;
         return true;
     }
     bool boolean(bool value) override { return take("b", value ? "true" : "false"); }
@@ -221,7 +222,7 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
         // Of extensions each is known or not.
         const bool isKnown = isFree || key == "extensions" || shape;
         if (!isKnown) on_.onUnknown(joinedPath(object.path, key));
-        if (!object.seen.insert(key).second) say("there twice", "once");
+        if (!object.hasValue.try_emplace(key, true).second) say("there twice", "once");
         object.shape = shape.value_or("");
         skipsValue_ = isFree || !isKnown;
         return true;
@@ -237,11 +238,11 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
         std::string path;
         std::string_view keys;
         bool isObject;
-        std::string_view shape;  // of the value that comes next
-        std::size_t length;      // of a list, as its shape has it; 0: any
-        std::string key = {};    // of an object: of that value
-        std::size_t count = 0;   // of a list: of values so far
-        std::set<std::string> seen = {};
+        std::string_view shape;                     // of the value that comes next
+        std::size_t length;                         // of a list, as its shape has it; 0: any
+        std::string key = {};                       // of an object: of that value
+        std::size_t count = 0;                      // of a list: of values so far
+        std::map<std::string, bool> hasValue = {};  // of the keys so far
     };
 
     bool isLookedAt() const { return !open_.empty() && skipped_.empty() && !skipsValue_; }
@@ -301,7 +302,10 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
             skipped_.pop_back();
         } else {
             Open& closed = open_.back();
-            const auto has = [&](const char* key) { return closed.seen.contains(key); };
+            const auto has = [&](const char* key) {
+                const auto found = closed.hasValue.find(key);
+                return found != closed.hasValue.end() && found->second;
+            };
             if (closed.path == "nodes" && has("matrix") &&  // glTF 2.0, Sec. 3.5.3
                 (has("translation") || has("rotation") || has("scale"))) {
                 closed.key = "matrix";

@@ -113,6 +113,10 @@ TEST_F(LoadMeaning, OtherValuesOfGltfAreThoseThatItHas) {
 TEST_F(LoadMeaning, OfGltfNothingStandsTwice) {
     EXPECT_EQ(nodeError(R"("scale":[1,1,1],"scale":[2,2,2])"),
               "nodes[1].scale is there twice; allowed: once");
+    for (const char* twice :
+         {R"("scale":null,"scale":[2,2,2])", R"("scale":[2,2,2],"scale":null)"}) {
+        EXPECT_EQ(nodeError(twice), "nodes[1].scale is there twice; allowed: once");
+    }
     // glTF 2.0, Sec. 2.7: wherever it stands. Extras have paths of cameras, and motions.
     EXPECT_EQ(gltfError("scenes", R"([{"nodes":[0],"extras":{"a":1,"a":2}}])"),
               "scenes[0].extras has 'a' twice; allowed: once");
