@@ -460,34 +460,51 @@ Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
     Bytes file(bytes, name);
     const auto idBytes = static_cast<std::size_t>(file.byte());
     const int hasPalette = file.byte(), type = file.byte();
-    file.take(9);  // of the palette; where a screen has the picture
+    const int firstEntry = file.littleWord(), entryCount = file.littleWord();
+    const int entryBits = file.byte();
+    file.take(4);  // where a screen has the picture
     const int width = file.littleWord(), height = file.littleWord();
     const int bits = file.byte(), flags = file.byte();
-    const bool isGrey = type % 8 == 3, isEncoded = type > 8;
-    const bool isRead = (type == 2 || type == 10) ? bits == 24 || bits == 32
-                                                  : (type == 3 || type == 11) && bits == 8;
-    if (!isRead || hasPalette != 0 || (flags & 0xD0) != 0) {
-        file.fail(
-            fmt::format("a TGA file of type {}, {} bits and flags {:#x}; grey of 8, RGB of "
-                        "24 and RGBA of 32 bits, columns from the left, are read",
-                        type, bits, flags));
+    const bool isGrey = type % 8 == 3, isIndexed = type % 8 == 1, isEncoded = type > 8;
+    const int colourBits = isIndexed ? entryBits : bits;
+    const bool isColour = type % 8 <= 2 && (colourBits == 24 || colourBits == 32) &&
+                          (!isIndexed || (bits == 8 && hasPalette == 1));
+    if (type > 11 || !(isGrey ? bits == 8 : isColour) || hasPalette > 1 || (flags & 0xD0) != 0) {
+        file.fail(fmt::format(
+            "a TGA file of type {}, {} bits{} and flags {:#x}; grey of 8, RGB of 24 and RGBA of 32 "
+            "bits, or 8 of a palette of such, columns from the left, are read",
+            type, bits, isIndexed ? fmt::format(" of a palette of {}", entryBits) : "", flags));
     }
     file.take(idBytes);
+    const std::size_t entryBytes = static_cast<std::size_t>(entryBits + 7) / 8;
+    // One of true colours is advice for a screen.
+    const Part palette =
+        hasPalette == 1 ? file.take(static_cast<std::size_t>(entryCount) * entryBytes) : Part();
     const std::size_t pixelBytes = static_cast<std::size_t>(bits) / 8;
     const Part extension = extensionOfTga(bytes);
     const int attributes = attributesOf(extension);
-    const bool hasAlpha = bits == 32 && (flags & 15) == 8 && attributes > 2;
+    const bool hasAlpha = colourBits == 32 && (flags & 15) == 8 && attributes > 2;
     file.checkSize(width, height, 4 * sizeof(float));
     Decoded result{ImageF(width, height, isGrey ? 1 : hasAlpha ? 4 : 3)};
     const auto channels = static_cast<std::size_t>(result.values.channels());
     const auto values = result.values.values();
+    const auto nextPixel = [&] {
+        const Part pixel = file.take(pixelBytes);
+        if (!isIndexed) return pixel;
+        const int index = std::to_integer<int>(pixel[0]), entry = index - firstEntry;
+        if (entry < 0 || entry >= entryCount) {
+            file.fail(fmt::format("a pixel of colour {}; its palette has {} … {}", index,
+                                  firstEntry, firstEntry + entryCount - 1));
+        }
+        return palette.subspan(static_cast<std::size_t>(entry) * entryBytes, entryBytes);
+    };
     for (std::size_t i = 0; i < values.size();) {
         const int code = isEncoded ? file.byte() : 0;
         const auto count = static_cast<std::size_t>(code % 128 + 1);
-        std::span<const std::byte> pixel = file.take(pixelBytes);
+        Part pixel = nextPixel();
         for (std::size_t k = 0; k < count; ++k) {
             if (i == values.size()) file.fail("a run is longer than the picture");
-            if (k > 0 && code < 128) pixel = file.take(pixelBytes);
+            if (k > 0 && code < 128) pixel = nextPixel();
             for (std::size_t c = 0; c < channels; ++c) {  // blue, green, red, alpha
                 values[i++] = unitOf(pixel[channels == 1 || c == 3 ? c : 2 - c]);
             }

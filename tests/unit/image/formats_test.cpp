@@ -238,8 +238,34 @@ TEST_F(Formats, TargaIsSrgb) {
     head[16] = 8;
     EXPECT_EQ(
         errorOf("b.tga", head),
-        "DIR/b.tga: a TGA file of type 1, 8 bits and flags 0x0; grey of 8, RGB of 24 and RGBA "
-        "of 32 bits, columns from the left, are read");
+        "DIR/b.tga: a TGA file of type 1, 8 bits of a palette of 0 and flags 0x0; grey of 8, RGB "
+        "of 24 and RGBA of 32 bits, or 8 of a palette of such, columns from the left, are read");
+}
+
+TEST_F(Formats, TargasPaletteHasItsColours) {
+    const auto fileOf = [](int type, int bits, const std::string& rest) {
+        std::string head("\0\1\0\2\0\2\0\x18\0\0\0\0\2\0\1\0\0\x20", 18);
+        head[2] = static_cast<char>(type);
+        head[16] = static_cast<char>(bits);
+        return head + "\x14\x28\x64\x1E\x32\x6E" + rest;  // blue, green, red: of colours 2 and 3
+    };
+    const auto valuesOf = [&](const std::string& file) {
+        const ImageF stored = readPicture(folder_.write("a.tga", file)).stored;
+        return std::vector<float>(stored.values().begin(), stored.values().end());
+    };
+    const auto pixels = [](const std::vector<int>& bytes) {
+        std::vector<float> values;
+        for (const int byte : bytes) values.push_back(static_cast<float>(byte) / 255.0F);
+        return values;
+    };
+    EXPECT_EQ(valuesOf(fileOf(1, 8, "\3\2")), pixels({110, 50, 30, 100, 40, 20}));
+    EXPECT_EQ(valuesOf(fileOf(9, 8, "\x81\3")), pixels({110, 50, 30, 110, 50, 30}));
+    // Beside true colours it is advice for a screen.
+    EXPECT_EQ(valuesOf(fileOf(2, 24, "\1\2\3\4\5\6")), pixels({3, 2, 1, 6, 5, 4}));
+    EXPECT_EQ(errorOf("b.tga", fileOf(1, 8, "\3\4")),
+              "DIR/b.tga: a pixel of colour 4; its palette has 2 … 3");
+    EXPECT_EQ(errorOf("b.tga", fileOf(1, 8, "\1\3")),
+              "DIR/b.tga: a pixel of colour 1; its palette has 2 … 3");
 }
 
 /// One pixel: blue, green, red, alpha of 20, 40, 100, 128.
