@@ -70,7 +70,7 @@ const KeyTable<ContentKeys>& contentTable() {
           "height map beside this file: spacing_m, height_scale_m, no_data",
           mapOf(anything())},
          {&C::sceneInstead, "scene_instead", "{scene: scene}", "{}",
-          "takes the place of a scene, whose rows it fills: another catalogued one, or NAME@SEED",
+          "takes the place of a scene, whose rows it fills: another one, or NAME@SEED",
           mapOf(text())},
          {&C::params, "params", "{name: value}", "{}",
           "of the technique: `gfxrepro describe TECHNIQUE`", mapOf(anything())},

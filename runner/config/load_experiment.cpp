@@ -63,6 +63,22 @@ void refuseTornTexts(const Node& whole) {
     }
 }
 
+/// A scene without a value takes away what a file has of it that is extended; else it says nothing.
+void refuseEmptyScenes(const Node& own, const Node& extended) {
+    for (const char* section : {"params_by_scene", "scene_instead"}) {
+        const Node* scenes = own.find(section);
+        const Node* earlier = extended.find(section);
+        if (!scenes || !scenes->isMap()) continue;
+        for (const auto& [scene, value] : scenes->entries()) {
+            const SourceLocation& where = scenes->keyLocation(scene);
+            const std::string name = withSceneFile(Node::scalar(scene, where)).text();
+            if (!value.isNull() || (earlier && earlier->isMap() && earlier->find(name))) continue;
+            throw Error(where, fmt::format("{}: '{}' has no value; allowed: {{scene: {}}}", section,
+                                           scene, section[0] == 's' ? "scene" : "{name: value}"));
+        }
+    }
+}
+
 class FileReader {
   public:
     explicit FileReader(fs::path configsFolder) : configsFolder_(std::move(configsFolder)) {}
@@ -100,6 +116,8 @@ class FileReader {
         if (given.profiles) addProfiles(*given.profiles, result);
         Node own = whole;
         for (const std::string& key : compositionTable().names()) own.erase(key);
+        refuseEmptyScenes(own, result.document);
+        resolveSceneKeys(own);
         result.document = merged(result.document, own);
         open_.pop_back();
         return result;
@@ -153,6 +171,7 @@ class FileReader {
         for (const auto& [name, overlay] : profiles.entries()) {
             if (!overlay.isNull()) requireKeys(overlay, "profile '" + name + "'", sectionKeys());
             result.profiles.emplace_back(name, overlay.isNull() ? Node::map({}) : overlay);
+            resolveSceneKeys(result.profiles.back().second);
         }
     }
 

@@ -137,18 +137,17 @@ Node withSceneFiles(const Node& node, bool isAxisMap) {
 }
 
 /// The keys of a map that are scenes.
-Node withSceneFileKeys(const Node& map) {
+Node withSceneFileKeys(const Node& map, const char* section) {
     if (!map.isMap()) return map;
     Node result = Node::map({}, map.location());
     for (const auto& [scene, value] : map.entries()) {
         const SourceLocation& where = map.keyLocation(scene);
         const std::string name = withSceneFile(Node::scalar(scene, where)).text();
         if (result.find(name)) {
-            throw Error(
-                where,
-                fmt::format("params_by_scene has the scene '{}' twice; allowed: once", scene));
+            throw Error(where,
+                        fmt::format("{} has the scene '{}' twice; allowed: once", section, scene));
         }
-        result.set(name, value, where);
+        result.set(name, withSceneFile(value), where);
     }
     return result;
 }
@@ -171,6 +170,12 @@ void resolveAll(Node& document) {
 
 }  // namespace
 
+void resolveSceneKeys(Node& document) {
+    for (const char* section : {"params_by_scene", "scene_instead"}) {
+        if (Node* map = document.find(section)) *map = withSceneFileKeys(*map, section);
+    }
+}
+
 void resolveNames(Node& document) {
     setProgramFolder(document);
     resolveAll(document);
@@ -181,7 +186,7 @@ void resolveNames(Node& document) {
         *scene = withSceneFile(*scene);
     }
     if (Node* params = document.find("params")) *params = withSceneFiles(*params, true);
-    if (Node* params = document.find("params_by_scene")) *params = withSceneFileKeys(*params);
+    resolveSceneKeys(document);
     if (Node* sweep = document.find("sweep"))
         *sweep = withSceneFiles(withSceneMatches(*sweep), true);
     for (const char* key : {"layout", "claims"}) {

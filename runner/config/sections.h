@@ -143,5 +143,7 @@ Node withSceneFile(const Node& reference, const std::optional<std::filesystem::p
 /// Scene files, patterns of them and `all` of a sweep, each replaced by what it stands for. Throws
 /// Error for a pattern without a file.
 void resolveNames(Node& document);
+/// Of it, the scenes that are keys: of each file before another one is laid on it.
+void resolveSceneKeys(Node& document);
 
 }  // namespace gfxrepro::config

@@ -340,6 +340,32 @@ TEST_F(ExperimentTest, ParametersOfScenesMergeByKey) {
         << "what the command line sets is of all scenes";
 }
 
+/// A file is the same in whichever spelling, and of whichever folder.
+TEST_F(ExperimentTest, ScenesThatAreKeysMergeByFile) {
+    folder.write("presets/views.yaml",
+                 "params_by_scene: {../zju/a.ply: {n: 1, m: 2}}\n"
+                 "scene_instead: {../zju/a.ply: b.ply}\n"
+                 "profiles: {quick: {params_by_scene: {../zju/./a.ply: {m: 7}}}}\n");
+    const std::string text =
+        "table: p/1\ntitle: t\ntechnique: x\nextends: presets/views.yaml\nscene: a.ply\n"
+        "params: {n: 0, m: 0}\nparams_by_scene: {./a.ply: {n: 3}}\n";
+    const Experiment table = load(text);
+    const std::string file = (folder.path() / "zju/a.ply").string();
+    ASSERT_EQ(table.paramsByScene.entries().size(), 1U);
+    EXPECT_EQ(table.paramsByScene.find(file)->toFlowText(), "{n: 3, m: 2}");
+    EXPECT_EQ(table.sceneInstead.find(file)->text(), (folder.path() / "presets/b.ply").string());
+    ExperimentOptions quick;
+    quick.profile = "quick";
+    EXPECT_EQ(load(text, quick).paramsByScene.find(file)->toFlowText(), "{n: 3, m: 7}");
+    EXPECT_EQ(load(text + "scene_instead: {a.ply}\n").sceneInstead.toFlowText(), "{}");
+    EXPECT_EQ(
+        errorWith("scene_instead: {./a.ply}\n"),
+        "DIR/zju/a.yaml:4:17: scene_instead: './a.ply' has no value; allowed: {scene: scene}");
+    EXPECT_EQ(errorWith("params_by_scene: {a/b: }\n"),
+              "DIR/zju/a.yaml:4:19: params_by_scene: 'a/b' has no value; allowed: {scene: {name: "
+              "value}}");
+}
+
 TEST_F(ExperimentTest, FilesThatExtendTheNextOneTwiceAreNotReadForAnHour) {
     for (int i = 0; i < 20; ++i) {
         const std::string next = "e" + std::to_string(i + 1) + ".yaml";
