@@ -79,6 +79,8 @@ class PatternSearch {
         };
         Found found{line};
         if (match[1].matched) std::tie(found.begin, found.end) = placeOf(1);
+        const auto dots = std::min(found.number().find_first_not_of('.'), found.number().size());
+        if (dots > 1) found.begin += dots;  // leaders
         std::tie(found.matchBegin, found.matchEnd) = placeOf(0);
         return found;
     }
@@ -141,7 +143,7 @@ std::string plainOf(char32_t c) {
         {kThinBlank,
          U"\u00A0\u00A0\u00AD\u00AD\u2000\u200D\u202F\u202F\u205F\u2064\u3000\u3000\uFEFF\uFEFF"},
         {'-', U"\u00AF\u00AF\u2010\u2015\u2212\u2212\uFE58\uFE63"},
-        {'\'', U"\u00B4\u00B4\u02B9\u02BC\u02C8\u02C8\u2018\u2019\u2032\u2032"},
+        {'\'', U"\u00B4\u00B4\u02B9\u02BC\u02C8\u02C8\u2018\u2019\u2032\u2037"},
         {'*', U"\u00B7\u00B7\u00D7\u00D7\u2022\u2022\u2217\u2219\u22C5\u22C5\u2A2F\u2A2F"},
         {'/', U"\u00F7\u00F7\u2044\u2044\u2215\u2215"},
         {'2', U"\u00BC\u00BE\u2150\u215F\u2189\u2189"},
@@ -155,8 +157,8 @@ std::string plainOf(char32_t c) {
         {'z',
          U"\u00AA\u00AA\u00B0\u00B0\u00BA\u00BA\u00C0\u024F\u0370\u1FFF\u2100\u214F\u3040\uD7FF"},
         {';',
-         U"\u00A1\u00BF\u201C\u2031\u20A0\u20BF\u2190\u21FF\u2248\u2265\u23E9\u23FF\u2500\u27BF"
-         U"\u2900\u297F\u2B00\u2BFF\uFE00\uFE0F\U0001F000\U0001FAFF"}};
+         U"\u00A1\u00BF\u201C\u2031\u20A0\u20BF\u2190\u21FF\u2248\u2265\u23E9\u23FF\u2500\u27FF"
+         U"\u2900\u297F\u2B00\u2BFF\uE000\uF8FF\uFE00\uFE0F\U0001F000\U0001FAFF"}};
     if (c >= 0xFF01 && c <= 0xFF5E) return {static_cast<char>(c - 0xFF01 + '!')};
     for (const auto& [meaning, ranges] : kMeanings) {
         for (std::size_t i = 0; i < ranges.size(); i += 2) {
@@ -327,9 +329,7 @@ class Writing {
             found.isTime = true;
             take(found, found.begin);
         } else if (isDigit(text_[found.end - 1]) && isPartedBehind(found.end)) {  // t1,234
-            std::size_t digits = found.end;
-            while (isDigit(text_[digits - 1])) --digits;
-            return next(digits);
+            return next(text_.find_last_not_of("0123456789", found.end - 1) + 1);
         }
         return found;
     }

@@ -373,7 +373,8 @@ TEST(Patterns, TakeNoPartOfWhatTheyDoNotUnderstand) {
                                                           {"m=-?([0-9]+)", "m=-5"},
                                                           {".* ([0-9]+) ms", "took 1 234 ms"},
                                                           {"([0-9]+) m", "5 million"},
-                                                          {"([0-9.]+)e", "5e3"}}) {
+                                                          {"([0-9.]+)e", "5e3"},
+                                                          {"([0-9.]+)", "trace.....1.5e3"}}) {
         EXPECT_NE(partIn(regex, line), "no error") << regex << " of " << line;
     }
 }
@@ -393,6 +394,8 @@ TEST(Patterns, TakeWhatIsWhole) {
              {"m=([0-9.]+)", "m=12.0."},
              {"m=([0-9.]+)", "m=12\u00B5s"},
              {"m=([0-9.]+)", "m=12\u20AC"},
+             {"m=([0-9.]+)", "m=12\u2033"},
+             {"([0-9.]+) ms", "trace.....12 ms"},
              {"([0-9.]+) ms", "\u23F1\uFE0F12 ms"},
              {"([0-9.]+) ms", "\u250212 ms\u2502"},
              {"m=([0-9.]+)", "m=12\u00A0ms"},
