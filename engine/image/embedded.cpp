@@ -42,9 +42,6 @@ void noteBehind(std::span<const std::byte> behind, std::vector<std::string>& not
                                 behind.size() == 1 ? "" : "s"));
 }
 
-namespace {
-
-/// Orientation of an Exif block's tags: 1 … 8, 1 where they say nothing.
 int orientationOf(Part tags) {
     if (tags.size() < 8) return 1;
     const bool isLittle = tags[0] == std::byte{'I'};
@@ -58,6 +55,8 @@ int orientationOf(Part tags) {
     }
     return 1;
 }
+
+namespace {
 
 /// Of a profile (ICC.1); empty where it has no such tag.
 Part tagOf(Part profile, const std::string& name) {

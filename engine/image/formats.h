@@ -37,6 +37,8 @@ void noteBehind(std::span<const std::byte> behind, std::vector<std::string>& not
 
 /// As the tags of an Exif block say that it is to be seen.
 ImageF turnedAsExif(const ImageF& image, std::span<const std::byte> exif);
+/// Orientation of an Exif block: 1 … 8, 1 where it says nothing.
+int orientationOf(std::span<const std::byte> exif);
 
 /// Of `count` bytes from `at` on, the first being the lowest or the highest; what is not there is
 /// left out.

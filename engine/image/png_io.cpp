@@ -287,6 +287,8 @@ PngPhysics pngPhysics(std::span<const std::byte> bytes) {
     const auto chunks = chunksOf(bytes);
     PngPhysics said;
     said.hasValues = chunks.contains("pCAL");
+    const auto exif = chunks.find("eXIf");
+    said.isTurned = exif != chunks.end() && orientationOf(exif->second) != 1;
     const auto size = chunks.find("sCAL");
     said.hasSize = size != chunks.end();
     if (!said.hasSize || size->second.empty()) return said;

@@ -33,6 +33,7 @@ struct PngPhysics {
     bool hasSize = false;         // that of a pixel (sCAL)
     std::optional<float> pixelM;  // it, where it is in metres, and the same along x and y
     bool hasValues = false;       // what its values mean (pCAL)
+    bool isTurned = false;        // by its Exif block
 };
 PngPhysics pngPhysics(std::span<const std::byte> bytes);
 

@@ -82,6 +82,7 @@ class PngHeightRows : public HeightRows {
   private:
     void findScale(const fs::path& path) {
         const image::PngPhysics said = image::pngPhysics(MappedFile(path).bytes());
+        if (said.isTurned) throw Error(path.string() + ": turned by its Exif; allowed: as stored");
         spacingM = said.pixelM;
         if (said.hasSize && !spacingM) {
             spacingWarning =

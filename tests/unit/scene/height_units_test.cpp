@@ -430,5 +430,20 @@ TEST_F(HeightUnits, PngSaysHowLargeItsPixelsAre) {
               "stored");
 }
 
+TEST_F(HeightUnits, APngThatIsTurnedIsNone) {
+    const fs::path path = folder.path() / "a.png";
+    const auto turned = [&](char orientation) {
+        std::string exif("II*\0\x08\0\0\0\1\0\x12\1\3\0\1\0\0\0\0\0\0\0\0\0\0\0", 26);
+        exif[18] = orientation;
+        writeGrey(path, 4, 0xF3, [&](png_structp png, png_infop info) {
+            png_set_eXIf_1(png, info, static_cast<png_uint_32>(exif.size()),
+                           reinterpret_cast<png_bytep>(exif.data()));
+        });
+        return test::errorText([&] { loadHeightMap(path, {}); }, folder.path());
+    };
+    EXPECT_EQ(turned(1), "no error");
+    EXPECT_EQ(turned(6), "DIR/a.png: turned by its Exif; allowed: as stored");
+}
+
 }  // namespace
 }  // namespace gfxrepro::scene
