@@ -1,6 +1,7 @@
 // Nights of a fast and a slow build, as scripts/nightly measures them.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <set>
 #include <string>
