@@ -262,14 +262,14 @@ void judgeTimes(std::vector<TestedTime>& times, Pairing pairing, const Rules& ru
 /// Measures until every time is told, or the looks are used up; after the first look the tables
 /// with times that are not, alone.
 std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
-                                            std::set<std::string> tables, const Rules& rules) {
+                                            std::set<std::string> tables) {
     Sides sides;
+    Rules rules;
     std::vector<Difference> differences;
     for (std::size_t look = 0; look < rules.looks; ++look) {
         measure(sides, tables);
-        Rules own = rules;
-        own.byProcess = sides.byProcess;
-        differences = compare(sides.before, sides.after, Pairing::ByTurns, own);
+        rules.byProcess = sides.byProcess;
+        differences = compare(sides.before, sides.after, Pairing::ByTurns, rules);
         noteFailures(differences, sides.failuresBefore, sides.failuresAfter);
         noteVoidTimes(differences, sides.voidBefore, sides.voidAfter);
         addPictures(differences, sides.pictures);
@@ -372,13 +372,13 @@ void confirm(std::vector<Difference>& differences, const std::vector<Difference>
     }
 }
 
-std::vector<Difference> compareByTurns(const MeasureRounds& measure, const Rules& rules) {
-    std::vector<Difference> differences = measureUntilDecided(measure, {}, rules);
+std::vector<Difference> compareByTurns(const MeasureRounds& measure) {
+    std::vector<Difference> differences = measureUntilDecided(measure, {});
     std::set<std::string> tables;
     for (const Difference& difference : differences) {
         if (difference.isAlarm()) tables.insert(difference.key.table);
     }
-    if (!tables.empty()) confirm(differences, measureUntilDecided(measure, tables, rules));
+    if (!tables.empty()) confirm(differences, measureUntilDecided(measure, tables));
     return differences;
 }
 

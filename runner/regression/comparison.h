@@ -125,10 +125,10 @@ struct Sides {
 /// Appends further alternate rounds; of `tables` alone where there are some.
 using MeasureRounds = std::function<void(Sides& sides, const std::set<std::string>& tables)>;
 
-/// Measures and compares, up to `rules.looks` times, until every time is slower, faster or the
+/// Measures and compares, up to Rules::looks times, until every time is slower, faster or the
 /// same: first all, then the tables of which a time is none of these; then measures the tables with
 /// alarms in the same way once more, and confirms.
-std::vector<Difference> compareByTurns(const MeasureRounds& measure, const Rules& rules = {});
+std::vector<Difference> compareByTurns(const MeasureRounds& measure);
 
 /// One line: "2 slower, 1 faster, 40 same, 3 cannot tell".
 std::string summaryLine(const std::vector<Difference>& differences);

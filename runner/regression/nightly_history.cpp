@@ -163,8 +163,8 @@ std::vector<Step> findAllSteps(const Series& nights, double significance, double
     return steps;
 }
 
-double significanceOf(std::size_t timeSeries, const StepRules& rules) {
-    return rules.familyError / (static_cast<double>(timeSeries) * rules.nightsAYear);
+double significanceOf(std::size_t timeSeries) {
+    return kStepRules.familyError / (static_cast<double>(timeSeries) * kStepRules.nightsAYear);
 }
 
 std::vector<std::size_t> findChanges(const Series& nights) {
@@ -181,14 +181,14 @@ std::vector<std::size_t> findChanges(const Series& nights) {
     return changes;
 }
 
-std::vector<SeriesStep> findSteps(const SeriesMap& history, const StepRules& rules) {
+std::vector<SeriesStep> findSteps(const SeriesMap& history) {
     const auto count =
         std::ranges::count_if(history, [](const auto& entry) { return entry.first.isTime(); });
-    const double significance = significanceOf(static_cast<std::size_t>(count), rules);
+    const double significance = significanceOf(static_cast<std::size_t>(count));
     std::vector<SeriesStep> steps;
     for (const auto& [key, nights] : history) {
         if (!key.isTime()) continue;
-        if (const auto step = findStep(nights, significance, rules.effectFloor)) {
+        if (const auto step = findStep(nights, significance, kStepRules.effectFloor)) {
             steps.push_back({key, nights.size(), *step});
         }
     }
@@ -218,8 +218,7 @@ void findSeriesChanges(SeriesHistory& series, double significance) {
         series.changes.push_back({series.nights[at], series.nights[at - 1], ratio, chance});
     };
     if (series.key.isTime()) {
-        for (const Step& step :
-             findAllSteps(series.values, significance, StepRules{}.effectFloor)) {
+        for (const Step& step : findAllSteps(series.values, significance, kStepRules.effectFloor)) {
             add(step.first, step.ratio, step.chance);
         }
         return;

@@ -52,6 +52,7 @@ struct StepRules {
     int nightsAYear = 365;
     double effectFloor = 0.05;  // nights differ by more than the rounds of one
 };
+inline constexpr StepRules kStepRules{};
 
 /// The clearest step of the last 100 nights with at least five on either side: the largest rank-sum
 /// score [Mann and Whitney 1947]. Its chance is the exact one of that split times the number of
@@ -65,7 +66,7 @@ std::optional<Step> findStep(const Series& nights, double significance, double e
 std::vector<Step> findAllSteps(const Series& nights, double significance, double effectFloor);
 
 /// The chance of a false alarm that each of `timeSeries` series may have at each night.
-double significanceOf(std::size_t timeSeries, const StepRules& rules = {});
+double significanceOf(std::size_t timeSeries);
 
 /// The nights on which a value that is no time is another than the night before: whole numbers
 /// exactly, others by more than 1e-4 of the larger.
@@ -81,7 +82,7 @@ struct SeriesStep {
 
 /// The steps of all times, at familyError / (series × nightsAYear) each: of 20 series 7e-6, which
 /// nights of 13 and 13 without an overlap attain, and no 24 nights can.
-std::vector<SeriesStep> findSteps(const SeriesMap& history, const StepRules& rules = {});
+std::vector<SeriesStep> findSteps(const SeriesMap& history);
 
 /// A change of a series: of a time its level, of another value the value.
 struct SeriesChange {

@@ -153,10 +153,9 @@ std::string claimHtml(const Page& page, const std::string& id, const Model& mode
 
 }  // namespace
 
-std::string verdictBadge(Verdict verdict, const std::string& word) {
-    return fmt::format("<span class=\"badge {0}\"><span aria-hidden=\"true\">{1}</span> {2}</span>",
-                       verdictName(verdict), wordsOf(verdict).sign,
-                       word.empty() ? std::string(verdictName(verdict)) : word);
+std::string verdictBadge(Verdict verdict) {
+    return fmt::format("<span class=\"badge {0}\"><span aria-hidden=\"true\">{1}</span> {0}</span>",
+                       verdictName(verdict), wordsOf(verdict).sign);
 }
 
 std::string verdictSign(Verdict verdict) {

@@ -150,8 +150,8 @@ std::string tableHtml(const Page& page, const Model& model);
 /// Images as the table lies, each truth once, with error maps below.
 std::string imagesHtml(const Page& page, const Model& model);
 
-/// The verdict as a sign and its word, or another text, in its colour.
-std::string verdictBadge(claims::Verdict verdict, const std::string& word = "");
+/// The verdict as a sign and its word, in its colour.
+std::string verdictBadge(claims::Verdict verdict);
 /// "✓"
 std::string verdictSign(claims::Verdict verdict);
 /// "A-0123456789ab": a case's place in the file.

@@ -44,7 +44,7 @@ void addTurned(MeshBuilder& builder, std::span<const glm::vec2> outline, int tri
 
 /// A tube of `sides` with its stations on a Catmull-Rom spline through the given ones, capped.
 void addBentTube(MeshBuilder& builder, std::span<const MeshBuilder::Station> stations, int pieces,
-                 int sides, bool isCapped = true);
+                 int sides);
 
 /// An open sheet of u × v cells; `at` maps (0…1)² to space, its outside is du × dv. Normals are
 /// smooth. Texture coordinates are (u, v) · texcoordScale.
@@ -76,8 +76,7 @@ void addRectangle(MeshBuilder& builder, const glm::vec3& centre, const glm::vec3
 void addRoundedTop(MeshBuilder& builder, const glm::vec2& halfSize, float radius, int cornerCells,
                    float height, const glm::mat4& frame = glm::mat4(1.0F));
 /// A throw pillow that stands on its edge, thickest in the middle: 4 · cells² triangles.
-void addPillow(MeshBuilder& builder, const glm::vec3& halfSize, int cells, const glm::mat4& frame,
-               float tileM = 1.0F);
+void addPillow(MeshBuilder& builder, const glm::vec3& halfSize, int cells, const glm::mat4& frame);
 
 /// Triangles of a finished mesh brought to exactly `triangles` (an even number for closed ones) by
 /// halving its longest edges.

@@ -179,7 +179,7 @@ void addTurned(MeshBuilder& builder, std::span<const glm::vec2> outline, int tri
 }
 
 void addBentTube(MeshBuilder& builder, std::span<const MeshBuilder::Station> stations, int pieces,
-                 int sides, bool isCapped) {
+                 int sides) {
     std::vector<MeshBuilder::Station> fine;
     const auto last = static_cast<int>(stations.size()) - 1;
     const auto key = [&](int k) -> const MeshBuilder::Station& {
@@ -193,7 +193,7 @@ void addBentTube(MeshBuilder& builder, std::span<const MeshBuilder::Station> sta
         fine.push_back({catmullRom(a.position, b.position, c.position, d.position, u),
                         catmullRom(a.radius, b.radius, c.radius, d.radius, u)});
     }
-    builder.addTube(fine, sides, isCapped);
+    builder.addTube(fine, sides, true);
 }
 
 void addSheet(MeshBuilder& builder, const std::function<glm::vec3(float, float)>& at, int cellsU,
@@ -235,8 +235,7 @@ void addSheet(MeshBuilder& builder, const std::function<glm::vec3(float, float)>
     builder.addIndexed(positions, normals, triangles, texcoords);
 }
 
-void addPillow(MeshBuilder& builder, const glm::vec3& halfSize, int cells, const glm::mat4& frame,
-               float tileM) {
+void addPillow(MeshBuilder& builder, const glm::vec3& halfSize, int cells, const glm::mat4& frame) {
     for (const float side : {-1.0F, 1.0F}) {
         const auto at = [&](float u, float v) {
             const float x = side * sdf::sine(kPi * (u - 0.5F));
@@ -248,7 +247,7 @@ void addPillow(MeshBuilder& builder, const glm::vec3& halfSize, int cells, const
                               side * std::sqrt(fx * fy));
             return glm::vec3(frame * glm::vec4(p * halfSize, 1.0F));
         };
-        addSheet(builder, at, cells, cells, glm::vec2(halfSize) * (2.0F / tileM));
+        addSheet(builder, at, cells, cells, glm::vec2(halfSize) * 2.0F);
     }
 }
 

@@ -57,8 +57,6 @@ Series nights(std::uint64_t seed, int count, int first, double change, double no
     return values;
 }
 
-constexpr StepRules kRules{};
-
 TEST(History, FindsWhenALevelChanged) {
     const std::optional<Step> step = findStep(nights(1, 30, 17, 1.1, 0.03), 1e-5, 0.02);
     ASSERT_TRUE(step);
@@ -113,14 +111,14 @@ TEST(History, FindsTheStepOfOneSeriesOfTwenty) {
 
 TEST(History, NeedsNightsOnEitherSideAndAnEffect) {
     const auto found = [](const Series& values) {
-        return findStep(values, 0.01, kRules.effectFloor).has_value();
+        return findStep(values, 0.01, kStepRules.effectFloor).has_value();
     };
     EXPECT_FALSE(found(nights(1, 9, 4, 2.0, 0.0)));
     EXPECT_FALSE(found(nights(1, 30, 15, 1.01, 0.0)));
     EXPECT_FALSE(found(Series(30, 1.0)));
     EXPECT_FALSE(found({}));
     // Among 20 series, 24 nights cannot tell and 26 can.
-    const double significance = kRules.familyError / (20 * kRules.nightsAYear);
+    const double significance = kStepRules.familyError / (20 * kStepRules.nightsAYear);
     EXPECT_FALSE(findStep(nights(1, 24, 12, 2.0, 0.01), significance, 0.02));
     EXPECT_TRUE(findStep(nights(1, 26, 13, 2.0, 0.01), significance, 0.02));
 }
