@@ -1,4 +1,4 @@
-// Images of other sizes: means, parts, magnifications.
+// Images of other sizes: means, parts, magnifications; and of three channels.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +23,20 @@ ImageF cropped(const ImageF& image, const Rectangle& part, int scale = 1);
 /// All channels and attributes. The part is counted from the first stored pixel and becomes a
 /// picture of its own: its display window is itself, and worldToNDC is that of the part.
 ExrImage cropped(const ExrImage& image, const Rectangle& part, int scale = 1);
+
+/// Three channels: a grey image's thrice, without alpha.
+template <class T>
+Image<T> rgbOf(const Image<T>& image) {
+    Image<T> rgb(image.width(), image.height(), 3);
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            for (int c = 0; c < 3; ++c) {
+                rgb.at(x, y, c) = image.at(x, y, image.channels() < 3 ? 0 : c);
+            }
+        }
+    }
+    return rgb;
+}
 
 /// How high an image of that width is; at least 1.
 std::int64_t heightAt(const Image8& image, int width);

@@ -456,18 +456,6 @@ double shownAs85() {
 
 }  // namespace
 
-ImageF coloursOf(const ImageF& image) {
-    ImageF result(image.width(), image.height(), 3);
-    for (int y = 0; y < image.height(); ++y) {
-        for (int x = 0; x < image.width(); ++x) {
-            for (int c = 0; c < 3; ++c) {
-                result.at(x, y, c) = image.at(x, y, image.channels() < 3 ? 0 : c);
-            }
-        }
-    }
-    return result;
-}
-
 bool exceedsDisplay(const ImageF& image) {
     return std::ranges::any_of(image.values(), [](float value) { return value > 1.0F; });
 }

@@ -57,8 +57,6 @@ double flip(const image::ImageF& reference, const image::ImageF& test,
 
 // FLIP of images with more range than a display has.
 
-/// The three channels that FLIP looks at: a grey image's thrice, without alpha.
-image::ImageF coloursOf(const image::ImageF& image);
 /// Whether a value is beyond 1, which HDR-FLIP is for.
 bool exceedsDisplay(const image::ImageF& image);
 

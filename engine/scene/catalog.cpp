@@ -9,6 +9,7 @@
 #include "engine/core/hash.h"
 #include "engine/core/text.h"
 #include "engine/image/png_io.h"
+#include "engine/image/resample.h"
 #include "engine/scene/catalog_entry.h"
 #include "engine/scene/height_rows.h"
 #include "engine/scene/load.h"
@@ -105,19 +106,6 @@ void turnIntoPoints(Scene& scene, const SceneSource& source) {
     scene.instances.clear();
 }
 
-/// RGB, whatever the PNG has.
-image::Image8 rgbOf(const image::Image8& image) {
-    image::Image8 rgb(image.width(), image.height(), 3);
-    for (int y = 0; y < image.height(); ++y) {
-        for (int x = 0; x < image.width(); ++x) {
-            for (int c = 0; c < 3; ++c) {
-                rgb.at(x, y, c) = image.at(x, y, image.channels() < 3 ? 0 : c);
-            }
-        }
-    }
-    return rgb;
-}
-
 /// Throws Error for a large file that no loader would take, before anybody reads it through.
 void requireWhatIsRead(const fs::path& file) {
     if (!isHeightMapFile(file)) return requireReadAtOnce(file);
@@ -171,7 +159,8 @@ Scene loadTerrain(const fs::path& assetsFolder, const SceneSource& source) {
     }
     if (!how.colourMap.empty()) {
         const fs::path map = assetsFolder / how.colourMap;
-        scene.textures.push_back(rgbOf(image::decodePng8(MappedFile(map).bytes(), map.string())));
+        scene.textures.push_back(
+            image::rgbOf(image::decodePng8(MappedFile(map).bytes(), map.string())));
         Material ground;
         ground.baseColorTexture = 0;
         scene.materials.push_back(ground);

@@ -247,8 +247,8 @@ bool usesHdrFlip(const ImageDiffOptions& options, const Pair& pair) {
 }
 
 ImageF flipMapOf(const ImageDiffOptions& options, const Pair& pair) {
-    const ImageF reference = metrics::coloursOf(pair.reference.linear);
-    const ImageF test = metrics::coloursOf(pair.test.linear);
+    const ImageF reference = image::rgbOf(pair.reference.linear);
+    const ImageF test = image::rgbOf(pair.test.linear);
     return usesHdrFlip(options, pair) ? metrics::hdrFlipMap(reference, test)
                                       : metrics::flipMap(reference, test);
 }

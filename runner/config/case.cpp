@@ -10,12 +10,12 @@
 
 namespace gfxrepro::config {
 
-namespace {
-
 const Node& sceneAt(const AxisPoint& point, const Experiment& experiment) {
     const auto swept = std::ranges::find(point, "scene", &Node::Entry::key);
     return swept == point.end() ? experiment.scene : swept->value;
 }
+
+namespace {
 
 /// `params` with those of the scene laid over.
 Node paramsOf(const Node& scene, const Experiment& experiment) {

@@ -19,16 +19,11 @@ namespace gfxrepro::config {
 
 namespace {
 
-const Node& sceneOfPoint(const Experiment& experiment, const AxisPoint& point) {
-    const auto swept = std::ranges::find(point, "scene", &Node::Entry::key);
-    return swept == point.end() ? experiment.scene : swept->value;
-}
-
 /// Whether each case of the scene has the parameter from the sweep.
 bool isSweptOver(const Experiment& experiment, const std::string& scene, const std::string& name) {
     bool isUsed = false;
     for (const AxisPoint& point : expandSweep(experiment.sweep)) {
-        const Node& own = sceneOfPoint(experiment, point);
+        const Node& own = sceneAt(point, experiment);
         if (!own.isScalar() || scene::sceneName(own.text()) != scene) continue;
         if (std::ranges::find(point, name, &Node::Entry::key) == point.end()) return false;
         isUsed = true;
@@ -46,7 +41,7 @@ bool isReadOffADocument(const ClaimSpec& claim) {
 /// Scenes that cases have, by the names that configs give them.
 void addScenes(const Experiment& experiment, std::set<std::string>& scenes) {
     for (const AxisPoint& point : expandSweep(experiment.sweep)) {
-        const Node& scene = sceneOfPoint(experiment, point);
+        const Node& scene = sceneAt(point, experiment);
         if (!scene.isScalar()) continue;
         scenes.insert(scene.text());
         scenes.insert(scene::sceneName(scene.text()));

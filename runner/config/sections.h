@@ -112,6 +112,8 @@ void requireTimed(const Experiment& experiment);
 /// `isComplete` as in Vocabulary.
 Experiment readExperiment(const Node& document, const std::filesystem::path& file, bool isComplete);
 
+/// The scene at a point of the experiment's sweep.
+const Node& sceneAt(const AxisPoint& point, const Experiment& experiment);
 /// Throws Error unless `value` is a side of the image; `axis` begins the message.
 int outputSize(const Node& value, std::string_view axis);
 

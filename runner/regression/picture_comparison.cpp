@@ -17,6 +17,7 @@
 #include "engine/image/image.h"
 #include "engine/image/image_file.h"
 #include "engine/image/png_io.h"
+#include "engine/image/resample.h"
 #include "engine/metrics/error_map.h"
 #include "engine/metrics/flip.h"
 #include "runner/records/images.h"
@@ -40,13 +41,13 @@ Picture readPicture(const PictureFiles& files, bool isExr) {
     Picture picture;
     if (isExr) {
         image::ExrImage exr = image::readExr(files.exr);
-        picture.colours = metrics::coloursOf(exr.colour());
+        picture.colours = image::rgbOf(exr.colour());
         for (auto& channel : exr.channels) {
             picture.channels.emplace(channel.name, std::move(channel.values));
         }
     } else {
         image::Picture png = image::readPicture(files.png);
-        picture.colours = metrics::coloursOf(png.linear);
+        picture.colours = image::rgbOf(png.linear);
         picture.channels.emplace(fmt::format("{} channels", png.stored.channels()),
                                  std::move(png.stored));
     }

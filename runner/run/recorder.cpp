@@ -17,6 +17,7 @@
 #include "engine/core/output_files.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
+#include "engine/image/resample.h"
 #include "engine/image/srgb.h"
 #include "engine/metrics/flip.h"
 #include "engine/metrics/image_error.h"
@@ -163,7 +164,7 @@ std::vector<std::pair<const char*, double>> errorsOf(const image::ImageF& test,
     if (test.width() >= kLeastSsimPx && test.height() >= kLeastSsimPx) {
         errors.emplace_back("ssim", metrics::structuralSimilarity(truth, test));
     }
-    const image::ImageF colours = metrics::coloursOf(seen), known = metrics::coloursOf(seenTruth);
+    const image::ImageF colours = image::rgbOf(seen), known = image::rgbOf(seenTruth);
     const bool isHdr = metrics::exceedsDisplay(colours) || metrics::exceedsDisplay(known);
     errors.emplace_back("flip",
                         isHdr ? metrics::hdrFlip(known, colours) : metrics::flip(known, colours));

@@ -35,11 +35,6 @@ struct TreeTwig {
     std::array<glm::vec3, 3> points;
 };
 
-glm::vec3 anyAcross(const glm::vec3& direction) {
-    const glm::vec3 axis = std::abs(direction.y) < 0.8F ? kUp : glm::vec3(1, 0, 0);
-    return glm::normalize(glm::cross(axis, direction));
-}
-
 /// `direction` turned by `spreadRad` away from itself, towards `roundRad` about itself.
 glm::vec3 turned(const glm::vec3& direction, float spreadRad, float roundRad) {
     const glm::vec3 x = anyAcross(direction);

@@ -73,12 +73,12 @@ glm::vec3 tangentAt(std::span<const MeshBuilder::Station> stations, std::size_t 
     return glm::normalize(stations[after].position - stations[before].position);
 }
 
+}  // namespace
+
 glm::vec3 anyAcross(const glm::vec3& direction) {
     const glm::vec3 axis = std::abs(direction.y) < 0.8F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
     return glm::normalize(glm::cross(axis, direction));
 }
-
-}  // namespace
 
 void MeshBuilder::addTube(std::span<const Station> stations, int sides, bool isCapped) {
     GFXREPRO_ASSERT(stations.size() >= 2 && sides >= 3);

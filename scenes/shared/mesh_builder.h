@@ -48,6 +48,9 @@ class MeshBuilder {
     glm::vec3 color_{1.0F};
 };
 
+/// Some unit vector across a direction.
+glm::vec3 anyAcross(const glm::vec3& direction);
+
 /// Gives a thin sheet, drawn with back faces culled, its other side: every triangle once more with
 /// the opposite winding on vertices of its own, whose normals point the other way. The back of
 /// triangle i is triangle i + n, n being the number of triangles before.

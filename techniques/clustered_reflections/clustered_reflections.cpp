@@ -14,6 +14,7 @@
 #include "techniques/clustered_reflections/reflection_errors.h"
 #include "techniques/kit/displayed_errors.h"
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/number.h"
 #include "techniques/kit/path_view.h"
 #include "techniques/kit/percent.h"
 #include "techniques/reflections/gpu_ray_tracer.h"
@@ -57,18 +58,14 @@ constexpr Choice<OwnReflector> kOwnReflectors[] = {
     {OwnReflector::LeftOut, "left_out", "a reflector is left out of its own images"},
 };
 
-float number(Params& params, const char* name, double fallback, const ParamSpec& spec) {
-    return static_cast<float>(params.getDouble(name, fallback, spec));
-}
-
 void readLobe(Params& params, reflections::LobeSettings& lobe) {
-    lobe.maxHalfAngleRad =
-        glm::radians(number(params, "lobe_half_angle_deg", 34.4,
-                            {"half angle of the cone of rays at glossiness 1", "°", 0.0, 90.0}));
-    lobe.farExponent =
-        number(params, "far_exponent", static_cast<double>(lobe.farExponent),
-               {"e of the distance where reflections of glossiness g end: diagonal · (1 − g)^e",
-                "1", 0.0, 64.0});
+    lobe.maxHalfAngleRad = glm::radians(
+        kit::number(params, "lobe_half_angle_deg", 34.4F,
+                    {"half angle of the cone of rays at glossiness 1", "°", 0.0, 90.0}));
+    lobe.farExponent = kit::number(
+        params, "far_exponent", lobe.farExponent,
+        {"e of the distance where reflections of glossiness g end: diagonal · (1 − g)^e", "1", 0.0,
+         64.0});
 }
 
 BinSettings readBins(Params& params) {
@@ -79,13 +76,14 @@ BinSettings readBins(Params& params) {
     bins.maxPhiBins =
         params.getInt("phi_bins", bins.maxPhiBins,
                       {"most bins of a reflector's normals, by their angle from y", "bins", 1, 64});
-    bins.exponent = number(params, "bin_exponent", static_cast<double>(bins.exponent),
-                           {"e of the share of the most bins that a reflector gets: (a_R / n_v · "
-                            "bin_gain)^e, at most 1",
-                            "1", 0.0, 8.0});
-    bins.gain =
-        number(params, "bin_gain", static_cast<double>(bins.gain),
-               {"factor on the number of bins: the more, the finer the clusters", "1", 1e-6, 1e6});
+    bins.exponent =
+        kit::number(params, "bin_exponent", bins.exponent,
+                    {"e of the share of the most bins that a reflector gets: (a_R / n_v · "
+                     "bin_gain)^e, at most 1",
+                     "1", 0.0, 8.0});
+    bins.gain = kit::number(
+        params, "bin_gain", bins.gain,
+        {"factor on the number of bins: the more, the finer the clusters", "1", 1e-6, 1e6});
     bins.leastSamples =
         params.getInt("least_samples", bins.leastSamples,
                       {"clusters of fewer samples join a neighbour on the same reflector",
@@ -103,17 +101,17 @@ ClusteredSettings readClustered(Params& params) {
     settings.march = params.getEnum("march", March::Linear, kMarches,
                                     {"how a ray is followed through a depth image"});
     settings.camera.depthImageScale =
-        number(params, "depth_image_scale", 1.0,
-               {"factor on the width and height of the depth images", "1", 0.01, 16.0});
-    settings.camera.texelsPerSample =
-        number(params, "texels_per_sample", 0.0,
-               {"most texels of a depth image for each sample of its cluster; 0: as many as the "
-                "samples' distances ask for",
-                "texels", 0.0, 4096.0});
-    settings.levelErrorPx =
-        number(params, "level_error_px", 0.0,
-               {"how far an object may be simplified, in texels of the depth image; 0: not at all",
-                "texels", 0.0, 64.0});
+        kit::number(params, "depth_image_scale", 1.0F,
+                    {"factor on the width and height of the depth images", "1", 0.01, 16.0});
+    settings.camera.texelsPerSample = kit::number(
+        params, "texels_per_sample", 0.0F,
+        {"most texels of a depth image for each sample of its cluster; 0: as many as the "
+         "samples' distances ask for",
+         "texels", 0.0, 4096.0});
+    settings.levelErrorPx = kit::number(
+        params, "level_error_px", 0.0F,
+        {"how far an object may be simplified, in texels of the depth image; 0: not at all",
+         "texels", 0.0, 64.0});
     settings.ownReflector =
         params.getEnum("own_reflector", OwnReflector::ConcaveDiffuse, kOwnReflectors,
                        {"what rays of a cluster see of the reflector that they leave"});

@@ -36,20 +36,13 @@ PixelExperiment::PixelExperiment(const gl::ShaderLibrary& shaders, const scene::
     for (const View& view : views_.images) images_.push_back(renderer_.makeImage(view));
 }
 
-std::vector<const DepthImage*> PixelExperiment::first(const std::vector<DepthImage>& images,
-                                                      std::size_t count) const {
-    std::vector<const DepthImage*> pointers;
-    for (std::size_t i = 0; i < count; ++i) pointers.push_back(&images[i]);
-    return pointers;
-}
-
 // [xie2017] Algorithm 1
 void PixelExperiment::makeReferenceImages(gl::Profiler& profiler) {
     const gl::GpuScope all(profiler, "reference_images");
     for (std::size_t i = 0; i < images_.size(); ++i) {
         const gl::GpuScope one(profiler, imageName(i));
         const std::size_t earlier = method_ == Method::Conventional ? 0 : i;
-        renderer_.render(scene_, images_[i], first(images_, earlier));
+        renderer_.render(scene_, images_[i], kit::firstOf(images_, earlier));
     }
 }
 
@@ -74,16 +67,16 @@ void PixelExperiment::drawOutputFrame(gl::Profiler& profiler, std::size_t index)
         drawFrame(index);
     }
     const gl::GpuScope scope(profiler, "availability_test");
-    measures_.beginAvailability(*outputFrame_, first(images_, images_.size()));
+    measures_.beginAvailability(*outputFrame_, kit::firstOf(images_, images_.size()));
 }
 
 void PixelExperiment::markImage(std::size_t index, OccludedIn occluded) {
     const DepthImage& image = images_[index];
     gl::Texture& marks = marks_[index];
     // For the method's own sequence; a conventional image's earlier ones are conventional.
-    measures_.mark(image, marks, first(images_, index), true, kSample, kRedundant);
+    measures_.mark(image, marks, kit::firstOf(images_, index), true, kSample, kRedundant);
     const std::size_t count = conventionalImages(method_, occluded, index, conventional().size());
-    measures_.mark(image, marks, first(conventional(), count), false, kSample, kOccluded);
+    measures_.mark(image, marks, kit::firstOf(conventional(), count), false, kSample, kOccluded);
 }
 
 namespace {
@@ -133,7 +126,7 @@ Measures PixelExperiment::measure(const MeasureSettings& settings) {
         if (measures_.count(marks_[i], kOccluded) > 0) open.push_back(i);
     }
     Measures result;
-    const std::vector<const DepthImage*> images = first(images_, images_.size());
+    const std::vector<const DepthImage*> images = kit::firstOf(images_, images_.size());
     const bool needsFrames = settings.availability || !open.empty();
     const std::size_t frameCount = needsFrames ? views_.frames.size() : 0;
     const std::shared_ptr<const OutputFrames> shared = frameCount > 0 ? sharedFrames() : nullptr;
@@ -178,7 +171,8 @@ MarkedImage PixelExperiment::markedImage(std::size_t index) const {
 MarkedImage PixelExperiment::markedFrame(std::size_t index) {
     drawFrame(index);
     gl::Texture marks = measures_.makeMarks(*outputFrame_);
-    measures_.mark(*outputFrame_, marks, first(images_, images_.size()), true, kSample, kAvailable);
+    measures_.mark(*outputFrame_, marks, kit::firstOf(images_, images_.size()), true, kSample,
+                   kAvailable);
     return {readDepthImage(*outputFrame_),
             marks.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1)};
 }

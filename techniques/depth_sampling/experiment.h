@@ -106,8 +106,6 @@ class PixelExperiment final : public Experiment {
     std::shared_ptr<const OutputFrames> sharedFrames();
     void drawConventionalImages();
     void drawFrame(std::size_t index);
-    std::vector<const kit::DepthImage*> first(const std::vector<kit::DepthImage>& images,
-                                              std::size_t count) const;
     const std::vector<kit::DepthImage>& conventional() const {
         return method_ == Method::Conventional ? images_ : conventional_;
     }

@@ -17,6 +17,12 @@ GLenum glFormatOf(DepthFormat format) {
 
 }  // namespace
 
+std::vector<const DepthImage*> firstOf(const std::vector<DepthImage>& images, std::size_t count) {
+    std::vector<const DepthImage*> pointers;
+    for (std::size_t i = 0; i < count; ++i) pointers.push_back(&images[i]);
+    return pointers;
+}
+
 DepthImage::DepthImage(const View& imageView, DepthFormat format)
     : view(imageView),
       shading(gl::Texture::make2D(GL_RGBA8, imageView.sizePx)),

@@ -30,6 +30,9 @@ constexpr int kMaxEarlierImages = 15;
 /// double-sided triangles; no shadows.
 constexpr glm::vec3 kLightDirectionWorld{0.397F, 0.794F, 0.461F};  // towards the light
 
+/// The first `count` of a list of images, as the renderer takes them.
+std::vector<const DepthImage*> firstOf(const std::vector<DepthImage>& images, std::size_t count);
+
 /// [xie2017] Algorithm 1 with the pixel test of Algorithm 3 in the fragment stage. The fragment
 /// that stays in a pixel is the nearest one whose triangle no earlier image holds at the pixel
 /// where the fragment lands in it.

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "engine/core/files.h"
+#include "techniques/kit/number.h"
 #include "techniques/kit/path_view.h"
 
 namespace gfxrepro::point_splatting {
@@ -36,12 +37,6 @@ constexpr Choice<LevelChoice> kLevels[] = {
     {LevelChoice::All, "all", "all points of a patch"},
 };
 
-float number(Params& params, const char* name, float fallback, const ParamSpec& spec) {
-    // 0.7, not what a float makes of it, goes into manifests.
-    const double written = std::stod(fmt::format("{:g}", fallback));
-    return static_cast<float>(params.getDouble(name, written, spec));
-}
-
 /// That all patches are drawn in; none: by each one's size.
 std::optional<SplatMode> fixedMode(Method method) {
     switch (method) {
@@ -66,13 +61,13 @@ SplatSettings readSplats(Params& params) {
     settings.storage = params.getEnum("storage", PointStorage::Compressed, kStorages,
                                       {"how points lie on the device"});
     settings.lowPassRadiusPx =
-        number(params, "low_pass_radius_px", 1.0F,
-               {"r_h: the low-pass filter's standard deviation", "pixels", 0.1, 8.0});
-    settings.cutoff =
-        number(params, "cutoff", 1.5F, {"where a splat ends", "standard deviations", 0.5, 4.0});
+        kit::number(params, "low_pass_radius_px", 1.0F,
+                    {"r_h: the low-pass filter's standard deviation", "pixels", 0.1, 8.0});
+    settings.cutoff = kit::number(params, "cutoff", 1.5F,
+                                  {"where a splat ends", "standard deviations", 0.5, 4.0});
     settings.visibilityOffset =
-        number(params, "visibility_offset", settings.visibilityOffset,
-               {"ε: how far splats behind the front one are blended in", "radii", 0.0, 16.0});
+        kit::number(params, "visibility_offset", settings.visibilityOffset,
+                    {"ε: how far splats behind the front one are blended in", "radii", 0.0, 16.0});
     return settings;
 }
 
@@ -86,25 +81,25 @@ SelectionSettings readSelection(Params& params, Method method) {
         params.getEnum("level", LevelChoice::BySize, kLevels, {"how much of a patch is drawn"}) ==
         LevelChoice::BySize;
     settings.targetRadiusPx =
-        number(params, "target_radius_px", settings.targetRadiusPx,
-               {"largest radius of a level on the screen", "pixels", 0.05, 64.0});
-    settings.fineRadiusPx = number(
+        kit::number(params, "target_radius_px", settings.targetRadiusPx,
+                    {"largest radius of a level on the screen", "pixels", 0.05, 64.0});
+    settings.fineRadiusPx = kit::number(
         params, "fine_radius_px", settings.fineRadiusPx,
         {"the same of patches that are curved, wide or at the silhouette", "pixels", 0.05, 64.0});
-    settings.cMin = number(params, "c_min", settings.cMin,
-                           {"below it C_η·S_proj / S_h is low-pass alone", "1", 0.0, 1e6});
-    settings.cMax = number(params, "c_max", settings.cMax,
-                           {"above it S_proj / S_h is reconstruction alone", "1", 0.0, 1e6});
-    settings.curvedAbove = number(params, "curved_above", settings.curvedAbove,
-                                  {"λ₀ / Σλ of patches that are curved", "1", 0.0, 1.0});
+    settings.cMin = kit::number(params, "c_min", settings.cMin,
+                                {"below it C_η·S_proj / S_h is low-pass alone", "1", 0.0, 1e6});
+    settings.cMax = kit::number(params, "c_max", settings.cMax,
+                                {"above it S_proj / S_h is reconstruction alone", "1", 0.0, 1e6});
+    settings.curvedAbove = kit::number(params, "curved_above", settings.curvedAbove,
+                                       {"λ₀ / Σλ of patches that are curved", "1", 0.0, 1.0});
     settings.wideAboveRad =
-        glm::radians(number(params, "wide_above_deg", glm::degrees(settings.wideAboveRad),
-                            {"normal cone of patches that are wide", "°", 0.0, 180.0}));
-    settings.silhouetteRad = glm::radians(
-        number(params, "silhouette_deg", 20.0F,
-               {"at the silhouette the view ray is so near to a right angle to the mean normal",
-                "°", 0.0, 90.0}));
-    settings.prefixShare = number(
+        glm::radians(kit::number(params, "wide_above_deg", glm::degrees(settings.wideAboveRad),
+                                 {"normal cone of patches that are wide", "°", 0.0, 180.0}));
+    settings.silhouetteRad = glm::radians(kit::number(
+        params, "silhouette_deg", 20.0F,
+        {"at the silhouette the view ray is so near to a right angle to the mean normal", "°", 0.0,
+         90.0}));
+    settings.prefixShare = kit::number(
         params, "progressive_share", 1.0F,
         {"of each patch's points, what has arrived: progressive transmission", "1", 0.0, 1.0});
     settings.lowPassRadiusPx = 0.0F;  // the splats'; see below
@@ -119,20 +114,20 @@ TreeSettings readTree(Params& params) {
     settings.minPatchPoints = static_cast<std::uint32_t>(
         params.getInt("patch_points_min", static_cast<int>(settings.minPatchPoints),
                       {"a subtree of so few is not cut", "points", 1, 1 << 20}));
-    settings.patchConeRad =
-        glm::radians(number(params, "patch_cone_deg", glm::degrees(settings.patchConeRad),
-                            {"a subtree whose normals lie within is not cut", "°", 0.0, 180.0}));
+    settings.patchConeRad = glm::radians(
+        kit::number(params, "patch_cone_deg", glm::degrees(settings.patchConeRad),
+                    {"a subtree whose normals lie within is not cut", "°", 0.0, 180.0}));
     return settings;
 }
 
 ViewSettings readView(Params& params) {
     ViewSettings view;
-    view.distance =
-        number(params, "distance", view.distance,
-               {"of the eye from the point looked at", "of the framing distance", 0.01, 1000.0});
+    view.distance = kit::number(
+        params, "distance", view.distance,
+        {"of the eye from the point looked at", "of the framing distance", 0.01, 1000.0});
     view.rotationRad = glm::radians(
-        number(params, "rotation_deg", 0.0F,
-               {"of the turntable, to which frames add up to 360°", "°", -360.0, 360.0}));
+        kit::number(params, "rotation_deg", 0.0F,
+                    {"of the turntable, to which frames add up to 360°", "°", -360.0, 360.0}));
     constexpr double kCentre[] = {0.5, 0.5, 0.5};
     const std::vector<double> lookAt =
         params.getVector("look_at", kCentre, {"in the model's box", "of its size", -1.0, 2.0});

@@ -11,6 +11,7 @@
 #include "engine/image/srgb.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/number.h"
 #include "techniques/kit/percent.h"
 #include "techniques/reflections/gpu_ray_tracer.h"
 
@@ -47,10 +48,6 @@ constexpr Choice<Resampling> kResamplings[] = {
     {Resampling::Gather, "gather", "found in the key frame by the new view's samples"},
 };
 
-float number(Params& params, const char* name, float fallback, const ParamSpec& spec) {
-    return static_cast<float>(params.getDouble(name, static_cast<double>(fallback), spec));
-}
-
 ReuseSettings readReuse(Params& params) {
     ReuseSettings settings;
     settings.keyFrameThreshold = static_cast<float>(params.getDouble(
@@ -73,12 +70,12 @@ ReuseSettings readReuse(Params& params) {
     settings.reprojection.resampling =
         params.getEnum("resampling", settings.reprojection.resampling, kResamplings,
                        {"how reflections come from the key frame to the new view"});
-    settings.reprojection.maxGrowth = number(
+    settings.reprojection.maxGrowth = kit::number(
         params, "max_growth", settings.reprojection.maxGrowth,
         {"how much a grid triangle's area may grow; a larger one is left out", "1", 1.0, 1e6});
-    settings.reprojection.depthTolerance = static_cast<float>(params.getDouble(
-        "depth_tolerance", 0.01,
-        {"ε: share by which the depth of a reused sample may be off", "1", 0.0, 1.0}));
+    settings.reprojection.depthTolerance =
+        kit::number(params, "depth_tolerance", 0.01F,
+                    {"ε: share by which the depth of a reused sample may be off", "1", 0.0, 1.0});
     settings.recomputesMoved = params.getBool(
         "moved_objects", false, {"recomputes what an object that moved reflects in or hides"});
     return settings;

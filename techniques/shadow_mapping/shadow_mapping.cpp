@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/number.h"
 #include "techniques/kit/path_view.h"
 #include "techniques/kit/percent.h"
 #include "techniques/kit/picture.h"
@@ -78,24 +79,20 @@ constexpr Choice<DepthFormat> kFormats[] = {
     {DepthFormat::Float32, "float32", "32-bit float"},
 };
 
-float number(Params& params, const char* name, double fallback, const ParamSpec& spec) {
-    return static_cast<float>(params.getDouble(name, fallback, spec));
-}
-
 void readLights(Params& params, ShadowMappingParams& p) {
     p.lightKind = params.getEnum("light_kind", LightKind::Spot, kLightKinds, {"of all lights"});
     p.lightPlace =
         params.getEnum("light_place", LightPlace::Orbit, kLightPlaces, {"where lights stand"});
     p.lightCount = params.getInt("lights", 1, {"number of lights", "lights", 1, kMaxLights});
-    p.lightDistance = number(params, "light_distance", 1.2,
-                             {"from the centre of the scene's box", "diagonals", 0.0, 100.0});
-    p.azimuthRad = glm::radians(
-        number(params, "light_azimuth_deg", -40.0,
-               {"direction to the first light about y, from +z towards +x", "°", -360.0, 360.0}));
-    p.elevationRad = glm::radians(
-        number(params, "light_elevation_deg", 50.0, {"… above the horizon", "°", -90.0, 90.0}));
-    p.lightSize = number(params, "light_size", 0.02,
-                         {"diameter of the lights, for pcss", "diagonals", 0.0, 10.0});
+    p.lightDistance = kit::number(params, "light_distance", 1.2F,
+                                  {"from the centre of the scene's box", "diagonals", 0.0, 100.0});
+    p.azimuthRad = glm::radians(kit::number(
+        params, "light_azimuth_deg", -40.0F,
+        {"direction to the first light about y, from +z towards +x", "°", -360.0, 360.0}));
+    p.elevationRad = glm::radians(kit::number(params, "light_elevation_deg", 50.0F,
+                                              {"… above the horizon", "°", -90.0, 90.0}));
+    p.lightSize = kit::number(params, "light_size", 0.02F,
+                              {"diameter of the lights, for pcss", "diagonals", 0.0, 10.0});
 }
 
 void refuseUnread(const Params& params, const ShadowMappingParams& p) {
@@ -128,10 +125,10 @@ ShadowMappingParams::ShadowMappingParams(Params& params) {
     maps.format = params.getEnum("depth_format", DepthFormat::Unorm24, kFormats,
                                  {"of the depth test; of the map where it is hardware's"});
     maps.bias.constant =
-        number(params, "bias", 0.0005,
-               {"ε: how much is taken from the receiver's window depth", "1", 0.0, 1.0});
-    maps.bias.slopeScale = number(
-        params, "slope_bias", 1.0,
+        kit::number(params, "bias", 0.0005F,
+                    {"ε: how much is taken from the receiver's window depth", "1", 0.0, 1.0});
+    maps.bias.slopeScale = kit::number(
+        params, "slope_bias", 1.0F,
         {"how many times the caster's change of depth from texel to texel (pcf: over its 5) is "
          "added to the bias",
          "1", 0.0, 100.0});

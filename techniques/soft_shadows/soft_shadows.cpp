@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/number.h"
 #include "techniques/kit/path_view.h"
 #include "techniques/kit/percent.h"
 #include "techniques/kit/picture.h"
@@ -47,24 +48,20 @@ constexpr Choice<Measured> kMeasured[] = {
      "image that only writes"},
 };
 
-float number(Params& params, const char* name, double fallback, const ParamSpec& spec) {
-    return static_cast<float>(params.getDouble(name, fallback, spec));
-}
-
 AreaLightSettings readLight(Params& params) {
     AreaLightSettings light;
     light.sizeRatio =
-        number(params, "light_ratio", 1.0,
-               {"diagonal of the square light : diagonal of the scene's box; 0 is a point", "1",
-                0.0, 16.0});
+        kit::number(params, "light_ratio", 1.0F,
+                    {"diagonal of the square light : diagonal of the scene's box; 0 is a point",
+                     "1", 0.0, 16.0});
     light.height =
-        number(params, "light_height", 1.5,
-               {"distance of the light from the centre of the box", "diagonals", 0.01, 100.0});
+        kit::number(params, "light_height", 1.5F,
+                    {"distance of the light from the centre of the box", "diagonals", 0.01, 100.0});
     light.azimuthRad = glm::radians(
-        number(params, "light_azimuth_deg", 35.0,
-               {"direction to the light about y, from +z towards +x", "°", -360.0, 360.0}));
-    light.elevationRad = glm::radians(
-        number(params, "light_elevation_deg", 60.0, {"… above the horizon", "°", -90.0, 90.0}));
+        kit::number(params, "light_azimuth_deg", 35.0F,
+                    {"direction to the light about y, from +z towards +x", "°", -360.0, 360.0}));
+    light.elevationRad = glm::radians(kit::number(params, "light_elevation_deg", 60.0F,
+                                                  {"… above the horizon", "°", -90.0, 90.0}));
     light.viewFrame = params.getEnum("light_view_frame", LightViewFrame::Parallel, kLightViewFrames,
                                      {"how the views from the light's points stand"});
     return light;
@@ -74,11 +71,11 @@ ReconstructionSettings readReconstruction(Params& params) {
     ReconstructionSettings settings;
     settings.method = params.getEnum("reconstruction", Reconstruction::Hybrid, kReconstructions,
                                      {"how depth images become meshes"});
-    settings.discontinuityPx = number(
-        params, "discontinuity", static_cast<double>(settings.discontinuityPx),
+    settings.discontinuityPx = kit::number(
+        params, "discontinuity", settings.discontinuityPx,
         {"depth off a sample's plane at which a corner is another surface's", "pixels", 0.0, 1e6});
-    settings.grazingLimitPx = number(
-        params, "grazing_limit", static_cast<double>(settings.grazingLimitPx),
+    settings.grazingLimitPx = kit::number(
+        params, "grazing_limit", settings.grazingLimitPx,
         {"how far a plane-fitted corner may lie before or behind its sample", "pixels", 0.0, 1e6});
     settings.mergesRows = params.getBool("merge_rows", false,
                                          {"samples of one triangle side by side become one quad"});
@@ -97,13 +94,14 @@ SoftShadowsParams::SoftShadowsParams(Params& params)
           params.getInt("reference_size", 512,
                         {"side of a depth image; the thesis has 1024", "pixels", 1, 32768})),
       reconstruction(readReconstruction(params)),
-      simplifyTo(number(params, "simplify_to", 1.0,
-                        {"share of a mesh's triangles that simplification keeps; 1 leaves it as "
-                         "reconstructed",
-                         "1", 0.001, 1.0})),
-      simplificationError(
-          number(params, "simplification_error", 0.001,
-                 {"bound on how far simplification moves the surface", "diagonals", 0.0, 1.0})),
+      simplifyTo(
+          kit::number(params, "simplify_to", 1.0F,
+                      {"share of a mesh's triangles that simplification keeps; 1 leaves it as "
+                       "reconstructed",
+                       "1", 0.001, 1.0})),
+      simplificationError(kit::number(
+          params, "simplification_error", 0.001F,
+          {"bound on how far simplification moves the surface", "diagonals", 0.0, 1.0})),
       view(params.getText("view", "",
                           {"a path of the scene, seen from its middle, a camera, \"X Y Z > X Y Z\" "
                            "from and to, or where from to "
@@ -113,7 +111,7 @@ SoftShadowsParams::SoftShadowsParams(Params& params)
                               {"light samples along each edge; the thesis has 16", "1", 1, 64})),
       hasGround(params.getBool("ground", true, {"a square floor under the scene"})),
       groundSize(
-          number(params, "ground_size", 1.5, {"side of the floor", "diagonals", 0.0, 100.0})),
+          kit::number(params, "ground_size", 1.5F, {"side of the floor", "diagonals", 0.0, 100.0})),
       measured(params.getEnum("measured", Measured::SoftShadow, kMeasured, {"what is timed"})),
       measuresErrors(
           params.getBool("errors", true, {"compare with shadow maps of the original geometry"})),
@@ -128,8 +126,8 @@ SoftShadowsParams::SoftShadowsParams(Params& params)
         // surface.
         params.getInt("shadow_map_size", 512, {"side of a shadow map", "pixels", 1, 16384});
     shadowMap.biasTexels =
-        number(params, "shadow_bias", 1.0,
-               {"how far a receiver is moved before the test", "texels", 0.0, 1000.0});
+        kit::number(params, "shadow_bias", 1.0F,
+                    {"how far a receiver is moved before the test", "texels", 0.0, 1000.0});
     params.finish();
     if (!reconstructs()) {
         params.refuseGiven({"reference_images", "reference_size", "reconstruction", "discontinuity",
@@ -199,14 +197,6 @@ void requireReceivers(const HostReceivers& receivers, const scene::Camera& camer
         fmt::format("the picture shows no surface: from ({:g}, {:g}, {:g}) nothing of the scene or "
                     "its ground is in view; change the scene's camera",
                     eye.x, eye.y, eye.z));
-}
-
-/// The first `count` of a list of images, as the renderer takes them.
-std::vector<const kit::DepthImage*> firstOf(const std::vector<kit::DepthImage>& images,
-                                            std::size_t count) {
-    std::vector<const kit::DepthImage*> pointers;
-    for (std::size_t i = 0; i < count; ++i) pointers.push_back(&images[i]);
-    return pointers;
 }
 
 }  // namespace
@@ -337,7 +327,7 @@ void SoftShadows::renderReferenceImages() {
 
 std::vector<const kit::DepthImage*> SoftShadows::earlierOf(std::size_t i) const {
     if (params_.method == Method::Conventional) return {};
-    return firstOf(params_.redundancy == kit::Redundancy::Visibility ? seen_ : images_, i);
+    return kit::firstOf(params_.redundancy == kit::Redundancy::Visibility ? seen_ : images_, i);
 }
 
 // H of Algorithm 4. H drops what Iⱼ have, j < i. A peeled layer of H drops what the layers of H
@@ -346,7 +336,8 @@ void SoftShadows::renderOffsetImages() {
     for (std::size_t i = 0; i < offsetImages_.size(); ++i) {
         const bool isPeeling = params_.method == Method::DepthPeeling;
         renderer_->render(*drawable_, offsetImages_[i],
-                          isPeeling ? firstOf(offsetImages_, i) : earlierOf(i), params_.redundancy);
+                          isPeeling ? kit::firstOf(offsetImages_, i) : earlierOf(i),
+                          params_.redundancy);
     }
 }
 

@@ -2,21 +2,12 @@
 // Environment mapping: the mean of the map over the rays of each wanted reflective sample. All rays
 // weigh the same, glossy ones too: the map does not know how far away anything is, so that nothing
 // fades towards a far plane.
-#include "reflections/environment.glsl"
-#include "reflections/gbuffer.glsl"
-#include "reflections/lobe.glsl"
-
-uniform usampler2D wanted;
-uniform int hasWanted;
-
-layout(location = 0) out vec4 radiance;
-layout(location = 1) out float distanceM;
+#include "reflections/traced_sample.glsl"
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uint surface = texelFetch(gbufferSurface, pixel, 0).r;
-    if (reflectorOf(surface) == 0u) discard;
-    if (hasWanted != 0 && texelFetch(wanted, pixel, 0).r == 0u) discard;
+    if (!isTraced(pixel, surface)) discard;
     vec3 mirror = gbufferMirrorDirection(gbufferPosition(pixel), gbufferUnitNormal(pixel));
     float glossiness = glossinessOf(surface);
     int count = raysOf(glossiness);

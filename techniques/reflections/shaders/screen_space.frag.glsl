@@ -2,18 +2,11 @@
 // Screen-space reflection (McGuire and Mara 2014, "Efficient GPU Screen-Space Ray Tracing"): each
 // reflected ray is marched texel by texel through the G-buffer. Reads the G-buffer, the environment
 // map and which samples are wanted; writes what ReflectionTarget holds.
-#include "reflections/environment.glsl"
-#include "reflections/gbuffer.glsl"
-#include "reflections/lobe.glsl"
+#include "reflections/traced_sample.glsl"
 
-uniform usampler2D wanted;
-uniform bool hasWanted;
 uniform mat4 pixelsFromWorld;  // to (x·d, y·d, d, 1), (x, y) in pixels
 uniform float nearM;
 uniform float thicknessM;
-
-layout(location = 0) out vec4 radiance;
-layout(location = 1) out float distanceM;
 
 // How far a ray stays on the inner side of a plane from which its origin is `height` away, changing
 // by `perMetre`.
@@ -72,8 +65,7 @@ bool march(vec3 originWorld, vec3 direction, float endM, out ScreenHit hit) {
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uint surface = texelFetch(gbufferSurface, pixel, 0).r;
-    if (reflectorOf(surface) == 0u) discard;
-    if (hasWanted && texelFetch(wanted, pixel, 0).r == 0u) discard;
+    if (!isTraced(pixel, surface)) discard;
     float glossiness = glossinessOf(surface);
     vec3 position = gbufferPosition(pixel);
     vec3 mirrorDirection = gbufferMirrorDirection(position, gbufferUnitNormal(pixel));

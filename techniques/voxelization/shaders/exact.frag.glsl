@@ -76,13 +76,7 @@ bool isShiftedPositive(whole3 normal) {
     return n.x != 0 ? n.x > 0 : n.y != 0 ? n.y > 0 : n.z > 0;
 }
 
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    whole3 a = whole3(cornerLocal(axis, triangleIndex, 0u));
-    whole3 b = whole3(cornerLocal(axis, triangleIndex, 1u));
-    whole3 c = whole3(cornerLocal(axis, triangleIndex, 2u));
-    whole2 p = whole2(pixel * 256 + 128);
-    whole3 n = planeNormal(b - a, c - a);
+void emitVoxels(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
     if (n.z == 0) return;  // edge-on: another axis crosses it
     whole side = n.z > 0 ? whole(1) : whole(-1);
     whole3 areas = side * whole3(edgeArea(b.xy, c.xy, p), edgeArea(c.xy, a.xy, p), edgeArea(a.xy, b.xy, p));
@@ -140,13 +134,7 @@ bool overlaps(whole3 a, whole3 b, whole3 c, whole3 n, whole3 centre) {
     return !isSeparated(b - a, a, b, c) && !isSeparated(c - b, a, b, c) && !isSeparated(a - c, a, b, c);
 }
 
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    whole3 a = whole3(cornerLocal(axis, triangleIndex, 0u));
-    whole3 b = whole3(cornerLocal(axis, triangleIndex, 1u));
-    whole3 c = whole3(cornerLocal(axis, triangleIndex, 2u));
-    whole2 p = whole2(pixel * 256 + 128);
-    whole3 n = planeNormal(b - a, c - a);
+void emitVoxels(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
     int first = max((int(min(a.z, min(b.z, c.z))) - 1) >> 8, 0);
     int last = min(int(max(a.z, max(b.z, c.z))) >> 8, RESOLUTION - 1);
     if (n.z != 0) {
@@ -166,3 +154,11 @@ void main() {
 }
 
 #endif
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    whole3 a = whole3(cornerLocal(axis, triangleIndex, 0u));
+    whole3 b = whole3(cornerLocal(axis, triangleIndex, 1u));
+    whole3 c = whole3(cornerLocal(axis, triangleIndex, 2u));
+    emitVoxels(pixel, whole2(pixel * 256 + 128), a, b, c, planeNormal(b - a, c - a));
+}
