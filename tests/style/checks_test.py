@@ -40,11 +40,18 @@ expect("check_layers", {"runner/report/a.cpp": "#include <EGL/egl.h>\n"},
        "runner/report/a.cpp:1: runner/report may not include EGL/egl.h")
 expect("check_layers", {"techniques/a/a.cpp": '#include "techniques/b/b.h"\n'},
        "techniques/a/a.cpp:1: techniques/a may not include techniques/b/b.h")
+for folder in ("techniques/a", "techniques/kit", "techniques/reflections", "techniques/external"):
+    for hidden in ("runner/config/printed_section.h", "runner/claims/kinds/claim.h", "runner/tables/table.h"):
+        expect("check_layers", {folder + "/a.cpp": f'#include "{hidden}"\n'},
+               f"{folder}/a.cpp:1: {folder} may not include {hidden}")
 for folder in ("runner/run", "engine/scene", "techniques/a"):
     expect("check_layers", {folder + "/a.cpp": '#include "scenes/city/parts.h"\n'},
            f"{folder}/a.cpp:1: {folder} may not include scenes/city/parts.h")
 expect("check_layers", {"scenes/city/a.cpp": '#include "runner/technique/technique.h"\n'},
        "scenes/city/a.cpp:1: scenes may not include runner/technique/technique.h")
+for folder, code in (("external", 0), ("a", 1)):
+    if run("check_layers", {f"techniques/{folder}/a.h": '#include "runner/config/external_program.h"\n'})[0] != code:
+        sys.exit(f"check_layers should have ended with {code} for techniques/{folder}")
 # An exception holds one way.
 expect("check_layers",
        {"techniques/reflection_reuse/a.cpp": '#include "techniques/clustered_reflections/b.h"\n',
