@@ -1,6 +1,6 @@
 // The schema of files that people write, as data: every key with its type, default and meaning, in
-// one table with the place that its reader finds it at. `gfxrepro describe config`, the JSON schema
-// for editors and configs/README.md are made from the same tables.
+// one table with the place that its reader finds it at. What describes them, to people and to
+// editors, is made from the same tables.
 #pragma once
 
 #include <algorithm>
@@ -31,8 +31,8 @@ struct SchemaKey {
 
 /// The keys of one kind of map.
 struct SchemaSection {
-    std::string name;           // "layout": for schemaSection, and in the JSON schema
-    std::string path;           // what stands before its keys: "layout.", "claims.ID."
+    std::string name;           // "camera", also in the JSON schema
+    std::string path;           // what stands before its keys: "camera.", "axes.NAME."
     std::string doc;            // begins its table
     bool isRemovable = true;    // a key may be null, which removes what an extended file has set
     Json others = nullptr;      // the type of all further keys; null: there are none
@@ -114,7 +114,7 @@ class KeyTable {
 
 /// A kind of file and its sections, the top of the file first.
 struct SchemaFile {
-    std::string name;  // "experiment", "scene", "documents"
+    std::string name;  // "scene"
     std::string doc;
     std::vector<SchemaSection> sections;
 

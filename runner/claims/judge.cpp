@@ -235,22 +235,17 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
     metrics::Interval interval{point, point};
     tables::Bounds bounds = tables::Bounds::None;
     const bool isEqual = std::ranges::all_of(values, [&](double value) { return value == point; });
-    const std::size_t fewest = isOfScenes(group) ? kFewestScenes : metrics::kFewestForInterval;
-    bool areTooFew = false;
-    if (!isEqual && requirement.isOfCounts) {  // it is that in all of them, or in none
+    if (!isEqual) {
         const auto [low, high] = std::ranges::minmax(values);
-        bounds = tables::Bounds::Range;
-        interval = {low, high};
-    } else if (!isEqual && areDraws) {
-        bounds = tables::Bounds::Interval;
-        interval = tables::drawsInterval(values);
-    } else if (!isEqual) {
-        const auto told = metrics::medianInterval(values);
-        const auto [low, high] = std::ranges::minmax(values);
+        std::optional<metrics::Interval> told;  // a count is that in all of them, or in none
+        if (areDraws) told = tables::drawsInterval(values);
+        if (!areDraws && !requirement.isOfCounts) told = metrics::medianInterval(values);
         bounds = told ? tables::Bounds::Interval : tables::Bounds::Range;
         interval = told.value_or(metrics::Interval{low, high});
-        areTooFew = values.size() < fewest;
     }
+    const std::size_t fewest = isOfScenes(group) ? kFewestScenes : metrics::kFewestForInterval;
+    const bool areTooFew =
+        !isEqual && !areDraws && !requirement.isOfCounts && values.size() < fewest;
     judgement.verdict = verdictOf(interval, requirement);
     // What is otherwise at times is exactly so in a few of them by chance, or in none.
     const bool isByChance = requirement.isOfCounts && isRandom(group);

@@ -48,8 +48,8 @@ std::string methodOf(const config::Case& item) {
     return item.technique + '/' + item.method();
 }
 
-/// The costs in a run's log, by case. Lines that are torn or without a cost are passed over.
-std::map<std::string, std::vector<run::Cost>> loggedCosts(const fs::path& runDir) {
+/// The costs in a run's journal, by case. Lines that are torn or without a cost are passed over.
+std::map<std::string, std::vector<run::Cost>> journalCosts(const fs::path& runDir) {
     std::map<std::string, std::vector<run::Cost>> costs;
     run::forEachEvent(runDir / "journal.jsonl", [&](const run::Json& event) {
         if (!event.contains("cost") || !event.contains("case")) return;
@@ -115,7 +115,7 @@ std::vector<PastCase> readPastCases(const fs::path& runDir) {
         throw Error(runDir.string() + ": is not a run directory (it has no plan.json)");
     }
     run::requireModestFiles(runDir);
-    const std::map<std::string, std::vector<run::Cost>> costs = loggedCosts(runDir);
+    const std::map<std::string, std::vector<run::Cost>> costs = journalCosts(runDir);
     std::vector<PastCase> past;
     if (costs.empty()) return past;
     for (config::Case& item : run::Plan::fromJsonFile(runDir / "plan.json").cases) {

@@ -17,7 +17,7 @@ constexpr glm::vec3 kHeadMax{0.64F, 0.85F, 0.73F};    // ear, crown, nose
 constexpr float kBoneThickness = 0.05F;
 constexpr float kSkinThickness = 0.035F;
 
-// Densities; head_transfer.glsl tells tissues apart by them.
+// Densities; volume_transparent.frag.glsl tells tissues apart by them.
 constexpr float kSkin = 0.22F;
 constexpr float kSoft = 0.34F;
 constexpr float kFluid = 0.46F;

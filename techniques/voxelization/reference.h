@@ -1,5 +1,5 @@
 // Voxelization on the CPU, slow and exact: what the rules are compared with. It works on the
-// snapped mesh (lattice.h) and visits every voxel or scan line of a triangle's box.
+// snapped mesh (LatticeMesh) and visits every voxel or scan line of a triangle's box.
 #pragma once
 
 #include "techniques/voxelization/mesh_input.h"
