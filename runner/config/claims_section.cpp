@@ -206,12 +206,6 @@ class ClaimParser {
             {"at_least", "at_least"},   {"more_than", "more_than"}, {"at_most", "at_most"},
             {"less_than", "less_than"}, {"above", "more_than"},     {"below", "less_than"},
             {"min", "at_least"},        {"max", "at_most"}};
-        static const std::pair<const char*, const char*> kInstead[] = {
-            {"order", "by how much is a ratio's: 'ratio: b / a' with at_least"},
-            {"exact", "'equals'; or 'bound' with at_least and at_most"},
-            {"same_mean", "'false_alarms'"},
-            {"independent", "'at_most'"},
-            {"tolerance", "'at_most'"}};
         if (const Node* exponent = node_.find("exponent")) {
             std::vector<std::string> bounds;
             if (exponent->isMap()) {
@@ -227,10 +221,9 @@ class ClaimParser {
         }
         for (const auto& [word, bound] : kWords) {
             if (!node_.find(word) || contains(allowed, word)) continue;
-            std::string instead = fmt::format("'{}'", bound);
-            for (const auto& [kind, text] : kInstead) {
-                if (kind == claim_.kind->name()) instead = text;
-            }
+            const char* own = claim_.kind->instead;
+            const std::string instead =
+                own ? own : fmt::format("'{}'", contains(allowed, bound) ? bound : "at_most");
             throw Error(node_.keyLocation(word),
                         fmt::format("{}: unknown key '{}' of '{}'; allowed: {}", what_, word,
                                     claim_.kind->name(), instead));

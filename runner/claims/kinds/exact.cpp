@@ -45,10 +45,12 @@ std::vector<ClaimPart> exactParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind exact() {
-    return {sectionOf({"exact", "a", "", "is exactly so", text()},
-                      {{"equals", "number | printed", "required", "what it is",
-                        anyOf({number(), choice({"printed"})})}}),
-            readExact, exactParts, Kind::Compares::Values};
+    Kind kind{sectionOf({"exact", "a", "", "is exactly so", text()},
+                        {{"equals", "number | printed", "required", "what it is",
+                          anyOf({number(), choice({"printed"})})}}),
+              readExact, exactParts, Kind::Compares::Values};
+    kind.instead = "'equals'; or 'bound' with at_least and at_most";
+    return kind;
 }
 
 }  // namespace gfxrepro::claims

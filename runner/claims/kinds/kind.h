@@ -38,8 +38,8 @@ struct Requirement {
     double high = kInfinity;
     bool isLowExcluded = false;
     bool isHighExcluded = false;
-    bool isInfinityAbsence = false;  // crossover alone: what is infinite is not there, and fails
-    bool isOfCounts = false;         // exact alone: of what was counted, not of what it stands for
+    bool isInfinityAbsence = false;  // what is infinite is not there, and fails
+    bool isOfCounts = false;         // of what was counted, not of what it stands for
     std::string text;                // "exponent in [0.3, 1.2]"
     bool isPercent = false;          // shown ×100 with a percent sign
 };
@@ -142,8 +142,9 @@ struct Kind {
     /// Of its quantity, where that is of times. Ratios and times scatter on a logarithmic one; of
     /// where curves cross none is known.
     Scale scale = Scale::Linear;
-    bool isOfAllRows = false;      // judged once, not in each group of rows
-    const char* metric = nullptr;  // the only one that its operand may be
+    bool isOfAllRows = false;       // judged once, not in each group of rows
+    const char* instead = nullptr;  // what to write for bounds, of which it has none
+    const char* metric = nullptr;   // the only one that its operand may be
     /// What `check` refuses, to follow the claim's name; empty where nothing is wrong.
     std::string (*refused)(const ClaimSpec& claim, const Sampling& sampling) = nullptr;
     /// The row axis whose values the operands name, which implies `across`; `what` begins messages.

@@ -118,6 +118,7 @@ Kind order() {
                         {}),
               readOrder, orderParts};
     kind.axisOf = axisOf;
+    kind.instead = "by how much is a ratio's: 'ratio: b / a' with at_least";
     return kind;
 }
 

@@ -64,6 +64,7 @@ Kind sameMean() {
                   "how often it may fail where it holds, over all rows together")});
     Kind kind{std::move(section), readSameMean, sameMeanParts};
     kind.isOfAllRows = true;
+    kind.instead = "'false_alarms'";
     kind.metric = "same_mean_p";  // the p of metrics::testMeans, as techniques record it
     kind.refused = refusedSameMean;
     return kind;
