@@ -159,12 +159,12 @@ void requireEach(const Json& object, const char* place, std::span<const JsonMemb
 }
 
 void requireRows(const Json& object, const char* place, std::span<const JsonKind> columns,
-                 const SourceLocation& where, const std::string& prefix) {
+                 const SourceLocation& where) {
     const JsonMember list{place, JsonKind::List};
-    requireMembers(object, {&list, 1}, where, prefix);
+    requireMembers(object, {&list, 1}, where);
     const Json& rows = object.at(Json::json_pointer(place));
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const std::string row = fmt::format("{}{}/{}", prefix, place, i);
+        const std::string row = fmt::format("{}/{}", place, i);
         requireKind(rows[i], JsonKind::List, where, row);
         if (rows[i].size() != columns.size()) {
             throw Error(where, fmt::format("'{}' has {} values; expected {}", row, rows[i].size(),

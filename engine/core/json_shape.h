@@ -60,6 +60,6 @@ void requireEach(const Json& object, const char* place, std::span<const JsonMemb
                  const SourceLocation& where, const std::string& prefix = "");
 /// … of the list at `place`, whose rows are lists of values of these kinds.
 void requireRows(const Json& object, const char* place, std::span<const JsonKind> columns,
-                 const SourceLocation& where, const std::string& prefix = "");
+                 const SourceLocation& where);
 
 }  // namespace gfxrepro

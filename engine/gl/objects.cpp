@@ -195,10 +195,10 @@ Texture Texture::make3D(GLenum format, glm::ivec3 size, int levels) {
     return make(GL_TEXTURE_3D, format, size, levels);
 }
 
-Texture Texture::makeCube(GLenum format, int size, int levels) {
+Texture Texture::makeCube(GLenum format, int size) {
     checkLimit("a cube map", size, "pixels", getInteger(GL_MAX_CUBE_MAP_TEXTURE_SIZE),
                "GL_MAX_CUBE_MAP_TEXTURE_SIZE");
-    return make(GL_TEXTURE_CUBE_MAP, format, {size, size, 6}, levels);
+    return make(GL_TEXTURE_CUBE_MAP, format, {size, size, 6}, 1);
 }
 
 Texture Texture::viewOfLevel(int level) const {
@@ -391,23 +391,16 @@ Framebuffer Framebuffer::ofLayer(const Texture& colour, int layer, const Texture
     return framebuffer;
 }
 
-Framebuffer Framebuffer::withoutAttachments(glm::ivec2 size, int samples) {
-    const glm::ivec3 wanted(size, samples);
-    const glm::ivec3 limit(getInteger(GL_MAX_FRAMEBUFFER_WIDTH),
-                           getInteger(GL_MAX_FRAMEBUFFER_HEIGHT),
-                           getInteger(GL_MAX_FRAMEBUFFER_SAMPLES));
-    if (glm::any(glm::greaterThan(wanted, limit))) {
-        throw UnsupportedError(fmt::format(
-            "a framebuffer of {} × {} pixels with {} samples is beyond this device's {} × {} with "
-            "{} (GL_MAX_FRAMEBUFFER_WIDTH, _HEIGHT, _SAMPLES)",
-            wanted.x, wanted.y, wanted.z, limit.x, limit.y, limit.z));
-    }
+Framebuffer Framebuffer::withoutAttachments(glm::ivec2 size) {
+    checkLimit("a framebuffer", size.x, "pixels", getInteger(GL_MAX_FRAMEBUFFER_WIDTH),
+               "GL_MAX_FRAMEBUFFER_WIDTH");
+    checkLimit("a framebuffer", size.y, "pixels", getInteger(GL_MAX_FRAMEBUFFER_HEIGHT),
+               "GL_MAX_FRAMEBUFFER_HEIGHT");
     Framebuffer framebuffer;
     framebuffer.name_ = detail::Name<detail::deleteFramebuffer>(createFramebuffer());
     framebuffer.size_ = size;
     glNamedFramebufferParameteri(framebuffer.id(), GL_FRAMEBUFFER_DEFAULT_WIDTH, size.x);
     glNamedFramebufferParameteri(framebuffer.id(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, size.y);
-    glNamedFramebufferParameteri(framebuffer.id(), GL_FRAMEBUFFER_DEFAULT_SAMPLES, samples);
     checkComplete(framebuffer.id());
     return framebuffer;
 }

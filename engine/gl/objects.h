@@ -132,7 +132,7 @@ class Texture {
     static Texture make2D(GLenum format, glm::ivec2 size, int levels = 1);
     static Texture make2DArray(GLenum format, glm::ivec2 size, int layers, int levels = 1);
     static Texture make3D(GLenum format, glm::ivec3 size, int levels = 1);
-    static Texture makeCube(GLenum format, int size, int levels = 1);
+    static Texture makeCube(GLenum format, int size);
     /// 8-bit image, 1 to 4 channels (3 or 4 when `isSrgb`, which decodes in the sampler);
     /// mipmapped, sampled trilinearly, repeating. The image's top row is at v = 0, as glTF has it.
     static Texture fromImage(const image::Image8& image, bool isSrgb);
@@ -198,7 +198,7 @@ class Framebuffer {
     static Framebuffer ofLayer(const Texture& colour, int layer, const Texture* depth = nullptr);
     /// No attachments: for draws that write images only. Throws UnsupportedError beyond the
     /// device's limits.
-    static Framebuffer withoutAttachments(glm::ivec2 size, int samples = 0);
+    static Framebuffer withoutAttachments(glm::ivec2 size);
 
     GLuint id() const { return name_.get(); }
     /// Binds for drawing and sets the viewport to the whole.
