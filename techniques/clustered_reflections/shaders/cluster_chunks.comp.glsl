@@ -2,7 +2,7 @@
 // Cuts the clusters' samples into chunks, and writes how many workgroups the passes over chunks and
 // over clusters have. One workgroup; an invocation takes clusters that follow each other.
 #include "clustered_reflections/cluster_chunks.glsl"
-#include "clustered_reflections/workgroup_scan.glsl"
+#include "kit/workgroup_scan.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 

@@ -7,7 +7,7 @@
 #include "clustered_reflections/atlas.glsl"
 #include "clustered_reflections/culling.glsl"
 #include "clustered_reflections/detail_levels.glsl"
-#include "clustered_reflections/workgroup_scan.glsl"
+#include "kit/workgroup_scan.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 

@@ -3,7 +3,7 @@
 // clusters, numbered without gaps in the order of the bins; small ones join a neighbour. One
 // workgroup.
 #include "clustered_reflections/clustering.glsl"
-#include "clustered_reflections/workgroup_scan.glsl"
+#include "kit/workgroup_scan.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 

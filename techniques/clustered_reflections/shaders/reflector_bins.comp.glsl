@@ -2,7 +2,7 @@
 // [xie2017] Sec. 4.3, steps 3 and 4: the number of visible objects that reflect and the bins of each
 // of their parts, from their areas. One workgroup; an invocation takes reflectors that follow each other.
 #include "clustered_reflections/clustering.glsl"
-#include "clustered_reflections/workgroup_scan.glsl"
+#include "kit/workgroup_scan.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 

@@ -1,7 +1,7 @@
 #version 450 core
 // Counting sort, second part: prefix sums of the matrix within pieces of PIECE_LENGTH entries, a
 // workgroup each, and the pieces' totals.
-#include "clustered_reflections/workgroup_scan.glsl"
+#include "kit/workgroup_scan.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 
