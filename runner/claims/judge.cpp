@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/metrics/alike.h"
 #include "runner/tables/cell.h"
 
 namespace gfxrepro::claims {
@@ -166,7 +167,14 @@ std::vector<int> roundsOf(const Group& group) {
     return tables::commonRounds(all);
 }
 
-Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirement) {
+Verdict verdictOf(const metrics::Interval& given, const Requirement& requirement) {
+    metrics::Interval interval = given;
+    for (double* end : {&interval.low, &interval.high}) {
+        // By rounding beside a bound it is the bound.
+        for (const double bound : {requirement.low, requirement.high}) {
+            if (metrics::areAlike(*end, bound)) *end = bound;
+        }
+    }
     const bool isAboveLow = requirement.isLowExcluded ? interval.low > requirement.low
                                                       : interval.low >= requirement.low;
     const bool isBelowLow = requirement.isLowExcluded ? interval.high <= requirement.low
@@ -234,12 +242,14 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
     judgement.isAbsent = requirement.isInfinityAbsence && std::isinf(point);
     metrics::Interval interval{point, point};
     tables::Bounds bounds = tables::Bounds::None;
-    const bool isEqual = std::ranges::all_of(values, [&](double value) { return value == point; });
+    const bool isEqual =
+        std::ranges::all_of(values, [&](double value) { return metrics::areAlike(value, point); });
     if (!isEqual) {
         const auto [low, high] = std::ranges::minmax(values);
         std::optional<metrics::Interval> told;  // a count is that in all of them, or in none
-        if (areDraws) told = tables::drawsInterval(values);
-        if (!areDraws && !requirement.isOfCounts) told = metrics::medianInterval(values);
+        if (!requirement.isOfCounts) {
+            told = areDraws ? tables::drawsInterval(values) : metrics::medianInterval(values);
+        }
         bounds = told ? tables::Bounds::Interval : tables::Bounds::Range;
         interval = told.value_or(metrics::Interval{low, high});
     }

@@ -14,10 +14,10 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "engine/metrics/alike.h"
 #include "runner/config/experiment.h"
 #include "runner/config/external_program.h"
 #include "runner/records/csv.h"
-#include "runner/tables/summary.h"
 
 namespace gfxrepro::tables {
 
@@ -146,7 +146,7 @@ bool CaseRecords::scatters(std::string_view metric, std::string_view pass) const
         for (const records::Record* row : attempt.values(metric, pass)) {
             const auto [found, isNew] =
                 first.try_emplace({number / records::kMostProcesses, row->frame}, row->value);
-            if (!areAlike(found->second, row->value)) return true;
+            if (!metrics::areAlike(found->second, row->value)) return true;
         }
     }
     return false;

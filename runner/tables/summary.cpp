@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/metrics/alike.h"
 
 namespace gfxrepro::tables {
 
@@ -65,7 +66,8 @@ metrics::Interval rangeOf(const std::vector<double>& values) {
 /// Value and bounds of what each process came to, at least one.
 void fillFromRounds(std::vector<double> values, Summary& summary) {
     summary.value = metrics::summarize(values, Statistic::Median);
-    if (std::ranges::all_of(values, [&](double value) { return areAlike(value, summary.value); })) {
+    if (std::ranges::all_of(
+            values, [&](double value) { return metrics::areAlike(value, summary.value); })) {
         std::ranges::fill(values, summary.value);
         for (auto& [round, value] : summary.rounds) value = summary.value;
     }
@@ -96,13 +98,6 @@ std::optional<double> overProcesses(const Samples& samples, Statistic statistic)
 }
 
 }  // namespace
-
-bool areAlike(double a, double b) {
-    constexpr double kRounding = 1e-12;
-    if (a == b) return true;
-    const double largest = std::max(std::abs(a), std::abs(b));
-    return !std::isinf(largest) && std::abs(a - b) <= kRounding * largest;
-}
 
 std::string_view boundsName(Bounds bounds) {
     constexpr std::string_view kNames[] = {"", "range", "95 % interval"};

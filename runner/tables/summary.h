@@ -17,9 +17,6 @@ enum class Bounds { None, Range, Interval };
 /// "", "range", "95 % interval".
 std::string_view boundsName(Bounds bounds);
 
-/// Whether two values differ by no more than a sum of doubles in another order: they are equal.
-bool areAlike(double a, double b);
-
 /// One statistic of a cell.
 struct Summary {
     double value = 0.0;

@@ -24,7 +24,9 @@ double crossing(const GroupPoint& group) {
     const std::vector<double>& b = group.operands[1];
     if (!arePositive(group.x) || !arePositive(a) || !arePositive(b)) return kNan;
     const std::vector<std::size_t> rows = rowsByX(group);
-    const auto difference = [&](std::size_t i) { return std::log(a[rows[i]] / b[rows[i]]); };
+    const auto difference = [&](std::size_t i) {
+        return std::log(ratioOf(a[rows[i]], b[rows[i]]));
+    };
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (std::isnan(difference(i))) return kNan;
     }

@@ -1,6 +1,7 @@
 // exact: is the printed number, or a given one.
 #include <cmath>
 
+#include "engine/metrics/alike.h"
 #include "runner/claims/kinds/kind.h"
 
 namespace gfxrepro::claims {
@@ -19,15 +20,12 @@ void readExact(const ClaimKeys& keys, ClaimSpec& claim) {
 
 /// The largest |measured − expected| over the rows; operands are these two.
 double largestDifference(const GroupPoint& group) {
-    // A scale such as 1/1024² may round the last bit of a number that was measured exactly.
-    constexpr double kRounding = 1e-12;
     double largest = 0.0;
     for (std::size_t row = 0; row < group.operands[0].size(); ++row) {
         const double expected = group.operands[1][row];
-        if (group.operands[0][row] == expected) continue;
-        const double difference = std::abs(group.operands[0][row] - expected);
-        const bool isRounding = difference <= kRounding * std::abs(expected);
-        if (!isRounding || std::isinf(difference)) largest = greater(largest, difference);
+        // A scale such as 1/1024² may round the last bit of a number that was measured exactly.
+        if (metrics::areAlike(group.operands[0][row], expected)) continue;
+        largest = greater(largest, std::abs(group.operands[0][row] - expected));
     }
     return largest;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/metrics/alike.h"
 #include "engine/metrics/statistics.h"
 #include "runner/claims/kinds/kind.h"
 
@@ -23,7 +24,7 @@ void readIndependence(const ClaimKeys& keys, ClaimSpec& claim) {
 double spread(const GroupPoint& group) {
     const std::vector<double>& values = group.operands[0];
     const auto [low, high] = std::ranges::minmax(values);
-    if (low == high) return 0.0;
+    if (metrics::areAlike(low, high)) return 0.0;
     return (high - low) / std::abs(metrics::summarize(values, metrics::Statistic::Median));
 }
 

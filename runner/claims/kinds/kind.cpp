@@ -8,6 +8,7 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
+#include "engine/metrics/alike.h"
 #include "runner/claims/kinds/operands.h"
 
 namespace gfxrepro::claims {
@@ -283,9 +284,14 @@ Contrasts asItself(std::string name, GroupNumber quantity, Requirement requireme
 // Arithmetic
 
 double relativeDifference(double left, double right) {
-    if (left == right) return 0.0;
+    if (metrics::areAlike(left, right)) return 0.0;
     if (std::isinf(left) || std::isinf(right)) return left < right ? 1.0 : -1.0;
     return (right - left) / std::max(std::abs(left), std::abs(right));
+}
+
+double ratioOf(double left, double right) {
+    const double ratio = left / right;
+    return !std::isnan(ratio) && metrics::areAlike(left, right) ? 1.0 : ratio;
 }
 
 double lesser(double a, double b) {

@@ -181,8 +181,11 @@ double distanceToBound(double value, const Requirement& requirement);
 /// Whatever the quantity is: itself, on a scale.
 Contrasts asItself(std::string name, GroupNumber quantity, Requirement requirement, Scale scale);
 
-/// (right − left) / max(|right|, |left|); ±1 where one of the two is infinite.
+/// (right − left) / max(|right|, |left|), 0 of such as differ by rounding; ±1 where one of the two
+/// is infinite.
 double relativeDifference(double left, double right);
+/// left / right, 1 of such as differ by rounding; of zeros and infinities not a number.
+double ratioOf(double left, double right);
 /// The smaller, the larger one; not-a-number when either is.
 double lesser(double a, double b);
 double greater(double a, double b);

@@ -40,7 +40,7 @@ void readRatio(const ClaimKeys& keys, ClaimSpec& claim) {
 
 std::vector<ClaimPart> ratioParts(const ClaimSpec& claim) {
     const auto ratio = [](const GroupPoint& group) {
-        return group.operands[0][0] / group.operands[1][0];
+        return ratioOf(group.operands[0][0], group.operands[1][0]);
     };
     return {{{0, 1}, ratio, rangeOf(claim, joined(claim.operands, " / "))}};
 }

@@ -1,6 +1,7 @@
 // tolerance: is the printed number, within a share of it.
 #include <cmath>
 
+#include "engine/metrics/alike.h"
 #include "runner/claims/kinds/kind.h"
 
 namespace gfxrepro::claims {
@@ -21,7 +22,7 @@ double largestDeviation(const GroupPoint& group) {
     double largest = 0.0;
     for (std::size_t row = 0; row < group.operands[0].size(); ++row) {
         const double expected = group.operands[1][row];
-        if (group.operands[0][row] == expected) continue;
+        if (metrics::areAlike(group.operands[0][row], expected)) continue;
         const double difference = std::abs(group.operands[0][row] - expected);
         largest = greater(largest, difference / std::abs(expected));
     }
@@ -36,7 +37,8 @@ Contrasts deviations(Requirement within) {
         for (std::size_t row = 0; row < group.operands[0].size(); ++row) {
             const GroupNumber deviation = [row](const GroupPoint& one) {
                 const double value = one.operands[0][row], expected = one.operands[1][row];
-                return value == expected ? 0.0 : (value - expected) / std::abs(expected);
+                return metrics::areAlike(value, expected) ? 0.0
+                                                          : (value - expected) / std::abs(expected);
             };
             contrasts.push_back(asItself("deviation", deviation, within, Scale::Linear)(group)[0]);
         }

@@ -482,6 +482,43 @@ TEST(Unseeded, WhatDiffersByRoundingIsOneNumber) {
     }
 }
 
+/// Whatever a claim asks of two values, and of a value and its bound.
+TEST(Unseeded, WhatIsApartByRoundingIsEqual) {
+    const auto verdictOf = [](double b, double c, const std::string& claim) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})").add("e", {b}, "", "1");
+        maker.beginCase("", R"({"n":2})").add("e", {c}, "", "1");
+        return resultOf(experimentOf(Of::Import,
+                                     "sweep: {n: [1, 2]}\nlayout: {rows: n, columns: {e: {metric: "
+                                     "e}}}\nclaims: {C: {says: so, " +
+                                         claim + "}}\n"),
+                        maker.records())
+            .verdict;
+    };
+    for (const double ulps : {-3.0, 3.0}) {
+        const double b = 0.4, c = 0.4 * (1.0 + ulps * 2.3e-16);
+        for (const char* claim :
+             {"ratio: n=2 / n=1, of: e, at_least: 1", "ratio: n=2 / n=1, of: e, at_most: 1",
+              "bound: e, at_most: 0.4", "bound: e, at_least: 0.4", "exact: e, equals: 0.4",
+              "independent: e, of: n, at_most: 0%", "trend: e, over: n, direction: increasing",
+              "trend: e, over: n, direction: decreasing"}) {
+            EXPECT_EQ(verdictOf(b, c, claim), Verdict::Holds) << claim << ulps;
+        }
+        for (const char* claim :
+             {"order: [n=1, n=2], of: e", "order: [n=2, n=1], of: e",
+              "ratio: n=2 / n=1, of: e, less_than: 1", "ratio: n=2 / n=1, of: e, more_than: 1",
+              "bound: e, less_than: 0.4", "bound: e, more_than: 0.4",
+              "trend: e, over: n, direction: increasing, strictly: true",
+              "trend: e, over: n, direction: decreasing, strictly: true"}) {
+            EXPECT_EQ(verdictOf(b, c, claim), Verdict::Fails) << claim << ulps;
+        }
+    }
+    // Counts are exact.
+    EXPECT_EQ(verdictOf(1e13, 1e13 + 1, "exact: e, equals: 10000000000000"), Verdict::Fails);
+    EXPECT_EQ(verdictOf(1e13, 1e13 + 1, "order: [n=1, n=2], of: e"), Verdict::Holds);
+    EXPECT_EQ(verdictOf(1e13, 1e13 + 1, "bound: e, at_most: 10000000000000"), Verdict::Fails);
+}
+
 /// Our own counts of work are the device's; those of another program are what it says.
 TEST(Unseeded, NoNameKeepsAnImportFromDoubt) {
     for (const char* metric : {"work_fragments", "work_image_digest", "bias_seen", "same_mean_p"}) {
