@@ -432,9 +432,9 @@ void requireLaidOut(const Context& context, const scene::Catalog& catalog,
     for (const config::Experiment& experiment : plan.experiments) {
         if (config::isMeasuredHere(experiment)) continue;
         const std::vector<config::Case> swept = casesOf(context, catalog, experiment);
-        tables::requireCases(experiment,
-                             std::vector{tables::gatherCases(experiment, swept, {}),
-                                         tables::gatherCases(experiment, plan.cases, {})});
+        tables::requireCases(
+            experiment, std::vector{tables::gatherCases(experiment, swept, {}),
+                                    tables::gatherCases(experiment, plan.cases, imported.records)});
         tables::requireToldApart(experiment,
                                  tables::buildTable(experiment, plan.cases, imported.records));
     }

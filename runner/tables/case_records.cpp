@@ -246,7 +246,7 @@ namespace {
 
 /// Each frame of a case is a point of its own where `frame` is an axis.
 void addPoints(const AxisValues& values, const LayoutCases& cases,
-               const std::vector<config::LayoutAxis>& layoutAxes, const std::vector<int>& frames,
+               const std::vector<config::LayoutAxis>& layoutAxes, const std::set<int>& frames,
                std::vector<Key>& points) {
     for (const int frame : frames) {
         Key point;
@@ -393,6 +393,7 @@ void lookAtMetrics(LayoutCases& cases) {
             for (const records::Record* row : attempt.rows) {
                 const bool isAgain = last && last->metric == row->metric && last->pass == row->pass;
                 last = row;
+                if (row->frame != records::kSetup) cases.frames.insert(row->frame);
                 if (isAgain || !seen.emplace(row->metric, row->pass).second) continue;
                 const std::string& metric = row->metric;
                 cases.recorded.insert(metric);
@@ -518,6 +519,9 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
     for (CaseRecords& item : cases.cases) item.isOfElsewhere = cases.isOfElsewhere;
     if (cases.isOfProgram) countSweptSeeds(cases);
     lookAtMetrics(cases);
+    for (int frame = 0; frame < cases.frameCount; ++frame) {
+        if (!cases.isOfElsewhere || cases.recorded.empty()) cases.frames.insert(frame);
+    }
     findOwnTruths(experiment, planned, cases);
     std::vector<const AxisValues*> values;
     for (const CaseRecords& item : cases.cases) values.push_back(&item.axes);
@@ -540,8 +544,7 @@ std::vector<Key> collectKeys(const std::vector<config::LayoutAxis>& layoutAxes,
     const bool hasFrames = std::any_of(layoutAxes.begin(), layoutAxes.end(), [](const auto& axis) {
         return axis.isSweepAxis() && axis.name == "frame";
     });
-    std::vector<int> frames(hasFrames ? static_cast<std::size_t>(cases.frameCount) : 1);
-    std::iota(frames.begin(), frames.end(), 0);
+    const std::set<int> frames = hasFrames ? cases.frames : std::set<int>{0};
     std::vector<Key> points;
     for (const CaseRecords& item : cases.cases) {
         addPoints(item.axes, cases, layoutAxes, frames, points);

@@ -147,6 +147,8 @@ struct LayoutCases {
     std::size_t namedAxes = 0;
     std::vector<CaseRecords> cases;
     int frameCount = 1;
+    std::set<int> frames;  // so many from 0, and what else was recorded; of what was measured
+                           // elsewhere those that its file has
     /// Measured elsewhere: of what was measured once nobody knows whether it was looked at twice.
     bool isOfElsewhere = false;
     bool isOfProgram = false;  // config::goesByClock: a program's, or measured elsewhere

@@ -46,7 +46,8 @@ std::vector<std::string> valuesOn(const std::string& axis, std::span<const Layou
     };
     for (const LayoutCases& cases : profiles) {
         if (axis == "frame") {
-            for (int frame = 0; frame < cases.frameCount; ++frame) add(std::to_string(frame));
+            if (cases.isOfElsewhere && cases.recorded.empty()) continue;  // its file knows
+            for (const int frame : cases.frames) add(std::to_string(frame));
             continue;
         }
         const std::size_t place = cases.indexOf(axis);
@@ -66,7 +67,9 @@ void requireValues(const config::Selection& selection, std::span<const LayoutCas
         if (isThere(wanted)) continue;
         for (const Node& one : wanted.isSequence() ? wanted.items() : Node::Sequence{wanted}) {
             if (isThere(one)) continue;
-            throwNotAllowed(one, "layout: where." + axis, shortened(values, " | "));
+            const bool isPath = axis == "frame" && !profiles.front().isOfElsewhere;
+            const char* more = isPath ? "; 'measure: {frames: N}' draws N of them" : "";
+            throwNotAllowed(one, "layout: where." + axis, shortened(values, " | ") + more);
         }
     }
 }

@@ -313,6 +313,28 @@ TEST_F(Data, ValuesOfAnAxisAreComparedWithoutALayout) {
         HasSubstr("axis of order is m; allowed: an axis of 'sweep', or of 'layout: {rows}'"));
 }
 
+/// A layout chooses of the frames that the file has.
+TEST_F(Data, AnImportHasTheFramesOfItsFile) {
+    const std::string csv =
+        folder_.write("t.csv", "m,frame,metric,value\na,0,e,1\nb,0,e,2\na,1,e,9\nb,1,e,2\n");
+    const auto configOf = [&](const char* frame) {
+        return folder_.write(
+            "t.yaml", std::string("sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: "
+                                  "[a, b]}\nlayout: {rows: m, columns: {e: {metric: e, "
+                                  "where: {frame: ") +
+                          frame + "}}}}\nclaims: {C: {says: so, order: [m=a, m=b], of: e}}\n");
+    };
+    for (const auto& [frame, verdict] : {std::pair("0", "C holds"), {"1", "C fails"}}) {
+        const std::string config = configOf(frame);
+        endedWith(0, mockGfxrepro({"check", config}));
+        std::filesystem::remove_all(dir("t"));
+        mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
+        EXPECT_THAT(verdicts("t"), testing::Contains(verdict)) << frame;
+    }
+    EXPECT_EQ(refusal({"import", csv, "--config", configOf("2"), "--out", dir("u")}),
+              "gfxrepro: DIR/t.yaml:5:59: layout: where.frame is 2; allowed: 0 | 1\n");
+}
+
 /// A claim could mean either.
 TEST_F(Data, AnImportedMetricHasANameOfItsOwn) {
     const std::string config =

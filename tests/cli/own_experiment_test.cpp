@@ -519,7 +519,8 @@ TEST_F(OwnExperiment, CheckKnowsCases) {
     EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: surface, resolution: [32, 128]}}"),
                 EndsWith(": layout: where.resolution is 128; allowed: 32 | 64\n"));
     EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: surface, resolution: 32, frame: 1}}"),
-                EndsWith(": layout: where.frame is 1; allowed: 0\n"));
+                EndsWith(": layout: where.frame is 1; allowed: 0; 'measure: {frames: N}' "
+                         "draws N of them\n"));
     EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: solid, resolution: 64}}"),
                 EndsWith(": layout: column 'a' is of no case: none has fill=solid, resolution=64, "
                          "scene=shapes/torus\n"));

@@ -421,8 +421,31 @@ TEST(Unseeded, FramesOfAnImportThatWereMeasuredOnceDecideNothing) {
     }
 }
 
-/// What differs in one table of a run is in doubt in each.
-TEST(Unseeded, DoubtIsOfAllTablesOfARun) {
+/// A file has the frames that it has; none is left out of rows.
+TEST(Unseeded, ARowForEachFrameOfAnImport) {
+    tables::RecordMaker maker;
+    for (const char* m : {"b", "c"}) {
+        maker.beginCase("", fmt::format(R"({{"m":"{}"}})", m));
+        for (const int frame : {1, 7}) {
+            const bool isSmall = (m[0] == 'b') == (frame == 1);
+            maker.frame(frame).add("e", {isSmall ? 1.0 : 2.0}, "", "1");
+        }
+    }
+    const config::Experiment experiment = experimentOf(
+        Of::Import,
+        "sweep: {m: [b, c]}\nlayout: {rows: [m, frame], columns: {e: {metric: e}}}\nclaims: {C: "
+        "{says: so, order: [m=b, m=c], of: e}}\n");
+    const tables::Table table = tables::buildTable(experiment, maker.records());
+    ASSERT_EQ(table.rows.size(), 4U);
+    EXPECT_EQ(table.rowName(1), "m=b, frame=7");
+    const ClaimResult result = resultOf(experiment, maker.records());
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.reason, "worst at frame 7, e; one sample");
+}
+
+/// What differs in one table of a program is in doubt in each; another program, or other imported
+/// numbers, are none of it.
+TEST(Unseeded, DoubtIsOfAllTablesOfAProgram) {
     tables::RecordMaker maker;
     maker.beginCase("", R"({"n":1})");
     for (int process = 0; process < 3; ++process) {
