@@ -529,14 +529,41 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
     return cases;
 }
 
-Doubt doubtOf(std::span<const config::Experiment> experiments,
-              std::span<const config::Case> planned, const std::vector<records::Record>& records) {
-    Doubt all;
+namespace {
+
+/// What tells a program from another: how it is started, and what prints its version.
+std::string programText(const config::Experiment& experiment) {
+    const Node& program = config::programOf(experiment);
+    std::string text;
+    const auto add = [&](const char* key) {
+        const Node* value = program.isMap() ? program.find(key) : nullptr;
+        if (value) text += value->toJson().dump() + '\n';
+    };
+    add("command");
+    add("version");
+    if (text.find("{here}") != text.npos) add("here");
+    return text;
+}
+
+}  // namespace
+
+std::map<std::string, Doubt> doubtsOf(std::span<const config::Experiment> experiments,
+                                      std::span<const config::Case> planned,
+                                      const std::vector<records::Record>& records) {
+    std::map<std::string, std::vector<const config::Experiment*>> programs;
     for (const config::Experiment& experiment : experiments) {
-        if (experiments.size() < 2 || !config::goesByClock(experiment)) continue;
-        all.add(gatherCases(experiment, planned, records).doubt);
+        const bool isProgram = config::goesByClock(experiment);
+        if (!isProgram || !config::isMeasuredHere(experiment)) continue;
+        programs[programText(experiment)].push_back(&experiment);
     }
-    return all;
+    std::map<std::string, Doubt> doubts;
+    for (const auto& [text, own] : programs) {
+        if (own.size() < 2) continue;  // each table knows its own
+        Doubt all;
+        for (const auto* one : own) all.add(gatherCases(*one, planned, records).doubt);
+        for (const auto* one : own) doubts[one->id] = all;
+    }
+    return doubts;
 }
 
 std::vector<Key> collectKeys(const std::vector<config::LayoutAxis>& layoutAxes,

@@ -179,9 +179,10 @@ std::vector<const CaseRecords*> casesAt(const Where& where, const LayoutCases& c
 LayoutCases gatherCases(const config::Experiment& experiment, std::span<const config::Case> planned,
                         const std::vector<records::Record>& records);
 
-/// What programs, or imports, came to in any table of a run is in doubt in all of theirs.
-Doubt doubtOf(std::span<const config::Experiment> experiments,
-              std::span<const config::Case> planned, const std::vector<records::Record>& records);
+/// By experiment: what a program came to in any table of a run is in doubt in all tables of it.
+std::map<std::string, Doubt> doubtsOf(std::span<const config::Experiment> experiments,
+                                      std::span<const config::Case> planned,
+                                      const std::vector<records::Record>& records);
 
 /// The combinations of `layoutAxes`: on sweep axes those that occur in the plan; on labelled axes
 /// all. Sorted by axis, then by the order in which

@@ -353,10 +353,12 @@ std::vector<Table> buildTables(const std::vector<config::Experiment>& experiment
                                std::span<const config::Case> planned,
                                const std::vector<records::Record>& records,
                                std::span<const config::Experiment> measured) {
-    const Doubt doubt = doubtOf(measured.empty() ? experiments : measured, planned, records);
+    const auto doubts = doubtsOf(measured.empty() ? experiments : measured, planned, records);
     std::vector<Table> tables;
     for (const config::Experiment& experiment : experiments) {
-        tables.push_back(buildTable(experiment, planned, records, doubt));
+        const auto doubt = doubts.find(experiment.id);
+        tables.push_back(buildTable(experiment, planned, records,
+                                    doubt == doubts.end() ? Doubt() : doubt->second));
     }
     return tables;
 }

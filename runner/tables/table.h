@@ -111,7 +111,7 @@ Table transposed(const Table& table, std::size_t rowAxis);
 ///
 /// A cell whose metric is a time or a frame rate never shows a record of the quality lane. Throws
 /// Error with the layout's place for an unknown statistic or axis. `doubt` is of the other tables
-/// of the run (doubtOf).
+/// of the run (doubtsOf).
 Table buildTable(const config::Experiment& experiment, std::span<const config::Case> planned,
                  const std::vector<records::Record>& records, const Doubt& doubt = {});
 

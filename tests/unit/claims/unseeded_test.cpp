@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "engine/core/random.h"
@@ -460,15 +461,23 @@ TEST(Unseeded, DoubtIsOfAllTablesOfAProgram) {
     }
     records.cases.push_back(other.records().cases.front());
     records.cases.back().experiment = "zju2005/9.8";
-    for (const auto& [of, verdict] :
-         {std::pair(Of::Import, Verdict::Ambiguous), {Of::Program, Verdict::Ambiguous}}) {
-        const config::Experiment first =
+    const auto programOf = [](const char* command) {
+        return Node::map({{"command", Node::scalar(command)}});
+    };
+    for (const auto& [of, command, verdict] : {std::tuple(Of::Import, "a", Verdict::Holds),
+                                               {Of::Program, "a", Verdict::Ambiguous},
+                                               {Of::Program, "b", Verdict::Holds}}) {
+        config::Experiment first =
             experimentOf(of, "sweep: {n: [1]}\nlayout: {rows: n, columns: {e: {metric: e}}}\n");
         config::Experiment second = experimentOf(
             of,
             "sweep: {n: [2]}\nlayout: {rows: n, columns: {f: {metric: f}}}\nclaims: {C: {says: so, "
             "bound: f, at_most: 1}}\n");
         second.id = "zju2005/9.8";
+        if (of == Of::Program) {
+            first.document.set("program", programOf("a"));
+            second.document.set("program", programOf(command));
+        }
         const auto judge = [&](std::span<const config::Experiment> measured) {
             const std::vector<config::Experiment> shown = {second};
             const auto tables = tables::buildTables(shown, records.cases, records, measured);
@@ -477,8 +486,8 @@ TEST(Unseeded, DoubtIsOfAllTablesOfAProgram) {
         };
         EXPECT_EQ(judge({}).verdict, Verdict::Holds) << "nothing of it alone";
         const std::vector<config::Experiment> both = {first, second};
-        EXPECT_EQ(judge(both).verdict, verdict);
-        EXPECT_THAT(judge(both).reason, testing::HasSubstr(kOneBesideMany));
+        EXPECT_EQ(judge(both).verdict, verdict) << command;
+        EXPECT_EQ(judge(both).reason, verdict == Verdict::Holds ? "one sample" : kOneBesideMany);
     }
 }
 
