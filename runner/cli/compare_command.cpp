@@ -42,6 +42,7 @@ struct Measured {
     std::string machine;
     std::string commit;
     regression::Tables byProcess;                // chooseTimes
+    regression::Tables unseeded;                 // Rules
     std::map<std::string, std::string> configs;  // absolute path by table
     std::vector<std::string> notes;
     regression::PictureMap pictures;
@@ -53,13 +54,19 @@ struct Measured {
 Measured readMeasured(const fs::path& runDir) {
     const run::StoredRun run = run::readRun(runDir);
     regression::CaseParams params;
-    std::set<std::string> unseeded;
+    regression::Tables byClock, byProcess, imported, unseeded, seeded;
+    for (const config::Experiment& experiment : run.plan.experiments) {
+        if (!config::isMeasuredHere(experiment)) imported.insert(experiment.id);
+    }
+    std::set<std::string> unseededCases;
     for (const config::Case& item : run.plan.cases) {
         params[item.id] = item.recordedParams().toJson().dump();
         const bool isSeeded = item.measure.seeds != config::Measure::Seeds::None;
-        if (!isSeeded && !item.program.isNull()) unseeded.insert(item.id);
+        if (item.program.isNull() && !imported.contains(item.experiment)) continue;
+        (isSeeded ? seeded : unseeded).insert(item.experiment);
+        if (!isSeeded) unseededCases.insert(item.id);
     }
-    regression::Tables byClock, byProcess;
+    for (const std::string& table : seeded) unseeded.erase(table);
     const bool isSoftware = run.plan.deviceClass == "software";
     for (const config::Experiment& experiment : run.plan.experiments) {
         if (config::goesByClock(experiment)) {
@@ -71,14 +78,15 @@ Measured readMeasured(const fs::path& runDir) {
     Measured measured{regression::seriesOf(run.records, params, byClock),
                       regression::failuresOf(run.records, params),
                       regression::voidTimesOf(run.records, params),
-                      regression::onceOf(run.records, params, unseeded),
+                      regression::onceOf(run.records, params, unseededCases),
                       regression::untimedCases(run.records),
                       run::machineName(run.manifest),
                       run.manifest.at("commit").get<std::string>(),
                       std::move(byProcess),
+                      std::move(unseeded),
                       {},
                       run::notesOf(run.manifest),
-                      regression::picturesOf(runDir, run.records, params, unseeded),
+                      regression::picturesOf(runDir, run.records, params, unseededCases),
                       run.plan.buildId,
                       outcome::madeFromLine(runDir, run.manifest)};
     for (const run::ProgramUse& use : run::programsOf(run.manifest)) {
@@ -203,8 +211,9 @@ std::vector<regression::SeriesStep> keepHistory(const std::string& path, const M
 std::vector<Difference> compareRuns(const Measured& older, const Measured& newer,
                                     const fs::path& folder, std::vector<std::string>& notes) {
     requireSameMachine(older, newer);
-    std::vector<Difference> differences = regression::compare(
-        older.series, newer.series, Pairing::Apart, {.byProcess = newer.byProcess});
+    std::vector<Difference> differences =
+        regression::compare(older.series, newer.series, Pairing::Apart,
+                            {.byProcess = newer.byProcess, .unseeded = newer.unseeded});
     regression::noteFailures(differences, older.failures, newer.failures);
     regression::noteVoidTimes(differences, older.voidTimes, newer.voidTimes);
     regression::noteOnce(differences, older.once, newer.once);

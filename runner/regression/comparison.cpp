@@ -57,31 +57,52 @@ double chanceApart(const Series& before, const Series& after) {
     return 2.0 / ways;
 }
 
+/// Within the relative tolerance; two infinities are the same, their difference is not a number.
+bool areSame(double a, double b, double within) {
+    const double scale = std::max(std::abs(a), std::abs(b));
+    return a == b || (std::isfinite(scale) && std::abs(a - b) <= within * scale);
+}
+
+bool differ(const Series& values, double within) {
+    return std::ranges::any_of(
+        values, [&](double value) { return !areSame(value, values.front(), within); });
+}
+
+/// By table the metrics that differ between the processes of a side in some case, and of which no
+/// seed is declared: in the other cases they may be alike by chance.
+using Doubtful = std::set<std::pair<std::string, std::string>>;
+
+Doubtful doubtfulOf(const SeriesMap& before, const SeriesMap& after, const Rules& rules) {
+    Doubtful doubtful;
+    for (const SeriesMap* side : {&before, &after}) {
+        for (const auto& [key, values] : *side) {
+            const double within = areWhole(values) ? 0.0 : rules.valueTolerance;
+            const bool isSuch = !key.isTime() && rules.unseeded.contains(key.table);
+            if (isSuch && differ(values, within)) doubtful.emplace(key.table, key.metric);
+        }
+    }
+    return doubtful;
+}
+
 /// `count`: of how many series each may raise an alarm.
 Difference compareValues(const SeriesKey& key, const Series& before, const Series& after,
-                         const Rules& rules, std::size_t count) {
+                         const Rules& rules, std::size_t count, bool isInDoubt) {
     Difference result{
         .key = key, .before = metrics::median(before), .after = metrics::median(after)};
     const bool isRatio = result.before != 0.0 && std::isfinite(result.before);
     result.ratio = isRatio ? result.after / result.before : 1.0;
     result.interval = {result.ratio, result.ratio};
     result.floor = areWhole(before) && areWhole(after) ? 0.0 : rules.valueTolerance;
-    // Two infinities are the same; their difference is not a number.
-    const auto areSame = [&](double a, double b) {
-        const double scale = std::max(std::abs(a), std::abs(b));
-        return a == b || (std::isfinite(scale) && std::abs(a - b) <= result.floor * scale);
-    };
-    const auto differ = [&](const Series& values) {
-        return std::ranges::any_of(values,
-                                   [&](double value) { return !areSame(value, values.front()); });
-    };
-    const bool isSame = areSame(result.before, result.after);
-    const bool isAlike = std::ranges::equal(before, after, areSame);
+    const bool isSame = areSame(result.before, result.after, result.floor);
+    const bool isAlike = std::ranges::equal(
+        before, after, [&](double a, double b) { return areSame(a, b, result.floor); });
+    const bool isOwn = differ(before, result.floor) || differ(after, result.floor);
     result.verdict = isSame ? Verdict::Same : Verdict::Changed;
-    if (!isAlike && (differ(before) || differ(after)) &&
+    if (!isAlike && (isOwn || isInDoubt) &&
         chanceApart(before, after) > rules.familyError / static_cast<double>(count)) {
         result.verdict = Verdict::CannotTell;
-        result.reason = "numbers that differ between processes of one side";
+        result.reason = isOwn ? "numbers that differ between processes of one side"
+                              : "in other cases it differs between processes of one side";
     }
     return result;
 }
@@ -317,6 +338,7 @@ std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& all
     SeriesMap before = allBefore, after = allAfter;
     matchParams(before, after);
     chooseTimes(before, after, rules.byProcess);
+    const Doubtful doubtful = doubtfulOf(before, after, rules);
     std::vector<Difference> differences;
     std::vector<TestedTime> times;
     for (const auto& [key, values] : before) {
@@ -328,7 +350,8 @@ std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& all
         } else if (key.isTime()) {
             times.push_back(testTime(key, values, found->second, pairing, rules));
         } else {
-            differences.push_back(compareValues(key, values, found->second, rules, before.size()));
+            differences.push_back(compareValues(key, values, found->second, rules, before.size(),
+                                                doubtful.contains({key.table, key.metric})));
         }
     }
     judgeTimes(times, pairing, rules);

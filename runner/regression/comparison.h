@@ -40,6 +40,7 @@ struct Rules {
     /// of pictures by 1e-5, and no table prints a fifth digit.
     double valueTolerance = 1e-4;
     Tables byProcess{};     // see chooseTimes
+    Tables unseeded{};      // of programs and imports whose cases declare no seed
     std::size_t looks = 5;  // at most, each after as many further rounds
 };
 

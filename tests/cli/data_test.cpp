@@ -353,6 +353,18 @@ TEST_F(Data, AnImportedMetricHasANameOfItsOwn) {
     }
 }
 
+/// As of a program of which one process a side was measured.
+TEST_F(Data, OneValueASideOfAnImportCannotTell) {
+    for (const char* value : {"1", "2"}) {
+        const std::string csv =
+            folder_.write("t.csv", fmt::format("m,metric,value\na,e,{}\n", value));
+        endedWith(0, mockGfxrepro({"import", csv, "--out", dir(value)}));
+    }
+    EXPECT_THAT(
+        endedWith(0, mockGfxrepro({"compare", dir("1"), dir("2"), "--out", dir("compared")})).out,
+        HasSubstr("\n1 cannot tell; "));
+}
+
 /// A count that has no seed beside errors that have, and a baseline that has none in the sweep.
 TEST_F(Data, WhatHasNoSeedDrawsNone) {
     const auto verdictOf = [&](const std::string& csv, const std::string& sweep,

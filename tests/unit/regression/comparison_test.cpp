@@ -283,6 +283,26 @@ TEST(Comparison, NumbersThatScatterAreNotChangedByChance) {
     EXPECT_EQ(told({1, 1, 1}, {2, 2, 2}).verdict, Verdict::Changed);
 }
 
+/// x = choice(4, 5): two processes are alike in half of the cases.
+TEST(Comparison, WhatDiffersInOneCaseIsInDoubtInAll) {
+    SeriesKey differs = test::timeOf("m"), alike = differs;
+    differs.metric = alike.metric = "x";
+    alike.params = R"({"n":2})";
+    SeriesKey other = alike;
+    other.metric = "y";
+    const auto told = [&](const Tables& unseeded) {
+        return compare({{differs, {4, 5}}, {alike, {4, 4}}, {other, {4, 4}}},
+                       {{differs, {4, 4}}, {alike, {5, 5}}, {other, {5, 5}}}, Pairing::Apart,
+                       {.unseeded = unseeded});
+    };
+    const std::vector<Difference> differences = told({differs.table});
+    EXPECT_EQ(differences[2].reason, "numbers that differ between processes of one side");
+    EXPECT_EQ(differences[0].verdict, Verdict::CannotTell);
+    EXPECT_EQ(differences[0].reason, "in other cases it differs between processes of one side");
+    EXPECT_EQ(differences[1].verdict, Verdict::Changed) << "another metric";
+    EXPECT_EQ(told({})[0].verdict, Verdict::Changed) << "of the same seeds";
+}
+
 /// As the pictures beside it; of a case that declares a seed, or was measured again, it is a
 /// change.
 TEST(Comparison, ANumberOfOneProcessASideWithoutASeedCannotTell) {
