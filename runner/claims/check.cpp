@@ -26,6 +26,28 @@ bool isReadable(const ClaimSpec& claim, const tables::Table& table) {
     }
 }
 
+/// Where what is compared never stands in one row, as some of it has no value of an axis that
+/// `when` of the sweep leaves out: what to write; else empty.
+std::string whyNeverBeside(const ClaimReader& reader, const tables::Table& table) {
+    if (!reader.readsAny() || !reader.plannedRows().empty()) return "";
+    for (std::size_t axis = 0; axis < table.rowAxes.size(); ++axis) {
+        const auto isLeftOut = [&](const tables::TableRow& row) {
+            return row.labels[axis] == tables::kLeftOut;
+        };
+        if (std::ranges::none_of(table.rows, isLeftOut)) continue;
+        const std::string& name = table.rowAxes[axis];
+        return fmt::format(
+            "has no row of all that it compares: 'when' of the sweep leaves some of it without "
+            "'{}'; allowed: {}",
+            name,
+            name == tables::kSeedAxis
+                ? "a layout whose rows do not name it, with its values in the column: 'where: "
+                  "{seed: […]}'"
+                : "what has it, by 'at'");
+    }
+    return "";
+}
+
 /// Why no measurement could judge the claim; empty where one could, and where it does not fit the
 /// table, of which an override or a profile may have taken a part. Throws ExpressionError.
 std::string whyNeverJudged(const ClaimSpec& claim, const tables::Table& table) {
@@ -38,6 +60,7 @@ std::string whyNeverJudged(const ClaimSpec& claim, const tables::Table& table) {
         if (const std::optional<std::string> word = reader.wordAlongOver()) {
             return fmt::format("needs numbers along '{}', which holds '{}'", *claim.over, *word);
         }
+        if (std::string why = whyNeverBeside(reader, read); !why.empty()) return why;
         return reader.isOverItself() ? fmt::format("holds '{}' against itself", *claim.over) : "";
     } catch (const ExpressionError&) {
         throw;

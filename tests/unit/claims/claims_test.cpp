@@ -1292,6 +1292,19 @@ TEST(Claims, BadOperandsAreErrors) {
               "axes: n)");
 }
 
+TEST(Claims, WhatWhenLeavesOutStandsBesideNothing) {
+    config::Experiment experiment = tables::experimentFrom(
+        "sweep: {m: [a, b], seed: [1, 2], when: {seed: {m: b}}}\nlayout: {rows: [m, seed], "
+        "columns: "
+        "{e: {metric: e}}}\nclaims: {C: {says: so, order: [a, b], of: e}}\n");
+    experiment.claims[0].location = {"t.yaml", 4, 2};
+    EXPECT_EQ(
+        errorText([&] { requireJudgeable(experiment, tables::buildTable(experiment, {})); }),
+        "t.yaml:4:2: claim 'C' has no row of all that it compares: 'when' of the sweep leaves "
+        "some of it without 'seed'; allowed: a layout whose rows do not name it, with its "
+        "values in the column: 'where: {seed: […]}'");
+}
+
 TEST(Claims, WhatIsNoExpressionOrReadsNoColumnIsRefusedBeforeAnythingIsMeasured) {
     config::Experiment experiment = tables::experimentFrom(powersBody("bound: a, at_most: 5"));
     const tables::Table table = tables::buildTable(experiment, {});
