@@ -99,12 +99,19 @@ void decide(const Contrast& contrast, const metrics::Interval& interval, double 
         fmt::format("nearer to the bound than the noise of these times, {:.3g} %", 100.0 * noise);
 }
 
+/// Of rounds that are processes.
+std::string whatIsNeeded() {
+    return fmt::format(
+        "an interval needs {0}: `measure: {{processes: {0}}}`, or as many in column 'process' of "
+        "an import",
+        metrics::kFewestForInterval);
+}
+
 std::string whyTooFew(std::size_t rounds, const Group& group) {
     if (const std::string why = whyNoInterval(group); !why.empty()) return why;
     if (rounds == 0) return "no process has all that is compared";
     if (rounds < 2) return "one sample of a time decides nothing";
-    return fmt::format("a range of {} processes; an interval needs {}", rounds,
-                       metrics::kFewestForInterval);
+    return fmt::format("a range of {} processes; {}", rounds, whatIsNeeded());
 }
 
 Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
@@ -338,12 +345,12 @@ std::string whyNoInterval(const Group& group) {
     if (!fewest || *fewest >= metrics::kFewestForInterval) return "";
     if (!isDeclared) {
         return fmt::format(
-            "{}; an interval needs {} processes",
+            "{}; {}",
             *fewest == 1 ? "one process of numbers that differ when they are taken again"
                          : fmt::format("{}{}", *fewest,
                                        areEqual ? " equal processes beside numbers that differ"
                                                 : " processes came to different numbers"),
-            metrics::kFewestForInterval);
+            whatIsNeeded());
     }
     return fmt::format(
         "{} of random numbers; an interval needs {}: `measure: {{seeds: process, "

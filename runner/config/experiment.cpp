@@ -386,6 +386,10 @@ void readLane(const Node& document, const ContentKeys& keys, Experiment& experim
     const bool isUnseeded =
         !programOf(experiment).isNull() && defaults.seeds == Measure::Seeds::None;
     if (isUnseeded) defaults.processes = 2;
+    if (node && node->isMap() && node->find("runs")) {
+        throw Error(node->keyLocation("runs"),
+                    "measure: unknown parameter 'runs'; did you mean 'processes'?");
+    }
     Params params(node ? *node : Node(), "measure");
     experiment.measure = readMeasure(params, defaults);
     requireTold(document, keys, experiment);

@@ -114,6 +114,12 @@ void ClaimKeys::addOperands(const Node& at, const Texts& texts, ClaimSpec& claim
     for (const std::string& operand : texts) {
         if (operand.empty()) refuse(at, "", "an expression over columns");
         for (const OperandPiece& piece : operandPieces(operand, columns)) {
+            if (piece.text == "[") {
+                fail(at, fmt::format("'{}' reads a row by its name; allowed: a column of the "
+                                     "layout that does, 'NAME: {{of: \"{}\"}}', or rows held "
+                                     "against each other, 'ratio: AXIS=a / AXIS=b, of: COLUMN'",
+                                     operand, operand));
+            }
             const bool isKnown = hasAllColumns || (piece.isFunction && !columns.empty());
             if (piece.problem.empty() || !isKnown) continue;
             fail(at, piece.problem + acrossHint({operand, std::string(piece.text)}));

@@ -740,7 +740,7 @@ TEST(Claims, ARangeDecidesNothing) {
         judgeTimed("bound: ms, at_least: 1, at: {n: 1}, kind: algorithmic", records);
     EXPECT_EQ(result.verdict, Verdict::Ambiguous);
     EXPECT_EQ(result.measured, "102 (100 … 104)");
-    EXPECT_EQ(result.reason, "a range of 5 processes; an interval needs 6" + kByTheClock);
+    EXPECT_EQ(result.reason, "a range of 5 processes; " + tables::kNeedsSix + kByTheClock);
     const auto six = timedRows(6, [](double n, int round) { return n * (100.0 + round); });
     EXPECT_EQ(judgeTimed("bound: ms, at_least: 1, at: {n: 1}, kind: algorithmic", six).verdict,
               Verdict::Holds);
@@ -1104,8 +1104,7 @@ TEST(Claims, RandomNumbersOfOneSeedDecideNothing) {
         // Nobody declares a seed, but the numbers tell that they are random.
         result = judge(twoSamplers(Seeds::None, 5, 1, 1.3));
         EXPECT_EQ(result.verdict, Verdict::Ambiguous) << claim;
-        EXPECT_EQ(result.reason,
-                  "5 processes came to different numbers; an interval needs 6 processes");
+        EXPECT_EQ(result.reason, "5 processes came to different numbers; " + tables::kNeedsSix);
         // What draws none is as it is.
         EXPECT_NE(judge(twoSamplers(Seeds::None, 1, 1, 1.3)).verdict, Verdict::Ambiguous) << claim;
     }
@@ -1143,11 +1142,10 @@ TEST(Claims, NumbersThatScatterWithoutASeedAreNotCertain) {
     EXPECT_EQ(judge(falls, 1e-3, 6, 1).reason, "");
     EXPECT_EQ(judge(falls, 1e-3, 3, 1).verdict, Verdict::Ambiguous);
     EXPECT_EQ(judge(falls, 1e-3, 3, 1).reason,
-              "3 processes came to different numbers; an interval needs 6 processes");
+              "3 processes came to different numbers; " + tables::kNeedsSix);
     EXPECT_EQ(judge(falls, 1e-3, 1, 3).verdict, Verdict::Ambiguous);
     EXPECT_EQ(judge(falls, 1e-3, 1, 3).reason,
-              "one process of numbers that differ when they are taken again; an interval needs 6 "
-              "processes");
+              "one process of numbers that differ when they are taken again; " + tables::kNeedsSix);
     EXPECT_EQ(judge(falls, 1e-8, 3, 1).verdict, Verdict::Ambiguous) << "however little";
     EXPECT_EQ(judge("bound: b, at_most: 1", 1e-3, 1, 3).verdict, Verdict::Holds) << "is of b alone";
 }

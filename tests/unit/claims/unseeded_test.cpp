@@ -31,8 +31,8 @@ ClaimResult resultOf(const config::Experiment& experiment, const tables::Recorde
                           {"llvmpipe", "software", "quick", "abc", ""})[0];
 }
 
-constexpr const char* kOneBesideMany =
-    "one process of numbers that differ when they are taken again; an interval needs 6 processes";
+const std::string kOneBesideMany =
+    "one process of numbers that differ when they are taken again; " + tables::kNeedsSix;
 
 /// `one` in the first process alone, `many` in each of six, where it differs unless `isSure`;
 /// `one` of that frame.
@@ -209,9 +209,9 @@ TEST(Unseeded, NumbersThatDifferByTheirRoundingAreEqual) {
                 EXPECT_EQ(result.verdict, isOpen ? Verdict::Ambiguous : Verdict::Holds) << claim;
                 EXPECT_EQ(result.reason,
                           isOpen
-                              ? fmt::format("{}{} equal processes beside numbers that differ; an "
-                                            "interval needs 6 processes",
-                                            claim[0] == 'b' ? "worst at n 1; " : "", processes)
+                              ? fmt::format("{}{} equal processes beside numbers that differ; {}",
+                                            claim[0] == 'b' ? "worst at n 1; " : "", processes,
+                                            tables::kNeedsSix)
                               : std::string(claim[0] == 'b' ? "worst at n 1" : ""))
                     << claim;
                 EXPECT_THAT(result.measured, testing::Not(testing::HasSubstr("…"))) << claim;
@@ -234,7 +234,7 @@ TEST(Unseeded, CountsOfADeviceThatDifferNeedSixProcesses) {
                         maker.records());
     };
     EXPECT_EQ(judge(5).verdict, Verdict::Ambiguous);
-    EXPECT_EQ(judge(5).reason, "a range of 5 processes; an interval needs 6");
+    EXPECT_EQ(judge(5).reason, "a range of 5 processes; " + tables::kNeedsSix);
     EXPECT_EQ(judge(6).verdict, Verdict::Holds);
 }
 
@@ -566,10 +566,8 @@ TEST(Unseeded, NoNameKeepsAnImportFromDoubt) {
                 metric);
             const ClaimResult result = resultOf(experimentOf(Of::Import, body), maker.records());
             EXPECT_EQ(result.verdict, Verdict::Ambiguous) << metric;
-            EXPECT_EQ(result.reason,
-                      fmt::format("{} processes came to different numbers; an interval needs 6 "
-                                  "processes",
-                                  processes));
+            EXPECT_EQ(result.reason, fmt::format("{} processes came to different numbers; {}",
+                                                 processes, tables::kNeedsSix));
         }
     }
 }
@@ -638,8 +636,8 @@ ClaimResult judgeSeedsOf(const std::string& metric, int seeds, int first, int pr
 TEST(Unseeded, ATimeOfEachSweptSeedIsOneProcess) {
     EXPECT_EQ(judgeSeedsOf("t_ms", 8, 0, 1).verdict, Verdict::Holds);
     EXPECT_EQ(judgeSeedsOf("t_ms", 4, 0, 1).verdict, Verdict::Ambiguous);
-    EXPECT_EQ(judgeSeedsOf("t_ms", 4, 0, 1).reason, "a range of 4 processes; an interval needs 6");
-    EXPECT_EQ(judgeSeedsOf("t_ms", 8, 0, 3).reason, "a range of 3 processes; an interval needs 6")
+    EXPECT_EQ(judgeSeedsOf("t_ms", 4, 0, 1).reason, "a range of 4 processes; " + tables::kNeedsSix);
+    EXPECT_EQ(judgeSeedsOf("t_ms", 8, 0, 3).reason, "a range of 3 processes; " + tables::kNeedsSix)
         << "rounds are of processes where there are several";
 }
 

@@ -20,6 +20,8 @@ TEST_F(ExperimentTest, BadSections) {
               "DIR/zju/a.yaml:4:17: measure: lane is 'fast'; allowed: quality | timing");
     EXPECT_EQ(errorWith("measure: {repeat: 3}"),
               "DIR/zju/a.yaml:4:11: measure: unknown parameter 'repeat'; did you mean 'repeats'?");
+    EXPECT_EQ(errorWith("measure: {runs: 6}"),
+              "DIR/zju/a.yaml:4:11: measure: unknown parameter 'runs'; did you mean 'processes'?");
     EXPECT_EQ(errorWith("params: [1]"), "DIR/zju/a.yaml:4:9: params is [1]; allowed: a map");
     EXPECT_EQ(errorWith("assumptions: {a: {value: 1}}"),
               "DIR/zju/a.yaml:4:15: assumption 'a' needs 'why'");
@@ -303,6 +305,11 @@ TEST_F(ExperimentTest, BadClaims) {
               head + "23: claim 'C' is aa <; allowed: an expression over columns");
     EXPECT_EQ(claimError("{says: s, order: aa < bc}"),
               head + "23: claim 'C': 'bc' is no column; did you mean 'bb'? (columns: aa, bb)");
+    EXPECT_EQ(claimError("{says: s, bound: 'aa[n=1] / bb', at_most: 1}"),
+              head +
+                  "23: claim 'C': 'aa[n=1] / bb' reads a row by its name; allowed: a column of the "
+                  "layout that does, 'NAME: {of: \"aa[n=1] / bb\"}', or rows held against each "
+                  "other, 'ratio: AXIS=a / AXIS=b, of: COLUMN'");
     EXPECT_EQ(claimError("{says: s, ratio: aa, at_least: 1}"),
               head + "23: claim 'C': ratio is aa; allowed: a / b");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb}"),

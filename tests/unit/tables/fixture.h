@@ -14,6 +14,10 @@
 
 namespace gfxrepro::tables {
 
+/// What a verdict says of fewer processes.
+inline const std::string kNeedsSix =
+    "an interval needs 6: `measure: {processes: 6}`, or as many in column 'process' of an import";
+
 /// The experiment "zju2005/9.9" of technique `voxelization` with `body` below these keys.
 config::Experiment experimentFrom(const std::string& body);
 
