@@ -326,16 +326,17 @@ class Group {
         static const std::regex kBehind = grammarBehind();
         const std::string behind = text_.substr(end_, kBytesBeside);
         std::smatch match;
-        if (!std::regex_search(behind, match, kBehind, std::regex_constants::match_continuous))
-            return end_;
+        std::regex_search(behind, match, kBehind, std::regex_constants::match_continuous);
         const std::size_t last = end_ + static_cast<std::size_t>(match.length());
         for (std::size_t i = 1; i < kSizes.size(); ++i) {
             if (!match[i].matched || match[i].second != match[0].second) continue;
             const std::string word = lowerCase(match.str(i));
-            const bool isBinary = word.size() == 2 && word[1] == 'i', isEither = word.size() == 1;
-            const auto power = static_cast<double>(i);
-            if (!isBinary && scale == std::pow(1000.0, power)) return end_;
-            if ((isBinary || isEither) && scale == std::pow(1024.0, power)) return end_;
+            const bool isBinary = word.size() == 2 && word[1] == 'i';
+            const auto isPowerOf = [&](double base) {
+                return scale == std::pow(base, static_cast<double>(i));
+            };
+            if (isPowerOf(isBinary ? 1024 : 1000)) return end_;
+            if (word.size() == 1 && isPowerOf(1024)) return end_;
         }
         const std::size_t group = kSizes.size() + 1;
         if (!match[group].matched && !match[group + 1].matched) return last;
