@@ -158,13 +158,32 @@ std::optional<Part> behindJpeg(Part bytes) {
     return bytes.subspan(end + 2);
 }
 
-/// Of four inks, which printers have, stb makes colours by the Adobe marker alone, and by a
-/// formula.
-void requireNoInks(Part bytes, const std::string& name) {
-    for (const int frame : {0xC0, 0xC1, 0xC2}) {
+/// What the marker of a frame says of a JPEG file (T.81, Table B.1).
+std::string_view codingOf(int frame) {
+    if (frame >= 0xC9) return frame % 4 == 3 ? "lossless and arithmetic" : "arithmetic";
+    if (frame % 4 == 3) return "lossless";
+    return frame >= 0xC5 ? "hierarchical" : "Huffman";
+}
+
+/// stb says of all that it does not read that it does not know the file. Of four inks, which
+/// printers have, it makes colours by the Adobe marker alone, and by a formula.
+void requireUsualJpeg(Part bytes, const std::string& name) {
+    bool hasFrame = false;
+    for (int frame = 0xC0; frame <= 0xCF; ++frame) {
+        if (frame == 0xC4 || frame == 0xC8 || frame == 0xCC) continue;  // these are none
         for (const Part head : segmentsOf(bytes, frame, "")) {
-            if (numberAt(head, 5, 1, false) != 4) continue;
-            throw Error(name + ": its colours are four inks (CMYK); grey and RGB are allowed");
+            hasFrame = true;
+            const std::string_view coding = codingOf(frame);
+            const std::size_t bits = numberAt(head, 0, 1, false);
+            const std::size_t channels = numberAt(head, 5, 1, false);
+            if (coding == "Huffman" && bits == 8 && (channels == 1 || channels == 3)) continue;
+            if (coding == "Huffman" && bits == 8 && channels == 4) {
+                throw Error(name + ": its colours are four inks (CMYK); grey and RGB are allowed");
+            }
+            throw Error(
+                fmt::format("{}: a JPEG file of {} coding, {} bits and {} components; allowed: "
+                            "Huffman coding, 8 bits and 1 component (grey) or 3 (colours)",
+                            name, coding, bits, channels));
         }
     }
 }
@@ -174,6 +193,11 @@ void requireNoInks(Part bytes, const std::string& name) {
 void flipRows(ImageF& image) {
     for (int y = 0; y < image.height() / 2; ++y) {
         std::ranges::swap_ranges(image.row(y), image.row(image.height() - 1 - y));
+    if (hasFrame) return;
+    throw Error(
+        fmt::format("{}: no JPEG file that is whole: in its {} bytes no frame (FF C0 to "
+                    "FF C2) says its size",
+                    name, bytes.size()));
     }
 }
 
@@ -191,15 +215,19 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
     }
     checkDeclaredSize(width, height, 4, bytes.size(), name, kMaxSidePx, use);
     // stb fills up what is not there.
-    if (textOf(bytes).starts_with("\xFF\xD8")) {
-        if (!behindJpeg(bytes)) throw Error(name + ": the file ends early");
-        requireNoInks(bytes, name);
+    if (isJpeg && !behindJpeg(bytes)) {
+        throw Error(
+            fmt::format("{}: the file ends early in its pixels: its {} bytes have no end "
+                        "of the picture (FF D9)",
+                        name, bytes.size()));
     }
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
         stbi_load_from_memory(data, size, &width, &height, &channels, channels), stbi_image_free);
     if (pixels == nullptr) {
         const std::string reason = stbi_failure_reason();
+    const bool isJpeg = textOf(bytes).starts_with("\xFF\xD8");
         if (reason == "unknown marker") {
+        if (isJpeg) requireUsualJpeg(bytes, name);
             const std::vector<std::byte> mended = withoutStuffedEnds(bytes);
             if (mended.size() < bytes.size()) return decodeByStb(mended, name, use);
         }
@@ -208,6 +236,7 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
     Image8 image(width, height, channels);
     std::copy_n(pixels.get(), image.values().size(), image.values().begin());
     return image;
+    if (isJpeg) requireUsualJpeg(bytes, name);
 }
 
 std::vector<std::string> notesOfJpeg(std::span<const std::byte> bytes) {

@@ -302,12 +302,17 @@ TEST_F(Formats, JpegIsSrgb) {
     ASSERT_EQ(picture.stored.channels(), 3);
     EXPECT_NEAR(255.0F * picture.stored.at(3, 2, 1), 100.0F, 1.5F);
     const std::string whole = readFile(path("a.jpg"));
-    EXPECT_EQ(errorOf("b.jpg", whole.substr(0, whole.size() - 3)),
-              "DIR/b.jpg: the file ends early");
+    const auto cut = [](const char* name, const std::string& file) {
+        return fmt::format(
+            "{}: the file ends early in its pixels: its {} bytes have no end of the picture (FF "
+            "D9)",
+            name, file.size() - 3);
+    };
+    EXPECT_EQ(errorOf("b.jpg", whole.substr(0, whole.size() - 3)), cut("DIR/b.jpg", whole));
     EXPECT_EQ(errorText([&] {
                   decodeByStb(std::as_bytes(std::span(whole).first(whole.size() - 3)), "a");
               }),
-              "a: the file ends early");
+              cut("a", whole));
     // Phones put more pictures behind the first.
     EXPECT_EQ(readPicture(folder_.write("b.jpg", whole + std::string(9, '\0'))).notes,
               std::vector<std::string>{});
@@ -318,8 +323,7 @@ TEST_F(Formats, JpegIsSrgb) {
     std::string filled = whole;
     filled.insert(2, "\xFF\xFF\xFE\0\4\xFF\xD9", 7);
     EXPECT_EQ(readPicture(folder_.write("b.jpg", filled)).stored, picture.stored);
-    EXPECT_EQ(errorOf("b.jpg", filled.substr(0, filled.size() - 3)),
-              "DIR/b.jpg: the file ends early");
+    EXPECT_EQ(errorOf("b.jpg", filled.substr(0, filled.size() - 3)), cut("DIR/b.jpg", filled));
     // By what it is, not by its name.
     EXPECT_EQ(readPicture(folder_.write("c.png", whole)).stored, picture.stored);
 }
@@ -362,6 +366,39 @@ TEST_F(Formats, JpegIsTurnedAsItsExifSays) {
         return readPicture(folder_.write("exif.jpg", plain.substr(0, 2) + exif + plain.substr(2)))
             .stored;
     };
+/// Of the frame's header: its marker, how many bits, and how many components.
+TEST_F(Formats, JpegOfOtherCodingBitsOrComponentsIsRefused) {
+    std::vector<std::uint8_t> even(kWidth * kHeight * 3, 100);
+    stbi_write_jpg(path("a.jpg").c_str(), kWidth, kHeight, 3, even.data(), 100);
+    const std::string whole = readFile(path("a.jpg"));
+    const std::size_t frame = whole.find("\xFF\xC0");
+    ASSERT_NE(frame, std::string::npos);
+    const auto error = [&](char marker, char bits, char components) {
+        std::string file = whole;
+        file[frame + 1] = marker;
+        file[frame + 4] = bits;
+        file[frame + 9] = components;
+        return errorOf("b.jpg", file);
+    };
+    const auto refused = [](const char* found) {
+        return fmt::format(
+            "DIR/b.jpg: a JPEG file of {}; allowed: Huffman coding, 8 bits and 1 component (grey) "
+            "or 3 (colours)",
+            found);
+    };
+    EXPECT_EQ(error('\xC1', 12, 3), refused("Huffman coding, 12 bits and 3 components"));
+    EXPECT_EQ(error('\xC0', 8, 2), refused("Huffman coding, 8 bits and 2 components"));
+    EXPECT_EQ(error('\xC3', 8, 3), refused("lossless coding, 8 bits and 3 components"));
+    EXPECT_EQ(error('\xC6', 8, 3), refused("hierarchical coding, 8 bits and 3 components"));
+    EXPECT_EQ(error('\xC9', 8, 1), refused("arithmetic coding, 8 bits and 1 components"));
+    EXPECT_EQ(error('\xCB', 8, 1),
+              refused("lossless and arithmetic coding, 8 bits and 1 components"));
+    EXPECT_EQ(errorOf("b.jpg", whole.substr(0, frame)),
+              fmt::format("DIR/b.jpg: no JPEG file that is whole: in its {} bytes no frame (FF C0 "
+                          "to FF C2) says its size",
+                          frame));
+}
+
     for (int orientation = 1; orientation <= 8; ++orientation) {
         const ImageF seen = storedAs(orientation, orientation % 2 == 0);
         ASSERT_EQ(seen.width(), 3 * kSide) << orientation;
