@@ -48,7 +48,8 @@ class MemoryStream : public Imf::IStream {
     bool read(char to[], int count) override {
         const auto wanted = static_cast<std::uint64_t>(count);
         if (count < 0 || position_ > bytes_.size() || wanted > bytes_.size() - position_) {
-            throw std::runtime_error("the file ends early");
+            const std::uint64_t there = bytes_.size() - std::min(position_, bytes_.size());
+            throw std::runtime_error(endsEarly("", position_, wanted, there));
         }
         std::memcpy(to, bytes_.data() + position_, wanted);
         position_ += wanted;
@@ -127,7 +128,7 @@ void checkAttributeSizes(std::span<const std::byte> bytes, bool isMultiPart,
     std::size_t at = 8;  // magic number and version
     const auto readText = [&] {
         const auto end = endOfText(bytes, at);
-        if (!end) throw Error(name + ": the file ends early");
+        if (!end) throw Error(name + ": " + endsEarly("its header", bytes.size(), 1, 0));
         const std::string_view text(reinterpret_cast<const char*>(&bytes[at]), *end - 1 - at);
         at = *end;
         return text;

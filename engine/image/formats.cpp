@@ -34,9 +34,15 @@ class Bytes {
 
     [[noreturn]] void fail(const std::string& why) const { throw Error(name_ + ": " + why); }
 
+    /// Names what is read next, for messages.
+    void begin(std::string part) { part_ = std::move(part); }
+    void require(std::size_t count) const {
+        if (count <= rest_.size()) return;
+        fail(endsEarly(part_, size_ - rest_.size(), count, rest_.size()));
+    }
     std::span<const std::byte> rest() const { return rest_; }
     std::span<const std::byte> take(std::size_t count) {
-        if (count > rest_.size()) fail("the file ends early");
+        require(count);
         const auto taken = rest_.first(count);
         rest_ = rest_.subspan(count);
         return taken;
@@ -103,6 +109,7 @@ class Bytes {
     std::span<const std::byte> rest_;
     std::size_t size_;
     const std::string& name_;
+    std::string part_ = "its header";
     bool isReturn_ = false;  // the blank behind the last word
 };
 
@@ -186,18 +193,24 @@ void requireUsualJpeg(Part bytes, const std::string& name) {
                             name, coding, bits, channels));
         }
     }
-}
-
-}  // namespace
-
-void flipRows(ImageF& image) {
-    for (int y = 0; y < image.height() / 2; ++y) {
-        std::ranges::swap_ranges(image.row(y), image.row(image.height() - 1 - y));
     if (hasFrame) return;
     throw Error(
         fmt::format("{}: no JPEG file that is whole: in its {} bytes no frame (FF C0 to "
                     "FF C2) says its size",
                     name, bytes.size()));
+}
+
+}  // namespace
+
+std::string endsEarly(std::string_view part, std::uint64_t from, std::uint64_t needed,
+                      std::uint64_t found) {
+    return fmt::format("the file ends early{}{}: bytes needed from byte {} on: {}, found: {}",
+                       part.empty() ? "" : " in ", part, from, needed, found);
+}
+
+void flipRows(ImageF& image) {
+    for (int y = 0; y < image.height() / 2; ++y) {
+        std::ranges::swap_ranges(image.row(y), image.row(image.height() - 1 - y));
     }
 }
 
@@ -210,7 +223,9 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
     int width = 0;
     int height = 0;
     int channels = 0;
+    const bool isJpeg = textOf(bytes).starts_with("\xFF\xD8");
     if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
+        if (isJpeg) requireUsualJpeg(bytes, name);
         throw Error(name + ": " + stbi_failure_reason());
     }
     checkDeclaredSize(width, height, 4, bytes.size(), name, kMaxSidePx, use);
@@ -221,13 +236,12 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
                         "of the picture (FF D9)",
                         name, bytes.size()));
     }
+    if (isJpeg) requireUsualJpeg(bytes, name);
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
         stbi_load_from_memory(data, size, &width, &height, &channels, channels), stbi_image_free);
     if (pixels == nullptr) {
         const std::string reason = stbi_failure_reason();
-    const bool isJpeg = textOf(bytes).starts_with("\xFF\xD8");
         if (reason == "unknown marker") {
-        if (isJpeg) requireUsualJpeg(bytes, name);
             const std::vector<std::byte> mended = withoutStuffedEnds(bytes);
             if (mended.size() < bytes.size()) return decodeByStb(mended, name, use);
         }
@@ -236,7 +250,6 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
     Image8 image(width, height, channels);
     std::copy_n(pixels.get(), image.values().size(), image.values().begin());
     return image;
-    if (isJpeg) requireUsualJpeg(bytes, name);
 }
 
 std::vector<std::string> notesOfJpeg(std::span<const std::byte> bytes) {
@@ -276,6 +289,7 @@ Decoded floatsOfPfm(Bytes& file, int channels) {
     file.checkSize(width, height, static_cast<std::size_t>(channels) * sizeof(float));
     Decoded result{ImageF(width, height, channels), true};
     const auto values = result.values.values();
+    file.begin("its pixels");
     std::memcpy(values.data(), file.raster(values.size_bytes()).data(), values.size_bytes());
     if ((*scale > 0.0) != (std::endian::native == std::endian::big)) {
         for (float& value : values) {
@@ -306,6 +320,7 @@ Decoded decodeNetpbm(std::span<const std::byte> bytes, const std::string& name) 
     file.checkSize(width, height, static_cast<std::size_t>(channels) * sizeof(float));
     Decoded result{ImageF(width, height, channels), false, most < 256 ? 8 : 16};
     const auto values = result.values.values();
+    file.begin("its pixels");
     const std::size_t valueBytes = most < 256 ? 1 : 2;
     const std::size_t rowBytes = (static_cast<std::size_t>(width) + 7) / 8;  // of bits
     const Part raster = isText   ? Part()
@@ -437,6 +452,7 @@ Decoded decodeHdr(std::span<const std::byte> bytes, const std::string& name) {
     std::vector<Rgbe> row(static_cast<std::size_t>(width));
     for (int y = 0; y < result.values.height(); ++y) {
         Rgbe first{};
+        file.begin(fmt::format("row {} of {}", y + 1, height));
         for (int& value : first) value = file.byte();
         if (first[0] == 2 && first[1] == 2 && first[2] * 256 + first[3] == width && width >= 8) {
             readPlanes(file, row);
@@ -513,7 +529,9 @@ Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
     const Part extension = extensionOfTga(bytes);
     const int attributes = attributesOf(extension);
     const bool hasAlpha = colourBits == 32 && (flags & 15) == 8 && attributes > 2;
+    file.begin("its name");
     file.checkSize(width, height, 4 * sizeof(float));
+    file.begin("its palette");
     Decoded result{ImageF(width, height, isGrey ? 1 : hasAlpha ? 4 : 3)};
     const auto channels = static_cast<std::size_t>(result.values.channels());
     const auto values = result.values.values();
@@ -523,6 +541,7 @@ Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
         const int index = std::to_integer<int>(pixel[0]), entry = index - firstEntry;
         if (entry < 0 || entry >= entryCount) {
             file.fail(fmt::format("a pixel of colour {}; its palette has {} … {}", index,
+    file.begin("its pixels");
                                   firstEntry, firstEntry + entryCount - 1));
         }
         return palette.subspan(static_cast<std::size_t>(entry) * entryBytes, entryBytes);

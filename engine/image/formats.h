@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -46,6 +47,10 @@ std::size_t numberAt(std::span<const std::byte> bytes, std::size_t at, std::size
                      bool isLittle);
 std::string_view textOf(std::span<const std::byte> bytes);
 
+/// What to say of a file that lacks bytes of a part ("row 3"; it may be empty).
+std::string endsEarly(std::string_view part, std::uint64_t from, std::uint64_t needed,
+                      std::uint64_t found);
+
 // Each throws Error, which begins with `name`, for what it does not read; memory is bounded as in
 // png_io.h.
 
@@ -72,6 +77,9 @@ void flipRows(ImageF& image);
 /// which stays where it is meanwhile. Throws Error.
 std::unique_ptr<tiff, void (*)(tiff*)> openTiff(const std::filesystem::path& path,
                                                 std::string& message);
+/// Throws Error of a strip or tile that cannot be read: it ends early, or libtiff's own message.
+[[noreturn]] void failInPart(tiff& file, const std::filesystem::path& path, std::uint32_t number,
+                             const std::string& message);
 /// Of several pages all but the first must be reductions of it. Throws Error.
 void requireOnePage(tiff& file, const std::filesystem::path& path, const std::string& message);
 

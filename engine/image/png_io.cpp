@@ -48,6 +48,7 @@ class Reader {
     Reader(std::span<const std::byte> bytes, const std::string& name, ImageUse use)
         : Reader(bytes.first(std::min(bytes.size(), kSignatureBytes)), name, Unread{}) {
         rest_ = bytes;
+        sizeBytes_ = bytes.size();
         png_set_read_fn(png_, this, take);
         readHeader(bytes.size(), kMaxSidePx, use);
     }
@@ -172,17 +173,34 @@ class Reader {
                           decodedBytesPerPixel(), fileBytes, name_, maxSidePx, use);
     }
 
+    /// libpng jumps out of this: nothing is left that would have to be destroyed.
+    [[noreturn]] static void failEarly(png_structp png, std::size_t from, std::size_t needed,
+                                       std::size_t found) {
+        const png_uint_32 state = png_get_io_state(png) & PNG_IO_MASK_LOC;
+        const png_uint_32 kind = png_get_io_chunk_type(png);
+        char part[] = "chunk IDAT";
+        for (int i = 0; i < 4; ++i) part[6 + i] = static_cast<char>(kind >> (24 - 8 * i));
+        const bool isInChunk = state == PNG_IO_CHUNK_DATA || state == PNG_IO_CHUNK_CRC;
+        auto& message = *static_cast<std::string*>(png_get_error_ptr(png));
+        message = endsEarly(isInChunk ? part : "the head of a chunk", from, needed, found);
+        png_error(png, message.c_str());
+    }
+
     static void takeOfFile(png_structp png, png_bytep to, std::size_t count) {
         auto& file = *static_cast<std::ifstream*>(png_get_io_ptr(png));
         file.read(reinterpret_cast<char*>(to), static_cast<std::streamsize>(count));
-        if (static_cast<std::size_t>(file.gcount()) != count) {
-            png_error(png, "the file ends early");
-        }
+        const auto found = static_cast<std::size_t>(file.gcount());
+        if (found == count) return;
+        file.clear();
+        failEarly(png, static_cast<std::size_t>(file.tellg()) - found, count, found);
     }
 
     static void take(png_structp png, png_bytep to, std::size_t count) {
-        auto& rest = static_cast<Reader*>(png_get_io_ptr(png))->rest_;
-        if (count > rest.size()) png_error(png, "the file ends early");
+        auto& reader = *static_cast<Reader*>(png_get_io_ptr(png));
+        std::span<const std::byte>& rest = reader.rest_;
+        if (count > rest.size()) {
+            failEarly(png, reader.sizeBytes_ - rest.size(), count, rest.size());
+        }
         std::memcpy(to, rest.data(), count);
         rest = rest.subspan(count);
     }
@@ -193,6 +211,7 @@ class Reader {
     }
 
     std::span<const std::byte> rest_;
+    std::size_t sizeBytes_ = 0;
     std::string name_;
     std::string message_;
     png_structp png_ = nullptr;

@@ -202,9 +202,9 @@ class TiffReader {
         std::vector<std::byte> row(static_cast<std::size_t>(TIFFScanlineSize(tiff_.get())));
         if (row.size() < bytesOf(width_)) failOf(path_, message_);
         for (std::uint32_t y = 0; y < height_; ++y) {
-            if (TIFFReadScanline(tiff_.get(), row.data(), y, static_cast<std::uint16_t>(plane)) !=
-                1) {
-                failOf(path_, message_);
+            const auto sample = static_cast<std::uint16_t>(plane);
+            if (TIFFReadScanline(tiff_.get(), row.data(), y, sample) != 1) {
+                failInPart(*tiff_, path_, TIFFComputeStrip(tiff_.get(), y, sample), message_);
             }
             place(row.data(), width_, plane, image.row(static_cast<int>(y)).data());
         }
@@ -219,9 +219,10 @@ class TiffReader {
         if (tile.size() < bytesOf(std::size_t{across} * down)) failOf(path_, message_);
         for (std::uint32_t top = 0; top < height_; top += down) {
             for (std::uint32_t left = 0; left < width_; left += across) {
-                if (TIFFReadTile(tiff_.get(), tile.data(), left, top, 0,
-                                 static_cast<std::uint16_t>(plane)) < 0) {
-                    failOf(path_, message_);
+                const auto sample = static_cast<std::uint16_t>(plane);
+                if (TIFFReadTile(tiff_.get(), tile.data(), left, top, 0, sample) < 0) {
+                    failInPart(*tiff_, path_, TIFFComputeTile(tiff_.get(), left, top, 0, sample),
+                               message_);
                 }
                 for (std::uint32_t y = 0; y < std::min(down, height_ - top); ++y) {
                     place(&tile[y * bytesOf(across)], std::min(across, width_ - left), plane,
@@ -270,6 +271,18 @@ std::unique_ptr<TIFF, void (*)(TIFF*)> openTiff(const std::filesystem::path& pat
                                                 TIFFClose);
     if (file == nullptr || !message.empty()) failOf(path, message);
     return file;
+}
+
+void failInPart(TIFF& file, const std::filesystem::path& path, std::uint32_t number,
+                const std::string& message) {
+    const std::uint64_t from = TIFFGetStrileOffset(&file, number);
+    const std::uint64_t needed = TIFFGetStrileByteCount(&file, number);
+    const std::uint64_t size = std::filesystem::file_size(path);
+    const std::uint64_t found = size - std::min(from, size);
+    const std::string part =
+        fmt::format("{} {}", TIFFIsTiled(&file) != 0 ? "tile" : "strip", number);
+    if (needed > found) failOf(path, endsEarly(part, from, needed, found));
+    failOf(path, message.empty() ? message : part + ": " + message);
 }
 
 void requireOnePage(TIFF& file, const std::filesystem::path& path, const std::string& message) {

@@ -274,7 +274,9 @@ class TiffRows : public HeightRows {
     void read(float* values) override {
         const char* row = band_.data();
         if (tileHeight_ == 0) {
-            if (TIFFReadScanline(tiff_.get(), band_.data(), row_, 0) != 1) fail();
+            if (TIFFReadScanline(tiff_.get(), band_.data(), row_, 0) != 1) {
+                image::failInPart(*tiff_, name_, TIFFComputeStrip(tiff_.get(), row_, 0), message_);
+            }
         } else {
             if (row_ % tileHeight_ == 0) readTiles();
             row += std::size_t{row_ % tileHeight_} * rowBytes();
@@ -359,7 +361,10 @@ class TiffRows : public HeightRows {
         const std::size_t bytes = valueBytes(type_);
         const std::uint32_t rows = std::min(tileHeight_, height_ - row_);
         for (std::uint32_t left = 0; left < width_; left += tileWidth_) {
-            if (TIFFReadTile(tiff_.get(), tile_.data(), left, row_, 0, 0) < 0) fail();
+            if (TIFFReadTile(tiff_.get(), tile_.data(), left, row_, 0, 0) < 0) {
+                image::failInPart(*tiff_, name_, TIFFComputeTile(tiff_.get(), left, row_, 0, 0),
+                                  message_);
+            }
             const std::size_t columns = std::min(tileWidth_, width_ - left);
             for (std::size_t y = 0; y < rows; ++y) {
                 std::memcpy(&band_[y * rowBytes() + left * bytes], &tile_[y * tileWidth_ * bytes],

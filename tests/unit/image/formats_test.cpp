@@ -90,7 +90,9 @@ TEST_F(Formats, PortableAnymapsAreSrgb) {
     expectValues("d.ppm", 3);
     const Picture one = readPicture(folder_.write("e.pgm", "P5 1 1 255\r\n"));
     EXPECT_EQ(std::lround(255.0F * one.stored.at(0, 0)), '\n');
-    EXPECT_EQ(errorOf("c.ppm", "P6 2 1 255\nabcde"), "DIR/c.ppm: the file ends early");
+    EXPECT_EQ(
+        errorOf("c.ppm", "P6 2 1 255\nabcde"),
+        "DIR/c.ppm: the file ends early in its pixels: bytes needed from byte 11 on: 6, found: 5");
     EXPECT_EQ(errorOf("c.ppm", "P6 x 1 255\nabc"), "DIR/c.ppm: has 'x' where a number is allowed");
     EXPECT_EQ(errorOf("c.ppm", "P5 1 1 100\nz"), "DIR/c.ppm: holds 122, its largest value is 100");
     EXPECT_EQ(errorOf("c.ppm", "P5 1 1 0\nz"),
@@ -124,7 +126,9 @@ TEST_F(Formats, PortableAnymapsMayBeText) {
     }
     const Picture zeros = readPicture(folder_.write("a.pgm", "P2 01 1 0100\n050\n"));
     EXPECT_EQ(zeros.stored.at(0, 0), 0.5F);
-    EXPECT_EQ(errorOf("c.ppm", "P3 1 1 255\n1 2"), "DIR/c.ppm: the file ends early");
+    EXPECT_EQ(
+        errorOf("c.ppm", "P3 1 1 255\n1 2"),
+        "DIR/c.ppm: the file ends early in its pixels: bytes needed from byte 14 on: 1, found: 0");
     EXPECT_EQ(errorOf("c.ppm", "P3 1 1 255\n1 2 256"),
               "DIR/c.ppm: holds 256, its largest value is 255");
     EXPECT_EQ(errorOf("c.ppm", "P2 1 1 255\n-1"), "DIR/c.ppm: has '-1' where a number is allowed");
@@ -148,7 +152,9 @@ TEST_F(Formats, PortableFloatMapsAreLinear) {
     EXPECT_EQ(readPicture(folder_.write("b.pfm", "Pf\n2 1\n1\n" + swapped)).linear.at(1, 0), 2.5F);
     EXPECT_EQ(errorOf("c.pfm", "Pf\n1 1\n-2\nabcd"),
               "DIR/c.pfm: its scale is -2; 1 or -1 are allowed, as readers differ in others");
-    EXPECT_EQ(errorOf("c.pfm", "Pf\n1 1\n-1\nabc"), "DIR/c.pfm: the file ends early");
+    EXPECT_EQ(
+        errorOf("c.pfm", "Pf\n1 1\n-1\nabc"),
+        "DIR/c.pfm: the file ends early in its pixels: bytes needed from byte 10 on: 4, found: 3");
 }
 
 TEST_F(Formats, WhatStandsBehindAPictureIsSaid) {
@@ -216,9 +222,16 @@ TEST_F(Formats, RadiancesPicturesAreLinear) {
               "DIR/d.hdr: its size is '+Y 1 +X 4'; allowed: -Y height +X width, rows from the top");
     const std::string whole = readFile(path("a.hdr"));
     for (std::size_t size = 2; size < whole.size(); size += 9) {
-        EXPECT_EQ(errorOf("d.hdr", whole.substr(0, size)), "DIR/d.hdr: the file ends early")
+        EXPECT_TRUE(errorOf("d.hdr", whole.substr(0, size))
+                        .starts_with("DIR/d.hdr: the file ends early in "))
             << size;
     }
+    EXPECT_EQ(errorOf("d.hdr", "#?RADIANCE"),
+              "DIR/d.hdr: the file ends early in its header: bytes needed from byte 10 on: 1, "
+              "found: 0");
+    EXPECT_EQ(errorOf("d.hdr", "#?RADIANCE\n\n-Y 2 +X 1\n" + std::string(6, '\2')),
+              "DIR/d.hdr: the file ends early in row 2 of 2: bytes needed from byte 28 on: 1, "
+              "found: 0");
 }
 
 TEST_F(Formats, TargaIsSrgb) {
@@ -230,8 +243,8 @@ TEST_F(Formats, TargaIsSrgb) {
             expectValues("a.tga", channels);
         }
         const std::string whole = readFile(path("a.tga"));
-        EXPECT_EQ(errorOf("b.tga", whole.substr(0, whole.size() / 2)),
-                  "DIR/b.tga: the file ends early");
+        EXPECT_TRUE(errorOf("b.tga", whole.substr(0, whole.size() / 2))
+                        .starts_with("DIR/b.tga: the file ends early in its pixels: bytes needed"));
     }
     std::string head(18, '\0');
     head[2] = 1;
@@ -353,19 +366,6 @@ TEST_F(Formats, JpegIsTurnedAsItsExifSays) {
         fill(0, 0, 5);
         fill(1, 0, 128);
         stbi_write_jpg(path("turned.jpg").c_str(), width, height, 1, even.data(), 100);
-        const std::string plain = readFile(path("turned.jpg"));
-        const char value = static_cast<char>(orientation);
-        std::string exif(
-            "\xff\xe1\0\x22"
-            "Exif\0\0",
-            10);
-        exif += isLittle ? std::string("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0", 18) +
-                               value + std::string(7, '\0')
-                         : std::string("MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0", 19) +
-                               value + std::string(6, '\0');
-        return readPicture(folder_.write("exif.jpg", plain.substr(0, 2) + exif + plain.substr(2)))
-            .stored;
-    };
 /// Of the frame's header: its marker, how many bits, and how many components.
 TEST_F(Formats, JpegOfOtherCodingBitsOrComponentsIsRefused) {
     std::vector<std::uint8_t> even(kWidth * kHeight * 3, 100);
@@ -399,6 +399,19 @@ TEST_F(Formats, JpegOfOtherCodingBitsOrComponentsIsRefused) {
                           frame));
 }
 
+        const std::string plain = readFile(path("turned.jpg"));
+        const char value = static_cast<char>(orientation);
+        std::string exif(
+            "\xff\xe1\0\x22"
+            "Exif\0\0",
+            10);
+        exif += isLittle ? std::string("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0", 18) +
+                               value + std::string(7, '\0')
+                         : std::string("MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0", 19) +
+                               value + std::string(6, '\0');
+        return readPicture(folder_.write("exif.jpg", plain.substr(0, 2) + exif + plain.substr(2)))
+            .stored;
+    };
     for (int orientation = 1; orientation <= 8; ++orientation) {
         const ImageF seen = storedAs(orientation, orientation % 2 == 0);
         ASSERT_EQ(seen.width(), 3 * kSide) << orientation;
@@ -434,6 +447,29 @@ void writeTiff(const std::string& path, int width, int height, const Layout& lay
         TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, layout.bits);
         TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, layout.channels);
         TIFFSetField(file, TIFFTAG_SAMPLEFORMAT,
+/// 2 x 2 values of 8 bits behind their directory, without the last of them.
+std::string cutTiff() {
+    std::string file("II*\0\x8\0\0\0\x9\0", 10);
+    const auto add = [&](int tag, int value) {  // LONG (4), one; SHORT where the format has it
+        constexpr int kStripOffsets = 273, kStripByteCounts = 279;
+        const int type = tag == kStripOffsets || tag == kStripByteCounts ? 4 : 3;
+        for (const int word : {tag, type, 1, 0, value, 0}) {
+            file += static_cast<char>(word & 0xFF);
+            file += static_cast<char>(word >> 8);
+        }
+    };
+    add(256, 2);
+    add(257, 2);
+    add(258, 8);
+    add(259, 1);
+    add(262, 1);
+    add(273, 122);  // where the values begin
+    add(277, 1);
+    add(278, 2);
+    add(279, 4);  // how many bytes they have
+    return file + std::string(4, '\0') + "\1\2\3";
+}
+
                      layout.isFloat ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT);
         TIFFSetField(file, TIFFTAG_PHOTOMETRIC,
                      layout.channels < 3 ? PHOTOMETRIC_MINISBLACK : layout.colours);
@@ -565,3 +601,6 @@ TEST_F(Formats, WhatIsNoneNamesThoseThatAreRead) {
 
 }  // namespace
 }  // namespace gfxrepro::image
+    EXPECT_EQ(errorOf("b.tif", cutTiff()),
+              "DIR/b.tif: the file ends early in strip 0: bytes needed from byte 122 on: 4, found: "
+              "3");

@@ -103,9 +103,21 @@ TEST_F(Png, RefusesTruncatedFiles) {
     const std::string whole = encodePng(noise<std::uint8_t>(16, 16, 3));
     for (std::size_t size = 8; size < whole.size(); size += 7) {
         const auto path = folder.write("a.png", whole.substr(0, size));
-        EXPECT_EQ(errorText([&] { readPng8(path); }, folder.path()),
-                  "DIR/a.png: the file ends early");
+        EXPECT_TRUE(errorText([&] { readPng8(path); }, folder.path())
+                        .starts_with("DIR/a.png: the file ends early in "))
+            << size;
     }
+    const auto error = [&](std::size_t size) {
+        const auto path = folder.write("a.png", whole.substr(0, size));
+        return errorText([&] { readPng8(path); }, folder.path());
+    };
+    EXPECT_EQ(
+        error(40),
+        "DIR/a.png: the file ends early in the head of a chunk: bytes needed from byte 33 on: "
+        "8, found: 7");
+    EXPECT_EQ(error(20),
+              "DIR/a.png: the file ends early in chunk IHDR: bytes needed from byte 16 on: 13, "
+              "found: 4");
 }
 
 TEST_F(Png, RefusesHeadersThatDeclareTooMuch) {
@@ -291,6 +303,10 @@ TEST_F(Exr, RefusesBrokenFiles) {
         EXPECT_EQ(errorText([&] { readExr(path); }, folder.path()).rfind("DIR/a.exr: ", 0), 0U)
             << size;
     }
+    folder.write("a.exr", whole.substr(0, 11));
+    EXPECT_EQ(errorText([&] { readExr(path); }, folder.path()),
+              "DIR/a.exr: the file ends early in its header: bytes needed from byte 11 on: 1, "
+              "found: 0");
 }
 
 TEST_F(Exr, RefusesHeadersThatDeclareTooMuch) {
