@@ -499,6 +499,15 @@ int attributesOf(Part extension) {
     return extension.empty() ? 3 : std::to_integer<int>(extension.back());
 }
 
+/// Of sRGB, as in TIFF files.
+void divideByAlpha(std::span<float> values) {
+    for (std::size_t i = 0; i < values.size(); i += 4) {
+        for (float& value : values.subspan(i, 3)) {
+            if (values[i + 3] > 0.0F) value = std::min(1.0F, value / values[i + 3]);
+        }
+    }
+}
+
 }  // namespace
 
 Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
@@ -520,7 +529,9 @@ Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
             "bits, or 8 of a palette of such, columns from the left, are read",
             type, bits, isIndexed ? fmt::format(" of a palette of {}", entryBits) : "", flags));
     }
+    file.begin("its name");
     file.take(idBytes);
+    file.begin("its palette");
     const std::size_t entryBytes = static_cast<std::size_t>(entryBits + 7) / 8;
     // One of true colours is advice for a screen.
     const Part palette =
@@ -529,19 +540,19 @@ Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
     const Part extension = extensionOfTga(bytes);
     const int attributes = attributesOf(extension);
     const bool hasAlpha = colourBits == 32 && (flags & 15) == 8 && attributes > 2;
-    file.begin("its name");
     file.checkSize(width, height, 4 * sizeof(float));
-    file.begin("its palette");
+    file.begin("its pixels");
     Decoded result{ImageF(width, height, isGrey ? 1 : hasAlpha ? 4 : 3)};
     const auto channels = static_cast<std::size_t>(result.values.channels());
     const auto values = result.values.values();
+    if (!isEncoded) file.require(values.size() / channels * pixelBytes);
+    std::byte least{0xFF}, most{0};  // of bytes that may be alpha
     const auto nextPixel = [&] {
         const Part pixel = file.take(pixelBytes);
         if (!isIndexed) return pixel;
         const int index = std::to_integer<int>(pixel[0]), entry = index - firstEntry;
         if (entry < 0 || entry >= entryCount) {
             file.fail(fmt::format("a pixel of colour {}; its palette has {} … {}", index,
-    file.begin("its pixels");
                                   firstEntry, firstEntry + entryCount - 1));
         }
         return palette.subspan(static_cast<std::size_t>(entry) * entryBytes, entryBytes);
@@ -553,15 +564,16 @@ Decoded decodeTga(std::span<const std::byte> bytes, const std::string& name) {
         for (std::size_t k = 0; k < count; ++k) {
             if (i == values.size()) file.fail("a run is longer than the picture");
             if (k > 0 && code < 128) pixel = nextPixel();
+            least = std::min(least, pixel.back());
+            most = std::max(most, pixel.back());
             for (std::size_t c = 0; c < channels; ++c) {  // blue, green, red, alpha
                 values[i++] = unitOf(pixel[channels == 1 || c == 3 ? c : 2 - c]);
             }
         }
     }
-    for (std::size_t i = 0; hasAlpha && attributes == 4 && i < values.size(); i += 4) {
-        for (float& value : values.subspan(i, 3)) {  // of sRGB, as in TIFF files
-            if (values[i + 3] > 0.0F) value = std::min(1.0F, value / values[i + 3]);
-        }
+    if (hasAlpha && attributes == 4) divideByAlpha(values);
+    if (colourBits == 32 && !hasAlpha && least < most) {
+        result.notes.emplace_back("left out: its pixels' fourth byte, which it calls no alpha");
     }
     if ((flags & 0x20) == 0) flipRows(result.values);
     if (saysGamma(extension)) result.notes.emplace_back("left out: its gamma");

@@ -281,6 +281,31 @@ TEST_F(Formats, TargasPaletteHasItsColours) {
               "DIR/b.tga: a pixel of colour 1; its palette has 2 … 3");
 }
 
+/// A row of two pixels of 32 bits.
+TEST_F(Formats, TargasFourthByteIsSaidWhereItIsNoAlpha) {
+    const auto fileOf = [](char flags, const std::string& pixels) {
+        std::string head(18, '\0');
+        head[2] = 2;
+        head[12] = 2;
+        head[14] = 1;
+        head[16] = 32;
+        head[17] = flags;
+        return head + pixels;
+    };
+    const auto notesOf = [&](char flags, const std::string& pixels) {
+        return readPicture(folder_.write("a.tga", fileOf(flags, pixels))).notes;
+    };
+    const std::vector<std::string> none;
+    EXPECT_EQ(
+        notesOf(0x20, "\1\2\3\4\5\6\7\x8"),
+        std::vector<std::string>{"left out: its pixels' fourth byte, which it calls no alpha"});
+    EXPECT_EQ(notesOf(0x20, "\1\2\3\4\5\6\7\4"), none) << "the same in each";
+    EXPECT_EQ(notesOf(0x28, "\1\2\3\4\5\6\7\x8"), none) << "alpha";
+    EXPECT_EQ(errorOf("b.tga", fileOf(0x20, "\1\2\3\4\5")),
+              "DIR/b.tga: the file ends early in its pixels: bytes needed from byte 18 on: 8, "
+              "found: 5");
+}
+
 /// One pixel: blue, green, red, alpha of 20, 40, 100, 128.
 TEST_F(Formats, TargasExtensionSaysWhatItsAlphaIs) {
     const auto valuesOf = [&](int kind) {
@@ -341,31 +366,6 @@ TEST_F(Formats, JpegIsSrgb) {
     EXPECT_EQ(readPicture(folder_.write("c.png", whole)).stored, picture.stored);
 }
 
-/// A picture whose corner from the left and the top is dark, the one beside it (by a column) grey,
-/// after turning; stored as the Orientation says.
-TEST_F(Formats, JpegIsTurnedAsItsExifSays) {
-    constexpr int kSide = 8;  // a block, which the compression keeps apart
-    const auto storedAs = [&](int orientation, bool isLittle) {
-        const bool isTransposed = orientation >= 5;
-        const int width = isTransposed ? 2 * kSide : 3 * kSide;
-        const int height = isTransposed ? 3 * kSide : 2 * kSide;
-        std::vector<std::uint8_t> even(static_cast<std::size_t>(width * height), 250);
-        const auto fill = [&](int column, int row, std::uint8_t value) {  // of 3 × 2 as it is seen
-            const auto isIn = [&](std::initializer_list<int> all) {
-                return std::ranges::find(all, orientation) != all.end();
-            };
-            const bool isFromRight = isIn({2, 3, 6, 7}), isFromBottom = isIn({3, 4, 7, 8});
-            int u = isFromRight ? 2 - column : column, v = isFromBottom ? 1 - row : row;
-            if (isTransposed) std::swap(u, v);
-            for (int y = 0; y < kSide; ++y) {
-                for (int x = 0; x < kSide; ++x) {
-                    even[static_cast<std::size_t>((v * kSide + y) * width + u * kSide + x)] = value;
-                }
-            }
-        };
-        fill(0, 0, 5);
-        fill(1, 0, 128);
-        stbi_write_jpg(path("turned.jpg").c_str(), width, height, 1, even.data(), 100);
 /// Of the frame's header: its marker, how many bits, and how many components.
 TEST_F(Formats, JpegOfOtherCodingBitsOrComponentsIsRefused) {
     std::vector<std::uint8_t> even(kWidth * kHeight * 3, 100);
@@ -399,6 +399,31 @@ TEST_F(Formats, JpegOfOtherCodingBitsOrComponentsIsRefused) {
                           frame));
 }
 
+/// A picture whose corner from the left and the top is dark, the one beside it (by a column) grey,
+/// after turning; stored as the Orientation says.
+TEST_F(Formats, JpegIsTurnedAsItsExifSays) {
+    constexpr int kSide = 8;  // a block, which the compression keeps apart
+    const auto storedAs = [&](int orientation, bool isLittle) {
+        const bool isTransposed = orientation >= 5;
+        const int width = isTransposed ? 2 * kSide : 3 * kSide;
+        const int height = isTransposed ? 3 * kSide : 2 * kSide;
+        std::vector<std::uint8_t> even(static_cast<std::size_t>(width * height), 250);
+        const auto fill = [&](int column, int row, std::uint8_t value) {  // of 3 × 2 as it is seen
+            const auto isIn = [&](std::initializer_list<int> all) {
+                return std::ranges::find(all, orientation) != all.end();
+            };
+            const bool isFromRight = isIn({2, 3, 6, 7}), isFromBottom = isIn({3, 4, 7, 8});
+            int u = isFromRight ? 2 - column : column, v = isFromBottom ? 1 - row : row;
+            if (isTransposed) std::swap(u, v);
+            for (int y = 0; y < kSide; ++y) {
+                for (int x = 0; x < kSide; ++x) {
+                    even[static_cast<std::size_t>((v * kSide + y) * width + u * kSide + x)] = value;
+                }
+            }
+        };
+        fill(0, 0, 5);
+        fill(1, 0, 128);
+        stbi_write_jpg(path("turned.jpg").c_str(), width, height, 1, even.data(), 100);
         const std::string plain = readFile(path("turned.jpg"));
         const char value = static_cast<char>(orientation);
         std::string exif(
@@ -420,6 +445,29 @@ TEST_F(Formats, JpegOfOtherCodingBitsOrComponentsIsRefused) {
         EXPECT_NEAR(seen.at(12, 4, 0), 0.5F, 0.05F) << orientation;
         EXPECT_GT(seen.at(20, 12, 0), 0.9F) << orientation;
     }
+}
+
+/// 2 x 2 values of 8 bits behind their directory, without the last of them.
+std::string cutTiff() {
+    std::string file("II*\0\x8\0\0\0\x9\0", 10);
+    const auto add = [&](int tag, int value) {  // LONG (4), one; SHORT where the format has it
+        constexpr int kStripOffsets = 273, kStripByteCounts = 279;
+        const int type = tag == kStripOffsets || tag == kStripByteCounts ? 4 : 3;
+        for (const int word : {tag, type, 1, 0, value, 0}) {
+            file += static_cast<char>(word & 0xFF);
+            file += static_cast<char>(word >> 8);
+        }
+    };
+    add(256, 2);
+    add(257, 2);
+    add(258, 8);
+    add(259, 1);
+    add(262, 1);
+    add(273, 122);  // where the values begin
+    add(277, 1);
+    add(278, 2);
+    add(279, 4);  // how many bytes they have
+    return file + std::string(4, '\0') + "\1\2\3";
 }
 
 /// How a TIFF file is laid out; what is not said is as in most.
@@ -447,29 +495,6 @@ void writeTiff(const std::string& path, int width, int height, const Layout& lay
         TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, layout.bits);
         TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, layout.channels);
         TIFFSetField(file, TIFFTAG_SAMPLEFORMAT,
-/// 2 x 2 values of 8 bits behind their directory, without the last of them.
-std::string cutTiff() {
-    std::string file("II*\0\x8\0\0\0\x9\0", 10);
-    const auto add = [&](int tag, int value) {  // LONG (4), one; SHORT where the format has it
-        constexpr int kStripOffsets = 273, kStripByteCounts = 279;
-        const int type = tag == kStripOffsets || tag == kStripByteCounts ? 4 : 3;
-        for (const int word : {tag, type, 1, 0, value, 0}) {
-            file += static_cast<char>(word & 0xFF);
-            file += static_cast<char>(word >> 8);
-        }
-    };
-    add(256, 2);
-    add(257, 2);
-    add(258, 8);
-    add(259, 1);
-    add(262, 1);
-    add(273, 122);  // where the values begin
-    add(277, 1);
-    add(278, 2);
-    add(279, 4);  // how many bytes they have
-    return file + std::string(4, '\0') + "\1\2\3";
-}
-
                      layout.isFloat ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT);
         TIFFSetField(file, TIFFTAG_PHOTOMETRIC,
                      layout.channels < 3 ? PHOTOMETRIC_MINISBLACK : layout.colours);
@@ -582,6 +607,9 @@ TEST_F(Formats, OtherTiffFilesAreRefused) {
     for (std::size_t size = 4; size < whole.size(); size += 11) {
         EXPECT_TRUE(errorOf("b.tif", whole.substr(0, size)).starts_with("DIR/b.tif: ")) << size;
     }
+    EXPECT_EQ(errorOf("b.tif", cutTiff()),
+              "DIR/b.tif: the file ends early in strip 0: bytes needed from byte 122 on: 4, found: "
+              "3");
 }
 
 TEST_F(Formats, WhatIsNoneNamesThoseThatAreRead) {
@@ -601,6 +629,3 @@ TEST_F(Formats, WhatIsNoneNamesThoseThatAreRead) {
 
 }  // namespace
 }  // namespace gfxrepro::image
-    EXPECT_EQ(errorOf("b.tif", cutTiff()),
-              "DIR/b.tif: the file ends early in strip 0: bytes needed from byte 122 on: 4, found: "
-              "3");
