@@ -192,20 +192,29 @@ glm::dvec2 verticalOf(const GeoTags& tags, const std::string& file) {
 /// say it.
 std::optional<glm::dvec2> stepOf(const GeoTags& tags, bool isGeographic, const std::string& file) {
     double x = 0.0, y = 0.0, skew = 0.0;
-    bool isMirrored = false;  // rows go down: south
+    double right = 1.0, up = -1.0;  // where columns and rows go
+    bool isMirrored = false;
     if (tags.pixelScale.size() >= 2) {
         x = std::abs(tags.pixelScale[0]);
         y = std::abs(tags.pixelScale[1]);
-        isMirrored = tags.pixelScale[0] * tags.pixelScale[1] < 0.0;
+        right = tags.pixelScale[0];
+        up = -tags.pixelScale[1];
+        isMirrored = right * up > 0.0;
     } else if (tags.transform.size() >= 6) {
         const std::vector<double>& m = tags.transform;
         x = std::hypot(m[0], m[4]);
         y = std::hypot(m[1], m[5]);
         skew = std::abs(m[0] * m[1] + m[4] * m[5]);
+        right = m[0];
+        up = m[5];
         isMirrored = m[0] * m[5] - m[1] * m[4] > 0.0;
     }
     if (isMirrored) {
-        throw Error(file + ": its rows go north; allowed: from west to east and north to south");
+        const char* found = up > 0.0      ? "its rows go north"
+                            : right < 0.0 ? "its columns go west"
+                                          : "it is mirrored";
+        throw Error(
+            fmt::format("{}: {}; allowed: from west to east and north to south", file, found));
     }
     if (!(y > 0.0) || !std::isfinite(y)) return std::nullopt;
     constexpr double kRounding = 1e-3;
@@ -218,12 +227,69 @@ std::optional<glm::dvec2> stepOf(const GeoTags& tags, bool isGeographic, const s
     return glm::dvec2(x, y);
 }
 
-/// Of the middle of a geographic map; 0 where the file does not say where it lies.
-double latitudeDeg(const GeoTags& tags, double step) {
+/// How far north the middle of a map lies, in units of the model; none where the file does not say
+/// where it lies.
+std::optional<double> northOfMiddle(const GeoTags& tags, double step) {
     const glm::dvec2 middle = 0.5 * glm::dvec2(tags.sizeSamples);
     const std::vector<double>&m = tags.transform, &t = tags.tiepoint;
     if (t.size() >= 6) return t[4] - (middle.y - t[1]) * step;
-    return m.size() >= 8 ? m[4] * middle.x + m[5] * middle.y + m[7] : 0.0;
+    if (m.size() >= 8) return m[4] * middle.x + m[5] * middle.y + m[7];
+    return std::nullopt;
+}
+
+constexpr double kEarthRadiusM = 6378137.0;  // of WGS 84, at the equator
+
+/// Spacing of Mercator's projection, which stretches both directions alike; the ellipsoid's
+/// differs by less than 1 %.
+void useMercator(const GeoTags& tags, glm::dvec2 step, double unitM, GeoUnits& units) {
+    const std::optional<double> north = northOfMiddle(tags, step.y);
+    const double stretch = std::cosh(north.value_or(0.0) * unitM / kEarthRadiusM);
+    const double mapM = step.y * unitM, groundM = mapM / stretch;
+    units.spacingM = static_cast<float>(groundM);
+    if (!north) {
+        units.warning = fmt::format(
+            "its coordinates, of Mercator's projection, do not say how far north it lies: its "
+            "samples are drawn {:.4g} m apart, as at the equator",
+            mapM);
+    } else if (stretch > 1.01) {
+        units.warning = fmt::format(
+            "its samples stand {:.4g} m apart on its map, of Mercator's projection, and {:.4g} m "
+            "on the ground in its middle; they are drawn {:.4g} m apart",
+            mapM, groundM, groundM);
+    }
+}
+
+/// What to say of projections that are nowhere near true to scale but along a line or at a point
+/// (GeoTIFF's codes): Mercator's, equirectangular, gnomonic to orthographic, Robinson's to Van der
+/// Grinten's, cylindrical of equal area.
+std::string takenAsTrueToScale(const Keys& keys) {
+    constexpr std::uint16_t kProjectionMethod = 3075;
+    const std::uint16_t method = keys.find(kProjectionMethod).value_or(0);
+    const bool isKnown = isOneOf(keys.find(kProjected).value_or(0), {{3410, 3410}, {6933, 6933}});
+    if (!isKnown && !isOneOf(method, {{7, 7}, {17, 17}, {19, 21}, {23, 25}, {28, 28}})) return "";
+    return "its projection is not true to scale: its samples are drawn as far apart as on its map";
+}
+
+/// Spacing and what to say of it, of a step in units of the model.
+void useStep(const GeoTags& tags, const Keys& keys, glm::dvec2 step, GeoUnits& units) {
+    const std::uint16_t code = keys.find(kProjected).value_or(0);
+    const bool isGeographic = keys.find(kModelType) == kGeographic;
+    const double unitM = isGeographic ? keys.metresOfDegrees() : keys.metresOf(kLinearUnit);
+    const auto spacing = static_cast<float>(step.y * unitM);
+    if (!(spacing > 0.0F) || !std::isfinite(spacing)) return;
+    units.spacingM = spacing;
+    const bool isPlate = isOneOf(code, {{4087, 4088}, {32662, 32662}, {54001, 54001}});
+    if (!isGeographic && isOneOf(code, {{3395, 3395}, {3785, 3785}, {3857, 3857}})) {
+        useMercator(tags, step, unitM, units);
+    } else if (isGeographic || isPlate) {
+        const double north = northOfMiddle(tags, step.y).value_or(0.0);
+        const double latitude = isPlate ? north * unitM / kEarthRadiusM : glm::radians(north);
+        units.warning = unevenSpacing(step.x * unitM * std::cos(latitude), step.y * unitM);
+    } else {
+        units.warning = takenAsOfAMap(keys);
+        if (units.warning.empty()) units.warning = takenAsTrueToScale(keys);
+        if (units.warning.empty()) units.warning = takenAsMetres(keys);
+    }
 }
 
 }  // namespace
@@ -265,16 +331,7 @@ GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
     units.unitWarning = units.scale == 0.0F ? "its scale of 0 makes all its heights the same"
                                             : heightsTakenAsMetres(tags, keys);
     if (const std::optional<glm::dvec2> step = stepOf(tags, isGeographic, file)) {
-        const double unitM = isGeographic ? keys.metresOfDegrees() : keys.metresOf(kLinearUnit);
-        if (isGeographic) {
-            const double east = std::cos(glm::radians(latitudeDeg(tags, step->y)));
-            units.warning = unevenSpacing(step->x * unitM * east, step->y * unitM);
-        } else {
-            const std::string model = takenAsOfAMap(keys);
-            units.warning = model.empty() ? takenAsMetres(keys) : model;
-        }
-        const auto spacing = static_cast<float>(step->y * unitM);
-        if (spacing > 0.0F && std::isfinite(spacing)) units.spacingM = spacing;
+        useStep(tags, keys, *step, units);
     } else if (tags.tiepoint.size() > 6) {
         units.warning =
             "its points on the ground (ModelTiepoint) are not used: they say no spacing";
@@ -288,6 +345,18 @@ std::string unevenSpacing(double eastM, double northM) {
         "its samples stand {:.4g} m apart from west to east in its middle and {:.4g} m from north "
         "to south; both are drawn {:.4g} m apart",
         eastM, northM, northM);
+}
+
+std::string warningOfTile(const std::string& name, double spacingM) {
+    const auto isDigit = [&](std::size_t i) { return name[i] >= '0' && name[i] <= '9'; };
+    const int side = name.empty() ? 0 : std::toupper(static_cast<unsigned char>(name[0]));
+    if (name.size() < 3 || !isDigit(1) || !isDigit(2) || (side != 'N' && side != 'S')) {
+        return "its name says no latitude, as that of N46E007.hgt does: its samples are drawn as "
+               "far apart from west to east as from north to south";
+    }
+    const double corner = 10.0 * (name[1] - '0') + (name[2] - '0');
+    const double middle = side == 'N' ? corner + 0.5 : corner - 0.5;
+    return unevenSpacing(spacingM * std::cos(glm::radians(middle)), spacingM);
 }
 
 }  // namespace gfxrepro::scene

@@ -43,5 +43,8 @@ GeoUnits unitsOf(const GeoTags& tags, const std::string& file);
 /// What to say of samples that are drawn as far apart from west to east as from north to south,
 /// though they are not; empty where the two differ by less than 1 %.
 std::string unevenSpacing(double eastM, double northM);
+/// The same of an SRTM tile, whose name is that of its corner in the south-west, as N46E007: or
+/// that another name says no latitude.
+std::string warningOfTile(const std::string& name, double spacingM);
 
 }  // namespace gfxrepro::scene

@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -160,17 +160,6 @@ std::uintmax_t bytesOfFile(const fs::path& path) {
     return bytes;
 }
 
-/// Of the middle of a tile, whose name is that of its corner in the south-west, as N46E007; 0 of
-/// another name.
-double latitudeOfTile(const fs::path& path) {
-    const std::string name = path.stem().string();
-    const auto isDigit = [&](std::size_t i) { return name[i] >= '0' && name[i] <= '9'; };
-    if (name.size() < 3 || !isDigit(1) || !isDigit(2)) return 0.0;
-    const double corner = 10.0 * (name[1] - '0') + (name[2] - '0');
-    const int side = std::toupper(static_cast<unsigned char>(name[0]));
-    return side == 'N' ? corner + 0.5 : side == 'S' ? corner - 0.5 : 0.0;
-}
-
 std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path) {
     const std::uintmax_t bytes = bytesOfFile(path);
     for (const int side : {1201, 3601}) {
@@ -180,8 +169,7 @@ std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path) {
         auto rows = std::make_unique<BareRows>(path, glm::ivec2(side), ValueType::I16, true);
         const double spacingM = kMetresPerDegree / (side - 1);  // of a tile's degree
         rows->spacingM = static_cast<float>(spacingM);
-        const double east = std::cos(glm::radians(latitudeOfTile(path)));
-        rows->spacingWarning = unevenSpacing(spacingM * east, spacingM);
+        rows->spacingWarning = warningOfTile(path.stem().string(), spacingM);
         return rows;
     }
     throw Error(

@@ -251,6 +251,12 @@ TEST_F(HeightUnits, SamplesThatStandOnNoSquaresAreRefused) {
         "DIR/a.tif: its rows go north; allowed: from west to east and north to south";
     EXPECT_EQ(error({30, -30, 0}, {}), north);
     EXPECT_EQ(error({}, {30, 0, 0, 0, 0, 30, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}), north);
+    const std::string west =
+        "DIR/a.tif: its columns go west; allowed: from west to east and north to south";
+    EXPECT_EQ(error({-30, 30, 0}, {}), west);
+    EXPECT_EQ(error({}, {-30, 0, 0, 0, 0, -30, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}), west);
+    EXPECT_EQ(error({}, {0, -30, 0, 0, 30, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}),
+              "DIR/a.tif: it is mirrored; allowed: from west to east and north to south");
     EXPECT_EQ(error({}, {-30, 0, 0, 0, 0, 30, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}), "no error")
         << "turned about";
 }
@@ -293,6 +299,42 @@ TEST_F(HeightUnits, OtherPagesRowsAndBitsAreRefused) {
     }
 }
 
+TEST_F(HeightUnits, MapsThatAreNotTrueToScaleAreCorrectedOrSaid) {
+    const auto load = [&](std::vector<std::uint16_t> key, double north) {
+        std::vector<std::uint16_t> keys{1, 1, 0, 2, 1024, 0, 1, 1};
+        keys.insert(keys.end(), key.begin(), key.end());
+        std::vector<double> tiepoint;
+        if (north >= 0.0) tiepoint = {0, 0, 0, 7, north + 40, 0};  // of its middle
+        return loadHeightMap(
+            writeGeoTiff(folder.path() / "a.tif", nullptr, {40, 40, 0}, keys, {}, {}, tiepoint),
+            {});
+    };
+    constexpr double kAt60M = 8399737.89;  // ln(tan(75°)) · 6378137
+    for (const auto code : {std::uint16_t{3395}, std::uint16_t{3785}, std::uint16_t{3857}}) {
+        const HeightMap map = load({3072, 0, 1, code}, kAt60M);
+        EXPECT_NEAR(map.spacingM, 20.0F, 0.001F) << code;
+        EXPECT_EQ(map.spacingWarning,
+                  "its samples stand 40 m apart on its map, of Mercator's projection, and 20 m on "
+                  "the ground in its middle; they are drawn 20 m apart");
+        EXPECT_EQ(load({3072, 0, 1, code}, 0.0).spacingWarning, "") << "at the equator";
+    }
+    const HeightMap somewhere = load({3072, 0, 1, 3857}, -1.0);
+    EXPECT_EQ(somewhere.spacingM, 40.0F);
+    EXPECT_EQ(somewhere.spacingWarning,
+              "its coordinates, of Mercator's projection, do not say how far north it lies: its "
+              "samples are drawn 40 m apart, as at the equator");
+    // Equirectangular: 60 degrees north.
+    EXPECT_EQ(load({3072, 0, 1, 4087}, 6378137.0 * 3.14159265358979 / 3).spacingWarning,
+              "its samples stand 20 m apart from west to east in its middle and 40 m from north to "
+              "south; both are drawn 40 m apart");
+    const std::string untrue =
+        "its projection is not true to scale: its samples are drawn as far apart as on its map";
+    EXPECT_EQ(load({3072, 0, 1, 6933}, 0.0).spacingWarning, untrue);
+    EXPECT_EQ(load({3075, 0, 1, 7}, 0.0).spacingWarning, untrue);
+    EXPECT_EQ(load({3075, 0, 1, 1}, 0.0).spacingWarning, "") << "transverse Mercator";
+    EXPECT_EQ(load({3072, 0, 1, 32633}, kAt60M).spacingM, 40.0F) << "UTM";
+}
+
 TEST_F(HeightUnits, DegreesThatAreNoSquaresOnTheGroundAreSaid) {
     const std::vector<std::uint16_t> geographic{1, 1, 0, 1, 1024, 0, 1, 2};
     const auto warning = [&](std::vector<double> scale, std::vector<double> tiepoint,
@@ -323,7 +365,12 @@ TEST_F(HeightUnits, DegreesThatAreNoSquaresOnTheGroundAreSaid) {
         return loadHeightMap(folder.write(name, tile), {}).spacingWarning;
     };
     EXPECT_EQ(ofTile("N00E007.hgt"), "");
-    EXPECT_EQ(ofTile("a.hgt"), "");
+    for (const char* name : {"a.hgt", "tile.hgt", "X60E007.hgt"}) {
+        EXPECT_EQ(
+            ofTile(name),
+            "its name says no latitude, as that of N46E007.hgt does: its samples are drawn as "
+            "far apart from west to east as from north to south");
+    }
     for (const char* name : {"N60E007.hgt", "S61E007.hgt"}) {
         EXPECT_EQ(ofTile(name).substr(0, 41), "its samples stand 45.6 m apart from west ") << name;
     }
