@@ -17,6 +17,24 @@
 
 namespace gfxrepro::scene {
 
+/// Refuses what is no text in bytes: of two bytes a letter, or compressed.
+inline void requireUtf8Text(std::string_view text, const std::string& file) {
+    constexpr std::pair<std::string_view, const char*> kOthers[] = {
+        {"\xFF\xFE", "in UTF-16"},
+        {"\xFE\xFF", "in UTF-16"},
+        {"\x1F\x8B\x08", "compressed by gzip"},
+        {"\xFD"
+         "7zXZ",
+         "compressed by xz"},
+        {"\x28\xB5\x2F\xFD", "compressed by zstd"},
+        {"PK\x03\x04", "an archive (zip)"}};
+    for (const auto& [magic, kind] : kOthers) {
+        if (text.starts_with(magic)) {
+            throw Error(fmt::format("{}: is {}; allowed: as it is, text in UTF-8", file, kind));
+        }
+    }
+}
+
 /// Goes through a text line by line and through a line word by word. A backslash at the end of a
 /// line continues it, but no comment; '#' begins one at the start of a line and behind a blank. A
 /// byte order mark is skipped. In a text without line feeds carriage returns end the lines.

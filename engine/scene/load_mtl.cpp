@@ -99,6 +99,7 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
     const MappedFile file(path);
     LineReader lines(file.text(), path.string());
     std::map<std::string, MtlMaterial> materials;
+    requireUtf8Text(file.text(), path.string());
     MtlMaterial* current = nullptr;
     while (lines.nextLine()) {
         const std::string_view key = lines.word();

@@ -456,6 +456,7 @@ Scene loadObj(const std::filesystem::path& path) {
     return loadedNearOrigin([&](Anchor& anchor, LeftOut& leftOut) {
         return sceneOf(ObjParser(mapped.text(), path.string(), anchor, leftOut).parse(), path,
                        leftOut);
+    requireUtf8Text(mapped.text(), path.string());
     });
 }
 

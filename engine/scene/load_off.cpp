@@ -174,6 +174,7 @@ class OffParser {
 
 Scene loadOff(const std::filesystem::path& path) {
     const MappedFile mapped(path);
+    requireUtf8Text(mapped.text(), path.string());
     return loadedNearOrigin([&](Anchor& anchor, LeftOut& leftOut) {
         return OffParser(mapped.text(), path.string(), anchor, leftOut).parse();
     });

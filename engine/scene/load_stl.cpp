@@ -181,6 +181,7 @@ Mesh textMesh(std::string_view text, const std::string& file, Anchor& anchor) {
 Scene loadStl(const std::filesystem::path& path) {
     const MappedFile mapped(path);
     const std::string file = path.string();
+    requireUtf8Text(mapped.text(), file);
     const bool isText = isTextStl(mapped.text());
     return loadedNearOrigin([&](Anchor& anchor, LeftOut& leftOut) {
         Mesh mesh = isText ? textMesh(mapped.text(), file, anchor)

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -276,6 +277,13 @@ TEST_F(LoadObj, ReadsVerticesWithoutFacesAsPoints) {
     EXPECT_EQ(load(kSquare).points.positions.size(), 4U);
     EXPECT_EQ(error(kSquare + "l 1 2\n"), "DIR/a.obj: lines, but no faces or points");
     EXPECT_EQ(error("o nothing\n"), "DIR/a.obj: no vertices");
+    const auto isNoText = [](const char* kind) {
+        return fmt::format("DIR/a.obj: is {}; allowed: as it is, text in UTF-8", kind);
+    };
+    EXPECT_EQ(error(std::string("\xFF\xFEv\0 \0", 6)), isNoText("in UTF-16"));
+    EXPECT_EQ(error(std::string("\xFE\xFF\0v\0 ", 6)), isNoText("in UTF-16"));
+    EXPECT_EQ(error("\x1F\x8B\x08 …"), isNoText("compressed by gzip"));
+    EXPECT_EQ(error("PK\x03\x04…"), isNoText("an archive (zip)"));
 }
 
 /// A path is often the last word of one.
