@@ -15,10 +15,12 @@
 namespace gfxrepro::scene {
 namespace {
 
-/// "Kd r g b" or "Kd grey"; nothing of "Kd spectral file" and "Kd xyz x y z".
-std::optional<glm::vec3> colour(LineReader& lines, LeftOut& leftOut) {
-    if (const std::string_view rest = lines.name();
-        rest.starts_with("spectral") || rest.starts_with("xyz")) {
+/// "Kd r g b" or "Kd grey"; nothing of "Kd spectral file" and "Kd xyz x y z", which are said.
+std::optional<glm::vec3> colour(LineReader& lines, std::string_view key, LeftOut& leftOut) {
+    const bool isSpectrum = lines.name().starts_with("spectral");
+    if (isSpectrum || lines.name().starts_with("xyz")) {
+        leftOut.add(fmt::format("'{}' by {} in a material file", key,
+                                isSpectrum ? "a spectrum" : "CIE XYZ"));
         while (!lines.word().empty()) {
         }
         return std::nullopt;
@@ -97,9 +99,9 @@ std::string_view withoutQuotes(std::string_view name) {
 std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, LeftOut& leftOut) {
     requireReadAtOnce(path);
     const MappedFile file(path);
+    requireUtf8Text(file.text(), path.string());
     LineReader lines(file.text(), path.string());
     std::map<std::string, MtlMaterial> materials;
-    requireUtf8Text(file.text(), path.string());
     MtlMaterial* current = nullptr;
     while (lines.nextLine()) {
         const std::string_view key = lines.word();
@@ -122,8 +124,7 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
         }
         Material& material = current->material;
         if (key == "Kd" || key == "Ke") {
-            const auto read = colour(lines, leftOut);
-            if (!read) leftOut.add(fmt::format("'{}' by a spectrum in a material file", key));
+            const auto read = colour(lines, key, leftOut);
             if (read && key == "Kd") {
                 material.baseColor = glm::vec4(*read, material.baseColor.a);
             } else if (read) {

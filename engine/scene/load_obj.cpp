@@ -103,7 +103,10 @@ class ObjParser {
             ++content_.linesOfLines;
         } else if (key == "s") {
             ++smoothingCount_;
-        } else if (!key.empty() && key != "o" && key != "g") {  // these only name things
+        } else if (key.empty()) {  // ZBrush has colours in comments
+            if (!lines_.name().starts_with("#MRGB")) return;
+            leftOut_.add("the line '#MRGB' (vertex colours)");
+        } else if (key != "o" && key != "g") {  // these only name things
             leftOut_.add(fmt::format("the line {}", inQuotes(key)));
         }
     }
@@ -453,10 +456,10 @@ Scene sceneOf(ObjContent content, const std::filesystem::path& path, LeftOut& le
 
 Scene loadObj(const std::filesystem::path& path) {
     const MappedFile mapped(path);
+    requireUtf8Text(mapped.text(), path.string());
     return loadedNearOrigin([&](Anchor& anchor, LeftOut& leftOut) {
         return sceneOf(ObjParser(mapped.text(), path.string(), anchor, leftOut).parse(), path,
                        leftOut);
-    requireUtf8Text(mapped.text(), path.string());
     });
 }
 

@@ -46,8 +46,8 @@ TEST(LeftOut, OfObj) {
         "parm u 0 1\ntrim 0 1 1\nhole 0 1 1\nscrv 0 1 1\nsp 1\nend\ncon 1 0 1 1 2 0 1 1\n"
         "usemtl a\nusemap off\nmaplib a\nf 1/1 2/1 3/1\nfo 1 2 3\nl 1 2\np 1\nlod 1\nbevel off\n"
         "c_interp off\nd_interp off\nshadow_obj a\ntrace_obj a\nctech cparm 1\nstech cparma 1 "
-        "1\n"));
-    Lines expected;
+        "1\n#MRGB ff808080ff808080ff808080\n"));
+    Lines expected{"left out: the line '#MRGB' (vertex colours)"};
     for (const char* line :
          {"bevel",  "bmat",     "c_interp", "con",       "cstype", "ctech",      "curv",
           "curv2",  "d_interp", "deg",      "end",       "hole",   "l",          "lod",
@@ -83,14 +83,18 @@ TEST(LeftOut, OfPly) {
         "0 1 0 0 9 9 9 9 0 0 1 1 1 0 1 5 0\n3 0 1 2 2 0 0 7 0\n0 1\n1 2\n3\n"));
     EXPECT_EQ(
         scene.warnings,
-        (Lines{"left out: a comment TextureFile", "left out: a row of element 'edge' (2 times)",
-               "left out: a row of element 'material'",
-               "left out: the property 'alpha' of vertices",
-               "left out: the property 'curvature' of vertices",
-               "left out: the property 'neighbours' of vertices",
-               "left out: the property 'nx' of vertices", "left out: the property 'red' of faces",
-               "left out: the property 'texcoord' of faces",
-               "left out: the radius of a vertex with faces (3 times)"}));
+        (Lines{
+            "left out: a comment TextureFile", "left out: a row of element 'edge' (2 times)",
+            "left out: a row of element 'material'", "left out: the property 'alpha' of vertices",
+            "left out: the property 'confidence' of vertices",
+            "left out: the property 'curvature' of vertices",
+            "left out: the property 'flags' of faces", "left out: the property 'flags' of vertices",
+            "left out: the property 'intensity' of vertices",
+            "left out: the property 'neighbours' of vertices",
+            "left out: the property 'nx' of vertices",
+            "left out: the property 'quality' of vertices", "left out: the property 'red' of faces",
+            "left out: the property 'texcoord' of faces",
+            "left out: the radius of a vertex with faces (3 times)"}));
 }
 
 /// A header that counts too few rows, or a file that is two.

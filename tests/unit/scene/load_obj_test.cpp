@@ -172,12 +172,13 @@ TEST_F(LoadObj, SaysWhichColoursOfTexturesAreNotRead) {
 
 TEST_F(LoadObj, ReadsWhatIsUnusual) {
     const float half = 0.5F;
-    folder_.write("a.mtl", "newmtl a\nKd spectral red.rfl 1.0\nd -halo 0.5\n");
+    folder_.write("a.mtl", "newmtl a\nKd spectral red.rfl 1.0\nKe xyz 1 1 1\nd -halo 0.5\n");
     const Scene scene = load("mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 \\ \n3 4\n");
     EXPECT_EQ(scene.triangleCount(), 2U);
     EXPECT_EQ(scene.materials.at(0).baseColor, glm::vec4(glm::vec3(0.8F), half));
     EXPECT_EQ(scene.warnings,
               (std::vector<std::string>{"left out: 'Kd' by a spectrum in a material file",
+                                        "left out: 'Ke' by CIE XYZ in a material file",
                                         "left out: 'd -halo' of a material file, taken as 'd'",
                                         "left out: a material's opacity below 1, drawn as solid"}));
 
@@ -276,7 +277,6 @@ TEST_F(LoadObj, LivesWithoutItsMaterialFile) {
 TEST_F(LoadObj, ReadsVerticesWithoutFacesAsPoints) {
     EXPECT_EQ(load(kSquare).points.positions.size(), 4U);
     EXPECT_EQ(error(kSquare + "l 1 2\n"), "DIR/a.obj: lines, but no faces or points");
-    EXPECT_EQ(error("o nothing\n"), "DIR/a.obj: no vertices");
     const auto isNoText = [](const char* kind) {
         return fmt::format("DIR/a.obj: is {}; allowed: as it is, text in UTF-8", kind);
     };
@@ -284,6 +284,7 @@ TEST_F(LoadObj, ReadsVerticesWithoutFacesAsPoints) {
     EXPECT_EQ(error(std::string("\xFE\xFF\0v\0 ", 6)), isNoText("in UTF-16"));
     EXPECT_EQ(error("\x1F\x8B\x08 …"), isNoText("compressed by gzip"));
     EXPECT_EQ(error("PK\x03\x04…"), isNoText("an archive (zip)"));
+    EXPECT_EQ(error("o nothing\n"), "DIR/a.obj: no vertices");
 }
 
 /// A path is often the last word of one.
