@@ -506,20 +506,6 @@ ExrImage exrFrom(const ImageConvertOptions& options) {
     return exr;
 }
 
-}  // namespace
-
-int imageConvert(const ImageConvertOptions& options) {
-    requireNoInput(options.out, {&options.in, 1});
-    if (image::isExrFile(options.out)) {
-        image::writeExr(options.out, exrFrom(options));
-    } else {
-        image::writePng(options.out, convertedPicture(options));
-    }
-    return kExitOk;
-}
-
-namespace {
-
 template <class T>
 image::Image<T> quantized(const ImageF& unit) {
     constexpr auto kMost = static_cast<float>(std::numeric_limits<T>::max());
@@ -529,7 +515,37 @@ image::Image<T> quantized(const ImageF& unit) {
     return result;
 }
 
+/// Values of sRGB as they are.
+void writeAsStored(const std::string& path, const ImageF& stored, int bits) {
+    if (bits == 16) {
+        image::writePng(path, quantized<std::uint16_t>(stored));
+    } else {
+        image::writePng(path, quantized<std::uint8_t>(stored));
+    }
+}
+
 }  // namespace
+
+int imageConvert(const ImageConvertOptions& options) {
+    requireNoInput(options.out, {&options.in, 1});
+    if (image::isExrFile(options.out)) {
+        image::writeExr(options.out, exrFrom(options));
+        return kExitOk;
+    }
+    const bool isAsIs = options.channels.empty() && options.range.empty() &&
+                        options.exposureStops == 0.0 && options.toneMap == "none";
+    if (!isAsIs || image::formatOf(options.in) == "exr") {
+        image::writePng(options.out, convertedPicture(options));
+        return kExitOk;
+    }
+    const image::Picture picture = readTelling(options.in);
+    if (picture.isLinear) {
+        image::writePng(options.out, shown(picture.linear, options));
+    } else {
+        writeAsStored(options.out, picture.stored, picture.bits);
+    }
+    return kExitOk;
+}
 
 int imageCrop(const ImageCropOptions& options) {
     const bool isExr = image::formatOf(options.in) == "exr";
@@ -550,12 +566,8 @@ int imageCrop(const ImageCropOptions& options) {
         part.top += exr.shownWindow().top - exr.dataWindow().top;
         image::writeExr(options.out, image::cropped(exr, part, options.scale));
     } else {
-        const ImageF cropped = image::cropped(picture.stored, part, options.scale);
-        if (picture.bits == 16) {
-            image::writePng(options.out, quantized<std::uint16_t>(cropped));
-        } else {
-            image::writePng(options.out, quantized<std::uint8_t>(cropped));
-        }
+        writeAsStored(options.out, image::cropped(picture.stored, part, options.scale),
+                      picture.bits);
     }
     return kExitOk;
 }

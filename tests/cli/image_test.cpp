@@ -227,6 +227,21 @@ TEST_F(ImageCommands, ConvertKeepsWhatAnExrHas) {
     EXPECT_NEAR(image::readExr(at("c.exr")).colour().at(15, 0, 1), 0.5F, 0.003F);
 }
 
+TEST_F(ImageCommands, ConvertKeepsBitsAndWhatAlphaHides) {
+    Image8 hidden(1, 1, 4, 0);
+    hidden.at(0, 0, 1) = 7;
+    out({"image", "convert", write("a.png", hidden), "--out", at("b.png")});
+    EXPECT_EQ(image::readPng8(at("b.png")), hidden);
+    image::Image16 fine(2, 1, 1);
+    fine.at(0, 0) = 0x1234;
+    fine.at(1, 0) = 0x1235;
+    image::writePng(at("c.png"), fine);
+    out({"image", "convert", at("c.png"), "--out", at("d.png")});
+    EXPECT_EQ(image::readPng16(at("d.png")), fine);
+    out({"image", "convert", at("c.png"), "--out", at("e.png"), "--exposure", "1"});
+    EXPECT_EQ(image::PngRows(at("e.png"), 100).bitDepth(), 8) << "what is shown has 8 bits";
+}
+
 TEST_F(ImageCommands, ConvertRefuses) {
     const std::string in = write("a.exr", gbuffer(0.5F)), png = write("b.png", Image8(4, 4, 3));
     EXPECT_EQ(refusal({"image", "convert", in, "--out", at("x.png"), "--channels", "z"}),
