@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <glm/gtc/type_ptr.hpp>
@@ -192,6 +193,19 @@ bool parse(std::string_view content, bool isBinary, Folder& folder, tinygltf::Mo
     }
 }
 
+/// The JSON library says "[json.exception.parse_error.101] parse error at line 3, column 5: …".
+[[noreturn]] void failOfParser(const std::string& file, const std::string& reason, bool isBinary) {
+    constexpr std::string_view kException = "[json.exception.";
+    int line = 0, column = 0, end = 0;
+    std::sscanf(reason.c_str(), "[%*[^]]] parse error at line %d, column %d: %n", &line, &column,
+                &end);
+    if (!reason.starts_with(kException)) throw Error(fmt::format("{}: {}", file, reason));
+    if (end == 0) throw Error(fmt::format("{}: {}", file, reason.substr(reason.find(']') + 2)));
+    const std::string found = reason.substr(static_cast<std::size_t>(end));
+    if (!isBinary) throw Error({file, line, column}, found);
+    throw Error(fmt::format("{}: line {}, column {} of its JSON: {}", file, line, column, found));
+}
+
 }  // namespace
 
 File readFile(const std::filesystem::path& path) {
@@ -234,7 +248,7 @@ File readFile(const std::filesystem::path& path) {
             throw Error(fmt::format("{}: the file {} is not beside it", file.name,
                                     inQuotes(folder.absent)));
         }
-        throw Error(fmt::format("{}: {}", file.name, reason.substr(0, reason.find('\n'))));
+        failOfParser(file.name, std::string(reason.substr(0, reason.find('\n'))), isBinary);
     }
     if (!asset.minVersion.empty() && asset.minVersion != "2.0") {
         throw Error(fmt::format("{}: needs glTF version '{}' at least; 2.0 is read", file.name,

@@ -539,7 +539,12 @@ TEST_F(LoadGltf, RefusesWhatItCannotRead) {
               "KHR_mesh_quantization, KHR_node_visibility, KHR_texture_transform");
     EXPECT_EQ(errorWith("extras", std::string(300, '[') + std::string(300, ']')),
               "DIR/a.gltf: JSON nested deeper than 256");
-    EXPECT_THAT(error("{\"asset\": {\"version\": 2"), testing::StartsWith("DIR/a.gltf: "));
+    EXPECT_EQ(error("{\"asset\": {\"version\": \"2.0\""),
+              "DIR/a.gltf:1:28: syntax error while parsing object - unexpected end of input; "
+              "expected '}'");
+    EXPECT_EQ(error("{\"asset\":{\"version\":\"2.0\"},\n \"nodes\":[{\"mesh\":0,}]}"),
+              "DIR/a.gltf:2:21: syntax error while parsing object key - unexpected '}'; expected "
+              "string literal");
     const std::string rule = "; a .gltf file is a JSON object, a .glb file begins with 'glTF'";
     EXPECT_EQ(error("[1, 2, 3]"), "DIR/a.gltf: is no glTF" + rule);
     EXPECT_EQ(error("{"), "DIR/a.gltf: is no glTF" + rule);
