@@ -169,6 +169,7 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
   public:
     struct Callbacks {
         std::function<void(const std::string&)> onUnknown = [](const std::string&) {};
+        std::function<void(const std::string&)> onNull = [](const std::string&) {};
         std::function<void(const std::string&)> onUri = [](const std::string&) {};
         std::function<void(const std::string&)> onWrong = [](const std::string&) {};
     };
@@ -183,6 +184,7 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
         if (!isLookedAt()) return true;
         if (!open_.back().isObject) return take("", "null");
         open_.back().hasValue[open_.back().key] = false;
+        on_.onNull(joinedPath(open_.back().path, open_.back().key));
         return true;
     }
     bool boolean(bool value) override { return take("b", value ? "true" : "false"); }
@@ -337,14 +339,18 @@ int hexDigit(char c) {
 
 std::string checkedKeys(std::string_view json, LeftOut& leftOut) {
     std::string wrong;
-    Walker::walk(json, {.onUnknown =
-                            [&](const std::string& key) {
-                                leftOut.add(fmt::format("the key {}", inQuotes(key)));
-                            },
-                        .onWrong =
-                            [&](const std::string& what) {
-                                if (wrong.empty()) wrong = what;
-                            }});
+    Walker::walk(
+        json,
+        {.onUnknown =
+             [&](const std::string& key) { leftOut.add(fmt::format("the key {}", inQuotes(key))); },
+         .onNull =
+             [&](const std::string& key) {
+                 leftOut.add(fmt::format("the key {}, as it is null", inQuotes(key)));
+             },
+         .onWrong =
+             [&](const std::string& what) {
+                 if (wrong.empty()) wrong = what;
+             }});
     return wrong;
 }
 

@@ -131,6 +131,13 @@ TEST_F(LoadMeaning, OfGltfNothingStandsTwice) {
     EXPECT_EQ(gltfError("nodes", "[" + both + R"("scale":null}])"), "no error");
 }
 
+TEST_F(LoadMeaning, OfGltfWhatIsNullIsSaid) {
+    Document document = square();
+    document["nodes"] = R"([{"mesh":0,"scale":null}])";
+    EXPECT_EQ(warningsOf("a.gltf", text(document)),
+              Lines{"left out: the key 'nodes.scale', as it is null"});
+}
+
 TEST_F(LoadMeaning, RestsOfGltfAreSaid) {
     Document document = square();
     document["accessors"].replace(document["accessors"].find("\"count\":6"), 9, "\"count\":5");
