@@ -210,6 +210,12 @@ std::optional<double> maximumOf(Type type) {
     });
 }
 
+/// What scanners and their programs write of a vertex that changes nothing of what is drawn.
+bool changesNothing(const Property& property) {
+    return property.name == "confidence" || property.name == "intensity" ||
+           property.name == "quality" || property.name == "flags";
+}
+
 struct Vertices {
     Mesh mesh;  // without triangles
     std::vector<float> radii;
@@ -253,7 +259,7 @@ class VertexParser {
         }
         for (std::size_t i = 0; i < slots_.size(); ++i) {
             const Property& property = element.properties[i];
-            if (isComplete(slots_[i])) continue;
+            if (isComplete(slots_[i]) || changesNothing(property)) continue;
             leftOut.add(fmt::format("the property {} of vertices", inQuotes(property.name)));
         }
         if (!hasAll({kX, kY, kZ})) {
@@ -447,7 +453,7 @@ void parseFaces(Reader& reader, const Element& element, std::uint64_t vertexCoun
                     "element '" + element.name + "' lacks the list vertex_indices");
     }
     for (const Property& property : element.properties) {
-        if (&property == &*list) continue;
+        if (&property == &*list || changesNothing(property)) continue;
         leftOut.add(fmt::format("the property {} of faces", inQuotes(property.name)));
     }
     // A file of zeros has a face of no corners in each byte.

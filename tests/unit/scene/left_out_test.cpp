@@ -83,18 +83,14 @@ TEST(LeftOut, OfPly) {
         "0 1 0 0 9 9 9 9 0 0 1 1 1 0 1 5 0\n3 0 1 2 2 0 0 7 0\n0 1\n1 2\n3\n"));
     EXPECT_EQ(
         scene.warnings,
-        (Lines{
-            "left out: a comment TextureFile", "left out: a row of element 'edge' (2 times)",
-            "left out: a row of element 'material'", "left out: the property 'alpha' of vertices",
-            "left out: the property 'confidence' of vertices",
-            "left out: the property 'curvature' of vertices",
-            "left out: the property 'flags' of faces", "left out: the property 'flags' of vertices",
-            "left out: the property 'intensity' of vertices",
-            "left out: the property 'neighbours' of vertices",
-            "left out: the property 'nx' of vertices",
-            "left out: the property 'quality' of vertices", "left out: the property 'red' of faces",
-            "left out: the property 'texcoord' of faces",
-            "left out: the radius of a vertex with faces (3 times)"}));
+        (Lines{"left out: a comment TextureFile", "left out: a row of element 'edge' (2 times)",
+               "left out: a row of element 'material'",
+               "left out: the property 'alpha' of vertices",
+               "left out: the property 'curvature' of vertices",
+               "left out: the property 'neighbours' of vertices",
+               "left out: the property 'nx' of vertices", "left out: the property 'red' of faces",
+               "left out: the property 'texcoord' of faces",
+               "left out: the radius of a vertex with faces (3 times)"}));
 }
 
 /// A header that counts too few rows, or a file that is two.
