@@ -18,6 +18,7 @@
 #include "engine/image/image_file.h"
 #include "engine/image/png_io.h"
 #include "engine/image/srgb.h"
+#include "tests/support/cut_tiff.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::image {
@@ -447,29 +448,6 @@ TEST_F(Formats, JpegIsTurnedAsItsExifSays) {
     }
 }
 
-/// 2 x 2 values of 8 bits behind their directory, without the last of them.
-std::string cutTiff() {
-    std::string file("II*\0\x8\0\0\0\x9\0", 10);
-    const auto add = [&](int tag, int value) {  // LONG (4), one; SHORT where the format has it
-        constexpr int kStripOffsets = 273, kStripByteCounts = 279;
-        const int type = tag == kStripOffsets || tag == kStripByteCounts ? 4 : 3;
-        for (const int word : {tag, type, 1, 0, value, 0}) {
-            file += static_cast<char>(word & 0xFF);
-            file += static_cast<char>(word >> 8);
-        }
-    };
-    add(256, 2);
-    add(257, 2);
-    add(258, 8);
-    add(259, 1);
-    add(262, 1);
-    add(273, 122);  // where the values begin
-    add(277, 1);
-    add(278, 2);
-    add(279, 4);  // how many bytes they have
-    return file + std::string(4, '\0') + "\1\2\3";
-}
-
 /// How a TIFF file is laid out; what is not said is as in most.
 struct Layout {
     int channels = 3;
@@ -607,7 +585,7 @@ TEST_F(Formats, OtherTiffFilesAreRefused) {
     for (std::size_t size = 4; size < whole.size(); size += 11) {
         EXPECT_TRUE(errorOf("b.tif", whole.substr(0, size)).starts_with("DIR/b.tif: ")) << size;
     }
-    EXPECT_EQ(errorOf("b.tif", cutTiff()),
+    EXPECT_EQ(errorOf("b.tif", test::cutTiff()),
               "DIR/b.tif: the file ends early in strip 0: bytes needed from byte 122 on: 4, found: "
               "3");
 }

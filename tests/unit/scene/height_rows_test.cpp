@@ -14,6 +14,7 @@
 #include "engine/core/files.h"
 #include "engine/image/png_io.h"
 #include "engine/scene/height_map.h"
+#include "tests/support/cut_tiff.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -90,29 +91,6 @@ std::vector<std::int16_t> values() {
         result.push_back(static_cast<std::int16_t>(i % 11 == 3 ? -32768 : i % 977));
     }
     return result;
-}
-
-/// 2 x 2 values of 8 bits behind their directory, without the last of them.
-std::string cutTiff() {
-    std::string file("II*\0\x8\0\0\0\x9\0", 10);
-    const auto add = [&](int tag, int value) {  // LONG (4), one; SHORT where the format has it
-        constexpr int kStripOffsets = 273, kStripByteCounts = 279;
-        const int type = tag == kStripOffsets || tag == kStripByteCounts ? 4 : 3;
-        for (const int word : {tag, type, 1, 0, value, 0}) {
-            file += static_cast<char>(word & 0xFF);
-            file += static_cast<char>(word >> 8);
-        }
-    };
-    add(256, 2);
-    add(257, 2);
-    add(258, 8);
-    add(259, 1);
-    add(262, 1);
-    add(273, 122);  // where the values begin
-    add(277, 1);
-    add(278, 2);
-    add(279, 4);  // how many bytes they have
-    return file + std::string(4, '\0') + "\1\2\3";
 }
 
 void writeTiledTiff(const fs::path& path, const std::vector<std::int16_t>& values, int tileSide) {
@@ -223,7 +201,7 @@ TEST_F(HeightRows, BrokenFilesLeaveNothingBehind) {
     testing::internal::CaptureStderr();
     EXPECT_TRUE(message("cut.png").starts_with(
         "DIR/cut.png: the file ends early in chunk IDAT: bytes needed from byte "));
-    folder.write("cut.tif", cutTiff());
+    folder.write("cut.tif", test::cutTiff());
     EXPECT_EQ(message("cut.tif"),
               "DIR/cut.tif: the file ends early in strip 0: bytes needed from byte 122 on: 4, "
               "found: 3");
