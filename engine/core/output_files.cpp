@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -66,6 +67,15 @@ void makeFolder(const fs::path& folder) {
     std::error_code failure;
     fs::create_directories(folder, failure);
     if (failure) throw WriteError("cannot create " + folder.string() + ": " + failure.message());
+}
+
+FileLock::FileLock(const fs::path& path) {
+    makeFolder(path.parent_path());
+    file_ = Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | kSafe, 0644));
+    if (file_.get() < 0) failToWrite("write", path);
+    while (::flock(file_.get(), LOCK_EX) != 0) {
+        if (errno != EINTR) failToWrite("lock", path);
+    }
 }
 
 void writeFolder(const fs::path& target, const std::function<void(const fs::path&)>& write) {

@@ -44,6 +44,17 @@ class AtomicFile {
 /// With those above it. Throws WriteError.
 void makeFolder(const std::filesystem::path& folder);
 
+/// Held by one process at a time, until it goes: of all that need a file one makes it, and the
+/// others wait for it.
+class FileLock {
+  public:
+    /// Waits. Makes an empty file and its folder. Throws WriteError.
+    explicit FileLock(const std::filesystem::path& path);
+
+  private:
+    Descriptor file_;
+};
+
 /// Lets `write` make and fill the folder that it is given, which has the name of `target` and lies
 /// in a temporary one beside it, and moves it there: `target` is there as a whole, or not at all.
 /// Throws Error where it is there already, WriteError, and what `write` throws.

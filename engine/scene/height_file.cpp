@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/mman.h>
 #include <tbb/parallel_for.h>
 #include <unistd.h>
@@ -67,8 +66,7 @@ std::size_t fileBytes(glm::ivec2 sizeSamples) {
 }
 
 [[noreturn]] void fail(const char* what, const fs::path& path) {
-    throw UnwritableError(
-        fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(errno)));
+    throw WriteError(fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(errno)));
 }
 
 /// An open file, closed when it goes out of scope.
@@ -92,12 +90,6 @@ class OpenFile {
     }
     void flush() const {
         if (::fsync(file_.get()) != 0) fail("flush", path_);
-    }
-    /// Until it is closed, by whatever.
-    void lock() const {
-        while (::flock(file_.get(), LOCK_EX) != 0) {
-            if (errno != EINTR) fail("lock", path_);
-        }
     }
 
   private:
@@ -231,14 +223,7 @@ std::shared_ptr<const HeightFile> HeightFile::openOrBuild(
     const RowsMaker& makeRows, const Preparation& prepare, std::uintmax_t mostBytes) {
     GFXREPRO_ASSERT(sizeSamples.x >= 1 && sizeSamples.y >= 1);
     const fs::path path = folder / (key + ".heights");
-    std::error_code failure;
-    fs::create_directories(folder, failure);
-    if (failure) {
-        throw UnwritableError(
-            fmt::format("cannot create {}: {}", folder.string(), failure.message()));
-    }
-    const OpenFile lock(folder / "lock", O_RDWR | O_CREAT);
-    lock.lock();
+    const FileLock lock(folder / "lock");
     if (!isThere(path, sizeSamples)) {
         const std::size_t filledCount = prepare();
         build(path, sizeSamples, makeRows, filledCount);
@@ -246,7 +231,8 @@ std::shared_ptr<const HeightFile> HeightFile::openOrBuild(
         removeOldest(folder, ".heights", path, mostBytes);
     }
     // Which file was in use last, for removeOldest().
-    fs::last_write_time(path, fs::file_time_type::clock::now(), failure);
+    std::error_code ignored;
+    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
     return std::shared_ptr<const HeightFile>(new HeightFile(path, key, sizeSamples));
 }
 

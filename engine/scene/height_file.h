@@ -15,11 +15,6 @@
 
 namespace gfxrepro::scene {
 
-/// The folder of a height file cannot be written.
-class UnwritableError : public Error {
-    using Error::Error;
-};
-
 /// The whole map and, for the tiles of coarser levels, every 2nd, 4th, … sample of it once more,
 /// each level row by row. The file is mapped: what is looked at becomes resident until release(),
 /// and with it as much of its surroundings as the system keeps in one piece (2 MiB on Linux 6.18):
@@ -42,7 +37,7 @@ class HeightFile {
 
     /// Maps `folder`/<key>.heights, made first where it is not there, is cut off, or is another
     /// version's: a few rows at a time, under a temporary name that is renamed when it is whole, by
-    /// one process while others wait. Throws UnwritableError where the folder cannot be written,
+    /// one process while others wait. Throws WriteError where the folder cannot be written,
     /// and what the makers throw.
     static std::shared_ptr<const HeightFile> openOrBuild(const std::filesystem::path& folder,
                                                          const std::string& key,

@@ -77,7 +77,7 @@ std::string steepnessWarning(const HeightMap& map) {
         ends.lowestM, ends.highestM, longerM, map.sizeSamples.x, map.sizeSamples.y, map.spacingM);
 }
 
-void settleForMemory(const std::string& name, glm::ivec2 sizeSamples, const UnwritableError& why) {
+void settleForMemory(const std::string& name, glm::ivec2 sizeSamples, const WriteError& why) {
     if (std::max(sizeSamples.x, sizeSamples.y) > kMaxHeightMapSide) {
         throw Error(
             fmt::format("{}: {} x {} samples have no file: {}; allowed without one, in memory: at "
@@ -259,7 +259,7 @@ HeightMap loadHeightMapInFile(const fs::path& path, const HeightMapUnits& units,
             folder, key, map.sizeSamples,
             [&](int, int count, float* heightsM) { conversion.makeRows(count, heightsM); },
             [&] { return conversion.prepare(); });
-    } catch (const UnwritableError& error) {
+    } catch (const WriteError& error) {
         settleForMemory(path.string(), map.sizeSamples, error);
         return loadHeightMap(path, units);
     }
@@ -434,7 +434,7 @@ HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, 
             HeightFile::inParallel(result.sizeSamples.x,
                                    [&](int row, float* heights) { rows.makeRow(row, heights); }),
             [] { return std::size_t{0}; });
-    } catch (const UnwritableError& error) {
+    } catch (const WriteError& error) {
         settleForMemory("a resampled height map", result.sizeSamples, error);
         return resampled(map, sizeSamples, detailM, seed);
     }

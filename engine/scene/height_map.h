@@ -113,7 +113,7 @@ std::string steepnessWarning(const HeightMap& map);
 
 /// Where the file of a map cannot be written: says in the log that the map is held in memory
 /// instead, or throws Error where its sides are longer than kMaxHeightMapSide.
-void settleForMemory(const std::string& name, glm::ivec2 sizeSamples, const UnwritableError& why);
+void settleForMemory(const std::string& name, glm::ivec2 sizeSamples, const WriteError& why);
 
 /// Triangles over every n-th sample (and the last), at most `maxSamples` a side, for previews.
 Mesh heightMapMesh(const HeightMap& map, int maxSamples = 513);

@@ -111,7 +111,7 @@ HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed
         map.file =
             HeightFile::openOrBuild(folder, key, map.sizeSamples,
                                     HeightFile::inParallel(map.sizeSamples.x, makeRow), prepare);
-    } catch (const UnwritableError& error) {
+    } catch (const WriteError& error) {
         settleForMemory("a generated terrain", map.sizeSamples, error);
         return fractalTerrain(terrain, seed);
     }

@@ -4,11 +4,16 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/output_files.h"
 
 namespace gfxrepro::kit {
 
@@ -29,8 +34,7 @@ struct FileStamp {
     bool operator==(const FileStamp&) const = default;
 };
 
-/// Writes a file whole under a temporary name and renames it, so that several processes may do so
-/// at once. False where the folder cannot be written: that costs the next run its time, no more.
+/// False where the folder cannot be written: that costs the next run its time, no more.
 inline bool keepFile(const std::filesystem::path& path, const std::string& bytes) {
     try {
         writeFileAtomic(path, bytes);
@@ -38,6 +42,28 @@ inline bool keepFile(const std::filesystem::path& path, const std::string& bytes
     } catch (const Error&) {
         return false;
     }
+}
+
+/// What `find` finds, else what `make` makes, and keeps at `path`. Of several processes that miss
+/// it one makes it, on all processors; the others wait, and find it.
+template <class Content>
+Content foundOrMade(const std::filesystem::path& path,
+                    const std::function<std::optional<Content>()>& find,
+                    const std::function<Content()>& make) {
+    if (auto found = find()) return *std::move(found);
+    std::filesystem::path lockPath = path;
+    lockPath += ".lock";
+    std::optional<FileLock> lock;
+    try {
+        lock.emplace(lockPath);
+    } catch (const WriteError&) {  // then nothing can be kept, either
+        return make();
+    }
+    auto content = find();
+    if (!content) content = make();
+    std::error_code ignored;
+    std::filesystem::remove(lockPath, ignored);  // who waits for it finds the file
+    return *std::move(content);
 }
 
 }  // namespace gfxrepro::kit

@@ -414,13 +414,19 @@ ModelFile ModelFile::openOrBuild(const std::filesystem::path& folder,
                                  const scene::PointCloud& points, const TreeSettings& settings) {
     const std::string key = keyOf(points, settings);
     const std::filesystem::path path = folder / (key + ".points");
-    if (auto content = Content::mapped(path, key)) return ModelFile(std::move(content), false);
-
-    auto content = Content::built(points, settings, key);
-    if (kit::keepFile(path, content->memory)) {
-        if (auto kept = Content::mapped(path, key)) content = std::move(kept);
-    }
-    return ModelFile(std::move(content), true);
+    const auto find = [&]() -> std::optional<ModelFile> {
+        auto content = Content::mapped(path, key);
+        if (!content) return std::nullopt;
+        return ModelFile(std::move(content), false);
+    };
+    const auto make = [&] {
+        auto content = Content::built(points, settings, key);
+        if (kit::keepFile(path, content->memory)) {
+            if (auto kept = Content::mapped(path, key)) content = std::move(kept);
+        }
+        return ModelFile(std::move(content), true);
+    };
+    return kit::foundOrMade<ModelFile>(path, find, make);
 }
 
 std::span<const Patch> ModelFile::patches() const {

@@ -292,17 +292,22 @@ std::string TerrainMetadata::keyOf(const scene::HeightMap& map, const MetadataSe
 TerrainMetadata TerrainMetadata::openOrBuild(const std::filesystem::path& folder,
                                              const scene::HeightMap& map,
                                              const MetadataSettings& settings) {
-    TerrainMetadata result(map, settings);
     const std::string key = keyOf(map, settings);
     const std::filesystem::path path = folder / (key + ".terrain");
-    if (auto blocks = blocksIn(path, key, result.blocks_.size())) {
+    const auto find = [&]() -> std::optional<TerrainMetadata> {
+        TerrainMetadata result(map, settings);
+        auto blocks = blocksIn(path, key, result.blocks_.size());
+        if (!blocks) return std::nullopt;
         result.blocks_ = std::move(*blocks);
         result.wasBuilt_ = false;
         return result;
-    }
-    result = build(map, settings);
-    kit::keepFile(path, serialized(result.blocks_, key));
-    return result;
+    };
+    const auto make = [&] {
+        TerrainMetadata result = build(map, settings);
+        kit::keepFile(path, serialized(result.blocks_, key));
+        return result;
+    };
+    return kit::foundOrMade<TerrainMetadata>(path, find, make);
 }
 
 }  // namespace gfxrepro::terrain_tessellation
