@@ -19,6 +19,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/json_shape.h"
 #include "engine/core/text.h"
 #include "engine/scene/load_gltf_keys.h"
 #include "engine/scene/load_text.h"
@@ -122,28 +123,6 @@ bool keepEncoded(tinygltf::Image* image, int, std::string*, std::string*, int, i
     return true;
 }
 
-/// The parser recurses over nested values; a deep enough file would overflow its stack.
-void checkNesting(std::string_view json, const std::string& name) {
-    constexpr int kMaxDepth = 256;
-    int depth = 0;
-    bool isString = false;
-    for (std::size_t i = 0; i < json.size(); ++i) {
-        const char c = json[i];
-        if (isString) {
-            if (c == '\\') ++i;
-            if (c == '"') isString = false;
-        } else if (c == '"') {
-            isString = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > kMaxDepth) {
-                throw Error(fmt::format("{}: JSON nested deeper than {}", name, kMaxDepth));
-            }
-        } else if (c == ']' || c == '}') {
-            --depth;
-        }
-    }
-}
-
 void checkExtensions(const tinygltf::Model& model, const std::string& name) {
     std::vector<std::string> missing;
     for (const std::string& extension : model.extensionsRequired) {
@@ -224,7 +203,7 @@ File readFile(const std::filesystem::path& path) {
                         file.name, content.empty() ? "is empty" : "is no glTF"));
     }
     const std::string_view json = isBinary ? jsonOfGlb(content) : content;
-    checkNesting(json, file.name);
+    requireShallowJson(json, {file.name, 0, 0});  // tinygltf recurses
     const std::string wrong = checkedKeys(json, file.leftOut);
     if (isBinary) file.leftOut.add("a byte behind the file's length", bytesBehindGlb(content));
 

@@ -8,10 +8,10 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
+#include "engine/core/json_shape.h"
 #include "engine/scene/load_text.h"
 #include "engine/scene/model_files.h"
 
@@ -177,6 +177,7 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
     static void walk(std::string_view json, Callbacks callbacks) {
         Walker walker;
         walker.on_ = std::move(callbacks);
+        if (isTooDeepJson(json)) return;  // the loader refuses it
         nlohmann::json::sax_parse(withoutByteOrderMark(json), &walker);
     }
 
@@ -276,10 +277,7 @@ class Walker : public nlohmann::json_sax<nlohmann::json> {
         on_.onWrong(fmt::format("{} is {}; allowed: {}", place(), found, allowed));
     }
 
-    /// False where the parsing ends: the loader refuses what is nested so deeply.
     bool enter(bool isObject) {
-        constexpr std::size_t kMostDepth = 256;
-        if (open_.size() + skipped_.size() >= kMostDepth) return false;
         if (!skipped_.empty() || skipsValue_) {
             skipped_.emplace_back();
             return true;

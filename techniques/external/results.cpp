@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <set>
 
 #include "engine/core/files.h"
 #include "engine/core/json_shape.h"
@@ -15,8 +13,6 @@
 
 namespace gfxrepro::external {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20;
 constexpr std::size_t kLongestShown = 80;
@@ -48,25 +44,16 @@ int frameOf(const Json& line, int first, int count, const std::string& what) {
 
 GivenMetric metricOf(std::string_view text, int number, int frame, int count) {
     const std::string what = fmt::format("line {} of its metrics", number);
-    if (isTooDeepJson(text)) {
-        throw Error(fmt::format("{} has more than {} brackets in each other: {}", what,
-                                kMostJsonLevels, shown(text)));
-    }
-    std::set<std::string> keys;
-    std::string twice;  // of which the parser would take the last value
-    const auto noteKey = [&](int level, Json::parse_event_t event, const Json& parsed) {
-        if (event == Json::parse_event_t::key && level == 1 && !keys.insert(parsed).second) {
-            twice = parsed;
+    const Json line = [&] {
+        try {
+            return parseJsonObject(text, {});
+        } catch (const Error& error) {
+            const bool isNan = text.find("NaN") != text.npos || text.find("Infinity") != text.npos;
+            throw Error(fmt::format("{} {}{}: {}", what, error.what(),
+                                    isNan ? ", which has no NaN and no Infinity" : "",
+                                    shown(text)));
         }
-        return true;
-    };
-    const Json line = Json::parse(text, noteKey, false);
-    if (!line.is_object()) {
-        const bool isNan = text.find("NaN") != text.npos || text.find("Infinity") != text.npos;
-        throw Error(fmt::format("{} is no JSON object{}: {}", what,
-                                isNan ? ", which has no NaN and no Infinity" : "", shown(text)));
-    }
-    if (!twice.empty()) throw Error(fmt::format("{}: \"{}\" stands twice", what, twice));
+    }();
     static constexpr std::string_view kKeys[] = {"metric", "pass", "frame", "value", "unit"};
     for (const auto& [key, value] : line.items()) {
         if (std::ranges::find(kKeys, key) != std::end(kKeys)) continue;

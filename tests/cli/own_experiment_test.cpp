@@ -171,7 +171,7 @@ TEST_F(OwnExperiment, LatestIsTheNewestAndRunsAreListed) {
     folder.write("runs/20260105-e/plan.json", "{}");
     const std::string others = inFolder("list runs").out;
     EXPECT_THAT(others,
-                HasSubstr("runs/20260103-c  runs/20260103-c/manifest.json: nested deeper "
+                HasSubstr("runs/20260103-c  runs/20260103-c/manifest.json: is nested deeper "
                           "than 200 levels\nruns/20260104-d  runs/20260104-d/manifest.json: "
                           "a link, a pipe or a device, which a run folder does not hold\n"
                           "runs/20260105-e  not begun\n"));

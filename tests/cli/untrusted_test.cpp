@@ -124,10 +124,10 @@ TEST_F(Untrusted, BracketsAloneDoNotTakeTheStack) {
     const std::string whole = manifest;
     manifest.replace(manifest.find('{'), 1, "{\"x\": " + deep + ",");
     writeFileAtomic(dir + "/manifest.json", manifest);
-    expectRefused({"report", dir}, "/manifest.json: nested deeper than 200 levels");
+    expectRefused({"report", dir}, "/manifest.json: is nested deeper than 200 levels");
     writeFileAtomic(dir + "/manifest.json", whole);
     replaceInPlan("\"params\":{", "\"params\":{\"x\":" + deep + ",");
-    expectRefused({"table", dir}, "/plan.json: nested deeper than 200 levels\n");
+    expectRefused({"table", dir}, "/plan.json: is nested deeper than 200 levels\n");
 }
 
 TEST_F(Untrusted, RecordsAreOfThePlansCases) {

@@ -58,7 +58,8 @@ TEST(MetricLines, RefusesOthersByTheirNumber) {
               "line 1 of its metrics: unknown key \"vlaue\"; allowed: metric, pass, frame, value, "
               "unit");
     EXPECT_EQ(errorOf("{\"metric\": \"rays\", \"value\": 1, \"value\": 2, \"unit\": \"ray\"}"),
-              "line 1 of its metrics: \"value\" stands twice");
+              "line 1 of its metrics has \"value\" twice: {\"metric\": \"rays\", \"value\": 1, "
+              "\"value\": 2, \"unit\": \"ray\"}");
     EXPECT_EQ(errorOf("{\"metric\": \"rays\", \"val"),
               "line 1 of its metrics is no JSON object: {\"metric\": \"rays\", \"val");
 }
@@ -92,7 +93,7 @@ TEST(MetricLines, OfSeveralFramesEachSaysItsOwn) {
 
 TEST(MetricLines, RefusesOneThatIsTooDeep) {
     const std::string deep = "{\"metric\":" + std::string(2'000'000, '[');
-    EXPECT_EQ(errorOf(deep), "line 1 of its metrics has more than 200 brackets in each other: " +
+    EXPECT_EQ(errorOf(deep), "line 1 of its metrics is nested deeper than 200 levels: " +
                                  deep.substr(0, 80) + "…");
     const std::string closed = deep + std::string(2'000'000, ']') + "}";
     EXPECT_EQ(errorOf(closed), errorOf(deep));

@@ -20,7 +20,13 @@ TEST(JsonShape, AnObjectThatIsNotTooDeep) {
         EXPECT_EQ(errorText([&] { parseJsonObject(text, kFile); }), "a.json: is no JSON object");
     }
     EXPECT_EQ(errorText([] { parseJsonObject("{\"a\": " + std::string(300, '['), kFile); }),
-              "a.json: nested deeper than 200 levels");
+              "a.json: is nested deeper than 200 levels");
+    const std::string once =
+        R"({"a": {"b": "b\"", "c": ":"}, "c": ["b", "b", {"b": 2}, {"b": 3}]})";
+    EXPECT_EQ(parseJsonObject(once, kFile).size(), 2U);
+    EXPECT_EQ(parseJsonObject(once + std::string("\0\"", 2), kFile).size(), 2U);
+    EXPECT_EQ(errorText([] { parseJsonObject(R"({"c": [1, {"b": "\\", "b" : 3}]})", kFile); }),
+              "a.json: has \"b\" twice");
     EXPECT_FALSE(jsonObjectIn("{\"a\": " + std::string(300, '[') + std::string(300, ']') + "}"));
 }
 

@@ -538,7 +538,7 @@ TEST_F(LoadGltf, RefusesWhatItCannotRead) {
               "KHR_materials_ior, KHR_materials_transmission, KHR_materials_unlit, "
               "KHR_mesh_quantization, KHR_node_visibility, KHR_texture_transform");
     EXPECT_EQ(errorWith("extras", std::string(300, '[') + std::string(300, ']')),
-              "DIR/a.gltf: JSON nested deeper than 256");
+              "DIR/a.gltf: is nested deeper than 200 levels");
     EXPECT_EQ(error("{\"asset\": {\"version\": \"2.0\""),
               "DIR/a.gltf:1:28: syntax error while parsing object - unexpected end of input; "
               "expected '}'");
