@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "engine/image/image.h"
@@ -32,6 +33,9 @@ struct MeanTest {
     /// p may be small too often, and says nothing.
     bool isUnlike = false;
 };
+
+/// The metrics that `p` and `seen` are recorded as.
+inline constexpr std::string_view kSameMeanP = "same_mean_p", kBiasSeen = "bias_seen";
 
 inline constexpr double kMostNoiseRatio = 2.0;
 

@@ -112,7 +112,7 @@ Sampling samplingOf(const config::Experiment& experiment, const ClaimReader& rea
 std::string whyRefused(const ClaimSpec& claim, const config::Experiment& experiment,
                        const ClaimReader& reader) {
     const Kind& kind = *claim.kind;
-    if (kind.metric && !reader.readsOnly(kind.metric)) {
+    if (!kind.metric.empty() && !reader.readsOnly(kind.metric)) {
         return fmt::format("is '{}': allowed: a column of the metric {}, without 'scale' and alone",
                            kind.name(), kind.metric);
     }

@@ -216,7 +216,7 @@ bool ClaimReader::readsTime() const {
     return readsSome([](const tables::Cell& cell) { return cell.isTime; }, rowsOrAll());
 }
 
-bool ClaimReader::readsOnly(const std::string& metric) const {
+bool ClaimReader::readsOnly(std::string_view metric) const {
     const auto isOther = [&](const tables::Cell& cell) {
         return cell.isPlanned && cell.metric != metric;
     };

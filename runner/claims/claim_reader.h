@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runner/claims/judge.h"
@@ -77,7 +78,7 @@ class ClaimReader {
         return readsSome(isSuch, rows());
     }
     /// Whether its operands are columns alone, no arithmetic, and show that metric as recorded.
-    bool readsOnly(const std::string& metric) const;
+    bool readsOnly(std::string_view metric) const;
     /// The rows of which the sweep has what some part of it reads.
     Rows plannedRows() const;
     /// How many rows it reads.

@@ -76,7 +76,7 @@ Outcome outcomeOf(const ClaimPart& part, const GroupRead& group, const std::stri
     if (!group.reading.problem.empty()) return {{}, group.reading.problem};
     Outcome outcome{worstOf(group.judgements), ""};
     std::vector<std::string> reasons;
-    if (outcome.judgement.isAbsent) reasons.emplace_back("there is no crossing within the rows");
+    if (outcome.judgement.isAbsent) reasons.push_back(part.requirement.absence);
     if (isNamed) reasons.push_back("worst at " + groupName);
     switch (outcome.judgement.verdict) {
         case Verdict::Ambiguous:
@@ -355,8 +355,8 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& given,
     ClaimReader reader(claim, table);
     result.timeKind = reader.timeKind();
     if (isNotApplicable(claim, table, context, result)) return result;
-    const char* metric = claim.kind->metric;
-    if (metric && !reader.readsOnly(metric)) {
+    const std::string_view metric = claim.kind->metric;
+    if (!metric.empty() && !reader.readsOnly(metric)) {
         result.reason = fmt::format("reads another metric than {}", metric);
         return result;
     }

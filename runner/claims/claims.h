@@ -15,7 +15,6 @@
 
 namespace gfxrepro::claims {
 
-enum class Verdict { Holds, Fails, Ambiguous, NotApplicable, Unmeasured };
 /// "holds", "fails", "ambiguous", "not-applicable", "unmeasured".
 std::string_view verdictName(Verdict verdict);
 /// Throws Error for a name that is none.

@@ -78,25 +78,15 @@ std::map<int, double> beyondBound(const std::map<int, double>& rounds,
 }
 
 /// A verdict, where times are far enough apart for one.
-void decide(const Contrast& contrast, const metrics::Interval& interval, double distance,
-            double noise, Judgement& judgement) {
-    judgement.verdict = verdictOf(interval, contrast.requirement);
-    if (contrast.isRefutation) {
-        // Only what surely contradicts counts; within the noise it leaves the claim open.
-        if (judgement.verdict != Verdict::Fails) {
-            judgement.verdict = Verdict::Holds;
-        } else if (distanceToBound(interval.high, contrast.requirement) <= noise) {
-            judgement.verdict = Verdict::Ambiguous;
-            judgement.why = "a step back in every round, within the noise of these times";
-        }
-        return;
-    }
-    const bool isDecided =
-        judgement.verdict == Verdict::Holds || judgement.verdict == Verdict::Fails;
-    if (!isDecided || distance >= noise) return;
-    judgement.verdict = Verdict::Ambiguous;
-    judgement.why =
-        fmt::format("nearer to the bound than the noise of these times, {:.3g} %", 100.0 * noise);
+Decision decide(const Contrast& contrast, const metrics::Interval& interval, double distance,
+                double noise) {
+    if (contrast.decide) return contrast.decide(interval, noise);
+    const Verdict verdict = verdictOf(interval, contrast.requirement);
+    const bool isDecided = verdict == Verdict::Holds || verdict == Verdict::Fails;
+    if (!isDecided || distance >= noise) return {verdict};
+    return {
+        Verdict::Ambiguous,
+        fmt::format("nearer to the bound than the noise of these times, {:.3g} %", 100.0 * noise)};
 }
 
 /// Of rounds that are processes.
@@ -143,15 +133,17 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
         middle = metrics::median(values);
         const double distance = contrast.distance ? contrast.distance(whole, middle)
                                                   : ratioToBound(middle, requirement);
-        decide(contrast, interval, distance, noise, judgement);
+        Decision decision = decide(contrast, interval, distance, noise);
+        judgement.verdict = decision.verdict;
+        judgement.why = std::move(decision.why);
         if (verdictOf(interval, requirement) != Verdict::Holds) {
             judgement.beyond = beyondBound(byRound, requirement, contrast.scale);
         }
         judgement.measured = boundedText(middle, tables::Bounds::Interval, interval, requirement);
     }
     if (!contrast.name.empty()) judgement.measured = contrast.name + " " + judgement.measured;
-    judgement.isBeside = contrast.isRefutation || contrast.isCondition;
-    judgement.isAbsent = requirement.isInfinityAbsence && std::isinf(middle);
+    judgement.isBeside = contrast.isBeside;
+    judgement.isAbsent = !requirement.absence.empty() && std::isinf(middle);
     judgement.margin = std::min(middle - requirement.low, requirement.high - middle);
     judgement.marginText = quantityText(judgement.margin, requirement);
     return judgement;
@@ -190,11 +182,11 @@ Verdict verdictOf(const metrics::Interval& given, const Requirement& requirement
                                                         : interval.high <= requirement.high;
     const bool isAboveHigh = requirement.isHighExcluded ? interval.low >= requirement.high
                                                         : interval.low > requirement.high;
-    // A crossing that is not there lies outside of any range, an open one too.
-    const bool isAbsent =
-        requirement.isInfinityAbsence && std::isinf(interval.low) && interval.low == interval.high;
+    // What is not there lies outside of any range, an open one too.
+    const bool mayBeAbsent = !requirement.absence.empty();
+    const bool isAbsent = mayBeAbsent && std::isinf(interval.low) && interval.low == interval.high;
     const bool isPartlyAbsent =
-        requirement.isInfinityAbsence && (std::isinf(interval.low) || std::isinf(interval.high));
+        mayBeAbsent && (std::isinf(interval.low) || std::isinf(interval.high));
     if (isBelowLow || isAboveHigh || isAbsent) return Verdict::Fails;
     if (isAboveLow && isBelowHigh && !isPartlyAbsent) return Verdict::Holds;
     return Verdict::Ambiguous;
@@ -246,7 +238,7 @@ Judgement judge(Group group, const GroupNumber& quantity, const Requirement& req
         return judgement;
     }
     judgement.isSingleSample = values.empty();
-    judgement.isAbsent = requirement.isInfinityAbsence && std::isinf(point);
+    judgement.isAbsent = !requirement.absence.empty() && std::isinf(point);
     metrics::Interval interval{point, point};
     tables::Bounds bounds = tables::Bounds::None;
     const bool isEqual =

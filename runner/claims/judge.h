@@ -53,7 +53,7 @@ struct Judgement {
     double margin = 0.0;  // to the nearest bound, negative outside
     std::string marginText;
     bool isSingleSample = false;
-    bool isAbsent = false;  // a crossing that is not there
+    bool isAbsent = false;  // not there (Requirement::absence)
     bool isBeside = false;  // of a contrast that is told only where it is worse
     std::string why;        // of an ambiguous verdict on times; empty: the interval tells
     /// Of what has an interval that is not wholly within the range: how far beyond the nearer bound

@@ -281,13 +281,13 @@ class ClaimParser {
 
     void readOf(const Node& of) {
         if (!claim_.across) {
-            throw Error(node_.keyLocation("of"),
-                        fmt::format("{}: 'of' is of a claim that compares rows; allowed: with {}{} "
-                                    "or across: {}",
-                                    what_,
-                                    claim_.kind->name() == "ratio" ? "AXIS=VALUE / AXIS=VALUE"
-                                                                   : "[AXIS=VALUE, …]",
-                                    exampleOfValue(), joined(names_.rowAxes, " | ")));
+            const char* form = claim_.kind->valuesForm;
+            const std::string with =
+                form ? fmt::format("with {}{} or ", form, exampleOfValue()) : "";
+            throw Error(
+                node_.keyLocation("of"),
+                fmt::format("{}: 'of' is of a claim that compares rows; allowed: {}across: {}",
+                            what_, with, joined(names_.rowAxes, " | ")));
         }
         claim_.at.emplace_back(kColumnAxis,
                                readFilterValues(of, what_ + ": of", kColumnAxis, names_));

@@ -12,6 +12,7 @@
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
 #include "engine/image/image_file.h"
+#include "engine/metrics/mean_test.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {
@@ -127,10 +128,12 @@ const KeyTable<ImageKeys>& imageTable() {
          "others sRGB, as is their truth."},
         {{&I::file, "file", "file", "required", "in {out}", text()},
          {&I::truth, "truth", "file | {parameter: value}", "none",
-          "a file, or parameters (seed and frame, too) laid over the case's, with which the "
-          "program makes it: once for all cases that agree on the others. With frames (2 or more) "
-          "it is made of so many seeds, from frame on, and same_mean_p says whether the case's "
-          "frames have its expectation",
+          fmt::format(
+              "a file, or parameters (seed and frame, too) laid over the case's, with which the "
+              "program makes it: once for all cases that agree on the others. With frames (2 or "
+              "more) it is made of so many seeds, from frame on, and {} says whether the case's "
+              "frames have its expectation",
+              metrics::kSameMeanP),
           anyOf({text(), mapOf(anything())})}}};
     return table;
 }

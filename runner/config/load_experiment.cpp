@@ -9,6 +9,7 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
+#include "runner/claims/kinds/kind.h"
 #include "runner/config/experiment.h"
 #include "runner/config/external_program.h"
 #include "runner/config/printed_section.h"
@@ -309,28 +310,32 @@ std::string axisWith(const Names& values, Node document) {
     return found.size() == 1 ? found.begin()->first : "";
 }
 
-/// `order: [sobol, jittered]` of claims as [pattern=sobol, pattern=jittered], by the sweep of the
-/// whole file: a profile may leave out what the words are of.
+/// The list of words that operands of claims are, `order: [sobol, jittered]`, as [pattern=sobol,
+/// pattern=jittered], by the sweep of the whole file: a profile may leave out what they are of.
 void nameAxes(const Node& whole, Node& document) {
     Node* claims = document.find("claims");
     if (!claims || !claims->isMap()) return;
     const auto isWord = [](const Node& item) {
         return item.isScalar() && !item.tryDouble() && item.text().find('=') == std::string::npos;
     };
-    for (auto& [id, claim] : claims->entries()) {
-        Node* order = claim.isMap() ? claim.find("order") : nullptr;
-        if (!order || !order->isSequence()) continue;
+    const auto nameIn = [&](Node& operands) {
+        Node::Sequence items = operands.items();
         Names words;
-        for (const Node& item : order->items()) {
+        for (const Node& item : items) {
             if (isWord(item)) words.push_back(item.text());
         }
         const std::string axis = words.empty() ? "" : axisWith(words, whole);
-        if (axis.empty()) continue;
-        Node::Sequence items = order->items();
+        if (axis.empty()) return;
         for (Node& item : items) {
             if (isWord(item)) item = Node::scalar(axis + '=' + item.text(), item.location(), true);
         }
-        *order = Node::sequence(std::move(items), order->location());
+        operands = Node::sequence(std::move(items), operands.location());
+    };
+    for (auto& [id, claim] : claims->entries()) {
+        for (const claims::Kind& kind : claims::kinds()) {
+            Node* operands = claim.isMap() && kind.axisOf ? claim.find(kind.name()) : nullptr;
+            if (operands && operands->isSequence()) nameIn(*operands);
+        }
     }
 }
 

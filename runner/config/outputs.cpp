@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/core/text.h"
+#include "engine/metrics/mean_test.h"
 
 namespace gfxrepro::config {
 
@@ -81,7 +82,7 @@ bool isPictureError(std::string_view metric) {
 }
 
 bool isTestOfMeans(std::string_view metric) {
-    return metric == "same_mean_p" || metric == "bias_seen";
+    return metric == metrics::kSameMeanP || metric == metrics::kBiasSeen;
 }
 
 std::string_view betterText(Better better) {

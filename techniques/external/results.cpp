@@ -165,13 +165,14 @@ config::Outputs errorOutputs() {
     constexpr bool kIsDetail = true;
     const auto errors = config::pictureErrors();
     config::Outputs outputs{{errors.begin(), errors.end()}};
-    outputs.metrics.push_back({"same_mean_p", "1",
+    outputs.metrics.push_back({std::string(metrics::kSameMeanP), "1",
                                "chance that frames and truths of one expectation differ as these "
                                "do: a claim same_mean judges it",
                                Better::Neither, !kIsDetail, config::MetricInfo::Of::Pass});
-    outputs.metrics.push_back({"bias_seen", "1",
-                               "of a tile, as a share of the mean value: what same_mean_p shows "
-                               "more often than not at 1 % of false alarms",
+    outputs.metrics.push_back({std::string(metrics::kBiasSeen), "1",
+                               fmt::format("of a tile, as a share of the mean value: what {} shows "
+                                           "more often than not at 1 % of false alarms",
+                                           metrics::kSameMeanP),
                                Better::Lower, !kIsDetail, config::MetricInfo::Of::Pass});
     return outputs;
 }
@@ -217,8 +218,8 @@ void recordSameMean(const Samples& pictures, const Samples& truths, const std::s
                         "times, by as many samples a pixel, or as many more frames",
                         what, test.noiseRatio, metrics::kMostNoiseRatio));
     }
-    recorder.metric("same_mean_p", test.p, name);
-    if (std::isfinite(test.seen)) recorder.metric("bias_seen", test.seen, name);
+    recorder.metric(metrics::kSameMeanP, test.p, name);
+    if (std::isfinite(test.seen)) recorder.metric(metrics::kBiasSeen, test.seen, name);
 }
 
 }  // namespace gfxrepro::external

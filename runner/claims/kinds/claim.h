@@ -13,6 +13,8 @@ namespace gfxrepro::claims {
 
 struct Kind;
 
+enum class Verdict { Holds, Fails, Ambiguous, NotApplicable, Unmeasured };
+
 /// What a claim calls the axis of the columns when it compares rows (`across`).
 inline constexpr const char* kColumnAxis = "column";
 

@@ -62,7 +62,7 @@ Contrasts changesPlaces(Contrasts crossings) {
             };
             contrasts.push_back(
                 {isAtEnd ? "ratio in the last row" : "ratio in the first row", ratio, beyond});
-            contrasts.back().isCondition = true;
+            contrasts.back().isBeside = true;
         }
         return contrasts;
     };
@@ -72,7 +72,7 @@ std::vector<ClaimPart> crossoverParts(const ClaimSpec& claim) {
     const std::string name =
         "crossing of " + joined(claim.operands, " and ") + " at " + claim.over.value_or("");
     ClaimPart part{{0, 1}, crossing, rangeOf(claim, name), "crossing at"};
-    part.requirement.isInfinityAbsence = true;
+    part.requirement.absence = "there is no crossing within the rows";
     part.needsX = true;
     part.minRows = 2;
     part.onTimes =

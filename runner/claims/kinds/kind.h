@@ -12,6 +12,7 @@
 
 #include "engine/core/key_schema.h"
 #include "engine/core/node.h"
+#include "engine/metrics/statistics.h"
 #include "runner/claims/kinds/claim.h"
 
 namespace gfxrepro::claims {
@@ -38,10 +39,15 @@ struct Requirement {
     double high = kInfinity;
     bool isLowExcluded = false;
     bool isHighExcluded = false;
-    bool isInfinityAbsence = false;  // what is infinite is not there, and fails
-    bool isOfCounts = false;         // of what was counted, not of what it stands for
-    std::string text;                // "exponent in [0.3, 1.2]"
-    bool isPercent = false;          // shown ×100 with a percent sign
+    std::string absence = {};  // what is infinite is not there, and fails: what to say then
+    bool isOfCounts = false;   // of what was counted, not of what it stands for
+    std::string text = {};     // "exponent in [0.3, 1.2]"
+    bool isPercent = false;    // shown ×100 with a percent sign
+};
+
+struct Decision {
+    Verdict verdict;
+    std::string why = {};  // of an ambiguous one; empty: the interval tells
 };
 
 /// On which scale rounds scatter evenly, where many rows are looked at together
@@ -59,9 +65,10 @@ struct Contrast {
     /// By which share times would have to differ for the quantity to reach its bound: what is
     /// compared with the noise of what is read. Absent: as a quantity that is a ratio or a time.
     std::function<double(const GroupPoint&, double quantity)> distance = {};
-    /// It can only fail: not to be told from its bound is as good as to hold.
-    bool isRefutation = false;
-    bool isCondition = false;  // of what the claim asks for: told only where it is worse
+    /// By the interval of the quantity over rounds and the noise of what is read. Absent: as it
+    /// lies within the requirement, nearer to a bound than the noise ambiguous.
+    std::function<Decision(const metrics::Interval&, double noise)> decide = {};
+    bool isBeside = false;  // of what the claim asks for: told only where it is worse
 };
 /// The contrasts of a group with these values.
 using Contrasts = std::function<std::vector<Contrast>(const GroupPoint&)>;
@@ -144,9 +151,10 @@ struct Kind {
     Scale scale = Scale::Linear;
     bool isOfAllRows = false;       // judged once, not in each group of rows
     const char* instead = nullptr;  // what to write for bounds, of which it has none
-    const char* metric = nullptr;   // the only one that its operand may be
+    std::string_view metric = {};   // the only one that its operand may be; empty: any
     /// What `check` refuses, to follow the claim's name; empty where nothing is wrong.
     std::string (*refused)(const ClaimSpec& claim, const Sampling& sampling) = nullptr;
+    const char* valuesForm = nullptr;  // how operands name values of an axis, where they may
     /// The row axis whose values the operands name, which implies `across`; `what` begins messages.
     std::optional<std::string> (*axisOf)(const Node& operands, const std::string& what) = nullptr;
 

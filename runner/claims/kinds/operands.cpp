@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "engine/core/text.h"
+#include "engine/metrics/mean_test.h"
 
 namespace gfxrepro::claims {
 
@@ -27,7 +28,7 @@ bool isNumber(const std::string& text) {
 
 std::string noColumn(const std::string& name, Labels labels) {
     const bool isFrameTime = name == "wall_time_ms" && std::ranges::count(labels, "frame_ms") > 0;
-    const bool isTest = name == "bias_seen" || name == "same_mean_p";
+    const bool isTest = name == metrics::kSameMeanP || name == metrics::kBiasSeen;
     return fmt::format("'{}' is no column{} (columns: {})", name,
                        isFrameTime      ? "; its column is 'frame_ms'"
                        : isTest         ? "; it is of an image whose truth has several 'frames'"

@@ -117,6 +117,7 @@ Kind order() {
                          types::anyOf({types::text(), types::listOf(types::text(), 2)})},
                         {}),
               readOrder, orderParts};
+    kind.valuesForm = "[AXIS=VALUE, …]";
     kind.axisOf = axisOf;
     kind.instead = "by how much is a ratio's: 'ratio: b / a' with at_least";
     return kind;

@@ -53,6 +53,7 @@ Kind ratio() {
                               "values of an axis, which implies `across`",
                               types::text()}),
               readRatio, ratioParts, Kind::Compares::Operands, Scale::Logarithmic};
+    kind.valuesForm = "AXIS=VALUE / AXIS=VALUE";
     kind.axisOf = axisOfRatio;
     return kind;
 }

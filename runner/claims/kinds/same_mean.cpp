@@ -58,14 +58,16 @@ std::string refusedSameMean(const ClaimSpec& claim, const Sampling& sampling) {
 Kind sameMean() {
     SchemaSection section = sectionOf(
         {"same_mean", "a", "",
-         "noisy pictures have the expectation of their truth; a column of the metric same_mean_p",
+         fmt::format(
+             "noisy pictures have the expectation of their truth; a column of the metric {}",
+             metrics::kSameMeanP),
          types::text()},
         {shareKey("false_alarms", kRates,
                   "how often it may fail where it holds, over all rows together")});
     Kind kind{std::move(section), readSameMean, sameMeanParts};
     kind.isOfAllRows = true;
     kind.instead = "'false_alarms'";
-    kind.metric = "same_mean_p";  // the p of metrics::testMeans, as techniques record it
+    kind.metric = metrics::kSameMeanP;
     kind.refused = refusedSameMean;
     return kind;
 }

@@ -92,6 +92,13 @@ GroupNumber stepAt(std::size_t place, int direction) {
     };
 }
 
+/// Only what surely contradicts counts; within the noise it leaves the claim open.
+Decision unlessSurelyBack(const metrics::Interval& step, double noise) {
+    if (step.high >= 0.0) return {Verdict::Holds};
+    if (step.high < -noise) return {Verdict::Fails};
+    return {Verdict::Ambiguous, "a step back in every round, within the noise of these times"};
+}
+
 /// Direction: Kendall's rank correlation with x is above 0 towards it (Kendall 1938), and no step
 /// goes back by more than the noise of these times for certain.
 Contrasts rising(int direction) {
@@ -115,8 +122,9 @@ Contrasts rising(int direction) {
         notBack.low = 0.0;
         notBack.isPercent = true;
         for (std::size_t place = 0; place + 1 < group.x.size(); ++place) {
-            contrasts.push_back(
-                {"step", stepAt(place, direction), notBack, Scale::Linear, {}, true});
+            contrasts.push_back({"step", stepAt(place, direction), notBack, Scale::Linear});
+            contrasts.back().decide = unlessSurelyBack;
+            contrasts.back().isBeside = true;
         }
         return contrasts;
     };

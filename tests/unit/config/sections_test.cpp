@@ -530,6 +530,10 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
               head +
                   "33: claim 'C': 'of' is of a claim that compares rows; allowed: with AXIS=VALUE "
                   "/ AXIS=VALUE (e=p) or across: e | scene");
+    EXPECT_EQ(error("bound: aa, of: aa, at_most: 1}"),
+              head +
+                  "27: claim 'C': 'of' is of a claim that compares rows; allowed: across: e | "
+                  "scene");
     EXPECT_EQ(error("order: [e=p, scene=s]}"),
               head + "29: claim 'C': order: 'e' and 'scene' are two axes; allowed: values of one");
     EXPECT_EQ(error("order: [e=p, e=rrr]}"),
