@@ -46,10 +46,28 @@ struct SchemaSection {
     }
 };
 
+/// What a map has at a key of its table: null where it is not there. It knows the key's name, which
+/// stands in the table alone.
+class GivenKey {
+  public:
+    GivenKey() = default;
+    GivenKey(const Node* node, const std::string& name) : node_(node), name_(&name) {}
+
+    operator const Node*() const { return node_; }
+    const Node* operator->() const { return node_; }
+    const std::string& name() const { return *name_; }
+    /// "OWNER: KEY", which begins the messages.
+    std::string in(const std::string& owner) const { return owner + ": " + *name_; }
+
+  private:
+    const Node* node_ = nullptr;
+    const std::string* name_ = nullptr;  // the table's
+};
+
 /// The keys of one kind of map, each declared beside the member of `Given` that it is read from: no
 /// other can be read, and none is without a reader.
 ///
-///     struct EqualKeys { const Node *metric, *is; };  // null where they are not there
+///     struct EqualKeys { GivenKey metric, is; };
 ///     const KeyTable<EqualKeys> table{{"equal", "equal.", "…"},
 ///                                     {{&EqualKeys::metric, "metric", …}, …}};
 ///     const EqualKeys given = table.read(node, "equal");
@@ -57,14 +75,14 @@ template <class Given>
 class KeyTable {
   public:
     struct Key {
-        Key(const Node* Given::*whose, SchemaKey key) : place(whose), declared(std::move(key)) {}
-        Key(const Node* Given::*whose, std::string name, std::string type, std::string absent,
+        Key(GivenKey Given::*whose, SchemaKey key) : place(whose), declared(std::move(key)) {}
+        Key(GivenKey Given::*whose, std::string name, std::string type, std::string absent,
             std::string doc, Json json)
             : place(whose),
               declared{std::move(name), std::move(type), std::move(absent), std::move(doc),
                        std::move(json)} {}
 
-        const Node* Given::*place;
+        GivenKey Given::*place;
         SchemaKey declared;
     };
     /// `section` has no keys yet.
@@ -78,11 +96,20 @@ class KeyTable {
 
     const SchemaSection& section() const { return section_; }
     const std::vector<std::string>& names() const { return names_; }
+    const std::string& nameOf(GivenKey Given::*key) const {
+        return names_[static_cast<std::size_t>(std::ranges::find(places_, key) - places_.begin())];
+    }
 
+    /// A value alone is that of `key`.
+    Node mapOf(const Node& node, GivenKey Given::*key) const {
+        return node.isMap() ? node : Node::map({{nameOf(key), node}}, node.location());
+    }
     /// What the map has at these keys, whatever else it has.
     Given find(const Node& map) const {
         Given given{};
-        for (std::size_t i = 0; i < names_.size(); ++i) given.*places_[i] = map.find(names_[i]);
+        for (std::size_t i = 0; i < names_.size(); ++i) {
+            given.*places_[i] = {map.find(names_[i]), names_[i]};
+        }
         return given;
     }
     /// Throws Error for a key that is none of these; `what` begins the message.
@@ -90,26 +117,25 @@ class KeyTable {
         requireKeys(map, what, names_);
         return find(map);
     }
-    /// Throws Error "BEFORE'KEY'AFTER" at `where` for a required key that is not there.
-    void require(const Given& given, const SourceLocation& where, const std::string& before,
-                 std::string_view after = "") const {
+    /// Throws Error "WHAT needs 'KEY'" at `where` for a required key that is not there.
+    void require(const Given& given, const SourceLocation& where, const std::string& what) const {
         for (std::size_t i = 0; i < names_.size(); ++i) {
             if (!section_.keys[i].isRequired() || given.*places_[i]) continue;
-            throw Error(where, before + "'" + names_[i] + "'" + std::string(after));
+            throw Error(where, what + " needs '" + names_[i] + "'");
         }
     }
-    /// Both: "WHAT needs 'KEY'" at `where`, or else in the map.
+    /// Both, the latter in the map where it is not said.
     Given read(const Node& map, const std::string& what,
                const SourceLocation* where = nullptr) const {
         const Given given = readKnown(map, what);
-        require(given, where ? *where : map.location(), what + " needs ");
+        require(given, where ? *where : map.location(), what);
         return given;
     }
 
   private:
     SchemaSection section_;
     std::vector<std::string> names_;
-    std::vector<const Node * Given::*> places_;
+    std::vector<GivenKey Given::*> places_;
 };
 
 /// A kind of file and its sections, the top of the file first.

@@ -215,31 +215,6 @@ const SceneEntry& Catalog::entryNamed(const Node& reference) const {
                                           " (`gfxrepro list scenes` prints all)");
 }
 
-namespace {
-
-/// How the values of a file of one's own become metres, and where up is.
-void takeFileParams(const std::string& name, const Node& params, SceneSource& source) {
-    HeightMapUnits noUnits;
-    HeightMapUnits& units = source.heightMap ? source.heightMap->units : noUnits;
-    const std::vector<std::string> names =
-        source.heightMap ? std::vector<std::string>{"spacing_m", "height_scale_m", "no_data"}
-                         : std::vector<std::string>{"up"};
-    for (const auto& [key, value] : params.entries()) {
-        if (std::ranges::find(names, key) == names.end()) {
-            throw Error(params.keyLocation(key),
-                        fmt::format("{} '{}' has no parameter '{}'{}; allowed: {}",
-                                    source.heightMap ? "height map" : "model", name, key,
-                                    suggestion(key, names), joined(names)));
-        }
-        if (key == "up") source.isZUp = kUps[choiceOf(value, kUps, "up")] == "z";
-        if (key == "spacing_m") units.spacingM = readMetres(value, key);
-        if (key == "height_scale_m") units.heightScaleM = readMetres(value, key);
-        if (key == "no_data") units.noData = static_cast<float>(numberIn(value, {}, key));
-    }
-}
-
-}  // namespace
-
 bool SceneSource::isSeeded() const {
     if (generator) return generator->isSeeded;
     return heightMap && heightMap->detailM > 0.0F;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
@@ -17,43 +19,75 @@ namespace {
 
 using namespace types;
 
+constexpr std::array<std::string_view, 2> kUps = {"y", "z"};
 constexpr NumberRange kCounts{.least = 1, .isWhole = true};
 constexpr NumberRange kSamplesPerSide{.least = 1, .most = kMaxHeightFileSide, .isWhole = true};
 constexpr NumberRange kSeeds{.least = 0, .isWhole = true};
 constexpr NumberRange kMetres{.least = 1e-9, .most = 1e6};
-
-/// What the map has at the keys of the table, each required one among them; `what` begins messages.
-template <class Given>
-Given readTable(const KeyTable<Given>& table, const Node& map, const std::string& what) {
-    if (!map.isMap()) {
-        throw Error(map.location(), what + " is " + map.kindName() + ", but must be a map");
-    }
-    const std::vector<std::string>& names = table.names();
-    for (const auto& [key, value] : map.entries()) {
-        if (std::ranges::find(names, key) != names.end()) continue;
-        throw Error(map.keyLocation(key), what + ": unknown key '" + key + "'" +
-                                              suggestion(key, names) +
-                                              " (allowed: " + joined(names) + ")");
-    }
-    const Given given = table.find(map);
-    table.require(given, map.location(), what + ": ", " is missing");
-    return given;
-}
 
 SchemaKey pointsKey() {
     return numberKey("points", kCounts, "none",
                      "points of the surface, or of the cloud, instead of it");
 }
 
-std::optional<long long> readWhole(const Node* node, const std::string& key,
-                                   const NumberRange& range) {
-    if (!node) return std::nullopt;
-    (void)numberIn(*node, range, key);
-    return node->asInteger();
+SchemaKey upKey() {
+    return choiceKey("up", kUps, "y", "the file's own up");
 }
 
-void readSeed(const Node* node, SceneSource& source) {
-    if (const auto seed = readWhole(node, "seed", kSeeds)) {
+/// How the values of a height map become metres.
+struct UnitKeys {
+    GivenKey spacingM, heightScaleM, noData;
+};
+SchemaKey spacingKey(const char* absent) {
+    return numberKey("spacing_m", kMetres, absent, "distance of samples");
+}
+SchemaKey heightScaleKey() {
+    return numberKey("height_scale_m", kMetres, Node::number(HeightMapUnits().heightScaleM).text(),
+                     "a step of the file's values");
+}
+SchemaKey noDataKey() {
+    return numberKey("no_data", {}, "none", "the value of samples that are missing");
+}
+
+/// Of a file of one's own.
+struct OwnFileKeys : UnitKeys {
+    GivenKey up;
+};
+const KeyTable<OwnFileKeys>& ownFileTable() {
+    using O = OwnFileKeys;
+    static const KeyTable<O> table{{"own_file", "scene_params.", ""},
+                                   {{&O::up, upKey()},
+                                    {&O::spacingM, spacingKey("the file's, or 1")},
+                                    {&O::heightScaleM, heightScaleKey()},
+                                    {&O::noData, noDataKey()}}};
+    return table;
+}
+
+/// Throws Error for a number that is no distance.
+void readMetres(const GivenKey& key, auto& valueM) {
+    if (key) valueM = static_cast<float>(numberIn(*key, kMetres, key.name()));
+}
+
+void readUnits(const UnitKeys& given, HeightMapUnits& units) {
+    readMetres(given.spacingM, units.spacingM);
+    readMetres(given.heightScaleM, units.heightScaleM);
+    if (given.noData) {
+        units.noData = static_cast<float>(numberIn(*given.noData, {}, given.noData.name()));
+    }
+}
+
+void readUp(const GivenKey& up, SceneSource& source) {
+    if (up) source.isZUp = kUps[choiceOf(*up, kUps, up.name())] == "z";
+}
+
+std::optional<long long> readWhole(const GivenKey& key, const NumberRange& range) {
+    if (!key) return std::nullopt;
+    (void)numberIn(*key, range, key.name());
+    return key->asInteger();
+}
+
+void readSeed(const GivenKey& key, SceneSource& source) {
+    if (const auto seed = readWhole(key, kSeeds)) {
         source.seed = static_cast<std::uint64_t>(*seed);
     }
 }
@@ -62,15 +96,16 @@ Json assetPath() {
     return {{"type", "string"}, {"minLength", 1}, {"pattern", "^[^/]"}};
 }
 
-std::string assetPathOf(const Node& node, const char* key) {
-    const std::string& file = node.text();
+std::string assetPathOf(const GivenKey& key) {
+    const std::string& file = key->text();
     if (!file.empty() && !fs::path(file).is_absolute()) return file;
-    throw Error(node.location(),
-                fmt::format("{} is '{}', but must be a path within the assets folder", key, file));
+    throw Error(
+        key->location(),
+        fmt::format("{} is '{}', but must be a path within the assets folder", key.name(), file));
 }
 
 struct FileKeys {
-    const Node *file, *points, *refineTo, *up;
+    GivenKey file, points, refineTo, up;
 };
 const KeyTable<FileKeys>& fileTable() {
     using F = FileKeys;
@@ -81,48 +116,47 @@ const KeyTable<FileKeys>& fileTable() {
          {&F::points, pointsKey()},
          {&F::refineTo, numberKey("refine_to", kCounts, "none",
                                   "longest edges halved up to this many triangles")},
-         {&F::up, choiceKey("up", kUps, "y", "the file's own up")}}};
+         {&F::up, upKey()}}};
     return table;
 }
 
 SceneSource readFileSource(const Node& node) {
-    const FileKeys given = readTable(fileTable(), node, "source");
+    const FileKeys given = fileTable().read(node, "source");
     SceneSource source;
-    source.file = assetPathOf(*given.file, "file");
+    source.file = assetPathOf(given.file);
     try {
         requireKnownExtension(source.file);
     } catch (const Error& error) {
-        throw Error(given.file->location(), std::string("file ") + error.what());
+        throw Error(given.file->location(), given.file.name() + " " + error.what());
     }
-    source.refineTo = readWhole(given.refineTo, "refine_to", kCounts);
-    source.points = readWhole(given.points, "points", kCounts);
-    if (given.up) source.isZUp = kUps[choiceOf(*given.up, kUps, "up")] == "z";
+    source.refineTo = readWhole(given.refineTo, kCounts);
+    source.points = readWhole(given.points, kCounts);
+    readUp(given.up, source);
     if (source.refineTo || source.points) source.kind = Origin::Kind::StandIn;
     return source;
 }
 
-struct HeightMapKeys {
-    const Node *heightMap, *spacingM, *heightScaleM, *noData, *resampleTo, *detailM, *seed,
-        *colourMap;
+struct HeightMapKeys : UnitKeys {
+    GivenKey heightMap, resampleTo, detailM, seed, colourMap;
 };
 const KeyTable<HeightMapKeys>& heightMapTable() {
     using H = HeightMapKeys;
+    constexpr const char *kResampleTo = "resample_to", *kDetailM = "detail_m";
     static const KeyTable<H> table{
         {"height_map_source",
          "sources[].",
          "A terrain.",
          false,
          nullptr,
-         {{"dependencies", {{"detail_m", Json::array({"resample_to"})}}}}},
+         {{"dependencies", {{kDetailM, Json::array({kResampleTo})}}}}},
         {{&H::heightMap, "height_map", "path", "required", "below the assets folder", assetPath()},
-         {&H::spacingM, numberKey("spacing_m", kMetres, "required", "distance of samples")},
-         {&H::heightScaleM,
-          numberKey("height_scale_m", kMetres, Node::number(HeightMapUnits().heightScaleM).text(),
-                    "a step of the file's values")},
-         {&H::noData, numberKey("no_data", {}, "none", "the value of samples that are missing")},
-         {&H::resampleTo, numberKey("resample_to", kSamplesPerSide, "none",
+         {&H::spacingM, spacingKey("required")},
+         {&H::heightScaleM, heightScaleKey()},
+         {&H::noData, noDataKey()},
+         {&H::resampleTo, numberKey(kResampleTo, kSamplesPerSide, "none",
                                     "samples per side: a stand-in for a finer survey")},
-         {&H::detailM, numberKey("detail_m", kMetres, "none", "noise in the gaps of resample_to")},
+         {&H::detailM,
+          numberKey(kDetailM, kMetres, "none", std::string("noise in the gaps of ") + kResampleTo)},
          {&H::seed, numberKey("seed", kSeeds, std::to_string(SceneSource().seed), "of the noise")},
          {&H::colourMap, "colour_map", "path", "none", "PNG of the ground, north on top",
           assetPath()}}};
@@ -130,36 +164,31 @@ const KeyTable<HeightMapKeys>& heightMapTable() {
 }
 
 SceneSource readHeightMapSource(const Node& node) {
-    const HeightMapKeys given = readTable(heightMapTable(), node, "source");
+    const HeightMapKeys given = heightMapTable().read(node, "source");
     SceneSource source;
-    source.file = assetPathOf(*given.heightMap, "height_map");
+    source.file = assetPathOf(given.heightMap);
     HeightMapSource map;
-    map.units.spacingM = readMetres(*given.spacingM, "spacing_m");
-    if (given.heightScaleM) {
-        map.units.heightScaleM = readMetres(*given.heightScaleM, "height_scale_m");
-    }
-    if (given.noData) {
-        map.units.noData = static_cast<float>(numberIn(*given.noData, {}, "no_data"));
-    }
-    if (const auto samples = readWhole(given.resampleTo, "resample_to", kSamplesPerSide)) {
+    readUnits(given, map.units);
+    if (const auto samples = readWhole(given.resampleTo, kSamplesPerSide)) {
         map.resampleTo = static_cast<int>(*samples);
         source.kind = Origin::Kind::StandIn;
     }
     if (given.detailM) {
         if (!map.resampleTo) {
             throw Error(given.detailM->location(),
-                        "detail_m needs resample_to, whose gaps it fills");
+                        fmt::format("{} needs {}, whose gaps it fills", given.detailM.name(),
+                                    given.resampleTo.name()));
         }
-        map.detailM = readMetres(*given.detailM, "detail_m");
+        readMetres(given.detailM, map.detailM);
     }
     readSeed(given.seed, source);
-    if (given.colourMap) map.colourMap = assetPathOf(*given.colourMap, "colour_map");
+    if (given.colourMap) map.colourMap = assetPathOf(given.colourMap);
     source.heightMap = map;
     return source;
 }
 
 struct GeneratorKeys {
-    const Node *generator, *params, *seed, *points;
+    GivenKey generator, params, seed, points;
 };
 const KeyTable<GeneratorKeys>& generatorTable() {
     using G = GeneratorKeys;
@@ -177,25 +206,26 @@ const KeyTable<GeneratorKeys>& generatorTable() {
 
 SceneSource readGeneratorSource(const Node& node, bool isGenerated,
                                 std::span<const GeneratorInfo> generators) {
-    const GeneratorKeys given = readTable(generatorTable(), node, "source");
+    const GeneratorKeys given = generatorTable().read(node, "source");
     SceneSource source;
     source.generator =
         &findGenerator(generators, given.generator->text(), given.generator->location());
     if (given.params) source.params = *given.params;
     readSeed(given.seed, source);
-    source.points = readWhole(given.points, "points", kCounts);
+    source.points = readWhole(given.points, kCounts);
     source.kind = isGenerated ? Origin::Kind::Generated : Origin::Kind::StandIn;
     return source;
 }
 
 SceneSource readSource(const Node& node, bool isGenerated,
                        std::span<const GeneratorInfo> generators) {
-    if (!node.isMap()) {
-        throw Error(node.location(), "source is " + node.kindName() + ", but must be a map");
-    }
-    const bool isFile = generatorTable().find(node).generator == nullptr;
-    if (!isFile && fileTable().find(node).file) {
-        throw Error(node.location(), "source: 'file' and 'generator' exclude each other");
+    if (!node.isMap()) throwNotAllowed(node, "source", "a map");
+    const GivenKey file = fileTable().find(node).file;
+    const GivenKey generator = generatorTable().find(node).generator;
+    const bool isFile = !generator;
+    if (file && generator) {
+        throw Error(node.location(), fmt::format("source: '{}' and '{}' exclude each other",
+                                                 file.name(), generator.name()));
     }
     if (isFile && isGenerated) {
         throw Error(node.location(), "source: a file cannot be the source of a generated scene");
@@ -209,7 +239,7 @@ SceneSource readSource(const Node& node, bool isGenerated,
 }
 
 struct EntryKeys {
-    const Node *scene, *doc, *canonical, *licence, *generated, *sources;
+    GivenKey scene, doc, canonical, licence, generated, sources;
 };
 const KeyTable<EntryKeys>& entryTable() {
     using E = EntryKeys;
@@ -231,31 +261,48 @@ const KeyTable<EntryKeys>& entryTable() {
 
 }  // namespace
 
-float readMetres(const Node& node, const std::string& key) {
-    return static_cast<float>(numberIn(node, kMetres, key));
+std::span<const std::string> ownFileParams(bool isHeightMap) {
+    const std::span<const std::string> names = ownFileTable().names();
+    return isHeightMap ? names.subspan(1) : names.first(1);
+}
+
+void takeFileParams(const std::string& name, const Node& params, SceneSource& source) {
+    const bool isHeightMap = source.heightMap.has_value();
+    const auto names = ownFileParams(isHeightMap);
+    for (const auto& [key, value] : params.entries()) {
+        if (std::ranges::find(names, key) != names.end()) continue;
+        throw Error(params.keyLocation(key),
+                    fmt::format("{} '{}' has no parameter '{}'{}; allowed: {}",
+                                isHeightMap ? "height map" : "model", name, key,
+                                suggestion(key, names), joined(names)));
+    }
+    const OwnFileKeys given = ownFileTable().find(params);
+    readUp(given.up, source);
+    if (isHeightMap) readUnits(given, source.heightMap->units);
 }
 
 SceneEntry readEntry(const fs::path& path, const std::string& expectedName,
                      std::span<const GeneratorInfo> generators) {
     const Node root = parseYamlFile(path);
-    const EntryKeys given = readTable(entryTable(), root, "scene entry");
+    const EntryKeys given = entryTable().read(root, "scene entry");
     SceneEntry entry;
     entry.path = path;
     entry.name = given.scene->text();
     if (entry.name != expectedName) {
-        throw Error(
-            given.scene->location(),
-            "scene is '" + entry.name + "', but the file's place names it '" + expectedName + "'");
+        throw Error(given.scene->location(), given.scene.name() + " is '" + entry.name +
+                                                 "', but the file's place names it '" +
+                                                 expectedName + "'");
     }
     entry.doc = given.doc->text();
     if (given.canonical) entry.canonical = given.canonical->text();
     if (given.licence) entry.licence = given.licence->text();
-    const bool isGenerated = given.generated && flagOf(*given.generated, "generated");
+    const bool isGenerated = given.generated && flagOf(*given.generated, given.generated.name());
     for (const Node& source : given.sources->items()) {
         entry.sources.push_back(readSource(source, isGenerated, generators));
     }
     if (entry.sources.empty()) {
-        throw Error(given.sources->location(), "sources is empty; an entry needs at least one");
+        throw Error(given.sources->location(),
+                    given.sources.name() + " is empty; an entry needs at least one");
     }
     return entry;
 }

@@ -1,20 +1,19 @@
 // An entry of the catalogue: its keys, and how they are read.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "engine/core/key_schema.h"
 #include "engine/scene/catalog.h"
 
 namespace gfxrepro::scene {
 
-inline constexpr std::array<std::string_view, 2> kUps = {"y", "z"};
-/// Throws Error for a number that is no distance.
-float readMetres(const Node& node, const std::string& key);
+/// What `scene_params` may have of a height map, or a model, beside the file that names it.
+std::span<const std::string> ownFileParams(bool isHeightMap);
+/// How the values of such a file become metres, and where up is.
+void takeFileParams(const std::string& name, const Node& params, SceneSource& source);
 
 /// Throws Error, at its place, for anything that is wrong in the file, and for a scene of another
 /// name than `expectedName`.

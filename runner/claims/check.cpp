@@ -275,10 +275,7 @@ void requireProvenance(const config::Experiment& experiment, const tables::Table
                 "is of a calibrated input, and reads cells that 'printed.calibrated' does not "
                 "mark");
         }
-        const bool isOfTheDocument = claim.origin == ClaimSpec::Origin::Document ||
-                                     claim.origin == ClaimSpec::Origin::Derived ||
-                                     claim.origin == ClaimSpec::Origin::Existence;
-        if (isOfTheDocument && reader.readsCalibrated()) {
+        if (claim.isReadOffDocument() && reader.readsCalibrated()) {
             complain(
                 "reads nothing but cells that an input of ours was fitted to "
                 "('printed.calibrated'): its origin is calibrated");

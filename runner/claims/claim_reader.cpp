@@ -180,12 +180,10 @@ std::string ClaimReader::sceneOf(const Rows& rows) const {
 }
 
 Rows ClaimReader::unfitOf(const Rows& rows) const {
-    using Origin = ClaimSpec::Origin;
-    const bool isOfText = claim_.origin == Origin::Document || claim_.origin == Origin::Derived ||
-                          claim_.origin == Origin::Existence;
+    if (!claim_.isReadOffDocument()) return {};
     Rows unfit;
     std::ranges::copy_if(rows, std::back_inserter(unfit),
-                         [&](std::size_t row) { return isOfText && table_.rows[row].isUnfit; });
+                         [&](std::size_t row) { return table_.rows[row].isUnfit; });
     return unfit;
 }
 

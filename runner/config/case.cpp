@@ -153,7 +153,7 @@ Measure readMeasure(Params& params, Measure measure) {
         {Measure::Seeds::Process, "process", "others in each, so that errors have an interval"}};
     measure.lane = params.getEnum("lane", measure.lane, kLanes, {"how cases run"});
     measure.relativeError = params.getDouble(
-        "relative_error", measure.relativeError,
+        kRelativeError, measure.relativeError,
         {"rounds go on until half of each 95 % interval ÷ time is no more, and then "
          "to 14, 16 or 19, or to 20; with 6 to 19 processes in the timing lane; 0: they do not",
          "", 0, 1});
@@ -177,7 +177,7 @@ Measure readMeasure(Params& params, Measure measure) {
          "as many as fit into the budget, where it is not given",
          "", 1, kMax});
     measure.timeBudgetS = params.getDouble(
-        "time_budget_s", measure.timeBudgetS,
+        kTimeBudget, measure.timeBudgetS,
         {"of all rounds of the file but those that 'processes' asks for: none is begun to end "
          "later, but where a quarter more gives six",
          "seconds", 0, 1e9});

@@ -56,6 +56,10 @@ struct Measure {
     bool mayFollow(int rounds, double roundS) const;
 };
 
+/// What ends rounds, and the keys of `measure` that say so.
+inline constexpr const char* kRelativeError = "relative_error";
+inline constexpr const char* kTimeBudget = "time_budget_s";
+
 /// What the seed grows by from one process of a case to the next, with Seeds::Process.
 inline constexpr int kSeedsOfAProcess = 1000;
 

@@ -23,7 +23,7 @@ using BoundSource = ClaimSpec::BoundSource;
 using TimeKind = ClaimSpec::TimeKind;
 
 struct CommonKeys {
-    const Node *says, *at, *across, *of, *profile, *origin, *sameAs, *boundFrom, *kind, *because;
+    GivenKey says, at, across, of, profile, origin, sameAs, boundFrom, kind, because;
 };
 const KeyTable<CommonKeys>& commonTable() {
     using C = CommonKeys;
@@ -75,7 +75,7 @@ const KeyTable<CommonKeys>& commonTable() {
 }
 
 struct KnownKeys {
-    const Node *verdict, *reason, *shownBy, *device, *profile, *scenes;
+    GivenKey verdict, reason, shownBy, device, profile, scenes;
 };
 const KeyTable<KnownKeys>& knownTable() {
     using K = KnownKeys;
@@ -95,26 +95,24 @@ const KeyTable<KnownKeys>& knownTable() {
 }
 
 /// Which of `names` it is; none where it is not there.
-std::optional<std::size_t> choiceIn(const Node* node, const std::string& what,
+std::optional<std::size_t> choiceIn(const GivenKey& key, const std::string& owner,
                                     std::span<const std::string_view> names) {
-    return node ? std::optional(choiceOf(*node, names, what)) : std::nullopt;
+    return key ? std::optional(choiceOf(*key, names, key.in(owner))) : std::nullopt;
 }
 
-std::optional<std::string> nameIn(const Node* node, const std::string& what,
+std::optional<std::string> nameIn(const GivenKey& key, const std::string& owner,
                                   std::span<const std::string_view> names) {
-    const auto choice = choiceIn(node, what, names);
+    const auto choice = choiceIn(key, owner, names);
     return choice ? std::optional<std::string>(names[*choice]) : std::nullopt;
 }
 
 /// An entry of `because`; `what` begins the messages.
 ClaimSpec::Known readKnown(const Node& entry, const std::string& what) {
     const KnownKeys given = knownTable().read(entry, what);
-    return {*nameIn(given.verdict, what + ": verdict", kKnownVerdicts),
-            nameIn(given.device, what + ": device", kDeviceClasses),
-            nameIn(given.profile, what + ": profile", kProfiles),
-            nameIn(given.scenes, what + ": scenes", kSceneClasses),
-            lineOf(*given.reason, what + ": reason"),
-            optionalLine(given.shownBy, what + ": shown_by")};
+    return {
+        *nameIn(given.verdict, what, kKnownVerdicts), nameIn(given.device, what, kDeviceClasses),
+        nameIn(given.profile, what, kProfiles),       nameIn(given.scenes, what, kSceneClasses),
+        lineOf(*given.reason, given.reason.in(what)), optionalLine(given.shownBy, what)};
 }
 
 std::string knownPlace(const ClaimSpec::Known& known) {
@@ -161,22 +159,19 @@ class ClaimParser {
 
     ClaimSpec read(bool isOfDocument) {
         claim_.kind = &kindOf();
-        const std::string& name = claim_.kind->name();
         const Names own = claim_.kind->section.keyNames();
         Names allowed = commonTable().names();
         allowed.insert(allowed.end(), own.begin(), own.end());
-        requireBounds(allowed);
         requireKeys(node_, what_, allowed);
         given_ = commonTable().find(node_);
-        commonTable().require(given_, claim_.location, what_ + " needs ");
+        commonTable().require(given_, claim_.location, what_);
         readCommon();
-        if (given_.at) readAt(*given_.at);
-        if (given_.of && !contains(own, "of")) readOf(*given_.of);
+        if (given_.at) readAt();
+        if (given_.of && !contains(own, given_.of.name())) readOf();
         claim_.keys = node_;
-        claim_.kind->read(
-            {*claim_.kind, node_, *node_.find(name), names_.rowAxes, names_.rowValues,
-             names_.columns, names_.hasAllColumns, hasPrinted_, what_, claim_.location},
-            claim_);
+        claim_.kind->read({node_, names_.rowAxes, names_.rowValues, names_.columns,
+                           names_.hasAllColumns, hasPrinted_, what_, claim_.location},
+                          claim_);
         readProvenance(isOfDocument);
         return std::move(claim_);
     }
@@ -200,69 +195,42 @@ class ClaimParser {
         throw Error(claim_.location, what_ + " has no type; allowed: " + joined(names));
     }
 
-    /// Says what to write for a bound of another name, or of a kind that has none.
-    void requireBounds(const Names& allowed) const {
-        static const std::pair<const char*, const char*> kWords[] = {
-            {"at_least", "at_least"},   {"more_than", "more_than"}, {"at_most", "at_most"},
-            {"less_than", "less_than"}, {"above", "more_than"},     {"below", "less_than"},
-            {"min", "at_least"},        {"max", "at_most"}};
-        if (const Node* exponent = node_.find("exponent")) {
-            std::vector<std::string> bounds;
-            if (exponent->isMap()) {
-                for (const auto& [bound, value] : exponent->entries())
-                    bounds.push_back(fmt::format("{}: {}", bound, value.toFlowText()));
-            }
-            throw Error(
-                node_.keyLocation("exponent"),
-                fmt::format("{}: unknown key 'exponent' of '{}'; allowed: its bounds beside "
-                            "'trend', as {}",
-                            what_, claim_.kind->name(),
-                            bounds.empty() ? "at_most: -0.5" : joined(bounds)));
-        }
-        for (const auto& [word, bound] : kWords) {
-            if (!node_.find(word) || contains(allowed, word)) continue;
-            const char* own = claim_.kind->instead;
-            const std::string instead =
-                own ? own : fmt::format("'{}'", contains(allowed, bound) ? bound : "at_most");
-            throw Error(node_.keyLocation(word),
-                        fmt::format("{}: unknown key '{}' of '{}'; allowed: {}", what_, word,
-                                    claim_.kind->name(), instead));
-        }
-    }
-
     void readCommon() {
-        claim_.text = lineOf(*given_.says, what_ + ": says");
-        claim_.profile = nameIn(given_.profile, what_ + ": profile", kProfiles);
-        if (const Node* same = given_.sameAs) {
-            claim_.sameAs = lineOf(*same, what_ + ": same_as");
+        claim_.text = lineOf(*given_.says, given_.says.in(what_));
+        claim_.profile = nameIn(given_.profile, what_, kProfiles);
+        if (const GivenKey& same = given_.sameAs) {
+            claim_.sameAs = lineOf(*same, same.in(what_));
             const std::size_t blank = claim_.sameAs.find(' ');
             if (blank == std::string::npos ||
                 claim_.sameAs.find(' ', blank + 1) < std::string::npos) {
-                throwNotAllowed(*same, what_ + ": same_as", "TABLE CLAIM");
+                throwNotAllowed(*same, same.in(what_), "TABLE CLAIM");
             }
         }
         const std::string& name = claim_.kind->name();
         const Node& operands = *node_.find(name);
         const auto axis =
             claim_.kind->axisOf ? claim_.kind->axisOf(operands, what_ + ": " + name) : std::nullopt;
-        const Node* across = given_.across;
+        const GivenKey& across = given_.across;
         if (axis && across) {
             throw Error(across->location(),
-                        fmt::format("{}: across, and {} names its axis", what_, name));
+                        fmt::format("{}, and {} names its axis", across.in(what_), name));
         }
-        if (axis) readAcross(Node::scalar(*axis, operands.location(), true), "axis of " + name);
-        if (across) readAcross(*across, "across");
+        if (axis) {
+            readAcross(Node::scalar(*axis, operands.location(), true), what_ + ": axis of " + name);
+        }
+        if (across) readAcross(*across, across.in(what_));
     }
 
-    void readAt(const Node& at) {
-        if (at.isMap() && at.find(kColumnAxis)) {
-            throw Error(
-                at.keyLocation(kColumnAxis),
-                what_ + ": at: 'column' is no axis of the rows; columns are chosen by 'of'");
+    void readAt() {
+        const GivenKey& at = given_.at;
+        if (at->isMap() && at->find(kColumnAxis)) {
+            throw Error(at->keyLocation(kColumnAxis),
+                        fmt::format("{}: '{}' is no axis of the rows; columns are chosen by '{}'",
+                                    at.in(what_), kColumnAxis, given_.of.name()));
         }
         TableNames rows = names_;
         std::erase(rows.rowAxes, kColumnAxis);
-        claim_.at = readRowFilter(at, what_ + ": at", rows);
+        claim_.at = readRowFilter(*at, at.in(what_), rows);
     }
 
     /// " (pat=SOBOL)" where the claim has SOBOL in the place of a column; else empty.
@@ -279,26 +247,27 @@ class ClaimParser {
         return "";
     }
 
-    void readOf(const Node& of) {
+    void readOf() {
+        const GivenKey &of = given_.of, &across = given_.across;
         if (!claim_.across) {
             const char* form = claim_.kind->valuesForm;
             const std::string with =
                 form ? fmt::format("with {}{} or ", form, exampleOfValue()) : "";
             throw Error(
-                node_.keyLocation("of"),
-                fmt::format("{}: 'of' is of a claim that compares rows; allowed: {}across: {}",
-                            what_, with, joined(names_.rowAxes, " | ")));
+                node_.keyLocation(of.name()),
+                fmt::format("{}: '{}' is of a claim that compares rows; allowed: {}{}: {}", what_,
+                            of.name(), with, across.name(), joined(names_.rowAxes, " | ")));
         }
         claim_.at.emplace_back(kColumnAxis,
-                               readFilterValues(of, what_ + ": of", kColumnAxis, names_));
+                               readFilterValues(*of, of.in(what_), kColumnAxis, names_));
     }
 
     /// From here on the axis and the columns have changed places.
-    void readAcross(const Node& node, const std::string& key) {
-        const std::string axis = lineOf(node, what_ + ": " + key);
+    void readAcross(const Node& node, const std::string& what) {
+        const std::string axis = lineOf(node, what);
         const auto found = std::ranges::find(names_.rowAxes, axis);
         if (found == names_.rowAxes.end()) {
-            throwNotAllowed(node, what_ + ": " + key,
+            throwNotAllowed(node, what,
                             names_.rowAxes.empty() ? "an axis of 'sweep', or of 'layout: {rows}'"
                                                    : joined(names_.rowAxes, " | "));
         }
@@ -318,29 +287,30 @@ class ClaimParser {
     }
 
     void readProvenance(bool isOfDocument) {
-        const auto origin = choiceIn(given_.origin, what_ + ": origin", kOrigins);
+        const auto origin = choiceIn(given_.origin, what_, kOrigins);
         claim_.origin = origin         ? static_cast<Origin>(*origin)
                         : isOfDocument ? Origin::Document
                                        : Origin::Ours;
         if (given_.boundFrom && !claim_.hasBound()) {
-            throw Error(given_.boundFrom->location(),
-                        what_ + ": bound_from, and there is no number in what it requires");
+            throw Error(
+                given_.boundFrom->location(),
+                given_.boundFrom.in(what_) + ", and there is no number in what it requires");
         }
         if (isOfDocument && claim_.hasBound()) claim_.boundFrom = BoundSource::Ours;
-        if (const auto from = choiceIn(given_.boundFrom, what_ + ": bound_from", kBoundSources)) {
+        if (const auto from = choiceIn(given_.boundFrom, what_, kBoundSources)) {
             claim_.boundFrom = static_cast<BoundSource>(*from);
         }
-        if (const auto kind = choiceIn(given_.kind, what_ + ": kind", kTimeKinds)) {
+        if (const auto kind = choiceIn(given_.kind, what_, kTimeKinds)) {
             claim_.timeKind = static_cast<TimeKind>(*kind);
         }
-        const Node* because = given_.because;
+        const GivenKey& because = given_.because;
         if (!because) return;
         const Node::Sequence entries =
             because->isSequence() ? because->items() : Node::Sequence{*because};
         for (const Node& entry : entries) {
-            claim_.because.push_back(readKnown(entry, what_ + ": because"));
+            claim_.because.push_back(readKnown(entry, because.in(what_)));
         }
-        requireApart(claim_.because, entries, what_ + ": because");
+        requireApart(claim_.because, entries, because.in(what_));
     }
 
     const Node& node_;

@@ -14,16 +14,8 @@ namespace {
 
 using namespace types;
 
-/// As KeyTable::read(), of a key that "is missing".
-template <class Given>
-Given readComplete(const KeyTable<Given>& table, const Node& map, const std::string& what) {
-    const Given given = table.readKnown(map, what);
-    table.require(given, map.location(), what + ": ", " is missing");
-    return given;
-}
-
 struct ChapterKeys {
-    const Node *title, *has;
+    GivenKey title, has;
 };
 const KeyTable<ChapterKeys>& chapterTable() {
     static const KeyTable<ChapterKeys> table{
@@ -37,14 +29,14 @@ const KeyTable<ChapterKeys>& chapterTable() {
 }
 
 Chapter readChapter(const Node& node, const std::string& what) {
-    const ChapterKeys given = readComplete(chapterTable(), node, what);
+    const ChapterKeys given = chapterTable().read(node, what);
     Chapter chapter{given.title->text(), {}};
     for (const Node& item : given.has->items()) chapter.experiments.push_back(item.text());
     return chapter;
 }
 
 struct DocumentKeys {
-    const Node *title, *chapters;
+    GivenKey title, chapters;
 };
 const KeyTable<DocumentKeys>& documentTable() {
     static const KeyTable<DocumentKeys> table{
@@ -57,7 +49,7 @@ const KeyTable<DocumentKeys>& documentTable() {
 }
 
 Document readDocument(const std::string& id, const Node& node) {
-    const DocumentKeys given = readComplete(documentTable(), node, id);
+    const DocumentKeys given = documentTable().read(node, id);
     Document document{id, given.title->text(), {}};
     std::map<std::string, std::string> chapterOf;
     for (const Node& item : given.chapters->items()) {

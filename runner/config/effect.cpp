@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "engine/scene/catalog_entry.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
 #include "runner/config/schema.h"
@@ -29,13 +30,6 @@ bool isSweptOver(const Experiment& experiment, const std::string& scene, const s
         isUsed = true;
     }
     return isUsed;
-}
-
-/// As ClaimReader::unfitOf.
-bool isReadOffADocument(const ClaimSpec& claim) {
-    using Origin = ClaimSpec::Origin;
-    return claim.origin == Origin::Document || claim.origin == Origin::Derived ||
-           claim.origin == Origin::Existence;
 }
 
 /// Scenes that cases have, by the names that configs give them.
@@ -85,7 +79,6 @@ bool showsTimes(const Layout& layout) {
 std::vector<NoEffect> keysInVain(const Experiment& experiment) {
     if (!isMeasuredHere(experiment)) return {};
     std::vector<NoEffect> found;
-    const Node& document = experiment.document;
     const auto require = [&](const Node* map, const char* key, bool hasEffect,
                              const std::string& why) {
         if (!map || !map->isMap() || !map->find(key) || hasEffect) return;
@@ -93,44 +86,40 @@ std::vector<NoEffect> keysInVain(const Experiment& experiment) {
     };
     // A document's profiles share what a file says of rounds.
     const bool isSweep = experiment.kind == Experiment::Kind::Sweep;
-    const Node* measure = isSweep ? document.find("measure") : nullptr;
+    const ContentKeys content = contentOf(experiment.document);
+    const Node* measure = content.measure;
+    if (!isSweep) measure = nullptr;
     const Measure& own = experiment.measure;
     const bool isTimed = own.lane == Measure::Lane::Timing;
-    for (const char* key : {"relative_error", "time_budget_s"}) {
+    for (const char* key : {kRelativeError, kTimeBudget}) {
         require(measure, key, isTimed,
                 "in the quality lane no rounds are timed; allowed: lane: timing");
     }
-    require(measure, "relative_error", own.relativeError == 0.0 || own.mayContinue(),
+    require(measure, kRelativeError, own.relativeError == 0.0 || own.mayContinue(),
             "no rounds follow; allowed: with 6 to 19 'processes'");
-    require(
-        measure, "time_budget_s", own.isWithinBudget || own.mayContinue(),
-        "all 'processes' are measured whatever they take; allowed: without 'processes', or with "
-        "'relative_error'");
-    const Node* printed = document.find("printed");
-    const bool hasValues = !experiment.printed.rows.empty();
-    require(printed, "at", experiment.isPublished(),
-            "nothing is printed that could have been measured there; allowed: with 'values'");
-    require(printed, "compared", hasValues,
-            "no fit reads a table without printed cells; allowed: with 'values'");
-    require(printed, "unfit",
-            isSweep ? std::ranges::any_of(experiment.claims, isReadOffADocument)
-                    : !experiment.claims.empty(),
-            "it takes scenes from the claims of a document, and there are none");
+    require(measure, kTimeBudget, own.isWithinBudget || own.mayContinue(),
+            fmt::format(
+                "all 'processes' are measured whatever they take; allowed: without 'processes', "
+                "or with '{}'",
+                kRelativeError));
+    std::ranges::move(printedInVain(experiment), std::back_inserter(found));
     std::set<std::string> scenes;
     addScenes(experiment, scenes);
-    require(&document, "scene_params", !scenes.empty(), "no case has a scene");
+    require(&experiment.document, content.sceneParams.name().c_str(), !scenes.empty(),
+            "no case has a scene");
     for (const auto& [scene, params] : experiment.paramsByScene.entries()) {
         const std::vector<std::string> known(scenes.begin(), scenes.end());
-        require(&experiment.paramsByScene, scene.c_str(), scenes.contains(scene),
-                "no case has the scene of params_by_scene" + suggestion(scene, known));
+        require(
+            &experiment.paramsByScene, scene.c_str(), scenes.contains(scene),
+            fmt::format("no case has the scene of {}{}", kParamsByScene, suggestion(scene, known)));
         for (const auto& [name, value] : params.entries()) {
             require(&params, name.c_str(), !isSweptOver(experiment, scene, name),
-                    "each case of the scene has it from the sweep, which wins over "
-                    "params_by_scene");
+                    fmt::format("each case of the scene has it from the sweep, which wins over {}",
+                                kParamsByScene));
         }
     }
     for (const char* name : {kSceneAssumption, kSceneSeedAssumption}) {
-        require(document.find("assumptions"), name, !scenes.empty(), "no case has a scene");
+        require(content.assumptions, name, !scenes.empty(), "no case has a scene");
     }
     addRanges(experiment, scenes, found);
     std::ranges::move(excludedInVain(experiment), std::back_inserter(found));
@@ -153,8 +142,8 @@ void requireInSections(const Node& document, const Names& allowed) {
                 fmt::format("config: '{0}' is of '{1}'; allowed: {1}: {{{0}: …}}", key, section));
         }
         // Of a model or a height map beside the file.
-        for (const char* own : {"up", "spacing_m", "height_scale_m", "no_data"}) {
-            if (key != own) continue;
+        if (contains(scene::ownFileParams(false), key) ||
+            contains(scene::ownFileParams(true), key)) {
             throw Error(document.keyLocation(key),
                         fmt::format("config: '{0}' is of 'scene_params'; allowed: scene_params: "
                                     "{{{0}: {1}}}",
@@ -175,7 +164,7 @@ namespace {
 
 /// Null where none is given.
 const Node* laneOf(const Experiment& experiment) {
-    const Node* measure = experiment.document.find("measure");
+    const GivenKey measure = contentOf(experiment.document).measure;
     return measure && measure->isMap() ? measure->find("lane") : nullptr;
 }
 

@@ -10,6 +10,7 @@
 #include "engine/core/checks.h"
 #include "engine/core/params.h"
 #include "engine/core/text.h"
+#include "engine/scene/catalog_entry.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/config/external_program.h"
 #include "runner/config/schema.h"
@@ -46,11 +47,6 @@ const std::vector<Identity>& identities() {
     return all;
 }
 
-struct ContentKeys {
-    const Node *title, *technique, *program, *scene, *sceneParams, *sceneInstead, *params,
-        *paramsByScene, *paramsInstead, *output, *sweep, *measure, *shows, *labels, *layout,
-        *printed, *claims, *plots, *fit, *assumptions;
-};
 const KeyTable<ContentKeys>& contentTable() {
     using C = ContentKeys;
     static const KeyTable<C> table{
@@ -67,17 +63,18 @@ const KeyTable<ContentKeys>& contentTable() {
           text()},
          {&C::sceneParams, "scene_params", "{name: value}", "{}",
           "of the generated scenes, laid over the catalogue's: `gfxrepro describe GENERATOR`; of a "
-          "height map beside this file: spacing_m, height_scale_m, no_data",
+          "height map beside this file: " +
+              joined(scene::ownFileParams(true)),
           mapOf(anything())},
-         {&C::sceneInstead, "scene_instead", "{scene: scene}", "{}",
+         {&C::sceneInstead, kSceneInstead, "{scene: scene}", "{}",
           "takes the place of a scene, whose rows it fills: another one, or NAME@SEED",
           mapOf(text())},
          {&C::params, "params", "{name: value}", "{}",
           "of the technique: `gfxrepro describe TECHNIQUE`", mapOf(anything())},
-         {&C::paramsByScene, "params_by_scene", "{scene: {name: value}}", "{}",
+         {&C::paramsByScene, kParamsByScene, "{scene: {name: value}}", "{}",
           "laid over `params` in the cases of a scene, whatever its seed; a swept axis wins",
           mapOf(mapOf(anything()))},
-         {&C::paramsInstead, "params_instead", "{name: value}", "{}",
+         {&C::paramsInstead, kParamsInstead, "{name: value}", "{}",
           "takes the place of a parameter's value or default in the cases that take it",
           mapOf(anything())},
          {&C::output, "output", "map", fmt::format("{0} × {0}", kDefaultOutputPx),
@@ -117,7 +114,7 @@ const KeyTable<ContentKeys>& contentTable() {
 }
 
 struct AssumptionKeys {
-    const Node *value, *range, *unit, *why;
+    GivenKey value, range, unit, why;
 };
 const KeyTable<AssumptionKeys>& assumptionTable() {
     using A = AssumptionKeys;
@@ -237,48 +234,47 @@ std::vector<Assumption> readAssumptions(const Node& node) {
         const AssumptionKeys given = assumptionTable().read(entry, what, &node.keyLocation(name));
         Assumption assumption;
         assumption.name = name;
-        assumption.why = lineOf(*given.why, what + ": why");
+        assumption.why = lineOf(*given.why, given.why.in(what));
         assumption.location = node.keyLocation(name);
         if (given.value) assumption.value = *given.value;
         if (given.range) assumption.range = *given.range;
-        assumption.unit = optionalLine(given.unit, what + ": unit");
+        assumption.unit = optionalLine(given.unit, what);
         assumptions.push_back(std::move(assumption));
     }
     return assumptions;
 }
 
 /// A file without a technique measures nothing: it holds what the paper printed.
-void requireOnlyPrinted(const Node& document, bool hasPrinted) {
+void requireOnlyPrinted(const Node& document, const ContentKeys& given) {
+    const std::string &technique = given.technique.name(), &printed = given.printed.name();
+    const Names ofPrint = {given.title.name(), given.labels.name(), printed,
+                           given.assumptions.name()};
     for (const std::string& key : sectionKeys()) {
-        const bool isOfPrint =
-            key == "title" || key == "labels" || key == "printed" || key == "assumptions";
-        if (isOfPrint || !document.find(key)) continue;
-        throw Error(document.keyLocation(key), "'" + key + "' without 'technique'");
+        if (contains(ofPrint, key) || !document.find(key)) continue;
+        throw Error(document.keyLocation(key), "'" + key + "' without '" + technique + "'");
     }
-    if (!hasPrinted) {
+    if (!given.printed) {
         throw Error(document.location(),
-                    "neither 'technique' nor 'printed'; allowed: either or both");
+                    "neither '" + technique + "' nor '" + printed + "'; allowed: either or both");
     }
 }
 
 /// A map, empty where the section is not there.
-Node mapIn(const Node* node, std::string_view key, const Node& document) {
-    if (!node || node->isNull()) return Node::map({}, document.location());
-    if (!node->isMap()) throwNotAllowed(*node, key, "a map");
-    return *node;
+Node mapIn(const GivenKey& key, const Node& document) {
+    if (!key || key->isNull()) return Node::map({}, document.location());
+    if (!key->isMap()) throwNotAllowed(*key, key.name(), "a map");
+    return *key;
 }
 
-Node paramsByScene(const Node* given, const Node& document) {
-    Node scenes = mapIn(given, "params_by_scene", document);
+Node paramsByScene(const GivenKey& given, const Node& document) {
+    Node scenes = mapIn(given, document);
     for (const auto& [scene, params] : scenes.entries()) {
-        if (!params.isMap()) {
-            throwNotAllowed(params, "params_by_scene: '" + scene + "'", "a map {name: value}");
-        }
+        const std::string what = fmt::format("{}: '{}'", given.name(), scene);
+        if (!params.isMap()) throwNotAllowed(params, what, "a map {name: value}");
         if (scene::sceneName(scene) != scene) {
             throw Error(
                 scenes.keyLocation(scene),
-                "params_by_scene: '" + scene +
-                    "'; allowed: a scene without seed and parameters, whose cases it is of");
+                what + "; allowed: a scene without seed and parameters, whose cases it is of");
         }
     }
     return scenes;
@@ -288,25 +284,26 @@ Node paramsByScene(const Node* given, const Node& document) {
 void requireTold(const Node& document, const ContentKeys& given, const Experiment& experiment) {
     if (programOf(experiment).isNull()) return;
     const ExternalProgram program = readProgram(programOf(experiment));
-    const auto require = [&](const char* key, bool isGiven, const std::string& names, bool isTold) {
+    const auto require = [&](const GivenKey& key, bool isGiven, const std::string& names,
+                             bool isTold) {
         if (!isGiven || isTold) return;
-        throw Error(document.keyLocation(key),
-                    std::string("'") + key + "': the program's command has no " + names);
+        throw Error(document.keyLocation(key.name()),
+                    "'" + key.name() + "': the program's command has no " + names);
     };
     const auto isSwept = [&](std::string_view axis) {
         return experiment.sweep.isMap() && experiment.sweep.find(axis);
     };
     const bool hasScene = !experiment.scene.isNull() || isSwept("scene");
-    const Node measure = mapIn(given.measure, "measure", document);
+    const Node measure = mapIn(given.measure, document);
     const bool hasSize = given.output || isSwept("output.width") || isSwept("output.height");
-    require("scene", hasScene, "{scene}", program.uses(placeholder::kScene));
-    require("output", hasSize, "{width} or {height}",
+    require(given.scene, hasScene, "{scene}", program.uses(placeholder::kScene));
+    require(given.output, hasSize, "{width} or {height}",
             program.uses(placeholder::kWidth) || program.uses(placeholder::kHeight));
     const char* told = program.givesAllFrames ? placeholder::kFrames : placeholder::kFrame;
-    require("measure", experiment.measure.frames > 1,
+    require(given.measure, experiment.measure.frames > 1,
             fmt::format("{{{}}}, of which there are several", told), program.uses(told));
     const bool isSeeded = experiment.measure.seeds != Measure::Seeds::None;
-    require("measure", isSeeded && measure.find("seeds"), "{seed}, of which 'seeds' tells",
+    require(given.measure, isSeeded && measure.find("seeds"), "{seed}, of which 'seeds' tells",
             program.uses(placeholder::kSeed));
     for (const ProgramPicture& picture : program.pictures) {
         const bool isOfItsOwn =
@@ -330,39 +327,40 @@ Measure::Seeds defaultSeeds(const Experiment& experiment) {
 }
 
 /// Of a program it is known which pictures there are.
-void requirePicture(const Node& name, const Experiment& experiment) {
+void requirePicture(const Node& name, const std::string& what, const Experiment& experiment) {
     if (programOf(experiment).isNull()) return;
     Names known;
     for (const ProgramPicture& picture : readProgram(programOf(experiment)).pictures) {
         known.push_back(picture.name);
     }
     if (contains(known, name.text())) return;
-    throwNotAllowed(name, "shows",
+    throwNotAllowed(name, what,
                     known.empty() ? "none, as the program leaves no images" : joined(known, " | "));
 }
 
 void readMeasurement(const Node& document, const ContentKeys& given, Experiment& experiment) {
     const auto valueOf = [](const Node* node) { return node ? *node : Node(); };
-    experiment.technique = lineOf(*given.technique, "technique");
-    experiment.params = mapIn(given.params, "params", document);
+    experiment.technique = lineOf(*given.technique, given.technique.name());
+    experiment.params = mapIn(given.params, document);
     experiment.paramsByScene = paramsByScene(given.paramsByScene, document);
-    experiment.paramsInstead = mapIn(given.paramsInstead, "params_instead", document);
+    experiment.paramsInstead = mapIn(given.paramsInstead, document);
     for (const auto& [name, value] : experiment.paramsInstead.entries()) {
         if (Node* replaced = experiment.params.find(name)) *replaced = value;
     }
     experiment.scene = valueOf(given.scene);
-    experiment.sceneParams = mapIn(given.sceneParams, "scene_params", document);
-    experiment.sceneInstead = mapIn(given.sceneInstead, "scene_instead", document);
+    experiment.sceneParams = mapIn(given.sceneParams, document);
+    experiment.sceneInstead = mapIn(given.sceneInstead, document);
     experiment.sweep = valueOf(given.sweep);
-    Params output(valueOf(given.output), "output");
+    Params output(valueOf(given.output), given.output.name());
     std::tie(experiment.outputWidthPx, experiment.outputHeightPx) = readOutput(output);
     if (!given.shows) return;
+    const std::string& what = given.shows.name();
     if (!given.shows->isSequence()) {
-        throwNotAllowed(*given.shows, "shows", "a list of names of pictures");
+        throwNotAllowed(*given.shows, what, "a list of names of pictures");
     }
     for (const Node& name : given.shows->items()) {
-        experiment.shows.push_back(lineOf(name, "shows"));
-        requirePicture(name, experiment);
+        experiment.shows.push_back(lineOf(name, what));
+        requirePicture(name, what, experiment);
     }
 }
 
@@ -390,7 +388,7 @@ void readLane(const Node& document, const ContentKeys& keys, Experiment& experim
         throw Error(node->keyLocation("runs"),
                     "measure: unknown parameter 'runs'; did you mean 'processes'?");
     }
-    Params params(node ? *node : Node(), "measure");
+    Params params(node ? *node : Node(), keys.measure.name());
     experiment.measure = readMeasure(params, defaults);
     requireTold(document, keys, experiment);
 }
@@ -408,22 +406,22 @@ void requireNotSwept(const Printed& printed, const std::vector<AxisPoint>& point
     }
 }
 
-void requireColumns(const Node& fit, const TableNames& names) {
-    if (!fit.isMap() || fit.entries().empty()) {
-        throwNotAllowed(fit, "fit", "a map {column: printed cell}");
+void requireColumns(const GivenKey& fit, const TableNames& names) {
+    if (!fit->isMap() || fit->entries().empty()) {
+        throwNotAllowed(*fit, fit.name(), "a map {column: printed cell}");
     }
-    for (const auto& [column, cell] : fit.entries()) {
+    for (const auto& [column, cell] : fit->entries()) {
         const bool isKnown = contains(names.columns, column);
         if (isKnown || !names.hasAllColumns) continue;
-        throw Error(fit.keyLocation(column),
-                    "fit: no column '" + column + "'" + suggestion(column, names.columns));
+        throw Error(fit->keyLocation(column), fit.name() + ": no column '" + column + "'" +
+                                                  suggestion(column, names.columns));
     }
 }
 
-std::map<std::string, std::string> labelsOf(const Node& given) {
+std::map<std::string, std::string> labelsOf(const GivenKey& given, const Node& document) {
     std::map<std::string, std::string> labels;
-    for (const auto& [name, words] : given.entries()) {
-        labels[name] = lineOf(words, "labels: '" + name + "'");
+    for (const auto& [name, words] : mapIn(given, document).entries()) {
+        labels[name] = lineOf(words, given.name() + ": '" + name + "'");
     }
     return labels;
 }
@@ -445,7 +443,7 @@ TableNames sweptNames(const std::vector<AxisPoint>& points, const Vocabulary& vo
 /// Layout, and what is checked against it: printed values, claims, plots.
 void readTable(const Node& document, const ContentKeys& given, bool isComplete,
                Experiment& experiment) {
-    const Node *printed = given.printed, *layout = given.layout, *claims = given.claims;
+    const GivenKey &printed = given.printed, &layout = given.layout, &claims = given.claims;
     if (experiment.technique.empty()) {
         experiment.printed = readPrinted(*printed, nullptr, nullptr);
         return;
@@ -453,9 +451,10 @@ void readTable(const Node& document, const ContentKeys& given, bool isComplete,
     const std::vector<AxisPoint> points = expandSweep(experiment.sweep);
     requireAxisNames(experiment.sweep, points);
     const bool isOwn = experiment.kind == Experiment::Kind::Sweep;
-    for (const char* key : {"fit", "claims", "plots"}) {
-        if (!document.find(key) || layout || (isOwn && key == std::string_view("claims"))) continue;
-        throw Error(document.keyLocation(key), std::string("'") + key + "' without 'layout'");
+    for (const GivenKey* key : {&given.fit, &claims, &given.plots}) {
+        if (!*key || layout || (isOwn && key == &claims)) continue;
+        throw Error(document.keyLocation(key->name()),
+                    "'" + key->name() + "' without '" + layout.name() + "'");
     }
     if (!layout) {
         if (claims) {
@@ -464,9 +463,6 @@ void readTable(const Node& document, const ContentKeys& given, bool isComplete,
             experiment.claims = readClaims(*claims, names, false, false);
         }
         if (!printed) return;
-        if (printed->find("values")) {
-            throw Error(printed->keyLocation("values"), "printed: 'values' without 'layout'");
-        }
         // What a preset says of the print: on which hardware, of how many frames.
         experiment.printed = readPrinted(*printed, &experiment.layout, nullptr);
         return;
@@ -476,7 +472,7 @@ void readTable(const Node& document, const ContentKeys& given, bool isComplete,
     const TableNames names = tableNames(experiment.layout, vocabulary);
     if (printed) experiment.printed = readPrinted(*printed, &experiment.layout, &names);
     if (isComplete) requireNotSwept(experiment.printed, points);
-    if (given.fit) requireColumns(*given.fit, names);
+    if (given.fit) requireColumns(given.fit, names);
     if (claims) {
         experiment.claims = readClaims(*claims, names, !experiment.printed.rows.empty(),
                                        experiment.kind != Experiment::Kind::Sweep);
@@ -495,6 +491,10 @@ const Names& identityKeys() {
     return keys;
 }
 
+ContentKeys contentOf(const Node& document) {
+    return contentTable().find(document);
+}
+
 const Names& sectionKeys() {
     return contentTable().names();
 }
@@ -505,19 +505,19 @@ Experiment readExperiment(const Node& document, const std::filesystem::path& fil
     allowed.insert(allowed.end(), sectionKeys().begin(), sectionKeys().end());
     allowed.emplace_back("profiles");
     requireKeys(document, "config", allowed);
-    const ContentKeys given = contentTable().find(document);
+    const ContentKeys given = contentOf(document);
     Experiment experiment;
     experiment.file = file;
     experiment.document = document;
     experiment.params = Node::map({});
     readIdentity(document, experiment);
-    contentTable().require(given, document.location(), "", " is missing");
-    experiment.title = lineOf(*given.title, "title");
-    experiment.labels = labelsOf(mapIn(given.labels, "labels", document));
+    contentTable().require(given, document.location(), "config");
+    experiment.title = lineOf(*given.title, given.title.name());
+    experiment.labels = labelsOf(given.labels, document);
     if (given.technique) {
         readMeasurement(document, given, experiment);
     } else {
-        requireOnlyPrinted(document, given.printed);
+        requireOnlyPrinted(document, given);
     }
     readTable(document, given, isComplete, experiment);
     if (given.technique) readLane(document, given, experiment);

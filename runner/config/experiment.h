@@ -134,6 +134,11 @@ inline constexpr const char* kSceneAssumption = "scene";
 inline constexpr const char* kSceneSeedAssumption = "scene_seed";
 inline constexpr const char* kFramesAssumption = "measure.frames";
 
+/// Keys of an experiment that overrides set, and scenes stand in.
+inline constexpr const char* kParamsByScene = "params_by_scene";
+inline constexpr const char* kParamsInstead = "params_instead";
+inline constexpr const char* kSceneInstead = "scene_instead";
+
 /// `assumptions:` — what the paper left open. One that names a parameter of the technique,
 /// `output`, `scene`, `scene_seed` or `measure.frames` is bound to it: value and unit are those of
 /// the cases.

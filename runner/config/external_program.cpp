@@ -27,8 +27,8 @@ constexpr Two kFramesOfARun = {"one", "all"}, kSeedsOf = {"case", "process"};
 constexpr Two kBetter = {"lower", "higher"};
 
 struct ProgramKeys {
-    const Node *command, *params, *metrics, *passes, *images, *env, *version, *starts, *files,
-        *frames, *seeds, *gpu, *here;
+    GivenKey command, params, metrics, passes, images, env, version, starts, files, frames, seeds,
+        gpu, here;
 };
 const KeyTable<ProgramKeys>& programTable() {
     using P = ProgramKeys;
@@ -75,7 +75,7 @@ const KeyTable<ProgramKeys>& programTable() {
 }
 
 struct ParamKeys {
-    const Node *fallback, *unit, *min, *max, *choices, *doc;
+    GivenKey fallback, unit, min, max, choices, doc;
 };
 const KeyTable<ParamKeys>& paramTable() {
     using P = ParamKeys;
@@ -93,7 +93,7 @@ const KeyTable<ParamKeys>& paramTable() {
 }
 
 struct MetricKeys {
-    const Node *unit, *better, *pattern, *scale, *optional, *doc;
+    GivenKey unit, better, pattern, scale, optional, doc;
 };
 const KeyTable<MetricKeys>& metricTable() {
     using M = MetricKeys;
@@ -117,7 +117,7 @@ const KeyTable<MetricKeys>& metricTable() {
 }
 
 struct ImageKeys {
-    const Node *file, *truth;
+    GivenKey file, truth;
 };
 const KeyTable<ImageKeys>& imageTable() {
     using I = ImageKeys;
@@ -187,39 +187,37 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
                     what + ": plans and tables have that of every case; give it another name");
     }
     // A value alone is its default, a list all that is allowed, the default first.
-    Node map = given;
-    if (given.isSequence() && !given.items().empty()) {
-        map = Node::map({{"default", given.items()[0]}, {"choices", given}}, given.location());
-    } else if (!given.isMap()) {
-        map = Node::map({{"default", given}}, given.location());
-    }
+    const bool isList = given.isSequence() && !given.items().empty();
+    Node map = paramTable().mapOf(isList ? given.items()[0] : given, &ParamKeys::fallback);
+    if (isList) map.set(paramTable().nameOf(&ParamKeys::choices), given);
     const ParamKeys keys = paramTable().readKnown(map, what);
-    const Node* fallback = keys.fallback;
+    const GivenKey& fallback = keys.fallback;
     if (!fallback || !fallback->isScalar()) {
-        throw Error(given.location(), what + " needs 'default', a number, a boolean or text");
+        throw Error(given.location(),
+                    what + " needs '" + fallback.name() + "', a number, a boolean or text");
     }
     ProgramParam param;
     param.name = name;
     param.fallback = *fallback;
-    param.doc = optionalLine(keys.doc, what + ": doc");
-    param.unit = optionalLine(keys.unit, what + ": unit");
+    param.doc = optionalLine(keys.doc, what);
+    param.unit = optionalLine(keys.unit, what);
     param.type = typeOf(keys);
-    param.min = keys.min ? numberIn(*keys.min, {}, what + ": min") : -kNoLimit;
-    param.max = keys.max ? numberIn(*keys.max, {}, what + ": max") : kNoLimit;
+    param.min = keys.min ? numberIn(*keys.min, {}, keys.min.in(what)) : -kNoLimit;
+    param.max = keys.max ? numberIn(*keys.max, {}, keys.max.in(what)) : kNoLimit;
     const bool isNumber = param.type == ParamType::Integer || param.type == ParamType::Number;
-    if (const char* end = keys.min ? "min" : "max"; (keys.min || keys.max) && !isNumber) {
-        throw Error(map.keyLocation(end), fmt::format("{}: '{}' is of numbers alone", what, end));
+    if (const GivenKey& end = keys.min ? keys.min : keys.max; end && !isNumber) {
+        throw Error(map.keyLocation(end.name()), end.in(what) + " is of numbers alone");
     }
-    if (const Node* choices = keys.choices) {
+    if (const GivenKey& choices = keys.choices) {
         if (!choices->isSequence() || choices->items().empty()) {
-            throwNotAllowed(*choices, what + ": choices", "a list of values");
+            throwNotAllowed(*choices, choices.in(what), "a list of values");
         }
         for (const Node& choice : choices->items()) param.choices.push_back(choice.text());
     }
     const auto value = fallback->tryDouble();
     const auto whole = fallback->tryInteger();
     if (param.type == ParamType::Integer && whole && !std::in_range<int>(*whole)) {
-        throwNotAllowed(*fallback, what + ": default",
+        throwNotAllowed(*fallback, fallback.in(what),
                         "a whole number of 32 bits, or one with a point, as 5000000000.0");
     }
     const bool isLegal = isNumber ? *value >= param.min && *value <= param.max
@@ -227,7 +225,7 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
                          : param.type == ParamType::Choice
                              ? contains(param.choices, fallback->text())
                              : true;
-    if (!isLegal) throwNotAllowed(*fallback, what + ": default", "one of the values it may have");
+    if (!isLegal) throwNotAllowed(*fallback, fallback.in(what), "one of the values it may have");
     return param;
 }
 
@@ -315,40 +313,45 @@ Names argumentsOf(const Node& node, std::string_view what, const Names& known) {
 }
 
 /// Whether it is the second of the two; where it is not there the first counts.
-bool isSecond(const Node* node, const std::string& what, const Two& names) {
-    return node && choiceOf(*node, names, what) == 1;
+bool isSecond(const GivenKey& key, const Two& names) {
+    return key && choiceOf(*key, names, key.in("program")) == 1;
 }
 
-Better betterOf(const Node* node, const std::string& what) {
-    if (!node) return Better::Neither;
-    return choiceOf(*node, kBetter, what) == 0 ? Better::Lower : Better::Higher;
+Better betterOf(const GivenKey& key, const std::string& owner) {
+    if (!key) return Better::Neither;
+    return choiceOf(*key, kBetter, key.in(owner)) == 0 ? Better::Lower : Better::Higher;
 }
 
-void readParams(const Node& params, ExternalProgram& program, Names& known) {
-    if (!params.isMap()) throwNotAllowed(params, "program: params", "a map {name: parameter}");
-    for (const auto& [name, param] : params.entries()) {
-        program.params.push_back(readProgramParam(params, name));
+/// Throws Error unless it is a map of that `shape`.
+const Node::Map& entriesOf(const GivenKey& key, const char* shape) {
+    if (!key->isMap()) throwNotAllowed(*key, key.in("program"), std::string("a map ") + shape);
+    return key->entries();
+}
+
+void readParams(const GivenKey& params, ExternalProgram& program, Names& known) {
+    for (const auto& [name, param] : entriesOf(params, "{name: parameter}")) {
+        program.params.push_back(readProgramParam(*params, name));
         known.push_back(name);
     }
 }
 
-void readEnvironment(const Node& variables, const Names& known, ExternalProgram& program) {
-    if (!variables.isMap()) throwNotAllowed(variables, "program: env", "a map {NAME: text}");
-    for (const auto& [name, text] : variables.entries()) {
+void readEnvironment(const GivenKey& variables, const Names& known, ExternalProgram& program) {
+    const std::string what = variables.in("program");
+    for (const auto& [name, text] : entriesOf(variables, "{NAME: text}")) {
         if (name.empty() || name.find('=') != std::string::npos) {
-            throw Error(variables.keyLocation(name),
-                        fmt::format("program: env: '{}' is no name of a variable; allowed: one "
-                                    "without '='",
-                                    name));
+            throw Error(variables->keyLocation(name),
+                        fmt::format("{}: '{}' is no name of a variable; allowed: one without '='",
+                                    what, name));
         }
-        program.environment.emplace_back(name, templateOf(text, "program: env", known));
+        program.environment.emplace_back(name, templateOf(text, what, known));
     }
 }
 
 /// Of which {here} may be a part.
-Names filesIn(const Node* list, const std::string& what) {
+Names filesIn(const GivenKey& list) {
     Names names;
     if (!list) return names;
+    const std::string what = list.in("program");
     if (!list->isSequence()) throwNotAllowed(*list, what, "a list of names");
     for (const Node& name : list->items()) {
         names.push_back(templateOf(name, what, {placeholder::kHere}));
@@ -367,29 +370,29 @@ void requireNameOfItsOwn(const Node& metrics, const std::string& name) {
                                         : "an axis that any program may have"));
 }
 
-void readMetrics(const Node& metrics, ExternalProgram& program) {
-    if (!metrics.isMap()) throwNotAllowed(metrics, "program: metrics", "a map {name: metric}");
-    for (const auto& [name, given] : metrics.entries()) {
+void readMetrics(const GivenKey& metrics, ExternalProgram& program) {
+    for (const auto& [name, given] : entriesOf(metrics, "{name: metric}")) {
         const std::string what = "program: metric '" + name + "'";
-        requireSnakeCase(metrics, name, "metric");
-        requireNameOfItsOwn(metrics, name);
+        requireSnakeCase(*metrics, name, "metric");
+        requireNameOfItsOwn(*metrics, name);
         // A unit alone is all that a metric needs.
-        const Node map = given.isMap() ? given : Node::map({{"unit", given}}, given.location());
+        const Node map = metricTable().mapOf(given, &MetricKeys::unit);
         const MetricKeys keys = metricTable().readKnown(map, what);
         if (!keys.unit || keys.unit->isNull())
-            throw Error(metrics.keyLocation(name), what + " needs 'unit'; \"1\" for none");
-        const std::string& unit = lineOf(*keys.unit, what + ": unit");
+            throw Error(metrics->keyLocation(name),
+                        what + " needs '" + keys.unit.name() + "'; \"1\" for none");
+        const std::string& unit = lineOf(*keys.unit, keys.unit.in(what));
         if (const std::string why = whyNoTimeName(name, unit); !why.empty()) {
             throw Error(keys.unit->location(), "program: metric " + why);
         }
-        program.outputs.metrics.push_back({name, unit, optionalLine(keys.doc, what + ": doc"),
-                                           betterOf(keys.better, what + ": better")});
-        if (keys.optional && flagOf(*keys.optional, what + ": optional"))
+        program.outputs.metrics.push_back(
+            {name, unit, optionalLine(keys.doc, what), betterOf(keys.better, what)});
+        if (keys.optional && flagOf(*keys.optional, keys.optional.in(what)))
             program.optionalMetrics.push_back(name);
-        const Node *pattern = keys.pattern, *scale = keys.scale;
+        const GivenKey &pattern = keys.pattern, &scale = keys.scale;
         if (scale && !pattern) {
-            throw Error(map.keyLocation("scale"),
-                        what + ": 'scale' is of a pattern's number alone");
+            throw Error(map.keyLocation(scale.name()),
+                        what + ": '" + scale.name() + "' is of a pattern's number alone");
         }
         if (!pattern) continue;
         if (program.givesAllFrames) {
@@ -397,23 +400,22 @@ void readMetrics(const Node& metrics, ExternalProgram& program) {
                                                  ": a pattern does not tell frames apart, and "
                                                  "one run gives them all ('frames: all')");
         }
-        const std::string& text = lineOf(*pattern, what + ": pattern");
+        const std::string& text = lineOf(*pattern, pattern.in(what));
         try {
             if (std::regex(text).mark_count() < 1) {
-                throwNotAllowed(*pattern, what + ": pattern", "one with the number in ( )");
+                throwNotAllowed(*pattern, pattern.in(what), "one with the number in ( )");
             }
         } catch (const std::regex_error& error) {
-            throw Error(pattern->location(), what + ": pattern: " + error.what());
+            throw Error(pattern->location(), pattern.in(what) + ": " + error.what());
         }
-        const double factor = scale ? numberIn(*scale, kScales, what + ": scale") : 1.0;
+        const double factor = scale ? numberIn(*scale, kScales, scale.in(what)) : 1.0;
         program.patterns.push_back({name, text, factor});
     }
 }
 
-void readPasses(const Node& passes, ExternalProgram& program) {
-    if (!passes.isMap()) throwNotAllowed(passes, "program: passes", "a map {name: meaning}");
-    for (const auto& [name, doc] : passes.entries()) {
-        requireSnakeCase(passes, name, "pass");
+void readPasses(const GivenKey& passes, ExternalProgram& program) {
+    for (const auto& [name, doc] : entriesOf(passes, "{name: meaning}")) {
+        requireSnakeCase(*passes, name, "pass");
         program.outputs.passes.push_back({name, lineOf(doc, "program: pass '" + name + "'")});
     }
 }
@@ -479,22 +481,22 @@ void readTruth(const Node& truth, const std::string& what, const Names& known,
     if (truth.find(placeholder::kFrames)) readTruthFrames(truth, what, program, picture);
 }
 
-void readPictures(const Node& pictures, const Names& known, ExternalProgram& program) {
-    if (!pictures.isMap()) throwNotAllowed(pictures, "program: images", "a map {name: file}");
-    for (const auto& [name, given] : pictures.entries()) {
+void readPictures(const GivenKey& pictures, const Names& known, ExternalProgram& program) {
+    for (const auto& [name, given] : entriesOf(pictures, "{name: file}")) {
         const std::string what = "program: image '" + name + "'";
-        requireSnakeCase(pictures, name, "image");
-        const Node map = given.isMap() ? given : Node::map({{"file", given}}, given.location());
-        const ImageKeys keys = imageTable().read(map, what, &pictures.keyLocation(name));
+        requireSnakeCase(*pictures, name, "image");
+        const Node map = imageTable().mapOf(given, &ImageKeys::file);
+        const ImageKeys keys = imageTable().read(map, what, &pictures->keyLocation(name));
         ProgramPicture picture;
         picture.name = name;
-        picture.file = templateOf(*keys.file, what + ": file", known);
-        requirePictureType(*keys.file, what + ": file");
+        const std::string whatFile = keys.file.in(what);
+        picture.file = templateOf(*keys.file, whatFile, known);
+        requirePictureType(*keys.file, whatFile);
         if (program.givesAllFrames && !hasPlaceholder(picture.file, placeholder::kFrame)) {
-            throwNotAllowed(*keys.file, what + ": file",
+            throwNotAllowed(*keys.file, whatFile,
                             "one with {frame}, as one run leaves the pictures of all frames");
         }
-        if (keys.truth) readTruth(*keys.truth, what + ": truth", known, program, picture);
+        if (keys.truth) readTruth(*keys.truth, keys.truth.in(what), known, program, picture);
         program.pictures.push_back(picture);
         if (!picture.hasTruth()) continue;
         program.outputs.withTruth.push_back(name);
@@ -525,7 +527,7 @@ bool ExternalProgram::uses(std::string_view name) const {
 
 const Node& programOf(const Experiment& experiment) {
     static const Node kNone;
-    const Node* program = experiment.document.find("program");
+    const GivenKey program = contentOf(experiment.document).program;
     return program ? *program : kNone;
 }
 
@@ -544,34 +546,36 @@ bool hasRandomErrors(const ExternalProgram& program) {
 }  // namespace
 
 ExternalProgram readProgram(const Node& node) {
-    const ProgramKeys given = programTable().readKnown(node, "program");
+    const std::string what = "program";
+    const ProgramKeys given = programTable().readKnown(node, what);
     ExternalProgram program;
-    if (given.here) program.here = lineOf(*given.here, "program: here");
-    if (given.gpu) program.usesGpu = flagOf(*given.gpu, "program: gpu");
-    program.givesAllFrames = isSecond(given.frames, "program: frames", kFramesOfARun);
+    program.here = optionalLine(given.here, what);
+    if (given.gpu) program.usesGpu = flagOf(*given.gpu, given.gpu.in(what));
+    program.givesAllFrames = isSecond(given.frames, kFramesOfARun);
     Names known = reservedNames();
-    if (given.params) readParams(*given.params, program, known);
-    programTable().require(given, node.location(), "program: ", " is missing");
-    program.command = argumentsOf(*given.command, "program: command", known);
-    if (given.env) readEnvironment(*given.env, known, program);
+    if (given.params) readParams(given.params, program, known);
+    programTable().require(given, node.location(), what);
+    program.command = argumentsOf(*given.command, given.command.in(what), known);
+    if (given.env) readEnvironment(given.env, known, program);
     if (program.givesAllFrames && program.uses(placeholder::kFrame)) {
         throw Error(given.command->location(),
                     "program: {frame}, and one run gives all frames; allowed: "
                     "{frames}, their number");
     }
     if (given.seeds && !program.uses(placeholder::kSeed)) {
-        throw Error(node.keyLocation("seeds"), "program: seeds: the command has no {seed}");
+        throw Error(node.keyLocation(given.seeds.name()),
+                    given.seeds.in(what) + ": the command has no {seed}");
     }
     if (given.version) {
-        program.version = argumentsOf(*given.version, "program: version", {placeholder::kHere});
+        program.version = argumentsOf(*given.version, given.version.in(what), {placeholder::kHere});
     }
-    program.starts = filesIn(given.starts, "program: starts");
-    program.files = filesIn(given.files, "program: files");
-    if (given.metrics) readMetrics(*given.metrics, program);
-    if (given.passes) readPasses(*given.passes, program);
-    if (given.images) readPictures(*given.images, known, program);
+    program.starts = filesIn(given.starts);
+    program.files = filesIn(given.files);
+    if (given.metrics) readMetrics(given.metrics, program);
+    if (given.passes) readPasses(given.passes, program);
+    if (given.images) readPictures(given.images, known, program);
     program.seedsByProcess =
-        given.seeds ? isSecond(given.seeds, "program: seeds", kSeedsOf) : hasRandomErrors(program);
+        given.seeds ? isSecond(given.seeds, kSeedsOf) : hasRandomErrors(program);
     program.framesAreSeeds =
         !program.uses(placeholder::kSeed) &&
         std::ranges::any_of(program.pictures, [](const ProgramPicture& picture) {

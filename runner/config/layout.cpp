@@ -27,7 +27,7 @@ Json selectionType() {
 }
 
 struct LayoutKeys {
-    const Node *axes, *rows, *columns, *cell;
+    GivenKey axes, rows, columns, cell;
 };
 const KeyTable<LayoutKeys>& layoutTable() {
     static const Json axesType = anyOf({text(), listOf(text()), mapOf(selectionType())});
@@ -45,7 +45,7 @@ const KeyTable<LayoutKeys>& layoutTable() {
 }
 
 struct SelectionKeys {
-    const Node *metric, *pass, *format, *scale, *of, *equal, *where;
+    GivenKey metric, pass, format, scale, of, equal, where;
 };
 const KeyTable<SelectionKeys>& selectionTable() {
     using S = SelectionKeys;
@@ -68,7 +68,7 @@ const KeyTable<SelectionKeys>& selectionTable() {
 }
 
 struct EqualKeys {
-    const Node *metric, *is;
+    GivenKey metric, is;
 };
 const KeyTable<EqualKeys>& equalTable() {
     static const KeyTable<EqualKeys> table{
@@ -85,28 +85,29 @@ Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
     Selection selection;
     selection.location = node.location();
     if (node.isScalar()) {
-        selection.metric = lineOf(node, "metric");
+        selection.metric = lineOf(node, selectionTable().nameOf(&SelectionKeys::metric));
         return selection;
     }
     const SelectionKeys given = selectionTable().read(node, "a cell's selection");
-    if (given.metric) selection.metric = lineOf(*given.metric, "metric");
-    if (given.pass) selection.pass = lineOf(*given.pass, "pass");
+    if (given.metric) selection.metric = lineOf(*given.metric, given.metric.name());
+    if (given.pass) selection.pass = lineOf(*given.pass, given.pass.name());
     if (given.format) {
         requireCellFormat(*given.format);
         selection.format = given.format->text();
     }
-    if (given.scale) selection.scale = numberIn(*given.scale, kScales, "scale");
+    if (given.scale) selection.scale = numberIn(*given.scale, kScales, given.scale.name());
     if (given.equal) {
-        const EqualKeys equal = equalTable().read(*given.equal, "equal");
-        selection.equal =
-            Equal{lineOf(*equal.metric, "metric"), numberIn(*equal.is, {}, "equal: is")};
+        const std::string& what = given.equal.name();
+        const EqualKeys equal = equalTable().read(*given.equal, what);
+        selection.equal = Equal{lineOf(*equal.metric, equal.metric.name()),
+                                numberIn(*equal.is, {}, equal.is.in(what))};
     }
     if (given.of) {
-        selection.of = lineOf(*given.of, "of");
-        requireKeys(node, "a computed column", Names{"of", "format"});
+        selection.of = lineOf(*given.of, given.of.name());
+        requireKeys(node, "a computed column", Names{given.of.name(), given.format.name()});
     }
     if (given.where) {
-        requireKeys(*given.where, "where", referableAxes(vocabulary));
+        requireKeys(*given.where, given.where.name(), referableAxes(vocabulary));
         selection.where.assign(given.where->entries().begin(), given.where->entries().end());
     }
     return selection;
@@ -455,8 +456,8 @@ void requireCellFormat(const Node& format) {
     if (count == 0) throwNotAllowed(format, "format", "a statistic in braces, as {median:.4g}");
 }
 
-std::string optionalLine(const Node* node, const std::string& what) {
-    return node ? lineOf(*node, what) : "";
+std::string optionalLine(const GivenKey& key, const std::string& owner) {
+    return key ? lineOf(*key, key.in(owner)) : "";
 }
 
 const Node& requiredAt(const Node& map, std::string_view key, std::string_view what) {

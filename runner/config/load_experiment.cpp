@@ -25,7 +25,7 @@ namespace {
 using namespace types;
 
 struct CompositionKeys {
-    const Node *extends, *profiles;
+    GivenKey extends, profiles;
 };
 const KeyTable<CompositionKeys>& compositionTable() {
     static const KeyTable<CompositionKeys> table{
@@ -66,7 +66,7 @@ void refuseTornTexts(const Node& whole) {
 
 /// A scene without a value takes away what a file has of it that is extended; else it says nothing.
 void refuseEmptyScenes(const Node& own, const Node& extended) {
-    for (const char* section : {"params_by_scene", "scene_instead"}) {
+    for (const char* section : {kParamsByScene, kSceneInstead}) {
         const Node* scenes = own.find(section);
         const Node* earlier = extended.find(section);
         if (!scenes || !scenes->isMap()) continue;
@@ -74,8 +74,10 @@ void refuseEmptyScenes(const Node& own, const Node& extended) {
             const SourceLocation& where = scenes->keyLocation(scene);
             const std::string name = withSceneFile(Node::scalar(scene, where)).text();
             if (!value.isNull() || (earlier && earlier->isMap() && earlier->find(name))) continue;
-            throw Error(where, fmt::format("{}: '{}' has no value; allowed: {{scene: {}}}", section,
-                                           scene, section[0] == 's' ? "scene" : "{name: value}"));
+            throw Error(
+                where, fmt::format(
+                           "{}: '{}' has no value; allowed: {{scene: {}}}", section, scene,
+                           std::string_view(section) == kSceneInstead ? "scene" : "{name: value}"));
         }
     }
 }
@@ -242,7 +244,7 @@ void requireNotOverridden(const Override& given, const std::string& name, Node d
 
 /// A parameter that the command line sets is of all scenes.
 void dropFromScenes(const std::string& name, Node& document) {
-    Node* scenes = document.find("params_by_scene");
+    Node* scenes = document.find(kParamsByScene);
     if (!scenes || !scenes->isMap()) return;
     for (auto& [scene, params] : scenes->entries()) {
         if (params.isMap()) params.erase(name);

@@ -23,7 +23,7 @@ const Node* firstText(const std::string& axis, const TableNames& names) {
 }
 
 struct PlotKeys {
-    const Node *x, *y, *by, *panels, *at, *log, *slope, *title;
+    GivenKey x, y, by, panels, at, log, slope, title;
 };
 const KeyTable<PlotKeys>& plotTable() {
     using namespace types;
@@ -56,25 +56,24 @@ class PlotReader {
     PlotSpec read() {
         plot_.location = node_.location();
         const PlotKeys given = plotTable().read(node_, what_);
-        const auto what = [&](const char* key) { return fmt::format("{}: {}", what_, key); };
-        readX(*given.x, what("x"));
-        readY(*given.y, what("y"));
-        if (given.by) plot_.by = readAxis(*given.by, what("by"));
+        readX(*given.x, given.x.in(what_));
+        readY(*given.y, given.y.in(what_));
+        if (given.by) plot_.by = readAxis(*given.by, given.by.in(what_));
         for (const Node& axis : given.panels ? listed(*given.panels) : Node::Sequence()) {
-            plot_.panels.push_back(readAxis(axis, what("panels")));
+            plot_.panels.push_back(readAxis(axis, given.panels.in(what_)));
         }
-        if (given.at) plot_.at = readRowFilter(*given.at, what("at"), names_);
-        if (given.log) readLog(*given.log, what("log"));
+        if (given.at) plot_.at = readRowFilter(*given.at, given.at.in(what_), names_);
+        if (given.log) readLog(*given.log, given.log.in(what_));
         if (given.slope) {
-            plot_.slope = numberIn(*given.slope, {}, what("slope"));
+            plot_.slope = numberIn(*given.slope, {}, given.slope.in(what_));
             if (!plot_.isLogX || !plot_.isLogY) {
                 throw Error(given.slope->location(),
-                            what("slope") +
+                            given.slope.in(what_) +
                                 " is a straight line on logarithmic axes alone; "
                                 "allowed: with log: [x, y]");
             }
         }
-        if (given.title) plot_.title = lineOf(*given.title, what("title"));
+        if (given.title) plot_.title = lineOf(*given.title, given.title.in(what_));
         requirePlaces();
         return std::move(plot_);
     }

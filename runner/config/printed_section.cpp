@@ -18,7 +18,7 @@ namespace {
 using namespace types;
 
 struct PrintedKeys {
-    const Node *hardware, *remark, *values, *compared, *calibrated, *unfit, *at;
+    GivenKey hardware, remark, values, compared, calibrated, unfit, at;
 };
 const KeyTable<PrintedKeys>& printedTable() {
     using P = PrintedKeys;
@@ -52,7 +52,7 @@ const KeyTable<PrintedKeys>& printedTable() {
 }
 
 struct FitKeys {
-    const Node *table, *row, *column;
+    GivenKey table, row, column;
 };
 const KeyTable<FitKeys>& fitTable() {
     static const KeyTable<FitKeys> table{
@@ -119,37 +119,40 @@ void requireLabels(const Names& row, const Names& header, const Layout& layout,
 }
 
 /// Parameters of the technique are known to the plan alone, which checks their names and values.
-Node::Map readAt(const Node& at) {
-    if (!at.isMap()) throwNotAllowed(at, "printed.at", "a map {parameter: printed value}");
+Node::Map readAt(const GivenKey& key) {
+    const Node& at = *key;
+    const std::string what = "printed." + key.name();
+    if (!at.isMap()) throwNotAllowed(at, what, "a map {parameter: printed value}");
     constexpr const char* kSizes[] = {"output.width", "output.height", "measure.frames"};
     Node::Map values;
     for (const auto& [name, value] : at.entries()) {
         const bool isSize = contains(kSizes, name);
         if (!isSize && contains(name, '.')) {
-            throw Error(at.keyLocation(name), "printed.at: '" + name +
-                                                  "'; allowed: a parameter, scene, output.width, "
-                                                  "output.height, measure.frames");
+            throw Error(at.keyLocation(name),
+                        fmt::format("{}: '{}'; allowed: a parameter, scene, {}", what, name,
+                                    fmt::join(kSizes, ", ")));
         }
         const NumberRange& range = name == "measure.frames" ? kFrameCounts : kOutputSizesPx;
-        if (isSize) (void)numberIn(value, range, "printed.at: " + name);
+        if (isSize) (void)numberIn(value, range, what + ": " + name);
         values.emplace_back(name, value);
     }
     return values;
 }
 
-Names namesIn(const Node& list, const std::string& key, std::string_view allowed) {
-    const std::string what = "printed: " + key;
-    if (!list.isSequence()) throwNotAllowed(list, what, allowed);
+Names namesIn(const GivenKey& list, std::string_view allowed) {
+    if (!list) return {};
+    const std::string what = list.in("printed");
+    if (!list->isSequence()) throwNotAllowed(*list, what, allowed);
     Names names;
-    for (const Node& name : list.items()) names.push_back(lineOf(name, what));
+    for (const Node& name : list->items()) names.push_back(lineOf(name, what));
     return names;
 }
 
 /// Cells go by row axes and, as a claim across rows calls it, `column`.
-Node::Sequence cellsIn(const Node& calibrated, const TableNames& names) {
-    const std::string what = "printed.calibrated";
-    if (!calibrated.isSequence())
-        throwNotAllowed(calibrated, what, "[{row axis: value, column: name}]");
+Node::Sequence cellsIn(const GivenKey& calibrated, const TableNames& names) {
+    const std::string what = "printed." + calibrated.name();
+    if (!calibrated->isSequence())
+        throwNotAllowed(*calibrated, what, "[{row axis: value, column: name}]");
     TableNames all = names;
     all.rowAxes.emplace_back(kColumnAxis);
     if (names.hasAllColumns) {
@@ -157,32 +160,54 @@ Node::Sequence cellsIn(const Node& calibrated, const TableNames& names) {
             all.rowValues[kColumnAxis].push_back(Node::scalar(column, {}, true));
         }
     }
-    for (const Node& cells : calibrated.items()) readRowFilter(cells, what, all);
-    return calibrated.items();
+    for (const Node& cells : calibrated->items()) readRowFilter(cells, what, all);
+    return calibrated->items();
 }
 
 }  // namespace
 
+std::vector<NoEffect> printedInVain(const Experiment& experiment) {
+    const GivenKey printed = contentOf(experiment.document).printed;
+    if (!printed || !printed->isMap()) return {};
+    const PrintedKeys given = printedTable().find(*printed);
+    std::vector<NoEffect> found;
+    const auto require = [&](const GivenKey& key, bool hasEffect, const std::string& why) {
+        if (!key || hasEffect) return;
+        found.push_back(
+            {printed->keyLocation(key.name()), fmt::format("'{}': {}", key.name(), why)});
+    };
+    const std::string with = "; allowed: with '" + given.values.name() + "'";
+    require(given.at, experiment.isPublished(),
+            "nothing is printed that could have been measured there" + with);
+    require(given.compared, !experiment.printed.rows.empty(),
+            "no fit reads a table without printed cells" + with);
+    const auto& claims = experiment.claims;
+    require(given.unfit,
+            experiment.kind == Experiment::Kind::Sweep
+                ? std::ranges::any_of(claims, &ClaimSpec::isReadOffDocument)
+                : !claims.empty(),
+            "it takes scenes from the claims of a document, and there are none");
+    return found;
+}
+
 Printed readPrinted(const Node& node, const Layout* layout, const TableNames* names) {
     const PrintedKeys given = printedTable().read(node, "printed");
+    const auto refuse = [&](const GivenKey& key, const char* without) {
+        throw Error(node.keyLocation(key.name()),
+                    fmt::format("printed: '{}' without '{}'", key.name(), without));
+    };
+    if (given.values && layout && !names) refuse(given.values, "layout");
+    if (given.calibrated && !names) refuse(given.calibrated, "technique");
+    if (given.at && !layout) refuse(given.at, "technique");
     Printed printed;
     printed.location = node.location();
     if (given.hardware) printed.hardware = given.hardware->text();
     if (given.remark) printed.remark = trimmed(given.remark->text());
-    if (given.compared) printed.compared = namesIn(*given.compared, "compared", "[methods]");
-    if (given.unfit) printed.unfit = namesIn(*given.unfit, "unfit", "[scenes]");
-    if (given.calibrated) {
-        if (!names) {
-            throw Error(node.keyLocation("calibrated"),
-                        "printed: 'calibrated' without 'technique'");
-        }
-        printed.calibrated = cellsIn(*given.calibrated, *names);
-    }
-    if (given.at) {
-        if (!layout) throw Error(node.keyLocation("at"), "printed: 'at' without 'technique'");
-        printed.at = readAt(*given.at);
-    }
-    const Node* values = given.values;
+    printed.compared = namesIn(given.compared, "[methods]");
+    printed.unfit = namesIn(given.unfit, "[scenes]");
+    if (given.calibrated) printed.calibrated = cellsIn(given.calibrated, *names);
+    if (given.at) printed.at = readAt(given.at);
+    const GivenKey& values = given.values;
     if (!values) return printed;
     printed.location = values->location();
     const Names lines = split(values->text(), '\n');
@@ -210,7 +235,8 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
         }
         printed.rows.push_back(std::move(row));
     }
-    if (printed.rows.empty()) throw Error(values->location(), "printed: values has no rows");
+    if (printed.rows.empty())
+        throw Error(values->location(), values.in("printed") + " has no rows");
     return printed;
 }
 
@@ -297,11 +323,11 @@ bool isLabel(const Node& value, const std::string& label) {
 }
 
 /// The labels of `row` beside the table's row axes.
-Names rowLabels(const Node& row, const Layout& layout, const std::string& what) {
+Names rowLabels(const GivenKey& row, const Layout& layout, const std::string& what) {
     Names axes, labels;
     for (const LayoutAxis& axis : layout.rows) axes.push_back(axis.name);
-    requireKeys(row, what + ": row", axes);
-    for (const std::string& axis : axes) labels.push_back(requiredAt(row, axis, what).text());
+    requireKeys(*row, row.in(what), axes);
+    for (const std::string& axis : axes) labels.push_back(requiredAt(*row, axis, what).text());
     return labels;
 }
 
@@ -373,8 +399,8 @@ Node withPrintedCell(const Node& entry, const std::string& column, const Experim
         throw Error(place.location(), fmt::format("{}: {} is not measured by technique '{}'", what,
                                                   table.id, fit.technique));
     }
-    const Names row = rowLabels(*given.row, table.layout, what);
-    const Selection cell = cellSelection(table, row, lineOf(theirs, what + ": column"));
+    const Names row = rowLabels(given.row, table.layout, what);
+    const Selection cell = cellSelection(table, row, lineOf(theirs, given.column.in(what)));
     const Selection own = cellSelection(fit, Names(fit.layout.rows.size()), column);
     // What a fit may read compares no methods: that is how the other rows stay blind.
     const std::string method = methodOf(fit, own), printedMethod = methodOf(table, cell);
@@ -408,7 +434,7 @@ Node withPrintedCell(const Node& entry, const std::string& column, const Experim
 }
 
 std::vector<FitTarget> fitTargets(const Experiment& experiment) {
-    const Node* fit = experiment.document.find("fit");
+    const GivenKey fit = contentOf(experiment.document).fit;
     if (!fit || fit->isNull()) return {};
     std::vector<FitTarget> targets;
     for (const auto& [column, entry] : fit->entries()) {

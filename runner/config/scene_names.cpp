@@ -171,7 +171,7 @@ void resolveAll(Node& document) {
 }  // namespace
 
 void resolveSceneKeys(Node& document) {
-    for (const char* section : {"params_by_scene", "scene_instead"}) {
+    for (const char* section : {kParamsByScene, kSceneInstead}) {
         if (Node* map = document.find(section)) *map = withSceneFileKeys(*map, section);
     }
 }

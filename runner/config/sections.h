@@ -76,10 +76,17 @@ RowFilter readRowFilter(const Node& at, const std::string& what, const TableName
 /// Throws Error unless `format` is text with at least one statistic in braces, as "{mean:.2f}".
 void requireCellFormat(const Node& format);
 /// lineOf() it; "" where it is not there.
-std::string optionalLine(const Node* node, const std::string& what);
+std::string optionalLine(const GivenKey& key, const std::string& owner);
 /// Throws Error "WHAT needs 'KEY'" where it is not there.
 const Node& requiredAt(const Node& map, std::string_view key, std::string_view what);
 
+/// What a config has beside its name.
+struct ContentKeys {
+    GivenKey title, technique, program, scene, sceneParams, sceneInstead, params, paramsByScene,
+        paramsInstead, output, sweep, measure, shows, labels, layout, printed, claims, plots, fit,
+        assumptions;
+};
+ContentKeys contentOf(const Node& document);
 /// The keys of a config that a profile may change.
 const Names& sectionKeys();
 /// table, figure, section, sweep_of.
@@ -99,6 +106,8 @@ struct NoEffect {
 std::vector<NoEffect> valuesInVain(const Experiment& experiment);
 /// Each `exclude` that no point of the sweep matches.
 std::vector<NoEffect> excludedInVain(const Experiment& experiment);
+/// Keys of `printed` that judge or mark nothing here.
+std::vector<NoEffect> printedInVain(const Experiment& experiment);
 /// These, and every key of which nothing follows. `experiment` is the file as it stands, with what
 /// profile `paper` makes of it.
 std::vector<NoEffect> keysInVain(const Experiment& experiment);

@@ -18,7 +18,7 @@ using namespace types;
 
 /// `axes`: keys that are as any other, but of every technique.
 struct SweepKeys {
-    const Node *axes, *zip, *list, *exclude, *when;
+    GivenKey axes, zip, list, exclude, when;
 };
 const KeyTable<SweepKeys>& sweepTable() {
     using S = SweepKeys;
@@ -45,7 +45,7 @@ const KeyTable<SweepKeys>& sweepTable() {
 }
 
 struct AxisKeys {
-    const Node *range, *log2;
+    GivenKey range, log2;
 };
 const KeyTable<AxisKeys>& axisTable() {
     static const KeyTable<AxisKeys> table{
@@ -90,13 +90,16 @@ void requireCount(double count, const SourceLocation& where, const std::string& 
 }
 
 /// [first, last], [first, last, step]: both ends included.
-Node::Sequence valuesOfRange(const Node& range, const std::string& axis) {
+Node::Sequence valuesOfRange(const GivenKey& given, const std::string& axis) {
+    const Node& range = *given;
     if (!range.isSequence() || range.items().size() < 2 || range.items().size() > 3) {
-        throwNotAllowed(range, "range", "[first, last] or [first, last, step]");
+        throwNotAllowed(range, given.name(), "[first, last] or [first, last, step]");
     }
-    const double first = numberIn(range.items()[0], {}, "range");
-    const double last = numberIn(range.items()[1], {}, "range");
-    const double step = range.items().size() == 3 ? numberIn(range.items()[2], {}, "range") : 1.0;
+    const auto numberAt = [&](std::size_t i) {
+        return numberIn(range.items()[i], {}, given.name());
+    };
+    const double first = numberAt(0), last = numberAt(1);
+    const double step = range.items().size() == 3 ? numberAt(2) : 1.0;
     const double count = countOfRange(range, first, last, step);
     requireCount(count, range.location(), "axis '" + axis + "'");
     Node::Sequence values;
@@ -109,16 +112,19 @@ Node::Sequence valuesOfRange(const Node& range, const std::string& axis) {
 }
 
 /// [first, last]: powers of two, both ends included.
-Node::Sequence valuesOfLog2(const Node& ends) {
-    constexpr std::string_view kAllowed = "[first, last], powers of two, the smaller first";
-    if (!ends.isSequence() || ends.items().size() != 2) throwNotAllowed(ends, "log2", kAllowed);
-    const double first = numberIn(ends.items()[0], {}, "log2");
-    const double last = numberIn(ends.items()[1], {}, "log2");
+Node::Sequence valuesOfLog2(const GivenKey& given) {
+    const Node& ends = *given;
+    const auto refuse = [&] {
+        throwNotAllowed(ends, given.name(), "[first, last], powers of two, the smaller first");
+    };
+    if (!ends.isSequence() || ends.items().size() != 2) refuse();
+    const double first = numberIn(ends.items()[0], {}, given.name());
+    const double last = numberIn(ends.items()[1], {}, given.name());
     for (const double end : {first, last}) {
         int exponent = 0;
-        if (std::frexp(end, &exponent) != 0.5) throwNotAllowed(ends, "log2", kAllowed);
+        if (std::frexp(end, &exponent) != 0.5) refuse();
     }
-    if (first > last) throwNotAllowed(ends, "log2", kAllowed);
+    if (first > last) refuse();
     Node::Sequence values;
     for (double value = first; value <= last; value *= 2.0) {
         values.push_back(Node::number(value, ends.location()));
@@ -135,9 +141,9 @@ Node::Sequence valuesOfAxis(const std::string& axis, const Node& node) {
     if (node.isSequence()) {
         values = node.items();
     } else if (given.range) {
-        values = valuesOfRange(*given.range, axis);
+        values = valuesOfRange(given.range, axis);
     } else if (given.log2) {
-        values = valuesOfLog2(*given.log2);
+        values = valuesOfLog2(given.log2);
     } else {
         throwNotAllowed(node, what,
                         "a list, {range: [first, last, step]}, {log2: [first, last]}, or all, of "
@@ -168,10 +174,10 @@ class Factors {
         factors_.push_back(std::move(factor));
     }
 
-    void addZips(const Node& blocks) {
-        for (const Node& block : blocks.items()) {
+    void addZips(const GivenKey& blocks) {
+        for (const Node& block : blocks->items()) {
             if (!block.isMap() || block.entries().empty()) {
-                throwNotAllowed(block, "zip", "a list of maps, axis: values");
+                throwNotAllowed(block, blocks.name(), "a list of maps, axis: values");
             }
             Factor factor;
             for (const auto& [axis, node] : block.entries()) {
@@ -181,8 +187,8 @@ class Factors {
                 if (values.size() != factor.size()) {
                     throw Error(
                         node.location(),
-                        fmt::format("zip: axis '{}' has {} values, but '{}' has {}", axis,
-                                    values.size(), block.entries()[0].key(), factor.size()));
+                        fmt::format("{}: axis '{}' has {} values, but '{}' has {}", blocks.name(),
+                                    axis, values.size(), block.entries()[0].key(), factor.size()));
                 }
                 for (std::size_t i = 0; i < values.size(); ++i) {
                     factor[i].emplace_back(axis, std::move(values[i]));
@@ -192,10 +198,10 @@ class Factors {
         }
     }
 
-    void addLists(const Node& blocks) {
-        for (const Node& block : blocks.items()) {
+    void addLists(const GivenKey& blocks) {
+        for (const Node& block : blocks->items()) {
             if (!block.isSequence() || block.items().empty()) {
-                throwNotAllowed(block, "list",
+                throwNotAllowed(block, blocks.name(),
                                 "a list of blocks, each a list of points {axis: value}");
             }
             Factor factor;
@@ -293,9 +299,9 @@ Factors factorsOf(const Node& sweep) {
     const SweepKeys given = sweepTable().find(sweep);
     for (const auto& [key, node] : sweep.entries()) {
         if (&node == given.zip) {
-            factors.addZips(node);
+            factors.addZips(given.zip);
         } else if (&node == given.list) {
-            factors.addLists(node);
+            factors.addLists(given.list);
         } else if (&node != given.exclude && &node != given.when) {
             factors.addAxis(key, node, sweep.keyLocation(key));
         }
@@ -306,22 +312,23 @@ Factors factorsOf(const Node& sweep) {
 /// A value that a config fixes.
 struct Fixed {
     std::string axis;  // by which a sweep would name it
-    const char* section;
+    std::string section;
     SourceLocation where;
     SourceLocation swept = {};
 };
 
 std::vector<Fixed> fixedOf(const Experiment& experiment) {
     std::vector<Fixed> all;
-    const auto add = [&](const char* section, const Node& values, std::string_view prefix) {
+    const ContentKeys content = contentOf(experiment.document);
+    const auto add = [&](const GivenKey& section, const Node& values, std::string_view prefix) {
         for (const auto& [name, value] : values.entries()) {
-            all.push_back({std::string(prefix) + name, section, value.location()});
+            all.push_back({std::string(prefix) + name, section.name(), value.location()});
         }
     };
-    add("params", experiment.params, "");
-    add("scene_params", experiment.sceneParams, kSceneAxisPrefix);
-    const Node* output = experiment.document.find("output");
-    if (output && output->isMap()) add("output", *output, "output.");
+    add(content.params, experiment.params, "");
+    add(content.sceneParams, experiment.sceneParams, kSceneAxisPrefix);
+    const GivenKey& output = content.output;
+    if (output && output->isMap()) add(output, *output, output.name() + ".");
     if (!experiment.scene.isNull()) {
         all.push_back({"scene", "scene", experiment.scene.location()});
         const scene::SceneReference scene = scene::SceneReference::from(experiment.scene);
@@ -388,18 +395,18 @@ std::vector<NoEffect> valuesInVain(const Experiment& experiment) {
 }
 
 std::vector<NoEffect> excludedInVain(const Experiment& experiment) {
-    const Node* exclude =
-        experiment.sweep.isMap() ? sweepTable().find(experiment.sweep).exclude : nullptr;
+    if (!experiment.sweep.isMap()) return {};
+    const GivenKey exclude = sweepTable().find(experiment.sweep).exclude;
     if (!exclude) return {};
     Node whole = experiment.sweep;
-    whole.erase("exclude");
+    whole.erase(exclude.name());
     const std::vector<AxisPoint> points = expandSweep(whole);
     std::vector<NoEffect> found;
     for (const Node& pairs : exclude->items()) {
         const auto isMet = [&](const AxisPoint& point) { return matchesAll(point, pairs); };
         if (std::ranges::any_of(points, isMet)) continue;
-        found.push_back({pairs.location(),
-                         fmt::format("exclude: no point of the sweep has {}", pairs.toFlowText())});
+        found.push_back({pairs.location(), fmt::format("{}: no point of the sweep has {}",
+                                                       exclude.name(), pairs.toFlowText())});
     }
     return found;
 }
@@ -409,16 +416,16 @@ std::vector<AxisPoint> expandSweep(const Node& sweep) {
     if (!sweep.isMap()) throwNotAllowed(sweep, "sweep", "a map, axis: values");
     const Factors factors = factorsOf(sweep);
     const SweepKeys given = sweepTable().find(sweep);
-    const Node *when = given.when, *exclude = given.exclude;
+    const GivenKey &when = given.when, &exclude = given.exclude;
     if (when) {
-        requireKeys(*when, "when", factors.axes());
+        requireKeys(*when, when.name(), factors.axes());
         for (const auto& [axis, conditions] : when->entries()) {
-            requireConditions(conditions, "when", factors.axes());
+            requireConditions(conditions, when.name(), factors.axes());
         }
     }
     if (exclude) {
         for (const Node& pairs : exclude->items()) {
-            requireConditions(pairs, "exclude", factors.axes());
+            requireConditions(pairs, exclude.name(), factors.axes());
         }
     }
 
@@ -432,7 +439,7 @@ std::vector<AxisPoint> expandSweep(const Node& sweep) {
             std::erase_if(points, [&](const AxisPoint& point) { return matchesAll(point, pairs); });
         }
         if (points.empty())
-            throw Error(exclude->location(), "exclude leaves no point of the sweep");
+            throw Error(exclude->location(), exclude.name() + " leaves no point of the sweep");
     }
     return points;
 }

@@ -16,7 +16,7 @@ void takeInstead(const Node& instead, Case& item) {
     for (const auto& [name, value] : instead.entries()) {
         if (item.axes.find(name)) {
             throw Error(instead.keyLocation(name),
-                        "'params_instead': '" + name + "' is swept here");
+                        fmt::format("'{}': '{}' is swept here", config::kParamsInstead, name));
         }
         Node& map = item.given.find(name) ? item.given : item.offered;
         map.set(name, value, instead.keyLocation(name));
@@ -52,9 +52,9 @@ void requireTaken(const config::Experiment& experiment, const std::vector<Case>&
             return !item.standsFor.isNull() && item.standsFor.text() == name;
         };
         if (std::ranges::any_of(cases, isTaken)) continue;
-        throw Error(
-            experiment.sceneInstead.keyLocation(name),
-            "'scene_instead': no case of " + experiment.id + " has the scene '" + name + "'");
+        throw Error(experiment.sceneInstead.keyLocation(name),
+                    fmt::format("'{}': no case of {} has the scene '{}'", config::kSceneInstead,
+                                experiment.id, name));
     }
 }
 
@@ -71,8 +71,8 @@ void requireSceneNames(const config::Experiment& experiment, const std::vector<C
                             const SourceLocation& where, const std::string& what) {
         if (names.contains(name)) return;
         const std::vector<std::string> all(names.begin(), names.end());
-        throw Error(where,
-                    fmt::format("params_by_scene: {} '{}'{}", what, name, suggestion(name, all)));
+        throw Error(where, fmt::format("{}: {} '{}'{}", config::kParamsByScene, what, name,
+                                       suggestion(name, all)));
     };
     for (const auto& [scene, params] : experiment.paramsByScene.entries()) {
         require(scenes, scene, experiment.paramsByScene.keyLocation(scene), "unknown scene");

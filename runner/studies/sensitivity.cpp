@@ -63,7 +63,7 @@ std::string seedSet(const std::string& seed, const std::vector<config::Case>& ca
         const std::string other = scene::withSeed(scene, std::stoull(seed)).text();
         seeded.push_back(fmt::format("{}: {}", name, other));
     }
-    return fmt::format("scene_instead={{{}}}", joined(seeded));
+    return fmt::format("{}={{{}}}", config::kSceneInstead, joined(seeded));
 }
 
 std::vector<std::string> setsOf(const std::string& name, const std::string& value,
@@ -73,7 +73,7 @@ std::vector<std::string> setsOf(const std::string& name, const std::string& valu
         return {"output.width=" + value, "output.height=" + value};
     if (name == config::kSceneSeedAssumption) return {seedSet(value, cases, catalog)};
     if (name == config::kFramesAssumption) return {name + "=" + value};
-    return {"params_instead." + name + "=" + value};
+    return {fmt::format("{}.{}={}", config::kParamsInstead, name, value)};
 }
 
 /// Why the assumption is not varied; empty if it is.
@@ -102,10 +102,11 @@ std::vector<Variation> sceneVariations(const config::Assumption& assumption,
                                        const std::vector<config::Case>& cases) {
     std::vector<Variation> variations;
     for (const auto& [name, other] : run::alternativesOf(assumption, run::sceneNames(cases))) {
-        variations.push_back({assumption.name,
-                              fmt::format("{} for {}", other.text(), name),
-                              std::nullopt,
-                              {fmt::format("scene_instead={{{}: {}}}", name, other.text())}});
+        variations.push_back(
+            {assumption.name,
+             fmt::format("{} for {}", other.text(), name),
+             std::nullopt,
+             {fmt::format("{}={{{}: {}}}", config::kSceneInstead, name, other.text())}});
     }
     return variations;
 }

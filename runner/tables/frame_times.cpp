@@ -246,19 +246,19 @@ std::string_view judgedName(const FrameTimes& times) {
 
 std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& times) {
     const bool hasAsked = times.roundCount() >= static_cast<std::size_t>(measure.processes);
-    if (!hasAsked && measure.certainRounds() < measure.processes) return "time_budget_s";
+    if (!hasAsked && measure.certainRounds() < measure.processes) return config::kTimeBudget;
     if (!measure.mayContinue()) return "processes";
-    if (times.isKnownTo(measure.relativeError, measure.processes)) return "relative_error";
+    if (times.isKnownTo(measure.relativeError, measure.processes)) return config::kRelativeError;
     const bool isMost = times.roundCount() >= static_cast<std::size_t>(config::kMostRounds);
-    return isMost ? "most_rounds" : "time_budget_s";
+    return isMost ? "most_rounds" : config::kTimeBudget;
 }
 
 namespace {
 
 /// What a reader is told of `endOfRounds`.
 std::string_view endInWords(std::string_view end) {
-    if (end == "time_budget_s") return "as many as the time allowed";
-    if (end == "relative_error") return "until the times were known";
+    if (end == config::kTimeBudget) return "as many as the time allowed";
+    if (end == config::kRelativeError) return "until the times were known";
     return end == "most_rounds" ? "the most that are allowed" : "as many as asked for";
 }
 
@@ -275,7 +275,7 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
             "Times of {} process{}: bounds are a range, no interval (which takes {}), and no claim "
             "about a time is decided.{}",
             rounds, rounds == 1 ? "" : "es", metrics::kFewestForInterval,
-            endOfRounds(measure, times) == "time_budget_s"
+            endOfRounds(measure, times) == config::kTimeBudget
                 ? fmt::format(" All rounds together have {:g} s; `--set "
                               "measure.time_budget_s=…` allows more.",
                               measure.timeBudgetS)

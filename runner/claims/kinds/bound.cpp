@@ -5,9 +5,19 @@ namespace gfxrepro::claims {
 
 namespace {
 
-void readBound(const ClaimKeys& keys, ClaimSpec& claim) {
-    keys.readOne(claim);
-    keys.readBounds(claim);
+struct BoundKeys : Bounds {
+    GivenKey bound;
+};
+const KeyTable<BoundKeys>& boundTable() {
+    static const KeyTable<BoundKeys> table =
+        boundedTable<BoundKeys>({{&BoundKeys::bound, "bound", "a", "required",
+                                  "every value lies within bounds", types::text()}});
+    return table;
+}
+
+void readBound(const ClaimKeys& keys, const BoundKeys& given, ClaimSpec& claim) {
+    keys.readOne(given.bound, claim);
+    keys.readBounds(given, claim);
 }
 
 std::vector<ClaimPart> boundParts(const ClaimSpec& claim) {
@@ -18,8 +28,8 @@ std::vector<ClaimPart> boundParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind bound() {
-    return {boundedSection({"bound", "a", "", "every value lies within bounds", types::text()}),
-            readBound, boundParts, Kind::Compares::Values, Scale::Logarithmic};
+    return {boundTable().section(), readBy<boundTable, readBound>, boundParts,
+            Kind::Compares::Values, Scale::Logarithmic};
 }
 
 }  // namespace gfxrepro::claims

@@ -65,6 +65,11 @@ struct ClaimSpec {
     std::vector<Known> because;
     SourceLocation location;
 
+    /// Whether the document states it, its numbers do, or it says that there is such a thing.
+    bool isReadOffDocument() const {
+        return origin == Origin::Document || origin == Origin::Derived ||
+               origin == Origin::Existence;
+    }
     /// Whether a number stands in what it requires: then the number has a source.
     bool hasBound() const { return low || high; }
 };

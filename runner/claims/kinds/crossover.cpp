@@ -10,11 +10,23 @@ namespace {
 
 using namespace types;
 
-void readCrossover(const ClaimKeys& keys, ClaimSpec& claim) {
-    keys.readList(claim);
-    if (claim.operands.size() != 2) keys.refuse(keys.operands, "crossover", "[a, b]");
-    keys.readOver("over", claim);
-    keys.readBounds(claim);
+struct CrossoverKeys : Bounds {
+    GivenKey crossover, over;
+};
+const KeyTable<CrossoverKeys>& crossoverTable() {
+    using C = CrossoverKeys;
+    static const KeyTable<C> table =
+        boundedTable<C>({{&C::crossover, "crossover", "[a, b]", "required",
+                          "the two change places, within bounds", tupleOf(text(), 2)},
+                         {&C::over, overKey(kOver, "along which")}});
+    return table;
+}
+
+void readCrossover(const ClaimKeys& keys, const CrossoverKeys& given, ClaimSpec& claim) {
+    keys.readList(given.crossover, claim);
+    if (claim.operands.size() != 2) keys.refuse(given.crossover, "[a, b]");
+    keys.readOver(given.over, claim);
+    keys.readBounds(given, claim);
 }
 
 /// x where a − b changes its sign the first time, by interpolation of log(a/b) over log(x). Without
@@ -83,10 +95,8 @@ std::vector<ClaimPart> crossoverParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind crossover() {
-    return {boundedSection({"crossover", "[a, b]", "", "the two change places, within bounds",
-                            tupleOf(text(), 2)},
-                           {overKey("over", "along which")}),
-            readCrossover, crossoverParts, Kind::Compares::Operands, Scale::Ranks};
+    return {crossoverTable().section(), readBy<crossoverTable, readCrossover>, crossoverParts,
+            Kind::Compares::Operands, Scale::Ranks};
 }
 
 }  // namespace gfxrepro::claims

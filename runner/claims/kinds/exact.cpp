@@ -10,11 +10,23 @@ namespace {
 
 using namespace types;
 
-void readExact(const ClaimKeys& keys, ClaimSpec& claim) {
-    keys.readOne(claim);
-    const Node& equals = keys.require("equals");
+struct ExactKeys {
+    GivenKey exact, equals;
+};
+const KeyTable<ExactKeys>& exactTable() {
+    using E = ExactKeys;
+    static const KeyTable<E> table =
+        kindTable<E>({{&E::exact, "exact", "a", "required", "is exactly so", text()},
+                      {&E::equals, "equals", "number | printed", "required", "what it is",
+                       anyOf({number(), choice({"printed"})})}});
+    return table;
+}
+
+void readExact(const ClaimKeys& keys, const ExactKeys& given, ClaimSpec& claim) {
+    keys.readOne(given.exact, claim);
+    const Node& equals = *given.equals;
     if (equals.isScalar() && equals.text() == "printed") return keys.requirePrinted();
-    if (!equals.tryDouble()) keys.refuse(equals, "equals", "a number, or printed");
+    if (!equals.tryDouble()) keys.refuse(given.equals, "a number, or printed");
     claim.low = claim.high = equals.tryDouble();
 }
 
@@ -43,12 +55,8 @@ std::vector<ClaimPart> exactParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind exact() {
-    Kind kind{sectionOf({"exact", "a", "", "is exactly so", text()},
-                        {{"equals", "number | printed", "required", "what it is",
-                          anyOf({number(), choice({"printed"})})}}),
-              readExact, exactParts, Kind::Compares::Values};
-    kind.instead = "'equals'; or 'bound' with at_least and at_most";
-    return kind;
+    return {exactTable().section(), readBy<exactTable, readExact>, exactParts,
+            Kind::Compares::Values};
 }
 
 }  // namespace gfxrepro::claims

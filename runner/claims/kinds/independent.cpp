@@ -14,10 +14,23 @@ using namespace types;
 
 constexpr NumberRange kSpreads{.least = 0};
 
-void readIndependence(const ClaimKeys& keys, ClaimSpec& claim) {
-    keys.readList(claim);
-    keys.readOver("of", claim);
-    claim.high = keys.readShare("at_most", kSpreads);
+struct IndependentKeys {
+    GivenKey independent, of, atMost;
+};
+const KeyTable<IndependentKeys>& independentTable() {
+    using I = IndependentKeys;
+    static const KeyTable<I> table =
+        kindTable<I>({{&I::independent, "independent", "a | [a, b]", "required",
+                       "does not depend on something", oneOrMore(text())},
+                      {&I::of, overKey("of", "on which")},
+                      {&I::atMost, shareKey(kAtMost, kSpreads, "how far it may vary")}});
+    return table;
+}
+
+void readIndependence(const ClaimKeys& keys, const IndependentKeys& given, ClaimSpec& claim) {
+    keys.readList(given.independent, claim);
+    keys.readOver(given.of, claim);
+    claim.high = keys.readShare(given.atMost, kSpreads);
 }
 
 /// (max − min) / |median| over the rows.
@@ -65,11 +78,8 @@ std::vector<ClaimPart> independentParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind independent() {
-    return {
-        sectionOf(
-            {"independent", "a | [a, b]", "", "does not depend on something", oneOrMore(text())},
-            {overKey("of", "on which"), shareKey("at_most", kSpreads, "how far it may vary")}),
-        readIndependence, independentParts, Kind::Compares::Rows};
+    return {independentTable().section(), readBy<independentTable, readIndependence>,
+            independentParts, Kind::Compares::Rows};
 }
 
 }  // namespace gfxrepro::claims

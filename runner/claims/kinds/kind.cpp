@@ -48,48 +48,31 @@ NumberRange asFraction(NumberRange range) {
 
 }  // namespace
 
-const Node* Kind::find(const Node& claim, std::string_view key) const {
-    GFXREPRO_ASSERT(std::ranges::find(section.keys, key, &SchemaKey::name) != section.keys.end());
-    return claim.find(key);
-}
-
-const Node* ClaimKeys::find(std::string_view key) const {
-    return kind.find(node, key);
-}
-
-const Node& ClaimKeys::require(std::string_view key) const {
-    const Node* value = find(key);
-    if (!value) throw Error(where, fmt::format("{} needs '{}'", what, key));
-    return *value;
-}
-
 void ClaimKeys::requirePrinted() const {
     if (!hasPrinted) throw Error(where, what + " needs printed values");
 }
 
-void ClaimKeys::refuse(const Node& value, std::string_view key, std::string_view allowed) const {
-    throwNotAllowed(value, key.empty() ? what : fmt::format("{}: {}", what, key), allowed);
+void ClaimKeys::refuse(const GivenKey& key, std::string_view allowed) const {
+    throwNotAllowed(*key, key.in(what), allowed);
 }
 
 void ClaimKeys::fail(const Node& at, const std::string& text) const {
     throw Error(at.location(), what + ": " + text);
 }
 
-void ClaimKeys::readOne(ClaimSpec& claim) const {
-    addOperands(operands, {lineOf(operands, what)}, claim);
+void ClaimKeys::readOne(const GivenKey& key, ClaimSpec& claim) const {
+    addOperands(*key, {lineOf(*key, what)}, claim);
 }
 
-void ClaimKeys::readList(ClaimSpec& claim) const {
-    const bool isList = operands.isSequence();
-    for (const Node& item : isList ? operands.items() : Node::Sequence{operands}) {
+void ClaimKeys::readList(const GivenKey& key, ClaimSpec& claim) const {
+    for (const Node& item : key->isSequence() ? key->items() : Node::Sequence{*key}) {
         addOperands(item, {lineOf(item, what)}, claim);
     }
-    if (claim.operands.empty()) refuse(operands, "", "a column, or a list");
+    if (claim.operands.empty()) throwNotAllowed(*key, what, "a column, or a list");
 }
 
-void ClaimKeys::readSides(std::string_view separator, ClaimSpec& claim) const {
-    const std::string& text = lineOf(operands, what + ": " + claim.kind->name());
-    addOperands(operands, sidesOf(text, separator, columns), claim);
+void ClaimKeys::readSides(const GivenKey& key, std::string_view separator, ClaimSpec& claim) const {
+    addOperands(*key, sidesOf(lineOf(*key, key.in(what)), separator, columns), claim);
 }
 
 std::string acrossHint(const std::string& value, const std::string& axis) {
@@ -112,7 +95,7 @@ std::string ClaimKeys::acrossHint(const Texts& texts) const {
 /// The columns that an operand names must be there, as far as they are known.
 void ClaimKeys::addOperands(const Node& at, const Texts& texts, ClaimSpec& claim) const {
     for (const std::string& operand : texts) {
-        if (operand.empty()) refuse(at, "", "an expression over columns");
+        if (operand.empty()) throwNotAllowed(at, what, "an expression over columns");
         for (const OperandPiece& piece : operandPieces(operand, columns)) {
             if (piece.text == "[") {
                 fail(at, fmt::format("'{}' reads a row by its name; allowed: a column of the "
@@ -149,9 +132,9 @@ std::size_t ClaimKeys::rowsAlong(const std::string& over, const ClaimSpec& claim
     return rows;
 }
 
-void ClaimKeys::readOver(std::string_view key, ClaimSpec& claim) const {
-    const Node& over = require(key);
-    const std::string& name = lineOf(over, fmt::format("{}: {}", what, key));
+void ClaimKeys::readOver(const GivenKey& key, ClaimSpec& claim) const {
+    const Node& over = *key;
+    const std::string& name = lineOf(over, key.in(what));
     Texts known = rowAxes;
     known.insert(known.end(), columns.begin(), columns.end());
     if (hasAllColumns && std::ranges::find(known, name) == known.end()) {
@@ -174,54 +157,44 @@ void ClaimKeys::readOver(std::string_view key, ClaimSpec& claim) const {
     claim.over = name;
 }
 
-void ClaimKeys::readBounds(ClaimSpec& claim, const char* other) const {
+void ClaimKeys::readBounds(const Bounds& given, ClaimSpec& claim, const GivenKey* other) const {
     // True for the second key, which excludes the bound itself.
-    const auto readBound = [&](const char* including, const char* excluding, auto& bound) {
-        const Node *included = find(including), *excluded = find(excluding);
+    const auto readBound = [&](const GivenKey& included, const GivenKey& excluded, auto& bound) {
         if (included && excluded) {
-            fail(*excluded, fmt::format("'{}' and '{}'; one is allowed", including, excluding));
+            fail(*excluded,
+                 fmt::format("'{}' and '{}'; one is allowed", included.name(), excluded.name()));
         }
-        const Node* value = included ? included : excluded;
-        if (value) {
-            bound =
-                numberIn(*value, {}, fmt::format("{}: {}", what, included ? including : excluding));
-        }
+        const GivenKey& key = included ? included : excluded;
+        if (key) bound = numberIn(*key, {}, key.in(what));
         if (claim.low && claim.high && *claim.low > *claim.high) {
-            fail(*value, "the lower bound exceeds the upper");
+            fail(*key, "the lower bound exceeds the upper");
         }
         return excluded != nullptr;
     };
-    claim.isLowExcluded = readBound("at_least", "more_than", claim.low);
-    claim.isHighExcluded = readBound("at_most", "less_than", claim.high);
-    if (!claim.hasBound() && !(other && find(other))) {
-        throw Error(where,
-                    fmt::format("{} needs at_least, more_than, at_most{}{}", what,
-                                other ? ", less_than or " : " or less_than", other ? other : ""));
+    claim.isLowExcluded = readBound(given.atLeast, given.moreThan, claim.low);
+    claim.isHighExcluded = readBound(given.atMost, given.lessThan, claim.high);
+    if (!claim.hasBound() && !(other && *other)) {
+        Texts names;
+        for (const auto& [place, key] : boundKeys()) names.push_back(key.name);
+        if (other) names.push_back(other->name());
+        const std::string last = names.back();
+        names.pop_back();
+        throw Error(where, fmt::format("{} needs {} or {}", what, joined(names), last));
     }
     // Bounds of which one excludes itself leave nothing where they are one number.
     const bool isOpen = claim.isLowExcluded || claim.isHighExcluded;
     if (!isOpen || !claim.low || !claim.high || *claim.low < *claim.high) return;
-    const char* key = claim.isHighExcluded ? "less_than" : "more_than";
-    refuse(*find(key), key, "bounds with a number between them");
+    refuse(claim.isHighExcluded ? given.lessThan : given.moreThan,
+           "bounds with a number between them");
 }
 
-double ClaimKeys::readShare(std::string_view key, const NumberRange& range) const {
-    const Node& share = require(key);
-    const std::optional<double> fraction = fractionOf(share);
+double ClaimKeys::readShare(const GivenKey& key, const NumberRange& range) const {
+    const std::optional<double> fraction = fractionOf(*key);
     if (fraction && range.has(*fraction)) return *fraction;
-    refuse(share, key, "a percentage as 25%, or a fraction, " + asFraction(range).text());
+    refuse(key, "a percentage as 25%, or a fraction, " + asFraction(range).text());
 }
 
 // Their schema
-
-SchemaSection sectionOf(SchemaKey first, std::vector<SchemaKey> further, Json conditions) {
-    first.absent = "required";
-    SchemaSection section{"claim." + first.name, "claims.ID.", "", false};
-    section.keys.push_back(first);
-    for (SchemaKey& key : further) section.keys.push_back(std::move(key));
-    section.conditions = std::move(conditions);
-    return section;
-}
 
 SchemaKey overKey(const char* key, const char* doc) {
     return {key, "row axis | column | expression", "required", doc, text()};
@@ -234,14 +207,19 @@ SchemaKey shareKey(const char* key, const NumberRange& range, const char* doc) {
         anyOf({{{"type", "string"}, {"pattern", R"(^\s*[0-9.eE+-]+\s*%$)"}}, number(fraction)})};
 }
 
-SchemaSection boundedSection(SchemaKey first, std::vector<SchemaKey> further, const char* other) {
-    further.push_back(numberKey("at_least", {}, "none", "lower bound"));
-    further.push_back(numberKey("more_than", {}, "none", "lower bound, itself excluded"));
-    further.push_back(numberKey("at_most", {}, "none", "upper bound"));
-    further.push_back(numberKey("less_than", {}, "none", "upper bound, itself excluded"));
-    Json conditions = needsOneOf({{"at_least"}, {"more_than"}, {"at_most"}, {"less_than"}});
-    if (other) conditions["anyOf"].push_back({{"required", Json::array({other})}});
-    return sectionOf(std::move(first), std::move(further), std::move(conditions));
+const std::vector<KeyTable<Bounds>::Key>& boundKeys() {
+    static const std::vector<KeyTable<Bounds>::Key> keys = {
+        {&Bounds::atLeast, numberKey("at_least", {}, "none", "lower bound")},
+        {&Bounds::moreThan, numberKey("more_than", {}, "none", "lower bound, itself excluded")},
+        {&Bounds::atMost, numberKey(kAtMost, {}, "none", "upper bound")},
+        {&Bounds::lessThan, numberKey("less_than", {}, "none", "upper bound, itself excluded")}};
+    return keys;
+}
+
+Json needsOne(const std::vector<std::string>& names) {
+    Json one = Json::array();
+    for (const std::string& name : names) one.push_back({{"required", Json::array({name})}});
+    return {{"anyOf", std::move(one)}};
 }
 
 // Ranges

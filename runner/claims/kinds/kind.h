@@ -91,11 +91,14 @@ struct ClaimPart {
 /// What to write where a column's place has the value of a row axis: "; 'a' is a value of …".
 std::string acrossHint(const std::string& value, const std::string& axis);
 
+/// The bounds of a claim.
+struct Bounds {
+    GivenKey atLeast, moreThan, atMost, lessThan;
+};
+
 /// The keys of a claim, as its kind reads them. What is wrong is an Error at its place.
 struct ClaimKeys {
-    const Kind& kind;
     const Node& node;
-    const Node& operands;  // the value of the key that names the kind
     const std::vector<std::string>& rowAxes;
     const std::map<std::string, std::vector<Node>>& rowValues;  // of those that are known
     const std::vector<std::string>& columns;
@@ -104,25 +107,21 @@ struct ClaimKeys {
     const std::string& what;  // begins the messages: "claim 'C'"
     const SourceLocation& where;
 
-    const Node* find(std::string_view key) const;
-    const Node& require(std::string_view key) const;
     void requirePrinted() const;
-    /// "claim 'C': KEY is VALUE; allowed: …"; an empty key is of the whole claim.
-    [[noreturn]] void refuse(const Node& value, std::string_view key,
-                             std::string_view allowed) const;
+    /// "claim 'C': KEY is VALUE; allowed: …".
+    [[noreturn]] void refuse(const GivenKey& key, std::string_view allowed) const;
     /// "claim 'C': TEXT".
     [[noreturn]] void fail(const Node& at, const std::string& text) const;
 
     /// The operand; those of a list; those between separators.
-    void readOne(ClaimSpec& claim) const;
-    void readList(ClaimSpec& claim) const;
-    void readSides(std::string_view separator, ClaimSpec& claim) const;
-    /// The row axis, column or expression over both under `key`.
-    void readOver(std::string_view key, ClaimSpec& claim) const;
-    /// at_least or more_than, at_most or less_than: one of them, unless the `other` key is there.
-    void readBounds(ClaimSpec& claim, const char* other = nullptr) const;
-    /// The share under `key`.
-    double readShare(std::string_view key, const NumberRange& range) const;
+    void readOne(const GivenKey& key, ClaimSpec& claim) const;
+    void readList(const GivenKey& key, ClaimSpec& claim) const;
+    void readSides(const GivenKey& key, std::string_view separator, ClaimSpec& claim) const;
+    /// The row axis, column or expression over both.
+    void readOver(const GivenKey& key, ClaimSpec& claim) const;
+    /// Either lower, and either upper one: one of all, unless the `other` key is there.
+    void readBounds(const Bounds& given, ClaimSpec& claim, const GivenKey* other = nullptr) const;
+    double readShare(const GivenKey& key, const NumberRange& range) const;
     std::size_t rowsAlong(const std::string& over, const ClaimSpec& claim) const;
     std::string acrossHint(const std::vector<std::string>& texts) const;
     void addOperands(const Node& at, const std::vector<std::string>& texts, ClaimSpec& claim) const;
@@ -142,16 +141,15 @@ struct Kind {
     /// with a number, which asks for a time as such.
     enum class Compares { Operands, Rows, Values };
 
-    SchemaSection section;  // its keys; the first of them names it
+    SchemaSection section;  // of its table; the first of the keys names it
     void (*read)(const ClaimKeys& keys, ClaimSpec& claim) = nullptr;
     std::vector<ClaimPart> (*parts)(const ClaimSpec& claim) = nullptr;
     Compares compares = Compares::Operands;
     /// Of its quantity, where that is of times. Ratios and times scatter on a logarithmic one; of
     /// where curves cross none is known.
     Scale scale = Scale::Linear;
-    bool isOfAllRows = false;       // judged once, not in each group of rows
-    const char* instead = nullptr;  // what to write for bounds, of which it has none
-    std::string_view metric = {};   // the only one that its operand may be; empty: any
+    bool isOfAllRows = false;      // judged once, not in each group of rows
+    std::string_view metric = {};  // the only one that its operand may be; empty: any
     /// What `check` refuses, to follow the claim's name; empty where nothing is wrong.
     std::string (*refused)(const ClaimSpec& claim, const Sampling& sampling) = nullptr;
     const char* valuesForm = nullptr;  // how operands name values of an axis, where they may
@@ -159,8 +157,6 @@ struct Kind {
     std::optional<std::string> (*axisOf)(const Node& operands, const std::string& what) = nullptr;
 
     const std::string& name() const { return section.keys.front().name; }
-    /// What the claim has at a key, or null. Only a key that `section` declares can be read.
-    const Node* find(const Node& claim, std::string_view key) const;
 };
 
 /// All of them, in the order in which people are told of them.
@@ -169,14 +165,47 @@ std::vector<ClaimPart> partsOf(const ClaimSpec& claim);
 
 // What kinds share.
 
-/// The first key names the kind. With `conditions`: which keys go together.
-SchemaSection sectionOf(SchemaKey first, std::vector<SchemaKey> further, Json conditions = nullptr);
-/// With at_least, more_than, at_most and less_than, of which one, or the `other` key, is needed.
-SchemaSection boundedSection(SchemaKey first, std::vector<SchemaKey> further = {},
-                             const char* other = nullptr);
+/// The keys of what is read along rows, and of an upper bound, which may be a share.
+inline constexpr const char *kOver = "over", *kAtMost = "at_most";
+
+const std::vector<KeyTable<Bounds>::Key>& boundKeys();
+/// One of these keys is needed.
+Json needsOne(const std::vector<std::string>& names);
 SchemaKey overKey(const char* key, const char* doc);
 /// "25%", or 0.25. A percentage may be beyond 100 where the range has no end.
 SchemaKey shareKey(const char* key, const NumberRange& range, const char* doc);
+
+template <class Given>
+using Keys = std::vector<typename KeyTable<Given>::Key>;
+
+/// The first key names the kind. With `conditions`: which keys go together.
+template <class Given>
+KeyTable<Given> kindTable(const Keys<Given>& keys, Json conditions = nullptr) {
+    const std::string name = "claim." + keys.front().declared.name;
+    return {{name, "claims.ID.", "", false, nullptr, std::move(conditions)}, keys};
+}
+
+/// With bounds, of which one, or the `other` key, is needed.
+template <class Given>
+KeyTable<Given> boundedTable(Keys<Given> keys, GivenKey Given::*other = nullptr) {
+    std::vector<std::string> enough;
+    for (const auto& [place, key] : boundKeys()) {
+        keys.emplace_back(place, key);
+        enough.push_back(key.name);
+    }
+    for (const auto& [place, key] : keys) {
+        if (other && place == other) enough.push_back(key.name);
+    }
+    return kindTable<Given>(keys, needsOne(enough));
+}
+
+/// Reads a claim of the kind with that table, of which every required key is there.
+template <auto table, auto read>
+void readBy(const ClaimKeys& keys, ClaimSpec& claim) {
+    const auto given = table().find(keys.node);
+    table().require(given, keys.where, keys.what);
+    read(keys, given, claim);
+}
 
 /// The bounds of the claim, as "NAME in [0.3, 1.2]".
 Requirement rangeOf(const ClaimSpec& claim, const std::string& name, bool isPercent = false);

@@ -12,6 +12,18 @@ namespace gfxrepro::claims {
 
 namespace {
 
+struct OrderKeys {
+    GivenKey order;
+};
+const KeyTable<OrderKeys>& orderTable() {
+    static const KeyTable<OrderKeys> table = kindTable<OrderKeys>(
+        {{&OrderKeys::order, "order", "a < b < c | [AXIS=VALUE, …] | [values]", "required",
+          "in this order: of columns, or of the rows with these values of an axis, column by "
+          "column, which implies `across`; words that one swept axis alone has need no AXIS=",
+          types::anyOf({types::text(), types::listOf(types::text(), 2)})}});
+    return table;
+}
+
 /// The axis and the value of "light_ratio=0.25".
 std::pair<std::string, std::string> valueIn(const Node& item, const std::string& what) {
     const std::string& text = lineOf(item, what);
@@ -36,9 +48,9 @@ std::optional<std::string> axisOf(const Node& operands, const std::string& what)
 }
 
 /// Values in the place of columns read as if they were compared as such: "0.25 < 4".
-void refuseValues(const ClaimKeys& keys, const ClaimSpec& claim) {
+void refuseValues(const ClaimKeys& keys, const GivenKey& order, const ClaimSpec& claim) {
     const std::vector<std::string> sides =
-        sidesOf(lineOf(keys.operands, keys.what + ": order"), "<", keys.columns);
+        sidesOf(lineOf(*order, order.in(keys.what)), "<", keys.columns);
     for (const auto& [axis, values] : keys.rowValues) {
         std::string list;
         const bool areValues = std::ranges::all_of(sides, [&](const std::string& side) {
@@ -50,22 +62,23 @@ void refuseValues(const ClaimKeys& keys, const ClaimSpec& claim) {
                    });
         });
         if (areValues && claim.across.value_or(axis) == axis) {
-            keys.refuse(keys.operands, "order", "[" + list + "]");
+            keys.refuse(order, "[" + list + "]");
         }
     }
 }
 
-void readOrder(const ClaimKeys& keys, ClaimSpec& claim) {
-    if (keys.operands.isSequence()) {
-        for (const Node& item : keys.operands.items()) {
+void readOrder(const ClaimKeys& keys, const OrderKeys& given, ClaimSpec& claim) {
+    const GivenKey& order = given.order;
+    if (order->isSequence()) {
+        for (const Node& item : order->items()) {
             keys.addOperands(item, {valueIn(item, keys.what).second}, claim);
         }
     } else {
-        refuseValues(keys, claim);
-        keys.readSides("<", claim);
+        refuseValues(keys, order, claim);
+        keys.readSides(order, "<", claim);
     }
     if (claim.operands.size() < 2) {
-        keys.refuse(keys.operands, "order", "a < b < … | [AXIS=VALUE, AXIS=VALUE, …]");
+        keys.refuse(order, "a < b < … | [AXIS=VALUE, AXIS=VALUE, …]");
     }
 }
 
@@ -110,16 +123,9 @@ std::vector<ClaimPart> orderParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind order() {
-    Kind kind{sectionOf({"order", "a < b < c | [AXIS=VALUE, …] | [values]", "",
-                         "in this order: of columns, or of the rows with these values of an axis, "
-                         "column by column, which implies `across`; words that one swept axis "
-                         "alone has need no AXIS=",
-                         types::anyOf({types::text(), types::listOf(types::text(), 2)})},
-                        {}),
-              readOrder, orderParts};
+    Kind kind{orderTable().section(), readBy<orderTable, readOrder>, orderParts};
     kind.valuesForm = "[AXIS=VALUE, …]";
     kind.axisOf = axisOf;
-    kind.instead = "by how much is a ratio's: 'ratio: b / a' with at_least";
     return kind;
 }
 

@@ -8,6 +8,18 @@ namespace gfxrepro::claims {
 
 namespace {
 
+struct RatioKeys : Bounds {
+    GivenKey ratio;
+};
+const KeyTable<RatioKeys>& ratioTable() {
+    static const KeyTable<RatioKeys> table = boundedTable<RatioKeys>(
+        {{&RatioKeys::ratio, "ratio", "a / b | AXIS=VALUE / AXIS=VALUE", "required",
+          "the ratio lies within bounds: of columns, or of the rows with these values of an axis, "
+          "which implies `across`",
+          types::text()}});
+    return table;
+}
+
 /// The axis and the value of "method=slices"; empty of a comparison and of everything else.
 std::pair<std::string, std::string> valueOn(std::string_view side) {
     const std::size_t equals = side.find('=');
@@ -26,16 +38,17 @@ std::optional<std::string> axisOfRatio(const Node& operands, const std::string& 
     return axis;
 }
 
-void readRatio(const ClaimKeys& keys, ClaimSpec& claim) {
-    if (axisOfRatio(keys.operands, keys.what)) {
-        for (const std::string& side : sidesOf(keys.operands.text(), " / ", {})) {
-            keys.addOperands(keys.operands, {valueOn(side).second}, claim);
+void readRatio(const ClaimKeys& keys, const RatioKeys& given, ClaimSpec& claim) {
+    const GivenKey& ratio = given.ratio;
+    if (axisOfRatio(*ratio, keys.what)) {
+        for (const std::string& side : sidesOf(ratio->text(), " / ", {})) {
+            keys.addOperands(*ratio, {valueOn(side).second}, claim);
         }
     } else {
-        keys.readSides(" / ", claim);
+        keys.readSides(ratio, " / ", claim);
     }
-    if (claim.operands.size() != 2) keys.refuse(keys.operands, "ratio", "a / b");
-    keys.readBounds(claim);
+    if (claim.operands.size() != 2) keys.refuse(ratio, "a / b");
+    keys.readBounds(given, claim);
 }
 
 std::vector<ClaimPart> ratioParts(const ClaimSpec& claim) {
@@ -48,11 +61,8 @@ std::vector<ClaimPart> ratioParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind ratio() {
-    Kind kind{boundedSection({"ratio", "a / b | AXIS=VALUE / AXIS=VALUE", "",
-                              "the ratio lies within bounds: of columns, or of the rows with these "
-                              "values of an axis, which implies `across`",
-                              types::text()}),
-              readRatio, ratioParts, Kind::Compares::Operands, Scale::Logarithmic};
+    Kind kind{ratioTable().section(), readBy<ratioTable, readRatio>, ratioParts,
+              Kind::Compares::Operands, Scale::Logarithmic};
     kind.valuesForm = "AXIS=VALUE / AXIS=VALUE";
     kind.axisOf = axisOfRatio;
     return kind;

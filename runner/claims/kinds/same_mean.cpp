@@ -13,10 +13,27 @@ namespace {
 /// More would call a coin a test.
 constexpr NumberRange kRates{.least = 0, .most = 0.1, .isLeastExcluded = true};
 
+struct SameMeanKeys {
+    GivenKey sameMean, falseAlarms;
+};
+const KeyTable<SameMeanKeys>& sameMeanTable() {
+    using S = SameMeanKeys;
+    static const KeyTable<S> table = kindTable<S>(
+        {{&S::sameMean, "same_mean", "a", "required",
+          fmt::format(
+              "noisy pictures have the expectation of their truth; a column of the metric {}",
+              metrics::kSameMeanP),
+          types::text()},
+         {&S::falseAlarms,
+          shareKey("false_alarms", kRates,
+                   "how often it may fail where it holds, over all rows together")}});
+    return table;
+}
+
 /// The rate of false alarms is the least p that holds.
-void readSameMean(const ClaimKeys& keys, ClaimSpec& claim) {
-    keys.readOne(claim);
-    claim.low = keys.readShare("false_alarms", kRates);
+void readSameMean(const ClaimKeys& keys, const SameMeanKeys& given, ClaimSpec& claim) {
+    keys.readOne(given.sameMean, claim);
+    claim.low = keys.readShare(given.falseAlarms, kRates);
 }
 
 /// The smallest p of the rows × their number (Bonferroni), 1 at most.
@@ -56,17 +73,8 @@ std::string refusedSameMean(const ClaimSpec& claim, const Sampling& sampling) {
 }  // namespace
 
 Kind sameMean() {
-    SchemaSection section = sectionOf(
-        {"same_mean", "a", "",
-         fmt::format(
-             "noisy pictures have the expectation of their truth; a column of the metric {}",
-             metrics::kSameMeanP),
-         types::text()},
-        {shareKey("false_alarms", kRates,
-                  "how often it may fail where it holds, over all rows together")});
-    Kind kind{std::move(section), readSameMean, sameMeanParts};
+    Kind kind{sameMeanTable().section(), readBy<sameMeanTable, readSameMean>, sameMeanParts};
     kind.isOfAllRows = true;
-    kind.instead = "'false_alarms'";
     kind.metric = metrics::kSameMeanP;
     kind.refused = refusedSameMean;
     return kind;

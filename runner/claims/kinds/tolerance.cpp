@@ -11,10 +11,21 @@ namespace {
 /// At 100 % of the printed value nothing would be too little.
 constexpr NumberRange kDeviations{.least = 0, .most = 1, .isMostExcluded = true};
 
-void readTolerance(const ClaimKeys& keys, ClaimSpec& claim) {
-    keys.readOne(claim);
+struct ToleranceKeys {
+    GivenKey tolerance, atMost;
+};
+const KeyTable<ToleranceKeys>& toleranceTable() {
+    using T = ToleranceKeys;
+    static const KeyTable<T> table = kindTable<T>(
+        {{&T::tolerance, "tolerance", "a", "required", "is the printed value", types::text()},
+         {&T::atMost, shareKey(kAtMost, kDeviations, "how far from the printed value")}});
+    return table;
+}
+
+void readTolerance(const ClaimKeys& keys, const ToleranceKeys& given, ClaimSpec& claim) {
+    keys.readOne(given.tolerance, claim);
     keys.requirePrinted();
-    claim.high = keys.readShare("at_most", kDeviations);
+    claim.high = keys.readShare(given.atMost, kDeviations);
 }
 
 /// The largest |measured − expected| / |expected|; operands are these two.
@@ -63,9 +74,8 @@ std::string refusedTolerance(const ClaimSpec& claim, const Sampling&) {
 }  // namespace
 
 Kind tolerance() {
-    Kind kind{sectionOf({"tolerance", "a", "", "is the printed value", types::text()},
-                        {shareKey("at_most", kDeviations, "how far from the printed value")}),
-              readTolerance, toleranceParts, Kind::Compares::Values};
+    Kind kind{toleranceTable().section(), readBy<toleranceTable, readTolerance>, toleranceParts,
+              Kind::Compares::Values};
     kind.refused = refusedTolerance;
     return kind;
 }

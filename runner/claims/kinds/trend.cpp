@@ -15,28 +15,40 @@ using namespace types;
 
 constexpr std::array<std::string_view, 2> kDirections = {"increasing", "decreasing"};
 
+struct TrendKeys : Bounds {
+    GivenKey trend, over, direction, strictly;
+};
+const KeyTable<TrendKeys>& trendTable() {
+    using T = TrendKeys;
+    static const KeyTable<T> table =
+        boundedTable<T>({{&T::trend, "trend", "a", "required",
+                          "grows or falls, or as a power; bounds are its exponent's", text()},
+                         {&T::over, overKey(kOver, "along which")},
+                         {&T::direction, choiceKey("direction", kDirections, "none", "which way")},
+                         {&T::strictly, "strictly", "true | false", "false",
+                          "no two equal; with direction", boolean()}},
+                        &T::direction);
+    return table;
+}
+
 /// 1 increasing, −1 decreasing, 0 by its exponent alone.
-int directionOf(const ClaimSpec& claim) {
-    const Node* direction = claim.kind->find(claim.keys, "direction");
+int directionOf(const TrendKeys& given, const std::string& what) {
+    const GivenKey& direction = given.direction;
     if (!direction) return 0;
-    const std::string what = "claim '" + claim.id + "': direction";
-    return choiceOf(*direction, kDirections, what) == 0 ? 1 : -1;
+    return choiceOf(*direction, kDirections, direction.in(what)) == 0 ? 1 : -1;
 }
 
-bool isStrict(const ClaimSpec& claim) {
-    const Node* strictly = claim.kind->find(claim.keys, "strictly");
-    return strictly && strictly->asBool();
-}
-
-void readTrend(const ClaimKeys& keys, ClaimSpec& claim) {
-    keys.readOne(claim);
-    keys.readOver("over", claim);
-    keys.readBounds(claim, "direction");
-    (void)directionOf(claim);
-    const Node* strictly = keys.find("strictly");
+void readTrend(const ClaimKeys& keys, const TrendKeys& given, ClaimSpec& claim) {
+    keys.readOne(given.trend, claim);
+    keys.readOver(given.over, claim);
+    keys.readBounds(given, claim, &given.direction);
+    const int direction = directionOf(given, keys.what);
+    const GivenKey& strictly = given.strictly;
     if (!strictly) return;
-    (void)flagOf(*strictly, keys.what + ": strictly");
-    if (directionOf(claim) == 0) keys.fail(*strictly, "strictly needs 'direction'");
+    (void)flagOf(*strictly, strictly.in(keys.what));
+    if (direction == 0) {
+        keys.fail(*strictly, strictly.name() + " needs '" + given.direction.name() + "'");
+    }
 }
 
 /// The least-squares slope of log(operand) over log(x), without the digits that logarithms round:
@@ -131,16 +143,18 @@ Contrasts rising(int direction) {
 }
 
 std::vector<ClaimPart> trendParts(const ClaimSpec& claim) {
+    const TrendKeys given = trendTable().find(claim.keys);
+    const bool isStrict = given.strictly && given.strictly->asBool();
     std::vector<ClaimPart> parts;
-    if (const int direction = directionOf(claim); direction != 0) {
+    if (const int direction = directionOf(given, claim.id); direction != 0) {
         const auto step = [direction](const GroupPoint& group) {
             return smallestStep(group, direction);
         };
         ClaimPart part{{0}, step, {}, "smallest step"};
         part.requirement.low = 0.0;
-        part.requirement.isLowExcluded = isStrict(claim);
+        part.requirement.isLowExcluded = isStrict;
         part.requirement.isPercent = true;
-        part.requirement.text = std::string(isStrict(claim) ? "strictly " : "") +
+        part.requirement.text = std::string(isStrict ? "strictly " : "") +
                                 (direction > 0 ? "increasing" : "decreasing") + " with " +
                                 claim.over.value_or("");
         part.onTimes = rising(direction);
@@ -160,14 +174,8 @@ std::vector<ClaimPart> trendParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind trend() {
-    return {
-        boundedSection(
-            {"trend", "a", "", "grows or falls, or as a power; bounds are its exponent's", text()},
-            {overKey("over", "along which"),
-             choiceKey("direction", kDirections, "none", "which way"),
-             {"strictly", "true | false", "false", "no two equal; with direction", boolean()}},
-            "direction"),
-        readTrend, trendParts, Kind::Compares::Rows};
+    return {trendTable().section(), readBy<trendTable, readTrend>, trendParts,
+            Kind::Compares::Rows};
 }
 
 }  // namespace gfxrepro::claims

@@ -282,7 +282,7 @@ TEST_F(ExperimentTest, NamesOfExperiments) {
               "after it");
     EXPECT_EQ(loadError("sweep_of: a/b\ntitle: t\n"),
               "DIR/zju/a.yaml:1:11: sweep_of is a/b; allowed: letters, digits, - _ .");
-    EXPECT_EQ(loadError("table: p/1\ntechnique: x\n"), "DIR/zju/a.yaml:1:1: 'title' is missing");
+    EXPECT_EQ(loadError("table: p/1\ntechnique: x\n"), "DIR/zju/a.yaml:1:1: config needs 'title'");
 }
 
 TEST_F(ExperimentTest, ExtendsIsFollowedAndChecked) {

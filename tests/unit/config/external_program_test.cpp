@@ -33,7 +33,7 @@ TEST(ExternalProgram, CommandIsALineOrAList) {
     EXPECT_THAT(programOf("command: tracer  -o {out}/x.png").command,
                 ElementsAre("tracer", "-o", "{out}/x.png"));
     EXPECT_THAT(programOf("command: [tracer, \"a b\"]").command, ElementsAre("tracer", "a b"));
-    EXPECT_EQ(errorOf("params: {}"), "c.yaml:1:1: program: 'command' is missing");
+    EXPECT_EQ(errorOf("params: {}"), "c.yaml:1:1: program needs 'command'");
     EXPECT_EQ(errorOf("command: []"),
               "c.yaml:1:10: program: command is []; allowed: a program and its arguments");
     EXPECT_EQ(errorOf("command: [tracer, {out}]"),
@@ -161,7 +161,7 @@ TEST(ExternalProgram, RefusesValuesThatAParameterDoesNotTake) {
     EXPECT_EQ(programOf("command: t {n}\nparams: {n: 3000000000.0}").params.at(0).type,
               ProgramParam::Type::Number);
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: {default: text, min: 1}}"),
-              "c.yaml:2:29: program: parameter 'n': 'min' is of numbers alone");
+              "c.yaml:2:29: program: parameter 'n': min is of numbers alone");
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: {unit: m}}"),
               "c.yaml:2:13: program: parameter 'n' needs 'default', a number, a boolean or text");
     EXPECT_EQ(errorOf("command: t {N}\nparams: {N: 1}"),

@@ -142,7 +142,7 @@ TEST(Documents, SayWhereTheyAreWrong) {
         return test::errorText([&] { (void)readDocuments(file); }).substr(file.string().size());
     };
     EXPECT_TRUE(readDocuments(folder.path() / "none.yaml").empty());
-    EXPECT_EQ(errorOf("a: {chapters: []}"), ":1:4: a: 'title' is missing");
+    EXPECT_EQ(errorOf("a: {chapters: []}"), ":1:4: a needs 'title'");
     EXPECT_EQ(errorOf("a: {title: b, chapter: []}"),
               ":1:15: a: unknown key 'chapter'; did you mean 'chapters'?");
     EXPECT_EQ(errorOf("a:\n  title: b\n  chapters:\n    - {title: c, has: [1]}\n"
