@@ -70,12 +70,6 @@ void readLobe(Params& params, reflections::LobeSettings& lobe) {
 
 BinSettings readBins(Params& params) {
     BinSettings bins;
-    bins.maxThetaBins = params.getInt(
-        "theta_bins", bins.maxThetaBins,
-        {"most bins of a reflector's normals, by their angle around y", "bins", 1, 64});
-    bins.maxPhiBins =
-        params.getInt("phi_bins", bins.maxPhiBins,
-                      {"most bins of a reflector's normals, by their angle from y", "bins", 1, 64});
     bins.exponent =
         kit::number(params, "bin_exponent", bins.exponent,
                     {"e of the share of the most bins that a reflector gets: (a_R / n_v · "
@@ -158,11 +152,10 @@ ReflectionParams::ReflectionParams(Params& params)
     showsPictures = params.getBool("pictures", false, {"result, truth, errors, clusters"});
     params.finish();
     if (method != Method::Clustered) {
-        params.refuseGiven(
-            {"clustering", "theta_bins", "phi_bins", "bin_exponent", "bin_gain", "least_samples",
-             "depth_images", "march", "depth_image_scale", "texels_per_sample", "level_error_px",
-             "own_reflector", "own_back", "errors_of"},
-            "'method: clustered'");
+        params.refuseGiven({"clustering", "bin_exponent", "bin_gain", "least_samples",
+                            "depth_images", "march", "depth_image_scale", "texels_per_sample",
+                            "level_error_px", "own_reflector", "own_back", "errors_of"},
+                           "'method: clustered'");
     }
     if (clustered.ownReflector == OwnReflector::LeftOut) {
         params.refuseGiven({"own_back"}, "an 'own_reflector' that is not left_out");

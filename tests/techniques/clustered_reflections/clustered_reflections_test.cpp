@@ -259,7 +259,7 @@ TEST_F(ClusteredReflectionsTest, ConvexMirrorsDoNotShowThemselves) {
 
 TEST_F(ClusteredReflectionsTest, MoreBinsGiveMoreClustersAndSmallerOcclusionErrors) {
     const scene::Scene scene = roomWithMirrors();
-    const Metrics coarse = run("{reflector_parts: false, theta_bins: 1, phi_bins: 1}", scene);
+    const Metrics coarse = run("{reflector_parts: false, bin_gain: 1e-6}", scene);
     const Metrics fine = run("{reflector_parts: false, bin_exponent: 0}", scene);
     EXPECT_EQ(coarse.at("clusters"), 2.0);
     EXPECT_GT(fine.at("clusters"), 6.0);
@@ -308,8 +308,8 @@ TEST_F(ClusteredReflectionsTest, ClustersAndTheirOcclusionErrorsNeedNoDepthImage
 TEST_F(ClusteredReflectionsTest, OcclusionErrorsOfOneReflectorAlone) {
     scene::Scene scene = roomWithMirrors();
     scene.meshes.back().name = "column";
-    const Metrics all = run("{theta_bins: 1, phi_bins: 1}", scene);
-    const Metrics column = run("{theta_bins: 1, phi_bins: 1, errors_of: column}", scene);
+    const Metrics all = run("{bin_gain: 1e-6}", scene);
+    const Metrics column = run("{bin_gain: 1e-6, errors_of: column}", scene);
     EXPECT_GT(column.at("occlusion_error_pct"), 2.0 * all.at("occlusion_error_pct"));
     EXPECT_EQ(column.at("clusters"), all.at("clusters"));
     EXPECT_EQ(errorText([&] { run("{errors_of: vase}", scene); }),
