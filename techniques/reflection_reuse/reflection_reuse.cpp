@@ -56,9 +56,6 @@ ReuseSettings readReuse(Params& params) {
          0.0, 1.0}));
     settings.matching.matching = params.getEnum("matching", settings.matching.matching, kMatchings,
                                                 {"how matches are found"});
-    settings.matching.maxSteps =
-        params.getInt("max_steps", settings.matching.maxSteps,
-                      {"most steps of a search; a longer one finds no match", "steps", 1, 65536});
     const double silhouette = params.getDouble(
         "silhouette", 0.05,
         {"neighbours whose eye depths differ by more of the nearer one are not connected", "1", 0.0,
@@ -116,10 +113,9 @@ ReuseParams::ReuseParams(Params& params)
                            "'method: reuse' or 'method: direct'");
     }
     if (method != Method::Reuse) {
-        params.refuseGiven({"matching", "max_steps", "resampling", "exhaustive_samples"},
-                           "'method: reuse'");
+        params.refuseGiven({"matching", "resampling", "exhaustive_samples"}, "'method: reuse'");
     } else if (reuse.reprojection.resampling == Resampling::Gather) {
-        params.refuseGiven({"matching", "max_steps", "exhaustive_samples"}, "'resampling: twice'");
+        params.refuseGiven({"matching", "exhaustive_samples"}, "'resampling: twice'");
         params.refuseGiven({"silhouette", "forward", "max_growth"},
                            "'resampling: twice' or 'method: direct'");
     }
