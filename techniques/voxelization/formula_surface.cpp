@@ -16,22 +16,16 @@ constexpr std::string_view kQuartic = "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 +
 constexpr float kQuarticExtent = 2.5F;
 
 Expression readFormula(Params& params) {
-    const std::string formula =
-        params.getText("formula", kQuartic, {"f(x, y, z) of the implicit surface f = 0"});
+    const std::string formula = params.getText(
+        "formula", kQuartic, {"f(x, y, z) of the implicit surface f = 0, below 0 inside"});
     return {formula, {"x", "y", "z"}, params.locationOf("formula")};
-}
-
-bool readInside(Params& params) {
-    constexpr Choice<bool> kSigns[] = {{true, "negative", "f < 0 inside"},
-                                       {false, "positive", "f > 0 inside"}};
-    return params.getEnum("inside", true, kSigns, {"sign of f inside the implicit surface"});
 }
 
 }  // namespace
 
 ImplicitSource::ImplicitSource(Params& params, const GridSettings& settings,
                                const std::optional<scene::Box>& box)
-    : settings_(settings), formula_(readFormula(params)), isNegativeInside_(readInside(params)) {
+    : settings_(settings), formula_(readFormula(params)) {
     grid_.layout = settings.layout;
     grid_.box = box.value_or(scene::Box{glm::vec3(-kQuarticExtent), glm::vec3(kQuarticExtent)});
 }
@@ -49,7 +43,6 @@ void ImplicitSource::render(gl::Profiler& profiler) {
     const gl::GpuScope scope(profiler, "implicit");
     pass_.set("boxMin", grid_.box.min);
     pass_.set("voxelSize", grid_.voxelSize());
-    pass_.set("insideSign", isNegativeInside_ ? 1.0F : -1.0F);
     const auto groups = static_cast<GLuint>(grid_.layout.resolution() / kImplicitGroupSize);
     pass_.dispatch({groups, groups, grid_.layout.slabCount()}, {{"sheets", grid_.sheets}});
 }

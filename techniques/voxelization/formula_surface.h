@@ -11,8 +11,8 @@ namespace gfxrepro::voxelization {
 /// Surface: 6-separating, by the crosshair of each voxel. Solid: the voxels whose centre is inside.
 class ImplicitSource final : public GridSource {
   public:
-    /// Declares `formula` and `inside`. `box` is cubic, world space; without one, the box of the
-    /// thesis's quartic.
+    /// Declares `formula`. `box` is cubic, world space; without one, the box of the thesis's
+    /// quartic.
     ImplicitSource(Params& params, const GridSettings& settings,
                    const std::optional<scene::Box>& box);
 
@@ -25,7 +25,6 @@ class ImplicitSource final : public GridSource {
   private:
     GridSettings settings_;
     Expression formula_;
-    bool isNegativeInside_;
     VoxelGrid grid_;
     gl::Pass pass_;
 };

@@ -13,15 +13,14 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(r32ui) writeonly uniform uimage2DArray sheets;
 
-uniform vec3 boxMin;        // world space
-uniform float voxelSize;    // world units
-uniform float insideSign;   // 1: f < 0 inside, -1: f > 0 inside
+uniform vec3 boxMin;      // world space
+uniform float voxelSize;  // world units
 
 // f at a point of the lattice of half voxels, so that neighbours see the same value on their common
 // face, bit for bit: only then the surface separates. Negative inside.
 float sampleAt(ivec3 halfVoxels) {
     precise vec3 p = boxMin + vec3(halfVoxels) * (0.5 * voxelSize);
-    return insideSign * formula(p.x, p.y, p.z);
+    return formula(p.x, p.y, p.z);
 }
 
 // Value of a full voxel; the gradient points outwards.

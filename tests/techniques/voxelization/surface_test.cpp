@@ -119,18 +119,6 @@ TEST_F(SurfaceTest, SurfaceThroughVoxelCentresIsKept) {
     EXPECT_TRUE(grid.isFull({5, 7, 16}));
 }
 
-TEST_F(SurfaceTest, InsideMayBePositive) {
-    const GridSettings settings{WorksheetLayout(32, 1), VoxelValue::Occupancy, Fill::Solid};
-    const DenseGrid negative =
-        implicitOf("{formula: x^2 + y^2 + z^2 - 1.01}", settings, cube(1.5F)).grid()->read();
-    const DenseGrid positive =
-        implicitOf("{formula: 1.01 - x^2 - y^2 - z^2, inside: positive}", settings, cube(1.5F))
-            .grid()
-            ->read();
-    EXPECT_EQ(negative, positive);
-    EXPECT_GT(negative.countFull(), 1000U);
-}
-
 TEST_F(SurfaceTest, NormalsPointOutOfASphere) {
     const GridSettings settings{WorksheetLayout(64, 16), VoxelValue::Normal};
     const ImplicitSource source =
