@@ -190,7 +190,8 @@ void VolumeRenderer::setView(const gl::Program& program) const {
 
 namespace {
 
-constexpr int kHeadResolution = 128;  // [zju2005] Sec. 2.4.2
+constexpr int kHeadResolution = 128;    // [zju2005] Sec. 2.4.2
+constexpr double kElevationDeg = 17.0;  // ours: a view from slightly above
 
 constexpr Choice<DrawMode> kModes[] = {
     {DrawMode::None, "none", "no picture"},
@@ -238,10 +239,9 @@ DrawingSettings::DrawingSettings(Params& params, VoxelValue value) {
     draw.opacity = static_cast<float>(params.getDouble(
         "opacity", 0.1, {"of a voxel, where voxels are blended", "1", 0.001, 0.999}));
     framing = params.getEnum("frame", Framing::Model, kFramings, {"what the picture holds"});
-    azimuthDeg = params.getDouble("azimuth_deg", 30.0,
-                                  {"of the eye, from +z towards +x", "degree", -360.0, 360.0});
-    elevationDeg = params.getDouble("elevation_deg", 17.0,
-                                    {"of the eye, above the horizon", "degree", -90.0, 90.0});
+    azimuthDeg = params.getDouble(
+        "azimuth_deg", 30.0,
+        {"of the eye, 17° above the horizon, from +z towards +x", "degree", -360.0, 360.0});
     draw.cut = readCut(params);
 }
 
@@ -255,8 +255,7 @@ void Drawing::setup(technique::SetupContext& context, const WorksheetLayout& lay
     const scene::Box framed = settings_.framing == Framing::Grid
                                   ? box
                                   : scene::Box{shown.centre() - half, shown.centre() + half};
-    const scene::Camera camera =
-        orbitCamera(framed, settings_.azimuthDeg, settings_.elevationDeg, aspect);
+    const scene::Camera camera = orbitCamera(framed, settings_.azimuthDeg, kElevationDeg, aspect);
     view_ = kit::viewOf(camera, context.outputSizePx);
     renderer_.emplace(context.shaders, layout, box, camera, context.outputSizePx, settings_.draw);
     if (settings_.draw.mode == DrawMode::Mixed) {

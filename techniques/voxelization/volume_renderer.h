@@ -91,10 +91,9 @@ struct DrawingSettings {
     DrawSettings draw;
     Framing framing = Framing::Model;
     double azimuthDeg = 0.0;
-    double elevationDeg = 0.0;
     bool isBeside = false;  // no pass: drawn once, when everything is measured
 
-    /// Declares draw, pictures, opacity, frame, azimuth_deg, elevation_deg, cut_min and cut_max.
+    /// Declares draw, pictures, opacity, frame, azimuth_deg, cut_min and cut_max.
     DrawingSettings(Params& params, VoxelValue value);
     bool isOn() const { return draw.mode != DrawMode::None; }
     bool isPass() const { return isOn() && !isBeside; }

@@ -12,10 +12,10 @@ constexpr long long kMostBytes = 2'000'000'000;
 
 constexpr const char* kTwoAxes =
     "  azimuth_deg: {range: [0, 249.75, 0.25]}\n"
-    "  elevation_deg: {range: [-50, 49, 1]}\n";
+    "  opacity: {range: [0.1, 0.595, 0.005]}\n";
 constexpr const char* kSixAxes =
-    "  azimuth_deg: {range: [0, 15, 1]}\n"
-    "  elevation_deg: {range: [-5, 5, 1]}\n"
+    "  azimuth_deg: {range: [0, 87, 1]}\n"
+    "  fill: [surface, solid]\n"
     "  voxel_bits: [1, 8, 16, 32]\n"
     "  opacity: {range: [0.1, 0.25, 0.01]}\n"
     "  padding: {range: [0, 8, 1]}\n"
