@@ -202,7 +202,6 @@ struct VoxelizationParams {
     std::optional<scene::Box> box;  // cubic; empty: around the mesh
     bool readsBack = false;
     bool comparesWithReference = false;
-    bool exportsBinvox = false;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
     explicit VoxelizationParams(Params& params)
@@ -218,8 +217,7 @@ struct VoxelizationParams {
                              {"copy the worksheet to the CPU each frame, timed as read_back"})),
           comparesWithReference(params.getBool("compare", false,
                                                {"count what the rule misses, against the CPU "
-                                                "references of thin and conservative"})),
-          exportsBinvox(params.getBool("export_binvox", false, {"write grid.binvox"})) {
+                                                "references of thin and conservative"})) {
         checkInput(params);
     }
 
@@ -335,9 +333,6 @@ class Voxelization final : public technique::Technique {
     void recordOnce(technique::Recorder& recorder) override {
         if (!grid()) return;
         if (params_.comparesWithReference) recordMisses(recorder, grid()->read());
-        if (params_.exportsBinvox) {
-            writeBinvox(recorder.artifact("grid.binvox"), grid()->read(), box_);
-        }
         if (!params_.drawing.isOn()) return;
         if (params_.drawing.isBeside) {
             gl::Profiler unread(false);

@@ -6,7 +6,6 @@
 #include <bit>
 
 #include "engine/core/error.h"
-#include "engine/core/files.h"
 
 namespace gfxrepro::voxelization {
 
@@ -124,33 +123,6 @@ void checkFitsDevice(const WorksheetLayout& layout, const gl::DeviceLimits& limi
             "{}³ voxels of {} bits take {} bytes an axis; allowed: {}", layout.resolution(),
             layout.voxelBits(), layout.sizeBytes(), kMaxSheetsBytes));
     }
-}
-
-void writeBinvox(const std::filesystem::path& path, const DenseGrid& grid, const scene::Box& box) {
-    const int n = grid.resolution();
-    std::string content =
-        fmt::format("#binvox 1\ndim {} {} {}\ntranslate {} {} {}\nscale {}\ndata\n", n, n, n,
-                    box.min.x, box.min.y, box.min.z, box.max.x - box.min.x);
-    std::size_t run = 0;
-    bool value = false;
-    const auto flush = [&] {
-        if (run == 0) return;
-        content += static_cast<char>(value);
-        content += static_cast<char>(run);
-        run = 0;
-    };
-    for (int x = 0; x < n; ++x) {
-        for (int z = 0; z < n; ++z) {
-            for (int y = 0; y < n; ++y) {
-                const bool isFull = grid.isFull({x, y, z});
-                if (isFull != value || run == 255) flush();
-                value = isFull;
-                ++run;
-            }
-        }
-    }
-    flush();
-    writeFileAtomic(path, content);
 }
 
 }  // namespace gfxrepro::voxelization

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -131,11 +130,6 @@ std::vector<std::uint32_t> readSheets(const gl::Texture& sheets);
 
 /// Throws UnsupportedError, with the numbers, when the sheets do not fit the device.
 void checkFitsDevice(const WorksheetLayout& layout, const gl::DeviceLimits& limits);
-
-/// The .binvox exchange format, a grid of bits, run-length encoded: header `#binvox 1`, dim,
-/// translate, scale, then pairs of value and count; y runs fastest, then z, then x. Every voxel
-/// that is not 0 is written as 1.
-void writeBinvox(const std::filesystem::path& path, const DenseGrid& grid, const scene::Box& box);
 
 /// Cubic, about the centre of `bounds`, with `paddingVoxels` free voxels at both ends of its
 /// longest side, which has a length.

@@ -1,8 +1,6 @@
 // The technique as a whole: parameters, metrics, files.
 #include "techniques/voxelization/voxelization.h"
 
-#include <fstream>
-
 #include "tests/techniques/technique_fixture.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
 
@@ -13,8 +11,7 @@ using test::errorText;
 
 class VoxelizationTest : public VoxelizerTest {
   protected:
-    std::map<std::string, double> run(const std::string& yaml, const scene::Scene& scene,
-                                      const std::filesystem::path& folder = {}) {
+    std::map<std::string, double> run(const std::string& yaml, const scene::Scene& scene) {
         Params params = test::paramsOf(kVoxelization, yaml);
         const auto technique = kVoxelization.create(params);
         technique::SetupContext context = setupContext();
@@ -24,7 +21,6 @@ class VoxelizationTest : public VoxelizerTest {
         technique->render(frame);
         passes_ = profiler().collect();
         test::MetricRecorder recorder;
-        recorder.folder = folder;
         technique->record(recorder);
         technique->recordOnce(recorder);
         return recorder.metrics;
@@ -157,76 +153,6 @@ TEST_F(VoxelizationTest, DigestTellsGridsApart) {
         run("{resolution: 32, synthesis: per_voxel, addressing: tables}", sphere_).at("digest"),
         first.at("digest"));
     EXPECT_NE(run("{resolution: 32, fill: solid}", sphere_).at("digest"), first.at("digest"));
-}
-
-/// A grid as a binvox file holds it.
-struct BinvoxGrid {
-    DenseGrid grid;             // 1 bit a voxel
-    glm::vec3 translate{0.0F};  // world position of voxel (0, 0, 0)'s corner
-    float scale = 1.0F;         // edge of the cubic grid in world units
-};
-
-BinvoxGrid readBinvox(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    std::string word;
-    int n = 0, ignored = 0;
-    BinvoxGrid result;
-    in >> word >> word >> word >> n >> ignored >> ignored;  // "#binvox 1 dim"
-    in >> word >> result.translate.x >> result.translate.y >> result.translate.z;
-    in >> word >> result.scale >> word;  // "data"
-    in.get();
-    result.grid = DenseGrid(WorksheetLayout(n, 1));
-    int voxel = 0;
-    for (int value = in.get(), run = in.get(); in; value = in.get(), run = in.get()) {
-        for (const int end = voxel + run; voxel < end; ++voxel) {
-            if (value != 0) result.grid.set({voxel / (n * n), voxel % n, voxel / n % n}, 1);
-        }
-    }
-    EXPECT_EQ(voxel, n * n * n);
-    return result;
-}
-
-TEST_F(VoxelizationTest, WritesABinvoxFileOfTheGivenBox) {
-    const test::TemporaryFolder folder;
-    const auto metrics = run(
-        "{resolution: 64, fill: solid, export_binvox: true, box_min: [-2, -1.5, -1], box_max: [1, "
-        "1.5, 2]}",
-        sphere_, folder.path());
-    const BinvoxGrid file = readBinvox(folder.path() / "grid.binvox");
-    EXPECT_EQ(file.translate, glm::vec3(-2, -1.5F, -1));
-    EXPECT_EQ(file.scale, 3.0F);
-    EXPECT_EQ(static_cast<double>(file.grid.countFull()), metrics.at("voxels"));
-    EXPECT_TRUE(file.grid.isFull({42, 32, 21}));   // the origin
-    EXPECT_FALSE(file.grid.isFull({21, 32, 42}));  // axes exchanged: outside
-}
-
-TEST(BinvoxTest, ComesBackAsWritten) {
-    const test::TemporaryFolder folder;
-    DenseGrid grid(WorksheetLayout(32, 1));
-    Random random(1);
-    for (int i = 0; i < 5000; ++i) {
-        const auto x = random.index(32), y = random.index(32), z = random.index(32);
-        grid.set(glm::ivec3(x, y, z), 1);
-    }
-    writeBinvox(folder.path() / "a.binvox", grid, {glm::vec3(1, 2, 3), glm::vec3(5, 6, 7)});
-    const BinvoxGrid read = readBinvox(folder.path() / "a.binvox");
-    EXPECT_EQ(read.grid, grid);
-    EXPECT_EQ(read.translate, glm::vec3(1, 2, 3));
-    EXPECT_EQ(read.scale, 4.0F);
-}
-
-// y runs fastest, then z, then x.
-TEST(BinvoxTest, HasTheFormatsBytes) {
-    const test::TemporaryFolder folder;
-    DenseGrid grid(WorksheetLayout(32, 1));
-    grid.set({0, 2, 0}, 1);
-    grid.set({0, 0, 1}, 1);
-    writeBinvox(folder.path() / "a.binvox", grid, {glm::vec3(0.0F), glm::vec3(0.5F)});
-    const std::string content = readFile(folder.path() / "a.binvox");
-    const std::string header = "#binvox 1\ndim 32 32 32\ntranslate 0 0 0\nscale 0.5\ndata\n";
-    ASSERT_EQ(content.substr(0, header.size()), header);
-    EXPECT_EQ(content.substr(header.size(), 8), std::string("\0\2\1\1\0\35\1\1", 8));
-    EXPECT_EQ(content.substr(header.size() + 8, 2), std::string("\0\377", 2));
 }
 
 }  // namespace
