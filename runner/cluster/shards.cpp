@@ -235,9 +235,7 @@ void copyImages(const run::RunDirectory& directory, const std::vector<ShardRun>&
         for (records::ImageEntry& image : records::readImages(shard.path)) {
             imagesOf[image.caseId].push_back(std::move(image));
         }
-        for (const char* folder : {"images", "artifacts"}) {
-            copyTree(shard.path / folder, directory.path() / folder);
-        }
+        copyTree(shard.path / "images", directory.path() / "images");
     }
     // The copy of a shard's list goes: the new one has the images of all, in the plan's order.
     fs::remove(directory.path() / "images" / "index.csv");

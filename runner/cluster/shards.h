@@ -59,7 +59,7 @@ std::vector<std::string> missingUnits(const run::StoredRun& run);
 /// Which of the cut's shards are not there: "2/4".
 std::vector<std::string> missingShards(const std::vector<ShardRun>& shards);
 
-/// Writes plan, manifest, records, journal, images and artifacts into `directory`, the plan last.
+/// Writes plan, manifest, records, journal and images into `directory`, the plan last.
 void writeMerged(const run::RunDirectory& directory, const std::vector<ShardRun>& shards,
                  const run::StoredRun& merged);
 

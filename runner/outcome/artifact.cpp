@@ -39,7 +39,7 @@ std::uintmax_t sizeOf(const fs::path& path) {
 /// What was measured; what is made of it is made again there.
 void copyMeasured(const fs::path& runDir, const fs::path& target) {
     for (const char* name :
-         {"plan.json", "manifest.json", "records.csv", "journal.jsonl", "images", "artifacts"}) {
+         {"plan.json", "manifest.json", "records.csv", "journal.jsonl", "images"}) {
         copyTree(runDir / name, target / name);
     }
 }
@@ -220,8 +220,8 @@ std::string readmeText(const fs::path& artifact, const run::StoredRun& run) {
         std::uintmax_t bytes = 0;
         for (const fs::path& part :
              {fs::path("images") / slug, fs::path("thumbnails") / slug,
-              fs::path("artifacts") / slug, fs::path("tables") / (slug + ".csv"),
-              fs::path("tables") / (slug + ".md"), fs::path("tables") / (slug + ".tex")}) {
+              fs::path("tables") / (slug + ".csv"), fs::path("tables") / (slug + ".md"),
+              fs::path("tables") / (slug + ".tex")}) {
             bytes += sizeOf(artifact / part);
         }
         text += fmt::format("| {}: {} | scripts/{}.sh | {:.1f} | {:.1f} |\n", experiment.label(),

@@ -293,10 +293,4 @@ void RunRecorder::compareWithTruths() {
     compared_.clear();
 }
 
-fs::path RunRecorder::artifact(std::string_view fileName) {
-    checkFileName(fileName);
-    makeBelow(runDir_, "artifacts/" + item_.slug());
-    return runDir_ / ("artifacts/" + fileStem(item_) + shortName(fileName));
-}
-
 }  // namespace gfxrepro::run

@@ -16,8 +16,8 @@
 
 namespace gfxrepro::run {
 
-/// The beginning of the names of a case's files below images/ and artifacts/: what varies, by which
-/// people find them, then the id, which tells them apart:
+/// The beginning of the names of a case's files below images/: what varies, by which people find
+/// them, then the id, which tells them apart:
 /// "sweep-mine/scene=torus,light_ratio=0.25-0123456789ab-". A value's folder is left out, a long
 /// text cut, and what a shell or an address would take for something else is "_".
 std::string fileStem(const Case& item);
@@ -57,7 +57,6 @@ class RunRecorder : public technique::Recorder {
                 std::optional<std::string_view> unit = {}) override;
     void image(std::string_view name, const image::ImageF& image,
                const technique::ImageOptions& options) override;
-    std::filesystem::path artifact(std::string_view fileName) override;
     /// Takes the errors of this frame's images that have a truth, and lets go of them. Throws Error
     /// when an image is the truth of one that was not given or is not declared
     /// (Outputs::withTruth), and when the two cannot be compared.

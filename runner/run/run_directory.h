@@ -17,7 +17,7 @@ inline constexpr std::uintmax_t kMostJournalBytes = std::uintmax_t{4} << 30;
 /// A journal of this size takes no further unit; the end of those under way has its place.
 inline constexpr std::uintmax_t kFullJournalBytes = kMostJournalBytes - (std::uintmax_t{64} << 20);
 
-/// plan.json, manifest.json, records.csv, journal.jsonl, images/, artifacts/, tables/, … under one
+/// plan.json, manifest.json, records.csv, journal.jsonl, images/, tables/, … under one
 /// folder, locked for writing as long as the object lives.
 class RunDirectory {
   public:

@@ -34,20 +34,6 @@ void share(const fs::path& from, const fs::path& to) {
     }
 }
 
-void shareArtifacts(const fs::path& runDir, const Case& measured, const Case& twin) {
-    const fs::path from = runDir / ("artifacts/" + fileStem(measured));
-    if (!fs::exists(from.parent_path())) return;
-    const std::string prefix = from.filename().string();
-    std::vector<fs::path> files;  // first: the twin's may lie in the same folder
-    for (const auto& entry : fs::directory_iterator(from.parent_path())) {
-        if (entry.path().filename().string().starts_with(prefix)) files.push_back(entry.path());
-    }
-    for (const fs::path& file : files) {
-        const fs::path to = runDir / ("artifacts/" + fileStem(twin));
-        share(file, to.string() + file.filename().string().substr(prefix.size()));
-    }
-}
-
 bool hasTimes(const Case& item) {
     return item.measure.lane == config::Measure::Lane::Timing;
 }
@@ -182,7 +168,6 @@ std::vector<double> withoutTwins(std::span<const Case> cases, std::vector<double
 std::vector<records::ImageEntry> shareFiles(const fs::path& runDir, const Case& measured,
                                             const Case& twin,
                                             const std::vector<records::ImageEntry>& images) {
-    shareArtifacts(runDir, measured, twin);
     if (savesPictures(measured) && !savesPictures(twin)) return {};
     const std::string stem = "images/" + fileStem(measured);
     std::vector<records::ImageEntry> shared = images;

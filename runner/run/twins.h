@@ -46,10 +46,10 @@ std::vector<std::size_t> firstTwins(std::span<const Case> cases);
 /// Times of the cases when twins are measured once: 0 for all but the first.
 std::vector<double> withoutTwins(std::span<const Case> cases, std::vector<double> timesS);
 
-/// Gives `twin` what `measured` left in a run's images/ and artifacts/, under the names that it
-/// would have had: hard links, or copies where the file system has none. The attributes of an EXR
-/// file stay those of the measured case. `images` are the measured case's; the twin's are returned,
-/// none where only the measured case was asked for pictures. Throws Error.
+/// Gives `twin` what `measured` left in a run's images/, under the names that it would have had:
+/// hard links, or copies where the file system has none. The attributes of an EXR file stay those
+/// of the measured case. `images` are the measured case's; the twin's are returned, none where only
+/// the measured case was asked for pictures. Throws Error.
 std::vector<records::ImageEntry> shareFiles(const std::filesystem::path& runDir,
                                             const Case& measured, const Case& twin,
                                             const std::vector<records::ImageEntry>& images);

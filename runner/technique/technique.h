@@ -94,8 +94,6 @@ class Recorder {
     /// sRGB). 1 to 4 channels.
     virtual void image(std::string_view name, const image::ImageF& image,
                        const ImageOptions& options = {}) = 0;
-    /// A path in the run directory for a file of the technique's own format ("grid.binvox").
-    virtual std::filesystem::path artifact(std::string_view fileName) = 0;
 };
 
 /// A program that had a technique's work to do died of a signal (status `crash`).

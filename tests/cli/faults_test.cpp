@@ -486,12 +486,11 @@ TEST_F(Faults, NamesOfThreeHundredLettersAreNoReasonToLoseACase) {
     EXPECT_THAT(index, HasSubstr(",0," + name + ",images/sweep-mock/")) << "its name stays";
     ASSERT_EQ(mockGfxrepro({"report", dir}).exitCode, 0);
     std::size_t count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(dir + "/artifacts/sweep-mock")) {
-        EXPECT_EQ(entry.path().extension(), ".txt");
+    for (const auto& entry : std::filesystem::directory_iterator(dir + "/images/sweep-mock")) {
         EXPECT_LE(entry.path().filename().string().size(), 120U);
         ++count;
     }
-    EXPECT_EQ(count, 1U);
+    EXPECT_EQ(count, 6U);  // an EXR and a PNG of the named, of "flat" and of its truth
     const std::string named =
         folder.write("long.yaml", "sweep_of: " + name + "\ntitle: t\ntechnique: mock\n");
     EXPECT_EQ(endedWith(2, mockGfxrepro({"check", named})).err,

@@ -171,7 +171,6 @@ class Mock : public technique::Technique {
         // One of a long name, as where a technique makes it of what a config says.
         if (const char* name = std::getenv("GFXREPRO_MOCK_PICTURE")) {
             recorder.image(name, image::ImageF(4, 4, 3, value));
-            std::ofstream(recorder.artifact(std::string(name) + ".txt")) << "made\n";
         }
         recorder.image("truth", image::ImageF(4, 4, 3, 0.25F), {.truthOf = "flat"});
     }

@@ -35,7 +35,6 @@ class MetricRecorder final : public technique::Recorder {
         images.emplace(name, image);
         if (!options.truthOf.empty()) withTruth.insert(options.truthOf);
     }
-    std::filesystem::path artifact(std::string_view name) override { return folder / name; }
 
     /// Every metric, pass and picture with a truth is one that the technique declares, and no
     /// metric is called as what the runner takes of pictures.
@@ -59,7 +58,6 @@ class MetricRecorder final : public technique::Recorder {
     std::map<std::string, double> metrics;
     std::map<std::string, image::ImageF> images;
     std::set<std::string> withTruth;  // the pictures of which a truth was recorded
-    std::filesystem::path folder;     // of artifacts
 };
 
 class NoScenes final : public technique::SceneProvider {
