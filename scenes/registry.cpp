@@ -3,7 +3,7 @@
 #include "scenes/registry.h"
 
 #include "scenes/indoor/rooms.h"
-#include "scenes/models/sdf_model.h"
+#include "scenes/models/shapes.h"
 #include "scenes/outdoor/outdoor.h"
 #include "scenes/shadows/shadow_scenes.h"
 #include "scenes/terrain/terrain.h"

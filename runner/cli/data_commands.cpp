@@ -11,9 +11,8 @@
 #include "runner/cli/experiments.h"
 #include "runner/cli/parse.h"
 #include "runner/cli/reading_commands.h"
-#include "runner/outcome/artifact.h"
+#include "runner/outcome/export.h"
 #include "runner/outcome/import_run.h"
-#include "runner/outcome/tidy.h"
 #include "runner/regression/nightly_history.h"
 
 namespace gfxrepro::cli {

@@ -1,5 +1,3 @@
-#include "runner/outcome/artifact.h"
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +12,7 @@
 #include "engine/core/text.h"
 #include "runner/cluster/predictions.h"
 #include "runner/config/external_program.h"
+#include "runner/outcome/export.h"
 #include "runner/outcome/import_run.h"
 #include "runner/outcome/results.h"
 #include "runner/report/markup.h"

@@ -15,7 +15,7 @@
 #include "engine/core/text.h"
 #include "runner/config/experiment.h"
 #include "runner/config/external_program.h"
-#include "runner/outcome/tidy.h"
+#include "runner/outcome/export.h"
 #include "runner/run/ledger.h"
 #include "runner/run/manifest.h"
 #include "runner/run/plan_json.h"

@@ -13,7 +13,7 @@
 #include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
-#include "runner/outcome/tidy.h"
+#include "runner/outcome/export.h"
 #include "runner/report/report.h"
 #include "runner/report/writers.h"
 #include "runner/run/case_filter.h"

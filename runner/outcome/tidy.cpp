@@ -1,5 +1,3 @@
-#include "runner/outcome/tidy.h"
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -8,6 +6,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/output_files.h"
+#include "runner/outcome/export.h"
 #include "runner/outcome/results.h"
 #include "runner/records/csv.h"
 #include "runner/run/manifest.h"

@@ -1,5 +1,3 @@
-#include "runner/run/machine_reading.h"
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/text.h"
+#include "runner/run/machine_state.h"
 
 namespace gfxrepro::run {
 

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "engine/core/random.h"
-#include "scenes/indoor/lofts.h"
 #include "scenes/indoor/parts.h"
 #include "scenes/indoor/rooms.h"
 #include "scenes/shared/sdf.h"

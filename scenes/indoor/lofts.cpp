@@ -1,10 +1,9 @@
-#include "scenes/indoor/lofts.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "engine/core/random.h"
+#include "scenes/indoor/parts.h"
 #include "scenes/shared/sdf.h"
 
 namespace gfxrepro::scene::indoor {

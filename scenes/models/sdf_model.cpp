@@ -1,5 +1,3 @@
-#include "scenes/models/sdf_model.h"
-
 #include <algorithm>
 #include <cmath>
 

@@ -1,11 +1,19 @@
-// The shapes of the generator `sdf_model`: y up, within about [−1, 1]³, facing +z.
+// The generator `sdf_model`, and its shapes: y up, within about [−1, 1]³, facing +z.
 #pragma once
 
 #include <cstdint>
 
+#include "engine/core/params.h"
+#include "engine/scene/scene.h"
 #include "scenes/shared/sdf.h"
 
-namespace gfxrepro::scene::shapes {
+namespace gfxrepro::scene {
+
+/// A stand-in for a scanned model, or a body with known answers: one mesh with exactly `triangles`
+/// and, where `vertices` is given, exactly as many vertices.
+Scene sdfModel(Params& params, std::uint64_t seed);
+
+namespace shapes {
 
 // Models; `seed` moves their relief.
 sdf::Shape blade(std::uint32_t seed);
@@ -26,4 +34,5 @@ sdf::Shape sphere(std::uint32_t seed);      // radius 1
 sdf::Shape torus(std::uint32_t seed);       // around y, radius 0.7, tube 0.3
 sdf::Shape linkedTori(std::uint32_t seed);  // radius 0.5, tube 0.12, through each other's hole
 
-}  // namespace gfxrepro::scene::shapes
+}  // namespace shapes
+}  // namespace gfxrepro::scene

@@ -1,4 +1,5 @@
-// A run as tidy tables for the field's other programs: cases and records, without JSON in cells.
+// A run for others: as an artifact (artifact.cpp), or as tidy tables for the field's other
+// programs, without JSON in cells (tidy.cpp).
 #pragma once
 
 #include <filesystem>
@@ -10,6 +11,15 @@
 #include "runner/run/run.h"
 
 namespace gfxrepro::outcome {
+
+/// Writes the folder `target`, which must not exist, as a whole or not at all: plan, manifest,
+/// records, tables, claims, report (made again there: the run's folder is left as it is) and log,
+/// environment.txt, ASSETS.md with checksums and licences, configs/ (the experiments with all that
+/// they extend laid in), scripts/<table>.sh without parameters, README.md with the measured minutes
+/// and disk space of each table, SHA256SUMS. What the stamp for replicability in graphics and ACM's
+/// badges ask for.
+void writeArtifact(const std::filesystem::path& runDir, const run::StoredRun& run,
+                   const scene::Catalog& catalog, const std::filesystem::path& target);
 
 /// The columns of cases.csv before the parameters. None is a word of SQL.
 inline constexpr std::string_view kCaseColumns[] = {"case_id", "experiment", "technique", "scene",
