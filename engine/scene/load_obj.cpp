@@ -304,7 +304,7 @@ Mesh meshOfTriples(const ObjContent& content, const std::vector<Corner>& corners
     const bool normals = (attributes & 2) != 0;
     Mesh mesh;
     mesh.triangles.resize(corners.size() / 3);
-    KeyTable<std::array<std::uint32_t, 3>> vertices;
+    KeyNumbers<std::array<std::uint32_t, 3>> vertices;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         Corner corner = corners[i];
         if (!texcoords) corner.texcoord = -1;

@@ -126,7 +126,7 @@ class Anchor {
                                          glm::max(kRounding * glm::abs(a), glm::dvec3(kLeast))));
     }
 
-    KeyTable<std::array<std::uint32_t, 3>> places_;
+    KeyNumbers<std::array<std::uint32_t, 3>> places_;
     std::vector<glm::dvec3> first_;  // of the vertices at each place
 };
 

@@ -8,7 +8,7 @@ namespace gfxrepro::scene {
 Welding weldedByPosition(std::span<const glm::vec3> positions) {
     Welding welding;
     welding.idOfVertex.reserve(positions.size());
-    KeyTable<std::array<std::uint32_t, 3>> table(positions.size());
+    KeyNumbers<std::array<std::uint32_t, 3>> table(positions.size());
     for (const glm::vec3& p : positions) {
         // Adding 0 turns −0 into 0, which compares equal.
         const auto id = table.number({std::bit_cast<std::uint32_t>(p.x + 0.0F),
@@ -79,7 +79,7 @@ EdgeTable edgesOf(std::span<const glm::uvec3> triangles, const Welding& welding)
     EdgeTable edges;
     edges.edgeOfCorner.assign(triangles.size() * 3, kNone);
     edges.nextCorner.assign(triangles.size() * 3, kNone);
-    KeyTable<std::uint64_t> table(triangles.size() * 3 / 2);
+    KeyNumbers<std::uint64_t> table(triangles.size() * 3 / 2);
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         std::uint32_t id[3];
         for (int i = 0; i < 3; ++i) id[i] = welding.idOfVertex[triangles[t][i]];

@@ -27,9 +27,9 @@ inline std::uint64_t mixedBits(const std::array<std::uint32_t, 3>& key) {
 /// Numbers keys from 0 in order of first appearance. Open addressing with linear probing: several
 /// times faster than std::unordered_map here, where building the table is most of the work.
 template <class Key>
-class KeyTable {
+class KeyNumbers {
   public:
-    explicit KeyTable(std::size_t expected = 16)
+    explicit KeyNumbers(std::size_t expected = 16)
         : slots_(std::bit_ceil(expected * 2 + 16), kEmpty) {
         keys_.reserve(expected);
     }

@@ -258,7 +258,8 @@ void sayAll(const regression::Comparison& comparison, const fs::path& folder) {
         const Difference& difference = comparison.differences[i];
         const bool isOfNone = difference.isOfNone();
         if (!difference.isAlarm() && !isOfNone) continue;
-        if (difference.verdict == regression::Verdict::Lost || isOfNone || difference.isPicture()) {
+        if (difference.verdict == regression::SeriesVerdict::Lost || isOfNone ||
+            difference.isPicture()) {
             say("{}: {}: {}\n", titles[i], regression::verdictName(difference.verdict),
                 difference.reason);
             continue;
@@ -279,7 +280,7 @@ void sayAll(const regression::Comparison& comparison, const fs::path& folder) {
 int exitCodeOf(const regression::Comparison& comparison, const regression::CaseTexts& failures) {
     const bool isUnmeasured =
         std::ranges::any_of(comparison.differences, [&](const Difference& one) {
-            return one.verdict == regression::Verdict::Failed && failures.contains(one.key);
+            return one.verdict == regression::SeriesVerdict::Failed && failures.contains(one.key);
         });
     if (isUnmeasured) return kExitIncomplete;
     if (comparison.isAlarm()) return kExitClaimFailed;

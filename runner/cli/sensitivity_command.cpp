@@ -45,15 +45,15 @@ struct Study {
     studies::Variations variations;
     std::string basis;
     fs::path folder;
-    std::set<std::string> timed = {};             // the claims that read a time
-    std::vector<std::string> sets = {};           // of every run
-    std::vector<studies::Outcome> outcomes = {};  // of the first runs
+    std::set<std::string> timed = {};                     // the claims that read a time
+    std::vector<std::string> sets = {};                   // of every run
+    std::vector<studies::VariationResult> outcomes = {};  // of the first runs
     double spentS = 0.0;
     bool isIncomplete = false;  // something was not measured that should have been
 
     const config::Experiment& experiment() const { return plan.experiments.front(); }
     std::size_t left() const { return variations.runs.size() - outcomes.size(); }
-    std::vector<studies::Outcome> withLeft() const {
+    std::vector<studies::VariationResult> withLeft() const {
         return studies::withLeft(outcomes, variations, left());
     }
     const studies::Variation& next() const { return variations.runs[outcomes.size()]; }
@@ -69,7 +69,7 @@ std::string folderName(std::string title) {
 /// Measures in a process of its own; a run that is there already goes on. What goes wrong is the
 /// outcome; cases that failed, or a run that came to no end, leave the study incomplete. A value
 /// that the technique refuses does not.
-studies::Outcome measureNext(Study& study, const Chosen& selection) {
+studies::VariationResult measureNext(Study& study, const Chosen& selection) {
     const studies::Variation& variation = study.next();
     const fs::path dir = study.folder / folderName(variation.title());
     std::vector<std::string> arguments = {"/proc/self/exe", "run",      study.file,
@@ -117,7 +117,7 @@ void writeStudy(const Study& study, const std::string& keep) {
 }
 
 /// Whether it was measured where times are none, and the study asks for them.
-bool lacksTimes(const studies::Outcome& outcome, const Study& study) {
+bool lacksTimes(const studies::VariationResult& outcome, const Study& study) {
     if (!study.sets.empty()) return false;  // it asks for none
     return std::ranges::any_of(outcome.claims, [&](const claims::ClaimResult& claim) {
         return study.timed.contains(claim.id) && claim.verdict == claims::Verdict::Unmeasured;
@@ -129,7 +129,7 @@ void takeKept(const std::string& keep, Study& study) {
     const fs::path file =
         studies::keptFolder(keep, study.plan) / (study.experiment().slug() + ".csv");
     if (!fs::is_regular_file(file)) return;
-    for (studies::Outcome& kept : studies::readSensitivity(file, study.basis)) {
+    for (studies::VariationResult& kept : studies::readSensitivity(file, study.basis)) {
         const auto left =
             study.variations.runs.begin() + static_cast<std::ptrdiff_t>(study.outcomes.size());
         const auto run = std::find_if(left, study.variations.runs.end(), [&](const auto& one) {
@@ -214,7 +214,7 @@ Study* nextOf(std::vector<Study>& studies) {
 
 void printStudy(const Study& study) {
     if (study.outcomes.empty()) return;
-    const studies::Outcome& base = study.outcomes.front();
+    const studies::VariationResult& base = study.outcomes.front();
     if (!base.error.empty()) say("{}: {}\n", study.experiment().id, base.error);
     for (std::size_t i = 0; i < base.claims.size(); ++i) {
         say("{} {}: {}; rests on: {}\n", study.experiment().id, base.claims[i].id,
@@ -266,7 +266,7 @@ int sensitivity(const Context& context, const SensitivityOptions& options) {
     while (Study* study = nextOf(studies)) {
         if (secondsSince(begin) >= budgetS) break;
         const Clock::time_point start = Clock::now();
-        const studies::Outcome& outcome =
+        const studies::VariationResult& outcome =
             study->outcomes.emplace_back(measureNext(*study, options.selection));
         study->spentS += secondsSince(start);
         writeStudy(*study, options.keep);

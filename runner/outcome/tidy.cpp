@@ -23,9 +23,9 @@ constexpr const char* kNumberColumns[] = {"case_id", "process", "frame", "repeat
 
 /// A file that is there as a whole or not at all, written row after row: of millions of records no
 /// second copy is made.
-class CsvFile {
+class CsvOutput {
   public:
-    CsvFile(const fs::path& file, const auto& columns) : file_(file) { addTexts(columns); }
+    CsvOutput(const fs::path& file, const auto& columns) : file_(file) { addTexts(columns); }
 
     void addTexts(const auto& fields) {
         add([&](records::CsvRow& row) {
@@ -79,7 +79,7 @@ std::pair<Fields, std::vector<std::string>> paramsOf(const config::Case& item) {
 }
 
 void writeNumbers(const fs::path& file, const std::vector<records::Record>& records) {
-    CsvFile out(file, kNumberColumns);
+    CsvOutput out(file, kNumberColumns);
     for (const records::Record& record : records) {
         out.add([&](records::CsvRow& row) {
             row.text(record.caseId).integer(record.process).integer(record.frame);
@@ -93,7 +93,7 @@ void writeNumbers(const fs::path& file, const std::vector<records::Record>& reco
 
 void writeRun(const fs::path& file, const run::Json& manifest) {
     const claims::ReportContext context = reportContext(manifest);
-    CsvFile out(file, std::vector{"key", "value"});
+    CsvOutput out(file, std::vector{"key", "value"});
     const auto add = [&](const std::string& key, const std::string& value) {
         out.addTexts(std::vector{key, value});
     };
@@ -111,7 +111,7 @@ void writeRun(const fs::path& file, const run::Json& manifest) {
 void writePrograms(const fs::path& file, const run::Json& manifest) {
     const std::set<run::ProgramUse> uses = run::programsOf(manifest);
     if (uses.empty()) return;
-    CsvFile out(file, std::vector{"file", "sha256", "version"});
+    CsvOutput out(file, std::vector{"file", "sha256", "version"});
     for (const run::ProgramUse& use : uses) {
         out.addTexts(std::vector{use.file, use.sha256, use.version});
     }
@@ -135,7 +135,7 @@ void writeCases(const fs::path& file, std::span<const config::Case> cases) {
     }
     std::vector<std::string> columns(std::begin(kCaseColumns), std::end(kCaseColumns));
     columns.insert(columns.end(), params.begin(), params.end());
-    CsvFile out(file, columns);
+    CsvOutput out(file, columns);
     for (const config::Case& item : cases) {
         Fields fields = paramsOf(item).first;
         out.add([&](records::CsvRow& row) {

@@ -97,10 +97,10 @@ Difference compareValues(const SeriesKey& key, const Series& before, const Serie
     const bool isAlike = std::ranges::equal(
         before, after, [&](double a, double b) { return areSame(a, b, result.floor); });
     const bool isOwn = differ(before, result.floor) || differ(after, result.floor);
-    result.verdict = isSame ? Verdict::Same : Verdict::Changed;
+    result.verdict = isSame ? SeriesVerdict::Same : SeriesVerdict::Changed;
     if (!isAlike && (isOwn || isInDoubt) &&
         chanceApart(before, after) > rules.familyError / static_cast<double>(count)) {
-        result.verdict = Verdict::CannotTell;
+        result.verdict = SeriesVerdict::CannotTell;
         result.reason = isOwn ? "numbers that differ between processes of one side"
                               : "in other cases it differs between processes of one side";
     }
@@ -115,10 +115,11 @@ Difference missing(const SeriesKey& key, const Series& values, bool isBefore) {
             .key = key,
             .before = kNone,
             .after = kNone,
-            .verdict = Verdict::Missing,
+            .verdict = SeriesVerdict::Missing,
             .reason = isBefore ? "void before, not there after" : "void after, not there before"};
     }
-    Difference result{.key = key, .verdict = isBefore ? Verdict::Lost : Verdict::Missing};
+    Difference result{.key = key,
+                      .verdict = isBefore ? SeriesVerdict::Lost : SeriesVerdict::Missing};
     (isBefore ? result.before : result.after) = metrics::median(own);
     result.reason = isBefore ? "measured before only" : "measured after only";
     return result;
@@ -130,7 +131,7 @@ std::optional<Difference> voidTime(const SeriesKey& key, const Series& before,
     const bool isBefore = !standing(before).empty(), isAfter = !standing(after).empty();
     if (isBefore && isAfter) return std::nullopt;
     if (isBefore || isAfter) return missing(key, isBefore ? before : after, isBefore);
-    return Difference{.key = key, .verdict = Verdict::Void};
+    return Difference{.key = key, .verdict = SeriesVerdict::Void};
 }
 
 /// A time of both sides, and how it was tested.
@@ -248,12 +249,12 @@ void judgeTime(TestedTime& time, bool isRejected, std::size_t seriesCount, Pairi
     Difference& difference = time.difference;
     const double same = rules.sameWithin;
     if (isRejected && time.isSlower) {
-        difference.verdict = Verdict::Slower;
+        difference.verdict = SeriesVerdict::Slower;
     } else if (isRejected && time.isFaster) {
-        difference.verdict = Verdict::Faster;
+        difference.verdict = SeriesVerdict::Faster;
     } else if (pairing == Pairing::ByTurns && difference.interval.low >= 1.0 / (1.0 + same) &&
                difference.interval.high <= 1.0 + same) {
-        difference.verdict = Verdict::Same;
+        difference.verdict = SeriesVerdict::Same;
     } else {
         difference.reason = whyUndecided(time, seriesCount, pairing, level);
     }
@@ -296,7 +297,7 @@ std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
         addPictures(differences, sides.pictures);
         tables.clear();
         for (const Difference& one : differences) {
-            const bool isOpen = one.verdict == Verdict::CannotTell && !one.isPicture();
+            const bool isOpen = one.verdict == SeriesVerdict::CannotTell && !one.isPicture();
             if (isOpen) tables.insert(one.key.table);
         }
         if (tables.empty()) break;
@@ -306,7 +307,7 @@ std::vector<Difference> measureUntilDecided(const MeasureRounds& measure,
 
 }  // namespace
 
-std::string_view verdictName(Verdict verdict) {
+std::string_view verdictName(SeriesVerdict verdict) {
     constexpr std::string_view kNames[] = {"faster",
                                            "slower",
                                            "same",
@@ -370,14 +371,14 @@ void addPictures(std::vector<Difference>& differences, std::vector<Difference> p
         return key;
     };
     for (const Difference& one : differences) {
-        if (one.verdict == Verdict::Missing) continue;
+        if (one.verdict == SeriesVerdict::Missing) continue;
         const auto [found, isNew] = isLost.try_emplace(caseOf(one.key), true);
-        found->second = found->second && one.verdict == Verdict::Lost;
+        found->second = found->second && one.verdict == SeriesVerdict::Lost;
     }
     for (Difference& picture : pictures) {
         const auto found = isLost.find(caseOf(picture.key));
-        if (picture.verdict == Verdict::Lost && found != isLost.end() && found->second) {
-            picture.verdict = Verdict::Missing;
+        if (picture.verdict == SeriesVerdict::Lost && found != isLost.end() && found->second) {
+            picture.verdict = SeriesVerdict::Missing;
         }
     }
     std::ranges::move(pictures, std::back_inserter(differences));
@@ -391,7 +392,7 @@ void confirm(std::vector<Difference>& differences, const std::vector<Difference>
         if (found != again.end() && found->verdict == difference.verdict) continue;
         difference.reason =
             fmt::format("{} once, not when measured again", verdictName(difference.verdict));
-        difference.verdict = Verdict::CannotTell;
+        difference.verdict = SeriesVerdict::CannotTell;
     }
 }
 
@@ -454,8 +455,9 @@ const std::string* textOf(const CaseTexts& texts, const SeriesKey& key) {
 Difference failure(const SeriesKey& key, const std::string* before, const std::string& after) {
     const std::string_view flaky = records::statusName(records::Status::Flaky);
     const bool wasMeasured = !before || (before->starts_with(flaky) && !after.starts_with(flaky));
-    Difference result{
-        .key = key, .verdict = wasMeasured ? Verdict::Lost : Verdict::Failed, .reason = after};
+    Difference result{.key = key,
+                      .verdict = wasMeasured ? SeriesVerdict::Lost : SeriesVerdict::Failed,
+                      .reason = after};
     if (before && *before != after) {
         result.reason = fmt::format("before {}; after {}", *before, after);
     }
@@ -471,9 +473,9 @@ void noteFailures(std::vector<Difference>& differences, const CaseTexts& before,
     const CaseTexts earlier = cases.matched(before), later = cases.matched(after);
     std::set<SeriesKey> said;
     for (Difference& one : differences) {
-        if (one.verdict != Verdict::Lost && one.verdict != Verdict::Missing) continue;
+        if (one.verdict != SeriesVerdict::Lost && one.verdict != SeriesVerdict::Missing) continue;
         const SeriesKey key = cases.of(one.key);
-        const bool isLost = one.verdict == Verdict::Lost;
+        const bool isLost = one.verdict == SeriesVerdict::Lost;
         const std::string* text = textOf(isLost ? later : earlier, key);
         if (!text) continue;
         one.reason = isLost ? *text : fmt::format("{}: {}", one.reason, *text);
@@ -498,13 +500,13 @@ void noteVoidTimes(std::vector<Difference>& differences, const CaseTexts& before
         const std::string* now = textOf(later, key);
         const std::string* either = now ? now : then;
         if (!either) continue;
-        if (one.verdict == Verdict::Void) {
+        if (one.verdict == SeriesVerdict::Void) {
             one.reason = *either;
-        } else if (one.verdict == Verdict::Lost && now) {
+        } else if (one.verdict == SeriesVerdict::Lost && now) {
             one.reason = fmt::format("its times are void: {}", *now);
-        } else if (one.verdict == Verdict::Missing && then) {
+        } else if (one.verdict == SeriesVerdict::Missing && then) {
             one.reason += fmt::format(": void before: {}", *then);
-        } else if (one.verdict == Verdict::CannotTell) {
+        } else if (one.verdict == SeriesVerdict::CannotTell) {
             one.reason += fmt::format(" (void in some rounds: {})", *either);
         }
     }
@@ -518,8 +520,8 @@ void noteOnce(std::vector<Difference>& differences, const CaseTexts& before,
     for (Difference& one : differences) {
         const SeriesKey key = cases.of(one.key);
         const bool isOnce = textOf(earlier, key) && textOf(later, key);
-        if (one.verdict != Verdict::Changed || !isOnce) continue;
-        one.verdict = Verdict::CannotTell;
+        if (one.verdict != SeriesVerdict::Changed || !isOnce) continue;
+        one.verdict = SeriesVerdict::CannotTell;
         one.reason = kOnce;
     }
 }

@@ -19,8 +19,8 @@ namespace gfxrepro::regression {
 /// build measured and the later one did not is Lost, and so is a case that failed in the later one
 /// alone; what only the later one has is Missing. A time that stands on neither side is Void, a
 /// case that failed on both has Failed: nothing is known of them.
-enum class Verdict { Faster, Slower, Same, CannotTell, Changed, Missing, Lost, Void, Failed };
-std::string_view verdictName(Verdict verdict);
+enum class SeriesVerdict { Faster, Slower, Same, CannotTell, Changed, Missing, Lost, Void, Failed };
+std::string_view verdictName(SeriesVerdict verdict);
 
 /// Whether the sides were measured alternately (round i of one beside round i of the other), so
 /// that what a machine does over hours touches both.
@@ -59,7 +59,7 @@ struct Difference {
     double ratio = 1.0;
     metrics::Interval interval{1.0, 1.0};  // of the ratio, at 95 %
     double floor = 0.0;                    // the smallest change that counts, relative
-    Verdict verdict = Verdict::CannotTell;
+    SeriesVerdict verdict = SeriesVerdict::CannotTell;
     std::string reason{};  // of all but Faster, Slower and Same, but of no value that is Changed
     std::optional<PictureError> picture{};  // of two that can be subtracted
     /// Of a picture that is Changed: both, and the map of differences if there is one, lie beside
@@ -68,10 +68,12 @@ struct Difference {
 
     bool isPicture() const { return key.metric == kPictureMetric; }
     /// Neither side has a value.
-    bool isOfNone() const { return verdict == Verdict::Void || verdict == Verdict::Failed; }
+    bool isOfNone() const {
+        return verdict == SeriesVerdict::Void || verdict == SeriesVerdict::Failed;
+    }
     bool isAlarm() const {
-        return verdict == Verdict::Slower || verdict == Verdict::Changed ||
-               verdict == Verdict::Lost;
+        return verdict == SeriesVerdict::Slower || verdict == SeriesVerdict::Changed ||
+               verdict == SeriesVerdict::Lost;
     }
 };
 

@@ -14,14 +14,14 @@ namespace gfxrepro::regression {
 
 namespace {
 
-std::size_t countOf(const std::vector<Difference>& differences, Verdict verdict) {
+std::size_t countOf(const std::vector<Difference>& differences, SeriesVerdict verdict) {
     return static_cast<std::size_t>(std::ranges::count(differences, verdict, &Difference::verdict));
 }
 
 /// Whether both sides have a value.
 bool isOfTwo(const Difference& difference) {
-    return difference.verdict != Verdict::Missing && difference.verdict != Verdict::Lost &&
-           !difference.isOfNone();
+    return difference.verdict != SeriesVerdict::Missing &&
+           difference.verdict != SeriesVerdict::Lost && !difference.isOfNone();
 }
 
 std::string ratioText(const Difference& difference) {
@@ -53,7 +53,8 @@ std::string evidenceLinks(const Difference& difference) {
 /// Empty on a side that has no number: it was lost, is new or void, or is how a case ended.
 std::string valueText(const Difference& difference, bool isAfter) {
     const double value = isAfter ? difference.after : difference.before;
-    const bool isAbsent = difference.verdict == (isAfter ? Verdict::Lost : Verdict::Missing);
+    const bool isAbsent =
+        difference.verdict == (isAfter ? SeriesVerdict::Lost : SeriesVerdict::Missing);
     if (isAbsent || difference.key.metric == "status" || std::isnan(value)) return "";
     const std::string unit = isAfter ? ' ' + report::escapeMarkdown(difference.key.unit) : "";
     return fmt::format("{:.4g}{}", value, unit);
@@ -87,9 +88,10 @@ std::vector<std::string> uniqueNames(const std::vector<const SeriesKey*>& keys) 
 
 std::string summaryLine(const std::vector<Difference>& differences) {
     std::string text;
-    for (const Verdict verdict :
-         {Verdict::Lost, Verdict::Slower, Verdict::Faster, Verdict::Changed, Verdict::Same,
-          Verdict::CannotTell, Verdict::Missing, Verdict::Void, Verdict::Failed}) {
+    for (const SeriesVerdict verdict :
+         {SeriesVerdict::Lost, SeriesVerdict::Slower, SeriesVerdict::Faster, SeriesVerdict::Changed,
+          SeriesVerdict::Same, SeriesVerdict::CannotTell, SeriesVerdict::Missing,
+          SeriesVerdict::Void, SeriesVerdict::Failed}) {
         const std::size_t count = countOf(differences, verdict);
         if (count == 0) continue;
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, verdictName(verdict));
@@ -121,7 +123,7 @@ std::string markdown(const Comparison& comparison) {
     text += "| --- | ---: | ---: | ---: | ---: | --- |\n";
     const std::vector<std::string> titles = titlesOf(keysOf(differences));
     for (std::size_t i = 0; i < differences.size(); ++i) {
-        if (differences[i].verdict == Verdict::Same) continue;
+        if (differences[i].verdict == SeriesVerdict::Same) continue;
         text += markdownRow(differences[i], titles[i]);
     }
     return text;
@@ -134,7 +136,8 @@ std::string junitXml(const Comparison& comparison) {
     std::vector<std::string> names = uniqueNames(keysOf(differences));
     for (std::size_t i = 0; i < differences.size(); ++i) {
         const Difference& one = differences[i];
-        const bool isPass = one.verdict == Verdict::Same || one.verdict == Verdict::Faster;
+        const bool isPass =
+            one.verdict == SeriesVerdict::Same || one.verdict == SeriesVerdict::Faster;
         tests.push_back({one.key.table, names[i],
                          isPass          ? Outcome::Measured
                          : one.isAlarm() ? Outcome::Failed

@@ -167,7 +167,7 @@ std::int64_t pixelsOf(const Pair& pair) {
 
 /// What the two pictures are to each other, and the map of their differences.
 Difference compareOne(const Pair& pair, bool isOneBuild, std::optional<ImageF>& map) {
-    Difference result{.key = pair.key, .verdict = Verdict::Changed};
+    Difference result{.key = pair.key, .verdict = SeriesVerdict::Changed};
     try {
         const bool isExr = !pair.before.exr.empty() && !pair.after.exr.empty();
         Picture before = readPicture(pair.before, isExr);
@@ -189,7 +189,7 @@ Difference compareOne(const Pair& pair, bool isOneBuild, std::optional<ImageF>& 
     const double mostFlip = isOneBuild ? 0.0 : kPictureFlip;
     const double mostDifference = isOneBuild ? 0.0 : kPictureDifference;
     if (flip <= mostFlip && largest <= mostDifference) {
-        result.verdict = Verdict::Same;
+        result.verdict = SeriesVerdict::Same;
     } else {
         result.reason =
             fmt::format("FLIP {:.3g} ({:.3g} allowed), largest difference {:.3g} ({:.3g} allowed)",
@@ -201,13 +201,13 @@ Difference compareOne(const Pair& pair, bool isOneBuild, std::optional<ImageF>& 
 Difference compareAndKeep(const Pair& pair, const PictureRules& rules) {
     std::optional<ImageF> map;
     Difference result = compareOne(pair, rules.isOneBuild, map);
-    if (result.verdict == Verdict::Same) return result;
+    if (result.verdict == SeriesVerdict::Same) return result;
     if (result.picture && (pair.before.isDrawn || pair.after.isDrawn)) {
-        result.verdict = Verdict::CannotTell;
+        result.verdict = SeriesVerdict::CannotTell;
         result.reason +=
             "; processes of one side made other pictures, too, and no seed is declared";
     } else if (result.picture && pair.before.isOnce && pair.after.isOnce) {
-        result.verdict = Verdict::CannotTell;
+        result.verdict = SeriesVerdict::CannotTell;
         result.reason += fmt::format("; {}", kOnce);
     }
     result.evidence = evidenceName(pair.after.png.empty() ? pair.after.exr : pair.after.png);
@@ -228,7 +228,7 @@ SeriesMap numbered(const PictureMap& pictures, std::vector<PictureFiles>& files)
     return keys;
 }
 
-Difference onlyOneSide(const SeriesKey& key, Verdict verdict, const char* reason) {
+Difference onlyOneSide(const SeriesKey& key, SeriesVerdict verdict, const char* reason) {
     return {.key = key, .verdict = verdict, .reason = reason};
 }
 
@@ -287,14 +287,14 @@ std::vector<Difference> comparePictures(const PictureMap& before, const PictureM
     for (const auto& [key, place] : keysBefore) {
         const auto other = keysAfter.find(key);
         if (other == keysAfter.end()) {
-            differences.push_back(onlyOneSide(key, Verdict::Lost, "recorded before only"));
+            differences.push_back(onlyOneSide(key, SeriesVerdict::Lost, "recorded before only"));
         } else {
             pairs.push_back({key, filesOf(place), filesOf(other->second)});
         }
     }
     for (const auto& [key, place] : keysAfter) {
         if (!keysBefore.contains(key)) {
-            differences.push_back(onlyOneSide(key, Verdict::Missing, "recorded after only"));
+            differences.push_back(onlyOneSide(key, SeriesVerdict::Missing, "recorded after only"));
         }
     }
     std::vector<Difference> compared(pairs.size());

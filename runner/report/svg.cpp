@@ -48,7 +48,7 @@ std::string tickText(double value, double plain) {
 }
 
 /// Whether no text comes near the next, and no tick with one nearer than `least`.
-bool haveRoom(const Ticks& ticks, const Axis& axis, double length, Along along, double gap,
+bool haveRoom(const Ticks& ticks, const PlotAxis& axis, double length, Along along, double gap,
               double least = 0.0) {
     double before = -1e9, end = -1e9;
     for (const Tick& tick : ticks) {
@@ -63,7 +63,7 @@ bool haveRoom(const Ticks& ticks, const Axis& axis, double length, Along along, 
 }
 
 /// At multiples of a factor times a power of ten.
-Ticks multiples(const Axis& axis, int factor, int exponent) {
+Ticks multiples(const PlotAxis& axis, int factor, int exponent) {
     const double largest = std::max(std::abs(axis.low), std::abs(axis.high));
     const bool isPlain = largest >= 1e-3 && largest < 1e6;
     const double step = scaled(factor, exponent);
@@ -79,7 +79,7 @@ Ticks multiples(const Axis& axis, int factor, int exponent) {
 }
 
 /// The finest that have room; two of them may lie nearer together than more would.
-Ticks linearTicks(const Axis& axis, double length, Along along) {
+Ticks linearTicks(const PlotAxis& axis, double length, Along along) {
     constexpr double kGap = 10.0, kLeastX = 64.0, kLeastY = 30.0;
     Ticks best;
     for (int exponent = static_cast<int>(std::floor(std::log10(axis.high - axis.low))) + 1;;
@@ -96,7 +96,7 @@ Ticks linearTicks(const Axis& axis, double length, Along along) {
 }
 
 /// At powers of ten, with a text at each `every`-th of them and at these multiples.
-Ticks powerTicks(const Axis& axis, const std::set<int>& labelled, int every) {
+Ticks powerTicks(const PlotAxis& axis, const std::set<int>& labelled, int every) {
     const bool hasSmall = std::log10(axis.high / axis.low) < 4.5;
     const int first = static_cast<int>(std::ceil(std::log10(axis.low) - 1e-9));
     const int last = static_cast<int>(std::floor(std::log10(axis.high)));
@@ -114,18 +114,18 @@ Ticks powerTicks(const Axis& axis, const std::set<int>& labelled, int every) {
 
 }  // namespace
 
-bool Axis::shows(double value) const {
+bool PlotAxis::shows(double value) const {
     // Ratios and differences of these are numbers, too.
     const double size = std::abs(value);
     return (size == 0.0 || size > 1e-120) && size < 1e120 && (!isLog || value > 0.0);
 }
 
-double Axis::at(double value) const {
+double PlotAxis::at(double value) const {
     return isLog ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
 }
 
-Axis axisOf(const std::vector<double>& values, bool isLog, bool fromZero) {
-    Axis axis{isLog ? 1.0 : 0.0, isLog ? 10.0 : 1.0, isLog};
+PlotAxis axisOf(const std::vector<double>& values, bool isLog, bool fromZero) {
+    PlotAxis axis{isLog ? 1.0 : 0.0, isLog ? 10.0 : 1.0, isLog};
     std::vector<double> shown;
     std::ranges::copy_if(values, std::back_inserter(shown),
                          [&](double v) { return axis.shows(v); });
@@ -141,7 +141,7 @@ Axis axisOf(const std::vector<double>& values, bool isLog, bool fromZero) {
     return {fromZero && low >= 0.0 && low < 0.6 * high ? 0.0 : low - room, high + room, false};
 }
 
-std::vector<Tick> ticksOf(const Axis& axis, double length, Along along) {
+std::vector<Tick> ticksOf(const PlotAxis& axis, double length, Along along) {
     if (!axis.isLog) return linearTicks(axis, length, along);
     const double gap = along == Along::X ? 28.0 : 9.0;
     const int least = axis.high < 10.0 * axis.low ? 2 : 1;  // texts
@@ -159,7 +159,7 @@ std::vector<Tick> ticksOf(const Axis& axis, double length, Along along) {
     return linearTicks(axis, length, along);
 }
 
-std::vector<Tick> ticksAt(const std::vector<double>& values, const Axis& axis, double length) {
+std::vector<Tick> ticksAt(const std::vector<double>& values, const PlotAxis& axis, double length) {
     constexpr std::size_t kMost = 10;
     constexpr double kLetters = 6.0;
     std::set<double> distinct;
@@ -176,7 +176,7 @@ std::vector<Tick> ticksAt(const std::vector<double>& values, const Axis& axis, d
                : ticksOf(axis, length, Along::X);
 }
 
-std::vector<Tick> ticksNamed(const std::vector<std::string>& names, const Axis& axis,
+std::vector<Tick> ticksNamed(const std::vector<std::string>& names, const PlotAxis& axis,
                              double length) {
     double widest = 0.0;
     for (const std::string& name : names) widest = std::max(widest, textWidth(name + " "));

@@ -12,7 +12,7 @@
 
 namespace gfxrepro::report {
 
-struct Axis {
+struct PlotAxis {
     double low = 0.0;
     double high = 1.0;
     bool isLog = false;
@@ -25,7 +25,7 @@ struct Axis {
 
 /// Holds all values that it shows with a little room on both sides. `fromZero`: a linear axis
 /// begins at 0 unless all values are far from it.
-Axis axisOf(const std::vector<double>& values, bool isLog, bool fromZero);
+PlotAxis axisOf(const std::vector<double>& values, bool isLog, bool fromZero);
 
 /// In which direction the axis runs, so what room a text takes along it.
 enum class Along { X, Y };
@@ -35,12 +35,12 @@ struct Tick {
 };
 /// 1, 2 or 5 times powers of ten; on a logarithmic axis the powers, and between them what there is
 /// room for. `length` is in pixels.
-std::vector<Tick> ticksOf(const Axis& axis, double length, Along along);
+std::vector<Tick> ticksOf(const PlotAxis& axis, double length, Along along);
 /// At the values themselves, if they are few and short; else as ticksOf(). Of an x axis.
-std::vector<Tick> ticksAt(const std::vector<double>& values, const Axis& axis, double length);
+std::vector<Tick> ticksAt(const std::vector<double>& values, const PlotAxis& axis, double length);
 
 /// At 0, 1, 2, … their names, at as many of them as have room. Of an x axis.
-std::vector<Tick> ticksNamed(const std::vector<std::string>& names, const Axis& axis,
+std::vector<Tick> ticksNamed(const std::vector<std::string>& names, const PlotAxis& axis,
                              double length);
 
 /// About how wide a text is, in pixels.
@@ -69,7 +69,7 @@ std::string svgLines(double x, double y, std::string_view anchor,
 
 /// A rectangle with its axes.
 struct Plane {
-    Axis x, y;
+    PlotAxis x, y;
     double left = 0.0, top = 0.0, width = 0.0, height = 0.0;
 
     double xOf(double value) const { return left + width * x.at(value); }

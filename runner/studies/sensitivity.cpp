@@ -140,7 +140,8 @@ std::vector<Variation> variationsOf(const config::Assumption& assumption,
 }
 
 /// Where the margin of a claim passes 0 between two values; nothing where the margins do not tell.
-std::optional<double> flipBetween(const Outcome& a, const Outcome& b, std::size_t claim) {
+std::optional<double> flipBetween(const VariationResult& a, const VariationResult& b,
+                                  std::size_t claim) {
     const std::optional<double> first = a.claims[claim].distance;
     const std::optional<double> second = b.claims[claim].distance;
     if (!first || !second || (*first < 0.0) == (*second < 0.0)) return std::nullopt;
@@ -148,39 +149,41 @@ std::optional<double> flipBetween(const Outcome& a, const Outcome& b, std::size_
     return *a.variation.number + t * (*b.variation.number - *a.variation.number);
 }
 
-bool holds(const Outcome& outcome, std::size_t claim) {
+bool holds(const VariationResult& outcome, std::size_t claim) {
     return outcome.claims[claim].verdict == Verdict::Holds;
 }
 
-bool isJudged(const Outcome& outcome, std::size_t claim) {
+bool isJudged(const VariationResult& outcome, std::size_t claim) {
     if (claim >= outcome.claims.size()) return false;
     const Verdict verdict = outcome.claims[claim].verdict;
     return verdict != Verdict::NotApplicable && verdict != Verdict::Unmeasured;
 }
 
 /// The runs that judge the claim; the config as it is comes first, or none do.
-std::vector<Outcome> judged(const std::vector<Outcome>& outcomes, std::size_t claim) {
+std::vector<VariationResult> judged(const std::vector<VariationResult>& outcomes,
+                                    std::size_t claim) {
     if (outcomes.empty() || !isJudged(outcomes.front(), claim)) return {};
-    std::vector<Outcome> kept;
+    std::vector<VariationResult> kept;
     std::ranges::copy_if(outcomes, std::back_inserter(kept),
-                         [&](const Outcome& outcome) { return isJudged(outcome, claim); });
+                         [&](const VariationResult& outcome) { return isJudged(outcome, claim); });
     return kept;
 }
 
 /// "bias is 0.03 or 0.1 (flips between 0.003 and 0.03, near 0.012)": the values under which the
 /// claim holds, or those under which it does not.
-std::string condition(const std::string& assumption, std::vector<const Outcome*> outcomes,
+std::string condition(const std::string& assumption, std::vector<const VariationResult*> outcomes,
                       std::size_t claim, bool whereItHolds) {
     std::vector<std::string> values;
     std::string flips;
-    for (const Outcome* outcome : outcomes) {
+    for (const VariationResult* outcome : outcomes) {
         if (holds(*outcome, claim) == whereItHolds) values.push_back(outcome->variation.value);
     }
-    std::erase_if(outcomes, [](const Outcome* outcome) { return !outcome->variation.number; });
+    std::erase_if(outcomes,
+                  [](const VariationResult* outcome) { return !outcome->variation.number; });
     std::ranges::sort(outcomes, {},
-                      [](const Outcome* outcome) { return *outcome->variation.number; });
+                      [](const VariationResult* outcome) { return *outcome->variation.number; });
     for (std::size_t i = 1; i < outcomes.size(); ++i) {
-        const Outcome &a = *outcomes[i - 1], &b = *outcomes[i];
+        const VariationResult &a = *outcomes[i - 1], &b = *outcomes[i];
         if (holds(a, claim) == holds(b, claim)) continue;
         flips += fmt::format("{} between {} and {}", flips.empty() ? "flips" : ",",
                              a.variation.value, b.variation.value);
@@ -226,8 +229,8 @@ Variations variationsOf(const config::Experiment& experiment,
     return result;
 }
 
-std::vector<Outcome> withLeft(std::vector<Outcome> outcomes, const Variations& variations,
-                              std::size_t left) {
+std::vector<VariationResult> withLeft(std::vector<VariationResult> outcomes,
+                                      const Variations& variations, std::size_t left) {
     const auto& runs = variations.runs;
     for (std::size_t i = runs.size() - std::min(left, runs.size()); i < runs.size(); ++i) {
         outcomes.push_back({runs[i], {}, "not made"});
@@ -235,18 +238,18 @@ std::vector<Outcome> withLeft(std::vector<Outcome> outcomes, const Variations& v
     return outcomes;
 }
 
-std::string dependence(const std::vector<Outcome>& all, std::size_t claim) {
-    const std::vector<Outcome> outcomes = judged(all, claim);
+std::string dependence(const std::vector<VariationResult>& all, std::size_t claim) {
+    const std::vector<VariationResult> outcomes = judged(all, claim);
     if (outcomes.empty()) return "not judged as configured";
     const auto holding =
-        std::ranges::count_if(outcomes, [&](const Outcome& o) { return holds(o, claim); });
+        std::ranges::count_if(outcomes, [&](const VariationResult& o) { return holds(o, claim); });
     if (static_cast<std::size_t>(holding) == outcomes.size()) {
         return fmt::format("holds under all {}", outcomes.size());
     }
     if (holding == 0) return fmt::format("holds under none of {}", outcomes.size());
     std::vector<std::string> order;
-    std::map<std::string, std::vector<const Outcome*>> byAssumption;
-    for (const Outcome& outcome : outcomes) {
+    std::map<std::string, std::vector<const VariationResult*>> byAssumption;
+    for (const VariationResult& outcome : outcomes) {
         const std::string& name = outcome.variation.assumption;
         if (name.empty()) continue;
         if (!byAssumption.contains(name)) order.push_back(name);
@@ -255,7 +258,7 @@ std::string dependence(const std::vector<Outcome>& all, std::size_t claim) {
     const bool holdsAsConfigured = holds(outcomes.front(), claim);
     std::vector<std::string> conditions;
     for (const std::string& name : order) {
-        const bool decides = std::ranges::any_of(byAssumption[name], [&](const Outcome* o) {
+        const bool decides = std::ranges::any_of(byAssumption[name], [&](const VariationResult* o) {
             return holds(*o, claim) != holdsAsConfigured;
         });
         if (decides) {
@@ -266,16 +269,16 @@ std::string dependence(const std::vector<Outcome>& all, std::size_t claim) {
                        joined(conditions, ", or "));
 }
 
-std::string restsOn(const std::vector<Outcome>& all, std::size_t claim) {
-    const std::vector<Outcome> outcomes = judged(all, claim);
+std::string restsOn(const std::vector<VariationResult>& all, std::size_t claim) {
+    const std::vector<VariationResult> outcomes = judged(all, claim);
     std::vector<std::string> known, tried, deciding;
     const auto note = [](std::vector<std::string>& names, const std::string& name) {
         if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     };
-    for (const Outcome& outcome : all) {
+    for (const VariationResult& outcome : all) {
         if (!outcome.variation.assumption.empty()) note(known, outcome.variation.assumption);
     }
-    for (const Outcome& outcome : outcomes) {
+    for (const VariationResult& outcome : outcomes) {
         const std::string& name = outcome.variation.assumption;
         if (name.empty()) continue;
         note(tried, name);
@@ -299,14 +302,14 @@ using report::escapeMarkdown;
 constexpr const char* kHeader =
     "basis,assumption,value,claim,verdict,measured,required,margin,error\n";
 
-std::string runsMarkdown(const std::vector<Outcome>& outcomes) {
+std::string runsMarkdown(const std::vector<VariationResult>& outcomes) {
     const std::vector<ClaimResult>& claims = outcomes.front().claims;
     std::string text = "\n| run |";
     for (const ClaimResult& claim : claims) text += fmt::format(" {} |", escapeMarkdown(claim.id));
     text += "\n| --- |";
     for (std::size_t i = 0; i < claims.size(); ++i) text += " --- |";
     text += '\n';
-    for (const Outcome& outcome : outcomes) {
+    for (const VariationResult& outcome : outcomes) {
         text += fmt::format("| {} |", escapeMarkdown(outcome.variation.title()));
         for (const ClaimResult& claim : outcome.claims) {
             text += fmt::format(" {}: {} |", claims::verdictName(claim.verdict),
@@ -328,10 +331,10 @@ Json requirementOf(const Node& claim) {
 }  // namespace
 
 std::string sensitivityMarkdown(const config::Experiment& experiment,
-                                const std::vector<Outcome>& outcomes, const Variations& variations,
-                                std::size_t left) {
+                                const std::vector<VariationResult>& outcomes,
+                                const Variations& variations, std::size_t left) {
     const std::vector<ClaimResult>& claims = outcomes.front().claims;
-    const std::vector<Outcome> all = withLeft(outcomes, variations, left);
+    const std::vector<VariationResult> all = withLeft(outcomes, variations, left);
     std::string text = fmt::format(
         "# Sensitivity of {}\n\n{}\n\nEach assumption alone takes the values of its range; {} "
         "runs{}.\n\n| claim | says | as configured | rests on | under the assumptions |\n| --- | "
@@ -360,9 +363,9 @@ std::string untriedMarkdown(const config::Experiment& experiment) {
         escapeMarkdown(experiment.id), escapeMarkdown(experiment.title));
 }
 
-std::string sensitivityCsv(const std::vector<Outcome>& outcomes, const std::string& basis) {
+std::string sensitivityCsv(const std::vector<VariationResult>& outcomes, const std::string& basis) {
     std::string text = kHeader;
-    for (const Outcome& outcome : outcomes) {
+    for (const VariationResult& outcome : outcomes) {
         const auto row = [&](const ClaimResult* claim) {
             records::CsvRow line(text);
             line.text(basis).text(outcome.variation.assumption).text(outcome.variation.value);
@@ -382,12 +385,12 @@ std::string sensitivityCsv(const std::vector<Outcome>& outcomes, const std::stri
     return text;
 }
 
-std::vector<Outcome> readSensitivity(const fs::path& file, const std::string& basis) {
+std::vector<VariationResult> readSensitivity(const fs::path& file, const std::string& basis) {
     enum Column { Basis, Name, Value, Claim, Word, Measured, Required, Margin, Problem, Count };
     const std::string text = readFile(file);
     records::CsvReader reader(text, file.string());
     std::vector<std::string> fields;
-    std::vector<Outcome> outcomes;
+    std::vector<VariationResult> outcomes;
     reader.next(fields);  // the header
     while (reader.next(fields)) {
         if (fields.size() != Count) {
@@ -472,8 +475,8 @@ std::string sensitivityIndex(const fs::path& folder, const std::string& command)
         untried.clear();
     };
     for (const fs::path& file : files) {
-        const std::vector<Outcome> outcomes =
-            fs::is_regular_file(file) ? readSensitivity(file) : std::vector<Outcome>{};
+        const std::vector<VariationResult> outcomes =
+            fs::is_regular_file(file) ? readSensitivity(file) : std::vector<VariationResult>{};
         if (file.parent_path() != last) {
             sayUntried();
             last = file.parent_path();
@@ -508,7 +511,8 @@ claims::KeptSensitivity keptSensitivity(const run::Plan& plan,
     for (const config::Experiment& experiment : experiments) {
         const fs::path file = keptFolder(folder, plan) / (experiment.slug() + ".csv");
         if (!fs::is_regular_file(file)) continue;
-        const std::vector<Outcome> outcomes = readSensitivity(file, basisOf(plan, experiment));
+        const std::vector<VariationResult> outcomes =
+            readSensitivity(file, basisOf(plan, experiment));
         if (outcomes.empty()) continue;
         const std::vector<ClaimResult>& claims = outcomes.front().claims;
         for (std::size_t i = 0; i < claims.size(); ++i) {

@@ -39,40 +39,40 @@ Variations variationsOf(const config::Experiment& experiment,
                         int points);
 
 /// What a run with a variation gave: the claims in the order of the config, or why there are none.
-struct Outcome {
+struct VariationResult {
     Variation variation;
     std::vector<claims::ClaimResult> claims;
     std::string error = {};
 };
 
 /// The outcomes, and behind them the last `left` variations, as what was not made.
-std::vector<Outcome> withLeft(std::vector<Outcome> outcomes, const Variations& variations,
-                              std::size_t left);
+std::vector<VariationResult> withLeft(std::vector<VariationResult> outcomes,
+                                      const Variations& variations, std::size_t left);
 
 /// "holds under all 7", "holds under none of 7", or "holds unless …" (where it holds as configured)
 /// or "holds only if …" with the values of each assumption that decides, and between which the
 /// verdict flips (by the margins, linearly). Runs without a verdict are not counted.
 /// `claim` counts in the order of the config.
-std::string dependence(const std::vector<Outcome>& outcomes, std::size_t claim);
+std::string dependence(const std::vector<VariationResult>& outcomes, std::size_t claim);
 
 /// Of the assumptions tried those with which the verdict becomes another: "bias, scene_seed (of 5
 /// tried)", "none of the 5 tried"; where some were not, "bias (2 of 5 tried)", "none (1 of 5
 /// tried)"; "not tried" without any.
-std::string restsOn(const std::vector<Outcome>& outcomes, std::size_t claim);
+std::string restsOn(const std::vector<VariationResult>& outcomes, std::size_t claim);
 
 /// A table of claims with their dependence, one of all runs, and what was not varied; `left` are
 /// runs that are still to be made.
 std::string sensitivityMarkdown(const config::Experiment& experiment,
-                                const std::vector<Outcome>& outcomes, const Variations& variations,
-                                std::size_t left = 0);
+                                const std::vector<VariationResult>& outcomes,
+                                const Variations& variations, std::size_t left = 0);
 /// Of a table whose claims are all of times: a page that says so.
 std::string untriedMarkdown(const config::Experiment& experiment);
 /// basis,assumption,value,claim,verdict,measured,required,margin,error: a row a claim and run.
-std::string sensitivityCsv(const std::vector<Outcome>& outcomes, const std::string& basis);
+std::string sensitivityCsv(const std::vector<VariationResult>& outcomes, const std::string& basis);
 /// What sensitivityCsv() wrote; nothing when it is of another basis (an empty one is any). Throws
 /// Error with file and line.
-std::vector<Outcome> readSensitivity(const std::filesystem::path& file,
-                                     const std::string& basis = "");
+std::vector<VariationResult> readSensitivity(const std::filesystem::path& file,
+                                             const std::string& basis = "");
 
 /// Identity of what an experiment's verdicts follow from, but for the program: its cases with their
 /// scenes and parameters, layout, printed values, what its claims ask, the class of the device.

@@ -186,7 +186,7 @@ class Polygonizer {
     float spacing_;
     int groups_ = 0;
     Mesh mesh_;
-    KeyTable<std::uint64_t> table_;
+    KeyNumbers<std::uint64_t> table_;
     // Of the block in progress:
     Shape nearGroup_;
     Shape near_;

@@ -36,7 +36,7 @@ enum class PeeledFrom {
 };
 
 /// What render() does, and is timed.
-enum class Measured { ReferenceImages, OutputFrame };
+enum class Timed { ReferenceImages, OutputFrame };
 
 struct DepthSamplingParams {
     Method method = Method::Conventional;
@@ -51,7 +51,7 @@ struct DepthSamplingParams {
     int outputFrames = 1000;
     int frameSizePx = 0;  // 0: as the reference images
     bool showsPictures = false;
-    Measured measured = Measured::ReferenceImages;
+    Timed measured = Timed::ReferenceImages;
 
     /// Declares the parameters. Throws Error for combinations that mean nothing.
     explicit DepthSamplingParams(Params& params);
@@ -91,9 +91,9 @@ constexpr Choice<kit::DepthFormat> kDepthFormats[] = {
     {kit::DepthFormat::Float32, "float32", "32-bit floats, 0 at the near plane"},
     {kit::DepthFormat::ReversedFloat32, "reversed_float32", "32-bit floats, 0 at the far plane"},
 };
-constexpr Choice<Measured> kMeasured[] = {
-    {Measured::ReferenceImages, "reference_images", "making the reference images"},
-    {Measured::OutputFrame, "output_frame",
+constexpr Choice<Timed> kTimed[] = {
+    {Timed::ReferenceImages, "reference_images", "making the reference images"},
+    {Timed::OutputFrame, "output_frame",
      "one output frame, and the test which of its samples the reference images have"},
 };
 
@@ -140,14 +140,14 @@ void checkPlacement(const Params& params, const DepthSamplingParams& read) {
 void checkVisibility(const Params& params, const DepthSamplingParams& read) {
     if (read.redundancy == Redundancy::Pixel) return;
     params.refuseGiven({"depth_format", "triangle_ids"}, "'redundancy: pixel'");
-    if (read.measured == Measured::OutputFrame) {
+    if (read.measured == Timed::OutputFrame) {
         refuse(params, "measured", "'measured: output_frame' needs 'redundancy: pixel'");
     }
 }
 
 void checkFrames(const Params& params, const DepthSamplingParams& read) {
     const bool hasFrames = read.measures.usefulness || read.measures.availability ||
-                           read.showsPictures || read.measured == Measured::OutputFrame;
+                           read.showsPictures || read.measured == Timed::OutputFrame;
     if (hasFrames) return;
     params.refuseGiven({"frame_size", "output_frames"},
                        "'usefulness', 'availability', 'pictures' or 'measured: output_frame'");
@@ -175,8 +175,7 @@ DepthSamplingParams::DepthSamplingParams(Params& params)
           params.getInt("frame_size", 0,
                         {"side of an output frame; 0: the reference images' size", "px", 0, 4096})),
       showsPictures(params.getBool("pictures", false, {"save images with what was measured"})),
-      measured(
-          params.getEnum("measured", Measured::ReferenceImages, kMeasured, {"what is timed"})) {
+      measured(params.getEnum("measured", Timed::ReferenceImages, kTimed, {"what is timed"})) {
     measures.occluded =
         params.getEnum("occluded", OccludedIn::UpToOwn, kOccludedIn,
                        {"which images lack an occluded sample of a non-redundant one"});
@@ -309,7 +308,7 @@ class DepthSampling final : public technique::Technique {
             context.shared);
         pixelExperiment_ = experiment.get();
         experiment_ = std::move(experiment);
-        if (params_.measured == Measured::OutputFrame) {
+        if (params_.measured == Timed::OutputFrame) {
             gl::Profiler untimed(context.device.info().isSoftware);
             experiment_->makeReferenceImages(untimed);
         }
@@ -323,7 +322,7 @@ class DepthSampling final : public technique::Technique {
     }
 
     void render(technique::FrameContext& context) override {
-        if (params_.measured == Measured::ReferenceImages) {
+        if (params_.measured == Timed::ReferenceImages) {
             experiment_->makeReferenceImages(context.profiler);
             return;
         }
@@ -334,7 +333,7 @@ class DepthSampling final : public technique::Technique {
     }
 
     void record(technique::Recorder& recorder) override {
-        if (params_.measured == Measured::OutputFrame) {
+        if (params_.measured == Timed::OutputFrame) {
             const FrameCounts counts = pixelExperiment_->outputFrameCounts();
             if (counts.samples > 0) {
                 recorder.share("available_pct", static_cast<double>(counts.available),
@@ -433,7 +432,7 @@ class DepthSampling final : public technique::Technique {
     DepthSamplingParams params_;
     Views views_;
     std::string sceneName_;
-    std::unique_ptr<Experiment> experiment_;
+    std::unique_ptr<SamplingExperiment> experiment_;
     PixelExperiment* pixelExperiment_ = nullptr;  // the same, under the pixel definition
     std::optional<Measures> measures_;            // of all frames alike: taken once
 };

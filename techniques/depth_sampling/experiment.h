@@ -55,9 +55,9 @@ struct MeasureSettings {
     bool availability = false;
 };
 
-class Experiment {
+class SamplingExperiment {
   public:
-    virtual ~Experiment() = default;
+    virtual ~SamplingExperiment() = default;
 
     /// The pass that is timed: "reference_images", and in it "image_0", "image_1", …
     virtual void makeReferenceImages(gl::Profiler& profiler) = 0;
@@ -76,7 +76,7 @@ inline std::string imageName(std::size_t index) {
 
 // The experiment under the pixel definition: images are drawn, samples are tested on the device.
 
-class PixelExperiment final : public Experiment {
+class PixelExperiment final : public SamplingExperiment {
   public:
     /// `shaders` and `shared`, which may be null, must outlive this.
     PixelExperiment(const gl::ShaderLibrary& shaders, const scene::Scene& scene, Method method,
@@ -125,7 +125,7 @@ class PixelExperiment final : public Experiment {
 
 // The experiment under the visibility definition: images are ray cast, samples are tested by rays.
 
-class VisibilityExperiment final : public Experiment {
+class VisibilityExperiment final : public SamplingExperiment {
   public:
     VisibilityExperiment(const scene::Scene& scene, raycast::RayTracer tracer, Method method,
                          const Views& views);

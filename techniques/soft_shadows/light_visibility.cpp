@@ -134,7 +134,7 @@ Receivers renderReceivers(const gl::ShaderLibrary& shaders, const kit::DrawableS
 }
 
 LightVisibility::LightVisibility(const gl::ShaderLibrary& shaders,
-                                 const ShadowMapSettings& settings)
+                                 const SampleMapSettings& settings)
     : settings_(settings),
       shadowMap_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, glm::ivec2(settings.sizePx))),
       framebuffer_(std::span<const gl::Texture* const>(), &shadowMap_),
@@ -237,7 +237,7 @@ glm::uvec3 groupsOver(glm::ivec2 sizePx) {
 }  // namespace
 
 FilteredShadows::FilteredShadows(const gl::ShaderLibrary& shaders, ShadowFilter filter,
-                                 const ShadowMapSettings& settings)
+                                 const SampleMapSettings& settings)
     : settings_(settings),
       shadowMap_(shaders, settings),
       filter_(shaders, {"soft_shadows/filtered_shadow.comp.glsl"}, filterDefines(filter)) {

@@ -86,7 +86,7 @@ class ShadowCaster {
     virtual std::uint64_t triangleCount() const = 0;
 };
 
-struct ShadowMapSettings {
+struct SampleMapSettings {
     int sizePx = 1024;
     /// How far a receiver is moved towards the light before the test, in texels at its distance.
     /// Its plane is compared at the texel's centre, so planes need none; it covers surfaces that
@@ -98,7 +98,7 @@ struct ShadowMapSettings {
 /// every output sample. Memory: one shadow map, reused.
 class LightVisibility {
   public:
-    LightVisibility(const gl::ShaderLibrary& shaders, const ShadowMapSettings& settings);
+    LightVisibility(const gl::ShaderLibrary& shaders, const SampleMapSettings& settings);
 
     /// Makes the mask for `gridSize`² samples of the light.
     static VisibilityMask makeMask(glm::ivec2 sizePx, int gridSize);
@@ -125,7 +125,7 @@ class LightVisibility {
   private:
     void drawBits(VisibilityMask& mask, int sample) const;
 
-    ShadowMapSettings settings_;
+    SampleMapSettings settings_;
     gl::Texture shadowMap_;
     gl::Framebuffer framebuffer_;
     gl::Pass test_;
@@ -145,7 +145,7 @@ enum class ShadowFilter {
 class FilteredShadows {
   public:
     FilteredShadows(const gl::ShaderLibrary& shaders, ShadowFilter filter,
-                    const ShadowMapSettings& settings);
+                    const SampleMapSettings& settings);
 
     /// The share of the light that each output sample sees: R32F of the receivers' size, 1 where
     /// there is no surface.
@@ -159,7 +159,7 @@ class FilteredShadows {
   private:
     void makeMoments(const kit::View& view);
 
-    ShadowMapSettings settings_;
+    SampleMapSettings settings_;
     LightVisibility shadowMap_;
     gl::Pass filter_;
     gl::Pass moments_;           // variance only

@@ -114,12 +114,12 @@ HostVisibilityMask traceVisibility(const raycast::RayTracer& tracer, const HostR
     return mask;
 }
 
-ShadowErrors compareMasks(const HostVisibilityMask& measured, const HostVisibilityMask& truth) {
+VisibilityErrors compareMasks(const HostVisibilityMask& measured, const HostVisibilityMask& truth) {
     GFXREPRO_ASSERT_EQ(measured.bits.size(), truth.bits.size());
     GFXREPRO_ASSERT_EQ(measured.sampleCount, truth.sampleCount);
     const std::size_t pixels = truth.pixelCount();
     const double scale = 256.0 / truth.sampleCount;
-    ShadowErrors errors;
+    VisibilityErrors errors;
     errors.signedIntensity.resize(pixels);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
         int tooBright = 0;
@@ -148,9 +148,10 @@ ShadowErrors compareMasks(const HostVisibilityMask& measured, const HostVisibili
     return errors;
 }
 
-ShadowErrors compareShares(const std::vector<float>& measured, const HostVisibilityMask& truth) {
+VisibilityErrors compareShares(const std::vector<float>& measured,
+                               const HostVisibilityMask& truth) {
     const std::vector<float> shares = litShares(truth);
-    ShadowErrors errors;
+    VisibilityErrors errors;
     errors.signedIntensity.resize(shares.size());
     for (std::size_t pixel = 0; pixel < shares.size(); ++pixel) {
         errors.signedIntensity[pixel] = 256.0F * (measured[pixel] - shares[pixel]);

@@ -44,15 +44,15 @@ HostVisibilityMask traceVisibility(const raycast::RayTracer& tracer, const HostR
 
 /// Errors of a mask against the truth ([xie2017] Sec. 3.4.2), mean and maximum over all pixels of
 /// the output image, background included, in light samples of 256 whatever their true number.
-struct ShadowErrors {
+struct VisibilityErrors {
     double visibilityMean = 0.0, visibilityMax = 0.0;  // wrong samples
     double intensityMean = 0.0, intensityMax = 0.0;    // |wrongly lit − wrongly dark|
     double wronglyLitMean = 0.0, wronglyDarkMean = 0.0;
     std::vector<float> signedIntensity;  // a pixel: wrongly lit − wrongly dark
 };
-ShadowErrors compareMasks(const HostVisibilityMask& measured, const HostVisibilityMask& truth);
+VisibilityErrors compareMasks(const HostVisibilityMask& measured, const HostVisibilityMask& truth);
 /// Shares of the light against samples of it. Only the sum of a pixel's errors is known.
-ShadowErrors compareShares(const std::vector<float>& measured, const HostVisibilityMask& truth);
+VisibilityErrors compareShares(const std::vector<float>& measured, const HostVisibilityMask& truth);
 
 /// The share of the light that each pixel sees, 0 … 1.
 std::vector<float> litShares(const HostVisibilityMask& mask);

@@ -41,9 +41,9 @@ constexpr Choice<kit::Redundancy> kRedundancies[] = {
     {kit::Redundancy::Visibility, "visibility",
      "an earlier view sees the sample (algorithm 2), by a shadow map's test"},
 };
-constexpr Choice<Measured> kMeasured[] = {
-    {Measured::SoftShadow, "soft_shadow", "the light's visibility"},
-    {Measured::DepthAndPass, "depth_and_pass",
+constexpr Choice<Timed> kTimed[] = {
+    {Timed::SoftShadow, "soft_shadow", "the light's visibility"},
+    {Timed::DepthAndPass, "depth_and_pass",
      "a yardstick: for each light sample a depth-only draw of the casters and a pass over the "
      "image that only writes"},
 };
@@ -112,7 +112,7 @@ SoftShadowsParams::SoftShadowsParams(Params& params)
       hasGround(params.getBool("ground", true, {"a square floor under the scene"})),
       groundSize(
           kit::number(params, "ground_size", 1.5F, {"side of the floor", "diagonals", 0.0, 100.0})),
-      measured(params.getEnum("measured", Measured::SoftShadow, kMeasured, {"what is timed"})),
+      measured(params.getEnum("measured", Timed::SoftShadow, kTimed, {"what is timed"})),
       measuresErrors(
           params.getBool("errors", true, {"compare with shadow maps of the original geometry"})),
       tracesTruth(params.getBool("traced_truth", false, {"compares with shadow rays, too"})),
@@ -141,7 +141,7 @@ SoftShadowsParams::SoftShadowsParams(Params& params)
     if (reconstruction.method == Reconstruction::Classic) {
         params.refuseGiven({"grazing_limit", "merge_rows"}, "'reconstruction: hybrid'");
     }
-    if (measured == Measured::DepthAndPass) {
+    if (measured == Timed::DepthAndPass) {
         if (method == Method::RayTraced || isFiltered()) {
             throw Error(params.locationOf("measured"),
                         "'measured: depth_and_pass' needs a method that draws a shadow map for "
@@ -304,7 +304,7 @@ void SoftShadows::render(technique::FrameContext& context) {
         caster_ = makeCaster(std::move(meshes), profiler);
     }
     const ShadowCaster* casters[] = {caster_ ? caster_.get() : &*geometry_};
-    if (params_.measured == Measured::DepthAndPass) {
+    if (params_.measured == Timed::DepthAndPass) {
         const gl::GpuScope scope(profiler, "depth_and_pass");
         visibility_->drawMapsAndPlainPasses(mask_, light_, params_.lightGrid, casters);
         return;
@@ -452,7 +452,7 @@ void SoftShadows::recordPicture(technique::Recorder& recorder) {
 
 void SoftShadows::recordErrors(technique::Recorder& recorder, const char* truthName,
                                const HostVisibilityMask& truth) {
-    const ShadowErrors errors =
+    const VisibilityErrors errors =
         params_.isFiltered() ? compareShares(litShares_.read<float>(GL_RED, GL_FLOAT, 1), truth)
                              : compareMasks(measuredMask(), truth);
     recorder.metric("intensity_error_mean", errors.intensityMean, truthName);

@@ -30,7 +30,7 @@ enum class Method {
     Variance,   // variance soft shadows
 };
 
-enum class Measured {
+enum class Timed {
     SoftShadow,
     DepthAndPass,  // the yardstick: depth-only draws and plain passes
 };
@@ -46,10 +46,10 @@ struct SoftShadowsParams {
     std::string view;                    // kit::stillCamera()
     AreaLightSettings light;
     int lightGrid = 16;
-    ShadowMapSettings shadowMap;
+    SampleMapSettings shadowMap;
     bool hasGround = true;
     float groundSize = 1.5F;  // side, in diagonals of the box
-    Measured measured = Measured::SoftShadow;
+    Timed measured = Timed::SoftShadow;
     bool measuresErrors = true;
     bool tracesTruth = false;
     bool seesFromLight = false;

@@ -193,8 +193,8 @@ DenseGrid thin(const LatticeMesh& mesh, int resolution) {
     return std::move(bits).grid();
 }
 
-Solid solid(const LatticeMesh& mesh, int resolution) {
-    Solid result;
+SolidVoxels solid(const LatticeMesh& mesh, int resolution) {
+    SolidVoxels result;
     const DenseGrid x = insideAlong(mesh, Axis::X, resolution, result.ambiguousScanLines);
     const DenseGrid y = insideAlong(mesh, Axis::Y, resolution, result.ambiguousScanLines);
     const DenseGrid z = insideAlong(mesh, Axis::Z, resolution, result.ambiguousScanLines);

@@ -15,12 +15,12 @@ DenseGrid conservative(const LatticeMesh& mesh, int resolution);
 DenseGrid thin(const LatticeMesh& mesh, int resolution);
 
 /// Voxels whose centre lies inside on two of three axes, by the parity of the crossings before it.
-struct Solid {
+struct SolidVoxels {
     DenseGrid grid;
     std::size_t ambiguousScanLines = 0;  // over the three axes: an odd number of crossings
     std::size_t disagreeingVoxels = 0;   // where the axes differ
 };
-Solid solid(const LatticeMesh& mesh, int resolution);
+SolidVoxels solid(const LatticeMesh& mesh, int resolution);
 
 /// Number of voxels that are full in `expected` and empty in `grid`.
 std::size_t countMissing(const DenseGrid& expected, const DenseGrid& grid);

@@ -292,11 +292,11 @@ TEST(AreaLight, APlaneThroughTheSceneIsRefused) {
                               {0, 1.16F, 0}, 64));
 }
 
-TEST(ShadowErrors, CountWrongSamplesAndTheirAlgebraicSum) {
+TEST(VisibilityErrors, CountWrongSamplesAndTheirAlgebraicSum) {
     // Two pixels, 64 samples. Pixel 0: 3 wrongly lit, 1 wrongly dark. Pixel 1: right.
     HostVisibilityMask truth{{2, 1}, 64, {0x00FFU, 7U, 0U, 7U}};
     HostVisibilityMask measured{{2, 1}, 64, {0x00FEU, 7U, 0x70U, 7U}};
-    const ShadowErrors errors = compareMasks(measured, truth);
+    const VisibilityErrors errors = compareMasks(measured, truth);
     EXPECT_DOUBLE_EQ(errors.visibilityMax, 16.0);  // 4 of 64, as of 256
     EXPECT_DOUBLE_EQ(errors.visibilityMean, 8.0);
     EXPECT_DOUBLE_EQ(errors.wronglyLitMean, 6.0);
@@ -307,14 +307,14 @@ TEST(ShadowErrors, CountWrongSamplesAndTheirAlgebraicSum) {
     EXPECT_EQ(litShares(truth), (std::vector<float>{8.0F / 64.0F, 6.0F / 64.0F}));
 }
 
-TEST(ShadowErrors, BitsBeyondTheLastSampleDoNotCount) {
+TEST(VisibilityErrors, BitsBeyondTheLastSampleDoNotCount) {
     const HostVisibilityMask truth{{1, 1}, 36, {~0U, 0xFU}};
     const HostVisibilityMask measured{{1, 1}, 36, {~0U, ~0U}};
     EXPECT_DOUBLE_EQ(compareMasks(measured, truth).visibilityMax, 0.0);
     EXPECT_EQ(measured.litSamples(0), 36);
 }
 
-TEST(ShadowErrors, PicturesShowTooBrightGreenAndTooDarkRed) {
+TEST(VisibilityErrors, PicturesShowTooBrightGreenAndTooDarkRed) {
     const HostReceivers receivers{{1, 2}, {}, {glm::vec4(1), glm::vec4(1)}, {}, {{}, {}}};
     const image::ImageF picture = errorPicture(receivers, {64.0F, -128.0F});
     EXPECT_EQ(picture.at(0, 1, 0), 0.0F);  // pixel 0 is the lower one

@@ -81,7 +81,7 @@ TEST_F(SolidTest, EqualsTheReference) {
     for (const scene::Mesh& mesh : meshes) {
         for (const int bits : {1, 8, 16, 32}) {
             const Voxelized result = voxelize(mesh, solid(32, bits));
-            const reference::Solid expected = reference::solid(lattice(mesh, solid(32)), 32);
+            const reference::SolidVoxels expected = reference::solid(lattice(mesh, solid(32)), 32);
             EXPECT_EQ(occupancyOf(result.grid), expected.grid) << bits;
             EXPECT_EQ(expected.ambiguousScanLines, 0U);
             EXPECT_EQ(expected.disagreeingVoxels, 0U);
@@ -159,7 +159,7 @@ TEST_F(SolidTest, GeometryBeyondTheBoxCounts) {
     const Voxelized result = voxelize(mesh, solid(64), box);
     EXPECT_EQ(
         result.grid.countFull(), 64U * 64U * 64U - [&] {
-            const reference::Solid expected = reference::solid(snapped(mesh, box, 64), 64);
+            const reference::SolidVoxels expected = reference::solid(snapped(mesh, box, 64), 64);
             return 64U * 64U * 64U - expected.grid.countFull();
         }());
     EXPECT_TRUE(result.grid.isFull({0, 0, 0}));

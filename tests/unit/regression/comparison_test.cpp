@@ -81,7 +81,7 @@ TEST(Comparison, FindsTenPercentSlowerInNineNightsOfTen) {
     int found = 0;
     for (int i = 0; i < 10 * kNights; ++i) {
         const std::vector<Difference> differences = nights.next();
-        if (differences.front().verdict != Verdict::Slower) continue;
+        if (differences.front().verdict != SeriesVerdict::Slower) continue;
         ++found;
         EXPECT_NEAR(differences.front().ratio, 1.1, 0.1);
     }
@@ -151,7 +151,7 @@ TEST(Comparison, TheWatchFindsTenPercentInNineNightsOfTenWhicheverSeriesItIs) {
             for (const Difference& difference : nights.next(changed, 1.1)) {
                 const bool isChanged = difference.key.table == watched.table &&
                                        difference.key.method == watched.method;
-                if (isChanged && difference.verdict == Verdict::Slower) ++found;
+                if (isChanged && difference.verdict == SeriesVerdict::Slower) ++found;
             }
         }
         std::printf("  %s %s: %d of %d nights, %.1f minutes at most\n", watched.table,
@@ -203,7 +203,7 @@ TEST(Comparison, RunsMeasuredApartShowADriftAndNoVerdict) {
     for (const double drift : {0.7, 1.0, 1.4}) {
         const SeriesMap after = test::measured(random, kMethods, 30, drift);
         for (const Difference& difference : compare(before, after, Pairing::Apart)) {
-            EXPECT_EQ(difference.verdict, Verdict::CannotTell);
+            EXPECT_EQ(difference.verdict, SeriesVerdict::CannotTell);
             EXPECT_EQ(difference.reason, "measured apart: a machine may drift by 50 %");
         }
     }
@@ -275,12 +275,12 @@ TEST(Comparison, NumbersThatScatterAreNotChangedByChance) {
         return compare({{key, before}}, {{key, after}}, Pairing::Apart).front();
     };
     const Difference alike = told({1, 2, 3, 4, 5, 6}, {1.5, 2.5, 3.5, 4.5, 5.5, 6.5});
-    EXPECT_EQ(alike.verdict, Verdict::CannotTell);
+    EXPECT_EQ(alike.verdict, SeriesVerdict::CannotTell);
     EXPECT_EQ(alike.reason, "numbers that differ between processes of one side");
-    EXPECT_EQ(told({1, 2}, {3, 4}).verdict, Verdict::CannotTell) << "by chance in a third";
-    EXPECT_EQ(told({1, 2, 3, 4, 5, 6}, {7, 8, 9, 10, 11, 12}).verdict, Verdict::Changed);
-    EXPECT_EQ(told({1, 2, 3}, {1, 2, 3}).verdict, Verdict::Same) << "of the same seeds";
-    EXPECT_EQ(told({1, 1, 1}, {2, 2, 2}).verdict, Verdict::Changed);
+    EXPECT_EQ(told({1, 2}, {3, 4}).verdict, SeriesVerdict::CannotTell) << "by chance in a third";
+    EXPECT_EQ(told({1, 2, 3, 4, 5, 6}, {7, 8, 9, 10, 11, 12}).verdict, SeriesVerdict::Changed);
+    EXPECT_EQ(told({1, 2, 3}, {1, 2, 3}).verdict, SeriesVerdict::Same) << "of the same seeds";
+    EXPECT_EQ(told({1, 1, 1}, {2, 2, 2}).verdict, SeriesVerdict::Changed);
 }
 
 /// x = choice(4, 5): two processes are alike in half of the cases.
@@ -297,10 +297,10 @@ TEST(Comparison, WhatDiffersInOneCaseIsInDoubtInAll) {
     };
     const std::vector<Difference> differences = told({differs.table});
     EXPECT_EQ(differences[2].reason, "numbers that differ between processes of one side");
-    EXPECT_EQ(differences[0].verdict, Verdict::CannotTell);
+    EXPECT_EQ(differences[0].verdict, SeriesVerdict::CannotTell);
     EXPECT_EQ(differences[0].reason, "in other cases it differs between processes of one side");
-    EXPECT_EQ(differences[1].verdict, Verdict::Changed) << "another metric";
-    EXPECT_EQ(told({})[0].verdict, Verdict::Changed) << "of the same seeds";
+    EXPECT_EQ(differences[1].verdict, SeriesVerdict::Changed) << "another metric";
+    EXPECT_EQ(told({})[0].verdict, SeriesVerdict::Changed) << "of the same seeds";
 }
 
 /// As the pictures beside it; of a case that declares a seed, or was measured again, it is a
@@ -331,13 +331,14 @@ TEST(Comparison, ANumberOfOneProcessASideWithoutASeedCannotTell) {
         return differences.front();
     };
     const Difference once = told(sideOf({0.5}), sideOf({0.6}), {"a"});
-    EXPECT_EQ(once.verdict, Verdict::CannotTell);
+    EXPECT_EQ(once.verdict, SeriesVerdict::CannotTell);
     EXPECT_EQ(once.reason,
               "one process of each side, and no seed is declared; two a side tell whether they "
               "differ");
-    EXPECT_EQ(told(sideOf({0.5}), sideOf({0.6}), {}).verdict, Verdict::Changed) << "of a seed";
-    EXPECT_EQ(told(sideOf({0.5, 0.5}), sideOf({0.6}), {"a"}).verdict, Verdict::Changed);
-    EXPECT_EQ(told(sideOf({0.5}), sideOf({0.5}), {"a"}).verdict, Verdict::Same);
+    EXPECT_EQ(told(sideOf({0.5}), sideOf({0.6}), {}).verdict, SeriesVerdict::Changed)
+        << "of a seed";
+    EXPECT_EQ(told(sideOf({0.5, 0.5}), sideOf({0.6}), {"a"}).verdict, SeriesVerdict::Changed);
+    EXPECT_EQ(told(sideOf({0.5}), sideOf({0.5}), {"a"}).verdict, SeriesVerdict::Same);
 }
 
 TEST(Comparison, TellsWhyRunsMeasuredApartCannotDecide) {
@@ -367,7 +368,7 @@ TEST(Comparison, SaysHowManyProcessesDecideMeasuredApart) {
         for (double i = 0; i < after; ++i) times[1].push_back(40.0 + 0.1 * i);
         const SeriesKey key = test::timeOf("m");
         const auto told = compare({{key, times[0]}}, {{key, times[1]}}, Pairing::Apart);
-        return told.front().verdict == Verdict::Slower;
+        return told.front().verdict == SeriesVerdict::Slower;
     };
     EXPECT_TRUE(decides(4, 4) && decides(5, 3) && decides(3, 5) && decides(8, 2) && decides(2, 8));
     EXPECT_FALSE(decides(4, 3) || decides(7, 2) || decides(20, 1));
@@ -380,9 +381,9 @@ TEST(Comparison, FindsFasterAndTheSame) {
         const SeriesMap after = test::measured(random, 1, 40, 1.0, change);
         return compare(before, after, Pairing::ByTurns).front().verdict;
     };
-    EXPECT_EQ(verdict(0.8), Verdict::Faster);
-    EXPECT_EQ(verdict(1.0), Verdict::Same);
-    EXPECT_EQ(verdict(1.3), Verdict::Slower);
+    EXPECT_EQ(verdict(0.8), SeriesVerdict::Faster);
+    EXPECT_EQ(verdict(1.0), SeriesVerdict::Same);
+    EXPECT_EQ(verdict(1.3), SeriesVerdict::Slower);
 }
 
 TEST(Comparison, StopsWhenAllIsDecided) {
@@ -397,7 +398,7 @@ TEST(Comparison, StopsWhenAllIsDecided) {
         }
     };
     for (const Difference& difference : compareByTurns(measure)) {
-        EXPECT_EQ(difference.verdict, Verdict::Same);
+        EXPECT_EQ(difference.verdict, SeriesVerdict::Same);
     }
     EXPECT_EQ(looks, 1);
 }
@@ -417,8 +418,8 @@ TEST(Comparison, ConfirmsTheTablesWithAlarmsAlone) {
         }
     };
     const std::vector<Difference> differences = compareByTurns(measure);
-    EXPECT_EQ(differences[0].verdict, Verdict::Slower);
-    EXPECT_EQ(differences[1].verdict, Verdict::Same);
+    EXPECT_EQ(differences[0].verdict, SeriesVerdict::Slower);
+    EXPECT_EQ(differences[1].verdict, SeriesVerdict::Same);
     // Eight rounds cannot decide among two series: those of a/1 go on, and are confirmed.
     EXPECT_EQ(asked, (std::vector<std::set<std::string>>{{}, {"a/1"}, {"a/1"}}));
 }
@@ -440,7 +441,7 @@ TEST(Comparison, FewRoundsCannotTell) {
     const SeriesMap before = test::measured(random, 10, 8, 1.0);
     for (const Difference& difference :
          compare(before, test::measured(random, 10, 8, 1.0, 1.5), Pairing::ByTurns)) {
-        EXPECT_EQ(difference.verdict, Verdict::CannotTell);
+        EXPECT_EQ(difference.verdict, SeriesVerdict::CannotTell);
         EXPECT_EQ(difference.reason, "8 rounds cannot decide among 10 series: 11 are needed");
     }
 }
@@ -465,7 +466,7 @@ TEST(Comparison, AParameterThatOneBuildDoesNotKnowIsNoDifference) {
         {{key(R"({"size":1,"new":false})"), values}, {key(R"({"size":2,"new":false})"), values}},
         Pairing::ByTurns);
     ASSERT_EQ(matched.size(), 2U);
-    EXPECT_EQ(matched[0].verdict, Verdict::Same);
+    EXPECT_EQ(matched[0].verdict, SeriesVerdict::Same);
     EXPECT_EQ(matched[0].key.params, R"({"size":1})");
     // Varied by one side: it cannot be left away.
     const auto varied = compare(
@@ -473,8 +474,8 @@ TEST(Comparison, AParameterThatOneBuildDoesNotKnowIsNoDifference) {
         {{key(R"({"size":1,"new":false})"), values}, {key(R"({"size":1,"new":true})"), values}},
         Pairing::Apart);
     ASSERT_EQ(varied.size(), 3U);
-    EXPECT_EQ(std::ranges::count(varied, Verdict::Missing, &Difference::verdict), 2);
-    EXPECT_EQ(std::ranges::count(varied, Verdict::Lost, &Difference::verdict), 1);
+    EXPECT_EQ(std::ranges::count(varied, SeriesVerdict::Missing, &Difference::verdict), 2);
+    EXPECT_EQ(std::ranges::count(varied, SeriesVerdict::Lost, &Difference::verdict), 1);
 }
 
 TEST(Comparison, WhatIsThereOnOneSideAloneHasNoNumberOnTheOther) {
@@ -503,12 +504,12 @@ TEST(Comparison, WhatFailsAfterwardsAloneIsAnAlarm) {
     noteFailures(differences, {failed(c)}, {failed(a), failed(b), failed(c)});
     ASSERT_EQ(differences.size(), 5U) << "that of b had some rounds only";
     for (const Difference& difference : differences) {
-        const bool isLost = difference.verdict == Verdict::Lost;
+        const bool isLost = difference.verdict == SeriesVerdict::Lost;
         EXPECT_EQ(difference.isAlarm(), isLost);
         if (isLost) EXPECT_EQ(difference.reason, "crash: SIGSEGV");
     }
     EXPECT_EQ(std::ranges::count_if(differences, &Difference::isAlarm), 2);
-    EXPECT_EQ(differences[3].verdict, Verdict::Failed);
+    EXPECT_EQ(differences[3].verdict, SeriesVerdict::Failed);
     EXPECT_EQ(differences[4].reason, "measured after only: crash: SIGSEGV") << "c";
 }
 
@@ -521,14 +522,14 @@ TEST(Comparison, WhatFailedOnBothSidesIsNamed) {
     std::vector<Difference> differences;
     noteFailures(differences, {{a, "timeout"}}, {{b, "crash: SIGSEGV"}});
     ASSERT_EQ(differences.size(), 1U);
-    EXPECT_EQ(differences[0].verdict, Verdict::Failed);
+    EXPECT_EQ(differences[0].verdict, SeriesVerdict::Failed);
     EXPECT_EQ(differences[0].reason, "before timeout; after crash: SIGSEGV");
     EXPECT_FALSE(differences[0].isAlarm());
     // What passed at the second try had been measured.
     differences.clear();
     noteFailures(differences, {{a, "flaky: timeout"}}, {{a, "crash: SIGSEGV"}});
     ASSERT_EQ(differences.size(), 1U);
-    EXPECT_EQ(differences[0].verdict, Verdict::Lost);
+    EXPECT_EQ(differences[0].verdict, SeriesVerdict::Lost);
     differences.clear();
     noteFailures(differences, {{a, "flaky: timeout"}}, {{a, "flaky: timeout"}});
     EXPECT_FALSE(differences.at(0).isAlarm());
@@ -539,7 +540,7 @@ TEST(Comparison, WhatFailedOnBothSidesIsNamed) {
     noteFailures(differences, {{a, "timeout"}}, {{a, "timeout"}, {other, "timeout"}});
     ASSERT_EQ(differences.size(), 2U);
     EXPECT_EQ(differences[0].reason, "timeout");
-    EXPECT_EQ(differences[1].verdict, Verdict::Lost);
+    EXPECT_EQ(differences[1].verdict, SeriesVerdict::Lost);
 }
 
 TEST(Comparison, ATimeThatIsVoidOnBothSidesIsNoTime) {
@@ -559,21 +560,21 @@ TEST(Comparison, ATimeThatIsVoidOnBothSidesIsNoTime) {
     };
     for (const Pairing pairing : {Pairing::ByTurns, Pairing::Apart}) {
         const Difference both = compared(voided, voided, pairing);
-        EXPECT_EQ(both.verdict, Verdict::Void);
+        EXPECT_EQ(both.verdict, SeriesVerdict::Void);
         EXPECT_EQ(both.reason, "frame 0: blank");
         EXPECT_FALSE(both.isAlarm());
         const Difference after = compared(stands, voided, pairing);
-        EXPECT_EQ(after.verdict, Verdict::Lost);
+        EXPECT_EQ(after.verdict, SeriesVerdict::Lost);
         EXPECT_EQ(after.reason, "its times are void: frame 0: blank");
         const Difference before = compared(voided, stands, pairing);
-        EXPECT_EQ(before.verdict, Verdict::Missing);
+        EXPECT_EQ(before.verdict, SeriesVerdict::Missing);
         EXPECT_EQ(before.reason, "measured after only: void before: frame 0: blank");
     }
     // Rounds in which one side is void are left out: the others are the pairs that they were.
     const Series a = {10, none, 20, 10, 20, 10, 20, 10}, b = {10, 20, none, 10, 20, 10, 20, 10};
-    EXPECT_EQ(compared(a, b, Pairing::ByTurns).verdict, Verdict::Same);
+    EXPECT_EQ(compared(a, b, Pairing::ByTurns).verdict, SeriesVerdict::Same);
     const Difference apart = compared({10, none}, {none, 10}, Pairing::ByTurns);
-    EXPECT_EQ(apart.verdict, Verdict::CannotTell);
+    EXPECT_EQ(apart.verdict, SeriesVerdict::CannotTell);
     EXPECT_EQ(apart.reason,
               "no round in which both sides' times stand (void in some rounds: frame 0: blank)");
 }
@@ -585,29 +586,29 @@ TEST(Comparison, QualityIsTheSameOrChanged) {
     const auto verdict = [&](double after) {
         return compare({{key, {40.0}}}, {{key, {after}}}, Pairing::Apart).front().verdict;
     };
-    EXPECT_EQ(verdict(40.0), Verdict::Same);
-    EXPECT_EQ(verdict(40.001), Verdict::Same) << "what the order of parallel sums may do";
-    EXPECT_EQ(verdict(39.9), Verdict::Changed);
+    EXPECT_EQ(verdict(40.0), SeriesVerdict::Same);
+    EXPECT_EQ(verdict(40.001), SeriesVerdict::Same) << "what the order of parallel sums may do";
+    EXPECT_EQ(verdict(39.9), SeriesVerdict::Changed);
     const auto count = [&](double after) {
         return compare({{key, {1e6}}}, {{key, {after}}}, Pairing::Apart).front().verdict;
     };
-    EXPECT_EQ(count(1e6 + 1), Verdict::Changed) << "counts are exact";
+    EXPECT_EQ(count(1e6 + 1), SeriesVerdict::Changed) << "counts are exact";
     const double infinity = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(verdict(infinity), Verdict::Changed);
+    EXPECT_EQ(verdict(infinity), SeriesVerdict::Changed);
     EXPECT_EQ(compare({{key, {infinity}}}, {{key, {infinity}}}, Pairing::Apart).front().verdict,
-              Verdict::Same);
+              SeriesVerdict::Same);
     EXPECT_EQ(compare({{key, {40.0}}}, {}, Pairing::Apart).front().reason, "measured before only");
     EXPECT_EQ(compare({}, {{key, {40.0}}}, Pairing::Apart).front().reason, "measured after only");
 }
 
 TEST(Comparison, AnAlarmThatDoesNotComeBackCannotTell) {
-    Difference alarm{.key = test::timeOf("m"), .verdict = Verdict::Slower};
+    Difference alarm{.key = test::timeOf("m"), .verdict = SeriesVerdict::Slower};
     std::vector<Difference> once = {alarm};
     confirm(once, {alarm});
-    EXPECT_EQ(once[0].verdict, Verdict::Slower);
-    alarm.verdict = Verdict::Same;
+    EXPECT_EQ(once[0].verdict, SeriesVerdict::Slower);
+    alarm.verdict = SeriesVerdict::Same;
     confirm(once, {alarm});
-    EXPECT_EQ(once[0].verdict, Verdict::CannotTell);
+    EXPECT_EQ(once[0].verdict, SeriesVerdict::CannotTell);
     EXPECT_EQ(once[0].reason, "slower once, not when measured again");
 }
 

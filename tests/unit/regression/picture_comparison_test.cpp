@@ -80,7 +80,7 @@ TEST_F(Pictures, EqualOnesAreTheSameAndNothingIsKept) {
     record("a", "flat", kGrey);
     record("b", "flat", kGrey);
     const Difference same = only(true);
-    EXPECT_EQ(same.verdict, Verdict::Same);
+    EXPECT_EQ(same.verdict, SeriesVerdict::Same);
     EXPECT_EQ(same.key.title(), "p/1 mock picture/flat");
     EXPECT_FALSE(fs::exists(folder.path() / "out"));
 }
@@ -88,10 +88,10 @@ TEST_F(Pictures, EqualOnesAreTheSameAndNothingIsKept) {
 TEST_F(Pictures, OneBuildMayNotDifferAtAllAndTwoALittle) {
     record("a", "flat", kGrey);
     record("b", "flat", withValue(0.2505F));
-    EXPECT_EQ(only().verdict, Verdict::Same);
+    EXPECT_EQ(only().verdict, SeriesVerdict::Same);
     EXPECT_GT(only().picture->largest, 0.0);
     const Difference strict = only(true);
-    EXPECT_EQ(strict.verdict, Verdict::Changed);
+    EXPECT_EQ(strict.verdict, SeriesVerdict::Changed);
     EXPECT_THAT(strict.reason, HasSubstr(" (0 allowed), largest difference 0.000488 (0 allowed)"));
 }
 
@@ -100,17 +100,18 @@ TEST_F(Pictures, OneThatEachProcessDrawsAnewTellsNothing) {
     record("a", "flat", kGrey);
     record("a", "flat", withValue(0.5F));  // by the next process
     record("b", "flat", ImageF(16, 16, 3, 0.75F));
-    EXPECT_EQ(only(true).verdict, Verdict::Changed) << "a built-in technique, or one with a seed";
+    EXPECT_EQ(only(true).verdict, SeriesVerdict::Changed)
+        << "a built-in technique, or one with a seed";
     unseeded = {"a", "b"};
     const Difference drawn = only(true);
-    EXPECT_EQ(drawn.verdict, Verdict::CannotTell);
+    EXPECT_EQ(drawn.verdict, SeriesVerdict::CannotTell);
     EXPECT_FALSE(drawn.isAlarm());
     EXPECT_THAT(drawn.reason, HasSubstr("largest difference 0.5 (0 allowed); processes of one side "
                                         "made other pictures, too, and no seed is declared"));
     record("b", "flat", withValue(0.5F));
-    EXPECT_EQ(only(true).verdict, Verdict::Same);
+    EXPECT_EQ(only(true).verdict, SeriesVerdict::Same);
     record("a", "flat", ImageF(8, 8, 3, 0.25F));
-    EXPECT_EQ(only(true).verdict, Verdict::Changed) << "of another size";
+    EXPECT_EQ(only(true).verdict, SeriesVerdict::Changed) << "of another size";
 }
 
 TEST_F(Pictures, OneThatEachProcessMakesAlikeStillChanges) {
@@ -120,13 +121,13 @@ TEST_F(Pictures, OneThatEachProcessMakesAlikeStillChanges) {
         record("b", "flat", ImageF(16, 16, 3, 0.75F));
     }
     const Difference once = only(true);
-    EXPECT_EQ(once.verdict, Verdict::CannotTell);
+    EXPECT_EQ(once.verdict, SeriesVerdict::CannotTell);
     EXPECT_THAT(once.reason,
                 HasSubstr("(0 allowed); one process of each side, and no seed is declared; two a "
                           "side tell whether they differ"));
     records["a"].push_back(records["a"].front());
     records["a"].back().process = 1;
-    EXPECT_EQ(only(true).verdict, Verdict::Changed);
+    EXPECT_EQ(only(true).verdict, SeriesVerdict::Changed);
 }
 
 TEST_F(Pictures, AChangedOneIsKeptWithTheMapOfDifferences) {
@@ -159,7 +160,7 @@ TEST_F(Pictures, ALargeDifferenceOfOneValueIsFoundByItself) {
     firefly.at(9, 9, 2) = 2.5F;
     record("b", "flat", firefly);
     const Difference changed = only();
-    EXPECT_EQ(changed.verdict, Verdict::Changed);
+    EXPECT_EQ(changed.verdict, SeriesVerdict::Changed);
     EXPECT_THAT(changed.reason, HasSubstr("largest difference 1.5 (0.1 allowed)"));
 }
 
@@ -178,15 +179,15 @@ TEST_F(Pictures, WhatIsNotFiniteIsAnAlarmUnlessItWasSoBefore) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     record("a", "flat", kGrey);
     record("b", "flat", withValue(kNan));
-    EXPECT_EQ(only().verdict, Verdict::Changed);
+    EXPECT_EQ(only().verdict, SeriesVerdict::Changed);
     EXPECT_EQ(only().reason, "channel G has a value of 0.25 before, nan after");
     record("a", "flat", withValue(kNan));
-    EXPECT_EQ(only(true).verdict, Verdict::Same);
+    EXPECT_EQ(only(true).verdict, SeriesVerdict::Same);
     ImageF other = withValue(kNan);
     other.at(0, 0, 0) = 1.0F;
     record("b", "flat", other);
     EXPECT_DOUBLE_EQ(only().picture->largest, 0.75) << only().reason;
-    EXPECT_EQ(only().verdict, Verdict::Changed);
+    EXPECT_EQ(only().verdict, SeriesVerdict::Changed);
 }
 
 TEST_F(Pictures, WhatCannotBeReadIsAnAlarmThatNamesTheFile) {
@@ -195,10 +196,10 @@ TEST_F(Pictures, WhatCannotBeReadIsAnAlarmThatNamesTheFile) {
     const std::string whole = readFile(file("b", ".exr"));
     writeFileAtomic(file("b", ".exr"), whole.substr(0, whole.size() / 2));
     const Difference changed = only();
-    EXPECT_EQ(changed.verdict, Verdict::Changed);
+    EXPECT_EQ(changed.verdict, SeriesVerdict::Changed);
     EXPECT_THAT(changed.reason, HasSubstr(file("b", ".exr")));
     fs::remove(file("b", ".exr"));
-    EXPECT_EQ(only(true).verdict, Verdict::Same) << "by their PNG files";
+    EXPECT_EQ(only(true).verdict, SeriesVerdict::Same) << "by their PNG files";
     writeFileAtomic(file("b", ".png"), "no picture");
     EXPECT_THAT(only().reason, HasSubstr(file("b", ".png")));
 }
@@ -206,7 +207,7 @@ TEST_F(Pictures, WhatCannotBeReadIsAnAlarmThatNamesTheFile) {
 TEST_F(Pictures, ArePairedByCaseNameAndFrameAlsoWithANewParameter) {
     record("a", "flat", kGrey, R"({"n":1})");
     record("b", "flat", kGrey, R"({"n":1,"new":2})");
-    EXPECT_EQ(only().verdict, Verdict::Same);
+    EXPECT_EQ(only().verdict, SeriesVerdict::Same);
     record("b", "flat", withValue(0.9F), R"({"n":1,"new":2})", 1);
     record("b", "deep", kGrey, R"({"n":1,"new":2})");
     const std::vector<Difference> all = compared();
@@ -217,7 +218,7 @@ TEST_F(Pictures, ArePairedByCaseNameAndFrameAlsoWithANewParameter) {
     EXPECT_EQ(all[1].reason, "recorded before only");
     for (const Difference& difference : all) {
         const bool isLost = difference.key.pass == "flat";
-        EXPECT_EQ(difference.verdict, isLost ? Verdict::Lost : Verdict::Missing);
+        EXPECT_EQ(difference.verdict, isLost ? SeriesVerdict::Lost : SeriesVerdict::Missing);
         EXPECT_EQ(difference.isAlarm(), isLost);
     }
 }
@@ -226,11 +227,11 @@ TEST_F(Pictures, ALostOneIsAnAlarmUnlessAllOfItsCaseIsLost) {
     record("a", "flat", kGrey);
     records["b"] = records["a"];
     const Difference lost = only();
-    EXPECT_EQ(lost.verdict, Verdict::Lost);
+    EXPECT_EQ(lost.verdict, SeriesVerdict::Lost);
     EXPECT_EQ(lost.reason, "recorded before only");
-    const auto with = [&](const std::vector<Verdict>& others) {
+    const auto with = [&](const std::vector<SeriesVerdict>& others) {
         std::vector<Difference> differences;
-        for (const Verdict verdict : others) {
+        for (const SeriesVerdict verdict : others) {
             SeriesKey key = lost.key;
             key.pass = "";
             key.metric = "n" + std::to_string(differences.size());
@@ -239,10 +240,10 @@ TEST_F(Pictures, ALostOneIsAnAlarmUnlessAllOfItsCaseIsLost) {
         addPictures(differences, {lost});
         return std::ranges::find(differences, lost.key, &Difference::key)->verdict;
     };
-    EXPECT_EQ(with({}), Verdict::Lost);
-    EXPECT_EQ(with({Verdict::Lost, Verdict::Same}), Verdict::Lost);
-    EXPECT_EQ(with({Verdict::Missing}), Verdict::Lost);
-    EXPECT_EQ(with({Verdict::Lost, Verdict::Missing}), Verdict::Missing);
+    EXPECT_EQ(with({}), SeriesVerdict::Lost);
+    EXPECT_EQ(with({SeriesVerdict::Lost, SeriesVerdict::Same}), SeriesVerdict::Lost);
+    EXPECT_EQ(with({SeriesVerdict::Missing}), SeriesVerdict::Lost);
+    EXPECT_EQ(with({SeriesVerdict::Lost, SeriesVerdict::Missing}), SeriesVerdict::Missing);
 }
 
 TEST_F(Pictures, ListedOnesThatAreNotThereAreNone) {

@@ -10,11 +10,12 @@ namespace gfxrepro::regression {
 namespace {
 
 std::vector<Difference> differences() {
-    const Difference slower{test::timeOf("<a>"), 10, 12, 1.2, {1.1, 1.3}, 0.02,
-                            Verdict::Slower,     ""};
-    const Difference same{test::timeOf("b"), 10, 10, 1.0, {1.0, 1.0}, 0.02, Verdict::Same, ""};
+    const Difference slower{test::timeOf("<a>"),   10, 12, 1.2, {1.1, 1.3}, 0.02,
+                            SeriesVerdict::Slower, ""};
+    const Difference same{test::timeOf("b"),   10, 10, 1.0, {1.0, 1.0}, 0.02,
+                          SeriesVerdict::Same, ""};
     const Difference unknown{
-        test::timeOf("c"),         10, 10, 1.0, {0.5, 2.0}, 0.02, Verdict::CannotTell,
+        test::timeOf("c"),         10, 10, 1.0, {0.5, 2.0}, 0.02, SeriesVerdict::CannotTell,
         "the interval is too wide"};
     return {slower, same, unknown};
 }
@@ -34,8 +35,8 @@ TEST(Summary, SaysHowManyAndWhich) {
 }
 
 TEST(Summary, WhatIsNotThereHasNoNumber) {
-    Difference lost{.key = test::timeOf("a"), .before = 10.0, .verdict = Verdict::Lost};
-    Difference missing{.key = test::timeOf("b"), .after = 10.0, .verdict = Verdict::Missing};
+    Difference lost{.key = test::timeOf("a"), .before = 10.0, .verdict = SeriesVerdict::Lost};
+    Difference missing{.key = test::timeOf("b"), .after = 10.0, .verdict = SeriesVerdict::Missing};
     const std::string text = markdown({{lost, missing}});
     EXPECT_NE(text.find("wall\\_time\\_ms | 10 |  |  | 0 | lost |\n"), std::string::npos) << text;
     EXPECT_NE(text.find("wall\\_time\\_ms |  | 10 ms |  | 0 | missing |\n"), std::string::npos)
@@ -52,8 +53,8 @@ TEST(Summary, JUnitFailsOnAlarmsOnly) {
 
 TEST(Summary, WhatNeitherSideHasIsCountedAndSkipped) {
     const Comparison both{
-        {{.key = test::timeOf("a"), .verdict = Verdict::Void, .reason = "blank"},
-         {.key = test::timeOf("b"), .verdict = Verdict::Failed, .reason = "crash: SIGSEGV"}}};
+        {{.key = test::timeOf("a"), .verdict = SeriesVerdict::Void, .reason = "blank"},
+         {.key = test::timeOf("b"), .verdict = SeriesVerdict::Failed, .reason = "crash: SIGSEGV"}}};
     EXPECT_FALSE(both.isAlarm());
     EXPECT_EQ(summaryLine(both.differences), "1 void on both sides, 1 failed on both sides");
     EXPECT_NE(markdown(both).find("| p/1 mock b wall\\_time\\_ms | | | | | failed on both sides: "

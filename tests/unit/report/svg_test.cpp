@@ -25,12 +25,12 @@ std::vector<std::string> textsOf(const std::vector<Tick>& ticks) {
     return texts;
 }
 
-std::vector<std::string> upward(const Axis& axis, double length = 270.0) {
+std::vector<std::string> upward(const PlotAxis& axis, double length = 270.0) {
     return textsOf(ticksOf(axis, length, Along::Y));
 }
 
-TEST(Axis, Ranges) {
-    const Axis flat = axisOf({3.0, 3.0}, false, true);
+TEST(PlotAxis, Ranges) {
+    const PlotAxis flat = axisOf({3.0, 3.0}, false, true);
     EXPECT_DOUBLE_EQ(flat.low, 2.85);
     EXPECT_DOUBLE_EQ(flat.high, 3.15);
     EXPECT_EQ(axisOf({0.0}, false, true).high, 1.0);
@@ -39,34 +39,34 @@ TEST(Axis, Ranges) {
     EXPECT_DOUBLE_EQ(axisOf({1.0, 10.0}, false, false).low, 0.55);
     EXPECT_DOUBLE_EQ(axisOf({9.0, 10.0}, false, true).low, 8.95);  // a small change far from zero
     EXPECT_DOUBLE_EQ(axisOf({-1.0, 1.0}, false, true).low, -1.1);
-    const Axis powers = axisOf({1.0, 100.0}, true, true);
+    const PlotAxis powers = axisOf({1.0, 100.0}, true, true);
     EXPECT_DOUBLE_EQ(powers.low, std::pow(10.0, -0.1));
     EXPECT_DOUBLE_EQ(powers.high, std::pow(10.0, 2.1));
 }
 
-TEST(Axis, LeavesOutWhatItCannotShow) {
+TEST(PlotAxis, LeavesOutWhatItCannotShow) {
     EXPECT_EQ(axisOf({}, false, true).high, 1.0);
     EXPECT_EQ(axisOf({kGap, kInfinity}, false, true).high, 1.0);
     EXPECT_DOUBLE_EQ(axisOf({kGap, 2.0, 4.0, -kInfinity}, false, false).low, 1.9);
-    const Axis powers = axisOf({-1.0, 0.0, 5.0}, true, false);
+    const PlotAxis powers = axisOf({-1.0, 0.0, 5.0}, true, false);
     EXPECT_DOUBLE_EQ(powers.low, 5.0 / 1.1);
     EXPECT_DOUBLE_EQ(powers.high, 5.0 * 1.1);
     EXPECT_FALSE(powers.shows(0.0));
     EXPECT_FALSE(powers.shows(kGap));
-    EXPECT_TRUE(Axis().shows(-3.0));
-    EXPECT_FALSE(Axis().shows(kInfinity));
+    EXPECT_TRUE(PlotAxis().shows(-3.0));
+    EXPECT_FALSE(PlotAxis().shows(kInfinity));
 }
 
-TEST(Axis, Places) {
-    const Axis linear{2.0, 10.0};
+TEST(PlotAxis, Places) {
+    const PlotAxis linear{2.0, 10.0};
     EXPECT_DOUBLE_EQ(linear.at(2.0), 0.0);
     EXPECT_DOUBLE_EQ(linear.at(4.0), 0.25);
-    const Axis powers{1.0, 1e4, true};
+    const PlotAxis powers{1.0, 1e4, true};
     EXPECT_DOUBLE_EQ(powers.at(10.0), 0.25);
     EXPECT_DOUBLE_EQ(powers.at(1e4), 1.0);
 }
 
-TEST(Axis, LinearTicksAreRound) {
+TEST(PlotAxis, LinearTicksAreRound) {
     EXPECT_THAT(upward({0.0, 21.0}), ElementsAre("0", "5", "10", "15", "20"));
     EXPECT_THAT(upward({0.0, 1.1}), ElementsAre("0", "0.2", "0.4", "0.6", "0.8", "1.0"));
     EXPECT_THAT(upward({0.0, 1.1}, 60.0), ElementsAre("0", "1"));
@@ -82,7 +82,7 @@ TEST(Axis, LinearTicksAreRound) {
 }
 
 /// Whatever the range: within it, two texts or more, one step, which is 1, 2 or 5 times a power.
-TEST(Axis, LinearTicksAreRoundEverywhere) {
+TEST(PlotAxis, LinearTicksAreRoundEverywhere) {
     for (double high = 1e-9; high < 1e12; high *= 1.37) {
         for (const double low : {0.0, -0.3 * high, 0.9 * high}) {
             for (const double length : {150.0, 270.0, 560.0}) {
@@ -101,7 +101,7 @@ TEST(Axis, LinearTicksAreRoundEverywhere) {
     }
 }
 
-TEST(Axis, LogarithmicTicks) {
+TEST(PlotAxis, LogarithmicTicks) {
     EXPECT_THAT(upward({0.5, 2e7, true}),
                 ElementsAre("1", "10", "100", "1000", "10⁴", "10⁵", "10⁶", "10⁷"));
     EXPECT_THAT(upward({0.04, 3.0, true}), ElementsAre("0.05", "0.1", "0.2", "0.5", "1", "2"));
@@ -114,11 +114,11 @@ TEST(Axis, LogarithmicTicks) {
     EXPECT_EQ(ticks.size(), 20U);  // 0.9, and of each decade nine, and 100
 }
 
-TEST(Axis, TextsDoNotOverlap) {
+TEST(PlotAxis, TextsDoNotOverlap) {
     for (double decades = 0.02; decades < 200.0; decades *= 1.1) {
         for (const double length : {120.0, 290.0, 560.0}) {
             for (const bool isLog : {true, false}) {
-                const Axis axis{3e-7, 3e-7 * std::pow(10.0, decades), isLog};
+                const PlotAxis axis{3e-7, 3e-7 * std::pow(10.0, decades), isLog};
                 double end = -100.0;
                 for (const Tick& tick : ticksOf(axis, length, Along::X)) {
                     if (tick.text.empty()) continue;
@@ -132,12 +132,12 @@ TEST(Axis, TextsDoNotOverlap) {
     }
 }
 
-TEST(Axis, ExtremeValuesEndTicksToo) {
+TEST(PlotAxis, ExtremeValuesEndTicksToo) {
     const std::vector<std::vector<double>> extremes = {
         {1e-310, 2e-310}, {1e-200, 1.0, 1e200}, {1e-119, 1e119}, {-1e119, 1e119}, {1e-9, 1e299}};
     for (const auto& values : extremes) {
         for (const bool isLog : {false, true}) {
-            const Axis axis = axisOf(values, isLog, false);
+            const PlotAxis axis = axisOf(values, isLog, false);
             EXPECT_FALSE(ticksOf(axis, 300.0, Along::X).empty()) << values[0] << ' ' << isLog;
             EXPECT_FALSE(ticksOf(axis, 100.0, Along::Y).empty()) << values[0] << ' ' << isLog;
             for (const double value : values) {
@@ -149,7 +149,7 @@ TEST(Axis, ExtremeValuesEndTicksToo) {
     }
 }
 
-TEST(Axis, NamesStandAtAsManyPlacesAsHaveRoom) {
+TEST(PlotAxis, NamesStandAtAsManyPlacesAsHaveRoom) {
     const std::vector<std::string> days(10, "2026-11-21");
     EXPECT_EQ(ticksNamed(days, {-0.5, 9.5}, 1000.0).size(), 10U);
     const std::vector<Tick> some = ticksNamed(days, {-0.5, 9.5}, 300.0);
@@ -159,7 +159,7 @@ TEST(Axis, NamesStandAtAsManyPlacesAsHaveRoom) {
     EXPECT_EQ(ticksNamed({"one"}, {-1.0, 1.0}, 300.0).at(0).value, 0.0);
 }
 
-TEST(Axis, TicksStandAtFewAndShortValues) {
+TEST(PlotAxis, TicksStandAtFewAndShortValues) {
     EXPECT_THAT(textsOf(ticksAt({512, 64, 128, 256, 64}, {60, 540, true}, 300.0)),
                 ElementsAre("64", "128", "256", "512"));
     EXPECT_THAT(textsOf(ticksAt({1, 3, 7}, {0, 8}, 300.0)), ElementsAre("1", "3", "7"));

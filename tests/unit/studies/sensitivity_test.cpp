@@ -120,8 +120,8 @@ TEST_F(Sensitivity, VariesScenesBySeedAndByAlternatives) {
                             Pair("scene_seed", "no scene of the table is generated")));
 }
 
-Outcome outcome(const std::string& name, const std::string& value, Verdict verdict,
-                std::optional<double> margin = {}) {
+VariationResult outcome(const std::string& name, const std::string& value, Verdict verdict,
+                        std::optional<double> margin = {}) {
     ClaimResult claim;
     claim.id = "C";
     claim.text = "a < b";
@@ -133,7 +133,7 @@ Outcome outcome(const std::string& name, const std::string& value, Verdict verdi
 }
 
 TEST_F(Sensitivity, SaysUnderWhatAClaimHolds) {
-    const Outcome base = outcome("", "", Verdict::Holds);
+    const VariationResult base = outcome("", "", Verdict::Holds);
     EXPECT_EQ(dependence({base, outcome("bias", "0", Verdict::Holds, 1.0)}, 0),
               "holds under all 2");
     EXPECT_EQ(
@@ -151,21 +151,21 @@ TEST_F(Sensitivity, SaysUnderWhatAClaimHolds) {
               "holds only if kind is b");
 }
 
-Outcome failed(const std::string& name, const std::string& value) {
+VariationResult failed(const std::string& name, const std::string& value) {
     return {{name, value, std::nullopt, {}}, {}, "exit code 2: bias is 5"};
 }
 
 TEST_F(Sensitivity, LeavesOutWhatCouldNotBeMeasured) {
-    const std::vector<Outcome> outcomes{outcome("", "", Verdict::Holds), failed("bias", "5"),
-                                        outcome("kind", "b", Verdict::Holds),
-                                        outcome("kind", "c", Verdict::Unmeasured)};
+    const std::vector<VariationResult> outcomes{
+        outcome("", "", Verdict::Holds), failed("bias", "5"), outcome("kind", "b", Verdict::Holds),
+        outcome("kind", "c", Verdict::Unmeasured)};
     EXPECT_EQ(dependence(outcomes, 0), "holds under all 2");
     EXPECT_EQ(restsOn(outcomes, 0), "none (1 of 2 tried)");
     EXPECT_EQ(dependence({outcome("", "", Verdict::NotApplicable)}, 0), "not judged as configured");
 }
 
 TEST_F(Sensitivity, SaysWhatAVerdictRestsOn) {
-    const Outcome base = outcome("", "", Verdict::Fails);
+    const VariationResult base = outcome("", "", Verdict::Fails);
     EXPECT_EQ(restsOn({base}, 0), "not tried");
     EXPECT_EQ(
         restsOn(
@@ -179,10 +179,10 @@ TEST_F(Sensitivity, SaysOfHowManyAssumptionsSomeWereTried) {
     Variations variations;
     for (const char* name : {"", "kind", "bias", "kind"})
         variations.runs.push_back({name, "", std::nullopt, {}});
-    const std::vector<Outcome> made{outcome("", "", Verdict::Fails),
-                                    outcome("kind", "b", Verdict::Holds)};
+    const std::vector<VariationResult> made{outcome("", "", Verdict::Fails),
+                                            outcome("kind", "b", Verdict::Holds)};
     EXPECT_EQ(restsOn(made, 0), "kind (of 1 tried)");
-    const std::vector<Outcome> all = withLeft(made, variations, 2);
+    const std::vector<VariationResult> all = withLeft(made, variations, 2);
     ASSERT_EQ(all.size(), 4U);
     EXPECT_EQ(restsOn(all, 0), "kind (1 of 2 tried)");
     EXPECT_EQ(dependence(all, 0), dependence(made, 0));
@@ -197,8 +197,8 @@ TEST_F(Sensitivity, WritesTablesAndReadsThemAgain) {
     config::Experiment experiment;
     experiment.id = "p/1";
     experiment.title = "T";
-    std::vector<Outcome> outcomes{outcome("", "", Verdict::Holds),
-                                  outcome("kind", "b", Verdict::Fails), failed("bias", "5")};
+    std::vector<VariationResult> outcomes{
+        outcome("", "", Verdict::Holds), outcome("kind", "b", Verdict::Fails), failed("bias", "5")};
     outcomes[1].claims[0].distance = -0.25;
     const std::string csv = sensitivityCsv(outcomes, "abc");
     EXPECT_EQ(
@@ -216,7 +216,7 @@ TEST_F(Sensitivity, WritesTablesAndReadsThemAgain) {
     }
 
     const auto file = folder.write("p-1.csv", csv);
-    const std::vector<Outcome> read = readSensitivity(file, "abc");
+    const std::vector<VariationResult> read = readSensitivity(file, "abc");
     ASSERT_EQ(read.size(), 3U);
     EXPECT_EQ(sensitivityCsv(read, "abc"), csv);
     EXPECT_EQ(restsOn(read, 0), "kind (1 of 2 tried)");
