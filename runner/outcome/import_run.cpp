@@ -244,8 +244,8 @@ void requireNames(const ImportedNumbers& numbers, const run::Plan& plan, const f
         if (own == axes.end()) continue;
         std::string why = config::whyNoTimeName(record.metric, record.unit);
         if (own->second.contains(record.metric)) {
-            why = fmt::format("metric '{}' has the name of an axis; allowed: another",
-                              record.metric.string());
+            why =
+                fmt::format("metric '{}' has the name of an axis; allowed: another", record.metric);
         }
         if (!why.empty()) throw Error({file.string(), row.line, 0}, why);
     }

@@ -1,15 +1,13 @@
 #include "runner/records/records.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <functional>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <tuple>
-#include <unordered_set>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -73,11 +71,6 @@ double numberField(const SourceLocation& where, const std::string& text) {
     return value;
 }
 
-/// Neighbouring rows have most texts in common.
-void take(Text& text, const std::string& field) {
-    if (text != field) text = field;
-}
-
 /// Over the record of another row.
 void readRecord(const SourceLocation& where, const std::vector<std::string>& fields,
                 Record& record) {
@@ -90,11 +83,11 @@ void readRecord(const SourceLocation& where, const std::vector<std::string>& fie
         throw Error(where, "expected records of schema " + std::to_string(Record::kSchema) +
                                ", found " + std::to_string(schema));
     }
-    take(record.caseId, fields[1]);
-    take(record.table, fields[2]);
-    take(record.technique, fields[3]);
-    take(record.method, fields[4]);
-    take(record.scene, fields[5]);
+    record.caseId = fields[1];
+    record.table = fields[2];
+    record.technique = fields[3];
+    record.method = fields[4];
+    record.scene = fields[5];
     record.frame = integerField(where, "frame", fields[6]);
     record.repeat = integerField(where, "repeat", fields[7]);
     record.process = integerField(where, "process", fields[8]);
@@ -102,10 +95,10 @@ void readRecord(const SourceLocation& where, const std::vector<std::string>& fie
         throw Error(where, "column 'process': expected 0 to " + std::to_string(kMostProcesses - 1) +
                                ", found '" + fields[8] + "'");
     }
-    take(record.lane, fields[9]);
-    take(record.pass, fields[10]);
-    take(record.metric, fields[11]);
-    take(record.unit, fields[12]);
+    record.lane = fields[9];
+    record.pass = fields[10];
+    record.metric = fields[11];
+    record.unit = fields[12];
     record.value = numberField(where, fields[13]);
     const auto status = findStatus(fields[14]);
     if (!status) {
@@ -113,7 +106,7 @@ void readRecord(const SourceLocation& where, const std::vector<std::string>& fie
                     "column 'status': found '" + fields[14] + "'; allowed: " + statusNames());
     }
     record.status = *status;
-    take(record.message, fields[15]);
+    record.message = fields[15];
 }
 
 void requireColumns(const fs::path& path, const std::string& first) {
@@ -124,7 +117,7 @@ void requireColumns(const fs::path& path, const std::string& first) {
 }
 
 /// A case in one process: what is measured, and written, together.
-using UnitKey = std::pair<std::string_view, int>;
+using UnitKey = std::pair<std::string, int>;
 UnitKey unitOf(const Record& record) {
     return {record.caseId, record.process};
 }
@@ -238,9 +231,9 @@ class UnitReader {
                                rows.first + static_cast<std::size_t>(rows.count) == lines_.size();
             if (rows.count == rows.expected || isCut) continue;
             throw Error({path_.string(), rows.lastLine, 0},
-                        "case " + std::string(key.first) + ", process " +
-                            std::to_string(key.second) + " has " + std::to_string(rows.count) +
-                            " of " + std::to_string(rows.expected) + " rows");
+                        "case " + key.first + ", process " + std::to_string(key.second) + " has " +
+                            std::to_string(rows.count) + " of " + std::to_string(rows.expected) +
+                            " rows");
         }
         if (!unit_ || unit_->second.count == unit_->second.expected) return;
         result_.records.resize(unit_->second.first);
@@ -274,13 +267,6 @@ fs::path inItsFolder(const fs::path& path) {
     if (path.has_parent_path()) makeFolder(path.parent_path());
     return path;
 }
-
-struct TextHash {
-    using is_transparent = void;
-    std::size_t operator()(std::string_view text) const {
-        return std::hash<std::string_view>{}(text);
-    }
-};
 
 /// Of a records.csv with so many rows, its header among them, and bytes.
 void requireReadable(const fs::path& path, std::size_t rows, std::uintmax_t bytes,
@@ -342,15 +328,6 @@ void writeRecords(const fs::path& path, const std::vector<Record>& rows) {
 
 std::vector<Record> readRecords(const fs::path& path) {
     return UnitReader(path, kMostRecords).read().records;
-}
-
-Text::Text(std::string_view text) {
-    // Break of the rule of no global state: what is in it never changes, and rows outlive readers.
-    static std::unordered_set<std::string, TextHash, std::equal_to<>> texts;
-    static std::mutex isInUse;
-    const std::scoped_lock lock(isInUse);
-    const auto known = texts.find(text);
-    text_ = known != texts.end() ? &*known : &*texts.emplace(text).first;
 }
 
 }  // namespace gfxrepro::records

@@ -2,14 +2,10 @@
 // data frame library.
 #pragma once
 
-#include <fmt/format.h>
-#include <compare>
-#include <concepts>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -27,39 +23,6 @@ inline constexpr std::uintmax_t kMostRecordBytes = std::uintmax_t{16} << 30;
 /// A file of a run that takes no more: it would not be read again.
 class FullError : public Error {
     using Error::Error;
-};
-
-/// A text that many rows have: it is kept once, for as long as the program runs.
-class Text {
-  public:
-    Text() {
-        static const Text kNone{std::string_view()};
-        text_ = kNone.text_;
-    }
-    Text(std::string_view text);
-    Text(const std::string& text) : Text(std::string_view(text)) {}
-    Text(const char* text) : Text(std::string_view(text)) {}
-
-    const std::string& string() const { return *text_; }
-    operator const std::string&() const { return *text_; }
-    operator std::string_view() const { return *text_; }
-    bool empty() const { return text_->empty(); }
-
-    bool operator==(const Text& other) const { return text_ == other.text_; }
-    template <std::convertible_to<std::string_view> T>
-    bool operator==(const T& other) const {
-        return *text_ == std::string_view(other);
-    }
-    auto operator<=>(const Text& other) const { return *text_ <=> *other.text_; }
-    friend std::string operator+(std::string first, const Text& second) {
-        return std::move(first) + *second.text_;
-    }
-    friend std::string operator+(const Text& first, std::string_view second) {
-        return std::string(*first.text_).append(second);
-    }
-
-  private:
-    const std::string* text_;
 };
 
 /// How a case ended. `ok` rows carry values; the others one row a case with the message.
@@ -89,22 +52,22 @@ inline constexpr int kSetup = -1;
 struct Record {
     static constexpr int kSchema = 3;
 
-    Text caseId;
-    Text table;  // "zju2005/2.1"
-    Text technique;
-    Text method;
-    Text scene;
-    int frame = 0;    // or kSetup
-    int repeat = 0;   // or kSetup
-    int process = 0;  // from 0
-    Text lane;        // "timing" | "quality"
-    Text pass;        // the paper's step; empty for whole-case metrics
-    Text metric;
-    Text unit;
+    std::string caseId;
+    std::string table;  // "zju2005/2.1"
+    std::string technique;
+    std::string method;
+    std::string scene;
+    int frame = 0;     // or kSetup
+    int repeat = 0;    // or kSetup
+    int process = 0;   // from 0
+    std::string lane;  // "timing" | "quality"
+    std::string pass;  // the paper's step; empty for whole-case metrics
+    std::string metric;
+    std::string unit;
     /// Not-a-number for failed cases, written as an empty field; +∞ ("inf") of equal pictures.
     double value = 0.0;
     Status status = Status::Ok;
-    Text message;
+    std::string message;
     bool operator==(const Record&) const = default;
 };
 
@@ -151,10 +114,3 @@ struct CaseEnd {
 };
 
 }  // namespace gfxrepro::records
-
-template <>
-struct fmt::formatter<gfxrepro::records::Text> : fmt::formatter<std::string_view> {
-    auto format(const gfxrepro::records::Text& text, auto& context) const {
-        return fmt::formatter<std::string_view>::format(text.string(), context);
-    }
-};

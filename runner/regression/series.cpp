@@ -201,7 +201,7 @@ CaseTexts voidTimesOf(const std::vector<records::Record>& records, const CasePar
 std::size_t untimedCases(const std::vector<records::Record>& records) {
     std::set<std::string> cases;
     for (const records::Record& record : records) {
-        if (record.lane == "quality") cases.insert(record.table + " " + record.caseId.string());
+        if (record.lane == "quality") cases.insert(record.table + " " + record.caseId);
     }
     return cases.size();
 }

@@ -134,7 +134,7 @@ std::string CaseRecords::passOf(std::string_view metric) const {
     for (const auto& [number, attempt] : processes) {
         const Place first{metric, "", INT_MIN, INT_MIN};
         const auto row = std::ranges::lower_bound(attempt.rows, first, {}, placeOf);
-        if (row != attempt.rows.end() && (*row)->metric == metric) return (*row)->pass.string();
+        if (row != attempt.rows.end() && (*row)->metric == metric) return (*row)->pass;
     }
     return "";
 }

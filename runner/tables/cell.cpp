@@ -198,7 +198,7 @@ std::string passesWith(const CellQuery& query, const LayoutCases& cases) {
         for (const auto& [number, attempt] : run->processes) {
             for (const records::Record* record : attempt.rows) {
                 if (record->metric == query.metric) {
-                    passes.insert(record->pass.empty() ? "none" : record->pass.string());
+                    passes.insert(record->pass.empty() ? "none" : record->pass);
                 }
             }
         }

@@ -83,11 +83,11 @@ FrameTimes::CaseTimes& FrameTimes::caseOf(const records::Record& record) {
     const auto [found, isNew] = indices_.try_emplace(record.caseId, cases_.size());
     if (isNew) {
         std::vector<std::string> parts;
-        for (const records::Text* part : {&record.scene, &record.method}) {
+        for (const std::string* part : {&record.scene, &record.method}) {
             if (!part->empty()) parts.push_back(*part);
         }
         cases_.push_back(
-            {record.caseId, parts.empty() ? record.caseId.string() : joined(parts, " "), {}, {}});
+            {record.caseId, parts.empty() ? record.caseId : joined(parts, " "), {}, {}});
     }
     return cases_[found->second];
 }

@@ -83,7 +83,7 @@ class FailingCalls : public testing::Test {
     void expectAsUntouched(const fs::path& dir) const {
         EXPECT_EQ(rowsOf(dir, "number").size(), 4U);
         for (const records::Record& row : records::readRecords(dir / "records.csv")) {
-            EXPECT_EQ(row.status, records::Status::Ok) << row.message.string();
+            EXPECT_EQ(row.status, records::Status::Ok) << row.message;
         }
         endedWith(0, mockGfxrepro({"table", dir}));
         for (const char* file : {"csv", "md", "tex"}) {

@@ -94,8 +94,7 @@ TEST(DefaultLayout, AnAxisThatDoesNotApplyHasNoValue) {
 TEST(DefaultLayout, WhatACaseDoesNotRecordIsBlank) {
     Recorded records = recordedAt({32, 64});
     std::erase_if(records, [](const records::Record& record) {
-        return record.metric == "error_pct" &&
-               record.caseId.string().find("32") != std::string::npos;
+        return record.metric == "error_pct" && record.caseId.find("32") != std::string::npos;
     });
     const Table table = buildTable(sweepOf("{resolution: [32, 64]}"), records);
     ASSERT_EQ(table.columns[2].label, "error_pct");
