@@ -9,8 +9,8 @@
 
 #include "runner/config/experiment.h"
 #include "runner/records/records.h"
-#include "runner/tables/case_records.h"
 #include "runner/tables/cell_format.h"
+#include "runner/tables/layout_cases.h"
 #include "runner/tables/summary.h"
 
 namespace gfxrepro::tables {
