@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <climits>
+#include <unordered_set>
 #include <vector>
 
 #include "engine/core/node.h"
@@ -129,7 +130,7 @@ namespace {
 /// A key that stands twice in an object of sound JSON, as it is written: the library takes the last
 /// of its values, and its callbacks take ten times as long as its parser.
 std::optional<std::string_view> keyTwiceIn(std::string_view text) {
-    std::vector<std::vector<std::string_view>> open;  // keys of the objects and lists that are
+    std::vector<std::unordered_set<std::string_view>> open;  // keys of objects and lists that are
     for (std::size_t i = 0; i < text.size() && text[i] != '\0'; ++i) {  // where the library ends
         if (text[i] == '{' || text[i] == '[') open.emplace_back();
         if (text[i] == '}' || text[i] == ']') open.pop_back();
@@ -138,8 +139,7 @@ std::optional<std::string_view> keyTwiceIn(std::string_view text) {
         while (text[i] != '"') i += text[i] == '\\' ? 2 : 1;
         if (text[text.find_first_not_of(" \t\r\n", i + 1)] != ':') continue;
         const std::string_view key = text.substr(begin, i - begin);
-        if (std::ranges::find(open.back(), key) != open.back().end()) return key;
-        open.back().push_back(key);
+        if (!open.back().insert(key).second) return key;
     }
     return std::nullopt;
 }
