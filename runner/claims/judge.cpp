@@ -320,6 +320,10 @@ std::string whyNoInterval(const Group& group) {
             one->onceAlong);
     }
     if (findIn(group, &Sampled::isOnce)) return "one sample of a time decides nothing";
+    if (findIn(group, &Sampled::isRunOnce)) {
+        return "one process of a program without a seed; `measure: {processes: 2}` tells whether "
+               "another comes to the same, `processes: 1` says so";
+    }
     std::optional<std::size_t> fewest;
     bool isDeclared = true, areEqual = true;
     const auto count = [&](const std::vector<Sampled>& values) {

@@ -194,6 +194,7 @@ std::vector<CaseRecords> groupByCase(std::span<const config::Case> planned,
                              std::move(recorded.params),
                              item.measure.seeds,
                              item.seed});
+            cases.back().processesAsked = item.measure.processes;
             isSeeded.push_back(sample.has_value());
         }
         places[item.id] = {index, sample.value_or(0)};

@@ -79,6 +79,10 @@ struct CaseRecords {
     /// Of a program or an import whose sweep has an axis `seed`: which of its values, from 0.
     std::optional<int> sweptSeed = {};
     bool isSeedARun = false;  // each of them was taken in one process, which timed it
+    int processesAsked = 1;   // by the plan; rounds of times may end before
+    /// Of a program without a seed one process of several that were asked for: nobody knows whether
+    /// another comes to the same.
+    bool isRunOnce = false;
 
     std::uint64_t seedOf(int process) const {
         if (sweptSeed && seeds == config::Measure::Seeds::None)

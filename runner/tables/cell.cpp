@@ -102,6 +102,7 @@ struct Gathered {  // what the records of a cell came to
     std::set<std::uint64_t> seeds;  // of random numbers that the values hang on
     std::size_t fewestSeeds = 0;    // of a curve's cases
     bool isInDoubt = false;         // LayoutCases::isInDoubt
+    bool isRunOnce = false;         // CaseRecords::isRunOnce, of what another run could change
     std::size_t notRun = 0;         // further cases
     std::set<int> frames;
     std::vector<double> shareCounts;  // of shares that say so: how many samples each is a share of
@@ -149,6 +150,7 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
     using Seeds = config::Measure::Seeds;
     const bool differs = run.scatters(query.metric, query.pass);
     const bool isOfSeed = isRoundOfSeed(run, query);
+    gathered.isRunOnce |= run.isRunOnce && run.isOfItsSeed(query.metric);
     for (const auto& [number, attempt] : run.processes) {
         // What differs between processes is no new number for each seed of another scene.
         if (run.isRepeated && differs && number >= records::kMostProcesses) break;
@@ -186,8 +188,9 @@ void takeCase(const CaseRecords& run, const CellQuery& query, std::map<int, int>
 
 bool isInDoubt(const CellQuery& query, const LayoutCases& cases, const Gathered& gathered) {
     const auto isMachine = [&](const std::string& unit) { return isOfMachine(query.metric, unit); };
-    return cases.isInDoubt(query.metric, gathered.frames == std::set<int>{records::kSetup},
-                           std::ranges::any_of(gathered.units, isMachine));
+    const bool isSetup = gathered.frames == std::set<int>{records::kSetup};
+    return (gathered.isRunOnce && !isSetup) ||
+           cases.isInDoubt(query.metric, isSetup, std::ranges::any_of(gathered.units, isMachine));
 }
 
 /// The passes for which the matching cases recorded the metric: for the message when the one that
@@ -281,6 +284,7 @@ void countSeeds(const Gathered& gathered, Cell& cell) {
     const bool areDraws = std::ranges::any_of(cell.values, &Measured::areDraws);
     cell.seedCount = areDraws ? 0 : gathered.seeds.size();
     cell.scatters = gathered.seeds.empty() && gathered.isInDoubt;
+    cell.isRunOnce = cell.scatters && gathered.isRunOnce;
     if (cell.isOfOneSeed() || (areDraws && cell.scatters)) {
         std::ranges::for_each(cell.values, takeAsOne);
     }
@@ -376,6 +380,7 @@ std::vector<CurveCase> curveCases(const CellQuery& query, std::span<const CaseRe
         takeCase(*run, query, unitsOfY, yCount, y);
         for (const Gathered* one : {&x, &y}) {
             gathered.note(one->worst, one->message);
+            gathered.isRunOnce |= one->isRunOnce;
             gathered.fewestSeeds = fewerSeeds(gathered.fewestSeeds, one->seeds.size());
         }
         gathered.isInDoubt |= isInDoubt(other, layoutCases, x) || isInDoubt(query, layoutCases, y);
@@ -462,6 +467,7 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
         }
         cell.seedCount = gathered.fewestSeeds;
         cell.scatters = cell.seedCount == 0 && gathered.isInDoubt;
+        cell.isRunOnce = cell.scatters && gathered.isRunOnce;
         for (Measured& measured : cell.values) {
             if (cell.seedCount > 0 && cell.seedCount < measured.rounds.size()) takeAsOne(measured);
         }

@@ -90,6 +90,7 @@ struct Cell {
     /// Of no declared seed, and no surer than chance (LayoutCases::isInDoubt): an unseeded
     /// program, an import.
     bool scatters = false;
+    bool isRunOnce = false;  // of these: it took CaseRecords::isRunOnce
     /// Of a program or an import: the axis along which it takes together what was measured once
     /// each. Whether they repeat one, as trials do, or are others, as scenes are, nobody
     /// knows.

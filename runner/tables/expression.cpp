@@ -110,7 +110,7 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
                          measured.areDraws, cell.seedCount > 0 || cell.scatters || isOnceAlong,
                          cell.seedCount, cell.scatters, cell.isTime && !hasRounds, cell.onceAlong,
-                         measured.isOverProcesses ? measured.statistic : ""});
+                         measured.isOverProcesses ? measured.statistic : "", cell.isRunOnce});
         values.push_back(measured.value);
         result.seedCount = fewerSeeds(result.seedCount, cell.seedCount);
     }
@@ -120,6 +120,7 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     result.areDraws = keepRoundsOrDraws(all);
     result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
     result.scatters = std::ranges::any_of(cells, &Sampled::scatters);
+    result.isRunOnce = std::ranges::any_of(cells, &Sampled::isRunOnce);
     result.isOnce = std::ranges::any_of(cells, &Sampled::isOnce);
     for (const Sampled& cell : cells) {
         if (result.overProcesses.empty()) result.overProcesses = cell.overProcesses;
@@ -245,6 +246,7 @@ void gatherFrom(const Cell& from, Cell& cell) {
     cell.isCalibrated |= from.isCalibrated;
     cell.isOwnTruth |= from.isOwnTruth;
     cell.scatters |= from.scatters;
+    cell.isRunOnce |= from.isRunOnce;
     if (cell.onceAlong.empty()) cell.onceAlong = from.onceAlong;
     cell.isAtPrintedParameters &= from.isAtPrintedParameters;
     const auto add = [](const auto& items, auto& all) {

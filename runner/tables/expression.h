@@ -26,6 +26,7 @@ struct Sampled {
     bool isOnce = false;             // a time, of one process: others of which differ
     std::string onceAlong = {};      // as Cell::onceAlong; it is random, too, and has no rounds
     std::string overProcesses = {};  // of "mean", "max", …: Summary::isOverProcesses
+    bool isRunOnce = false;          // as Cell::isRunOnce
 
     double at(int round) const { return rounds.empty() ? point : rounds.at(round); }
 };

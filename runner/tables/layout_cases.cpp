@@ -290,6 +290,11 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
     cases.isOfProgram = config::goesByClock(experiment);
     for (CaseRecords& item : cases.cases) item.isOfElsewhere = cases.isOfElsewhere;
     if (cases.isOfProgram) countSweptSeeds(cases);
+    for (CaseRecords& item : cases.cases) {
+        const bool isSeeded = item.seeds != config::Measure::Seeds::None || item.sweptSeed;
+        item.isRunOnce = cases.isOfProgram && !cases.isOfElsewhere && !isSeeded &&
+                         item.processes.size() == 1 && item.processesAsked > 1;
+    }
     lookAtMetrics(cases);
     for (int frame = 0; frame < cases.frameCount; ++frame) {
         if (!cases.isOfElsewhere || cases.recorded.empty()) cases.frames.insert(frame);

@@ -113,6 +113,35 @@ TEST(Unseeded, TheErrorOfAPictureThatEachProcessMakesIsKnown) {
     EXPECT_EQ(judgeOneBesideMany(Of::Import, "rmse", claim).verdict, Verdict::Ambiguous);
 }
 
+/// As where the budget of times ends with the first round.
+TEST(Unseeded, OneProcessOfSeveralThatWereAskedForDecidesNothing) {
+    const auto judge = [](Of of, const std::string& metric, int asked, const std::string& claim) {
+        tables::RecordMaker maker;
+        maker.beginCase("", R"({"n":1})").add(metric, {0.4}, "", "1");
+        maker.beginCase("", R"({"n":2})").add(metric, {0.5}, "", "1");
+        tables::Recorded records = maker.records();
+        for (config::Case& one : records.cases) one.measure.processes = asked;
+        const std::string body =
+            "sweep: {n: [1, 2]}\nlayout: {rows: n, columns: {one: {metric: " + metric +
+            "}, half: {of: one / 2}}}\nclaims: {C: {says: so, " + claim + "}}\n";
+        return resultOf(experimentOf(of, body), records);
+    };
+    for (const char* claim : {"order: [n=1, n=2], of: one", "bound: half, at_most: 1, at: {n: 1}",
+                              "exact: one, equals: 0.4, at: {n: 1}"}) {
+        for (const char* metric : {"value", "rmse"}) {
+            const ClaimResult result = judge(Of::Program, metric, 6, claim);
+            EXPECT_EQ(result.verdict, Verdict::Ambiguous) << claim;
+            EXPECT_THAT(result.reason,
+                        testing::HasSubstr(
+                            "one process of a program without a seed; `measure: {processes: 2}` "
+                            "tells whether another comes to the same, `processes: 1` says so"))
+                << claim;
+            EXPECT_EQ(judge(Of::Program, metric, 1, claim).verdict, Verdict::Holds) << claim;
+            EXPECT_EQ(judge(Of::Import, metric, 6, claim).verdict, Verdict::Holds) << claim;
+        }
+    }
+}
+
 /// Of an import: one metric has a seed in each of its rows, the other in none.
 TEST(Unseeded, WhatHasNoSeedBesideWhatHasOneDrawsNone) {
     tables::RecordMaker maker;
