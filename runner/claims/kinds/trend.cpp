@@ -111,10 +111,15 @@ Decision unlessSurelyBack(const metrics::Interval& step, double noise) {
     return {Verdict::Ambiguous, "a step back in every round, within the noise of these times"};
 }
 
+/// Of one that has to be: what is equal is so whatever the noise.
+double distanceOfStep(const GroupPoint&, double step) {
+    return step == 0.0 ? kInfinity : std::abs(step);
+}
+
 /// Direction: Kendall's rank correlation with x is above 0 towards it (Kendall 1938), and no step
-/// goes back by more than the noise of these times for certain.
-Contrasts rising(int direction) {
-    return [direction](const GroupPoint& group) {
+/// goes back by more than the noise of these times for certain. Strictly: each surely forward.
+Contrasts rising(int direction, bool isStrict) {
+    return [direction, isStrict](const GroupPoint& group) {
         Requirement above;
         above.low = 0.0;
         above.isLowExcluded = true;
@@ -132,11 +137,17 @@ Contrasts rising(int direction) {
         std::vector<Contrast> contrasts{whole};
         Requirement notBack;
         notBack.low = 0.0;
+        notBack.isLowExcluded = isStrict;
         notBack.isPercent = true;
         for (std::size_t place = 0; place + 1 < group.x.size(); ++place) {
-            contrasts.push_back({"step", stepAt(place, direction), notBack, Scale::Linear});
-            contrasts.back().decide = unlessSurelyBack;
-            contrasts.back().isBeside = true;
+            Contrast& step = contrasts.emplace_back(
+                Contrast{"step", stepAt(place, direction), notBack, Scale::Linear});
+            step.isBeside = true;
+            if (isStrict) {
+                step.distance = distanceOfStep;
+            } else {
+                step.decide = unlessSurelyBack;
+            }
         }
         return contrasts;
     };
@@ -157,7 +168,7 @@ std::vector<ClaimPart> trendParts(const ClaimSpec& claim) {
         part.requirement.text = std::string(isStrict ? "strictly " : "") +
                                 (direction > 0 ? "increasing" : "decreasing") + " with " +
                                 claim.over.value_or("");
-        part.onTimes = rising(direction);
+        part.onTimes = rising(direction, isStrict);
         parts.push_back(std::move(part));
     }
     if (claim.hasBound()) {

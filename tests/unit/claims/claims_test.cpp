@@ -838,6 +838,24 @@ TEST(Claims, TimesRiseOnTheWhole) {
     EXPECT_EQ(result.verdict, Verdict::Ambiguous);
 }
 
+TEST(Claims, StrictlyIsSoOfWhatVaries) {
+    const std::string rising = "trend: ms, over: n, direction: increasing";
+    const auto judge = [&](const Timed& timed) {
+        return judgeTimed(rising + ", strictly: true", timedRows(6, timed));
+    };
+    EXPECT_EQ(judge([](double n, int round) { return n * drift(round); }).verdict, Verdict::Holds);
+    const Timed equal = [](double n, int round) { return std::min(n, 4.0) * drift(round); };
+    const ClaimResult result = judge(equal);
+    EXPECT_EQ(result.verdict, Verdict::Fails);
+    EXPECT_EQ(result.measured, "step 0 % [0 %, 0 %]");
+    EXPECT_EQ(judgeTimed(rising, timedRows(6, equal)).verdict, Verdict::Holds);
+    const Timed open = [&](double n, int round) {
+        return equal(n, round) * ((round + static_cast<int>(n)) % 3 == 0 ? 1.02 : 0.98);
+    };
+    EXPECT_EQ(judge(open).verdict, Verdict::Ambiguous);
+    EXPECT_EQ(judgeTimed(rising, timedRows(6, open)).verdict, Verdict::Holds);
+}
+
 TEST(Claims, TimesThatAreAlike) {
     const Timed alike = [](double n, int round) { return drift(round) * (n == 8.0 ? 1.05 : 1.0); };
     const std::string within = "independent: ms, of: n, at_most: ";
