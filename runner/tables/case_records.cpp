@@ -161,6 +161,12 @@ bool CaseRecords::isWithout(std::string_view metric, std::string_view pass) cons
     });
 }
 
+bool CaseRecords::isWithoutFrame(std::string_view metric, std::string_view pass) const {
+    return std::ranges::all_of(processes, [&](const auto& process) {
+        return std::ranges::all_of(process.second.values(metric, pass), isOfSetup);
+    });
+}
+
 bool CaseRecords::isOfItsSeed(std::string_view metric) const {
     const bool isOurs = config::isOfDevice(metric) || config::isTestOfMeans(metric);
     return !config::isTimeMetric(metric) && (isOfElsewhere || !isOurs);

@@ -58,6 +58,8 @@ struct CaseRecords {
     bool isTakenAgain(std::string_view metric, std::string_view pass) const;
     /// Whether it ran, and recorded no such number.
     bool isWithout(std::string_view metric, std::string_view pass) const;
+    /// Whether it stands under frame −1 alone, and so has no seed.
+    bool isWithoutFrame(std::string_view metric, std::string_view pass) const;
     /// Whether other random numbers could give another value of the metric: it is neither a time,
     /// nor, of what is measured here, a count of the device or a test of several seeds.
     bool isOfItsSeed(std::string_view metric) const;

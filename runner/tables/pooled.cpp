@@ -188,15 +188,17 @@ std::string onceAlong(const CellQuery& query, const LayoutCases& cases,
                       std::span<const Pooled> pooled) {
     // Other scenes, sizes of a picture and frames that are asked for here are no repetitions.
     const auto isOther = [&](const Pooled& one) {
-        const bool isFrame = one.axis == "frame" && !cases.isOfElsewhere;
-        return isFrame || one.axis == kSeedAxis || one.axis == "scene" ||
-               one.axis == "scene_seed" || one.axis.starts_with("output.") ||
-               one.axis.starts_with(config::kSceneAxisPrefix);
+        const bool isSwept = std::ranges::find(cases.axes, one.axis) != cases.axes.end();
+        const bool isSampled = (one.axis == "frame" && !cases.isOfElsewhere) ||
+                               (one.axis == "scene_seed" && !isSwept);
+        return isSampled || one.axis == kSeedAxis || one.axis == "scene" ||
+               one.axis.starts_with("output.") || one.axis.starts_with(config::kSceneAxisPrefix);
     };
     const auto axis = std::ranges::find_if_not(pooled, isOther);
     if (!cases.isOfProgram || axis == pooled.end()) return "";
     const auto isOnce = [&](const CaseRecords* one) {
-        const bool isSeeded = one->seeds != config::Measure::Seeds::None || one->sweptSeed;
+        const bool hasSeeds = one->seeds != config::Measure::Seeds::None || one->sweptSeed;
+        const bool isSeeded = hasSeeds && !one->isWithoutFrame(query.metric, query.pass);
         return !isSeeded && !one->isWithout(query.metric, query.pass) &&
                one->isOfItsSeed(query.metric) && !one->isTakenAgain(query.metric, query.pass);
     };

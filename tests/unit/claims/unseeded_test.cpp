@@ -432,7 +432,32 @@ TEST(Unseeded, WhatIsTakenTogetherOfCasesMeasuredOnceDecidesNothing) {
         EXPECT_EQ(judgeTogether(of, "run", 2, order, 0.01).verdict, Verdict::Ambiguous);
         EXPECT_EQ(judgeTogether(of, "run", 6, order, 0.01).verdict, Verdict::Holds);
         EXPECT_EQ(judgeTogether(of, "scene", 1, order).verdict, Verdict::Holds);
+        EXPECT_EQ(judgeTogether(of, "scene_seed", 1, order).verdict, Verdict::Ambiguous);
     }
+}
+
+/// What has no seed was measured once, whatever seeds others of the case have.
+TEST(Unseeded, AMetricWithoutSeedsBesideOneWithSomeIsTakenTogetherLikewise) {
+    tables::RecordMaker maker;
+    for (const char* m : {"b", "c"}) {
+        for (int trial = 0; trial < 5; ++trial) {
+            maker.beginCase("", fmt::format(R"({{"m":"{}","trial":{}}})", m, trial));
+            maker.seeds(config::Measure::Seeds::Process);
+            maker.frame(records::kSetup);
+            maker.add("once", {(m[0] == 'b' ? 0.4 : 0.5) + 0.01 * trial}, "", "1");
+            for (int process = 0; process < 6; ++process) {
+                maker.process(process).frame(0).add("drawn", {1.0 + 0.01 * process}, "", "1");
+            }
+        }
+    }
+    const ClaimResult result = resultOf(
+        experimentOf(Of::Import,
+                     "sweep: {m: [b, c], trial: [0, 1, 2, 3, 4]}\nlayout: {rows: m, columns: "
+                     "{once: {metric: once, where: {trial: [0, 1, 2, 3, 4]}}}}\n"
+                     "claims: {C: {says: so, order: [b, c], of: once}}\n"),
+        maker.records());
+    EXPECT_EQ(result.verdict, Verdict::Ambiguous);
+    EXPECT_THAT(result.reason, testing::HasSubstr("takes values of 'trial' together"));
 }
 
 /// Frames that a file tells apart may be repetitions, too; those of our own are a path.
