@@ -11,6 +11,7 @@
 #include <set>
 
 #include "engine/core/error.h"
+#include "engine/metrics/alike.h"
 
 namespace gfxrepro::metrics {
 
@@ -211,8 +212,9 @@ std::vector<double> coinSums(std::span<const std::size_t> scores) {
     return chances;
 }
 
-double kendall(std::span<const double> x, std::span<const double> y) {
-    GFXREPRO_ASSERT_EQ(x.size(), y.size());
+double kendall(std::span<const double> givenX, std::span<const double> givenY) {
+    GFXREPRO_ASSERT_EQ(givenX.size(), givenY.size());
+    const std::vector<double> x = withoutRounding(givenX), y = withoutRounding(givenY);
     int score = 0;
     int pairs = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {

@@ -68,7 +68,8 @@ std::vector<double> jointChances(std::span<const std::map<int, double>> series, 
 std::vector<double> coinSums(std::span<const std::size_t> scores);
 
 /// Rank correlation of y with x, −1 … 1: concordant less discordant pairs over all pairs of unlike
-/// x (Kendall 1938; a tie in y counts for neither). 0 without such a pair.
+/// x (Kendall 1938; a tie in y counts for neither, and what is areAlike is one). 0 without such a
+/// pair.
 double kendall(std::span<const double> x, std::span<const double> y);
 
 }  // namespace gfxrepro::metrics

@@ -12,6 +12,7 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
+#include "engine/metrics/alike.h"
 #include "engine/metrics/statistics.h"
 #include "runner/records/csv.h"
 #include "runner/tables/case_records.h"
@@ -97,7 +98,9 @@ struct RivalCells {
     bool isTold(std::size_t row, const Measured& ratio) const {
         constexpr double kBothEnds = 0.05;
         const bool isSure = ratio.bounds == Bounds::Interval &&
-                            (ratio.interval.high < 1.0 || ratio.interval.low > 1.0);
+                            (ratio.interval.high < 1.0 || ratio.interval.low > 1.0) &&
+                            !metrics::areAlike(ratio.interval.high, 1.0) &&
+                            !metrics::areAlike(ratio.interval.low, 1.0);
         const auto chance = chances.find(row);
         return isSure && std::abs(std::log(ratio.value)) > noise &&
                (chance == chances.end() || chance->second <= kBothEnds);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/core/text.h"
+#include "engine/metrics/alike.h"
 #include "runner/claims/kinds/operands.h"
 #include "runner/tables/case_records.h"
 #include "runner/tables/cell_format.h"
@@ -95,6 +96,19 @@ double Operand::evaluate(std::span<const double> values) {
     return parser_.Eval();
 }
 
+double Operand::withoutRounding(std::span<const double> values) {
+    const double result = evaluate(values);
+    if (isColumn_ || result == 0.0 || !std::isfinite(result)) return result;
+    std::vector<double> others(values.begin(), values.end());
+    double rounding = 0.0;
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        others[i] = metrics::roundedOtherwise(values[i]);
+        rounding += std::abs(evaluate(others) - result);
+        others[i] = values[i];
+    }
+    return std::isfinite(rounding) && std::abs(result) <= rounding ? 0.0 : result;
+}
+
 Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& statistic) {
     Sampled result;
     std::vector<Sampled> cells;
@@ -116,7 +130,7 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     }
     std::vector<Sampled*> all;
     for (Sampled& cell : cells) all.push_back(&cell);
-    result.point = evaluate(values);
+    result.point = withoutRounding(values);
     result.areDraws = keepRoundsOrDraws(all);
     result.isRandom = std::ranges::any_of(cells, &Sampled::isRandom);
     result.scatters = std::ranges::any_of(cells, &Sampled::scatters);
@@ -133,7 +147,7 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     if (!result.overProcesses.empty() || std::ranges::any_of(cells, isOne)) return result;
     for (const int round : commonRounds(cells)) {
         for (std::size_t i = 0; i < cells.size(); ++i) values[i] = cells[i].at(round);
-        result.rounds[round] = evaluate(values);
+        result.rounds[round] = withoutRounding(values);
     }
     return result;
 }

@@ -87,6 +87,8 @@ class Operand {
     /// only where no cell has rounds of its own.
     /// Of each cell the statistic of that name, or its first.
     Sampled evaluate(const TableRow& row, Clock clock, const std::string& statistic = "");
+    /// As evaluate(), but 0 where that is no more than what the values' rounding comes to.
+    double withoutRounding(std::span<const double> values);
 
   private:
     bool isColumn_ = false;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/checks.h"
+#include "engine/metrics/alike.h"
 #include "engine/metrics/statistics.h"
 #include "runner/claims/kinds/kind.h"
 
@@ -52,19 +53,21 @@ void readTrend(const ClaimKeys& keys, const TrendKeys& given, ClaimSpec& claim) 
 }
 
 /// The least-squares slope of log(operand) over log(x), without the digits that logarithms round:
-/// what grows as x² has exactly 2. Not-a-number unless all are positive.
+/// what grows as x² has exactly 2, and what is areAlike does not grow. Not-a-number unless all are
+/// positive.
 double exponent(const GroupPoint& group) {
-    const std::vector<double>& y = group.operands[0];
-    if (!arePositive(group.x) || !arePositive(y)) return kNan;
+    if (!arePositive(group.x) || !arePositive(group.operands[0])) return kNan;
+    const std::vector<double> x = metrics::withoutRounding(group.x);
+    const std::vector<double> y = metrics::withoutRounding(group.operands[0]);
     const auto count = static_cast<double>(y.size());
     double meanX = 0.0, meanY = 0.0;
     for (std::size_t i = 0; i < y.size(); ++i) {
-        meanX += std::log(group.x[i]) / count;
+        meanX += std::log(x[i]) / count;
         meanY += std::log(y[i]) / count;
     }
     double covariance = 0.0, variance = 0.0;
     for (std::size_t i = 0; i < y.size(); ++i) {
-        const double dx = std::log(group.x[i]) - meanX;
+        const double dx = std::log(x[i]) - meanX;
         covariance += dx * (std::log(y[i]) - meanY);
         variance += dx * dx;
     }

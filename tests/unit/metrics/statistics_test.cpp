@@ -110,6 +110,8 @@ TEST(Statistics, KendallCountsPairs) {
     EXPECT_EQ(kendall(x, std::vector<double>{4.0, 3.0, 2.0, 1.0}), -1.0);
     EXPECT_DOUBLE_EQ(kendall(x, std::vector<double>{1.0, 3.0, 2.0, 4.0}), 4.0 / 6.0);
     EXPECT_EQ(kendall(x, std::vector<double>(4, 1.0)), 0.0);
+    EXPECT_EQ(kendall(x, std::vector<double>{0.4, 0.4 + 6e-17, 0.4 + 1.2e-16, 0.4 + 6e-17}), 0.0)
+        << "apart by rounding";
     EXPECT_EQ(kendall(std::vector<double>{1.0, 1.0}, std::vector<double>{1.0, 2.0}), 0.0);
 }
 

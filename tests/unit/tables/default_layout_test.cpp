@@ -226,6 +226,16 @@ TEST(DefaultLayout, ManyRowsOfEqualMethodsAreNotToldApart) {
     }
 }
 
+TEST(DefaultLayout, WhatIsApartByRoundingIsNotToldApart) {
+    config::Experiment experiment = sweepOf("{method: [plain, fast], size: [1, 2]}");
+    experiment.outputs.metrics.push_back({"rmse", "1", "wrong", Better::Lower});
+    const auto alike = [](int method, int size, int) {
+        return 0.4 * size * (method == 0 ? 1.0 : 1.0 + 7e-16);
+    };
+    EXPECT_THAT(buildTable(experiment, atSizes(2, alike, {}, "rmse")).notes[0],
+                HasSubstr("cannot be told apart in any of 2 rows"));
+}
+
 /// What the clock says of neighbours hides what the work shows.
 TEST(DefaultLayout, BuiltInMethodsAreHeldByCpuTimeWhereItWasRecorded) {
     const auto wall = [](int method, int, int process) {
