@@ -14,6 +14,7 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
+#include "runner/config/external_program.h"
 #include "runner/outcome/results.h"
 #include "runner/regression/comparison.h"
 #include "runner/regression/nightly_history.h"
@@ -41,8 +42,9 @@ struct Measured {
     std::size_t untimedCases = 0;
     std::string machine;
     std::string commit;
-    regression::Tables byProcess;                // chooseTimes
-    regression::Tables unseeded;                 // Rules
+    regression::Tables byProcess;                 // chooseTimes
+    std::map<std::string, std::string> unseeded;  // Rules
+    regression::MetricsOfTables ofSetup;
     std::map<std::string, std::string> configs;  // absolute path by table
     std::vector<std::string> notes;
     regression::PictureMap pictures;
@@ -54,16 +56,19 @@ struct Measured {
 Measured readMeasured(const fs::path& runDir) {
     const run::StoredRun run = run::readRun(runDir);
     regression::CaseParams params;
-    regression::Tables byClock, byProcess, imported, unseeded, seeded;
+    regression::Tables byClock, byProcess, seeded;
+    std::map<std::string, std::string> unseeded;
     for (const config::Experiment& experiment : run.plan.experiments) {
-        if (!config::isMeasuredHere(experiment)) imported.insert(experiment.id);
+        if (!config::goesByClock(experiment)) continue;
+        unseeded[experiment.id] =
+            config::isMeasuredHere(experiment) ? config::programText(experiment) : "";
     }
     std::set<std::string> unseededCases;
     for (const config::Case& item : run.plan.cases) {
         params[item.id] = item.recordedParams().toJson().dump();
         const bool isSeeded = item.measure.seeds != config::Measure::Seeds::None;
-        if (item.program.isNull() && !imported.contains(item.experiment)) continue;
-        (isSeeded ? seeded : unseeded).insert(item.experiment);
+        if (!unseeded.contains(item.experiment)) continue;
+        if (isSeeded) seeded.insert(item.experiment);
         if (!isSeeded) unseededCases.insert(item.id);
     }
     for (const std::string& table : seeded) unseeded.erase(table);
@@ -84,6 +89,7 @@ Measured readMeasured(const fs::path& runDir) {
                       run.manifest.at("commit").get<std::string>(),
                       std::move(byProcess),
                       std::move(unseeded),
+                      regression::setupMetricsOf(run.records),
                       {},
                       run::notesOf(run.manifest),
                       regression::picturesOf(runDir, run.records, params, unseededCases),
@@ -211,9 +217,9 @@ std::vector<regression::SeriesStep> keepHistory(const std::string& path, const M
 std::vector<Difference> compareRuns(const Measured& older, const Measured& newer,
                                     const fs::path& folder, std::vector<std::string>& notes) {
     requireSameMachine(older, newer);
-    std::vector<Difference> differences =
-        regression::compare(older.series, newer.series, Pairing::Apart,
-                            {.byProcess = newer.byProcess, .unseeded = newer.unseeded});
+    std::vector<Difference> differences = regression::compare(
+        older.series, newer.series, Pairing::Apart,
+        {.byProcess = newer.byProcess, .unseeded = newer.unseeded, .ofSetup = newer.ofSetup});
     regression::noteFailures(differences, older.failures, newer.failures);
     regression::noteVoidTimes(differences, older.voidTimes, newer.voidTimes);
     regression::noteOnce(differences, older.once, newer.once);

@@ -99,6 +99,8 @@ struct ExternalProgram {
 
 /// `program` of the config; null where there is none.
 const Node& programOf(const Experiment& experiment);
+/// What tells a program from another: how it is started, and what prints its version.
+std::string programText(const Experiment& experiment);
 /// Throws Error with file:line:column for what is wrong, for a placeholder that is none, and for a
 /// parameter that stands in no argument.
 ExternalProgram readProgram(const Node& node);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "engine/core/checks.h"
 #include "engine/core/hash.h"
@@ -258,6 +259,19 @@ std::string programKey(const std::vector<ProgramFile>& files, FileDigests& diges
     std::string content;
     for (const ProgramFile& file : files) content += file.name + ' ' + digests.of(file.path) + '\n';
     return sha256(content);
+}
+
+std::string programText(const Experiment& experiment) {
+    const Node& program = programOf(experiment);
+    std::string text;
+    const auto add = [&](const char* key) {
+        const Node* value = program.isMap() ? program.find(key) : nullptr;
+        if (value) text += value->toJson().dump() + '\n';
+    };
+    add("command");
+    add("version");
+    if (text.find("{here}") != text.npos) add("here");
+    return text;
 }
 
 }  // namespace gfxrepro::config

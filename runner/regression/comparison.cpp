@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "engine/metrics/mean_test.h"
+#include "runner/config/outputs.h"
 #include "runner/records/records.h"
+#include "runner/tables/case_records.h"
 
 namespace gfxrepro::regression {
 
@@ -68,25 +70,59 @@ bool differ(const Series& values, double within) {
         values, [&](double value) { return !areSame(value, values.front(), within); });
 }
 
-/// By table the metrics that differ between the processes of a side in some case, and of which no
-/// seed is declared: in the other cases they may be alike by chance.
-using Doubtful = std::set<std::pair<std::string, std::string>>;
-
-Doubtful doubtfulOf(const SeriesMap& before, const SeriesMap& after, const Rules& rules) {
-    Doubtful doubtful;
-    for (const SeriesMap* side : {&before, &after}) {
-        for (const auto& [key, values] : *side) {
-            const double within = areWhole(values) ? 0.0 : rules.valueTolerance;
-            const bool isSuch = !key.isTime() && rules.unseeded.contains(key.table);
-            if (isSuch && differ(values, within)) doubtful.emplace(key.table, key.metric);
+/// Where a number of a program or an import without a seed differs between the processes of a side,
+/// its other numbers may be alike by chance, in other cases, too: as tables have it
+/// (tables::LayoutCases::isInDoubt), but for what is within the tolerance.
+class Doubts {
+  public:
+    Doubts(const SeriesMap& before, const SeriesMap& after, const Rules& rules) : rules_(rules) {
+        for (const SeriesMap* side : {&before, &after}) {
+            for (const auto& [key, values] : *side) {
+                const double within = areWhole(values) ? 0.0 : rules.valueTolerance;
+                if (!isOfUnseeded(key) || !differ(values, within)) continue;
+                tables::Doubt& doubt = doubts_[programOf(key)];
+                doubt.differing.insert(key.metric);
+                (tables::isOfMachine(key.metric, key.unit) ? doubt.isOfMachine : doubt.isOfAll) =
+                    true;
+            }
         }
     }
-    return doubtful;
-}
+
+    /// Empty where there is no doubt.
+    std::string whyInDoubt(const SeriesKey& key) const {
+        const auto found = doubts_.find(isOfUnseeded(key) ? programOf(key) : "");
+        if (found == doubts_.end()) return "";
+        const auto& [differing, isOfAll, isOfMachine] = found->second;
+        if (differing.contains(key.metric)) {
+            return "in other cases it differs between processes of one side";
+        }
+        const bool isOurs = !rules_.unseeded.at(key.table).empty();
+        const bool isKnown =
+            rules_.ofSetup.contains({key.table, key.metric}) ||
+            (isOurs && (config::isTestOfMeans(key.metric) || config::isPictureError(key.metric)));
+        const bool isDoubtful =
+            isOfAll || (isOfMachine && tables::isOfMachine(key.metric, key.unit));
+        return isDoubtful && !isKnown
+                   ? "other numbers of the program differ between processes of one side"
+                   : "";
+    }
+
+  private:
+    bool isOfUnseeded(const SeriesKey& key) const {
+        return !key.isTime() && rules_.unseeded.contains(key.table);
+    }
+    std::string programOf(const SeriesKey& key) const {
+        const std::string& program = rules_.unseeded.at(key.table);
+        return program.empty() ? "import " + key.table : "program " + program;
+    }
+
+    const Rules& rules_;
+    std::map<std::string, tables::Doubt> doubts_;
+};
 
 /// `count`: of how many series each may raise an alarm.
 Difference compareValues(const SeriesKey& key, const Series& before, const Series& after,
-                         const Rules& rules, std::size_t count, bool isInDoubt) {
+                         const Rules& rules, std::size_t count, const std::string& doubt) {
     Difference result{
         .key = key, .before = metrics::median(before), .after = metrics::median(after)};
     const bool isRatio = result.before != 0.0 && std::isfinite(result.before);
@@ -98,11 +134,10 @@ Difference compareValues(const SeriesKey& key, const Series& before, const Serie
         before, after, [&](double a, double b) { return areSame(a, b, result.floor); });
     const bool isOwn = differ(before, result.floor) || differ(after, result.floor);
     result.verdict = isSame ? SeriesVerdict::Same : SeriesVerdict::Changed;
-    if (!isAlike && (isOwn || isInDoubt) &&
+    if (!isAlike && (isOwn || !doubt.empty()) &&
         chanceApart(before, after) > rules.familyError / static_cast<double>(count)) {
         result.verdict = SeriesVerdict::CannotTell;
-        result.reason = isOwn ? "numbers that differ between processes of one side"
-                              : "in other cases it differs between processes of one side";
+        result.reason = isOwn ? "numbers that differ between processes of one side" : doubt;
     }
     return result;
 }
@@ -339,7 +374,7 @@ std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& all
     SeriesMap before = allBefore, after = allAfter;
     matchParams(before, after);
     chooseTimes(before, after, rules.byProcess);
-    const Doubtful doubtful = doubtfulOf(before, after, rules);
+    const Doubts doubts(before, after, rules);
     std::vector<Difference> differences;
     std::vector<TestedTime> times;
     for (const auto& [key, values] : before) {
@@ -352,7 +387,7 @@ std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& all
             times.push_back(testTime(key, values, found->second, pairing, rules));
         } else {
             differences.push_back(compareValues(key, values, found->second, rules, before.size(),
-                                                doubtful.contains({key.table, key.metric})));
+                                                doubts.whyInDoubt(key)));
         }
     }
     judgeTimes(times, pairing, rules);

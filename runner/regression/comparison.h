@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -39,9 +40,11 @@ struct Rules {
     /// order in which parallel work draws instances at one depth and sums floats moves the errors
     /// of pictures by 1e-5, and no table prints a fifth digit.
     double valueTolerance = 1e-4;
-    Tables byProcess{};     // see chooseTimes
-    Tables unseeded{};      // of programs and imports whose cases declare no seed
-    std::size_t looks = 5;  // at most, each after as many further rounds
+    Tables byProcess{};  // see chooseTimes
+    /// By table its program, of those whose cases declare no seed; of an import nothing.
+    std::map<std::string, std::string> unseeded{};
+    MetricsOfTables ofSetup{};  // which draw nothing
+    std::size_t looks = 5;      // at most, each after as many further rounds
 };
 
 /// How far two pictures are apart.

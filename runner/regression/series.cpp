@@ -143,6 +143,15 @@ Series standing(const Series& values) {
     return result;
 }
 
+MetricsOfTables setupMetricsOf(const std::vector<records::Record>& records) {
+    MetricsOfTables metrics, ofFrames;
+    for (const records::Record& record : records) {
+        (record.frame == records::kSetup ? metrics : ofFrames).emplace(record.table, record.metric);
+    }
+    std::erase_if(metrics, [&](const auto& one) { return ofFrames.contains(one); });
+    return metrics;
+}
+
 SeriesMap seriesOf(const std::vector<records::Record>& records, const CaseParams& params,
                    const Tables& byClock) {
     std::map<SeriesKey, std::map<int, Frames>> gathered;

@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/metrics/statistics.h"
@@ -51,6 +52,11 @@ using CaseParams = std::map<std::string, std::string>;
 
 /// Names of tables.
 using Tables = std::set<std::string>;
+
+/// Table and metric.
+using MetricsOfTables = std::set<std::pair<std::string, std::string>>;
+/// Those that stand under frame −1 alone.
+MetricsOfTables setupMetricsOf(const std::vector<records::Record>& records);
 
 /// The series of `ok` rows, and of times that are void; of two rows of one place the last, as
 /// tables have it. Of times there is the frame's of each case in the timing lane, no more: every

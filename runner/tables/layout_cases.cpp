@@ -306,24 +306,6 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
     return cases;
 }
 
-namespace {
-
-/// What tells a program from another: how it is started, and what prints its version.
-std::string programText(const config::Experiment& experiment) {
-    const Node& program = config::programOf(experiment);
-    std::string text;
-    const auto add = [&](const char* key) {
-        const Node* value = program.isMap() ? program.find(key) : nullptr;
-        if (value) text += value->toJson().dump() + '\n';
-    };
-    add("command");
-    add("version");
-    if (text.find("{here}") != text.npos) add("here");
-    return text;
-}
-
-}  // namespace
-
 std::map<std::string, Doubt> doubtsOf(std::span<const config::Experiment> experiments,
                                       std::span<const config::Case> planned,
                                       const std::vector<records::Record>& records) {
@@ -331,7 +313,7 @@ std::map<std::string, Doubt> doubtsOf(std::span<const config::Experiment> experi
     for (const config::Experiment& experiment : experiments) {
         const bool isProgram = config::goesByClock(experiment);
         if (!isProgram || !config::isMeasuredHere(experiment)) continue;
-        programs[programText(experiment)].push_back(&experiment);
+        programs[config::programText(experiment)].push_back(&experiment);
     }
     std::map<std::string, Doubt> doubts;
     for (const auto& [text, own] : programs) {

@@ -189,8 +189,8 @@ std::string onceAlong(const CellQuery& query, const LayoutCases& cases,
     // Other scenes, sizes of a picture and frames that are asked for here are no repetitions.
     const auto isOther = [&](const Pooled& one) {
         const bool isSwept = std::ranges::find(cases.axes, one.axis) != cases.axes.end();
-        const bool isSampled = (one.axis == "frame" && !cases.isOfElsewhere) ||
-                               (one.axis == "scene_seed" && !isSwept);
+        const bool isSampled =
+            (one.axis == "frame" && !cases.isOfElsewhere) || (one.axis == "scene_seed" && !isSwept);
         return isSampled || one.axis == kSeedAxis || one.axis == "scene" ||
                one.axis.starts_with("output.") || one.axis.starts_with(config::kSceneAxisPrefix);
     };

@@ -90,8 +90,7 @@ std::optional<double> overProcesses(const Samples& samples, Statistic statistic)
     const bool isOver = isSpread(statistic) || statistic == Statistic::Mean ||
                         statistic == Statistic::Min || statistic == Statistic::Max;
     if (!isOver || samples.processes.size() < 2 || !hasOneValueEach(samples)) return std::nullopt;
-    const std::vector<double> values =
-        metrics::withoutRounding(pooled(samples).begin()->second);
+    const std::vector<double> values = metrics::withoutRounding(pooled(samples).begin()->second);
     const bool areAlike =
         std::ranges::all_of(values, [&](double value) { return value == values.front(); });
     if (areAlike && statistic != Statistic::StdDev) return std::nullopt;

@@ -611,19 +611,18 @@ TEST(Unseeded, WhatIsComputedOfRoundingIsEqual) {
         tables::RecordMaker maker;
         maker.beginCase("", R"({"n":1})").add("e", {b}, "", "1").add("f", {c}, "", "1");
         maker.beginCase("", R"({"n":1.000001})").add("e", {c}, "", "1").add("f", {b}, "", "1");
-        return resultOf(
-                   experimentOf(Of::Import,
-                                "sweep: {n: [1, 1.000001]}\nlayout: {rows: n, columns: {e: "
-                                "{metric: e}, f: {metric: f}, less: {of: '1 - e / e[n=1]'}, "
-                                "apart: {of: e - f}}}\nclaims: {C: {says: so, " +
-                                    claim + "}}\n"),
-                   maker.records())
+        return resultOf(experimentOf(Of::Import,
+                                     "sweep: {n: [1, 1.000001]}\nlayout: {rows: n, columns: {e: "
+                                     "{metric: e}, f: {metric: f}, less: {of: '1 - e / e[n=1]'}, "
+                                     "apart: {of: e - f}}}\nclaims: {C: {says: so, " +
+                                         claim + "}}\n"),
+                        maker.records())
             .verdict;
     };
     for (const double ulps : {-3.0, 3.0}) {
         const double b = 0.4, c = 0.4 * (1.0 + ulps * 2.3e-16);
-        for (const char* number : {"bound: less", "bound: apart", "bound: log2(e / f)",
-                                   "trend: e, over: n"}) {
+        for (const char* number :
+             {"bound: less", "bound: apart", "bound: log2(e / f)", "trend: e, over: n"}) {
             for (const char* within : {", at_least: 0", ", at_most: 0"}) {
                 EXPECT_EQ(verdictOf(b, c, std::string(number) + within), Verdict::Holds)
                     << number << within << ulps;
@@ -635,8 +634,7 @@ TEST(Unseeded, WhatIsComputedOfRoundingIsEqual) {
         }
     }
     EXPECT_EQ(verdictOf(1e13 + 1, 1e13, "bound: apart, more_than: 0, at: {n: 1}"), Verdict::Holds);
-    EXPECT_EQ(verdictOf(0.4, 0.4 + 1e-9, "bound: apart, less_than: 0, at: {n: 1}"),
-              Verdict::Holds);
+    EXPECT_EQ(verdictOf(0.4, 0.4 + 1e-9, "bound: apart, less_than: 0, at: {n: 1}"), Verdict::Holds);
 }
 
 /// Our own counts of work are the device's; those of another program are what it says.

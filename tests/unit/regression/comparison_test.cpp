@@ -7,7 +7,10 @@
 #include <cstdio>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "tests/support/support.h"
 #include "tests/unit/regression/nights.h"
@@ -290,17 +293,42 @@ TEST(Comparison, WhatDiffersInOneCaseIsInDoubtInAll) {
     alike.params = R"({"n":2})";
     SeriesKey other = alike;
     other.metric = "y";
-    const auto told = [&](const Tables& unseeded) {
-        return compare({{differs, {4, 5}}, {alike, {4, 4}}, {other, {4, 4}}},
+    using Programs = std::map<std::string, std::string>;
+    const auto told = [&](const Programs& unseeded, const MetricsOfTables& ofSetup = {}) {
+        return compare({{differs, {4, 5}}, {alike, {4, 4}}, {other, {4}}},
                        {{differs, {4, 4}}, {alike, {5, 5}}, {other, {5, 5}}}, Pairing::Apart,
-                       {.unseeded = unseeded});
+                       {.unseeded = unseeded, .ofSetup = ofSetup});
     };
-    const std::vector<Difference> differences = told({differs.table});
+    const std::vector<Difference> differences = told({{differs.table, "p"}});
     EXPECT_EQ(differences[2].reason, "numbers that differ between processes of one side");
     EXPECT_EQ(differences[0].verdict, SeriesVerdict::CannotTell);
     EXPECT_EQ(differences[0].reason, "in other cases it differs between processes of one side");
-    EXPECT_EQ(differences[1].verdict, SeriesVerdict::Changed) << "another metric";
+    EXPECT_EQ(differences[1].verdict, SeriesVerdict::CannotTell) << "one process against two";
+    EXPECT_EQ(differences[1].reason,
+              "other numbers of the program differ between processes of one side");
+    EXPECT_EQ(told({{differs.table, "p"}}, {{other.table, "y"}})[1].verdict, SeriesVerdict::Changed)
+        << "of the set-up";
     EXPECT_EQ(told({})[0].verdict, SeriesVerdict::Changed) << "of the same seeds";
+    EXPECT_EQ(told({})[1].verdict, SeriesVerdict::Changed) << "of the same seeds";
+    // Of another table, and of other names.
+    const auto beside = [&](const std::string& table, const std::string& metric,
+                            const Programs& unseeded) {
+        SeriesKey one = other;
+        one.table = table;
+        one.metric = metric;
+        const auto told =
+            compare({{differs, {4, 5}}, {one, {4, 4}}}, {{differs, {4, 4}}, {one, {5, 5}}},
+                    Pairing::Apart, {.unseeded = unseeded});
+        return std::ranges::find(told, one, &Difference::key)->verdict;
+    };
+    for (const auto& [program, verdict] :
+         {std::pair("p", SeriesVerdict::CannotTell), {"q", SeriesVerdict::Changed}}) {
+        EXPECT_EQ(beside("t2", "y", {{differs.table, "p"}, {"t2", program}}), verdict);
+    }
+    EXPECT_EQ(beside("t2", "y", {{differs.table, ""}, {"t2", ""}}), SeriesVerdict::Changed)
+        << "of two imports";
+    EXPECT_EQ(beside(differs.table, "rmse", {{differs.table, "p"}}), SeriesVerdict::Changed);
+    EXPECT_EQ(beside(differs.table, "rmse", {{differs.table, ""}}), SeriesVerdict::CannotTell);
 }
 
 /// As the pictures beside it; of a case that declares a seed, or was measured again, it is a
