@@ -91,8 +91,9 @@ std::vector<NoEffect> keysInVain(const Experiment& experiment) {
     if (!isSweep) measure = nullptr;
     const Measure& own = experiment.measure;
     const bool isTimed = own.lane == Measure::Lane::Timing;
-    for (const char* key : {kRelativeError, kTimeBudget}) {
-        require(measure, key, isTimed,
+    for (const char* key : {kRelativeError, kTimeBudget, "warmup"}) {
+        const bool isNone = key == std::string_view("warmup") && own.warmup == 0;
+        require(measure, key, isTimed || isNone,
                 "in the quality lane no rounds are timed; allowed: lane: timing");
     }
     require(measure, kRelativeError, own.relativeError == 0.0 || own.mayContinue(),
@@ -127,8 +128,10 @@ std::vector<NoEffect> keysInVain(const Experiment& experiment) {
 }
 
 void requireEffect(const Experiment& experiment) {
-    for (const auto& [where, why] : keysInVain(experiment)) {
-        if (where.file.text() == experiment.file) throw Error(where, why);
+    for (const auto& found : {keysInVain(experiment), whenInVain(experiment)}) {
+        for (const auto& [where, why] : found) {
+            if (where.file.text() == experiment.file) throw Error(where, why);
+        }
     }
 }
 

@@ -106,12 +106,14 @@ struct NoEffect {
 std::vector<NoEffect> valuesInVain(const Experiment& experiment);
 /// Each `exclude` that no point of the sweep matches.
 std::vector<NoEffect> excludedInVain(const Experiment& experiment);
+/// Each value in `when` that the sweep does not have.
+std::vector<NoEffect> whenInVain(const Experiment& experiment);
 /// Keys of `printed` that judge or mark nothing here.
 std::vector<NoEffect> printedInVain(const Experiment& experiment);
 /// These, and every key of which nothing follows. `experiment` is the file as it stands, with what
 /// profile `paper` makes of it.
 std::vector<NoEffect> keysInVain(const Experiment& experiment);
-/// Throws Error for such keys of the experiment's own file.
+/// Throws Error for such keys, and values, of the experiment's own file.
 void requireEffect(const Experiment& experiment);
 /// Throws Error for a key of a section that stands beside the `allowed` ones.
 void requireInSections(const Node& document, const Names& allowed);

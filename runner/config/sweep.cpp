@@ -411,6 +411,40 @@ std::vector<NoEffect> excludedInVain(const Experiment& experiment) {
     return found;
 }
 
+std::vector<NoEffect> whenInVain(const Experiment& experiment) {
+    if (!experiment.sweep.isMap()) return {};
+    const SweepKeys given = sweepTable().find(experiment.sweep);
+    if (!given.when) return {};
+    Node whole = experiment.sweep;
+    for (const GivenKey* key : {&given.when, &given.exclude}) whole.erase(key->name());
+    const std::vector<AxisPoint> points = expandSweep(whole);
+    std::vector<NoEffect> found;
+    const auto look = [&](const std::string& what, const std::string& axis, const Node& wanted) {
+        std::vector<std::string> values;
+        bool isThere = false;
+        for (const AxisPoint& point : points) {
+            const Node* value = valueAt(point, axis);
+            if (!value) continue;
+            isThere |= matchesAny(*value, wanted);
+            const std::string text = value->toFlowText();
+            if (std::ranges::find(values, text) == values.end()) values.push_back(text);
+        }
+        if (isThere) return;
+        found.push_back(
+            {wanted.location(), fmt::format("{}.{} is {}; allowed: {}", what, axis,
+                                            wanted.toFlowText(), joined(values, " | "))});
+    };
+    for (const auto& [axis, conditions] : given.when->entries()) {
+        for (const auto& [other, wanted] : conditions.entries()) {
+            const std::string what = fmt::format("{}: {}", given.when.name(), axis);
+            for (const Node& one : wanted.isSequence() ? wanted.items() : Node::Sequence{wanted}) {
+                look(what, other, one);
+            }
+        }
+    }
+    return found;
+}
+
 std::vector<AxisPoint> expandSweep(const Node& sweep) {
     if (sweep.isNull()) return {{}};
     if (!sweep.isMap()) throwNotAllowed(sweep, "sweep", "a map, axis: values");

@@ -548,7 +548,8 @@ TEST_F(ExperimentTest, KeysOfWhichNothingFollowsAreRefused) {
     const auto errorOf = [&](const std::string& lines) {
         return loadError("sweep_of: s\ntitle: t\ntechnique: x\n" + lines);
     };
-    for (const char* key : {"relative_error: 0.01", "time_budget_s: 9"}) {
+    EXPECT_EQ(errorOf("measure: {lane: quality, warmup: 0}\n"), "no error");
+    for (const char* key : {"relative_error: 0.01", "time_budget_s: 9", "warmup: 2"}) {
         const std::string name = std::string(key).substr(0, std::string(key).find(':'));
         EXPECT_EQ(errorOf(std::string("measure: {lane: quality, ") + key + "}\n"),
                   "DIR/zju/a.yaml:4:26: '" + name +
@@ -592,6 +593,9 @@ TEST_F(ExperimentTest, KeysOfWhichNothingFollowsAreRefused) {
     EXPECT_EQ(errorOf("sweep: {a: [1, 2], exclude: [{a: 2}, {a: 7}]}\n"),
               "DIR/zju/a.yaml:4:38: exclude: no point of the sweep has {a: 7}");
     EXPECT_EQ(errorOf("sweep: {a: [1, 2], exclude: [{a: 2}]}\n"), "no error");
+    EXPECT_EQ(errorOf("sweep: {m: [x, y], n: [1, 2], when: {n: {m: [x, nope]}}}\n"),
+              "DIR/zju/a.yaml:4:49: when: n.m is nope; allowed: x | y");
+    EXPECT_EQ(errorOf("sweep: {m: [x, y], n: [1, 2], when: {n: {m: x}}}\n"), "no error");
     // Another profile may have what the file lacks; what is extended serves others, too.
     EXPECT_EQ(errorOf("extends: presets/timing.yaml\nmeasure: {relative_error: 0.1, processes: 6}\n"
                       "profiles: {quick: {measure: {relative_error: 0}}}\n"),
