@@ -57,6 +57,12 @@ bool saysPrinted(const tables::Table& table, std::size_t column) {
            });
 }
 
+bool hasPrintedColumn(const tables::Table& table) {
+    bool hasSome = table.isOnlyPrinted;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) hasSome |= saysPrinted(table, i);
+    return hasSome;
+}
+
 std::string tableCsv(const tables::Table& table) {
     std::string text;
     std::vector<std::vector<std::string>> statistics;
@@ -384,7 +390,9 @@ class LatexWriter {
                 "%   and, of several statistics in a cell, each below the cell's key\n",
                 cite(example), example);
         }
-        text_ += fmt::format("%   {}  as printed\n", cite(example + "/printed"));
+        if (hasPrinted_) {
+            text_ += fmt::format("%   {}  as printed\n", cite(example + "/printed"));
+        }
         if (!parameters_.empty()) {
             text_ += fmt::format("%   {}  at which parameters it was measured\n", cite(table_.id));
         }
@@ -417,10 +425,12 @@ class LatexWriter {
         }
     }
 
-    /// Printed and measured stand in columns of their own, so that numbers align.
+    /// Printed and measured stand in columns of their own, so that numbers align; alone what there
+    /// is of one alone.
     void writeColumns() {
         const std::size_t labels = table_.rowAxes.size() + (table_.hasSources() ? 1 : 0);
-        const std::size_t width = table_.isOnlyPrinted ? 1 : 2;
+        const bool areBoth = hasPrinted_ && !table_.isOnlyPrinted;
+        const std::size_t width = areBoth ? 2 : 1;
         text_ += fmt::format("\\begin{{tabular}}{{{}{}}}\n\\toprule\n", std::string(labels, 'l'),
                              std::string(width * table_.columns.size(), 'r'));
         std::vector<std::string> head, subhead;
@@ -429,12 +439,11 @@ class LatexWriter {
         subhead.resize(head.size());
         for (const tables::TableColumn& column : table_.columns) {
             const std::string label = escapeLatex(column.label);
-            head.push_back(
-                table_.isOnlyPrinted ? label : fmt::format("\\multicolumn{{2}}{{c}}{{{}}}", label));
+            head.push_back(areBoth ? fmt::format("\\multicolumn{{2}}{{c}}{{{}}}", label) : label);
             subhead.insert(subhead.end(), {"printed", "measured"});
         }
         text_ += joined(head, " & ") + " \\\\\n";
-        if (!table_.isOnlyPrinted) text_ += joined(subhead, " & ") + " \\\\\n";
+        if (areBoth) text_ += joined(subhead, " & ") + " \\\\\n";
         text_ += "\\midrule\n";
     }
 
@@ -448,7 +457,7 @@ class LatexWriter {
         if (table_.hasSources()) cells.emplace_back(tables::sceneSourceName(row.source));
         for (std::size_t i = 0; i < row.cells.size(); ++i) {
             const tables::Cell& cell = row.cells[i];
-            cells.push_back(cell.printed ? cite(key(index, i) + "/printed") : "");
+            if (hasPrinted_) cells.push_back(cell.printed ? cite(key(index, i) + "/printed") : "");
             if (!table_.isOnlyPrinted) cells.push_back(measuredCell(cell, key(index, i)));
         }
         text_ += joined(cells, " & ") + " \\\\\n";
@@ -474,6 +483,7 @@ class LatexWriter {
     const std::vector<std::string>& runNotes_;
     const std::vector<std::vector<std::string>> rowLabels_;  // beside the rows
     const std::string parameters_ = tables::parametersLine(table_);
+    const bool hasPrinted_ = hasPrintedColumn(table_);
     std::vector<std::string> rowKeys_;     // beside the rows
     std::vector<std::string> columnKeys_;  // beside the columns
     std::string text_;

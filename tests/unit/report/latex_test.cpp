@@ -121,6 +121,20 @@ TEST(Latex, WhatHoldsOfTheRunStandsBelowTheTable) {
                           "elsewhere.\\par}\n"));
 }
 
+TEST(Latex, WithoutPrintedCellsThereAreMeasuredColumnsAlone) {
+    tables::Table table;
+    table.id = "p/1";
+    table.rowAxes = {"a"};
+    table.columns = {{"b", ""}};
+    tables::Cell cell;
+    cell.measured = "5";
+    table.rows = {{{"1"}, tables::SceneSource::Unknown, {cell}}};
+    const std::string latex = tableLatex(table);
+    EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{lr}\n\\toprule\na & b \\\\\n\\midrule\n{1} & "
+                                 "\\gfxrepro{p/1/1/b} \\\\\n"));
+    EXPECT_THAT(latex, Not(HasSubstr("printed")));
+}
+
 TEST(Latex, PrintedAloneHasNoMeasuredColumns) {
     tables::Table table;
     table.id = "p/1";
