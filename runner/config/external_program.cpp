@@ -383,17 +383,17 @@ void readMetrics(const GivenKey& metrics, ExternalProgram& program) {
                         what + " needs '" + keys.unit.name() + "'; \"1\" for none");
         const std::string& unit = lineOf(*keys.unit, keys.unit.in(what));
         if (const std::string why = whyNoTimeName(name, unit); !why.empty()) {
-            throw Error(keys.unit->location(), "program: metric " + why);
+            const char* more = keys.pattern ? "; 'scale' multiplies the pattern's number" : "";
+            throw Error(keys.unit->location(), "program: metric " + why + more);
         }
         program.outputs.metrics.push_back(
             {name, unit, optionalLine(keys.doc, what), betterOf(keys.better, what)});
         if (keys.optional && flagOf(*keys.optional, keys.optional.in(what)))
             program.optionalMetrics.push_back(name);
         const GivenKey &pattern = keys.pattern, &scale = keys.scale;
-        if (scale && !pattern) {
+        if (scale && !pattern)
             throw Error(map.keyLocation(scale.name()),
                         what + ": '" + scale.name() + "' is of a pattern's number alone");
-        }
         if (!pattern) continue;
         if (program.givesAllFrames) {
             throw Error(pattern->location(), what +

@@ -1,6 +1,7 @@
 #include "runner/tables/cell.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -193,20 +194,26 @@ bool isInDoubt(const CellQuery& query, const LayoutCases& cases, const Gathered&
            cases.isInDoubt(query.metric, isSetup, std::ranges::any_of(gathered.units, isMachine));
 }
 
-/// The passes for which the matching cases recorded the metric: for the message when the one that
-/// was asked for is not among them.
-std::string passesWith(const CellQuery& query, const LayoutCases& cases) {
+/// Where the matching cases recorded the metric: at other frames of its pass, else for which
+/// passes.
+struct ThereIs {
     std::set<std::string> passes;
+    std::set<int> frames;
+};
+
+ThereIs whatIsThere(const CellQuery& query, const LayoutCases& cases) {
+    ThereIs there;
     for (const CaseRecords* run : casesAt(query.where, cases)) {
         for (const auto& [number, attempt] : run->processes) {
             for (const records::Record* record : attempt.rows) {
-                if (record->metric == query.metric) {
-                    passes.insert(record->pass.empty() ? "none" : record->pass);
-                }
+                if (record->metric != query.metric) continue;
+                there.passes.insert(record->pass.empty() ? "none" : record->pass);
+                if (record->pass == query.pass) there.frames.insert(record->frame);
             }
         }
     }
-    return joined(std::vector<std::string>(passes.begin(), passes.end()));
+    if (!there.frames.empty()) there.passes.clear();
+    return there;
 }
 
 /// What else the cell takes together: seeds of scenes, and frames, as `measure` asks for.
@@ -222,12 +229,15 @@ void addSampled(const CellQuery& query, const LayoutCases& cases, std::size_t fr
 }
 
 std::string whyNothing(const CellQuery& query, const LayoutCases& cases) {
-    const std::string wanted =
-        "'" + query.metric + "'" + (query.pass.empty() ? "" : " of pass '" + query.pass + "'");
-    const std::string passes = passesWith(query, cases);
+    const auto [passes, frames] = whatIsThere(query, cases);
+    const auto frame = query.where.find("frame");
     return fmt::format(
-        "no {} was recorded{}", wanted,
-        passes.empty() ? cases.recordedInstead(query.metric) : "; it is there for pass: " + passes);
+        "no '{}'{}{} was recorded{}", query.metric,
+        query.pass.empty() ? "" : " of pass '" + query.pass + "'",
+        frame == query.where.end() ? "" : " of frame " + frame->second.front(),
+        !frames.empty()   ? fmt::format("; it is there for frame: {}", fmt::join(frames, ", "))
+        : !passes.empty() ? fmt::format("; it is there for pass: {}", fmt::join(passes, ", "))
+                          : cases.recordedInstead(query.metric));
 }
 
 Gathered gather(const CellQuery& query, const LayoutCases& cases) {
@@ -541,7 +551,7 @@ Cell buildCell(const CellQuery& query, const LayoutCases& cases) {
         cell.isUnrecorded = true;
         const bool mayBeOfOthers = query.pass.empty() || cases.isOfProgram;
         cell.isMisnamed = !cases.recordedInstead(query.metric).empty() ||
-                          (mayBeOfOthers && !passesWith(query, cases).empty());
+                          (mayBeOfOthers && !whatIsThere(query, cases).passes.empty());
     }
     cell.status = gathered.worst;
     cell.message = gathered.message;

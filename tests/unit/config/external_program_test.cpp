@@ -198,6 +198,11 @@ TEST(ExternalProgram, DeclaresWhatItSays) {
         "c.yaml:2:19: program: metric 'render' has the unit 'ms'; a time has a name that ends "
         "in _ms and the unit ms, by which claims know it, and nothing else has");
     EXPECT_EQ(
+        errorOf("command: t\nmetrics: {render_ms: {unit: s, pattern: '(.+) s'}}"),
+        "c.yaml:2:29: program: metric 'render_ms' has the unit 's'; a time has a name that ends in "
+        "_ms and the unit ms, by which claims know it, and nothing else has; 'scale' multiplies "
+        "the pattern's number");
+    EXPECT_EQ(
         errorOf("command: t\nmetrics: {fps: {unit: 1/s}}"),
         "c.yaml:2:23: program: metric 'fps' has the unit '1/s'; what is per second has a name "
         "that ends in _per_second, by which claims know that it varies");

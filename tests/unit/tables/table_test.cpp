@@ -207,6 +207,22 @@ TEST(Table, WrongPassSaysWhichThereAre) {
               "no 'gpu_time_ms' of pass 'draw' was recorded; it is there for pass: drawing, none");
 }
 
+TEST(Table, AMissingFrameSaysWhichThereAre) {
+    RecordMaker maker;
+    maker.beginCase("", R"({"m":"b"})").frame(1).add("e", {1.0}, "", "1");
+    maker.frame(7).add("e", {2.0}, "", "1");
+    maker.beginCase("", R"({"m":"c"})").frame(1).add("e", {3.0}, "", "1");
+    config::Experiment experiment = experimentFrom(
+        "sweep: {m: [b, c]}\nlayout: {rows: [m, frame], columns: {e: {metric: e}}}\n");
+    experiment.technique = config::kImported;
+    const Table table = buildTable(experiment, maker.records());
+    ASSERT_EQ(table.rows.size(), 4U);
+    EXPECT_EQ(table.rowName(3), "m=c, frame=7");
+    EXPECT_EQ(table.rows[3].cells[0].message,
+              "no 'e' of frame 7 was recorded; it is there for frame: 1");
+    EXPECT_FALSE(table.rows[3].cells[0].isMisnamed);
+}
+
 TEST(Table, FailedCaseShowsItsStatus) {
     RecordMaker maker = duckAndBunny();
     maker.beginCase("models/bunny").fail(records::Status::Timeout, "longer than 120 s");
