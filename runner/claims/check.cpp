@@ -26,24 +26,117 @@ bool isReadable(const ClaimSpec& claim, const tables::Table& table) {
     }
 }
 
+bool isLeftOut(const tables::TableRow& row, std::size_t axis) {
+    return row.labels[axis] == tables::kLeftOut;
+}
+
+/// Where `at` names a value of an axis that `when` of the sweep leaves out of what else it names:
+/// what to write; else empty.
+std::string whyNoRow(const ClaimSpec& claim, const tables::Table& table) {
+    const auto has = [&](const tables::TableRow& row, const auto& chosen) {
+        const auto axis = std::ranges::find(table.rowAxes, chosen.first) - table.rowAxes.begin();
+        return std::ranges::any_of(chosen.second, [&](const Node& value) {
+            return tables::canonicalText(value) == row.labels[static_cast<std::size_t>(axis)];
+        });
+    };
+    for (const auto& left : claim.at) {
+        const auto found = std::ranges::find(table.rowAxes, left.first) - table.rowAxes.begin();
+        const auto axis = static_cast<std::size_t>(found);
+        std::vector<const tables::TableRow*> others;
+        for (const tables::TableRow& row : table.rows) {
+            const bool isOther = std::ranges::all_of(claim.at, [&](const auto& chosen) {
+                return chosen.first == left.first || has(row, chosen);
+            });
+            if (isOther) others.push_back(&row);
+        }
+        const auto isSuch = [&](const auto* row) { return isLeftOut(*row, axis); };
+        if (others.empty() || !std::ranges::all_of(others, isSuch)) continue;
+        return fmt::format(
+            "has no row: 'when' of the sweep leaves what else 'at' names without '{0}'; allowed: "
+            "'at' without '{0}'",
+            left.first);
+    }
+    return "";
+}
+
+/// What to write in the place of a claim on what never stands in one row.
+std::string besideInstead(const ClaimSpec& claim, const tables::Table& table, std::size_t axis) {
+    const std::string& name = table.rowAxes[axis];
+    if (name == tables::kSeedAxis) {
+        return "a layout whose rows do not name it, with its values in the column: 'where: {seed: "
+               "[…]}'";
+    }
+    if (claim.operands.size() == 1) return fmt::format("'at' without '{}'", name);
+    std::string column = "x", place = "AXIS=VALUE";
+    for (const auto& [of, columns] : claim.at) {
+        if (claim.across && of == kColumnAxis && columns.size() == 1) column = columns[0].text();
+    }
+    for (std::size_t i = 0; i < table.columns.size() && claim.across; ++i) {
+        const bool isBaseline = std::ranges::all_of(table.rows, [&](const tables::TableRow& row) {
+            return isLeftOut(row, axis) || !row.cells[i].isPlanned;
+        });
+        const std::string& label = table.columns[i].label;
+        const bool isCompared = std::ranges::find(claim.operands, label) != claim.operands.end();
+        if (isBaseline && isCompared) place = *claim.across + "=" + label;
+    }
+    return fmt::format(
+        "rows of both, with a column 'of: \"{0} / {0}[{1}]\"' in the layout, and a bound of it",
+        column, place);
+}
+
 /// Where what is compared never stands in one row, as some of it has no value of an axis that
 /// `when` of the sweep leaves out: what to write; else empty.
-std::string whyNeverBeside(const ClaimReader& reader, const tables::Table& table) {
-    if (!reader.readsAny() || !reader.plannedRows().empty()) return "";
+std::string whyNeverBeside(const ClaimSpec& claim, const ClaimReader& reader,
+                           const tables::Table& table) {
+    if (!reader.readsAny()) return whyNoRow(claim, table);
+    if (!reader.plannedRows().empty()) return "";
     for (std::size_t axis = 0; axis < table.rowAxes.size(); ++axis) {
-        const auto isLeftOut = [&](const tables::TableRow& row) {
-            return row.labels[axis] == tables::kLeftOut;
-        };
-        if (std::ranges::none_of(table.rows, isLeftOut)) continue;
-        const std::string& name = table.rowAxes[axis];
+        const auto isSuch = [&](const tables::TableRow& row) { return isLeftOut(row, axis); };
+        if (std::ranges::none_of(table.rows, isSuch)) continue;
         return fmt::format(
             "has no row of all that it compares: 'when' of the sweep leaves some of it without "
             "'{}'; allowed: {}",
-            name,
-            name == tables::kSeedAxis
-                ? "a layout whose rows do not name it, with its values in the column: 'where: "
-                  "{seed: […]}'"
-                : "what has it, by 'at'");
+            table.rowAxes[axis], besideInstead(claim, table, axis));
+    }
+    return "";
+}
+
+/// The rows of each group of which the sweep has what the claim reads. A column's values, along
+/// which some claims go, are not known yet.
+std::vector<Rows> plannedGroups(const ClaimSpec& claim, ClaimReader& reader,
+                                const tables::Table& table) {
+    const bool isAlongAxis =
+        !claim.over || std::ranges::find(table.rowAxes, *claim.over) != table.rowAxes.end();
+    if (!isAlongAxis) return {};
+    const Rows planned = reader.plannedRows();
+    std::vector<Rows> groups = reader.groups();
+    for (Rows& group : groups) {
+        std::erase_if(group, [&](std::size_t row) {
+            return std::ranges::find(planned, row) == planned.end();
+        });
+    }
+    return groups;
+}
+
+std::size_t rowsNeeded(const ClaimSpec& claim) {
+    std::size_t most = 1;
+    for (const ClaimPart& part : partsOf(claim)) most = std::max(most, part.minRows);
+    return most;
+}
+
+/// Where `when` of the sweep leaves a group of rows with fewer than the claim needs: what to write;
+/// else empty.
+std::string whyTooFewRows(const ClaimSpec& claim, ClaimReader& reader, const tables::Table& table) {
+    const std::size_t needed = rowsNeeded(claim);
+    for (const Rows& group : plannedGroups(claim, reader, table)) {
+        if (group.empty() || group.size() >= needed) continue;
+        for (std::size_t axis = 0; axis < table.rowAxes.size(); ++axis) {
+            if (!isLeftOut(table.rows[group[0]], axis)) continue;
+            return fmt::format(
+                "needs {} rows along '{}', and has one where 'when' of the sweep leaves it without "
+                "'{}'; allowed: other rows, by 'at'",
+                needed, claim.over.value_or(""), table.rowAxes[axis]);
+        }
     }
     return "";
 }
@@ -56,11 +149,12 @@ std::string whyNeverJudged(const ClaimSpec& claim, const tables::Table& table) {
     }
     try {
         const tables::Table read = tableFor(claim, table);
-        const ClaimReader reader(claim, read);
+        ClaimReader reader(claim, read);
         if (const std::optional<std::string> word = reader.wordAlongOver()) {
             return fmt::format("needs numbers along '{}', which holds '{}'", *claim.over, *word);
         }
-        if (std::string why = whyNeverBeside(reader, read); !why.empty()) return why;
+        if (std::string why = whyNeverBeside(claim, reader, read); !why.empty()) return why;
+        if (std::string why = whyTooFewRows(claim, reader, read); !why.empty()) return why;
         return reader.isOverItself() ? fmt::format("holds '{}' against itself", *claim.over) : "";
     } catch (const ExpressionError&) {
         throw;
@@ -220,6 +314,27 @@ void requireJudgeable(const config::Experiment& experiment, const tables::Table&
         if (!why.empty()) {
             throw Error(claim.location, fmt::format("claim '{}' {}", claim.id, why));
         }
+    }
+}
+
+void requireInOneRow(const config::Experiment& experiment, const tables::Table& table) {
+    const std::string column = tables::unnamedColumn(experiment, table);
+    if (experiment.layout.isGiven || column.empty()) return;
+    for (const ClaimSpec& claim : experiment.claims) {
+        try {
+            const tables::Table read = tableFor(claim, table);
+            ClaimReader reader(claim, read);
+            const std::vector<Rows> groups = plannedGroups(claim, reader, read);
+            const auto isEnough = [&](const Rows& group) {
+                return group.size() >= rowsNeeded(claim);
+            };
+            if (groups.empty() || std::ranges::any_of(groups, isEnough)) continue;
+        } catch (const Error&) {  // said elsewhere
+            continue;
+        }
+        throw Error(claim.location, fmt::format("claim '{}': what it compares stands in rows that "
+                                                "differ by {}",
+                                                claim.id, column));
     }
 }
 

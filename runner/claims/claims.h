@@ -155,6 +155,10 @@ std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table);
 /// column over itself, `at` with an empty list. `table` may have been built from no records.
 void requireJudgeable(const config::Experiment& experiment, const tables::Table& table);
 
+/// Throws Error for a claim on an import that nobody laid out, where no row has all that it
+/// compares because they differ by a column of the file that the config does not name.
+void requireInOneRow(const config::Experiment& experiment, const tables::Table& table);
+
 /// Throws Error for what `gfxrepro check` refuses of the experiment's claims: a time whose kind is
 /// open, or that of what is no time; a bound from print that is not what was printed (an aim of
 /// ours may better that); cells to which an input was fitted, in a claim that is not of that input;

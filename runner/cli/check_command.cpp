@@ -435,8 +435,9 @@ void requireLaidOut(const Context& context, const scene::Catalog& catalog,
         tables::requireCases(
             experiment, std::vector{tables::gatherCases(experiment, swept, {}),
                                     tables::gatherCases(experiment, plan.cases, imported.records)});
-        tables::requireToldApart(experiment,
-                                 tables::buildTable(experiment, plan.cases, imported.records));
+        const tables::Table table = tables::buildTable(experiment, plan.cases, imported.records);
+        tables::requireToldApart(experiment, table);
+        claims::requireInOneRow(experiment, table);
     }
 }
 

@@ -126,6 +126,11 @@ bool isNamed(const std::string& axis, const Node& sweep) {
     });
 }
 
+std::string columnOfFile(const std::string& name, const std::vector<std::string>& values) {
+    return fmt::format("'{}' ({}), a column of the file; allowed: in 'sweep', as a parameter{}",
+                       name, shortened(values, ", "), kRepetitions);
+}
+
 /// Throws Error where two such rows have a number of one column each.
 void requireOtherNumbers(const config::Experiment& experiment, const Table& table,
                          const TableRow& a, const TableRow& b) {
@@ -136,9 +141,8 @@ void requireOtherNumbers(const config::Experiment& experiment, const Table& tabl
         const auto apart = std::ranges::mismatch(a.labels, b.labels).in1 - a.labels.begin();
         const auto axis = static_cast<std::size_t>(apart);
         throw Error(experiment.document.keyLocation("claims"),
-                    fmt::format("claims: rows that are alike in 'sweep' differ by '{}' ({}, {}), a "
-                                "column of the file; allowed: in 'sweep', as a parameter{}",
-                                table.rowAxes[axis], a.labels[axis], b.labels[axis], kRepetitions));
+                    "claims: rows that are alike in 'sweep' differ by " +
+                        columnOfFile(table.rowAxes[axis], {a.labels[axis], b.labels[axis]}));
     }
 }
 
@@ -166,6 +170,21 @@ void requireCases(const config::Experiment& experiment, std::span<const LayoutCa
     if (selections.empty()) return;
     for (const config::Selection* selection : selections) requireValues(*selection, profiles);
     requireEachPlanned(experiment.layout, profiles, experiment.document.keyLocation("layout"));
+}
+
+std::string unnamedColumn(const config::Experiment& experiment, const Table& table) {
+    if (config::isMeasuredHere(experiment) || !experiment.sweep.isMap()) return "";
+    for (std::size_t axis = 0; axis < table.rowAxes.size(); ++axis) {
+        std::vector<std::string> values;
+        for (const TableRow& row : table.rows) {
+            const std::string& label = row.labels[axis];
+            if (std::ranges::find(values, label) == values.end()) values.push_back(label);
+        }
+        if (values.size() > 1 && !isNamed(table.rowAxes[axis], experiment.sweep)) {
+            return columnOfFile(table.rowAxes[axis], values);
+        }
+    }
+    return "";
 }
 
 void requireToldApart(const config::Experiment& experiment, const Table& table) {

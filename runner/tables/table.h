@@ -153,6 +153,10 @@ void requireCases(const config::Experiment& experiment, std::span<const LayoutCa
 /// which the layout does not name, and where those of a column with `equal` have no curve.
 void requireToldApart(const config::Experiment& experiment, const Table& table);
 
+/// Of an import a column of its file that tells rows apart and that the sweep does not name, as a
+/// message ends that refuses it; empty where there is none.
+std::string unnamedColumn(const config::Experiment& experiment, const Table& table);
+
 /// Throws Error for a sum, a count or a deviation of what has one value.
 void requireStatistics(const config::Experiment& experiment, std::span<const config::Case> planned,
                        const Table& table);

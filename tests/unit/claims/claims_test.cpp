@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "engine/core/random.h"
 #include "runner/claims/judge.h"
@@ -1319,6 +1320,86 @@ TEST(Claims, WhatWhenLeavesOutStandsBesideNothing) {
         "t.yaml:4:2: claim 'C' has no row of all that it compares: 'when' of the sweep leaves "
         "some of it without 'seed'; allowed: a layout whose rows do not name it, with its "
         "values in the column: 'where: {seed: […]}'");
+}
+
+TEST(Claims, WhatWhenLeavesOutIsNoRow) {
+    const auto refused = [](const std::string& layout, const std::string& claim) {
+        config::Experiment experiment = tables::experimentFrom(
+            "sweep: {m: [a, b, c], n: [1, 2], when: {n: {m: [b, c]}}}\nlayout: {" + layout +
+            "}\nclaims: {C: {says: so, " + claim + "}}\n");
+        experiment.claims[0].location = {"t.yaml", 4, 2};
+        return errorText([&] { requireJudgeable(experiment, tables::buildTable(experiment, {})); });
+    };
+    const std::string rows = "rows: [m, n], columns: {e: {metric: e}, r: {of: 'e / e[m=a]'}}";
+    const std::string beside =
+        "t.yaml:4:2: claim 'C' has no row of all that it compares: 'when' of the sweep leaves some "
+        "of it without 'n'; allowed: ";
+    const std::string column =
+        beside +
+        "rows of both, with a column 'of: \"e / e[m=a]\"' in the layout, and a bound of it";
+    EXPECT_EQ(refused(rows, "order: [a, b], of: e"), column);
+    EXPECT_EQ(refused(rows, "ratio: m=a / m=b, of: e, at_most: 1, at: {n: 2}"), column);
+    EXPECT_EQ(refused(rows, "bound: r, at_most: 1, at: {m: b, n: 2}"), "no error");
+    EXPECT_EQ(refused(rows, "order: [b, c], of: e"), "no error");
+    const std::string columns = "rows: n, columns: m, cell: {metric: e}";
+    EXPECT_EQ(refused(columns, "order: a < b"),
+              beside +
+                  "rows of both, with a column 'of: \"x / x[AXIS=VALUE]\"' in the layout, and "
+                  "a bound of it");
+    EXPECT_EQ(refused(columns, "bound: a, at_most: 1, at: {n: 2}"), beside + "'at' without 'n'");
+    EXPECT_EQ(refused(columns, "bound: a, at_most: 1"), "no error");
+    for (const char* claim :
+         {"bound: e, at_most: 1", "exact: e, equals: 1", "bound: r, at_most: 1"}) {
+        EXPECT_EQ(
+            refused(rows, std::string(claim) + ", at: {m: a, n: 2}"),
+            "t.yaml:4:2: claim 'C' has no row: 'when' of the sweep leaves what else 'at' names "
+            "without 'n'; allowed: 'at' without 'n'")
+            << claim;
+    }
+    const std::string one =
+        ", and has one where 'when' of the sweep leaves it without 'n'; allowed: other rows, by "
+        "'at'";
+    EXPECT_EQ(refused(rows, "independent: e, of: m, at_most: 1%"),
+              "t.yaml:4:2: claim 'C' needs 2 rows along 'm'" + one);
+    EXPECT_EQ(refused(rows, "independent: e, of: n, at_most: 1%, at: {m: a}"),
+              "t.yaml:4:2: claim 'C' needs 2 rows along 'n'" + one);
+    EXPECT_EQ(refused(rows, "independent: e, of: m, at_most: 1%, at: {m: [b, c]}"), "no error");
+}
+
+/// Of numbers that were measured elsewhere, and that nobody laid out.
+TEST(Claims, WhatNoRowHasByAColumnOfTheFileIsRefused) {
+    const auto refused = [](const std::string& claim) {
+        tables::RecordMaker maker;
+        for (const auto& [m, n, run] :
+             {std::tuple("b", 1, 0), {"b", 2, 1}, {"c", 1, 2}, {"c", 2, 3}}) {
+            maker.beginCase("", fmt::format(R"({{"m":"{}","n":{},"run":{}}})", m, n, run));
+            maker.add("e", {1.0 + run}, "", "1");
+        }
+        tables::Recorded records = maker.records();
+        for (config::Case& one : records.cases) one.axes = one.params;
+        for (records::Record& one : records) one.table = "sweep/s";
+        for (config::Case& one : records.cases) one.experiment = "sweep/s";
+        const test::TemporaryFolder folder;
+        const auto file = folder.write(
+            "s.yaml",
+            "sweep_of: s\ntitle: t\ntechnique: imported\nsweep: {m: [b, c], n: [1, 2]}\n"
+            "claims: {C: {says: so, " +
+                claim + "}}\n");
+        config::Experiment experiment = config::loadExperiment(file, {}, folder.path());
+        experiment.claims[0].location = {"t.yaml", 4, 2};
+        return errorText([&] {
+            requireInOneRow(experiment, tables::buildTable(experiment, records.cases, records));
+        });
+    };
+    const std::string why =
+        "t.yaml:4:2: claim 'C': what it compares stands in rows that differ by 'run' (0, 1, 2, 3), "
+        "a "
+        "column of the file; allowed: in 'sweep', as a parameter; what repeats a case has its "
+        "number "
+        "in the column 'process', or in 'seed' where each has random numbers of its own";
+    EXPECT_EQ(refused("order: [b, c], of: e"), why);
+    EXPECT_EQ(refused("trend: e, over: n, direction: increasing"), why);
+    EXPECT_EQ(refused("bound: e, at_most: 1"), "no error");
 }
 
 TEST(Claims, WhatIsNoExpressionOrReadsNoColumnIsRefusedBeforeAnythingIsMeasured) {
