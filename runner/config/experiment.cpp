@@ -420,7 +420,8 @@ void requireColumns(const GivenKey& fit, const TableNames& names) {
 
 std::map<std::string, std::string> labelsOf(const GivenKey& given, const Node& document) {
     std::map<std::string, std::string> labels;
-    for (const auto& [name, words] : mapIn(given, document).entries()) {
+    const Node map = mapIn(given, document);
+    for (const auto& [name, words] : map.entries()) {
         labels[name] = lineOf(words, given.name() + ": '" + name + "'");
     }
     return labels;
