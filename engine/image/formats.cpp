@@ -384,7 +384,9 @@ std::array<float, 3> factorsOfHdr(Bytes& file, std::vector<std::string>& notes) 
         }
         if (key == "PRIMARIES") {
             // Radiance's own, whose white is that of equal energy, everybody takes for sRGB's.
+            // Zeros are none: so write programs that do not know them.
             const auto numbers = numbersOf(line, 8);
+            if (std::ranges::count(numbers, 0.0F) == 8) continue;
             for (std::size_t i = 0; i < numbers.size(); ++i) {
                 if (std::abs(numbers[i] - kRec709[i]) > 0.03F) {
                     file.fail(line + ": other primaries than those of Rec. 709");

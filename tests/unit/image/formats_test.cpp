@@ -217,6 +217,8 @@ TEST_F(Formats, RadiancesPicturesAreLinear) {
               "DIR/d.hdr: FORMAT=32-bit_rle_xyze is not read; 32-bit_rle_rgbe is");
     EXPECT_EQ(errorOf("d.hdr", head + "EXPOSURE=0\n" + pixels),
               "DIR/d.hdr: its header has 'EXPOSURE=0'");
+    const std::string noPrimaries = head + "PRIMARIES=0 0 0 0 0 0 0 0\n" + pixels;
+    EXPECT_EQ(readPicture(folder_.write("c.hdr", noPrimaries)).linear, small.linear);
     EXPECT_EQ(errorOf("d.hdr", head + "PRIMARIES=1 0 0 1 0 0 .33 .33\n" + pixels),
               "DIR/d.hdr: PRIMARIES=1 0 0 1 0 0 .33 .33: other primaries than those of Rec. 709");
     EXPECT_EQ(errorOf("d.hdr", head + "\n+Y 1 +X 4\n"),
