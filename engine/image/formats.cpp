@@ -94,6 +94,12 @@ class Bytes {
         if (!value || *value < 0) fail("has '" + text + "' where a number is allowed");
         return *value;
     }
+    /// Of a line that ends in blanks, and has nothing but these bytes behind it.
+    void skipLineEnd(std::size_t count) {
+        const std::size_t more = rest_.size() - std::min(count, rest_.size());
+        const bool isEnd = more == 1 || (more == 2 && isBlank(std::to_integer<int>(rest_[0])));
+        if (isEnd && rest_[more - 1] == std::byte{'\n'}) take(more);
+    }
     /// All that is behind the last word, whose blank may be the two characters of a line's end.
     std::span<const std::byte> raster(std::size_t count) {
         if (isReturn_ && rest_.size() > count && rest_[0] == std::byte{'\n'}) take(1);
@@ -290,6 +296,7 @@ Decoded floatsOfPfm(Bytes& file, int channels) {
     Decoded result{ImageF(width, height, channels), true};
     const auto values = result.values.values();
     file.begin("its pixels");
+    file.skipLineEnd(values.size_bytes());
     std::memcpy(values.data(), file.raster(values.size_bytes()).data(), values.size_bytes());
     if ((*scale > 0.0) != (std::endian::native == std::endian::big)) {
         for (float& value : values) {

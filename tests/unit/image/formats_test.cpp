@@ -148,6 +148,12 @@ TEST_F(Formats, PortableFloatMapsAreLinear) {
     const Picture windows =
         readPicture(folder_.write("w.pfm", "PF\r\n2 2\r\n-1.0\r\n" + bytesOf(rows)));
     EXPECT_EQ(windows.linear, picture.linear);
+    for (const char* end : {" \n", " \r\n", "  \n", "\t\n"}) {
+        const Picture blanks =
+            readPicture(folder_.write("w.pfm", std::string("PF\n2 2\n-1.0") + end + bytesOf(rows)));
+        EXPECT_EQ(blanks.linear, picture.linear) << end;
+        EXPECT_TRUE(blanks.notes.empty()) << end;
+    }
     std::string swapped = bytesOf(std::vector<float>{1.5F, 2.5F});
     for (std::size_t i = 0; i < swapped.size(); i += 4) std::reverse(&swapped[i], &swapped[i] + 4);
     EXPECT_EQ(readPicture(folder_.write("b.pfm", "Pf\n2 1\n1\n" + swapped)).linear.at(1, 0), 2.5F);
