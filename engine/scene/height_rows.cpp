@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -202,16 +201,8 @@ std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
                         path.string(), sidecar.string()));
     }
     const Node root = parseYamlFile(sidecar);
-    if (!root.isMap()) throw Error(root.location(), "a raw height map's sidecar must be a map");
-    for (const auto& [key, value] : root.entries()) {
-        constexpr std::string_view kKeys[] = {"width", "height", "type", "byte_order", "no_data"};
-        if (std::find(std::begin(kKeys), std::end(kKeys), key) == std::end(kKeys)) {
-            throw Error(root.keyLocation(key),
-                        fmt::format("unknown key '{}' (allowed: width, height, type, byte_order, "
-                                    "no_data)",
-                                    key));
-        }
-    }
+    requireKeys(root, "a raw height map's sidecar",
+                std::vector<std::string>{"width", "height", "type", "byte_order", "no_data"});
     const long long width = requiredEntry(root, "width").asInteger();
     const long long height = requiredEntry(root, "height").asInteger();
     checkHeightMapSize(width, height, sidecar.string());

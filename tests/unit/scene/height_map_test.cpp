@@ -148,6 +148,10 @@ TEST(HeightMap, ReadsRawFilesBesideTheirSidecar) {
                   ": a height map of 2000000000 x 2000000000 samples; allowed: 2 to 65537 a side");
     writeFileAtomic(sidecar, "{width: 2, height: 3, type: f64}\n");
     EXPECT_EQ(messageOf(path), sidecar.string() + ":1:29: type is 'f64'; allowed: u16 | i16 | f32");
+    writeFileAtomic(sidecar, "{width: 2, height: 3, typ: f32}\n");
+    EXPECT_EQ(messageOf(path), sidecar.string() +
+                                   ":1:23: a raw height map's sidecar: unknown key 'typ'; did you "
+                                   "mean 'type'?");
 }
 
 /// `value` in four bytes at `at`, the first the highest.
