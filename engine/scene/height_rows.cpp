@@ -6,7 +6,6 @@
 #include <tiffio.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cerrno>
 #include <cmath>
@@ -100,24 +99,24 @@ class PngHeightRows : public HeightRows {
     std::vector<std::uint16_t> row_;
 };
 
-enum class ValueType { U8, I8, U16, I16, F32 };
+enum class ValueType { U8, I8, U16, I16, U32, I32, F32, F64 };
 
 std::size_t valueBytes(ValueType type) {
-    return type == ValueType::F32 ? 4 : type == ValueType::U8 || type == ValueType::I8 ? 1 : 2;
+    constexpr std::size_t kBytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+    return kBytes[static_cast<std::size_t>(type)];
 }
 
-float valueAt(const char* bytes, ValueType type, bool isBigEndian) {
-    if (type == ValueType::U8) return static_cast<unsigned char>(*bytes);
-    if (type == ValueType::I8) return static_cast<signed char>(*bytes);
-    std::array<char, 4> ordered{};
-    const std::size_t size = valueBytes(type);
-    const bool isSwapped = isBigEndian != (std::endian::native == std::endian::big);
-    for (std::size_t i = 0; i < size; ++i) ordered[isSwapped ? size - 1 - i : i] = bytes[i];
-    if (type == ValueType::F32) return std::bit_cast<float>(ordered);
-    std::uint16_t bits = 0;
-    std::memcpy(&bits, ordered.data(), sizeof bits);
-    return type == ValueType::U16 ? static_cast<float>(bits)
-                                  : static_cast<float>(static_cast<std::int16_t>(bits));
+double valueAt(const char* bytes, ValueType type, bool isBigEndian) {
+    const std::size_t size = valueBytes(type), spare = 64 - 8 * size;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+        bits = bits << 8 | static_cast<unsigned char>(bytes[isBigEndian ? i : size - 1 - i]);
+    }
+    if (type == ValueType::F64) return std::bit_cast<double>(bits);
+    if (type == ValueType::F32) return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+    const bool isSigned = type == ValueType::I8 || type == ValueType::I16 || type == ValueType::I32;
+    return isSigned ? static_cast<double>(static_cast<std::int64_t>(bits << spare) >> spare)
+                    : static_cast<double>(bits);
 }
 
 /// A file of nothing but values.
@@ -140,7 +139,7 @@ class BareRows : public HeightRows {
         }
         const std::size_t step = valueBytes(type_);
         for (std::size_t i = 0; i < row_.size(); i += step) {
-            *values++ = valueAt(&row_[i], type_, isBigEndian_);
+            *values++ = static_cast<float>(valueAt(&row_[i], type_, isBigEndian_));
         }
     }
 
@@ -228,8 +227,8 @@ constexpr std::uint32_t kGeoKeys = 34735, kGeoKeyDoubles = 34736;
 /// Tiles of 1,024² of floats across the widest map.
 constexpr std::size_t kMostTileRowBytes = std::size_t{260} << 20;
 
-/// Grey TIFF of 8 or 16 bit integers or 32 bit floats, in strips or tiles, with GDAL's no-data tag
-/// (libtiff).
+/// Grey TIFF of integers of 8 to 32 bits or floats of 32 or 64, in strips or tiles, with GDAL's
+/// no-data tag (libtiff).
 class TiffRows : public HeightRows {
   public:
     explicit TiffRows(const fs::path& path)
@@ -239,7 +238,7 @@ class TiffRows : public HeightRows {
         readHeader();
         sizeSamples = {static_cast<int>(width_), static_cast<int>(height_)};
         isEightBit = valueBytes(type_) == 1;
-        canBeNan = type_ == ValueType::F32;
+        canBeNan = type_ == ValueType::F32 || type_ == ValueType::F64;
         if (TIFFIsTiled(tiff_.get()) != 0) {
             prepareTiles();
         } else {
@@ -262,7 +261,16 @@ class TiffRows : public HeightRows {
         }
         constexpr bool kIsBigEndian = std::endian::native == std::endian::big;  // by libtiff
         for (std::uint32_t x = 0; x < width_; ++x) {
-            values[x] = valueAt(row + x * valueBytes(type_), type_, kIsBigEndian);
+            const double value = valueAt(row + x * valueBytes(type_), type_, kIsBigEndian);
+            values[x] = static_cast<float>(value);
+            const bool fits =
+                type_ == ValueType::F64 ? std::isfinite(values[x]) : double{values[x]} == value;
+            if (fits || !std::isfinite(value) || std::ranges::count(noData, values[x]) > 0)
+                continue;
+            throw Error(
+                fmt::format("{}: sample {} of row {} is {:.17g}; allowed: what fits into a "
+                            "float, as whole numbers up to 16777216",
+                            name_, x, row_, value));
         }
         ++row_;
     }
@@ -284,17 +292,17 @@ class TiffRows : public HeightRows {
             std::uint16_t bits, format;
             ValueType type;
         };
-        constexpr Kind kKinds[] = {{8, SAMPLEFORMAT_UINT, ValueType::U8},
-                                   {8, SAMPLEFORMAT_INT, ValueType::I8},
-                                   {16, SAMPLEFORMAT_UINT, ValueType::U16},
-                                   {16, SAMPLEFORMAT_INT, ValueType::I16},
-                                   {32, SAMPLEFORMAT_IEEEFP, ValueType::F32}};
+        constexpr Kind kKinds[] = {
+            {8, SAMPLEFORMAT_UINT, ValueType::U8},     {8, SAMPLEFORMAT_INT, ValueType::I8},
+            {16, SAMPLEFORMAT_UINT, ValueType::U16},   {16, SAMPLEFORMAT_INT, ValueType::I16},
+            {32, SAMPLEFORMAT_UINT, ValueType::U32},   {32, SAMPLEFORMAT_INT, ValueType::I32},
+            {32, SAMPLEFORMAT_IEEEFP, ValueType::F32}, {64, SAMPLEFORMAT_IEEEFP, ValueType::F64}};
         const Kind* kind = std::ranges::find_if(
             kKinds, [&](const Kind& each) { return each.bits == bits && each.format == format; });
         if (channels != 1 || kind == std::end(kKinds)) {
             throw Error(
                 fmt::format("{}: {} × {} bits a sample (sample format {}); allowed: one number, "
-                            "an integer of 8 or 16 bits or a float of 32",
+                            "an integer of 8, 16 or 32 bits or a float of 32 or 64",
                             name_, channels, bits, format));
         }
         type_ = kind->type;
@@ -373,6 +381,9 @@ class TiffRows : public HeightRows {
         spacingM = units.spacingM;
         spacingWarning = units.warning;
         unitWarning = units.unitWarning;
+        if (type_ != ValueType::F64) return;
+        unitWarning += unitWarning.empty() ? "" : "; ";
+        unitWarning += "its heights, floats of 64 bits, are rounded to 32: to some 7 digits";
     }
 
     /// Of a tag that libtiff itself does not know; empty where there is none.

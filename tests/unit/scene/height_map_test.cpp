@@ -108,6 +108,40 @@ TEST(HeightMap, ReadsTiffsAndTheirNoData) {
     }
 }
 
+TEST(HeightMap, ReadsWiderSamplesOfTiffs) {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.tif";
+    const std::int32_t i32[] = {-5, 16777216, 8848860, -2147483647, 4, -32768};
+    writeTiff(path, i32, 32, SAMPLEFORMAT_INT, "-2147483647");
+    const HeightMap whole = loadHeightMap(path, {});
+    EXPECT_EQ(whole.filledCount, 2U);
+    EXPECT_EQ(whole.heightM(0, 0), -5.0F);
+    EXPECT_EQ(whole.heightM(1, 0), 16777216.0F);
+    EXPECT_EQ(whole.heightM(2, 0), 8848860.0F);
+    EXPECT_EQ(whole.unitWarning, "");
+    const std::uint32_t u32[] = {3000000000U, 1, 2, 3, 4294967295U, 5};
+    writeTiff(path, u32, 32, SAMPLEFORMAT_UINT, "4294967295");
+    EXPECT_EQ(loadHeightMap(path, {}).heightM(0, 0), 3e9F);
+    EXPECT_EQ(loadHeightMap(path, {}).filledCount, 1U);
+    const double lowest = -std::numeric_limits<double>::max();
+    const double f64[] = {0.1, NAN, lowest, 1.0, 2.0, -1.5};
+    writeTiff(path, f64, 64, SAMPLEFORMAT_IEEEFP, "-1.7976931348623157e+308");
+    const HeightMap doubles = loadHeightMap(path, {});
+    EXPECT_EQ(doubles.filledCount, 2U);
+    EXPECT_EQ(doubles.heightM(0, 0), 0.1F);
+    EXPECT_EQ(doubles.heightM(2, 1), -1.5F);
+    EXPECT_EQ(doubles.unitWarning,
+              "its heights, floats of 64 bits, are rounded to 32: to some 7 digits");
+    const std::string allowed =
+        "; allowed: what fits into a float, as whole numbers up to 16777216";
+    writeTiff(path, f64, 64, SAMPLEFORMAT_IEEEFP);
+    EXPECT_EQ(messageOf(path),
+              path.string() + ": sample 2 of row 0 is -1.7976931348623157e+308" + allowed);
+    const std::int32_t odd[] = {1, 2, 3, 4, -16777217, 6};
+    writeTiff(path, odd, 32, SAMPLEFORMAT_INT);
+    EXPECT_EQ(messageOf(path), path.string() + ": sample 1 of row 1 is -16777217" + allowed);
+}
+
 TEST(HeightMap, ReadsSrtmTiles) {
     const test::TemporaryFolder folder;
     std::vector<int> values(1201 * 1201, 300);

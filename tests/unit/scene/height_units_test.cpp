@@ -291,10 +291,10 @@ TEST_F(HeightUnits, OtherPagesRowsAndBitsAreRefused) {
     EXPECT_EQ(error(1, 0, 4), "DIR/a.tif: orientation 4; allowed: 1 (rows from the top)");
     EXPECT_EQ(error(1, 0, 1, PHOTOMETRIC_PALETTE),
               "DIR/a.tif: a palette of colours; a height map is grey");
-    for (const int bits : {1, 2, 4, 12, 24, 32}) {
+    for (const int bits : {1, 2, 4, 12, 24, 64}) {
         EXPECT_EQ(error(1, 0, 1, PHOTOMETRIC_MINISBLACK, bits),
                   fmt::format("DIR/a.tif: 1 × {} bits a sample (sample format 1); allowed: one "
-                              "number, an integer of 8 or 16 bits or a float of 32",
+                              "number, an integer of 8, 16 or 32 bits or a float of 32 or 64",
                               bits));
     }
 }
