@@ -133,7 +133,11 @@ class Metres {
             rows_->read(heightsM);
             for (int column = 0; column < rows_->sizeSamples.x; ++column) {
                 float& height = heightsM[column];
-                const bool isHole = std::find(none.begin(), none.end(), height) != none.end();
+                const bool isHole = std::ranges::any_of(none, [&](float value) {
+                    // What is no height anyway may be written with few digits: -3.4e38.
+                    return height == value ||
+                           (std::abs(value) > 1e30F && std::abs(height / value - 1.0F) < 1e-3F);
+                });
                 height =
                     isHole ? NAN : (height * rows_->scale + rows_->offset) * units_.heightScaleM;
             }

@@ -142,6 +142,24 @@ TEST(HeightMap, ReadsWiderSamplesOfTiffs) {
     EXPECT_EQ(messageOf(path), path.string() + ": sample 1 of row 1 is -16777217" + allowed);
 }
 
+TEST(HeightMap, NoDataOfFewDigitsIsThatOfTheSamples) {
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.tif";
+    const auto filled = [&](float sample, const char* noData) {
+        const float values[] = {1.0F, 2.0F, sample, 3.0F, 4.0F, 5.0F};
+        writeTiff(path, values, 32, SAMPLEFORMAT_IEEEFP, noData);
+        return loadHeightMap(path, {}).filledCount;
+    };
+    const float lowest = -std::numeric_limits<float>::max();
+    for (const char* text : {"-3.4028234663852886e+38", "-3.402823e+38", "-3.4e+38"}) {
+        EXPECT_EQ(filled(lowest, text), 1U) << text;
+    }
+    EXPECT_EQ(filled(-99999.9F, "-99999.9"), 1U);
+    EXPECT_EQ(filled(-9999.0F, "-9999.5"), 0U);
+    EXPECT_EQ(filled(3.4e37F, "3.4e38"), 0U);
+    EXPECT_EQ(filled(7.0F, "-inf"), 0U);
+}
+
 TEST(HeightMap, ReadsSrtmTiles) {
     const test::TemporaryFolder folder;
     std::vector<int> values(1201 * 1201, 300);
