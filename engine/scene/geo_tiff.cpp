@@ -156,7 +156,7 @@ std::string heightsTakenAsMetres(const GeoTags& tags, const Keys& keys) {
 
 /// Metres of the unit of heights.
 double heightUnitM(const GeoTags& tags, const Keys& keys, const std::string& file) {
-    const std::string unit = itemOf(tags.metadata, "unittype");
+    const std::string written = itemOf(tags.metadata, "unittype"), unit = lowerCase(written);
     if (unit.empty()) return keys.metresOf(kVerticalUnit);
     for (const std::string_view metre : {"m", "metre", "metres", "meter", "meters"}) {
         if (unit == metre) return 1.0;
@@ -164,10 +164,10 @@ double heightUnitM(const GeoTags& tags, const Keys& keys, const std::string& fil
     for (const std::string_view foot : {"ft", "foot", "feet"}) {
         if (unit == foot) return 0.3048;
     }
-    for (const std::string_view foot : {"us-ft", "ftUS", "US survey foot"}) {
+    for (const std::string_view foot : {"us-ft", "ftus", "us survey foot"}) {
         if (unit == foot) return 1200.0 / 3937.0;
     }
-    throw Error(fmt::format("{}: its heights are in '{}'; allowed: m, ft, us-ft", file, unit));
+    throw Error(fmt::format("{}: its heights are in '{}'; allowed: m, ft, us-ft", file, written));
 }
 
 /// What the model makes of a value, by the scale of z and where it begins: a factor and what is

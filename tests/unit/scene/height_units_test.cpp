@@ -398,10 +398,14 @@ TEST_F(HeightUnits, HeightsInFeetBecomeMetres) {
             name + "</Item></GDALMetadata>";
         return highest(metadata.c_str(), {});
     };
-    EXPECT_FLOAT_EQ(unit("metre"), 30.0F);
-    EXPECT_FLOAT_EQ(unit("US survey foot"), 36000.0F / 3937.0F);
-    EXPECT_EQ(test::errorText([&] { unit("fathom"); }, folder.path()),
-              "DIR/a.tif: its heights are in 'fathom'; allowed: m, ft, us-ft");
+    for (const char* metre : {"m", "metre", "Metre", "METERS"}) {
+        EXPECT_FLOAT_EQ(unit(metre), 30.0F) << metre;
+    }
+    for (const char* foot : {"US survey foot", "US Survey Foot", "ftUS", "US-ft"}) {
+        EXPECT_FLOAT_EQ(unit(foot), 36000.0F / 3937.0F) << foot;
+    }
+    EXPECT_EQ(test::errorText([&] { unit("Fathom"); }, folder.path()),
+              "DIR/a.tif: its heights are in 'Fathom'; allowed: m, ft, us-ft");
     EXPECT_EQ(test::errorText(
                   [&] {
                       highest(nullptr, {1, 1, 0, 1, 4099, 0, 1, 9014});
