@@ -271,7 +271,8 @@ std::string takenAsTrueToScale(const Keys& keys) {
 }
 
 /// Spacing and what to say of it, of a step in units of the model.
-void useStep(const GeoTags& tags, const Keys& keys, glm::dvec2 step, GeoUnits& units) {
+void useStep(const GeoTags& tags, const Keys& keys, glm::dvec2 step, const std::string& file,
+             GeoUnits& units) {
     const std::uint16_t code = keys.find(kProjected).value_or(0);
     const bool isGeographic = keys.find(kModelType) == kGeographic;
     const double unitM = isGeographic ? keys.metresOfDegrees() : keys.metresOf(kLinearUnit);
@@ -284,6 +285,10 @@ void useStep(const GeoTags& tags, const Keys& keys, glm::dvec2 step, GeoUnits& u
     } else if (isGeographic || isPlate) {
         const double north = northOfMiddle(tags, step.y).value_or(0.0);
         const double latitude = isPlate ? north * unitM / kEarthRadiusM : glm::radians(north);
+        if (std::abs(latitude) > glm::radians(90.0)) {
+            throw Error(fmt::format("{}: its middle has the latitude {:g}; allowed: -90 to 90",
+                                    file, glm::degrees(latitude)));
+        }
         units.warning = unevenSpacing(step.x * unitM * std::cos(latitude), step.y * unitM);
     } else {
         units.warning = takenAsOfAMap(keys);
@@ -331,7 +336,7 @@ GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
     units.unitWarning = units.scale == 0.0F ? "its scale of 0 makes all its heights the same"
                                             : heightsTakenAsMetres(tags, keys);
     if (const std::optional<glm::dvec2> step = stepOf(tags, isGeographic, file)) {
-        useStep(tags, keys, *step, units);
+        useStep(tags, keys, *step, file, units);
     } else if (tags.tiepoint.size() > 6) {
         units.warning =
             "its points on the ground (ModelTiepoint) are not used: they say no spacing";
@@ -350,7 +355,9 @@ std::string unevenSpacing(double eastM, double northM) {
 std::string warningOfTile(const std::string& name, double spacingM) {
     const auto isDigit = [&](std::size_t i) { return name[i] >= '0' && name[i] <= '9'; };
     const int side = name.empty() ? 0 : std::toupper(static_cast<unsigned char>(name[0]));
-    if (name.size() < 3 || !isDigit(1) || !isDigit(2) || (side != 'N' && side != 'S')) {
+    const bool isLatitude = name.size() >= 3 && isDigit(1) && isDigit(2) &&
+                            name.compare(1, 2, side == 'S' ? "90" : "89") <= 0;
+    if (!isLatitude || (side != 'N' && side != 'S')) {
         return "its name says no latitude, as that of N46E007.hgt does: its samples are drawn as "
                "far apart from west to east as from north to south";
     }

@@ -359,13 +359,24 @@ TEST_F(HeightUnits, DegreesThatAreNoSquaresOnTheGroundAreSaid) {
         << "given";
     EXPECT_EQ(warning({2 * second, second, 0}, {}, {}).substr(0, 41),
               "its samples stand 61.74 m apart from west");
+    const auto latitudeError = [&](double north) {
+        return test::errorText(
+            [&] {
+                warning({1, 1, 0}, {0, 0, 0, 7, north, 0}, {});
+            },
+            folder.path());
+    };
+    EXPECT_EQ(latitudeError(91), "no error");
+    EXPECT_EQ(latitudeError(92), "DIR/a.tif: its middle has the latitude 91; allowed: -90 to 90");
+    EXPECT_EQ(latitudeError(-89.5),
+              "DIR/a.tif: its middle has the latitude -90.5; allowed: -90 to 90");
     // An SRTM tile's name says where it lies.
     const std::string tile(std::size_t{2} * 1201 * 1201, '\0');
     const auto ofTile = [&](const char* name) {
         return loadHeightMap(folder.write(name, tile), {}).spacingWarning;
     };
     EXPECT_EQ(ofTile("N00E007.hgt"), "");
-    for (const char* name : {"a.hgt", "tile.hgt", "X60E007.hgt"}) {
+    for (const char* name : {"a.hgt", "tile.hgt", "X60E007.hgt", "N90E007.hgt", "S91E007.hgt"}) {
         EXPECT_EQ(
             ofTile(name),
             "its name says no latitude, as that of N46E007.hgt does: its samples are drawn as "
