@@ -246,9 +246,13 @@ void skipElement(Reader& reader, const Element& element) {
 template <class Reader>
 class VertexParser {
   public:
-    VertexParser(Reader& reader, const Element& element, const std::string& file, Anchor& anchor,
-                 LeftOut& leftOut)
-        : reader_(reader), element_(element), anchor_(anchor) {
+    VertexParser(Reader& reader, const Element& element, bool arePoints, const std::string& file,
+                 Anchor& anchor, LeftOut& leftOut)
+        : reader_(reader),
+          element_(element),
+          arePoints_(arePoints),
+          anchor_(anchor),
+          leftOut_(leftOut) {
         for (const Property& property : element.properties) {
             const PropertySlot slot = slotOf(property);
             slots_.push_back(has_[slot] ? kNoSlot : slot);  // red and diffuse_red: the first
@@ -282,6 +286,10 @@ class VertexParser {
         std::uint64_t& number = reader_.row.number;
         for (number = 0; number < element_.count; ++number) {
             readRow();
+            if (glm::any(glm::isnan(place_))) {
+                leftOut_.add("a point whose place is no number");
+                continue;
+            }
             mesh.positions.push_back(anchor_.relative(place_));
             if (normals) mesh.normals.push_back(unitNormal({row_[kNx], row_[kNy], row_[kNz]}));
             if (colors) mesh.colors.push_back({row_[kRed], row_[kGreen], row_[kBlue]});
@@ -355,6 +363,8 @@ class VertexParser {
         const auto value = static_cast<float>(number);
         // Scanners write normals that are not numbers; unitNormal() takes those.
         const bool isNormal = slot == kNx || slot == kNy || slot == kNz;
+        // So are points where a depth camera saw nothing.
+        if (isPosition && arePoints_ && std::isnan(value)) return value;
         if (!std::isfinite(value) && !isNormal) {
             reader_.fail(property.name + " is " + std::to_string(number) +
                          "; finite numbers in the range of float are allowed");
@@ -368,7 +378,9 @@ class VertexParser {
 
     Reader& reader_;
     const Element& element_;
+    bool arePoints_;  // no face needs them all
     Anchor& anchor_;
+    LeftOut& leftOut_;
     glm::dvec3 place_{0.0};
     bool areBytes_ = true;               // all colours
     std::array<Type, 3> colourTypes_{};  // of red, green and blue
@@ -523,7 +535,9 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file, An
                                                      "' do not fit into the file");
         }
         if (element.name == "vertex") {
-            vertices = VertexParser<Reader>(reader, element, file, anchor, leftOut)
+            const bool arePoints = std::ranges::none_of(
+                header.elements, [](const Element& e) { return hasFaces(e) && e.count > 0; });
+            vertices = VertexParser<Reader>(reader, element, arePoints, file, anchor, leftOut)
                            .parse(header.hasLinearColours);
         } else if (hasFaces(element)) {
             parseFaces(reader, element, vertexElement->count, file, faces, leftOut);
@@ -536,7 +550,8 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file, An
                 reader.unread());
     Mesh& mesh = vertices.mesh;
     if (mesh.positions.empty()) {
-        throw Error({file, vertexElement->line, 0}, "element 'vertex' lacks x, y or z");
+        throw Error({file, vertexElement->line, 0},
+                    "element 'vertex' lacks x, y or z, or has them in no row");
     }
     fillPolygons(faces, mesh.positions, leftOut);
     mesh.triangles = std::move(faces.triangles);

@@ -132,14 +132,28 @@ TEST_F(ModelFiles, CarriageReturnsEndLinesWhereNothingElseDoes) {
 }
 
 /// As clouds of depth cameras have where nothing was seen.
-TEST_F(ModelFiles, PlacesThatAreNoNumbersAreRefused) {
+TEST_F(ModelFiles, PlacesThatAreNoNumbersAreLeftOutOfPointsOrRefused) {
     const auto error = [&](const char* name, const std::string& content) {
         return errorText([&] { loadScene(folder.write(name, content)); }, folder.path());
     };
-    EXPECT_EQ(error("a.ply",
-                    "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
-                    "property float y\nproperty float z\nend_header\n0 0 0\nnan nan nan\n"),
-              "DIR/a.ply:9: vertex 1: x is nan; finite numbers in the range of float are allowed");
+    const auto cloud = [](const std::string& rows, int faceCount = 0) {
+        return fmt::format(
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+            "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+            "element face {}\nproperty list uchar int vertex_indices\nend_header\n{}",
+            faceCount, rows);
+    };
+    const std::string rows = "nan nan nan 1 2 3\n1 2 3 255 0 0\n1 2 nan 1 2 3\n4 5 6 0 255 0\n";
+    const Scene seen = loadScene(folder.write("a.ply", cloud(rows)));
+    EXPECT_EQ(seen.points.positions, (std::vector<glm::vec3>{{1, 2, 3}, {4, 5, 6}}));
+    EXPECT_EQ(seen.points.colors, (std::vector<glm::vec3>{{1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(seen.warnings,
+              std::vector<std::string>{"left out: a point whose place is no number (2 times)"});
+    EXPECT_EQ(error("a.ply", cloud(rows + "3 0 1 3\n", 1)),
+              "DIR/a.ply:13: vertex 0: x is nan; finite numbers in the range of float are allowed");
+    const std::string none = "nan nan nan 1 2 3\n";
+    EXPECT_EQ(error("a.ply", cloud(none + none + none + none)),
+              "DIR/a.ply:3: element 'vertex' lacks x, y or z, or has them in no row");
     EXPECT_EQ(error("a.obj", "v 0 0 0\nv nan 0 0\n"), "DIR/a.obj:2: 'nan' is not a finite number");
 }
 
