@@ -47,10 +47,23 @@ float roughnessOf(float exponent) {
     return std::pow(2.0F / (std::max(exponent, 0.0F) + 2.0F), 0.25F);
 }
 
-/// The file name may hold blanks; behind options ("-s 1 1 1 wood.png") it is the last word.
+/// The file name may hold blanks; behind options ("-s 1 1 1 wood.png") it is the last word, or
+/// what stands in quotes.
 std::string textureName(std::string_view rest) {
-    if (rest.starts_with('-')) rest.remove_prefix(rest.find_last_of(" \t") + 1);
+    const std::size_t quote = rest.ends_with('"') ? rest.find('"') : rest.npos;
+    if (rest.size() > 1 && quote < rest.size() - 1) {
+        rest = rest.substr(quote + 1, rest.size() - quote - 2);
+    } else if (rest.starts_with('-')) {
+        rest.remove_prefix(rest.find_last_of(" \t") + 1);
+    }
     return std::string(rest);
+}
+
+/// Of an absolute path, which is of another machine, the file's name; otherwise as it is.
+std::string_view withoutRoot(std::string_view name) {
+    const bool isOfDrive = name.size() > 2 && name[1] == ':';
+    if (!isOfDrive && !name.starts_with('/') && !name.starts_with('\\')) return name;
+    return name.substr(name.find_last_of("/\\") + 1);
 }
 
 /// Says which options before a texture's name are not those that hold without them.
@@ -63,7 +76,7 @@ void leaveOptions(std::string_view rest, LeftOut& leftOut) {
                                    {"-t", {"0", "0", "0"}}, {"-mm", {"0", "1", ""}},
                                    {"-clamp", {"off"}},     {"-cc", {"off"}},
                                    {"-blendu", {"on"}},     {"-blendv", {"on"}}};
-    const std::size_t end = rest.find_last_of(" \t");
+    const std::size_t end = rest.ends_with('"') ? rest.find('"') : rest.find_last_of(" \t");
     if (!rest.starts_with('-') || end == rest.npos) return;
     LineReader words(rest.substr(0, end), "");
     words.nextLine();
@@ -154,7 +167,7 @@ std::map<std::string, MtlMaterial> loadMtl(const std::filesystem::path& path, Le
 
 std::vector<std::string> libraryNames(std::string_view line, const std::filesystem::path& folder) {
     for (const std::string_view whole : {line, LineReader::withoutComment(line)}) {
-        const std::string name(withoutQuotes(whole));
+        const std::string name(withoutRoot(withoutQuotes(whole)));
         if (fileInside(folder, name)) return {name};
     }
     std::vector<std::string> names;
@@ -162,7 +175,7 @@ std::vector<std::string> libraryNames(std::string_view line, const std::filesyst
     LineReader words(line, "");
     words.nextLine();
     for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
-        names.emplace_back(withoutQuotes(word));
+        names.emplace_back(withoutRoot(withoutQuotes(word)));
         isOneThere = isOneThere || fileInside(folder, names.back());
     }
     return isOneThere ? names : std::vector<std::string>{std::string(line)};
@@ -173,7 +186,8 @@ std::optional<std::filesystem::path> textureFile(const MtlMaterial& material,
     const std::string_view written = material.colourFile;
     for (const auto& beside :
          {material.folder.lexically_relative(folder), std::filesystem::path()}) {
-        for (const std::string_view name : {written, LineReader::withoutComment(written)}) {
+        for (const std::string_view whole : {written, LineReader::withoutComment(written)}) {
+            const std::string_view name = withoutRoot(whole);
             if (const auto file = fileInside(folder, beside / name)) return file;
         }
     }

@@ -6,6 +6,7 @@
 
 #include "engine/image/png_io.h"
 #include "engine/scene/load.h"
+#include "engine/scene/model_files.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -153,6 +154,26 @@ TEST_F(LoadObj, SaysWhichTexturesAndMaterialsAreMissing) {
                   "left out: the material 'c', which no material file has: it is grey",
                   "left out: the texture 'C:\\x\\wood.png', which is not beside the model",
                   "left out: the texture 'a.tga', which is neither PNG nor JPEG"}));
+}
+
+/// As programs write them on another machine.
+TEST_F(LoadObj, OfAbsolutePathsTheFileBesideTheModelIsTaken) {
+    folder_.write("wood.png", image::encodePng(image::Image8(1, 1, 3)));
+    folder_.write("my wood.png", image::encodePng(image::Image8(1, 1, 3)));
+    for (const char* name :
+         {"C:\\dir\\wood.png", "C:/dir/wood.png", "\\\\host\\dir\\wood.png", "/home/x/wood.png",
+          "\"C:\\my dir\\wood.png\"", "\"wood.png\"", "-s 1 1 1 \"my wood.png\""}) {
+        folder_.write("a.mtl", fmt::format("newmtl a\nmap_Kd {}\n", name));
+        for (const char* library :
+             {"C:\\dir\\a.mtl", "\"/home/x y/a.mtl\"", "D:\\a.mtl", "a.mtl"}) {
+            const Scene scene = load(fmt::format("mtllib {}\n", library) + kSquare +
+                                     "vt 0 0\nusemtl a\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\n");
+            EXPECT_EQ(scene.textures.size(), 1U) << name << " of " << library;
+            EXPECT_EQ(scene.warnings, std::vector<std::string>{}) << name << " of " << library;
+            EXPECT_EQ(scene.filesBeside.size(), 2U);
+            EXPECT_EQ(filesBeside(folder_.path() / "a.obj").size(), 2U);
+        }
+    }
 }
 
 TEST_F(LoadObj, SaysWhichColoursOfTexturesAreNotRead) {
