@@ -103,10 +103,14 @@ class PatternSearch {
     }
 
     [[noreturn]] void failOf(std::string_view line) const {
+        const std::string& regex = pattern_.regex;
+        const std::size_t any = regex.rfind(".*", regex.find('('));
         throw Error(fmt::format(
             "metric '{}': a line of {} bytes, more than {}, is searched by no pattern that matches "
-            "more than {}, looks ahead or refers back to a group",
-            pattern_.metric, line.size(), kLongestMatched, kLongestMatched));
+            "more than {}, looks ahead or refers back to a group; allowed: what stands beside the "
+            "number alone, as '{}'",
+            pattern_.metric, line.size(), kLongestMatched, kLongestMatched,
+            any == regex.npos ? "t=([0-9.]+)" : regex.substr(any + 2)));
     }
 
     const config::ProgramPattern& pattern_;
