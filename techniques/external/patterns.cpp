@@ -133,8 +133,9 @@ bool isOneOf(char c, std::string_view letters) {
 /// With a space in the place of each byte of a blank. Other characters are none, and not known.
 std::string withPlainBlanks(std::string_view line) {
     static constexpr std::string_view kBlanks[] = {
-        "\t",     "\u00A0", "\u1680", "\u2000", "\u2001", "\u2002", "\u2003", "\u2004", "\u2005",
-        "\u2006", "\u2007", "\u2008", "\u2009", "\u200A", "\u202F", "\u205F", "\u3000"};
+        "\t",     "\u00A0", "\u1680", "\u2000",   "\u2001", "\u2002",  "\u2003", "\u2004",
+        "\u2005", "\u2006", "\u2007", "\u2008",   "\u2009", "\u200A",  "\u202F", "\u205F",
+        "\u3000", "\\,",    "&nbsp;", "&thinsp;", "&#160;", "&#8201;", "&#8239;"};
     std::string text(line);
     for (const std::string_view blank : kBlanks) {
         for (std::size_t at = 0; (at = text.find(blank, at)) != text.npos; at += blank.size()) {
@@ -144,20 +145,19 @@ std::string withPlainBlanks(std::string_view line) {
     return text;
 }
 
-/// Units of time, larger ones first.
-const std::vector<std::string> kUnits = split(
-    "y|yrs?|years?|jahre? months?|monate? w|wks?|weeks?|wochen? d|days?|tage?n? "
-    "h|hrs?|hours?|std|stunden? m|mins?|minutes?|minuten s|secs?|seconds?|sek|sekunden? "
-    "ms|msecs?|milliseconds?|millisekunden? us|usecs?|microseconds?|mikrosekunden? "
-    "ns|nsecs?|nanoseconds?|nanosekunden?",
-    ' ');
-constexpr std::size_t kMinutes = 5;
+/// Letters that may be a unit, and the beginnings of longer words that are one.
+constexpr const char* kLargeUnit =  // larger than a second
+    "(?:[ywdhm]|(?:yr|year|jahr|month|monat|wk|week|woche|day|tag|hr|hour|heure|std|stunde|min)"
+    "[a-z]*)";
+constexpr const char* kUnit =
+    "(?:(?:[a-z]|\u00B5|\u03BC){1,2}|[kmgtp]ib|(?:(?:m|u|n|\u00B5|\u03BC)?se[ck]|milli|micro|mikro|"
+    "nano|byte|deg)[a-z]*)";
 
 /// Words of size: of a thousand, of its square, and so on; others last.
 const std::vector<std::string> kSizes = split(
-    "k|ki|kilo|thousand|tausend|tsd m|mi|mega|mio|mln|mill|millions?|millionen "
+    "k|ki|kilo|thousands?|tausend|tsd m|mi|mega|mio|mln|mill|millions?|millionen "
     "g|gi|giga|mrd|bn|billions?|milliards?|milliarden? t|ti|tera|trillions?|billionen p|pi "
-    "hundreds?|hundert|dozens?|dutzend|lakh|crore|mille",
+    "hundreds?|hundert|dozens?|dutzend|lakhs?|crores?|mille",
     ' ');
 
 std::regex ignoringCase(const std::string& pattern) {
@@ -170,31 +170,35 @@ std::regex grammarBehind() {
     const std::string marks = "[,;:)\\]}>|.\"]*";
     const std::string token =  // marks behind which nothing stands, or a name as in JSON
         fmt::format("[^ ]*?(?={0}(?: |$)|{0}[,;|\"](?:[\"'(\\[{{<#]|[A-Za-z](?![0-9])))", marks);
-    std::string quantities = "[edqx] *[-+]?[.]?[0-9]|(?:x|and|und|plus|minus|times|over) ", smaller,
-                sizes;
-    for (std::size_t i = kUnits.size(); i-- > 0;) {
-        quantities += fmt::format(
-            "|(?:{})(?:\\(s\\))?[ .,;:+&_-]*(?:(?:and|und|plus|then) +)*[0-9][0-9.,]*(?:{}:{})",
-            kUnits[i], smaller.empty() ? "" : fmt::format(" *(?:{})(?![A-Za-z])|", smaller),
-            i <= kMinutes ? "|(?! *[A-Za-z0-9.,])" : "");
-        smaller += fmt::format("{}{}", smaller.empty() ? "" : "|", kUnits[i]);
-    }
-    for (const std::string& words : kSizes) {
-        sizes += fmt::format("{}({})", sizes.empty() ? "" : "|", words);
-    }
+    const std::string quantities = "[edqx] *[-+]?[.]?[0-9]|(?:x|and|und|plus|minus|times|over) ";
+    const std::string sizes = "(" + joined(kSizes, ")|(") + ")";
     const std::string harmless =
-        " +[A-Za-z]+(?= +[-+.]?[0-9])|(?= *$| +(?:[A-Za-z\\[<>|;=]|\\((?![0-9.]+\\))|[,)\\]}]+(?: "
-        "|$)))";
+        " +[A-Za-z]+(?= +[-+.]?[0-9])|(?= *$| +(?!<<|>>)"
+        "(?:[A-Za-z\\[<>|;=]|\\((?![0-9.]+\\))|[,)\\]}]+(?: |$)))";
     return ignoringCase(
-        fmt::format(" *(?:{1}){0}| *(?:{2})(?![A-Za-z]){0}|((?! ){0})|{3}|( +[^ ]{0})", token,
-                    quantities, sizes, harmless));
+        fmt::format(" *(?:{1}){0}|(?: +(?![A-Za-z]+(?: *[=:]|[0-9])))?(?:{2})(?![A-Za-z]){0}|"
+                    "((?! ){0})|{3}|( +[^ ]{0})",
+                    token, quantities, sizes, harmless));
 }
 
 /// What stands before a number and makes one quantity with it.
 std::regex grammarBefore() {
     return ignoringCase("[^ ]*[0-9][^ ]* +(?:[edqx]|and|und|plus|minus|times|" +
-                        joined(kUnits, "|") + "|" + joined(kSizes, "|") +
-                        ")(?:\\(s\\))?[.,;:+_-]* *(?:(?:and|und|plus|then|&|\\+) *)*$");
+                        joined(kSizes, "|") +
+                        ")(?:\\(s\\))?[.,;+_-]* *(?:(?:and|und|plus|then|&|\\+) *)*$");
+}
+
+/// A number and its unit, before a number and another unit, as in 2 m, 3 s; or none, as in 2 min
+/// 30, where the unit is no key, as in 2 m: 3.
+std::regex grammarOfPairs() {
+    const std::string unit = fmt::format("(?:{}|{})", kLargeUnit, kUnit);
+    const std::string number = "[0-9]+(?:[.,][0-9]+)*";
+    constexpr const char* kBetween = "(?:\\(s\\))?[ .,;:+&_-]{}(?:(?:and|und|plus|then) +|[&+] *)*";
+    return ignoringCase(fmt::format(
+        "({3})(?:(?: +(?!of ))?(?![edqx][-+])({0}){1}(?=({3}(?! *\\2(?![a-z])) *{0}"
+        "(?![a-z/=])))|(?: +(?![a-z]+ *:))?{4}{2}"
+        "(?=([0-9]+(?:[.,:][0-9]+)*)(?! *[a-z0-9.,=])))",
+        unit, fmt::format(kBetween, "*"), fmt::format(kBetween, "+"), number, kLargeUnit));
 }
 
 /// What stands beside a group, and whether the pattern names it.
@@ -213,16 +217,20 @@ class Group {
         if (isJoined_) ++begin_;
         first_ = partBefore();
         last_ = partBehind(scale);
+        takeCompounds();
     }
 
     /// What the group may be a part of, and what the pattern lacks, unless it names that.
     std::optional<std::pair<std::string_view, std::string>> whole() const {
         const bool isCut = (begin_ > 0 && isDigit(text_[begin_ - 1])) ||
                            (end_ < text_.size() && isDigit(text_[end_]));
-        if (!isJoined_ && !isCut && isNamed(first_, begin_) && isNamed(end_, last_)) return {};
+        const bool isNamedBefore = !isJoined_ && isNamed(first_, begin_);
+        const bool isNamedBehind = isNamed(end_, last_);
+        if (!isCut && isNamedBefore && isNamedBehind) return {};
         const std::string_view all = found_.line.substr(first_, last_ - first_);
         if (isCut) return std::pair(all, "");
-        std::string before = asPattern(first_, begin_), behind = asPattern(end_, last_);
+        std::string before = isNamedBefore ? "" : asPattern(first_, begin_);
+        std::string behind = isNamedBehind ? "" : asPattern(end_, last_);
         if (!before.empty()) before = fmt::format("'{}' before", before);
         if (!behind.empty()) behind = fmt::format("'{}' behind", behind);
         const char* both = before.empty() || behind.empty() ? "" : " and ";
@@ -234,13 +242,18 @@ class Group {
     static constexpr std::size_t kBytesBeside = 80;
     static constexpr char kNothing = '\0';
 
-    /// As a pattern that asks for it.
+    /// As a pattern that asks for it, with any digits but those of a key, as p95=.
     std::string asPattern(std::size_t first, std::size_t last) const {
         std::string pattern;
-        for (const char c : found_.line.substr(first, last - first)) {
-            const bool isNext = isDigit(c) && pattern.ends_with("[0-9]+");
+        for (std::size_t i = first, end = i; i < last; i = end) {
+            const char c = found_.line[i];
+            end = std::clamp(text_.find_first_not_of("0123456789", i), i + 1, last);
+            const bool isOfKey =
+                i > 0 && isLetter(text_[i - 1]) && end < text_.size() && isOneOf(text_[end], "=:");
             if (isOneOf(c, ".^$*+?()[]{}|\\")) pattern += '\\';
-            if (!isNext) pattern += isDigit(c) ? "[0-9]+" : c == '\t' ? "\\t" : std::string{c};
+            pattern += !isDigit(c) ? c == '\t' ? "\\t" : std::string{c}
+                       : isOfKey ? text_.substr(i, end - i)
+                                   : "[0-9]+";
         }
         return pattern;
     }
@@ -288,9 +301,9 @@ class Group {
         return true;
     }
 
-    /// A comma that the pattern names separates.
+    /// A comma that the pattern names separates, unless it may also be a blank or colon.
     bool isSeparator(std::size_t at) const {
-        return isOneOf(text_[at], ",;|") && isNamed(at, at + 1);
+        return isOneOf(text_[at], ",;|") && isNamed(at, at + 1) && asksFor(at, at + 1, " :");
     }
 
     /// Where a token begins: behind a blank, or a harmless mark.
@@ -300,7 +313,7 @@ class Group {
             return i == 0 || text_[i - 1] == ' ' ||
                    (isOneOf(text_[i - 1], "=:([{\"'<>|,;") &&
                     (i == 1 ||
-                     !(isOneOf(text_[i - 2], "0123456789.^*/+-~") || (text_[i - 2] & 0x80))));
+                     !(isOneOf(text_[i - 2], "0123456789.^*/+-~<>") || (text_[i - 2] & 0x80))));
         };
         while (end - i < kBytesBeside && !isHarmless()) {
             if (isSeparator(--i)) break;
@@ -348,6 +361,23 @@ class Group {
             if (isSeparator(i)) return i + 1;
         }
         return last;
+    }
+
+    void takeCompounds() {
+        static const std::regex kPair = grammarOfPairs();
+        const std::size_t from = begin_ - std::min(begin_, kBytesBeside);
+        const std::string around = text_.substr(from, end_ + kBytesBeside - from);
+        for (std::sregex_iterator pair(around.begin(), around.end(), kPair), none; pair != none;
+             ++pair) {
+            const auto lengthOf = [&](std::size_t group) {
+                return static_cast<std::size_t>(pair->length(group));
+            };
+            const std::size_t first = from + static_cast<std::size_t>(pair->position());
+            const std::size_t second = first + lengthOf(0),
+                              end = second + lengthOf(3) + lengthOf(4);
+            if (first < end_ && begin_ < first + lengthOf(1)) last_ = std::max(last_, end);
+            if (second < end_ && begin_ < end) first_ = std::min(first_, first);
+        }
     }
 
     PatternSearch& search_;

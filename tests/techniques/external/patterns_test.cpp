@@ -4,8 +4,8 @@
 
 #include <cctype>
 #include <optional>
-#include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "techniques/external/results.h"
@@ -115,6 +115,12 @@ TEST(Patterns, ReadWhatIsWholeOrWhoseNeighboursTheyName) {
         {"m=([0-9]+)", "m=12 ms.", 12},
         {"m=([0-9]+)", "m=12: x", 12},
         {"m=([0-9]+)", "m=12 degrees", 12},
+        {"m=([0-9]+)", "m=12 k=3 M: 5", 12},
+        {"m=([0-9]+)", "m=12 t : 3", 12},
+        {"k=([0-9]+)", "m=12 k=3 M: 5", 3},
+        {"M: ([0-9]+)", "m=12 k=3 M: 5", 5},
+        {"p95=([0-9.]+)", "p50=1.1 p95=2.2 p99=3.3", 2.2},
+        {"p95=([0-9.]+) p99=", "p50=1.1 p95=2.2 p99=3.3", 2.2},
         {"m=(-?[0-9.e+-]+)", "m=-1.5e-3,", -0.0015},
         {"m=([0-9.dD+-]+)", "m=1.5D+03", 1500},
         {"m=([0-9.dD+-]+)", "m=25d-2 s", 0.25},
@@ -162,6 +168,13 @@ TEST(Patterns, ReadWhatIsWholeOrWhoseNeighboursTheyName) {
         {"([0-9.]+) ms", "pass took 12 ms", 12},
         {"rmse=([0-9.]+)", "rmse=0.5 psnr=30", 0.5},
         {"FPS: ([0-9]+)", "FPS: 1234 FrameTime: 0.811 ms", 1234},
+        {"([0-9.]+) fps", "60 fps, 16.6 ms", 60},
+        {"([0-9.]+) ms", "60 fps, 16.6 ms, 64 spp", 16.6},
+        {"avg ([0-9.]+) max", "min 1 avg 2.5 max 9", 2.5},
+        {"of ([0-9.]+) GB", "used 12.5 of 24.0 GB", 24},
+        {"^\\[([0-9.]+) ms", "[12.310 ms 12.352 ms 12.401 ms]", 12.31},
+        {"<= ([0-9.]+)", "0.012 <= 0.05", 0.05},
+        {"([0-9.]+) <=", "0.012 <= 0.05", 0.012},
         {"([0-9]+) triangles", "bunny.ply: 69451 triangles, 35947 vertices", 69451},
         {"copied, ([0-9.]+) s", "1048576 bytes (1.0 MB) copied, 12 s, 852 MB/s", 12},
         {"([0-9.]+) ms \u00B1", "1.23 ms \u00B1 4.5 \u00B5s per loop", 1.23},
@@ -182,11 +195,6 @@ TEST(Patterns, ReadWhatIsWholeOrWhoseNeighboursTheyName) {
         const std::optional<double> value = numberIn(each.line, {"m", each.regex, each.scale});
         EXPECT_EQ(value, each.value) << each.regex << " of " << each.line;
     }
-}
-
-/// What asks for this text.
-std::string exactly(const std::string& text) {
-    return std::regex_replace(text, std::regex(R"([.+])"), R"(\$&)");
 }
 
 TEST(Patterns, RefuseWhatMayBeAPartAndSayHowItIsRead) {
@@ -283,10 +291,22 @@ TEST(Patterns, RefuseWhatMayBeAPartAndSayHowItIsRead) {
          " days, [0-9]+:[0-9]+:[0-9]+"},
         {"m=([0-9]+)", "m=3 s 200 ms", "3", "3 s 200 ms", "", " s [0-9]+ ms"},
         {"m=([0-9]+)", "m=2 Minuten 5 s", "2", "2 Minuten 5 s", "", " Minuten [0-9]+ s"},
-        {"m=([0-9]+)", "m=5 d 3 h", "5", "5 d 3", "", " d [0-9]+"},
-        {"m=([0-9]+)", "m=2 heures 3 s", "2", "2 heures", "", " heures"},
-        {"m=([0-9]+)", "m=3 MB 200 KB", "3", "3 MB", "", " MB"},
-        {"m=([0-9]+)", "m=5 ft 3 in", "5", "5 ft", "", " ft"},
+        {"m=([0-9]+)", "m=5 d 3 h", "5", "5 d 3 h", "", " d [0-9]+ h"},
+        {"m=([0-9]+)", "m=2 heures 3 s", "2", "2 heures 3 s", "", " heures [0-9]+ s"},
+        {"([0-9]+) MB", "m=3 MB 200 KB", "3", "3 MB 200 KB", "", " MB [0-9]+ KB"},
+        {"([0-9]+)GiB", "m=3GiB, 20MiB", "3", "3GiB, 20MiB", "", "GiB, [0-9]+MiB"},
+        {"([0-9]+) ft", "m=5 ft, 3 in", "5", "5 ft, 3 in", "", " ft, [0-9]+ in"},
+        {"([0-9]+)m", "took 1m, 3s", "1", "1m, 3s", "", "m, [0-9]+s"},
+        {"([0-9]+)h", "took 1h,5m", "1", "1h,5m", "", "h,[0-9]+m"},
+        {"([0-9]+)ms", "took 12ms 345\u00B5s", "12", "12ms 345\u00B5s", "", "ms [0-9]+\u00B5s"},
+        {"([0-9]+) ms", "took 12 ms, 345 \u03BCs", "12", "12 ms, 345 \u03BCs", "",
+         " ms, [0-9]+ \u03BCs"},
+        {"([0-9]+) sec", "3 sec, 200 millis", "3", "3 sec, 200 millis", "", " sec, [0-9]+ millis"},
+        {"([0-9]+) minutes", "2 minutes, 3 secondes", "2", "2 minutes, 3 secondes", "",
+         " minutes, [0-9]+ secondes"},
+        {"([0-9]+)h", "1h 20mn", "1", "1h 20mn", "", "h [0-9]+mn"},
+        {"m=([0-9]+)", "m=12 thousands", "12", "12 thousands", "", " thousands"},
+        {"= ([0-9]+)", "n = 1 << 20", "1", "1 <<", "", " <<"},
         {"m=([0-9]{2})", "m=123", "12", "123", "", ""},
         {"([0-9]{2})$", "m= 123", "23", "123", "", ""},
         {"m=([0-9]+),?", "m=1,234", "1", "1,234", "", ",[0-9]+"},
@@ -316,10 +336,25 @@ TEST(Patterns, RefuseWhatMayBeAPartAndSayHowItIsRead) {
         {"([0-9]+) s", "2 minutes and 5 s", "5", "2 minutes and 5", "[0-9]+ minutes and ", ""},
         {"([0-9]+) s", "1 hr. 5 min. 3 s", "3", "5 min. 3", "[0-9]+ min\\. ", ""},
         {"([0-9]+) s", "1 h & 3 s", "3", "1 h & 3", "[0-9]+ h & ", ""},
-        {"([0-9]+) s", "4 heures 3 s", "3", "heures 3", "heures ", ""},
-        {"([0-9.]+) ?s", "took 1h 2m 3s", "3", "2m 3s", "[0-9]+m ", "s"},
-        {"([0-9.]+) ?s", "took 0m1.234s", "1.234", "0m1.234s", "[0-9]+m", "s"},
-        {"([0-9.]+) ?s", "real\t1m 2.35s", "2.35", "1m 2.35s", "[0-9]+m ", "s"},
+        {"([0-9]+) s", "4 heures 3 s", "3", "4 heures 3", "[0-9]+ heures ", ""},
+        {"([0-9.]+) ?s", "took 1h 2m 3s", "3", "2m 3s", "[0-9]+m ", ""},
+        {"([0-9.]+) ?s", "took 0m1.234s", "1.234", "0m1.234s", "[0-9]+m", ""},
+        {"([0-9.]+) ?s", "real\t1m 2.35s", "2.35", "1m 2.35s", "[0-9]+m ", ""},
+        {"([0-9.]+)s", "took 1m, 3s", "3", "1m, 3s", "[0-9]+m, ", ""},
+        {"([0-9.]+)s", "0h:5m:3.2s", "3.2", "5m:3.2s", "[0-9]+m:", ""},
+        {"m:([0-9.]+)s", "1h:05m:03s", "03", "05m:03s", "[0-9]+m:", ""},
+        {"([0-9.]+)ms", "lap 3s, 20ms", "20", "3s, 20ms", "[0-9]+s, ", ""},
+        {"([0-9.]+) s", "wall 5 m;3 s", "3", "5 m;3", "[0-9]+ m;", ""},
+        {"([0-9.]+) MB", "1 GB, 512 MB", "512", "1 GB, 512", "[0-9]+ GB, ", ""},
+        {"([0-9.]+) MB", "1 GB: 512 MB", "512", "1 GB: 512", "[0-9]+ GB: ", ""},
+        {"([0-9.]+) s", "5 m3 s", "3", "5 m3", "[0-9]+ m", ""},
+        {"([0-9.]+) in", "5 ft, 3 in", "3", "5 ft, 3", "[0-9]+ ft, ", ""},
+        {"([0-9.]+) ms", "1\\,234 ms", "234", "1\\,234", "[0-9]+\\\\,", ""},
+        {"([0-9.]+)ms", "1&nbsp;234ms", "234", "1&nbsp;234ms", "[0-9]+&nbsp;", ""},
+        {"([0-9]+)$", "n = 1 << 20", "20", "< 20", "< ", ""},
+        {"[:,] *([0-9.]+) ms", "t: 1,234.5 ms", "234.5", "1,234.5", "[0-9]+,", ""},
+        {"[ ,]([0-9]+)", "n 1,234", "234", "1,234", "[0-9]+,", ""},
+        {"=([0-9.]+)", "p50=1.1 p95=2.2", "2.2", "p95=2.2", "p95=", ""},
         {"([0-9]+)$", "m=1e-5", "5", "1e-5", "[0-9]+e-", ""},
         {"([0-9]+)$", "m=1/2", "2", "1/2", "[0-9]+/", ""},
         {"([0-9]+)$", "m=2^10", "10", "2^10", "[0-9]+\\^", ""},
@@ -339,15 +374,15 @@ TEST(Patterns, RefuseWhatMayBeAPartAndSayHowItIsRead) {
         {"([0-9.]+) ms", "10\u201320 ms", "20", "10\u201320", "[0-9]+\u2013", ""},
         {"([0-9]+) rays", "1,234 rays", "234", "1,234", "[0-9]+,", ""},
         {"([0-9]+) rays", "5 million 300 rays", "300", "5 million 300", "[0-9]+ million ", ""},
-        {"([0-9]+) 567", "1 234 567 x", "234", "1 234 567", "[0-9]+ ", " [0-9]+"},
+        {"([0-9]+) 567", "1 234 567 x", "234", "1 234 567", "[0-9]+ ", ""},
         {"h ([0-9.]+)", "1h 2m 3s", "2", "1h 2m 3s", "[0-9]+h ", "m [0-9]+s"},
         {"([0-9.]+) ms", "$.5 2 ms", "2", "$.5 2", "\\$\\.[0-9]+ ", ""},
         {"([0-9.]+) ms", "frame 3 took 4 ms", "4", "took 4", "took ", ""},
-        {"t([0-9]+)", "t1,234", "1", "t1,234", "t", ",[0-9]+"},
-        {"t([0-9]+)", "t1e5", "1", "t1e5", "t", "e[0-9]+"},
-        {"PT([0-9]+)", "PT1M3.5S", "1", "PT1M3.5S", "PT", "M[0-9]+\\.[0-9]+S"},
+        {"t([0-9]+)", "t1,234", "1", "t1,234", "", ",[0-9]+"},
+        {"t([0-9]+)", "t1e5", "1", "t1e5", "", "e[0-9]+"},
+        {"PT([0-9]+)", "PT1M3.5S", "1", "PT1M3.5S", "", "M[0-9]+\\.[0-9]+S"},
         {"total, ([0-9]+)", "total, 1,234 rays", "1", "1,234", "", ",[0-9]+"},
-        {"([0-9.]+)S$", "PT1M3.5S", "3.5", "PT1M3.5S", "PT[0-9]+M", "S"},
+        {"([0-9.]+)S$", "PT1M3.5S", "3.5", "PT1M3.5S", "PT[0-9]+M", ""},
         {"([0-9.]+)", "trace.1.5e3", "3", "trace.1.5e3", "trace\\.[0-9]+\\.[0-9]+e", ""},
         {"\"m\": \"([0-9]+)", "{\"m\": \"12\u00D7\"}", "12", "12\u00D7", "", "\u00D7"},
         {"m=([0-9]+)", "m=3M", "3", "3M", "", "M", 1024.0},
@@ -367,11 +402,16 @@ TEST(Patterns, RefuseWhatMayBeAPartAndSayHowItIsRead) {
                               behind.empty() ? "" : "'" + behind + "' behind",
                               better.empty() ? "" : " its group"));
         if (better.empty()) continue;
-        // Followed, it is read; a mark before its digits may be none of the number.
+        // In the place of what the pattern has there, it is read; a mark before its digits may be
+        // none of the number.
         std::string found(each.found);
         if (before.ends_with(found.front()) && !std::isdigit(found.front())) found.erase(0, 1);
-        EXPECT_EQ(numberOf(fmt::format("{}({}){}", before, exactly(found), behind), each.line),
-                  std::stod(found));
+        const std::string regex(each.regex);
+        const std::size_t group = regex.find('('), end = regex.find(')') + 1;
+        const std::string advised = (before.empty() ? regex.substr(0, group) : before) +
+                                    regex.substr(group, end - group) +
+                                    (behind.empty() ? regex.substr(end) : behind);
+        EXPECT_EQ(numberOf(advised, each.line), std::stod(found)) << advised;
     }
 }
 
