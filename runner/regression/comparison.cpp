@@ -13,7 +13,7 @@
 #include "engine/metrics/mean_test.h"
 #include "runner/config/outputs.h"
 #include "runner/records/records.h"
-#include "runner/tables/case_records.h"
+#include "runner/tables/layout_cases.h"
 
 namespace gfxrepro::regression {
 
