@@ -106,7 +106,7 @@ struct NoEffect {
 std::vector<NoEffect> valuesInVain(const Experiment& experiment);
 /// Each `exclude` that no point of the sweep matches.
 std::vector<NoEffect> excludedInVain(const Experiment& experiment);
-/// Each value in `when` that the sweep does not have.
+/// Each condition in `when` of values of which the sweep has none.
 std::vector<NoEffect> whenInVain(const Experiment& experiment);
 /// Keys of `printed` that judge or mark nothing here.
 std::vector<NoEffect> printedInVain(const Experiment& experiment);

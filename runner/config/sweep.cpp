@@ -436,10 +436,7 @@ std::vector<NoEffect> whenInVain(const Experiment& experiment) {
     };
     for (const auto& [axis, conditions] : given.when->entries()) {
         for (const auto& [other, wanted] : conditions.entries()) {
-            const std::string what = fmt::format("{}: {}", given.when.name(), axis);
-            for (const Node& one : wanted.isSequence() ? wanted.items() : Node::Sequence{wanted}) {
-                look(what, other, one);
-            }
+            look(fmt::format("{}: {}", given.when.name(), axis), other, wanted);
         }
     }
     return found;
