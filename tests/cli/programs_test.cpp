@@ -128,9 +128,9 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
     const std::string program = "program '" + folder.path().string() + "/renderer.sh'";
     ASSERT_EQ(lines.size(), 15U);
     EXPECT_EQ(lines[0], "crash: crash (" + program + " ended with SIGSEGV: drawing crash)");
-    EXPECT_THAT(lines[1], testing::StartsWith(
-                              "deep: error (line 1 of its metrics has more than 200 brackets in "
-                              "each other: [["));
+    EXPECT_THAT(lines[1],
+                testing::StartsWith(
+                    "deep: error (line 1 of its metrics is nested deeper than 200 levels: [["));
     EXPECT_EQ(lines[2], "fails: error (" + program +
                             " ended with exit code 3: drawing fails / no such scene)");
     EXPECT_EQ(lines[3],
