@@ -465,7 +465,7 @@ TEST_F(BadValues, EveryKeyOfTheSchemaIsRead) {
          "    ",
          {{"says", "s"}, {"independent", "aa"}, {"of", "scene"}, {"at_most", "5%"}}},
         {"claim.bound", claim, "    ", {{"says", "s"}, {"bound", "aa"}}},
-        {"claim.exact", claim, "    ", {{"says", "s"}, {"exact", "aa"}}},
+        {"claim.exact", claim, "    ", {{"says", "s"}, {"exact", "aa"}, {"equals", "1"}}},
         {"claim.tolerance", claim, "    ", {{"says", "s"}, {"tolerance", "aa"}, {"at_most", "5%"}}},
         {"claim.crossover",
          claim,

@@ -279,7 +279,7 @@ TEST_F(HeightUnits, OtherPagesRowsAndBitsAreRefused) {
             }
             TIFFSetField(tiff, TIFFTAG_ORIENTATION, orientation);
             if (page > 0) TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, kind);
-            std::uint8_t row[8] = {1, 2};
+            std::uint8_t row[16] = {1, 2};  // of two samples of up to 64 bits
             for (std::uint32_t y = 0; y < 2; ++y) TIFFWriteScanline(tiff, row, y, 0);
             TIFFWriteDirectory(tiff);
         }
