@@ -81,7 +81,7 @@ struct HeightMapUnits {
     std::optional<float> noData;  // a further value, before scaling, that means "none"
 };
 
-/// By extension, any case: .png (8 or 16 bits), .tif .tiff (integers of 8 or 16 bits, floats), .hgt
+/// By extension, any case: .png (8 or 16 bits), .tif .tiff (integers up to 32 bits, floats), .hgt
 /// (SRTM), .raw .r16 .bin (with a sidecar <file>.yaml: width, height, type, byte_order, no_data).
 /// Samples without data are filled (fillHoles). Throws one Error that names the file for all that
 /// it refuses, before it allocates more than the file can hold.
