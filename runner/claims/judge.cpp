@@ -139,8 +139,9 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
         if (verdictOf(interval, requirement) != Verdict::Holds) {
             judgement.beyond = beyondBound(byRound, requirement, contrast.scale);
             const auto isAtBound = [](const auto& round) { return round.second == 0.0; };
-            // What is at an excluded bound in every round is not there by chance.
-            if (std::ranges::all_of(judgement.beyond, isAtBound)) judgement.beyond.clear();
+            if (contrast.failsAtBound && std::ranges::all_of(judgement.beyond, isAtBound)) {
+                judgement.beyond.clear();
+            }
         }
         judgement.measured = boundedText(middle, tables::Bounds::Interval, interval, requirement);
     }

@@ -72,14 +72,17 @@ bool differ(const Series& values, double within) {
 
 /// Where a number of a program or an import without a seed differs between the processes of a side,
 /// its other numbers may be alike by chance, in other cases, too: as tables have it
-/// (tables::LayoutCases::isInDoubt), but for what is within the tolerance.
+/// (tables::LayoutCases::isInDoubt), but for what is within the tolerance, or was alike in many
+/// repeats.
 class Doubts {
   public:
     Doubts(const SeriesMap& before, const SeriesMap& after, const Rules& rules) : rules_(rules) {
         for (const SeriesMap* side : {&before, &after}) {
             for (const auto& [key, values] : *side) {
                 const double within = areWhole(values) ? 0.0 : rules.valueTolerance;
-                if (!isOfUnseeded(key) || !differ(values, within)) continue;
+                if (!isOfUnseeded(key) || values.empty()) continue;
+                repeats_[{programOf(key), key.metric}] += values.size() - 1;
+                if (!differ(values, within)) continue;
                 tables::Doubt& doubt = doubts_[programOf(key)];
                 doubt.differing.insert(key.metric);
                 (tables::isOfMachine(key.metric, key.unit) ? doubt.isOfMachine : doubt.isOfAll) =
@@ -98,7 +101,7 @@ class Doubts {
         }
         const bool isOurs = !rules_.unseeded.at(key.table).empty();
         const bool isKnown =
-            rules_.ofSetup.contains({key.table, key.metric}) ||
+            repeatsOf(key) >= kTellingRepeats || rules_.ofSetup.contains({key.table, key.metric}) ||
             (isOurs && (config::isTestOfMeans(key.metric) || config::isPictureError(key.metric)));
         const bool isDoubtful =
             isOfAll || (isOfMachine && tables::isOfMachine(key.metric, key.unit));
@@ -111,13 +114,21 @@ class Doubts {
     bool isOfUnseeded(const SeriesKey& key) const {
         return !key.isTime() && rules_.unseeded.contains(key.table);
     }
+    std::size_t repeatsOf(const SeriesKey& key) const {
+        const auto found = repeats_.find({programOf(key), key.metric});
+        return found == repeats_.end() ? 0 : found->second;
+    }
     std::string programOf(const SeriesKey& key) const {
         const std::string& program = rules_.unseeded.at(key.table);
         return program.empty() ? "import " + key.table : "program " + program;
     }
 
+    /// Of one of two values by chance one in 128 is alike in as many.
+    static constexpr std::size_t kTellingRepeats = 7;
+
     const Rules& rules_;
     std::map<std::string, tables::Doubt> doubts_;
+    std::map<std::pair<std::string, std::string>, std::size_t> repeats_;  // of programs' metrics
 };
 
 /// `count`: of how many series each may raise an alarm.

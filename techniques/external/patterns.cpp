@@ -27,6 +27,16 @@ struct Found {
     std::string_view number() const { return line.substr(begin, end - begin); }
 };
 
+bool isLetter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/// The match ends within a word: the s of 64 samples.
+bool isCutIn(const Found& found) {
+    return found.matchEnd > found.end && found.matchEnd < found.line.size() &&
+           isLetter(found.line[found.matchEnd - 1]) && isLetter(found.line[found.matchEnd]);
+}
+
 /// Searches lines of any length. std::regex takes stack with every letter, but for its matcher of
 /// polynomial time. That one finds the longest match instead of the first one of lazy quantifiers
 /// and alternatives, and so says only where a match begins, in lines that are too long.
@@ -39,7 +49,8 @@ class PatternSearch {
         std::optional<Found> last;
         std::size_t from = 0;
         while (const std::optional<Found> found = firstIn(line, from)) {
-            if (!last || found->begin < found->end) last = found;
+            const bool isBetter = found->begin < found->end && (!isCutIn(*found) || isCutIn(*last));
+            if (!last || isBetter) last = found;
             from = std::max(found->matchEnd, found->matchBegin + 1);
             if (from > line.size()) break;
         }
@@ -122,10 +133,6 @@ bool isDigit(char c) {
     return c >= '0' && c <= '9';
 }
 
-bool isLetter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-}
-
 bool isOneOf(char c, std::string_view letters) {
     return letters.find(c) != letters.npos;
 }
@@ -147,11 +154,13 @@ std::string withPlainBlanks(std::string_view line) {
 
 /// Letters that may be a unit, and the beginnings of longer words that are one.
 constexpr const char* kLargeUnit =  // larger than a second
-    "(?:[ywdhm]|(?:yr|year|jahr|month|monat|wk|week|woche|day|tag|hr|hour|heure|std|stunde|min)"
+    "(?:[ywdhm]|mn|(?:yr|year|jahr|month|monat|wk|week|woche|day|tag|hr|hour|heure|std|stunde|min)"
     "[a-z]*)";
-constexpr const char* kUnit =
-    "(?:(?:[a-z]|\u00B5|\u03BC){1,2}|[kmgtp]ib|(?:(?:m|u|n|\u00B5|\u03BC)?se[ck]|milli|micro|mikro|"
-    "nano|byte|deg)[a-z]*)";
+constexpr const char* kShortUnit =  // up to a second
+    "(?:(?:m|u|n|\u00B5|\u03BC)?s|(?:(?:m|u|n|\u00B5|\u03BC)?se[ck]|milli|micro|mikro|nano)[a-z]*)";
+constexpr const char* kBytesUnit = "(?:[kmgtp]?i?b|(?:kilo|mega|giga|tera)?byte[a-z]*)";
+constexpr const char* kOtherUnit =
+    "(?:ft|feet|foot|in|inch(?:es)?|yd|[kcm]?m|lbs?|oz|k?g|deg[a-z]*)";
 
 /// Words of size: of a thousand, of its square, and so on; others last.
 const std::vector<std::string> kSizes = split(
@@ -176,7 +185,7 @@ std::regex grammarBehind() {
         " +[A-Za-z]+(?= +[-+.]?[0-9])|(?= *$| +(?!<<|>>)"
         "(?:[A-Za-z\\[<>|;=]|\\((?![0-9.]+\\))|[,)\\]}]+(?: |$)))";
     return ignoringCase(
-        fmt::format(" *(?:{1}){0}|(?: +(?![A-Za-z]+(?: *[=:]|[0-9])))?(?:{2})(?![A-Za-z]){0}|"
+        fmt::format(" *(?:{1}){0}|(?: +(?![A-Za-z]+(?: *=|[0-9])))?(?:{2})(?![A-Za-z]){0}|"
                     "((?! ){0})|{3}|( +[^ ]{0})",
                     token, quantities, sizes, harmless));
 }
@@ -188,17 +197,25 @@ std::regex grammarBefore() {
                         ")(?:\\(s\\))?[.,;+_-]* *(?:(?:and|und|plus|then|&|\\+) *)*$");
 }
 
-/// A number and its unit, before a number and another unit, as in 2 m, 3 s; or none, as in 2 min
-/// 30, where the unit is no key, as in 2 m: 3.
+/// A number and its unit, before a number and another unit of the same, as in 2 m, 3 s; or none, as
+/// in 2 min 30. What stands second is a group of its own, behind that of the first's unit.
 std::regex grammarOfPairs() {
-    const std::string unit = fmt::format("(?:{}|{})", kLargeUnit, kUnit);
     const std::string number = "[0-9]+(?:[.,][0-9]+)*";
     constexpr const char* kBetween = "(?:\\(s\\))?[ .,;:+&_-]{}(?:(?:and|und|plus|then) +|[&+] *)*";
-    return ignoringCase(fmt::format(
-        "({3})(?:(?: +(?!of ))?(?![edqx][-+])({0}){1}(?=({3}(?! *\\2(?![a-z])) *{0}"
-        "(?![a-z/=])))|(?: +(?![a-z]+ *:))?{4}{2}"
-        "(?=([0-9]+(?:[.,:][0-9]+)*)(?! *[a-z0-9.,=])))",
-        unit, fmt::format(kBetween, "*"), fmt::format(kBetween, "+"), number, kLargeUnit));
+    const std::string between = fmt::format(kBetween, "*");
+    std::string pairs;
+    int group = 2;
+    for (const std::string& unit : {fmt::format("(?:{}|{})", kLargeUnit, kShortUnit),
+                                    std::string(kBytesUnit), std::string(kOtherUnit)}) {
+        pairs += fmt::format(
+            "(?: +(?!of ))?(?![edqx][-+])({0}){1}(?=({2}(?! *\\{3}(?![a-z])) *{0}"
+            "(?![a-z/=])))|",
+            unit, between, number, group);
+        group += 2;
+    }
+    return ignoringCase(
+        fmt::format("({0})(?:{1} *{2}{3}(?=([0-9]+(?:[.,:][0-9]+)*)(?! *[a-z0-9.,=])))", number,
+                    pairs, kLargeUnit, fmt::format(kBetween, "+")));
 }
 
 /// What stands beside a group, and whether the pattern names it.
@@ -374,7 +391,7 @@ class Group {
             };
             const std::size_t first = from + static_cast<std::size_t>(pair->position());
             const std::size_t second = first + lengthOf(0),
-                              end = second + lengthOf(3) + lengthOf(4);
+                              end = second + lengthOf(3) + lengthOf(5) + lengthOf(7) + lengthOf(8);
             if (first < end_ && begin_ < first + lengthOf(1)) last_ = std::max(last_, end);
             if (second < end_ && begin_ < end) first_ = std::min(first_, first);
         }

@@ -308,6 +308,12 @@ TEST(Comparison, WhatDiffersInOneCaseIsInDoubtInAll) {
               "other numbers of the program differ between processes of one side");
     EXPECT_EQ(told({{differs.table, "p"}}, {{other.table, "y"}})[1].verdict, SeriesVerdict::Changed)
         << "of the set-up";
+    const Series before(5, 4.0), after(5, 5.0);
+    const auto often =
+        compare({{differs, {4, 5}}, {other, before}}, {{differs, {4, 4}}, {other, after}},
+                Pairing::Apart, {.unseeded = {{differs.table, "p"}}});
+    EXPECT_EQ(std::ranges::find(often, other, &Difference::key)->verdict, SeriesVerdict::Changed)
+        << "alike in eight repeats";
     EXPECT_EQ(told({})[0].verdict, SeriesVerdict::Changed) << "of the same seeds";
     EXPECT_EQ(told({})[1].verdict, SeriesVerdict::Changed) << "of the same seeds";
     // Of another table, and of other names.
