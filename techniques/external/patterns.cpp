@@ -154,11 +154,12 @@ std::string withPlainBlanks(std::string_view line) {
 
 /// Letters that may be a unit, and the beginnings of longer words that are one.
 constexpr const char* kLargeUnit =  // larger than a second
-    "(?:[ywdhm]|mn|(?:yr|year|jahr|month|monat|wk|week|woche|day|tag|hr|hour|heure|std|stunde|min)"
+    "(?:[ywdhm]|mn|mo|(?:yr|year|jahr|month|monat|wk|week|woche|day|tag|hr|hour|heure|std|stunde|"
+    "min)"
     "[a-z]*)";
 constexpr const char* kShortUnit =  // up to a second
     "(?:(?:m|u|n|\u00B5|\u03BC)?s|(?:(?:m|u|n|\u00B5|\u03BC)?se[ck]|milli|micro|mikro|nano)[a-z]*)";
-constexpr const char* kBytesUnit = "(?:[kmgtp]?i?b|(?:kilo|mega|giga|tera)?byte[a-z]*)";
+constexpr const char* kBytesUnit = "(?:[kmgtp]?i?b|(?:[kmgt]|kilo|mega|giga|tera)?(?:byte|bit)s?)";
 constexpr const char* kOtherUnit =
     "(?:ft|feet|foot|in|inch(?:es)?|yd|[kcm]?m|lbs?|oz|k?g|deg[a-z]*)";
 
