@@ -42,8 +42,7 @@ const KeyTable<CommonKeys>& commonTable() {
          {&C::across, "across", "row axis", "none",
           "a, b are its values instead of columns: so rows are compared, column by column", text()},
          {&C::of, "of", "column | [columns]", "all columns",
-          "of a claim that compares rows, but independent: the columns that are read",
-          oneOrMore(text())},
+          "of a claim that compares rows: the columns that are read", oneOrMore(text())},
          {&C::profile, choiceKey("profile", kProfiles, "all", "the only profile it is judged in")},
          {&C::origin,
           choiceKey(

@@ -5,7 +5,7 @@ namespace gfxrepro::claims {
 
 namespace {
 
-struct BoundKeys : Bounds {
+struct BoundKeys : GivenBounds {
     GivenKey bound;
 };
 const KeyTable<BoundKeys>& boundTable() {

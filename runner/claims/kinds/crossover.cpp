@@ -10,7 +10,7 @@ namespace {
 
 using namespace types;
 
-struct CrossoverKeys : Bounds {
+struct CrossoverKeys : GivenBounds {
     GivenKey crossover, over;
 };
 const KeyTable<CrossoverKeys>& crossoverTable() {

@@ -16,13 +16,23 @@ namespace gfxrepro::claims {
 using namespace types;
 using Texts = std::vector<std::string>;
 
-// The kinds, each in a file of its name: to add one, its name in both lists.
-Kind order(), ratio(), trend(), independent(), bound(), exact(), tolerance(), crossover(),
-    sameMean();
+// The kinds, each in a file of its name: to add one, a line.
+// clang-format off
+#define GFXREPRO_KINDS \
+    order(),           \
+    ratio(),           \
+    trend(),           \
+    independent(),     \
+    bound(),           \
+    exact(),           \
+    tolerance(),       \
+    crossover(),       \
+    sameMean()
+// clang-format on
+Kind GFXREPRO_KINDS;
 
 const std::vector<Kind>& kinds() {
-    static const std::vector<Kind> all = {order(), ratio(),     trend(),     independent(), bound(),
-                                          exact(), tolerance(), crossover(), sameMean()};
+    static const std::vector<Kind> all = {GFXREPRO_KINDS};
     return all;
 }
 
@@ -98,10 +108,14 @@ void ClaimKeys::addOperands(const Node& at, const Texts& texts, ClaimSpec& claim
         if (operand.empty()) throwNotAllowed(at, what, "an expression over columns");
         for (const OperandPiece& piece : operandPieces(operand, columns)) {
             if (piece.text == "[") {
-                fail(at, fmt::format("'{}' reads a row by its name; allowed: a column of the "
-                                     "layout that does, 'NAME: {{of: \"{}\"}}', or rows held "
-                                     "against each other, 'ratio: AXIS=a / AXIS=b, of: COLUMN'",
-                                     operand, operand));
+                Texts forms;
+                for (const Kind& kind : kinds()) {
+                    if (kind.valuesForm) forms.push_back(kind.name() + ": " + kind.valuesForm);
+                }
+                fail(at, fmt::format("'{0}' reads a row by its name; allowed: a column of the "
+                                     "layout that does, 'NAME: {{of: \"{0}\"}}', or rows held "
+                                     "against each other, '{1}'",
+                                     operand, fmt::join(forms, "' or '")));
             }
             const bool isKnown = hasAllColumns || (piece.isFunction && !columns.empty());
             if (piece.problem.empty() || !isKnown) continue;
@@ -157,7 +171,8 @@ void ClaimKeys::readOver(const GivenKey& key, ClaimSpec& claim) const {
     claim.over = name;
 }
 
-void ClaimKeys::readBounds(const Bounds& given, ClaimSpec& claim, const GivenKey* other) const {
+void ClaimKeys::readBounds(const GivenBounds& given, ClaimSpec& claim,
+                           const GivenKey* other) const {
     // True for the second key, which excludes the bound itself.
     const auto readBound = [&](const GivenKey& included, const GivenKey& excluded, auto& bound) {
         if (included && excluded) {
@@ -207,12 +222,14 @@ SchemaKey shareKey(const char* key, const NumberRange& range, const char* doc) {
         anyOf({{{"type", "string"}, {"pattern", R"(^\s*[0-9.eE+-]+\s*%$)"}}, number(fraction)})};
 }
 
-const std::vector<KeyTable<Bounds>::Key>& boundKeys() {
-    static const std::vector<KeyTable<Bounds>::Key> keys = {
-        {&Bounds::atLeast, numberKey("at_least", {}, "none", "lower bound")},
-        {&Bounds::moreThan, numberKey("more_than", {}, "none", "lower bound, itself excluded")},
-        {&Bounds::atMost, numberKey(kAtMost, {}, "none", "upper bound")},
-        {&Bounds::lessThan, numberKey("less_than", {}, "none", "upper bound, itself excluded")}};
+const std::vector<KeyTable<GivenBounds>::Key>& boundKeys() {
+    static const std::vector<KeyTable<GivenBounds>::Key> keys = {
+        {&GivenBounds::atLeast, numberKey("at_least", {}, "none", "lower bound")},
+        {&GivenBounds::moreThan,
+         numberKey("more_than", {}, "none", "lower bound, itself excluded")},
+        {&GivenBounds::atMost, numberKey(kAtMost, {}, "none", "upper bound")},
+        {&GivenBounds::lessThan,
+         numberKey("less_than", {}, "none", "upper bound, itself excluded")}};
     return keys;
 }
 

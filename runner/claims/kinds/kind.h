@@ -93,7 +93,7 @@ struct ClaimPart {
 std::string acrossHint(const std::string& value, const std::string& axis);
 
 /// The bounds of a claim.
-struct Bounds {
+struct GivenBounds {
     GivenKey atLeast, moreThan, atMost, lessThan;
 };
 
@@ -121,7 +121,8 @@ struct ClaimKeys {
     /// The row axis, column or expression over both.
     void readOver(const GivenKey& key, ClaimSpec& claim) const;
     /// Either lower, and either upper one: one of all, unless the `other` key is there.
-    void readBounds(const Bounds& given, ClaimSpec& claim, const GivenKey* other = nullptr) const;
+    void readBounds(const GivenBounds& given, ClaimSpec& claim,
+                    const GivenKey* other = nullptr) const;
     double readShare(const GivenKey& key, const NumberRange& range) const;
     std::size_t rowsAlong(const std::string& over, const ClaimSpec& claim) const;
     std::string acrossHint(const std::vector<std::string>& texts) const;
@@ -151,6 +152,8 @@ struct Kind {
     Scale scale = Scale::Linear;
     bool isOfAllRows = false;      // judged once, not in each group of rows
     std::string_view metric = {};  // the only one that its operand may be; empty: any
+    /// "; it is of …", of a column that is not there; empty of any that is not the kind's matter.
+    std::string_view (*hintOn)(std::string_view column) = nullptr;
     /// What `check` refuses, to follow the claim's name; empty where nothing is wrong.
     std::string (*refused)(const ClaimSpec& claim, const Sampling& sampling) = nullptr;
     const char* valuesForm = nullptr;  // how operands name values of an axis, where they may
@@ -169,7 +172,7 @@ std::vector<ClaimPart> partsOf(const ClaimSpec& claim);
 /// The keys of what is read along rows, and of an upper bound, which may be a share.
 inline constexpr const char *kOver = "over", *kAtMost = "at_most";
 
-const std::vector<KeyTable<Bounds>::Key>& boundKeys();
+const std::vector<KeyTable<GivenBounds>::Key>& boundKeys();
 /// One of these keys is needed.
 Json needsOne(const std::vector<std::string>& names);
 SchemaKey overKey(const char* key, const char* doc);

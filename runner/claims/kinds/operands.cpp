@@ -6,7 +6,7 @@
 #include <cctype>
 
 #include "engine/core/text.h"
-#include "engine/metrics/mean_test.h"
+#include "runner/claims/kinds/kind.h"
 
 namespace gfxrepro::claims {
 
@@ -28,13 +28,12 @@ bool isNumber(const std::string& text) {
 
 std::string noColumn(const std::string& name, Labels labels) {
     const bool isFrameTime = name == "wall_time_ms" && std::ranges::count(labels, "frame_ms") > 0;
-    const bool isTest = name == metrics::kSameMeanP || name == metrics::kBiasSeen;
-    return fmt::format("'{}' is no column{} (columns: {})", name,
-                       isFrameTime      ? "; its column is 'frame_ms'"
-                       : isTest         ? "; it is of an image whose truth has several 'frames'"
-                       : isNumber(name) ? ""
-                                        : suggestion(name, labels),
-                       joined(labels));
+    std::string hint = isFrameTime ? "; its column is 'frame_ms'" : "";
+    for (const Kind& kind : kinds()) {
+        if (kind.hintOn) hint += kind.hintOn(name);
+    }
+    if (hint.empty() && !isNumber(name)) hint = suggestion(name, labels);
+    return fmt::format("'{}' is no column{} (columns: {})", name, hint, joined(labels));
 }
 
 namespace {

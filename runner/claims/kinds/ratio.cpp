@@ -8,7 +8,7 @@ namespace gfxrepro::claims {
 
 namespace {
 
-struct RatioKeys : Bounds {
+struct RatioKeys : GivenBounds {
     GivenKey ratio;
 };
 const KeyTable<RatioKeys>& ratioTable() {

@@ -70,12 +70,18 @@ std::string refusedSameMean(const ClaimSpec& claim, const Sampling& sampling) {
         100.0 * *claim.low, rows, rows == 1.0 ? "" : "s", frames, truths, 100.0 * least);
 }
 
+std::string_view hintOnTests(std::string_view column) {
+    const bool isTest = column == metrics::kSameMeanP || column == metrics::kBiasSeen;
+    return isTest ? "; it is of an image whose truth has several 'frames'" : "";
+}
+
 }  // namespace
 
 Kind sameMean() {
     Kind kind{sameMeanTable().section(), readBy<sameMeanTable, readSameMean>, sameMeanParts};
     kind.isOfAllRows = true;
     kind.metric = metrics::kSameMeanP;
+    kind.hintOn = hintOnTests;
     kind.refused = refusedSameMean;
     return kind;
 }

@@ -16,7 +16,7 @@ using namespace types;
 
 constexpr std::array<std::string_view, 2> kDirections = {"increasing", "decreasing"};
 
-struct TrendKeys : Bounds {
+struct TrendKeys : GivenBounds {
     GivenKey trend, over, direction, strictly;
 };
 const KeyTable<TrendKeys>& trendTable() {

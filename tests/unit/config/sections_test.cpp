@@ -309,7 +309,7 @@ TEST_F(ExperimentTest, BadClaims) {
               head +
                   "23: claim 'C': 'aa[n=1] / bb' reads a row by its name; allowed: a column of the "
                   "layout that does, 'NAME: {of: \"aa[n=1] / bb\"}', or rows held against each "
-                  "other, 'ratio: AXIS=a / AXIS=b, of: COLUMN'");
+                  "other, 'order: [AXIS=VALUE, …]' or 'ratio: AXIS=VALUE / AXIS=VALUE'");
     EXPECT_EQ(claimError("{says: s, ratio: aa, at_least: 1}"),
               head + "23: claim 'C': ratio is aa; allowed: a / b");
     EXPECT_EQ(claimError("{says: s, ratio: aa / bb}"),
