@@ -177,7 +177,7 @@ std::string whyWrongKind(const ClaimSpec& claim, const config::Experiment& exper
     if (!reader.timeKind()) {
         // A program's times are the clock's, whatever decides them; of one's own sweep counts do.
         const bool isOpen =
-            experiment.kind != config::Experiment::Kind::Sweep && !config::goesByClock(experiment);
+            experiment.kind != config::ExperimentKind::Sweep && !config::goesByClock(experiment);
         return !isOpen ? "" : "reads a time and needs 'kind': algorithmic | architectural";
     }
     if (*reader.timeKind() != ClaimSpec::TimeKind::Absolute && reader.asksForATimeAsSuch()) {
@@ -340,7 +340,7 @@ void requireInOneRow(const config::Experiment& experiment, const tables::Table& 
 
 void requireProvenance(const config::Experiment& experiment, const tables::Table& table) {
     requireJudgeable(experiment, table);
-    const bool isOfDocument = experiment.kind != config::Experiment::Kind::Sweep;
+    const bool isOfDocument = experiment.kind != config::ExperimentKind::Sweep;
     const int paperProcesses = processesOfPaper(experiment);
     tables::Table read;  // outlives its reader
     for (const ClaimSpec& claim : experiment.claims) {

@@ -296,8 +296,8 @@ std::optional<ClaimSpec::TimeKind> ClaimReader::timeKind() {
     return ClaimSpec::TimeKind::Absolute;
 }
 
-std::vector<ClaimReader::Place> ClaimReader::timePlaces() const {
-    std::vector<Place> places;
+std::vector<ClaimReader::TimeCell> ClaimReader::timePlaces() const {
+    std::vector<TimeCell> places;
     for (const auto* operands : {&operands_, &overColumn_}) {
         for (const Operand& operand : *operands) {
             for (const std::size_t column : operand.columns()) {
@@ -313,7 +313,7 @@ std::vector<ClaimReader::Place> ClaimReader::timePlaces() const {
 
 std::vector<std::string> ClaimReader::timeColumns() const {
     std::set<std::string> labels;
-    for (const Place& place : timePlaces()) {
+    for (const TimeCell& place : timePlaces()) {
         labels.insert(claim_.across ? table_.rows[place.row].labels.back()
                                     : table_.columns[place.column].label);
     }
@@ -322,12 +322,12 @@ std::vector<std::string> ClaimReader::timeColumns() const {
 
 bool ClaimReader::isAtPrintedParameters() const {
     return std::ranges::all_of(
-        timePlaces(), [](const Place& place) { return place.cell->isAtPrintedParameters; });
+        timePlaces(), [](const TimeCell& place) { return place.cell->isAtPrintedParameters; });
 }
 
 bool ClaimReader::readByProcess() {
     if (std::ranges::any_of(timePlaces(),
-                            [](const Place& place) { return place.cell->byProcess.empty(); })) {
+                            [](const TimeCell& place) { return place.cell->byProcess.empty(); })) {
         return false;
     }
     clock_ = tables::Clock::Process;

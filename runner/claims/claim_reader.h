@@ -107,12 +107,12 @@ class ClaimReader {
     /// Empty if the operand can be read; else why not.
     std::string problemOf(const Operand& operand, std::size_t row) const;
     bool isPlanned(const ClaimPart& part, std::size_t row) const;
-    struct Place {
+    struct TimeCell {
         std::size_t row, column;
         const tables::Cell* cell;
     };
     /// The cells of times that are read and ok.
-    std::vector<Place> timePlaces() const;
+    std::vector<TimeCell> timePlaces() const;
     Sampled abscissa(std::size_t row);
 
     const ClaimSpec& claim_;

@@ -85,7 +85,7 @@ std::vector<NoEffect> keysInVain(const Experiment& experiment) {
         found.push_back({map->keyLocation(key), fmt::format("'{}': {}", key, why)});
     };
     // A document's profiles share what a file says of rounds.
-    const bool isSweep = experiment.kind == Experiment::Kind::Sweep;
+    const bool isSweep = experiment.kind == ExperimentKind::Sweep;
     const ContentKeys content = contentOf(experiment.document);
     const Node* measure = content.measure;
     if (!isSweep) measure = nullptr;

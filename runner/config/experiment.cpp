@@ -21,7 +21,6 @@ namespace gfxrepro::config {
 namespace {
 
 using namespace types;
-using Kind = Experiment::Kind;
 
 /// Begins the number in the id of a figure: papers count tables and figures apart.
 constexpr std::string_view kFigurePrefix = "figure-";
@@ -29,20 +28,20 @@ constexpr std::string_view kFigurePrefix = "figure-";
 /// A key that names the experiment.
 struct Identity {
     SchemaKey key;
-    Kind kind;
+    ExperimentKind kind;
     std::string_view label;
 };
 const std::vector<Identity>& identities() {
     static const std::vector<Identity> all = {
         {{"table", "PAPER/NUMBER", "none", "a table, as zju2005/2.1", text()},
-         Kind::Table,
+         ExperimentKind::Table,
          "Table"},
-        {{"figure", "PAPER/NUMBER", "none", "a figure", text()}, Kind::Figure, "Figure"},
+        {{"figure", "PAPER/NUMBER", "none", "a figure", text()}, ExperimentKind::Figure, "Figure"},
         {{"section", "PAPER/NUMBER", "none", "numbers in running text", text()},
-         Kind::Section,
+         ExperimentKind::Section,
          "Section"},
         {{"sweep_of", "NAME", "none", "an experiment of one's own; its id is sweep/NAME", text()},
-         Kind::Sweep,
+         ExperimentKind::Sweep,
          "Sweep"}};
     return all;
 }
@@ -167,7 +166,7 @@ void readIdentity(const Node& document, Experiment& experiment) {
                                          ", for files are named after it");
     }
     experiment.kind = found->kind;
-    if (found->kind == Kind::Sweep) {
+    if (found->kind == ExperimentKind::Sweep) {
         if (!isName(text)) throwNotAllowed(name, key, "letters, digits, - _ .");
         experiment.id = "sweep/" + text;
         return;
@@ -176,7 +175,7 @@ void readIdentity(const Node& document, Experiment& experiment) {
         throwNotAllowed(name, key, "PAPER/NUMBER, such as zju2005/2.1");
     }
     experiment.id =
-        found->kind == Kind::Figure ? parts[0] + "/" + std::string(kFigurePrefix) + parts[1] : text;
+        found->kind == ExperimentKind::Figure ? parts[0] + "/" + std::string(kFigurePrefix) + parts[1] : text;
 }
 
 void requireAxisNames(const Node& sweep, const std::vector<AxisPoint>& points) {
@@ -451,7 +450,7 @@ void readTable(const Node& document, const ContentKeys& given, bool isComplete,
     }
     const std::vector<AxisPoint> points = expandSweep(experiment.sweep);
     requireAxisNames(experiment.sweep, points);
-    const bool isOwn = experiment.kind == Experiment::Kind::Sweep;
+    const bool isOwn = experiment.kind == ExperimentKind::Sweep;
     for (const GivenKey* key : {&given.fit, &claims, &given.plots}) {
         if (!*key || layout || (isOwn && key == &claims)) continue;
         throw Error(document.keyLocation(key->name()),
@@ -476,7 +475,7 @@ void readTable(const Node& document, const ContentKeys& given, bool isComplete,
     if (given.fit) requireColumns(given.fit, names);
     if (claims) {
         experiment.claims = readClaims(*claims, names, !experiment.printed.rows.empty(),
-                                       experiment.kind != Experiment::Kind::Sweep);
+                                       experiment.kind != ExperimentKind::Sweep);
     }
     if (given.plots) experiment.plots = readPlots(*given.plots, names);
 }
@@ -534,11 +533,11 @@ Experiment experimentFromDocument(const Node& document, const std::filesystem::p
 }
 
 bool Experiment::hasDefaultLayout() const {
-    return kind == Kind::Sweep && !technique.empty() && !layout.isGiven;
+    return kind == ExperimentKind::Sweep && !technique.empty() && !layout.isGiven;
 }
 
 bool Experiment::isPublished() const {
-    return !technique.empty() && (kind != Kind::Sweep || !printed.rows.empty());
+    return !technique.empty() && (kind != ExperimentKind::Sweep || !printed.rows.empty());
 }
 
 std::string Experiment::slug() const {
@@ -550,7 +549,7 @@ std::string Experiment::slug() const {
 std::string Experiment::label() const {
     const auto identity = std::ranges::find(identities(), kind, &Identity::kind);
     std::string number = id.substr(id.find('/') + 1);
-    if (kind == Kind::Figure) number.erase(0, kFigurePrefix.size());
+    if (kind == ExperimentKind::Figure) number.erase(0, kFigurePrefix.size());
     return std::string(identity->label) + " " + number;
 }
 

@@ -152,9 +152,10 @@ struct Assumption {
     SourceLocation location = {};  // of the name
 };
 
+enum class ExperimentKind { Table, Figure, Section, Sweep };
+
 struct Experiment {
-    enum class Kind { Table, Figure, Section, Sweep };
-    Kind kind = Kind::Table;
+    ExperimentKind kind = ExperimentKind::Table;
     std::string id;  // "zju2005/2.1": paper and number; "zju2005/figure-2.6"; "sweep/bias"
     std::string title;
     std::filesystem::path file;

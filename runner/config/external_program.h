@@ -144,12 +144,12 @@ class FileDigests {
     const std::string& of(const std::filesystem::path& path);
 
   private:
-    struct Entry {
+    struct KnownDigest {
         std::uintmax_t sizeBytes = 0;
         std::filesystem::file_time_type time;
         std::string sha256;
     };
-    std::map<std::filesystem::path, Entry> entries_;
+    std::map<std::filesystem::path, KnownDigest> entries_;
 };
 
 /// The first that is not on this machine; null where all are.

@@ -238,7 +238,7 @@ std::vector<std::string> absentArguments(const ExternalProgram& program,
 }
 
 const std::string& FileDigests::of(const fs::path& path) {
-    Entry& entry = entries_[path];
+    KnownDigest& entry = entries_[path];
     std::error_code problem;
     const std::uintmax_t sizeBytes = fs::file_size(path, problem);
     const fs::file_time_type time = fs::last_write_time(path, problem);

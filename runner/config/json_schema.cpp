@@ -162,8 +162,8 @@ std::vector<std::string> commonMetrics(const SchemaNames& names) {
 }
 
 /// What a layout may show of a technique: its metrics, beside those in `common`, and passes.
-void defineLayout(const SchemaNames::Technique& technique, const std::vector<std::string>& common,
-                  Json& definitions) {
+void defineLayout(const SchemaNames::TechniqueNames& technique,
+                  const std::vector<std::string>& common, Json& definitions) {
     std::vector<std::string> metrics, passes;
     for (const MetricInfo& info : technique.outputs.metrics) {
         if (std::ranges::find(common, info.name) == common.end()) metrics.push_back(info.name);
@@ -183,7 +183,7 @@ void defineLayout(const SchemaNames::Technique& technique, const std::vector<std
 }
 
 /// The parameters of a technique; its sweep, which has them as axes.
-void defineTechnique(const SchemaNames::Technique& technique, Json& definitions) {
+void defineTechnique(const SchemaNames::TechniqueNames& technique, Json& definitions) {
     Json params = Json::object();
     Json axes = Json::object();
     for (const std::string& key : keysOf("sweep")) axes[key] = anything();  // `sweep` says more
@@ -203,7 +203,7 @@ void defineTechnique(const SchemaNames::Technique& technique, Json& definitions)
 }
 
 /// `params` and `sweep` hold what the technique declares, in profiles too.
-Json conditionOf(const SchemaNames::Technique& technique) {
+Json conditionOf(const SchemaNames::TechniqueNames& technique) {
     const Json measured = {{"params", refTo("params_" + technique.name)},
                            {"sweep", refTo("sweep_" + technique.name)}};
     Json profile = {{"type", {"object", "null"}}, {"properties", measured}};
@@ -221,7 +221,7 @@ void addNames(const SchemaNames& names, Json& definitions) {
     Json measured = Json::array(), techniques = Json::array();
     const std::vector<std::string> common = commonMetrics(names);
     definitions["metric"] = namesType(common);
-    for (const SchemaNames::Technique& technique : names.techniques) {
+    for (const SchemaNames::TechniqueNames& technique : names.techniques) {
         techniques.push_back(technique.name);
         if (technique.isOpen) continue;
         defineTechnique(technique, definitions);

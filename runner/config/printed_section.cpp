@@ -183,7 +183,7 @@ std::vector<NoEffect> printedInVain(const Experiment& experiment) {
             "no fit reads a table without printed cells" + with);
     const auto& claims = experiment.claims;
     require(given.unfit,
-            experiment.kind == Experiment::Kind::Sweep
+            experiment.kind == ExperimentKind::Sweep
                 ? std::ranges::any_of(claims, &ClaimSpec::isReadOffDocument)
                 : !claims.empty(),
             "it takes scenes from the claims of a document, and there are none");

@@ -33,13 +33,13 @@ std::vector<std::string> keysOf(std::string_view section);
 
 /// What a JSON schema may say beyond the sections: names that other modules own.
 struct SchemaNames {
-    struct Technique {
+    struct TechniqueNames {
         std::string name;
         std::vector<ParamInfo> params;
         Outputs outputs;
         bool isOpen = false;  // further parameters, metrics and passes are the config's
     };
-    std::vector<Technique> techniques;
+    std::vector<TechniqueNames> techniques;
     std::vector<std::string> generators;
 };
 

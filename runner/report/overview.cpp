@@ -337,7 +337,7 @@ std::string tallyHtml(const Counts& counts) {
 std::vector<std::pair<const Page*, const ClaimResult*>> examples(const DocumentPages& document,
                                                                  Verdict verdict) {
     std::vector<std::pair<const Page*, const ClaimResult*>> first, further;
-    for (const DocumentPages::Chapter& chapter : document.chapters) {
+    for (const DocumentPages::ChapterPages& chapter : document.chapters) {
         bool isFirst = true;
         for (const Page* page : chapter.pages) {
             for (const ClaimResult& claim : page->parts.front().claims) {
@@ -406,7 +406,7 @@ std::string paragraphHtml(const DocumentPages& document, const Counts& own) {
 std::string chaptersHtml(const DocumentPages& document) {
     if (document.chapters.size() < 2) return "";
     std::string html;
-    for (const DocumentPages::Chapter& chapter : document.chapters) {
+    for (const DocumentPages::ChapterPages& chapter : document.chapters) {
         const Counts own = countClaims(chapter.pages, 0, &ClaimResult::isCounted);
         if (own.empty()) continue;
         html +=
@@ -477,7 +477,7 @@ std::string saidHtml(const Model& model) {
     std::string html = "<div class=\"said\">\n";
     const std::vector<DocumentPages> documents = model.byDocument();
     for (const DocumentPages& document : documents) {
-        for (const DocumentPages::Chapter& chapter : document.chapters) {
+        for (const DocumentPages::ChapterPages& chapter : document.chapters) {
             html += fmt::format("<section class=\"chapter\" data-paper=\"{}\">\n",
                                 escapeXml(document.id));
             std::string title = chapter.title;

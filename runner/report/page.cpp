@@ -361,7 +361,7 @@ std::string pageHtml(const Page& page, const Model& model) {
     html += importedHtml(page, model);
     const std::string images = imagesHtml(page, model);
     // Of a figure, or a table of pictures, the numbers come after them.
-    const bool isPicture = shown->experiment->kind == config::Experiment::Kind::Figure ||
+    const bool isPicture = shown->experiment->kind == config::ExperimentKind::Figure ||
                            !shown->experiment->shows.empty();
     if (isPicture) html += images;
     constexpr const char* kSmall = " class=\"small\"";

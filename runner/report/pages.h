@@ -54,13 +54,13 @@ struct Page {
 
 /// A document, or experiments of one's own, with the pages of each chapter; none is empty.
 struct DocumentPages {
-    struct Chapter {
+    struct ChapterPages {
         std::string title;  // empty: pages that no chapter names
         std::vector<const Page*> pages;
     };
     std::string id;     // "zju2005"; "sweep"
     std::string title;  // empty where `documents` does not know it
-    std::vector<Chapter> chapters;
+    std::vector<ChapterPages> chapters;
 
     std::vector<const Page*> pages() const;
 };

@@ -140,7 +140,7 @@ const RunPart* Page::shown() const {
 
 bool Page::isOwn() const {
     const RunPart* part = shown();
-    return part && part->experiment->kind == config::Experiment::Kind::Sweep &&
+    return part && part->experiment->kind == config::ExperimentKind::Sweep &&
            !part->experiment->isPublished();
 }
 
@@ -163,7 +163,7 @@ std::string Model::boldLetter(std::size_t run) const {
 
 std::vector<const Page*> DocumentPages::pages() const {
     std::vector<const Page*> all;
-    for (const Chapter& chapter : chapters) {
+    for (const ChapterPages& chapter : chapters) {
         all.insert(all.end(), chapter.pages.begin(), chapter.pages.end());
     }
     return all;
@@ -184,16 +184,16 @@ std::vector<DocumentPages> Model::byDocument() const {
                 if (std::ranges::find(has, name) != has.end()) title = chapter.title;
             }
         }
-        auto chapter = std::ranges::find(of->chapters, title, &DocumentPages::Chapter::title);
+        auto chapter = std::ranges::find(of->chapters, title, &DocumentPages::ChapterPages::title);
         if (chapter == of->chapters.end()) {
-            chapter = of->chapters.insert(chapter, DocumentPages::Chapter{title, {}});
+            chapter = of->chapters.insert(chapter, DocumentPages::ChapterPages{title, {}});
         }
         chapter->pages.push_back(&page);
     }
     for (DocumentPages& of : result) {
         const auto known = std::ranges::find(documents, of.id, &config::Document::id);
         if (known == documents.end()) continue;
-        std::ranges::stable_sort(of.chapters, {}, [&](const DocumentPages::Chapter& one) {
+        std::ranges::stable_sort(of.chapters, {}, [&](const DocumentPages::ChapterPages& one) {
             return std::ranges::find(known->chapters, one.title, &config::Chapter::title) -
                    known->chapters.begin();
         });

@@ -181,7 +181,7 @@ void requireOfSetup(const std::string& pass, const config::Outputs& outputs) {
     throw Error("setup() scopes the pass '" + pass + "', which is not declared as one of set-up");
 }
 
-void recordScene(const SceneCache::Entry& entry, RunRecorder& recorder) {
+void recordScene(const SceneCache::CachedScene& entry, RunRecorder& recorder) {
     const scene::Scene& scene = entry.scene;
     recorder.metric("scene_triangles", static_cast<double>(scene.triangleCount()));
     recorder.metric("scene_vertices", static_cast<double>(scene.vertexCount()));
@@ -190,7 +190,7 @@ void recordScene(const SceneCache::Entry& entry, RunRecorder& recorder) {
     recorder.metric("load_time_ms", entry.loadTimeMs);
 }
 
-void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
+void recordMemory(const MeasureContext& context, const SceneCache::CachedScene& entry,
                   RunRecorder& recorder) {
     const long long peakBytes = std::max(peakResidentBytes(), entry.peakResidentBytes);
     const auto otherBytes =
@@ -201,7 +201,7 @@ void recordMemory(const MeasureContext& context, const SceneCache::Entry& entry,
 
 std::vector<SceneUse> scenesOfCase(const SceneCache& scenes) {
     std::vector<SceneUse> used;
-    for (const SceneCache::Entry& entry : scenes.entries()) {
+    for (const SceneCache::CachedScene& entry : scenes.entries()) {
         if (!entry.isOfThisCase) continue;
         const scene::Origin& origin = entry.scene.origin;
         used.push_back({entry.reference, std::string(scene::kindName(origin.kind)),
@@ -504,7 +504,7 @@ CaseResult measureCase(const Case& item, int process, MeasureContext& context) {
         throw UnsupportedError("technique '" + item.technique + "' needs a graphics device");
     }
     if (!item.program.isNull()) result.programs = context.programs.require(item, params.resolved());
-    const SceneCache::Entry* scene = nullptr;
+    const SceneCache::CachedScene* scene = nullptr;
     if (!sceneName.empty()) {
         const PhaseScope phase(context, "load", result.cost.loadS);
         scene = &context.scenes.get(sceneName);

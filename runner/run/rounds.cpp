@@ -181,7 +181,7 @@ void Rounds::takenFrom(const Case& item, const std::string& table) {
 std::vector<Unit> Rounds::next(const std::string& experiment) {
     const auto found = tables_.find(experiment);
     if (found == tables_.end() || !found->second.ending.is_null()) return {};
-    Table& table = found->second;
+    TimedTable& table = found->second;
     const config::Measure& measure = table.cases.front()->measure;
     const std::size_t rounds = table.times.roundCount();
     const auto process = static_cast<int>(rounds);
@@ -230,7 +230,7 @@ std::vector<std::string> Rounds::undecided() const {
 Json Rounds::endings() const {
     Json all = Json::object();
     for (const std::string& name : order_) {
-        const Table& table = tables_.at(name);
+        const TimedTable& table = tables_.at(name);
         Json ending = table.ending;
         if (ending.is_null()) continue;
         ending.erase("table");
@@ -247,7 +247,7 @@ Json Rounds::endings() const {
 std::vector<std::string> Rounds::warnings() const {
     std::vector<std::string> lines;
     for (const std::string& name : order_) {
-        const Table& table = tables_.at(name);
+        const TimedTable& table = tables_.at(name);
         tables::CaseNames names;
         for (const Case* item : table.cases) {
             const std::string title = item->title();

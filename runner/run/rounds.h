@@ -65,7 +65,7 @@ class Rounds {
     std::vector<std::string> warnings() const;
 
   private:
-    struct Table {
+    struct TimedTable {
         std::vector<const Case*> cases;  // those that this run measures
         tables::FrameTimes times;
         std::optional<TimePoint> runsSince = {};
@@ -75,7 +75,7 @@ class Rounds {
         std::map<std::string, std::string> takenFrom = {};  // of cases with times of another table
     };
 
-    std::map<std::string, Table> tables_;
+    std::map<std::string, TimedTable> tables_;
     std::vector<std::string> order_;
 };
 

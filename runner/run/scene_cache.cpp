@@ -234,20 +234,20 @@ void keepScene(const fs::path& path, scene::Scene& scene, std::uintmax_t mostByt
 }  // namespace
 
 void SceneCache::beginCase(const std::string& keep) {
-    for (Entry& entry : entries_) entry.isOfThisCase = entry.reference == keep;
+    for (CachedScene& entry : entries_) entry.isOfThisCase = entry.reference == keep;
     trim();
 }
 
-const SceneCache::Entry& SceneCache::get(const std::string& reference) {
+const SceneCache::CachedScene& SceneCache::get(const std::string& reference) {
     const auto found = std::find_if(entries_.begin(), entries_.end(),
-                                    [&](const Entry& e) { return e.reference == reference; });
+                                    [&](const CachedScene& e) { return e.reference == reference; });
     if (found != entries_.end()) {
         entries_.splice(entries_.begin(), entries_, found);
         entries_.front().isOfThisCase = true;
         return entries_.front();
     }
     const auto begin = std::chrono::steady_clock::now();
-    Entry entry;
+    CachedScene entry;
     entry.reference = reference;
     const fs::path kept = keptPath(catalog_, reference);
     std::optional<scene::Scene> known = keptScene(kept);
@@ -261,7 +261,7 @@ const SceneCache::Entry& SceneCache::get(const std::string& reference) {
         keepScene(kept, entry.scene, mostKeptBytes_);
         // The bytes on their way to the file are not the case's; a later scene comes after a peak
         // that is.
-        if (std::ranges::none_of(entries_, &Entry::isOfThisCase)) resetPeakResident();
+        if (std::ranges::none_of(entries_, &CachedScene::isOfThisCase)) resetPeakResident();
     }
     entries_.push_front(std::move(entry));
     trim();
@@ -270,7 +270,7 @@ const SceneCache::Entry& SceneCache::get(const std::string& reference) {
 
 std::size_t SceneCache::otherBytes() const {
     std::size_t sizeBytes = 0;
-    for (const Entry& entry : entries_) {
+    for (const CachedScene& entry : entries_) {
         if (!entry.isOfThisCase) sizeBytes += entry.sizeBytes;
     }
     return sizeBytes;

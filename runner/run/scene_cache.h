@@ -24,7 +24,7 @@ namespace gfxrepro::run {
 /// is torn, is made anew.
 class SceneCache : public technique::SceneProvider {
   public:
-    struct Entry {
+    struct CachedScene {
         std::string reference;
         scene::Scene scene;
         std::size_t sizeBytes = 0;
@@ -40,12 +40,12 @@ class SceneCache : public technique::SceneProvider {
 
     /// Unpins everything; with a budget of zero, drops all scenes but `keep`.
     void beginCase(const std::string& keep);
-    const Entry& get(const std::string& reference);
+    const CachedScene& get(const std::string& reference);
     const scene::Scene& load(const std::string& reference) override { return get(reference).scene; }
 
     /// Of scenes that the present case has not asked for.
     std::size_t otherBytes() const;
-    const std::list<Entry>& entries() const { return entries_; }
+    const std::list<CachedScene>& entries() const { return entries_; }
 
   private:
     void trim();
@@ -53,7 +53,7 @@ class SceneCache : public technique::SceneProvider {
     const scene::Catalog& catalog_;
     std::size_t budgetBytes_;
     std::uintmax_t mostKeptBytes_;
-    std::list<Entry> entries_;  // the most recently used one first
+    std::list<CachedScene> entries_;  // the most recently used one first
 };
 
 class ProgramCache {

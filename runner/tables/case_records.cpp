@@ -111,7 +111,7 @@ std::string canonicalText(const Node& value) {
 std::vector<const records::Record*> CaseRecords::Attempt::values(std::string_view metric,
                                                                  std::string_view pass) const {
     std::vector<const records::Record*> values;
-    const Place first{metric, pass, INT_MIN, INT_MIN};
+    const RecordPlace first{metric, pass, INT_MIN, INT_MIN};
     for (auto row = std::ranges::lower_bound(rows, first, {}, placeOf);
          row != rows.end() && (*row)->metric == metric && (*row)->pass == pass; ++row) {
         // In the order of frames: set-up's value comes first, and goes when a frame has one.
@@ -123,7 +123,7 @@ std::vector<const records::Record*> CaseRecords::Attempt::values(std::string_vie
 
 std::string CaseRecords::passOf(std::string_view metric) const {
     for (const auto& [number, attempt] : processes) {
-        const Place first{metric, "", INT_MIN, INT_MIN};
+        const RecordPlace first{metric, "", INT_MIN, INT_MIN};
         const auto row = std::ranges::lower_bound(attempt.rows, first, {}, placeOf);
         if (row != attempt.rows.end() && (*row)->metric == metric) return (*row)->pass;
     }

@@ -31,12 +31,12 @@ inline constexpr std::string_view kSeedAxis = "seed";
 /// scenes are taken at several seeds, a seed is to a case what a process is to a time: cases that
 /// differ by it alone are one, whose process k has the k-th seed.
 struct CaseRecords {
-    struct Place {
+    struct RecordPlace {
         std::string_view metric;
         std::string_view pass;
         int frame = 0;
         int repeat = 0;
-        auto operator<=>(const Place&) const = default;
+        auto operator<=>(const RecordPlace&) const = default;
     };
     struct Attempt {
         std::vector<const records::Record*> rows;  // by placeOf(), one of each; millions
@@ -46,7 +46,7 @@ struct CaseRecords {
         const records::Record* failure = nullptr;  // why the case has no rows
     };
 
-    static Place placeOf(const records::Record* row) {
+    static RecordPlace placeOf(const records::Record* row) {
         return {row->metric, row->pass, row->frame, row->repeat};
     }
 

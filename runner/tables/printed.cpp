@@ -510,7 +510,7 @@ std::string departuresText(const std::vector<Departure>& departures, const Words
 }
 
 void PrintedCells::add(const config::Experiment& experiment, const Table& table) {
-    if (experiment.kind != config::Experiment::Kind::Table) return;
+    if (experiment.kind != config::ExperimentKind::Table) return;
     for (const auto* rows : {&table.rows, &table.printedRows}) {
         for (const TableRow& row : *rows) {
             for (const Cell& cell : row.cells) {

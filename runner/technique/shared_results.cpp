@@ -9,7 +9,7 @@ namespace gfxrepro::technique {
 void SharedResults::beginCase(std::string work, Node params) {
     work_ = std::move(work);
     params_ = std::move(params);
-    for (Entry& entry : entries_) entry.isOfThisCase = false;
+    for (KeptResult& entry : entries_) entry.isOfThisCase = false;
 }
 
 std::string SharedResults::keyOf(const std::string& name,
@@ -20,7 +20,7 @@ std::string SharedResults::keyOf(const std::string& name,
 }
 
 std::shared_ptr<const void> SharedResults::find(const std::string& key) {
-    const auto found = std::ranges::find(entries_, key, &Entry::key);
+    const auto found = std::ranges::find(entries_, key, &KeptResult::key);
     if (found == entries_.end()) return nullptr;
     found->isOfThisCase = true;
     entries_.splice(entries_.begin(), entries_, found);
@@ -32,12 +32,12 @@ void SharedResults::add(const std::string& key, std::shared_ptr<const void> resu
     entries_.push_front({key, std::move(result), sizeBytes});
     std::size_t total = 0;
     std::erase_if(entries_,
-                  [&](const Entry& entry) { return (total += entry.sizeBytes) > mostBytes_; });
+                  [&](const KeptResult& entry) { return (total += entry.sizeBytes) > mostBytes_; });
 }
 
 std::size_t SharedResults::otherBytes() const {
     std::size_t sizeBytes = 0;
-    for (const Entry& entry : entries_) {
+    for (const KeptResult& entry : entries_) {
         if (!entry.isOfThisCase) sizeBytes += entry.sizeBytes;
     }
     return sizeBytes;

@@ -45,7 +45,7 @@ class SharedResults {
     std::size_t otherBytes() const;
 
   private:
-    struct Entry {
+    struct KeptResult {
         std::string key;
         std::shared_ptr<const void> result;
         std::size_t sizeBytes = 0;
@@ -59,7 +59,7 @@ class SharedResults {
     std::size_t mostBytes_;
     std::string work_;
     Node params_;
-    std::list<Entry> entries_;  // the one asked for last first
+    std::list<KeptResult> entries_;  // the one asked for last first
 };
 
 /// … where a case shares nothing (null), made for it alone.

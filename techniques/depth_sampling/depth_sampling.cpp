@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "techniques/depth_sampling/experiment.h"
 #include "techniques/depth_sampling/pixel_measures.h"
 #include "techniques/depth_sampling/reference_views.h"
+#include "techniques/depth_sampling/sampling_experiment.h"
 #include "techniques/depth_sampling/visibility.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"

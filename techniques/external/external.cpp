@@ -20,7 +20,7 @@
 #include "engine/scene/load.h"
 #include "runner/config/external_program.h"
 #include "techniques/external/process.h"
-#include "techniques/external/results.h"
+#include "techniques/external/program_output.h"
 
 namespace gfxrepro::external {
 namespace {

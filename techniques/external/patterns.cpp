@@ -11,7 +11,7 @@
 
 #include "engine/core/foreign_text.h"
 #include "engine/core/text.h"
-#include "techniques/external/results.h"
+#include "techniques/external/program_output.h"
 
 namespace gfxrepro::external {
 namespace {

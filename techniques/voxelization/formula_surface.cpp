@@ -15,7 +15,7 @@ constexpr int kImplicitGroupSize = 8;
 constexpr std::string_view kQuartic = "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8";
 constexpr float kQuarticExtent = 2.5F;
 
-Expression readFormula(Params& params) {
+Formula readFormula(Params& params) {
     const std::string formula = params.getText(
         "formula", kQuartic, {"f(x, y, z) of the implicit surface f = 0, below 0 inside"});
     return {formula, {"x", "y", "z"}, params.locationOf("formula")};

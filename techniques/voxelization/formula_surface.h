@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/gl/pass.h"
-#include "techniques/voxelization/expression.h"
+#include "techniques/voxelization/formula.h"
 #include "techniques/voxelization/worksheet.h"
 
 namespace gfxrepro::voxelization {
@@ -20,11 +20,11 @@ class ImplicitSource final : public GridSource {
     void render(gl::Profiler& profiler) override;
     const VoxelGrid* grid() const override { return &grid_; }
 
-    const Expression& formula() const { return formula_; }
+    const Formula& formula() const { return formula_; }
 
   private:
     GridSettings settings_;
-    Expression formula_;
+    Formula formula_;
     VoxelGrid grid_;
     gl::Pass pass_;
 };
@@ -52,8 +52,8 @@ class ParametricSource final : public GridSource {
     std::vector<glm::vec3> samplePoints(const gl::ShaderLibrary& shaders) const;
 
     GridSettings settings_;
-    std::vector<Expression> formulas_;  // x, y, z
-    glm::vec4 domain_{0.0F};            // u0, v0, u1, v1
+    std::vector<Formula> formulas_;  // x, y, z
+    glm::vec4 domain_{0.0F};         // u0, v0, u1, v1
     glm::ivec2 sampleCounts_{0};
     std::optional<scene::Box> box_;
     VoxelGrid grid_;

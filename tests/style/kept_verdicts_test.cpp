@@ -155,7 +155,7 @@ TEST(KeptVerdicts, TheFullestQuickRunAsksWhatTheConfigsAsk) {
     for (const claims::ClaimResult& claim : fullest) kept[{claim.table, claim.id}] = &claim;
     std::size_t count = 0;
     visitConfigs([&](const config::Experiment& experiment) {
-        if (experiment.kind == config::Experiment::Kind::Sweep) return;
+        if (experiment.kind == config::ExperimentKind::Sweep) return;
         config::Experiment quick =
             config::loadExperiment(experiment.file, {.profile = "quick"}, kSource / "configs");
         if (!quick.paperDocument.isNull()) {

@@ -5,7 +5,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-#include "voxelization/expression.glsl"
+#include "voxelization/formula.glsl"
 #include "voxelization/voxel_value.glsl"
 #include "voxelization/worksheet.glsl"
 

@@ -1,6 +1,6 @@
 // A parametric surface evaluated at the points of a grid over its domain (formula_surface.h).
 
-#include "voxelization/expression.glsl"
+#include "voxelization/formula.glsl"
 
 #pragma snippet formulas
 

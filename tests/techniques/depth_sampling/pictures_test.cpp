@@ -1,4 +1,4 @@
-#include "techniques/depth_sampling/experiment.h"
+#include "techniques/depth_sampling/sampling_experiment.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "techniques/external/results.h"
+#include "techniques/external/program_output.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::external {

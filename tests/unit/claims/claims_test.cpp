@@ -283,7 +283,7 @@ std::string provenanceError(const std::string& claim, bool isSweep = false, int 
         "bytes}, often: {metric: frame_rate}}}, rows: [scene, e], columns: {a: {pass: p}, n: "
         "{metric: bytes}}}\nclaims:\n  C: {says: s, " +
         claim + "}\n");
-    if (isSweep) experiment.kind = config::Experiment::Kind::Sweep;
+    if (isSweep) experiment.kind = config::ExperimentKind::Sweep;
     return refusalOf(experiment);
 }
 

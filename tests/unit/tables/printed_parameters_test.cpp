@@ -399,7 +399,7 @@ TEST(PrintedParameters, NothingIsSaidOfWhatIsNotPublished) {
     RecordMaker maker;
     maker.beginCase("models/duck", kPrinted).add("gpu_time_ms", {8.0});
     config::Experiment own = experimentFrom(kDuck);
-    own.kind = config::Experiment::Kind::Sweep;
+    own.kind = config::ExperimentKind::Sweep;
     own.printed = {};
     EXPECT_EQ(parametersLine(buildTable(own, maker.records())), "");
     const Table unmeasured = buildTable(experimentFrom(kDuck), {});
@@ -417,7 +417,7 @@ TEST(PrintedParameters, CellsOfTablesAreCounted) {
     PrintedCells count = countPrintedCells({{experiment, experiment}}, {{table, table}});
     EXPECT_EQ(printedCellsLine(count),
               "Of 2 printed cells of tables 2 were measured again: 2 at the printed parameters.");
-    experiment.kind = config::Experiment::Kind::Figure;
+    experiment.kind = config::ExperimentKind::Figure;
     count.add(experiment, table);
     EXPECT_EQ(count.printed, 2) << "a figure's";
     EXPECT_EQ(printedCellsLine({}), "");

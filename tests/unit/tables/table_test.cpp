@@ -921,7 +921,7 @@ TEST(Table, OnesOwnExperimentNeedsNoLayout) {
     }
     config::Experiment own = experimentFrom("scene: models/duck\nsweep: {resolution: [64, 128]}\n");
     EXPECT_TRUE(buildTable(own, maker.records()).columns.empty()) << "a paper's shows pictures";
-    own.kind = config::Experiment::Kind::Sweep;
+    own.kind = config::ExperimentKind::Sweep;
     const Table table = buildTable(own, maker.records());
     ASSERT_EQ(table.rowAxes, (std::vector<std::string>{"resolution"}));
     ASSERT_EQ(table.columns.size(), 2U);

@@ -1,4 +1,4 @@
-#include "techniques/voxelization/expression.h"
+#include "techniques/voxelization/formula.h"
 
 #include <fmt/format.h>
 
@@ -203,8 +203,8 @@ class Translator {
 
 }  // namespace
 
-Expression::Expression(const std::string& formula, std::vector<std::string> variables,
-                       const SourceLocation& where)
+Formula::Formula(const std::string& formula, std::vector<std::string> variables,
+                 const SourceLocation& where)
     : formula_(formula), variables_(std::move(variables)) {
     if (formula.size() > kMaxLength) {
         throw Error(where, fmt::format("a formula of {} characters; at most {} are allowed",
@@ -217,7 +217,7 @@ Expression::Expression(const std::string& formula, std::vector<std::string> vari
     }
 }
 
-std::string Expression::glslFunction(const std::string& name) const {
+std::string Formula::glslFunction(const std::string& name) const {
     std::vector<std::string> parameters;
     for (const std::string& variable : variables_) parameters.push_back("float " + variable);
     return fmt::format("float {}({}) {{ precise float value = {}; return value; }}", name,

@@ -1,4 +1,4 @@
-#include "techniques/external/results.h"
+#include "techniques/external/program_output.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// Powers for generated formulas (expression.h). GLSL's pow() is undefined for negative bases.
+// Powers for generated formulas (formula.h). GLSL's pow() is undefined for negative bases.
 
 // base^exponent by repeated squaring; |exponent| <= 64, a constant. Written out, because compilers that
 // do not unroll the loop take minutes for a long formula.

@@ -6,7 +6,7 @@
 #include "engine/core/files.h"
 #include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
-#include "techniques/external/results.h"
+#include "techniques/external/program_output.h"
 #include "tests/support/support.h"
 #include "tests/techniques/technique_recorder.h"
 

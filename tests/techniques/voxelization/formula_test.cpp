@@ -1,4 +1,4 @@
-#include "techniques/voxelization/expression.h"
+#include "techniques/voxelization/formula.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,12 +16,10 @@ namespace {
 constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
 
 std::string errorOf(const std::string& formula) {
-    return test::errorText([&] {
-        Expression(formula, {"x", "y"}, SourceLocation{"a.yaml", 3, 14});
-    });
+    return test::errorText([&] { Formula(formula, {"x", "y"}, SourceLocation{"a.yaml", 3, 14}); });
 }
 
-TEST(Expression, SaysWhereAFormulaIsWrong) {
+TEST(Formula, SaysWhereAFormulaIsWrong) {
     const std::string allowed =
         "; allowed: numbers, x, y, pi, abs, cos, exp, log, max, min, sin, sqrt, tan, + - * / ^ ( )";
     EXPECT_EQ(errorOf("x + foo"),
@@ -49,7 +47,7 @@ TEST(Expression, SaysWhereAFormulaIsWrong) {
               "a.yaml:3:14: a formula of 5000 characters; at most 4096 are allowed");
 }
 
-TEST(Expression, BoundsTheNesting) {
+TEST(Formula, BoundsTheNesting) {
     EXPECT_NE(errorOf(std::string(2000, '(')).find("character 101: nested deeper than 100"),
               std::string::npos);
     std::string tower = "2";
@@ -129,17 +127,16 @@ std::vector<float> evaluateOnDevice(const std::vector<std::string>& formulas,
     std::string functions;
     std::string cases;
     for (std::size_t i = 0; i < formulas.size(); ++i) {
-        const Expression expression(formulas[i], {"x", "y", "z"}, {});
+        const Formula expression(formulas[i], {"x", "y", "z"}, {});
         functions += expression.glslFunction("f" + std::to_string(i)) + "\n";
         cases += fmt::format("values[{0}] = f{0}(point.x, point.y, point.z);\n", i);
     }
-    const gl::Pass pass =
-        ShaderFolder(
-            "#version 450 core\nlayout(local_size_x = 1) in;\n"
-            "#include \"voxelization/expression.glsl\"\n#pragma snippet functions\n"
-            "layout(std430) writeonly buffer Values { float values[]; };\n"
-            "uniform vec3 point;\nvoid main() {\n#pragma snippet cases\n}\n")
-            .pass({}, {{"functions", functions}, {"cases", cases}});
+    const gl::Pass pass = ShaderFolder(
+                              "#version 450 core\nlayout(local_size_x = 1) in;\n"
+                              "#include \"voxelization/formula.glsl\"\n#pragma snippet functions\n"
+                              "layout(std430) writeonly buffer Values { float values[]; };\n"
+                              "uniform vec3 point;\nvoid main() {\n#pragma snippet cases\n}\n")
+                              .pass({}, {{"functions", functions}, {"cases", cases}});
     const gl::Buffer values(formulas.size() * sizeof(float));
     pass.set("point", glm::vec3(at[0], at[1], at[2]));
     pass.dispatch({1, 1, 1}, {{"Values", values}});
