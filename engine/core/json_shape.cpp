@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <climits>
+#include <deque>
 #include <unordered_set>
 #include <vector>
 
@@ -127,9 +128,10 @@ void requireShallowJson(std::string_view text, const SourceLocation& where) {
 
 namespace {
 
-/// A key that stands twice in an object of sound JSON, as it is written: the library takes the last
-/// of its values, and its callbacks take ten times as long as its parser.
+/// A key that stands twice in an object of sound JSON, as it is written the second time: the
+/// library takes the last of its values, and its callbacks take ten times as long as its parser.
 std::optional<std::string_view> keyTwiceIn(std::string_view text) {
+    std::deque<std::string> decoded;                         // those that are written with escapes
     std::vector<std::unordered_set<std::string_view>> open;  // keys of objects and lists that are
     for (std::size_t i = 0; i < text.size() && text[i] != '\0'; ++i) {  // where the library ends
         if (text[i] == '{' || text[i] == '[') open.emplace_back();
@@ -138,30 +140,32 @@ std::optional<std::string_view> keyTwiceIn(std::string_view text) {
         const std::size_t begin = ++i;
         while (text[i] != '"') i += text[i] == '\\' ? 2 : 1;
         if (text[text.find_first_not_of(" \t\r\n", i + 1)] != ':') continue;
-        const std::string_view key = text.substr(begin, i - begin);
-        if (!open.back().insert(key).second) return key;
+        const std::string_view written = text.substr(begin, i - begin);
+        std::string_view key = written;
+        if (written.find('\\') != written.npos) {
+            key = decoded.emplace_back(
+                Json::parse(text.substr(begin - 1, i + 2 - begin)).get<std::string>());
+        }
+        if (!open.back().insert(key).second) return written;
     }
     return std::nullopt;
 }
 
 }  // namespace
 
-Json parseJsonObject(std::string_view text, const SourceLocation& where) {
+std::optional<Json> jsonObjectIn(std::string_view text, const SourceLocation& where) {
     requireShallowJson(text, where);
     Json json = Json::parse(text, nullptr, false);
-    if (!json.is_object()) throw Error(where, "is no JSON object");
+    if (!json.is_object()) return std::nullopt;
     if (const auto key = keyTwiceIn(text)) {
         throw Error(where, fmt::format("has \"{}\" twice", *key));
     }
     return json;
 }
 
-std::optional<Json> jsonObjectIn(std::string_view text) {
-    try {
-        return parseJsonObject(text, {});
-    } catch (const Error&) {
-        return std::nullopt;
-    }
+Json parseJsonObject(std::string_view text, const SourceLocation& where) {
+    if (std::optional<Json> json = jsonObjectIn(text, where)) return *std::move(json);
+    throw Error(where, "is no JSON object");
 }
 
 void requireMembers(const Json& object, std::span<const JsonMember> members,

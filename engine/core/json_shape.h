@@ -46,11 +46,11 @@ constexpr int kMostJsonLevels = 200;
 bool isTooDeepJson(std::string_view text);
 /// Throws Error(where, …) for what is nested deeper than kMostJsonLevels.
 void requireShallowJson(std::string_view text, const SourceLocation& where);
-/// The text as an object. Throws Error(where, …) for any other, for a key that stands twice in one
-/// object, and as requireShallowJson().
+/// The text as an object; none for any other, as a line that was torn. Throws Error(where, …) for a
+/// key that stands twice in one object, and as requireShallowJson().
+std::optional<Json> jsonObjectIn(std::string_view text, const SourceLocation& where);
+/// The same; throws Error(where, …) for any other text, too.
 Json parseJsonObject(std::string_view text, const SourceLocation& where);
-/// The same; none for what it refuses, as a line that was torn.
-std::optional<Json> jsonObjectIn(std::string_view text);
 
 /// Throws Error(where, …) for a member that is missing or of another kind: "'/gl/vendor' is number;
 /// expected text". `prefix` stands before the places.

@@ -145,8 +145,7 @@ void forEachEvent(const fs::path& file, const std::function<void(Json&&)>& take)
         rest.remove_prefix(std::min(text.size() + 1, rest.size()));
         if (text.empty()) continue;
         const SourceLocation where{name, line, 0};
-        requireShallowJson(text, where);
-        std::optional<Json> event = jsonObjectIn(text);
+        std::optional<Json> event = jsonObjectIn(text, where);
         if (!event) continue;
         requireMembers(*event, kEvent, where);
         if (event->contains("cost")) requireMembers((*event)["cost"], kCost, where, "/cost");

@@ -136,9 +136,13 @@ std::optional<CaseResult> WorkerHandle::handleLines() {
     for (std::size_t end;
          (end = messages_.find('\n', std::max(lineBegin, searchedBytes_))) != std::string::npos;
          lineBegin = end + 1) {
-        const std::optional<Json> message =
-            jsonObjectIn(std::string_view(messages_).substr(lineBegin, end - lineBegin));
-        if (!message) continue;  // a library's own words on descriptor 3
+        std::optional<Json> message;
+        try {
+            message =
+                jsonObjectIn(std::string_view(messages_).substr(lineBegin, end - lineBegin), {});
+        } catch (const Error&) {  // a library's own words on descriptor 3, as what is no object
+        }
+        if (!message) continue;
         if (std::optional<CaseResult> given = handle(*message)) result = std::move(given);
     }
     messages_.erase(0, lineBegin);

@@ -61,6 +61,10 @@ TEST(RunDirectory, ATornLineOfTheLogSwallowsNoOther) {
     const std::vector<run::Json> events = run::readJournal(log);
     ASSERT_EQ(events.size(), 1U);
     EXPECT_EQ(events[0]["event"], "begin");
+    folder.write("run/journal.jsonl",
+                 "{\"event\": 1\n{\"event\": \"end\", \"event\": \"begin\"}\n");
+    EXPECT_EQ(errorText([&] { run::readJournal(log); }, folder.path()),
+              "DIR/run/journal.jsonl:2: has \"event\" twice");
 }
 
 TEST(RunDirectory, AFullLogTakesNoFurtherUnit) {
