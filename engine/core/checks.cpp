@@ -25,12 +25,6 @@ void throwNotAllowed(const Node& value, std::string_view what, std::string_view 
                                       "; allowed: " + std::string(allowed));
 }
 
-const Node& requiredEntry(const Node& map, std::string_view key, std::string_view what) {
-    if (const Node* value = map.find(key)) return *value;
-    throw Error(map.location(),
-                fmt::format("{}{}'{}' is missing", what, what.empty() ? "" : ": ", key));
-}
-
 const std::string& lineOf(const Node& node, std::string_view what) {
     if (!node.isScalar() || trimmed(node.text()).empty() ||
         node.text().find('\n') != std::string::npos) {

@@ -19,9 +19,6 @@ void requireKeys(const Node& map, std::string_view what, std::span<const std::st
 [[noreturn]] void throwNotAllowed(const Node& value, std::string_view what,
                                   std::string_view allowed);
 
-/// The entry of a map. Throws Error "WHAT: 'KEY' is missing" at the map's place; without `what`
-/// "'KEY' is missing".
-const Node& requiredEntry(const Node& map, std::string_view key, std::string_view what = "");
 /// `text` of one line that is not empty. Throws Error for another.
 const std::string& lineOf(const Node& node, std::string_view what);
 

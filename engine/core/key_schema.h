@@ -112,6 +112,8 @@ class KeyTable {
         }
         return given;
     }
+    /// What the map has at that one, to be changed; null where it is not there.
+    Node* find(Node& map, GivenKey Given::*key) const { return map.find(nameOf(key)); }
     /// Throws Error for a key that is none of these; `what` begins the message.
     Given readKnown(const Node& map, std::string_view what) const {
         requireKeys(map, what, names_);

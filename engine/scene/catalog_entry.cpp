@@ -9,6 +9,7 @@
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
 #include "engine/scene/height_map.h"
+#include "engine/scene/height_rows.h"
 #include "engine/scene/load.h"
 
 namespace gfxrepro::scene {
@@ -44,9 +45,6 @@ SchemaKey spacingKey(const char* absent) {
 SchemaKey heightScaleKey() {
     return numberKey("height_scale_m", kMetres, Node::number(HeightMapUnits().heightScaleM).text(),
                      "a step of the file's values");
-}
-SchemaKey noDataKey() {
-    return numberKey("no_data", {}, "none", "the value of samples that are missing");
 }
 
 /// Of a file of one's own.

@@ -82,7 +82,7 @@ struct HeightMapUnits {
 };
 
 /// By extension, any case: .png (8 or 16 bits), .tif .tiff (integers up to 32 bits, floats), .hgt
-/// (SRTM), .raw .r16 .bin (with a sidecar <file>.yaml: width, height, type, byte_order, no_data).
+/// (SRTM), .raw .r16 .bin (with a sidecar <file>.yaml: rawHeightSchema()).
 /// Samples without data are filled (fillHoles). Throws one Error that names the file for all that
 /// it refuses, before it allocates more than the file can hold.
 HeightMap loadHeightMap(const std::filesystem::path& path, const HeightMapUnits& units);

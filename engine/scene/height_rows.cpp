@@ -6,13 +6,12 @@
 #include <tiffio.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <memory>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -176,48 +175,53 @@ std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path) {
                     path.string(), bytes));
 }
 
-ValueType typeOf(const Node& node) {
-    const std::string& text = node.text();
-    if (text == "u16") return ValueType::U16;
-    if (text == "i16") return ValueType::I16;
-    if (text == "f32") return ValueType::F32;
-    throw Error(node.location(), fmt::format("type is '{}'; allowed: u16 | i16 | f32", text));
-}
+constexpr NumberRange kSides{kMinHeightMapSide, kMaxHeightFileSide, false, false, true};
+constexpr std::array<std::string_view, 3> kRawTypeNames = {"u16", "i16", "f32"};
+constexpr std::array kRawTypes = {ValueType::U16, ValueType::I16, ValueType::F32};
+constexpr std::array<std::string_view, 2> kByteOrders = {"little", "big"};
 
-bool isBigEndian(const Node* node) {
-    if (node == nullptr || node->text() == "little") return false;
-    if (node->text() == "big") return true;
-    throw Error(node->location(),
-                fmt::format("byte_order is '{}'; allowed: little | big", node->text()));
+struct RawKeys {
+    GivenKey width, height, type, byteOrder, noData;
+};
+const KeyTable<RawKeys>& rawTable() {
+    using R = RawKeys;
+    static const KeyTable<R> table{
+        {"raw_heights", "", "", false},
+        {{&R::width, types::numberKey("width", kSides, "required", "samples from west to east")},
+         {&R::height, types::numberKey("height", kSides, "required", "from north to south")},
+         {&R::type, types::choiceKey("type", kRawTypeNames, "required", "of a sample")},
+         {&R::byteOrder, types::choiceKey("byte_order", kByteOrders, "little", "of a sample")},
+         {&R::noData, noDataKey()}}};
+    return table;
 }
 
 std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
     const fs::path sidecar = path.string() + ".yaml";
     if (!fs::is_regular_file(sidecar)) {
+        std::string keys;
+        for (const SchemaKey& key : rawTable().section().keys) {
+            keys += fmt::format("{}{} ({})", keys.empty() ? "" : ", ", key.name, key.type);
+        }
         throw Error(
-            fmt::format("{}: a raw height map needs {} with width, height, type (u16 | i16 "
-                        "| f32) and byte_order (little | big)",
-                        path.string(), sidecar.string()));
+            fmt::format("{0}: a raw height map needs {0}.yaml with {1}", path.string(), keys));
     }
     const Node root = parseYamlFile(sidecar);
-    requireKeys(root, "a raw height map's sidecar",
-                std::vector<std::string>{"width", "height", "type", "byte_order", "no_data"});
-    const long long width = requiredEntry(root, "width").asInteger();
-    const long long height = requiredEntry(root, "height").asInteger();
-    checkHeightMapSize(width, height, sidecar.string());
-    const ValueType type = typeOf(requiredEntry(root, "type"));
+    const RawKeys given = rawTable().read(root, "a raw height map's sidecar");
+    const auto side = [](const GivenKey& key) {
+        return static_cast<std::uint32_t>(numberIn(*key, kSides, key.name()));
+    };
+    const std::uint32_t width = side(given.width), height = side(given.height);
+    const ValueType type = kRawTypes[choiceOf(*given.type, kRawTypeNames, given.type.name())];
+    const GivenKey &order = given.byteOrder, &noData = given.noData;
+    const bool isBigEndian = order && choiceOf(*order, kByteOrders, order.name()) == 1;
     const std::uintmax_t bytes = bytesOfFile(path);
-    const auto wanted =
-        static_cast<std::uintmax_t>(width) * static_cast<std::uintmax_t>(height) * valueBytes(type);
+    const std::uintmax_t wanted = std::uintmax_t{width} * height * valueBytes(type);
     if (bytes != wanted) {
         throw Error(fmt::format("{}: {} bytes; {} x {} samples of {} need {}", path.string(), bytes,
-                                width, height, root.find("type")->text(), wanted));
+                                width, height, given.type->text(), wanted));
     }
-    auto rows = std::make_unique<BareRows>(path, glm::ivec2(width, height), type,
-                                           isBigEndian(root.find("byte_order")));
-    if (const Node* noData = root.find("no_data")) {
-        rows->noData.push_back(static_cast<float>(noData->asDouble()));
-    }
+    auto rows = std::make_unique<BareRows>(path, glm::ivec2(width, height), type, isBigEndian);
+    if (noData) rows->noData.push_back(static_cast<float>(numberIn(*noData, {}, noData.name())));
     return rows;
 }
 
@@ -434,14 +438,18 @@ constexpr HeightFormat kHeightFormats[] = {
 };
 
 const HeightFormat* heightFormatOf(const fs::path& path) {
-    const std::string extension = lowerCaseExtension(path);
-    for (const HeightFormat& format : kHeightFormats) {
-        if (format.extension == extension) return &format;
-    }
-    return nullptr;
+    const auto* format =
+        std::ranges::find(kHeightFormats, lowerCaseExtension(path), &HeightFormat::extension);
+    return format == std::end(kHeightFormats) ? nullptr : format;
 }
 
 }  // namespace
+
+SchemaFile rawHeightSchema() {
+    return {"raw_heights",
+            "FILE.yaml, beside a height map FILE that is samples alone",
+            {rawTable().section()}};
+}
 
 bool isHeightMapFile(const fs::path& path) {
     return heightFormatOf(path) != nullptr;
@@ -449,10 +457,8 @@ bool isHeightMapFile(const fs::path& path) {
 
 std::unique_ptr<HeightRows> openHeightRows(const fs::path& path) {
     if (const HeightFormat* format = heightFormatOf(path)) return format->open(path);
-    throw Error(
-        fmt::format("{}: unknown kind of height map; allowed: .png .tif .tiff .hgt "
-                    ".raw .r16 .bin",
-                    path.string()));
+    throw Error(path.string() +
+                ": unknown kind of height map; allowed: .png .tif .tiff .hgt .raw .r16 .bin");
 }
 
 namespace {

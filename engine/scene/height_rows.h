@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/key_schema.h"
+
 namespace gfxrepro::scene {
 
 /// A file's values, from north to south. In memory are a row or, of a file in tiles, a row of them.
@@ -38,6 +40,13 @@ void checkHeightMapSize(std::int64_t width, std::int64_t height, const std::stri
 /// By extension (loadHeightMap()). Reads what stands before the first row, and throws Error for
 /// what cannot be read so: an interlaced PNG and a row of tiles come whole, which is bounded.
 std::unique_ptr<HeightRows> openHeightRows(const std::filesystem::path& path);
+
+/// Of every source of heights.
+inline SchemaKey noDataKey() {
+    return types::numberKey("no_data", {}, "none", "the value of samples that are missing");
+}
+/// Of what stands beside a file of nothing but samples.
+SchemaFile rawHeightSchema();
 
 // Samples without data, filled by a push-pull pyramid: of a map in memory, and of one that comes in
 // bands of rows.

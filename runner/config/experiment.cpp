@@ -46,6 +46,8 @@ const std::vector<Identity>& identities() {
     return all;
 }
 
+}  // namespace
+
 const KeyTable<ContentKeys>& contentTable() {
     using C = ContentKeys;
     static const KeyTable<C> table{
@@ -112,6 +114,8 @@ const KeyTable<ContentKeys>& contentTable() {
     return table;
 }
 
+namespace {
+
 struct AssumptionKeys {
     GivenKey value, range, unit, why;
 };
@@ -174,8 +178,9 @@ void readIdentity(const Node& document, Experiment& experiment) {
     if (parts.size() != 2 || !isName(parts[0]) || !isName(parts[1])) {
         throwNotAllowed(name, key, "PAPER/NUMBER, such as zju2005/2.1");
     }
-    experiment.id =
-        found->kind == ExperimentKind::Figure ? parts[0] + "/" + std::string(kFigurePrefix) + parts[1] : text;
+    experiment.id = found->kind == ExperimentKind::Figure
+                        ? parts[0] + "/" + std::string(kFigurePrefix) + parts[1]
+                        : text;
 }
 
 void requireAxisNames(const Node& sweep, const std::vector<AxisPoint>& points) {
@@ -503,7 +508,7 @@ Experiment readExperiment(const Node& document, const std::filesystem::path& fil
                           bool isComplete) {
     Names allowed = identityKeys();
     allowed.insert(allowed.end(), sectionKeys().begin(), sectionKeys().end());
-    allowed.emplace_back("profiles");
+    allowed.emplace_back(kProfilesKey);
     requireKeys(document, "config", allowed);
     const ContentKeys given = contentOf(document);
     Experiment experiment;
@@ -522,7 +527,7 @@ Experiment readExperiment(const Node& document, const std::filesystem::path& fil
     readTable(document, given, isComplete, experiment);
     if (given.technique) readLane(document, given, experiment);
     if (given.assumptions) experiment.assumptions = readAssumptions(*given.assumptions);
-    if (const Node* profiles = document.find("profiles")) {
+    if (const Node* profiles = document.find(kProfilesKey)) {
         for (const Node& name : profiles->items()) experiment.profiles.push_back(name.text());
     }
     return experiment;

@@ -26,10 +26,8 @@ using Two = std::array<std::string_view, 2>;
 constexpr Two kFramesOfARun = {"one", "all"}, kSeedsOf = {"case", "process"};
 constexpr Two kBetter = {"lower", "higher"};
 
-struct ProgramKeys {
-    GivenKey command, params, metrics, passes, images, env, version, starts, files, frames, seeds,
-        gpu, here;
-};
+}  // namespace
+
 const KeyTable<ProgramKeys>& programTable() {
     using P = ProgramKeys;
     static const KeyTable<P> table{
@@ -74,9 +72,6 @@ const KeyTable<ProgramKeys>& programTable() {
     return table;
 }
 
-struct ParamKeys {
-    GivenKey fallback, unit, min, max, choices, doc;
-};
 const KeyTable<ParamKeys>& paramTable() {
     using P = ParamKeys;
     static const KeyTable<P> table{
@@ -91,6 +86,8 @@ const KeyTable<ParamKeys>& paramTable() {
          {&P::doc, "doc", "line", "\"\"", "what it means", text()}}};
     return table;
 }
+
+namespace {
 
 struct MetricKeys {
     GivenKey unit, better, pattern, scale, optional, doc;
@@ -116,9 +113,8 @@ const KeyTable<MetricKeys>& metricTable() {
     return table;
 }
 
-struct ImageKeys {
-    GivenKey file, truth;
-};
+}  // namespace
+
 const KeyTable<ImageKeys>& imageTable() {
     using I = ImageKeys;
     static const KeyTable<I> table{
@@ -137,6 +133,8 @@ const KeyTable<ImageKeys>& imageTable() {
           anyOf({text(), mapOf(anything())})}}};
     return table;
 }
+
+namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 

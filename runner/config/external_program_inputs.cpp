@@ -76,7 +76,7 @@ bool isOwnTruth(const Case& item, const Node& truth) {
 
 std::vector<std::string> ownTruths(const Experiment& experiment, std::span<const Case> cases) {
     const Node& program = programOf(experiment);
-    if (!program.isMap() || !program.find("images")) return {};
+    if (!program.isMap() || !programTable().find(program).images) return {};
     std::vector<std::string> sentences;
     for (const ProgramPicture& picture : readProgram(program).pictures) {
         const Node& truth = picture.truthParams;
@@ -126,21 +126,20 @@ Placeholders ExternalProgram::valuesOf(const Node& resolved) const {
 }
 
 void setProgramFolder(Node& document) {
-    Node* program = document.find("program");
-    const Node* command = program && program->isMap() ? program->find("command") : nullptr;
-    if (!command) return;
+    Node* program = contentTable().find(document, &ContentKeys::program);
+    const ProgramKeys given =
+        program && program->isMap() ? programTable().find(*program) : ProgramKeys();
+    if (!given.command) return;
     const auto folderOf = [&](const Node& node) {
         const std::string& file = node.location().file.text();
         const bool isTyped = file.starts_with(kCommandLine);
         return fs::path(isTyped ? document.location().file.text() : file).parent_path();
     };
-    fs::path here = folderOf(*command);
-    if (const Node* given = program->find("here")) {
-        here = folderOf(*given) / lineOf(*given, "program: here");
-    }
+    fs::path here = folderOf(*given.command);
+    if (given.here) here = folderOf(*given.here) / lineOf(*given.here, given.here.in("program"));
     here = (fs::current_path() / here).lexically_normal();  // of a file in it: ""
     if (!here.has_filename()) here = here.parent_path();
-    program->set("here", Node::scalar(here.string(), command->location(), true));
+    program->set(given.here.name(), Node::scalar(here.string(), given.command->location(), true));
 }
 
 std::vector<ProgramFile> filesOf(const ExternalProgram& program, const Placeholders& values) {
@@ -183,35 +182,35 @@ void requireFiles(const Node& node, const ExternalProgram& program, const Placeh
         if (fs::is_regular_file(path, isAbsent)) return;
         throw Error(named.location(), what + ": there is no file " + path.string());
     };
-    if (const Node* files = node.find("files")) {
-        for (const Node& file : files->items()) {
-            require(file, "program: files",
+    const ProgramKeys given = programTable().find(node);
+    if (given.files) {
+        for (const Node& file : given.files->items()) {
+            require(file, given.files.in("program"),
                     (fs::path(program.here) / filled(file.text(), values)).lexically_normal());
         }
     }
     // Other machines may have what lies elsewhere.
-    const auto requireProgram = [&](const Node& named, const char* key, const std::string& text) {
+    const auto requireProgram = [&](const Node& named, const GivenKey& key,
+                                    const std::string& text) {
         const std::string name = filled(text, values);
         const fs::path path = (fs::path(program.here) / name).lexically_normal();
         const fs::path below = path.lexically_relative(program.here);
         const bool isBeside =
             name.find('/') != std::string::npos && !below.empty() && *below.begin() != "..";
         if (!isBeside || !findExecutable(name, program.here).empty()) return;
-        throw Error(named.location(),
-                    fmt::format("program: {}: there is no program {}", key, path.string()));
+        throw Error(named.location(), key.in("program") + ": there is no program " + path.string());
     };
-    requireProgram(*node.find("command"), "command", program.command.front());
-    if (const Node* starts = node.find("starts")) {
-        for (std::size_t i = 0; i < program.starts.size(); ++i) {
-            requireProgram(starts->items()[i], "starts", program.starts[i]);
-        }
+    requireProgram(*given.command, given.command, program.command.front());
+    for (std::size_t i = 0; i < program.starts.size(); ++i) {
+        requireProgram(given.starts->items()[i], given.starts, program.starts[i]);
     }
     for (const ProgramPicture& picture : program.pictures) {
         const std::string text = filled(picture.truthFile, values);
         // What is below {out}, or of a frame, is known when the program runs.
         if (!text.starts_with('/') || text.find('{') != std::string::npos) continue;
-        require(*node.find("images")->find(picture.name)->find("truth"),
-                "program: image '" + picture.name + "': truth", fs::path(text).lexically_normal());
+        const GivenKey truth = imageTable().find(*given.images->find(picture.name)).truth;
+        require(*truth, truth.in("program: image '" + picture.name + "'"),
+                fs::path(text).lexically_normal());
     }
 }
 

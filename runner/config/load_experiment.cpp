@@ -33,7 +33,7 @@ const KeyTable<CompositionKeys>& compositionTable() {
         {{&CompositionKeys::extends, "extends", "file | [files]", "[]",
           "files laid under this one, later over earlier; in configs/, then beside this file",
           oneOrMore(text())},
-         {&CompositionKeys::profiles, "profiles", "{quick, paper}", "none",
+         {&CompositionKeys::profiles, kProfilesKey, "{quick, paper}", "none",
           "parts laid over the file by --profile", refTo("profiles")}}};
     return table;
 }
@@ -48,15 +48,14 @@ struct Merged {
 /// A text with a comma, unquoted in `{…}`, ends at the comma: its rest is a key without a value,
 /// which merging would take for a removal.
 void refuseTornTexts(const Node& whole) {
-    for (const char* section : {"claims", "assumptions"}) {
-        const Node* entries = whole.find(section);
+    const ContentKeys given = contentOf(whole);
+    for (const GivenKey& entries : {given.claims, given.assumptions}) {
         if (!entries || !entries->isMap()) continue;
         for (const auto& [name, entry] : entries->entries()) {
             if (!entry.isMap()) continue;
             for (const auto& [key, value] : entry.entries()) {
                 if (!value.isNull()) continue;
-                throw Error(entry.keyLocation(key), std::string(section) + '.' + name + ": '" +
-                                                        key +
+                throw Error(entry.keyLocation(key), entries.name() + '.' + name + ": '" + key +
                                                         "' has no value; a text that holds a "
                                                         "comma needs quotes");
             }
@@ -213,25 +212,26 @@ Node axisOf(const Override& sweep) {
 }
 
 void applySweeps(const std::vector<Override>& sweeps, Node& document) {
+    const std::string& section = contentTable().nameOf(&ContentKeys::sweep);
     for (const Override& given : sweeps) {
         const std::string axis = parameterName(given.key);
         Node values = axisOf(given);
-        const Node* swept = document.find("sweep");
+        const Node* swept = document.find(section);
         const bool isSwept = swept && swept->isMap() && swept->find(axis);
         if (values.isNull() && !isSwept) {
             throw Error(given.value.location(), "'" + axis + "' is not swept; nothing to remove");
         }
         if (axis == "scene") values = withSceneFile(values, fs::current_path());
-        if (!document.find("sweep")) document.set("sweep", Node::map({}, values.location()));
-        Node& sweep = *document.find("sweep");
-        if (!sweep.isMap()) throwNotAllowed(sweep, "sweep", "a map, axis: values");
+        if (!swept) document.set(section, Node::map({}, values.location()));
+        Node& sweep = *document.find(section);
+        if (!sweep.isMap()) throwNotAllowed(sweep, section, "a map, axis: values");
         sweep.set(axis, std::move(values));
     }
 }
 
 void requireNotOverridden(const Override& given, const std::string& name, Node document) {
     resolveNames(document);  // patterns of scene files are lists from then on
-    const Node* sweep = document.find("sweep");
+    const GivenKey sweep = contentOf(document).sweep;
     if (!sweep) return;
     for (const AxisPoint& point : expandSweep(*sweep)) {
         for (const auto& [axis, value] : point) {
@@ -300,7 +300,7 @@ fs::path configNamed(const Node& name, const fs::path& file, const fs::path& con
 /// The one swept axis that has all of the values; empty where none has, or several have.
 std::string axisWith(const Names& values, Node document) {
     resolveNames(document);
-    const Node* sweep = document.find("sweep");
+    const GivenKey sweep = contentOf(document).sweep;
     std::map<std::string, std::set<std::string>> found;  // those of the values that an axis has
     for (const AxisPoint& point : expandSweep(sweep ? *sweep : Node())) {
         for (const auto& [axis, value] : point) {
@@ -315,7 +315,7 @@ std::string axisWith(const Names& values, Node document) {
 /// The list of words that operands of claims are, `order: [sobol, jittered]`, as [pattern=sobol,
 /// pattern=jittered], by the sweep of the whole file: a profile may leave out what they are of.
 void nameAxes(const Node& whole, Node& document) {
-    Node* claims = document.find("claims");
+    Node* claims = contentTable().find(document, &ContentKeys::claims);
     if (!claims || !claims->isMap()) return;
     const auto isWord = [](const Node& item) {
         return item.isScalar() && !item.tryDouble() && item.text().find('=') == std::string::npos;
@@ -343,10 +343,10 @@ void nameAxes(const Node& whole, Node& document) {
 
 /// Who gives a program need not say what measures it.
 void addTechnique(Node& document) {
-    const Node* program = document.find("program");
-    if (!program || program->isNull() || document.find("technique")) return;
-    document.set("technique", Node::scalar(kProgramTechnique, program->location()),
-                 document.keyLocation("program"));
+    const ContentKeys given = contentOf(document);
+    if (!given.program || given.program->isNull() || given.technique) return;
+    document.set(given.technique.name(), Node::scalar(kProgramTechnique, given.program->location()),
+                 document.keyLocation(given.program.name()));
 }
 
 /// The experiment, with the printed cells that its fit names.
@@ -355,7 +355,7 @@ Experiment readWhole(const Node& document, const fs::path& file, bool isComplete
     Experiment experiment = readExperiment(document, file, isComplete);
     requireNotFixed(experiment);
     requireTimed(experiment);
-    const Node* fit = document.find("fit");
+    const GivenKey fit = contentOf(document).fit;
     if (!fit) return experiment;
     Node cells = *fit;
     for (auto& [column, cell] : cells.entries()) {
@@ -365,7 +365,7 @@ Experiment readWhole(const Node& document, const fs::path& file, bool isComplete
         cell = withPrintedCell(cell, column, experiment, loadExperiment(place, {}, configsFolder));
     }
     Node whole = document;
-    whole.set("fit", std::move(cells), document.keyLocation("fit"));
+    whole.set(fit.name(), std::move(cells), document.keyLocation(fit.name()));
     return readExperiment(whole, file, isComplete);
 }
 
@@ -426,9 +426,9 @@ Node wholeDocument(const fs::path& file, const fs::path& configsFolder) {
         const Node* earlier = profiles.find(name);
         profiles.set(name, earlier ? overlayOf(*earlier, overlay) : overlay);
     }
-    if (!profiles.entries().empty()) document.set("profiles", std::move(profiles));
+    if (!profiles.entries().empty()) document.set(kProfilesKey, std::move(profiles));
     Node whole = Node::map({}, document.location());
-    for (const Names& keys : {identityKeys(), sectionKeys(), Names{"profiles"}}) {
+    for (const Names& keys : {identityKeys(), sectionKeys(), Names{kProfilesKey}}) {
         for (const std::string& key : keys) {
             if (const Node* value = document.find(key)) whole.set(key, *value);
         }
@@ -450,7 +450,7 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
                                             [&](const auto& one) { return one.first == name; });
         if (isDeclared) declared.push_back(Node::scalar(name));
     }
-    document.set("profiles", Node::sequence(std::move(declared)));
+    document.set(kProfilesKey, Node::sequence(std::move(declared)));
     addTechnique(document);
     const Node whole = document;
     nameAxes(whole, document);

@@ -154,14 +154,15 @@ Node withSceneFileKeys(const Node& map, const char* section) {
 
 /// `all` of a sweep as the values that the program's parameter lists.
 void resolveAll(Node& document) {
-    Node* sweep = document.find("sweep");
-    const Node* program = document.find("program");
-    const Node* params = program && program->isMap() ? program->find("params") : nullptr;
-    if (!sweep || !sweep->isMap() || !params || !params->isMap()) return;
+    Node* sweep = contentTable().find(document, &ContentKeys::sweep);
+    const GivenKey program = contentOf(document).program;
+    if (!sweep || !sweep->isMap() || !program || !program->isMap()) return;
+    const GivenKey params = programTable().find(*program).params;
+    if (!params || !params->isMap()) return;
     for (auto& [axis, value] : sweep->entries()) {
         if (!value.isScalar() || value.text() != "all") continue;
         const Node* listed = params->find(axis);
-        if (listed && listed->isMap()) listed = listed->find("choices");
+        if (listed && listed->isMap()) listed = paramTable().find(*listed).choices;
         if (listed && listed->isSequence()) {
             value = Node::sequence(listed->items(), value.location());
         }
@@ -179,18 +180,22 @@ void resolveSceneKeys(Node& document) {
 void resolveNames(Node& document) {
     setProgramFolder(document);
     resolveAll(document);
-    if (Node* scene = document.find("scene")) {
+    const auto section = [&](GivenKey ContentKeys::*key) {
+        return contentTable().find(document, key);
+    };
+    if (Node* scene = section(&ContentKeys::scene)) {
         if (scene->isSequence() || (scene->isScalar() && contains(scene->text(), '*'))) {
             throwNotAllowed(*scene, "scene", "one; several stand below 'sweep'");
         }
         *scene = withSceneFile(*scene);
     }
-    if (Node* params = document.find("params")) *params = withSceneFiles(*params, true);
+    if (Node* params = section(&ContentKeys::params)) *params = withSceneFiles(*params, true);
     resolveSceneKeys(document);
-    if (Node* sweep = document.find("sweep"))
+    if (Node* sweep = section(&ContentKeys::sweep)) {
         *sweep = withSceneFiles(withSceneMatches(*sweep), true);
-    for (const char* key : {"layout", "claims"}) {
-        if (Node* section = document.find(key)) *section = withSceneFiles(*section, false);
+    }
+    for (const auto key : {&ContentKeys::layout, &ContentKeys::claims}) {
+        if (Node* with = section(key)) *with = withSceneFiles(*with, false);
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/core/text.h"
 #include "engine/scene/catalog_entry.h"
+#include "engine/scene/height_rows.h"
 #include "runner/config/sections.h"
 
 namespace gfxrepro::config {
@@ -52,7 +53,7 @@ std::string tableOf(const SchemaSection& section) {
 
 const std::vector<SchemaFile>& schema() {
     static const std::vector<SchemaFile> files = {experimentSchema(), scene::sceneSchema(),
-                                                  documentsSchema()};
+                                                  scene::rawHeightSchema(), documentsSchema()};
     return files;
 }
 

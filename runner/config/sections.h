@@ -86,11 +86,30 @@ struct ContentKeys {
         paramsInstead, output, sweep, measure, shows, labels, layout, printed, claims, plots, fit,
         assumptions;
 };
+const KeyTable<ContentKeys>& contentTable();
 ContentKeys contentOf(const Node& document);
 /// The keys of a config that a profile may change.
 const Names& sectionKeys();
 /// table, figure, section, sweep_of.
 const Names& identityKeys();
+
+/// `profiles:` — of a file, parts laid over it; of a document that is read, their names.
+inline constexpr const char* kProfilesKey = "profiles";
+
+/// Of `program`, of a parameter and of a picture there.
+struct ProgramKeys {
+    GivenKey command, params, metrics, passes, images, env, version, starts, files, frames, seeds,
+        gpu, here;
+};
+struct ParamKeys {
+    GivenKey fallback, unit, min, max, choices, doc;
+};
+struct ImageKeys {
+    GivenKey file, truth;
+};
+const KeyTable<ProgramKeys>& programTable();
+const KeyTable<ParamKeys>& paramTable();
+const KeyTable<ImageKeys>& imageTable();
 
 /// Throws Error for a value (but of params_by_scene) of which no case would know, as its axis is
 /// swept in every one: it stands in the file of the sweep, in the experiment's own or on the

@@ -320,6 +320,7 @@ TEST_F(ExperimentTest, ReaderAndSchemaTakeTheSameNumbers) {
         }
     };
     for (const SchemaFile& file : schema()) {
+        if (file.name == "raw_heights") continue;  // told to people, and to no editor
         for (const SchemaSection& section : file.sections) {
             for (const SchemaKey& key : section.keys) hold(section, key, file.name == "scene");
         }
