@@ -29,6 +29,8 @@ enum class LightPlace {
 
 /// An error so near a true edge, and half the filter, is the edge's: ours, in texels of the map.
 constexpr float kEdgeTexels = 1.5F;
+/// The diameter of the lights, for pcss, in the box's diagonals: ours.
+constexpr float kLightSize = 0.02F;
 
 struct ShadowMappingParams {
     ShadowMapSettings maps;
@@ -38,7 +40,6 @@ struct ShadowMappingParams {
     float lightDistance = 1.2F;  // from the box's centre, in its diagonals
     float azimuthRad = 0.0F;
     float elevationRad = 0.0F;
-    float lightSize = 0.0F;  // diameter, in the box's diagonals
     bool isStatic = false;
     bool measuresErrors = false;
     bool comparesMethods = false;
@@ -91,12 +92,9 @@ void readLights(Params& params, ShadowMappingParams& p) {
         {"direction to the first light about y, from +z towards +x", "°", -360.0, 360.0}));
     p.elevationRad = glm::radians(kit::number(params, "light_elevation_deg", 50.0F,
                                               {"… above the horizon", "°", -90.0, 90.0}));
-    p.lightSize = kit::number(params, "light_size", 0.02F,
-                              {"diameter of the lights, for pcss", "diagonals", 0.0, 10.0});
 }
 
 void refuseUnread(const Params& params, const ShadowMappingParams& p) {
-    if (p.maps.filter != Filter::Pcss) params.refuseGiven({"light_size"}, "'filter: pcss'");
     if (p.lightPlace == LightPlace::Scene) {
         params.refuseGiven({"light_distance", "light_azimuth_deg", "light_elevation_deg"},
                            "'light_place: orbit'");
@@ -168,7 +166,7 @@ Light lightAt(const ShadowMappingParams& params, const scene::Box& box, const gl
     light.directionWorld = towards;
     light.color = color / static_cast<float>(params.lightCount);
     const bool isDirectional = params.lightKind == LightKind::Directional;
-    light.size = params.lightSize * (isDirectional ? 1.0F : diagonal);
+    light.size = kLightSize * (isDirectional ? 1.0F : diagonal);
     // The planes hold the ball around the box, the near one at least 1/500 of its diagonal away:
     // window depth is spent near the light.
     light.nearM = std::max(distance - radius, 0.002F * diagonal);

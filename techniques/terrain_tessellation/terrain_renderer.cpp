@@ -13,16 +13,6 @@ namespace gfxrepro::terrain_tessellation {
 
 namespace {
 
-std::vector<std::uint16_t> asUnorm16(const std::vector<float>& heightsM, glm::vec2 heightOfTexel) {
-    std::vector<std::uint16_t> texels(heightsM.size());
-    const float scale = heightOfTexel.y > 0.0F ? 65535.0F / heightOfTexel.y : 0.0F;
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-        const float value = std::clamp((heightsM[i] - heightOfTexel.x) * scale, 0.0F, 65535.0F);
-        texels[i] = static_cast<std::uint16_t>(std::lround(value));
-    }
-    return texels;
-}
-
 int pageCount(std::size_t budgetBytes, std::size_t pageBytes, int side, int tileCount) {
     if (budgetBytes < pageBytes) {
         throw Error(fmt::format(
@@ -39,15 +29,14 @@ int pageCount(std::size_t budgetBytes, std::size_t pageBytes, int side, int tile
 
 }  // namespace
 
-HeightPages::HeightPages(const scene::HeightMap& map, const HeightPageSettings& settings,
-                         glm::vec2 heightOfTexel, int tileSegments, int tileCount)
-    : map_(&map), format_(settings.format), heightOfTexel_(heightOfTexel) {
-    const bool isFloat = format_ == HeightFormat::Float32;
+HeightPages::HeightPages(const scene::HeightMap& map, std::size_t budgetBytes, int tileSegments,
+                         int tileCount)
+    : map_(&map) {
     const int side = tileSegments + kMoreTexels;
-    const std::size_t pageBytes = static_cast<std::size_t>(side) * static_cast<std::size_t>(side) *
-                                  (isFloat ? sizeof(float) : sizeof(std::uint16_t));
-    const int count = pageCount(settings.budgetBytes, pageBytes, side, tileCount);
-    texture_ = gl::Texture::make2DArray(isFloat ? GL_R32F : GL_R16, glm::ivec2(side), count);
+    const std::size_t pageBytes =
+        static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * sizeof(float);
+    const int count = pageCount(budgetBytes, pageBytes, side, tileCount);
+    texture_ = gl::Texture::make2DArray(GL_R32F, glm::ivec2(side), count);
     keys_.resize(static_cast<std::size_t>(count));
     lastUse_.resize(keys_.size(), 0);
 }
@@ -99,16 +88,8 @@ void HeightPages::fill(int layer, const Tile& tile) {
             heightsM.push_back(map_->clampedHeightM(at.x, at.y, tile.level));
         }
     }
-    const bool isFloat = format_ == HeightFormat::Float32;
-    const std::vector<std::uint16_t> texels =
-        isFloat ? std::vector<std::uint16_t>() : asUnorm16(heightsM, heightOfTexel_);
-    // Rows of an odd count of 16-bit samples are not whole words.
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
-    glTextureSubImage3D(texture_.id(), 0, 0, 0, layer, side, side, 1, GL_RED,
-                        isFloat ? GL_FLOAT : GL_UNSIGNED_SHORT,
-                        isFloat ? static_cast<const void*>(heightsM.data())
-                                : static_cast<const void*>(texels.data()));
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTextureSubImage3D(texture_.id(), 0, 0, 0, layer, side, side, 1, GL_RED, GL_FLOAT,
+                        heightsM.data());
     map_->release();
     ++loadedCount_;
 }
@@ -139,15 +120,11 @@ const TerrainMetadata& requireOfMap(const TerrainMetadata& metadata, const scene
 }  // namespace
 
 DeviceTerrain::DeviceTerrain(const scene::HeightMap& map, const TerrainMetadata& metadata,
-                             const HeightPageSettings& settings)
+                             std::size_t budgetBytes)
     : metadata_(&requireOfMap(metadata, map)),
       lowestM_(metadata.blocks().back().whole.minM),  // the root's
       highestM_(metadata.blocks().back().whole.maxM),
-      heightOfTexel_(settings.format == HeightFormat::Float32
-                         ? glm::vec2(0.0F, 1.0F)
-                         : glm::vec2(lowestM_, highestM_ - lowestM_)),
-      pages_(map, settings, heightOfTexel_,
-             metadata.settings().tileBlocks * metadata.settings().blockSegments,
+      pages_(map, budgetBytes, metadata.settings().tileBlocks * metadata.settings().blockSegments,
              tileCountOf(metadata)),
       blocks_(gl::Buffer::of(metadata.blocks())),
       firstBlocks_(gl::Buffer::of(metadata.firstBlocks())) {}
@@ -197,7 +174,6 @@ gl::Buffer tileRecords(std::span<const Tile> tiles, std::span<const int> layers)
 }
 
 void setTerrain(const gl::Pass& pass, const DeviceTerrain& terrain, const kit::View& view) {
-    pass.setIfActive("heightOfTexel", terrain.heightOfTexel());
     pass.setIfActive("spacing", terrain.metadata().spacingM());
     pass.setIfActive("clipFromWorld", view.clipFromWorld());
 }

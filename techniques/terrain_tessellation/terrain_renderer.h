@@ -19,16 +19,6 @@
 
 namespace gfxrepro::terrain_tessellation {
 
-enum class HeightFormat {
-    Float32,  // exact
-    Unorm16,  // half the memory; steps of (highest − lowest) / 65535
-};
-
-struct HeightPageSettings {
-    HeightFormat format = HeightFormat::Float32;
-    std::size_t budgetBytes = std::size_t{256} << 20;
-};
-
 /// A page is a layer of a texture array: every 2^level-th sample of a tile of that level, one more
 /// to the west and north, two more beyond the eastern and southern rim. That is what normals at the
 /// rim reach, so that neighbours agree there. Beyond the map the border's heights go on.
@@ -39,8 +29,8 @@ class HeightPages {
 
     /// `map` must outlive it. `tileCount`: how many there are at all, no more pages are made.
     /// Throws Error where the budget holds no page.
-    HeightPages(const scene::HeightMap& map, const HeightPageSettings& settings,
-                glm::vec2 heightOfTexel, int tileSegments, int tileCount);
+    HeightPages(const scene::HeightMap& map, std::size_t budgetBytes, int tileSegments,
+                int tileCount);
 
     int capacity() const { return texture_.size().z; }
     /// The layers of at most capacity() tiles; those that are not there are loaded, in the place of
@@ -57,8 +47,6 @@ class HeightPages {
     void fill(int layer, const Tile& tile);
 
     const scene::HeightMap* map_;
-    HeightFormat format_;
-    glm::vec2 heightOfTexel_;
     gl::Texture texture_;
     std::map<Key, int> layers_;
     std::vector<Key> keys_;               // by layer
@@ -72,15 +60,13 @@ class DeviceTerrain {
     /// Throws UnsupportedError beyond the device's texture or buffer size, Error for a map whose
     /// size is not the metadata's or a budget that holds no tile.
     DeviceTerrain(const scene::HeightMap& map, const TerrainMetadata& metadata,
-                  const HeightPageSettings& settings = {});
+                  std::size_t budgetBytes = std::size_t{256} << 20);
 
     const TerrainMetadata& metadata() const { return *metadata_; }
     HeightPages& pages() { return pages_; }
     const HeightPages& pages() const { return pages_; }
     /// Of terrain.glsl and factors.glsl.
     gl::Resources resources() const;
-    /// A texel t is the height x + y·t.
-    glm::vec2 heightOfTexel() const { return heightOfTexel_; }
     float lowestM() const { return lowestM_; }
     float highestM() const { return highestM_; }
     std::size_t sizeBytes() const;
@@ -88,7 +74,6 @@ class DeviceTerrain {
   private:
     const TerrainMetadata* metadata_;
     float lowestM_, highestM_;
-    glm::vec2 heightOfTexel_;
     HeightPages pages_;
     gl::Buffer blocks_;
     gl::Buffer firstBlocks_;  // by level

@@ -51,10 +51,6 @@ constexpr Choice<Spacing> kSpacings[] = {
     {Spacing::FractionalOdd, "fractional_odd", ""},
     {Spacing::Equal, "integer", "factors rounded up"},
 };
-constexpr Choice<HeightFormat> kHeightFormats[] = {
-    {HeightFormat::Float32, "float32", "exact"},
-    {HeightFormat::Unorm16, "unorm16", "half the memory, 65,536 steps"},
-};
 
 FactorSettings readFactors(Params& params) {
     FactorSettings factors;
@@ -114,9 +110,7 @@ TerrainTessellationParams::TerrainTessellationParams(Params& params)
     render.cullsPatches = culling == Culling::TileAndPatch;
     maxTileErrorPx = static_cast<float>(params.getDouble(
         "tau", 1.0, {"τ: a tile with a smaller ρ is not divided", "pixels", 0.0, 1e6}));
-    heights.format = params.getEnum("height_format", HeightFormat::Float32, kHeightFormats,
-                                    {"of the tiles' height textures"});
-    heights.budgetBytes = static_cast<std::size_t>(
+    heightBudgetBytes = static_cast<std::size_t>(
         params.getDouble("height_memory_mib", 256.0,
                          {"for the heights of tiles on the device; tiles are loaded when they come "
                           "into view, in the place of those longest out of it",
@@ -336,7 +330,7 @@ void TerrainTessellation::setup(technique::SetupContext& context) {
                     : TerrainMetadata::build(map, params_.metadata);
     preprocessMs_ = 1000.0 * secondsSince(begin);
     tree_.emplace(*metadata_, params_.render.factors.tile);
-    terrain_.emplace(map, *metadata_, params_.heights);
+    terrain_.emplace(map, *metadata_, params_.heightBudgetBytes);
     camera_.emplace(*scene_, params_.view);
     RenderSettings settings = params_.render;
     if (device_->isSoftware) settings.batches.emplace();

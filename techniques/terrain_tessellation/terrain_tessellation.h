@@ -34,7 +34,7 @@ struct TerrainTessellationParams {
     RenderSettings render;
     MetadataSettings metadata;
     float maxTileErrorPx = 1.0F;  // τ
-    HeightPageSettings heights;
+    std::size_t heightBudgetBytes = 0;
     std::string view = "valley";
     bool keepsMetadata = true;
     bool measuresErrors = false;

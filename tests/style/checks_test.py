@@ -120,6 +120,7 @@ if code != 0:
     sys.exit(f"check_style found something in keys that are written:\n{output}")
 for files, wanted in (({"configs/x/base.yaml": BASE}, "a: no shipped config writes 'tau': "),
                       ({**WRITES, TABLE: "technique: b\nextends: x/base.yaml\n# tau: 1\nsays: tau\n"}, "a: no shipped config writes 'tau': "),
+                      ({**WRITES, TABLE: "extends: x/base.yaml\nlabels:\n  tau: words\n"}, "a: no shipped config writes 'tau': "),
                       ({TABLE: WRITES[TABLE]}, "program: no shipped config writes 'command': ")):
     expect("check_style", {**SCHEMA, **files}, wanted + WHY)
 expect("check_style", {**SCHEMA, **WRITES, TABLE: WRITES[TABLE] + "program:\n  frames: all\n"},

@@ -5,8 +5,7 @@ layout(std430) readonly buffer Tiles {
 };
 // A layer has every 2^level-th sample of a tile and a border: HeightPages.
 uniform sampler2DArray heightPages;
-uniform vec2 heightOfTexel;  // height = x + y · texel
-uniform float spacing;       // metres between samples
+uniform float spacing;  // metres between samples
 uniform mat4 clipFromWorld;
 
 struct Ground {
@@ -15,7 +14,7 @@ struct Ground {
 };
 
 float heightOfPage(ivec2 at, int layer) {
-    return heightOfTexel.x + heightOfTexel.y * texelFetch(heightPages, ivec3(at, layer), 0).r;
+    return texelFetch(heightPages, ivec3(at, layer), 0).r;
 }
 
 // Where a place lies in the page of its tile, in texels. Exact: a power of two divides.

@@ -131,7 +131,6 @@ TEST_F(ShadowMappingTest, BadInput) {
               "a spot light's target is its position: it looks nowhere");
     EXPECT_EQ(message("{filter: variance}"),
               "case.yaml:1:10: 'filter: variance' needs 'method: standard': moments are colours");
-    EXPECT_EQ(message("{light_size: 1}"), "case.yaml:1:14: 'light_size' needs 'filter: pcss'");
     EXPECT_EQ(message("{static: true, yardstick: true}"),
               "case.yaml:1:27: 'yardstick' needs 'static: false'");
     scene_.lights = {{.position = {0.0F, 0.7F, 0.0F}}};

@@ -15,26 +15,22 @@ TEST_F(TerrainTest, PagesHoldTheSamplesOfTheirTilesAndABorder) {
     rough.sizeSamples = {257, 200};  // the last tiles reach beyond the map
     rough.heightsM.resize(257 * 200);
     makeTerrain(std::move(rough));
-    for (const HeightFormat format : {HeightFormat::Float32, HeightFormat::Unorm16}) {
-        terrain.emplace(map, *metadata, HeightPageSettings{format});
-        const glm::vec2 unit = terrain->heightOfTexel();
-        const float tolerance = format == HeightFormat::Float32 ? 0.0F : 0.51F * unit.y / 65535.0F;
-        for (int level = 0; level < 3; ++level) {
-            const std::vector<Tile> tiles = tilesOf(level);
-            const std::vector<int> layers = terrain->pages().load(tiles);
-            const auto texels = terrain->pages().texture().read<float>(GL_RED, GL_FLOAT, 1);
-            for (std::size_t t = 0; t < tiles.size(); ++t) {
-                const auto page = texels.begin() + std::ptrdiff_t{68 * 68} * layers[t];
-                float greatest = 0.0F;
-                for (int i = 0; i < 68 * 68; ++i) {
-                    const int column = tiles[t].originSample.x + (i % 68 - 1) * (1 << level);
-                    const int row = tiles[t].originSample.y + (i / 68 - 1) * (1 << level);
-                    const float expected =
-                        map.heightM(std::clamp(column, 0, 256), std::clamp(row, 0, 199));
-                    greatest = std::max(greatest, std::abs(unit.x + unit.y * page[i] - expected));
-                }
-                EXPECT_LE(greatest, tolerance) << level << ' ' << t;
+    terrain.emplace(map, *metadata);
+    for (int level = 0; level < 3; ++level) {
+        const std::vector<Tile> tiles = tilesOf(level);
+        const std::vector<int> layers = terrain->pages().load(tiles);
+        const auto texels = terrain->pages().texture().read<float>(GL_RED, GL_FLOAT, 1);
+        for (std::size_t t = 0; t < tiles.size(); ++t) {
+            const auto page = texels.begin() + std::ptrdiff_t{68 * 68} * layers[t];
+            float greatest = 0.0F;
+            for (int i = 0; i < 68 * 68; ++i) {
+                const int column = tiles[t].originSample.x + (i % 68 - 1) * (1 << level);
+                const int row = tiles[t].originSample.y + (i / 68 - 1) * (1 << level);
+                const float expected =
+                    map.heightM(std::clamp(column, 0, 256), std::clamp(row, 0, 199));
+                greatest = std::max(greatest, std::abs(page[i] - expected));
             }
+            EXPECT_EQ(greatest, 0.0F) << level << ' ' << t;
         }
     }
 }
@@ -67,7 +63,7 @@ TEST_F(TerrainTest, PagesOfAFileAreThoseOfTheSameHeightsInMemory) {
 
 TEST_F(TerrainTest, ThePageOutOfUseForLongestGoes) {
     makeTerrain(roughMap(257, 40.0F));
-    terrain.emplace(map, *metadata, HeightPageSettings{HeightFormat::Float32, 3 * kPageBytes + 99});
+    terrain.emplace(map, *metadata, 3 * kPageBytes + 99);
     HeightPages& pages = terrain->pages();
     ASSERT_EQ(pages.capacity(), 3);
     const std::vector<Tile> tiles = tilesOf(0);
@@ -92,7 +88,7 @@ TEST_F(TerrainTest, FewPagesDrawThePictureOfMany) {
     scene.heights = map;
     const TerrainView flight(scene, "round_flight");
     constexpr std::size_t kBudget = 4 * kPageBytes;
-    DeviceTerrain few(map, *metadata, HeightPageSettings{HeightFormat::Float32, kBudget});
+    DeviceTerrain few(map, *metadata, kBudget);
     TerrainRenderer whole(shaders, *terrain, settings()), paged(shaders, few, settings());
     MorphRanges ranges;
     for (int level = 0; level < tree.levelCount(); ++level) {
@@ -124,10 +120,7 @@ TEST_F(TerrainTest, FewPagesDrawThePictureOfMany) {
 
 TEST_F(TerrainTest, RefusesABudgetThatHoldsNoTile) {
     makeTerrain(roughMap(257, 1.0F));
-    EXPECT_EQ(test::errorText([&] {
-                  DeviceTerrain(map, *metadata,
-                                HeightPageSettings{HeightFormat::Float32, kPageBytes / 2});
-              }),
+    EXPECT_EQ(test::errorText([&] { DeviceTerrain(map, *metadata, kPageBytes / 2); }),
               "0.01 MiB for heights hold no tile of 68 × 68; allowed: 0.02 MiB or more");
 }
 

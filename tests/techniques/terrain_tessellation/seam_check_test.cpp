@@ -100,7 +100,7 @@ TEST_F(SeamCheckTest, CapturesTheTrianglesThatAreDrawn) {
     EXPECT_EQ(vertices.size(), 3 * counts.triangles);
     // More tiles than there are pages: the same, in turns.
     constexpr std::size_t kPageBytes = 68 * 68 * sizeof(float);
-    DeviceTerrain few(map, *metadata, HeightPageSettings{HeightFormat::Float32, 3 * kPageBytes});
+    DeviceTerrain few(map, *metadata, 3 * kPageBytes);
     TerrainRenderer inTurns(shaders, few, set);
     const std::vector<PatchFactors> factors = factorsOf(set, tiles, view);
     const Seams a = checkSeams(tiles, tile, factors, vertices),

@@ -91,10 +91,10 @@ TEST_F(TerrainTessellationTest, TheTruthOfAViewIsMadeOnce) {
     EXPECT_EQ(expectSharedAsAlone(common, regardless, scene), bytesOfOne);
     // What decides it.
     const std::vector<std::string> deciding = {
-        "delta_s: 4",      "supersampling: 2",       "wireframe: true",        "culling: none",
-        "view: overview",  "height_format: unorm16", "shading: generated_map", "block: 16",
-        "patch_blocks: 1", "method: cdlod"};
-    EXPECT_GT(expectSharedAsAlone(common, deciding, scene), 9 * bytesOfOne);
+        "delta_s: 4",    "supersampling: 2", "wireframe: true",
+        "culling: none", "view: overview",   "shading: generated_map",
+        "block: 16",     "patch_blocks: 1",  "method: cdlod"};
+    EXPECT_GT(expectSharedAsAlone(common, deciding, scene), 8 * bytesOfOne);
 }
 
 TEST_F(TerrainTessellationTest, AColourMapLiesOverTheMapNorthOnTop) {
@@ -235,17 +235,6 @@ TEST_F(TerrainTessellationTest, TheMapOfCulledPatchesCountsThem) {
     EXPECT_GT(tile.z, 0);
     EXPECT_EQ(patch.z, tile.z);
     EXPECT_GT(patch.y, 0);
-}
-
-TEST_F(TerrainTessellationTest, HeightsOf16BitsAreOffByHalfAStep) {
-    const scene::Scene scene = terrain({257, 257});
-    const std::string yaml = "method: uniform_grid, errors: true, height_format: ";
-    const auto exact = measured(yaml + "float32", scene),
-               rounded = measured(yaml + "unorm16", scene);
-    const double stepM = scene.heights->bounds().size().y / 65535.0;
-    EXPECT_NE(rounded.at("height_error_m/mean"), exact.at("height_error_m/mean"));
-    EXPECT_NEAR(rounded.at("height_error_m/mean"), exact.at("height_error_m/mean"), 0.5 * stepM);
-    EXPECT_LT(rounded.at("memory_bytes"), exact.at("memory_bytes"));
 }
 
 TEST_F(TerrainTessellationTest, ASmallBudgetLoadsTilesAgain) {
