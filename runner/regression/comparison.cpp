@@ -46,17 +46,19 @@ bool areWhole(const Series& values) {
 }
 
 /// Of numbers that differ between the processes of a side, as of a program that seeds itself: the
-/// chance that all of one side lie beyond all of the other where nothing changed; 1 where they do
-/// not.
-double chanceApart(const Series& before, const Series& after) {
-    const auto [low, high] = std::ranges::minmax(before);
-    const auto [otherLow, otherHigh] = std::ranges::minmax(after);
-    if (low <= otherHigh && otherLow <= high) return 1.0;
+/// chance that all of so many of one side lie beyond all of the other where nothing changed.
+double chanceApart(std::size_t before, std::size_t after) {
     double ways = 1.0;  // to choose the processes of one side of all
-    for (std::size_t i = 1; i <= before.size(); ++i) {
-        ways *= static_cast<double>(after.size() + i) / static_cast<double>(i);
+    for (std::size_t i = 1; i <= before; ++i) {
+        ways *= static_cast<double>(after + i) / static_cast<double>(i);
     }
     return 2.0 / ways;
+}
+
+bool areApart(const Series& before, const Series& after) {
+    const auto [low, high] = std::ranges::minmax(before);
+    const auto [otherLow, otherHigh] = std::ranges::minmax(after);
+    return low > otherHigh || otherLow > high;
 }
 
 /// Within the relative tolerance; two infinities are the same, their difference is not a number.
@@ -70,23 +72,16 @@ bool differ(const Series& values, double within) {
         values, [&](double value) { return !areSame(value, values.front(), within); });
 }
 
-/// Where a number of a program or an import without a seed differs between the processes of a side,
-/// its other numbers may be alike by chance, in other cases, too: as tables have it
-/// (tables::LayoutCases::isInDoubt), but for what is within the tolerance, or was alike in many
-/// repeats.
+/// Of numbers of programs and imports without a seed those that may be alike by chance
+/// (tables::Doubt). What is within the tolerance is alike.
 class Doubts {
   public:
     Doubts(const SeriesMap& before, const SeriesMap& after, const Rules& rules) : rules_(rules) {
         for (const SeriesMap* side : {&before, &after}) {
             for (const auto& [key, values] : *side) {
                 const double within = areWhole(values) ? 0.0 : rules.valueTolerance;
-                if (!isOfUnseeded(key) || values.empty()) continue;
-                repeats_[{programOf(key), key.metric}] += values.size() - 1;
-                if (!differ(values, within)) continue;
-                tables::Doubt& doubt = doubts_[programOf(key)];
-                doubt.differing.insert(key.metric);
-                (tables::isOfMachine(key.metric, key.unit) ? doubt.isOfMachine : doubt.isOfAll) =
-                    true;
+                if (!isOfUnseeded(key) || !differ(values, within)) continue;
+                doubts_[programOf(key)].note(key.metric, key.unit);
             }
         }
     }
@@ -94,42 +89,45 @@ class Doubts {
     /// Empty where there is no doubt.
     std::string whyInDoubt(const SeriesKey& key) const {
         const auto found = doubts_.find(isOfUnseeded(key) ? programOf(key) : "");
-        if (found == doubts_.end()) return "";
-        const auto& [differing, isOfAll, isOfMachine] = found->second;
-        if (differing.contains(key.metric)) {
-            return "in other cases it differs between processes of one side";
+        const bool isOfElsewhere = isOfUnseeded(key) && rules_.unseeded.at(key.table).empty();
+        if (found == doubts_.end() ||
+            !found->second.reaches(key.metric, tables::isOfMachine(key.metric, key.unit),
+                                   rules_.ofSetup.contains({key.table, key.metric}),
+                                   isOfElsewhere)) {
+            return "";
         }
-        const bool isOurs = !rules_.unseeded.at(key.table).empty();
-        const bool isKnown =
-            repeatsOf(key) >= kTellingRepeats || rules_.ofSetup.contains({key.table, key.metric}) ||
-            (isOurs && (config::isTestOfMeans(key.metric) || config::isPictureError(key.metric)));
-        const bool isDoubtful =
-            isOfAll || (isOfMachine && tables::isOfMachine(key.metric, key.unit));
-        return isDoubtful && !isKnown
-                   ? "other numbers of the program differ between processes of one side"
-                   : "";
+        return found->second.differing.contains(key.metric)
+                   ? "in other cases it differs between processes of one side"
+                   : "other numbers of the program differ between processes of one side";
     }
 
   private:
     bool isOfUnseeded(const SeriesKey& key) const {
         return !key.isTime() && rules_.unseeded.contains(key.table);
     }
-    std::size_t repeatsOf(const SeriesKey& key) const {
-        const auto found = repeats_.find({programOf(key), key.metric});
-        return found == repeats_.end() ? 0 : found->second;
-    }
     std::string programOf(const SeriesKey& key) const {
         const std::string& program = rules_.unseeded.at(key.table);
         return program.empty() ? "import " + key.table : "program " + program;
     }
 
-    /// Of one of two values by chance one in 128 is alike in as many.
-    static constexpr std::size_t kTellingRepeats = 7;
-
     const Rules& rules_;
     std::map<std::string, tables::Doubt> doubts_;
-    std::map<std::pair<std::string, std::string>, std::size_t> repeats_;  // of programs' metrics
 };
+
+/// Why values that are not alike, and may differ by chance, do not tell whether they changed; empty
+/// where they do. `level`: the chance of an alarm that each may have.
+std::string whyUndecided(const Series& before, const Series& after, const std::string& doubt,
+                         double level) {
+    const std::size_t fewest = std::min(before.size(), after.size());
+    if (!doubt.empty() && fewest >= metrics::kFewestForInterval) return "";
+    if (areApart(before, after) && chanceApart(before.size(), after.size()) <= level) return "";
+    std::size_t needed = metrics::kFewestForInterval;
+    while (doubt.empty() && chanceApart(needed, needed) > level) ++needed;
+    const std::string why =
+        doubt.empty() ? "numbers that differ between processes of one side" : doubt;
+    if (fewest >= needed) return why;
+    return fmt::format("{}; {} a side tell: `measure: {{processes: {}}}`", why, needed, needed);
+}
 
 /// `count`: of how many series each may raise an alarm.
 Difference compareValues(const SeriesKey& key, const Series& before, const Series& after,
@@ -145,11 +143,10 @@ Difference compareValues(const SeriesKey& key, const Series& before, const Serie
         before, after, [&](double a, double b) { return areSame(a, b, result.floor); });
     const bool isOwn = differ(before, result.floor) || differ(after, result.floor);
     result.verdict = isSame ? SeriesVerdict::Same : SeriesVerdict::Changed;
-    if (!isAlike && (isOwn || !doubt.empty()) &&
-        chanceApart(before, after) > rules.familyError / static_cast<double>(count)) {
-        result.verdict = SeriesVerdict::CannotTell;
-        result.reason = isOwn ? "numbers that differ between processes of one side" : doubt;
-    }
+    if (isAlike || (!isOwn && doubt.empty())) return result;
+    result.reason = whyUndecided(before, after, isOwn ? "" : doubt,
+                                 rules.familyError / static_cast<double>(count));
+    if (!result.reason.empty()) result.verdict = SeriesVerdict::CannotTell;
     return result;
 }
 

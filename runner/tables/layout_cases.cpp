@@ -175,10 +175,7 @@ void lookAtMetrics(LayoutCases& cases) {
                 if (isDeclared || !item.scatters(metric, row->pass)) continue;
                 if (!item.isOfItsSeed(metric)) continue;
                 cases.doubt.differing.insert(metric);
-                // The order of parallel work moves what a device counts, and says nothing else.
-                if (!cases.isOfProgram || config::isOfDevice(metric)) continue;
-                (isOfMachine(metric, row->unit) ? cases.doubt.isOfMachine : cases.doubt.isOfAll) =
-                    true;
+                if (cases.isOfProgram) cases.doubt.note(metric, row->unit);
             }
         }
     }
@@ -201,14 +198,25 @@ void Doubt::add(const Doubt& other) {
     isOfMachine |= other.isOfMachine;
 }
 
-bool LayoutCases::isInDoubt(const std::string& metric, bool isSetup, bool isMachine) const {
+void Doubt::note(const std::string& metric, std::string_view unit) {
+    differing.insert(metric);
+    // The order of parallel work moves what a device counts, and says nothing else.
+    if (config::isOfDevice(metric)) return;
+    (tables::isOfMachine(metric, unit) ? isOfMachine : isOfAll) = true;
+}
+
+bool Doubt::reaches(const std::string& metric, bool isMachine, bool isSetup,
+                    bool isOfElsewhere) const {
     const bool isOfDevice = !isOfElsewhere && config::isOfDevice(metric);
     if (config::isTimeMetric(metric) || isOfDevice) return false;
-    if (doubt.differing.contains(metric)) return true;
+    if (differing.contains(metric)) return true;
     const bool isKnown =
         !isOfElsewhere && (config::isTestOfMeans(metric) || config::isPictureError(metric));
-    if (!isOfProgram || isSetup || isKnown) return false;
-    return doubt.isOfAll || (isMachine && doubt.isOfMachine);
+    return !isSetup && !isKnown && (isOfAll || (isMachine && isOfMachine));
+}
+
+bool LayoutCases::isInDoubt(const std::string& metric, bool isSetup, bool isMachine) const {
+    return doubt.reaches(metric, isMachine, isSetup, isOfElsewhere);
 }
 
 std::string LayoutCases::recordedInstead(const std::string& metric) const {

@@ -41,14 +41,20 @@ class CaseIndex {
 /// its name, too. They differ in any program, and tell nothing of what it computes.
 bool isOfMachine(std::string_view metric, std::string_view unit);
 
-/// Metrics that came to other values in some case when they were taken again, with no seed
-/// declared, whatever a layout shows of them; of a program or an import whether there are some, and
-/// of what isOfMachine, which differs in any.
+/// The one rule of doubt, of claims and of comparisons: where no seed is declared and a number
+/// differs when it is taken again, then it and all others of that program or import decide nothing
+/// before six processes of a case (metrics::kFewestForInterval) are known.
 struct Doubt {
-    std::set<std::string> differing;
-    bool isOfAll = false, isOfMachine = false;
+    std::set<std::string> differing;  // metrics, in some case, whatever a layout shows of them
+    bool isOfAll = false;             // of a program or an import
+    bool isOfMachine = false;         // isOfMachine(), which differs in any
 
     void add(const Doubt& other);
+    /// One of a program or an import that differs.
+    void note(const std::string& metric, std::string_view unit);
+    /// Whether it reaches numbers of the metric. Known without are what set-up recorded, and, of
+    /// what is measured here, errors of a picture that each process is known to make alike.
+    bool reaches(const std::string& metric, bool isMachine, bool isSetup, bool isOfElsewhere) const;
 };
 
 /// The cases of a layout. `axes` names the sweep axes of its rows and columns and of all `where`
@@ -70,9 +76,7 @@ struct LayoutCases {
     std::set<std::pair<std::string, std::string>> ownTruths;
     Doubt doubt;
 
-    /// Whether numbers of the metric are no surer than chance: they differ, or a program or an
-    /// import says them that says others which differ. Known without are what set-up recorded, and
-    /// errors of a picture that each process is known to make alike.
+    /// Whether numbers of the metric are no surer than chance (Doubt).
     bool isInDoubt(const std::string& metric, bool isSetup, bool isMachine) const;
 
     /// What there is where nothing that was measured elsewhere is called so; else empty: of what

@@ -1,5 +1,6 @@
 #include "runner/regression/comparison.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -281,6 +282,9 @@ TEST(Comparison, NumbersThatScatterAreNotChangedByChance) {
     EXPECT_EQ(alike.verdict, SeriesVerdict::CannotTell);
     EXPECT_EQ(alike.reason, "numbers that differ between processes of one side");
     EXPECT_EQ(told({1, 2}, {3, 4}).verdict, SeriesVerdict::CannotTell) << "by chance in a third";
+    EXPECT_EQ(told({1, 2}, {3, 4}).reason,
+              "numbers that differ between processes of one side; 6 a side tell: `measure: "
+              "{processes: 6}`");
     EXPECT_EQ(told({1, 2, 3, 4, 5, 6}, {7, 8, 9, 10, 11, 12}).verdict, SeriesVerdict::Changed);
     EXPECT_EQ(told({1, 2, 3}, {1, 2, 3}).verdict, SeriesVerdict::Same) << "of the same seeds";
     EXPECT_EQ(told({1, 1, 1}, {2, 2, 2}).verdict, SeriesVerdict::Changed);
@@ -300,20 +304,35 @@ TEST(Comparison, WhatDiffersInOneCaseIsInDoubtInAll) {
                        {.unseeded = unseeded, .ofSetup = ofSetup});
     };
     const std::vector<Difference> differences = told({{differs.table, "p"}});
-    EXPECT_EQ(differences[2].reason, "numbers that differ between processes of one side");
+    const std::string six = "; 6 a side tell: `measure: {processes: 6}`";
+    EXPECT_EQ(differences[2].reason, "numbers that differ between processes of one side" + six);
     EXPECT_EQ(differences[0].verdict, SeriesVerdict::CannotTell);
-    EXPECT_EQ(differences[0].reason, "in other cases it differs between processes of one side");
+    EXPECT_EQ(differences[0].reason,
+              "in other cases it differs between processes of one side" + six);
     EXPECT_EQ(differences[1].verdict, SeriesVerdict::CannotTell) << "one process against two";
     EXPECT_EQ(differences[1].reason,
-              "other numbers of the program differ between processes of one side");
+              "other numbers of the program differ between processes of one side" + six);
     EXPECT_EQ(told({{differs.table, "p"}}, {{other.table, "y"}})[1].verdict, SeriesVerdict::Changed)
         << "of the set-up";
-    const Series before(5, 4.0), after(5, 5.0);
-    const auto often =
-        compare({{differs, {4, 5}}, {other, before}}, {{differs, {4, 4}}, {other, after}},
-                Pairing::Apart, {.unseeded = {{differs.table, "p"}}});
-    EXPECT_EQ(std::ranges::find(often, other, &Difference::key)->verdict, SeriesVerdict::Changed)
-        << "alike in eight repeats";
+    // As in claims, six processes decide: of two values by chance one in 1,024 is alike in each
+    // side and another in the other.
+    for (const auto& [count, verdict] :
+         {std::pair(5U, SeriesVerdict::CannotTell), {6U, SeriesVerdict::Changed}}) {
+        SeriesMap before{{differs, {4, 5}}}, after{{differs, {4, 4}}};
+        for (int i = 0; i < 40; ++i) {
+            SeriesKey one = other;
+            one.params = fmt::format(R"({{"i":{}}})", i);
+            before[one] = Series(count, 4.0);
+            after[one] = Series(count, i == 0 ? 12.0 : 4.0);
+            if (i == 0) other = one;
+        }
+        const auto often =
+            compare(before, after, Pairing::Apart, {.unseeded = {{differs.table, "p"}}});
+        EXPECT_EQ(std::ranges::find(often, other, &Difference::key)->verdict, verdict) << count;
+        EXPECT_EQ(std::ranges::count(often, SeriesVerdict::Changed, &Difference::verdict),
+                  verdict == SeriesVerdict::Changed);
+    }
+    other.params = alike.params;
     EXPECT_EQ(told({})[0].verdict, SeriesVerdict::Changed) << "of the same seeds";
     EXPECT_EQ(told({})[1].verdict, SeriesVerdict::Changed) << "of the same seeds";
     // Of another table, and of other names.
