@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "engine/metrics/alike.h"
 #include "runner/tables/cell.h"
@@ -104,6 +105,50 @@ std::string whyTooFew(std::size_t rounds, const Group& group) {
     return fmt::format("a range of {} processes; {}", rounds, whatIsNeeded());
 }
 
+/// The first of its values that is such; null where none is.
+const Sampled* findIn(const Group& group, const std::function<bool(const Sampled&)>& isSuch) {
+    std::vector<const std::vector<Sampled>*> all = {&group.x};
+    for (const auto& operand : group.operands) all.push_back(&operand);
+    for (const auto* values : all) {
+        const auto found = std::ranges::find_if(*values, isSuch);
+        if (found != values->end()) return &*found;
+    }
+    return nullptr;
+}
+
+/// Whether it differs between rounds, and is the same in some of them, as what is rounded.
+bool isRounded(const Sampled& sampled, const std::vector<int>& rounds) {
+    std::set<double> values;
+    for (const int round : rounds) values.insert(sampled.at(round));
+    return values.size() > 1 && values.size() < rounds.size();
+}
+
+/// How often all rounds are at the bound by chance, as rounded values may be: taken from how often
+/// they are when each value is of another round. What is so in any round is no chance, unless
+/// others of the group are rounded.
+double chanceOfEqual(const Group& group, const std::vector<int>& rounds, const Contrast& contrast) {
+    const std::size_t count = rounds.size();
+    std::size_t equal = 0, all = 0;
+    for (std::size_t shift = 1; shift < count; ++shift) {
+        for (std::size_t round = 0; round < count; ++round, ++all) {
+            GroupPoint point = pointOf(group, rounds[round]);
+            for (std::size_t i = 0; i < point.operands.size(); ++i) {
+                for (std::size_t row = 0; row < point.operands[i].size(); ++row) {
+                    const std::size_t other = (round + shift * (i + row)) % count;
+                    point.operands[i][row] = group.operands[i][row].at(rounds[other]);
+                }
+            }
+            const double value = contrast.quantity(point);
+            equal += metrics::areAlike(value, contrast.requirement.low) ||
+                     metrics::areAlike(value, contrast.requirement.high);
+        }
+    }
+    const double share = static_cast<double>(equal) / static_cast<double>(all);
+    const auto isSuch = [&](const Sampled& one) { return isRounded(one, rounds); };
+    if (equal == all && !findIn(group, isSuch)) return 0.0;
+    return std::pow(share, static_cast<double>(count));
+}
+
 Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
                         const Contrast& contrast, double noise) {
     const GroupPoint whole = pointOf(group);
@@ -139,8 +184,10 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
         if (verdictOf(interval, requirement) != Verdict::Holds) {
             judgement.beyond = beyondBound(byRound, requirement, contrast.scale);
             const auto isAtBound = [](const auto& round) { return round.second == 0.0; };
-            if (contrast.failsAtBound && std::ranges::all_of(judgement.beyond, isAtBound)) {
+            if (decision.verdict == Verdict::Fails &&
+                std::ranges::all_of(judgement.beyond, isAtBound)) {
                 judgement.beyond.clear();
+                judgement.equalByChance = chanceOfEqual(group, rounds, contrast);
             }
         }
         judgement.measured = boundedText(middle, tables::Bounds::Interval, interval, requirement);
@@ -197,17 +244,6 @@ Verdict verdictOf(const metrics::Interval& given, const Requirement& requirement
 }
 
 namespace {
-
-/// The first of its values that is such; null where none is.
-const Sampled* findIn(const Group& group, const std::function<bool(const Sampled&)>& isSuch) {
-    std::vector<const std::vector<Sampled>*> all = {&group.x};
-    for (const auto& operand : group.operands) all.push_back(&operand);
-    for (const auto* values : all) {
-        const auto found = std::ranges::find_if(*values, isSuch);
-        if (found != values->end()) return &*found;
-    }
-    return nullptr;
-}
 
 /// Seeds of a scene: with five, the range misses the median of all in 6 % of cases, with two in 50.
 constexpr std::size_t kFewestScenes = 5;
@@ -378,6 +414,15 @@ void forgiveChance(std::span<Judgement* const> all) {
         if (one->beyond.empty()) continue;
         sampled.push_back(one);
         series.push_back(one->beyond);
+    }
+    for (Judgement* one : all) {
+        const double chance = one->equalByChance.value_or(0.0) * static_cast<double>(all.size());
+        if (one->verdict != Verdict::Fails || chance <= kOneEnd) continue;
+        one->verdict = Verdict::Ambiguous;
+        one->why = fmt::format(
+            "equal in every process, as rounded values are by chance in {:.3g} % of tables; more "
+            "processes tell",
+            100.0 * std::min(chance, 1.0));
     }
     const auto forgive = [](Judgement& one, double chance, std::size_t count) {
         if (one.verdict != Verdict::Fails || chance <= kOneEnd) return;

@@ -68,8 +68,7 @@ struct Contrast {
     /// By the interval of the quantity over rounds and the noise of what is read. Absent: as it
     /// lies within the requirement, nearer to a bound than the noise ambiguous.
     std::function<Decision(const metrics::Interval&, double noise)> decide = {};
-    bool isBeside = false;      // of what the claim asks for: told only where it is worse
-    bool failsAtBound = false;  // what is at an excluded bound in every round is not so by chance
+    bool isBeside = false;  // of what the claim asks for: told only where it is worse
 };
 /// The contrasts of a group with these values.
 using Contrasts = std::function<std::vector<Contrast>(const GroupPoint&)>;

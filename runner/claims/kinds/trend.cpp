@@ -148,7 +148,6 @@ Contrasts rising(int direction, bool isStrict) {
             step.isBeside = true;
             if (isStrict) {
                 step.distance = distanceOfStep;
-                step.failsAtBound = true;
             } else {
                 step.decide = unlessSurelyBack;
             }

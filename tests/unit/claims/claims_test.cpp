@@ -855,6 +855,20 @@ TEST(Claims, StrictlyIsSoOfWhatVaries) {
     };
     EXPECT_EQ(judge(open).verdict, Verdict::Ambiguous);
     EXPECT_EQ(judgeTimed(rising, timedRows(6, open)).verdict, Verdict::Holds);
+    // Rounded noise: 4 or 5 in both rows, which are alike in all six by chance.
+    const Timed rounded = [](double n, int round) {
+        return n < 4.0 ? n * drift(round) : round % 3 == 1 ? 5.0 : 4.0;
+    };
+    EXPECT_EQ(judge(rounded).verdict, Verdict::Ambiguous);
+    EXPECT_EQ(judge(rounded).reason,
+              "equal in every process, as rounded values are by chance in 4.13 % of tables; more "
+              "processes tell");
+    const Timed known = [](double n, int round) { return n < 4.0 ? n * drift(round) : 4.0; };
+    EXPECT_EQ(judge(known).verdict, Verdict::Fails) << "the same in all processes";
+    const Timed beside = [](double n, int round) {
+        return n < 4.0 ? n + (round % 3 == 1 ? 0.1 : 0.2) : 4.0;
+    };
+    EXPECT_EQ(judge(beside).verdict, Verdict::Ambiguous) << "and others are rounded";
 }
 
 TEST(Claims, TimesThatAreAlike) {
