@@ -27,46 +27,34 @@ bool isReadable(const ClaimSpec& claim, const tables::Table& table) {
 }
 
 bool isLeftOut(const tables::TableRow& row, std::size_t axis) {
-    return row.labels[axis] == tables::kLeftOut;
+    return axis < row.labels.size() && row.labels[axis] == tables::kLeftOut;
 }
 
-/// Where `at` names a value of an axis that `when` of the sweep leaves out of what else it names:
-/// what to write; else empty.
-std::string whyNoRow(const ClaimSpec& claim, const tables::Table& table) {
-    const auto has = [&](const tables::TableRow& row, const auto& chosen) {
-        const auto axis = std::ranges::find(table.rowAxes, chosen.first) - table.rowAxes.begin();
-        return std::ranges::any_of(chosen.second, [&](const Node& value) {
-            return tables::canonicalText(value) == row.labels[static_cast<std::size_t>(axis)];
+std::size_t placeOf(const std::string& axis, const tables::Table& table) {
+    return static_cast<std::size_t>(std::ranges::find(table.rowAxes, axis) - table.rowAxes.begin());
+}
+
+/// Whether `at` names a value of an axis that `when` of the sweep leaves out of what else it names.
+bool namesLeftOut(const ClaimSpec& claim, const tables::Table& table) {
+    return std::ranges::any_of(claim.at, [&](const auto& left) {
+        ClaimSpec others = claim;
+        std::erase_if(others.at, [&](const auto& one) { return one.first == left.first; });
+        const Rows rows = ClaimReader(others, table).rows();
+        return !rows.empty() && std::ranges::all_of(rows, [&](std::size_t row) {
+            return isLeftOut(table.rows[row], placeOf(left.first, table));
         });
-    };
-    for (const auto& left : claim.at) {
-        const auto found = std::ranges::find(table.rowAxes, left.first) - table.rowAxes.begin();
-        const auto axis = static_cast<std::size_t>(found);
-        std::vector<const tables::TableRow*> others;
-        for (const tables::TableRow& row : table.rows) {
-            const bool isOther = std::ranges::all_of(claim.at, [&](const auto& chosen) {
-                return chosen.first == left.first || has(row, chosen);
-            });
-            if (isOther) others.push_back(&row);
-        }
-        const auto isSuch = [&](const auto* row) { return isLeftOut(*row, axis); };
-        if (others.empty() || !std::ranges::all_of(others, isSuch)) continue;
-        return fmt::format(
-            "has no row: 'when' of the sweep leaves what else 'at' names without '{0}'; allowed: "
-            "'at' without '{0}'",
-            left.first);
-    }
-    return "";
+    });
 }
 
 /// What to write in the place of a claim on what never stands in one row.
-std::string besideInstead(const ClaimSpec& claim, const tables::Table& table, std::size_t axis) {
-    const std::string& name = table.rowAxes[axis];
+std::string besideInstead(const ClaimSpec& claim, const tables::Table& table,
+                          const std::string& name) {
     if (name == tables::kSeedAxis) {
         return "a layout whose rows do not name it, with its values in the column: 'where: {seed: "
                "[…]}'";
     }
     if (claim.operands.size() == 1) return fmt::format("'at' without '{}'", name);
+    const std::size_t axis = placeOf(name, table);
     std::string column = "x", place = "AXIS=VALUE";
     for (const auto& [of, columns] : claim.at) {
         if (claim.across && of == kColumnAxis && columns.size() == 1) column = columns[0].text();
@@ -84,21 +72,37 @@ std::string besideInstead(const ClaimSpec& claim, const tables::Table& table, st
         column, place);
 }
 
-/// Where what is compared never stands in one row, as some of it has no value of an axis that
-/// `when` of the sweep leaves out: what to write; else empty.
-std::string whyNeverBeside(const ClaimSpec& claim, const ClaimReader& reader,
-                           const tables::Table& table) {
-    if (!reader.readsAny()) return whyNoRow(claim, table);
-    if (!reader.plannedRows().empty()) return "";
+/// Why no measurement could judge a claim; `what` is empty where one could.
+struct Never {
+    std::string what;        // follows the claim's name
+    Rows without{}, with{};  // rows that lack what it needs, which it reads, and such as have it
+    std::string instead{};   // what to write where no `at` reads the latter alone
+};
+
+/// The first axis of which `when` of the sweep leaves out some of what is compared.
+std::optional<std::string> axisLeftOut(const ClaimSpec& claim, const tables::Table& table) {
     for (std::size_t axis = 0; axis < table.rowAxes.size(); ++axis) {
         const auto isSuch = [&](const tables::TableRow& row) { return isLeftOut(row, axis); };
-        if (std::ranges::none_of(table.rows, isSuch)) continue;
-        return fmt::format(
-            "has no row of all that it compares: 'when' of the sweep leaves some of it without "
-            "'{}'; allowed: {}",
-            table.rowAxes[axis], besideInstead(claim, table, axis));
+        if (std::ranges::any_of(table.rows, isSuch)) return table.rowAxes[axis];
     }
-    return "";
+    return table.findColumn(std::string(tables::kLeftOut)) ? claim.across : std::nullopt;
+}
+
+/// Where what is compared never stands in one row, as some of it has no value of an axis that
+/// `when` of the sweep leaves out.
+Never neverBeside(const ClaimSpec& claim, const ClaimReader& reader, const tables::Table& table) {
+    if (!reader.readsAny()) {
+        return {namesLeftOut(claim, table) ? "is judged nowhere: " + reader.whyNoRow() : ""};
+    }
+    const std::optional<std::string> axis = axisLeftOut(claim, table);
+    if (!axis || !reader.plannedRows().empty()) return {};
+    ClaimSpec anywhere = claim;
+    std::erase_if(anywhere.at, [](const auto& one) { return one.first != kColumnAxis; });
+    return {fmt::format("has no row of all that it compares: 'when' of the sweep leaves some of it "
+                        "without '{}'",
+                        *axis),
+            reader.rows(), ClaimReader(anywhere, table).plannedRows(),
+            besideInstead(claim, table, *axis)};
 }
 
 /// The rows of each group of which the sweep has what the claim reads. A column's values, along
@@ -124,19 +128,70 @@ std::size_t rowsNeeded(const ClaimSpec& claim) {
     return most;
 }
 
-/// Where `when` of the sweep leaves a group of rows with fewer than the claim needs: what to write;
-/// else empty.
-std::string whyTooFewRows(const ClaimSpec& claim, ClaimReader& reader, const tables::Table& table) {
+/// Where `when` of the sweep leaves rows without a number along which the claim goes, or a group of
+/// rows with fewer than it needs.
+Never neverAlong(const ClaimSpec& claim, ClaimReader& reader, const tables::Table& table) {
+    Never never;
+    const std::optional<std::string> word = reader.wordAlongOver();
+    if (word) {
+        never.what = fmt::format("needs numbers along '{}', which holds '{}'", *claim.over, *word);
+        if (*word != tables::kLeftOut) return never;
+    }
     const std::size_t needed = rowsNeeded(claim);
     for (const Rows& group : plannedGroups(claim, reader, table)) {
-        if (group.empty() || group.size() >= needed) continue;
+        Rows along = group;
+        std::erase_if(along, [&](std::size_t row) {
+            return isLeftOut(table.rows[row], placeOf(*claim.over, table));
+        });
+        const bool isEnough = along.size() >= needed;
+        std::ranges::copy(group, std::back_inserter(isEnough ? never.with : never.without));
         for (std::size_t axis = 0; axis < table.rowAxes.size(); ++axis) {
-            if (!isLeftOut(table.rows[group[0]], axis)) continue;
-            return fmt::format(
+            const bool isSuch = !group.empty() && isLeftOut(table.rows[group[0]], axis);
+            if (isEnough || !isSuch || !never.what.empty()) continue;
+            never.what = fmt::format(
                 "needs {} rows along '{}', and has one where 'when' of the sweep leaves it without "
-                "'{}'; allowed: other rows, by 'at'",
-                needed, claim.over.value_or(""), table.rowAxes[axis]);
+                "'{}'",
+                needed, *claim.over, table.rowAxes[axis]);
         }
+    }
+    return never;
+}
+
+Never neverOf(const ClaimSpec& claim, const tables::Table& read) {
+    ClaimReader reader(claim, read);
+    Never never = neverBeside(claim, reader, read);
+    if (never.what.empty() && claim.over) never = neverAlong(claim, reader, read);
+    if (never.what.empty() && reader.isOverItself())
+        never.what = fmt::format("holds '{}' against itself", *claim.over);
+    return never;
+}
+
+/// The `at` of one axis by which the claim reads only rows that have what it needs; empty where
+/// there is none.
+std::string atInstead(const ClaimSpec& claim, const tables::Table& read, const Never& never) {
+    for (std::size_t axis = 0; axis < read.rowAxes.size(); ++axis) {
+        const std::string& name = read.rowAxes[axis];
+        Node::Sequence values;
+        const auto has = [&](const Rows& rows, const std::string& label) {
+            return std::ranges::any_of(
+                rows, [&](std::size_t row) { return read.rows[row].labels[axis] == label; });
+        };
+        bool isApart = !never.without.empty() && name != kColumnAxis && name != claim.over;
+        for (const std::size_t row : never.with) {
+            const std::string& label = read.rows[row].labels[axis];
+            isApart &= label != tables::kLeftOut && !has(never.without, label);
+            const Node value = Node::scalar(label);
+            if (std::ranges::none_of(values, [&](const Node& one) { return one.text() == label; }))
+                values.push_back(value);
+        }
+        if (!isApart || values.empty()) continue;
+        ClaimSpec other = claim;
+        std::erase_if(other.at, [&](const auto& one) { return one.first == name; });
+        other.at.emplace_back(name, values);
+        if (!neverOf(other, read).what.empty()) continue;
+        const bool isOne = values.size() == 1;
+        return fmt::format("at: {{{}: {}}}", name,
+                           (isOne ? values[0] : Node::sequence(values)).toFlowText());
     }
     return "";
 }
@@ -149,13 +204,11 @@ std::string whyNeverJudged(const ClaimSpec& claim, const tables::Table& table) {
     }
     try {
         const tables::Table read = tableFor(claim, table);
-        ClaimReader reader(claim, read);
-        if (const std::optional<std::string> word = reader.wordAlongOver()) {
-            return fmt::format("needs numbers along '{}', which holds '{}'", *claim.over, *word);
-        }
-        if (std::string why = whyNeverBeside(claim, reader, read); !why.empty()) return why;
-        if (std::string why = whyTooFewRows(claim, reader, read); !why.empty()) return why;
-        return reader.isOverItself() ? fmt::format("holds '{}' against itself", *claim.over) : "";
+        const Never never = neverOf(claim, read);
+        if (never.what.empty()) return "";
+        const std::string at = atInstead(claim, read, never);
+        const std::string& instead = at.empty() ? never.instead : at;
+        return never.what + (instead.empty() ? "" : "; allowed: " + instead);
     } catch (const ExpressionError&) {
         throw;
     } catch (const Error&) {
@@ -314,6 +367,33 @@ void requireJudgeable(const config::Experiment& experiment, const tables::Table&
         if (!why.empty()) {
             throw Error(claim.location, fmt::format("claim '{}' {}", claim.id, why));
         }
+    }
+}
+
+void requireRows(std::span<const config::Experiment> profiles,
+                 std::span<const tables::Table> tables) {
+    const auto whyNot = [&](std::size_t i, const std::string& id) -> std::string {
+        const auto own = std::ranges::find(profiles[i].claims, id, &ClaimSpec::id);
+        if (own == profiles[i].claims.end()) return "";
+        try {
+            const tables::Table read = tableFor(*own, tables[i]);
+            const ClaimReader reader(*own, read);
+            if (!reader.readsAny()) return reader.whyNoRow();
+            return reader.plannedRows().empty() ? "no row has all that it compares" : "";
+        } catch (const Error&) {  // said elsewhere
+            return "";
+        }
+    };
+    if (profiles.empty()) return;
+    for (const ClaimSpec& claim : profiles[0].claims) {
+        const std::string why = whyNot(0, claim.id);
+        bool isNowhere = !why.empty();
+        for (std::size_t i = 1; i < profiles.size(); ++i) {
+            isNowhere = isNowhere && !whyNot(i, claim.id).empty();
+        }
+        if (isNowhere)
+            throw Error(claim.location,
+                        fmt::format("claim '{}' is judged in no profile: {}", claim.id, why));
     }
 }
 

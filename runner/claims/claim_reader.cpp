@@ -111,6 +111,28 @@ Rows ClaimReader::rows() const {
     return rows;
 }
 
+std::string ClaimReader::whyNoRow() const {
+    if (readsAny()) return "";
+    Node::Map asked;
+    for (const auto& [axis, values] : claim_.at) {
+        if (axis == kColumnAxis) continue;
+        asked.emplace_back(axis, values.size() == 1 ? values[0] : Node::sequence(values));
+    }
+    std::vector<std::string> there;
+    for (const tables::TableRow& row : table_.rows) {
+        Node::Map own;
+        for (const auto& [axis, values] : claim_.at) {
+            if (axis == kColumnAxis) continue;
+            const std::string& label = row.labels[rowAxis(axis, "at")];
+            if (label != tables::kLeftOut) own.emplace_back(axis, Node::scalar(label));
+        }
+        const std::string text = Node::map(own).toFlowText();
+        if (std::ranges::find(there, text) == there.end()) there.push_back(text);
+    }
+    return fmt::format("no row is of {}; there are: {}", Node::map(asked).toFlowText(),
+                       there.empty() ? "none" : tables::shortened(there, ", "));
+}
+
 /// The row axes along which `over` changes: itself, or, if it is a column, each on which that
 /// column depends.
 std::vector<bool> ClaimReader::axesAlongX() {
@@ -224,7 +246,7 @@ bool ClaimReader::readsOnly(std::string_view metric) const {
 std::optional<std::string> ClaimReader::wordAlongOver() const {
     const std::vector<ClaimPart> parts = partsOf(claim_);
     if (!overAxis_ || std::ranges::none_of(parts, &ClaimPart::needsX)) return std::nullopt;
-    for (const std::size_t row : rows()) {
+    for (const std::size_t row : plannedRows()) {
         const std::string& label = table_.rows[row].labels[*overAxis_];
         if (!parseDouble(label)) return label;
     }

@@ -59,8 +59,12 @@ class ClaimReader {
     /// the document or read off it.
     Rows unfitOf(const Rows& rows) const;
 
+    /// The rows that `at` leaves.
+    Rows rows() const;
     /// Whether the table has a row for it.
     bool readsAny() const { return !rows().empty(); }
+    /// "no row is of {m: a, n: 2}; there are: {m: a}, {m: b, n: 2}"; empty where there is one.
+    std::string whyNoRow() const;
     /// Whether it reads a time that was measured.
     bool hasTimes() const { return !timePlaces().empty(); }
     /// The table's columns, before rows took their place, in which the times stand that it reads.
@@ -97,7 +101,6 @@ class ClaimReader {
     [[noreturn]] void fail(const std::string& message) const {
         throw Error(claim_.location, "claim '" + claim_.id + "': " + message);
     }
-    Rows rows() const;
     Rows rowsOrAll() const;
     bool readsSome(const std::function<bool(const tables::Cell&)>& isSuch, const Rows& rows) const;
     std::size_t rowAxis(const std::string& name, const char* key) const;

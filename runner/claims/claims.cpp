@@ -507,7 +507,7 @@ std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table) {
         }
     }
     try {
-        return ClaimReader(claim, own).readsAny() ? "" : "no row that it reads";
+        return ClaimReader(claim, own).whyNoRow();
     } catch (const AbsentColumnError& error) {
         for (std::size_t axis = 0; axis < own.rowAxes.size() && !claim.across; ++axis) {
             for (const tables::TableRow& row : own.rows) {

@@ -152,8 +152,14 @@ bool isOfTime(const ClaimSpec& claim, const tables::Table& table);
 std::string whatIsAbsent(const ClaimSpec& claim, const tables::Table& table);
 
 /// Throws Error for a claim that no measurement could judge: a trend or a crossing along words, a
-/// column over itself, `at` with an empty list. `table` may have been built from no records.
+/// column over itself, `at` with an empty list, rows that `when` of the sweep never gives. `table`
+/// may have been built from no records.
 void requireJudgeable(const config::Experiment& experiment, const tables::Table& table);
+
+/// Throws Error for a claim of which no profile's table has a row; `tables` lies beside `profiles`,
+/// the whole first.
+void requireRows(std::span<const config::Experiment> profiles,
+                 std::span<const tables::Table> tables);
 
 /// Throws Error for a claim on an import that nobody laid out, where no row has all that it
 /// compares because they differ by a column of the file that the config does not name.

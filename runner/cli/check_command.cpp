@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 
+#include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/claims/claims.h"
 #include "runner/cli/annotations.h"
@@ -26,6 +27,8 @@
 namespace gfxrepro::cli {
 
 namespace {
+
+constexpr const char* kLabels = "labels";
 
 /// The file under a profile as it stands, but that the command line may have its times taken.
 config::Experiment asItStands(const config::Experiment& experiment, const std::string& profile) {
@@ -77,16 +80,79 @@ std::vector<config::Case> casesOf(const Context& context, const scene::Catalog& 
     return cases;
 }
 
+/// Every key and every text in it.
+void addNames(const Node& node, std::set<std::string>& names) {
+    if (node.isScalar()) names.insert(node.text());
+    if (node.isSequence()) {
+        for (const Node& item : node.items()) addNames(item, names);
+    }
+    if (!node.isMap()) return;
+    for (const auto& [name, value] : node.entries()) {
+        names.insert(name);
+        addNames(value, names);
+    }
+}
+
+/// What may be shown of what the experiment measures in any profile.
+std::set<std::string> namesOf(const Context& context, const scene::Catalog& catalog,
+                              std::span<const config::Experiment> profiles) {
+    std::set<std::string> names;
+    for (const config::Experiment& one : profiles) {
+        for (const auto& [key, value] : one.document.entries()) {
+            if (key != kLabels) addNames(Node::map({{key, value}}), names);
+        }
+        if (one.technique.empty()) continue;
+        for (const config::Case& item : casesOf(context, catalog, one)) {
+            addNames(item.params, names);
+            addNames(item.axes, names);
+        }
+    }
+    const config::Experiment& whole = profiles.front();
+    if (whole.technique.empty()) return names;
+    const config::Outputs outputs =
+        technique::outputsOf(technique::findTechnique(context.techniques, whole.technique, {}),
+                             config::programOf(whole));
+    for (const config::MetricInfo& metric : outputs.metrics) {
+        names.insert(metric.name);
+        for (const config::PassInfo& pass : outputs.passes) {
+            names.insert({pass.name, metric.name + "_" + pass.name});
+        }
+    }
+    return names;
+}
+
+/// Throws Error for words, in the config itself, of what nothing is called. A preset may have more;
+/// what an import that nobody laid out has is not known.
+void requireNamed(const Context& context, const scene::Catalog& catalog,
+                  std::span<const config::Experiment> profiles) {
+    const config::Experiment& whole = profiles.front();
+    const Node* labels = whole.document.find(kLabels);
+    const bool isKnown = config::isMeasuredHere(whole) || !whole.hasDefaultLayout();
+    if (!labels || !isKnown) return;
+    const std::set<std::string> names = namesOf(context, catalog, profiles);
+    for (const auto& [name, words] : labels->entries()) {
+        const SourceLocation& where = labels->keyLocation(name);
+        const auto isCalled = [&](const std::string& one) {
+            return one == name || std::filesystem::path(one).filename() == name;
+        };
+        if (where.file.text() != whole.file.string() || std::ranges::any_of(names, isCalled))
+            continue;
+        throw Error(where, fmt::format("{}: nothing is called '{}'{}", kLabels, name,
+                                       suggestion(name, std::vector(names.begin(), names.end()))));
+    }
+}
+
 /// Throws Error for what is wrong under some profile, as a value that it fixes and the file sweeps;
 /// and for a printed row or value, or a `where` of the layout, that has no place in the table,
 /// whatever the profile.
 void requireProfiles(const Context& context, const scene::Catalog& catalog,
                      const config::Experiment& experiment) {
-    std::vector<config::Experiment> profiles;
+    std::vector<config::Experiment> all, profiles;
     std::vector<std::vector<config::Case>> cases;
-    std::vector<tables::Table> tables;
+    std::vector<tables::Table> tables, printed;
     for (const char* profile : {"full", "quick", "paper"}) {
         config::Experiment one = asItStands(experiment, profile);
+        all.push_back(one);
         if (one.technique.empty() || !one.layout.isGiven) continue;
         cases.push_back(casesOf(context, catalog, one));
         const bool areRowsKnown =
@@ -95,10 +161,13 @@ void requireProfiles(const Context& context, const scene::Catalog& catalog,
                 return !axis.isSweepAxis() ||
                        (!cases.back().empty() && cases.back().front().axes.find(axis.name));
             });
-        if (!one.printed.rows.empty() && areRowsKnown)
+        const bool isPrinted = !one.printed.rows.empty();
+        if (areRowsKnown && (isPrinted || !one.claims.empty()))
             tables.push_back(tables::buildTable(one, cases.back(), {}));
+        if (areRowsKnown && isPrinted) printed.push_back(tables.back());
         profiles.push_back(std::move(one));
     }
+    requireNamed(context, catalog, all);
     // What was measured elsewhere may have more than the sweep says.
     for (const config::Experiment& one : profiles) {
         if (!config::isMeasuredHere(one)) break;
@@ -108,7 +177,9 @@ void requireProfiles(const Context& context, const scene::Catalog& catalog,
     }
     const auto whole = std::ranges::find_if(
         profiles, [](const config::Experiment& one) { return !one.printed.rows.empty(); });
-    if (!tables.empty()) tables::requirePrintedValues(*whole, tables);
+    if (!printed.empty()) tables::requirePrintedValues(*whole, printed);
+    const bool areAllHere = std::ranges::all_of(profiles, config::isMeasuredHere);
+    if (areAllHere && tables.size() == profiles.size()) claims::requireRows(profiles, tables);
 }
 
 /// Throws Error for a scene that the technique of a case cannot take.
@@ -437,6 +508,7 @@ void requireLaidOut(const Context& context, const scene::Catalog& catalog,
                                     tables::gatherCases(experiment, plan.cases, imported.records)});
         const tables::Table table = tables::buildTable(experiment, plan.cases, imported.records);
         tables::requireToldApart(experiment, table);
+        claims::requireJudgeable(experiment, table);
         claims::requireInOneRow(experiment, table);
     }
 }

@@ -301,4 +301,13 @@ std::string shownCase(const std::string& title, const std::string& table, const 
     return joined(said).append(other);
 }
 
+std::string shortened(std::vector<std::string> values, std::string_view separator) {
+    constexpr std::size_t kMostListed = 12;
+    if (values.size() > kMostListed) {
+        values.resize(kMostListed);
+        values.emplace_back("…");
+    }
+    return joined(values, separator);
+}
+
 }  // namespace gfxrepro::tables

@@ -64,4 +64,7 @@ std::string shownValue(const std::string& axis, const std::string& value, const 
 /// case; `table` is "sweep/mine", and stays where nothing else is there.
 std::string shownCase(const std::string& title, const std::string& table, const Words& words = {});
 
+/// The values, or the first of many.
+std::string shortened(std::vector<std::string> values, std::string_view separator);
+
 }  // namespace gfxrepro::tables

@@ -8,6 +8,7 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
+#include "runner/tables/labels.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::tables {
@@ -24,17 +25,6 @@ std::vector<const config::Selection*> choosing(const config::Layout& layout) {
     }
     std::erase_if(all, [](const config::Selection* one) { return one->where.empty(); });
     return all;
-}
-
-constexpr std::size_t kMostListed = 12;
-
-/// The values, or the first of many.
-std::string shortened(std::vector<std::string> values, const char* separator) {
-    if (values.size() > kMostListed) {
-        values.resize(kMostListed);
-        values.emplace_back("…");
-    }
-    return joined(values, separator);
 }
 
 /// Of the axis the values that some case has; of `frame` those of the longest path.

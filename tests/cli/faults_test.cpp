@@ -380,7 +380,8 @@ TEST_F(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
                   ": claim 'order' will be unmeasured: 'y' is no column; did you mean 'x'? "
                   "(columns: x)\n");
     EXPECT_EQ(checked("number=1"), config + ": ok, sweep/mock, 2 cases, 2 claims\n" + config +
-                                       ": claim 'two' will be unmeasured: no row that it reads\n");
+                                       ": claim 'two' will be unmeasured: no row is of {number: "
+                                       "2}; there are: {number: 1}\n");
     endedWith(0,
               mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--quiet", "--out", dir}));
     EXPECT_THAT(readFile(dir + "/claims.csv"),

@@ -1364,20 +1364,63 @@ TEST(Claims, WhatWhenLeavesOutIsNoRow) {
     EXPECT_EQ(refused(columns, "bound: a, at_most: 1"), "no error");
     for (const char* claim :
          {"bound: e, at_most: 1", "exact: e, equals: 1", "bound: r, at_most: 1"}) {
-        EXPECT_EQ(
-            refused(rows, std::string(claim) + ", at: {m: a, n: 2}"),
-            "t.yaml:4:2: claim 'C' has no row: 'when' of the sweep leaves what else 'at' names "
-            "without 'n'; allowed: 'at' without 'n'")
+        EXPECT_EQ(refused(rows, std::string(claim) + ", at: {m: a, n: 2}"),
+                  "t.yaml:4:2: claim 'C' is judged nowhere: no row is of {m: a, n: 2}; there are: "
+                  "{m: a}, {m: b, n: 1}, {m: b, n: 2}, {m: c, n: 1}, {m: c, n: 2}")
             << claim;
     }
-    const std::string one =
-        ", and has one where 'when' of the sweep leaves it without 'n'; allowed: other rows, by "
-        "'at'";
+    // Of rows by an axis that has no value there.
+    for (const char* claim : {"order: [n=2, n=1], of: e", "ratio: n=2 / n=1, of: e, at_most: 1",
+                              "bound: 2, across: n, of: e, at_most: 1"}) {
+        EXPECT_EQ(refused(rows, std::string(claim) + ", at: {m: a}"), beside + "at: {m: [b, c]}")
+            << claim;
+        EXPECT_EQ(refused(rows, std::string(claim) + ", at: {m: [b, c]}"), "no error") << claim;
+        EXPECT_EQ(refused(rows, claim), "no error") << claim;
+    }
+    const std::string one = ", and has one where 'when' of the sweep leaves it without 'n'";
     EXPECT_EQ(refused(rows, "independent: e, of: m, at_most: 1%"),
-              "t.yaml:4:2: claim 'C' needs 2 rows along 'm'" + one);
+              "t.yaml:4:2: claim 'C' needs 2 rows along 'm'" + one + "; allowed: at: {n: [1, 2]}");
+    EXPECT_EQ(refused(rows, "independent: e, of: m, at_most: 1%, at: {n: [1, 2]}"), "no error");
     EXPECT_EQ(refused(rows, "independent: e, of: n, at_most: 1%, at: {m: a}"),
               "t.yaml:4:2: claim 'C' needs 2 rows along 'n'" + one);
-    EXPECT_EQ(refused(rows, "independent: e, of: m, at_most: 1%, at: {m: [b, c]}"), "no error");
+    const std::string along = "t.yaml:4:2: claim 'C' needs numbers along 'n', which holds '–'";
+    for (const char* claim : {"trend: e, over: n, at_most: 0", "independent: e, of: n, at_most: 1%",
+                              "crossover: [e, r], over: n, at_most: 1"}) {
+        const bool isOfAny = std::string(claim).starts_with("independent");
+        EXPECT_EQ(refused(rows, claim),
+                  (isOfAny ? "t.yaml:4:2: claim 'C' needs 2 rows along 'n'" + one : along) +
+                      "; allowed: at: {m: [b, c]}")
+            << claim;
+        EXPECT_EQ(refused(rows, std::string(claim) + ", at: {m: [b, c]}"), "no error") << claim;
+    }
+    EXPECT_EQ(refused(rows, "trend: b, across: m, of: e, over: n, at_most: 0"), "no error");
+}
+
+/// By whatever the sweep leaves out.
+TEST(Claims, OfWhichNoProfileHasARowIsRefused) {
+    const auto refused = [](const std::string& claim, const std::string& quick) {
+        std::vector<config::Experiment> profiles;
+        std::vector<tables::Table> tables;
+        for (const std::string& excluded : {std::string("{m: a, n: 2}"), quick}) {
+            profiles.push_back(
+                tables::experimentFrom("sweep: {m: [a, b], n: [1, 2], exclude: [" + excluded +
+                                       "]}\nlayout: {rows: [m, n], columns: {e: {metric: e}}}\n"
+                                       "claims: {C: {says: so, " +
+                                       claim + "}}\n"));
+            profiles.back().claims[0].location = {"t.yaml", 4, 2};
+            tables.push_back(tables::buildTable(profiles.back(), {}));
+        }
+        return errorText([&] { requireRows(profiles, tables); });
+    };
+    const std::string why = "t.yaml:4:2: claim 'C' is judged in no profile: ";
+    EXPECT_EQ(refused("bound: e, at_most: 1, at: {m: a, n: 2}", "{m: a}"),
+              why +
+                  "no row is of {m: a, n: 2}; there are: {m: a, n: 1}, {m: b, n: 1}, {m: b, n: "
+                  "2}");
+    EXPECT_EQ(refused("bound: e, at_most: 1, at: {m: a, n: 2}", "{m: b}"), "no error");
+    EXPECT_EQ(refused("order: [a, b], of: e, at: {n: 2}", "{m: a}"),
+              why + "no row has all that it compares");
+    EXPECT_EQ(refused("order: [a, b], of: e", "{m: a}"), "no error");
 }
 
 /// Of numbers that were measured elsewhere, and that nobody laid out.
