@@ -161,6 +161,7 @@ class ClaimParser {
         const Names own = claim_.kind->section.keyNames();
         Names allowed = commonTable().names();
         allowed.insert(allowed.end(), own.begin(), own.end());
+        refuseBounds(own);
         requireKeys(node_, what_, allowed);
         given_ = commonTable().find(node_);
         commonTable().require(given_, claim_.location, what_);
@@ -192,6 +193,16 @@ class ClaimParser {
         }
         if (found) return *found;
         throw Error(claim_.location, what_ + " has no type; allowed: " + joined(names));
+    }
+
+    void refuseBounds(const Names& own) const {
+        for (const auto& [place, key] : claims::boundKeys()) {
+            const bool isRefused = claim_.kind->boundedForm && !contains(own, key.name);
+            if (!isRefused || !node_.find(key.name)) continue;
+            throw Error(node_.keyLocation(key.name),
+                        fmt::format("{}: '{}' has no '{}'; allowed: {}", what_, claim_.kind->name(),
+                                    key.name, claim_.kind->boundedForm));
+        }
     }
 
     void readCommon() {

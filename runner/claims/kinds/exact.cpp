@@ -55,8 +55,10 @@ std::vector<ClaimPart> exactParts(const ClaimSpec& claim) {
 }  // namespace
 
 Kind exact() {
-    return {exactTable().section(), readBy<exactTable, readExact>, exactParts,
-            Kind::Compares::Values};
+    Kind kind{exactTable().section(), readBy<exactTable, readExact>, exactParts,
+              Kind::Compares::Values};
+    kind.boundedForm = "'bound: a' with it";
+    return kind;
 }
 
 }  // namespace gfxrepro::claims

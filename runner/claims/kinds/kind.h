@@ -155,7 +155,8 @@ struct Kind {
     std::string_view (*hintOn)(std::string_view column) = nullptr;
     /// What `check` refuses, to follow the claim's name; empty where nothing is wrong.
     std::string (*refused)(const ClaimSpec& claim, const Sampling& sampling) = nullptr;
-    const char* valuesForm = nullptr;  // how operands name values of an axis, where they may
+    const char* boundedForm = nullptr;  // of one without bounds: which other one has them
+    const char* valuesForm = nullptr;   // how operands name values of an axis, where they may
     /// The row axis whose values the operands name, which implies `across`; `what` begins messages.
     std::optional<std::string> (*axisOf)(const Node& operands, const std::string& what) = nullptr;
 

@@ -124,6 +124,7 @@ std::vector<ClaimPart> orderParts(const ClaimSpec& claim) {
 
 Kind order() {
     Kind kind{orderTable().section(), readBy<orderTable, readOrder>, orderParts};
+    kind.boundedForm = "'ratio: b / a' of two of them, or 'ratio: AXIS=b / AXIS=a', with a bound";
     kind.valuesForm = "[AXIS=VALUE, …]";
     kind.axisOf = axisOf;
     return kind;

@@ -292,9 +292,18 @@ TEST_F(ExperimentTest, BadClaims) {
                   "exact, tolerance, crossover, same_mean");
     EXPECT_EQ(claimError("{says: s, order: aa < bb, bound: aa}"),
               head + "32: claim 'C' is of two types, 'order' and 'bound'");
-    EXPECT_EQ(claimError("{says: s, order: aa < bb, at_least: 1}"),
+    EXPECT_EQ(
+        claimError("{says: s, order: aa < bb, at_least: 1}"),
+        head +
+            "32: claim 'C': 'order' has no 'at_least'; allowed: 'ratio: b / a' of two of them, "
+            "or 'ratio: AXIS=b / AXIS=a', with a bound");
+    EXPECT_EQ(claimError("{says: s, ratio: bb / aa, at_least: 1}"), "no error");
+    EXPECT_EQ(claimError("{says: s, exact: aa, equals: 1, at_most: 2}"),
+              head + "41: claim 'C': 'exact' has no 'at_most'; allowed: 'bound: a' with it");
+    EXPECT_EQ(claimError("{says: s, bound: aa, at_most: 2}"), "no error");
+    EXPECT_EQ(claimError("{says: s, order: aa < bb, above: 1}"),
               head +
-                  "32: claim 'C': unknown key 'at_least'; allowed: says, at, across, of, profile, "
+                  "32: claim 'C': unknown key 'above'; allowed: says, at, across, of, profile, "
                   "origin, same_as, bound_from, kind, because, order");
     EXPECT_EQ(
         claimError("{says: s, order: aa}"),
