@@ -115,9 +115,10 @@ void requireNoWhole(const std::string& metric, const std::string& pass,
                     const config::Outputs& outputs, const SourceLocation& where) {
     const config::MetricInfo* info = outputs.find(metric);
     if (!info || info->of != Of::Pass || !pass.empty()) return;
-    throw Error(where, fmt::format("metric '{}' is of a pass, and the cell names none; allowed: "
-                                   "with pass: {}",
-                                   metric, allowedPasses(*info, outputs)));
+    throw Error(where,
+                fmt::format("metric '{}' is of a pass, and the cell names none; allowed: {}{}",
+                            metric, passesOf(*info, outputs).empty() ? "" : "with pass: ",
+                            allowedPasses(*info, outputs)));
 }
 
 /// `equal` names no pass: there is one at most.

@@ -207,7 +207,7 @@ ThereIs whatIsThere(const CellQuery& query, const LayoutCases& cases) {
         for (const auto& [number, attempt] : run->processes) {
             for (const records::Record* record : attempt.rows) {
                 if (record->metric != query.metric) continue;
-                there.passes.insert(record->pass.empty() ? "none" : record->pass);
+                there.passes.insert(record->pass.empty() ? "(no 'pass')" : record->pass);
                 if (record->pass == query.pass) there.frames.insert(record->frame);
             }
         }

@@ -49,7 +49,7 @@ TEST_F(OwnProgram, ATestOfMeansIsOfATruthOfSeveralFrames) {
         "allowed: none, as no image has a truth of several 'frames': {frame: 1000, frames: 6}\n";
     EXPECT_EQ(refusal(column + ", pass: p}}}\n"),
               "gfxrepro: DIR/mine.yaml:9:43: metric 'bias_seen' is not taken of 'p'; " + none);
-    EXPECT_THAT(refusal(column + "}}}\n"), HasSubstr("allowed: with pass: none, as no image has"));
+    EXPECT_THAT(refusal(column + "}}}\n"), HasSubstr("allowed: none, as no image has"));
     EXPECT_THAT(refusal("claims: {b: {says: so, bound: bias_seen, at_most: 0.1}}\n"),
                 HasSubstr("claim 'b': 'bias_seen' is no column; it is of an image whose truth has "
                           "several 'frames' (columns: "));
@@ -69,7 +69,7 @@ TEST_F(OwnProgram, WhatIsOfNoPassSaysWhatToWrite) {
               "gfxrepro: DIR/mine.yaml:9:43: technique 'external' has no pass 'nonexistent'; it "
               "has p\n");
     EXPECT_THAT(refusal(columns + "gpu_time_ms}}}\n"),
-                HasSubstr("names none; allowed: with pass: none, as there are no passes; the time "
+                HasSubstr("names none; allowed: none, as there are no passes; the time "
                           "of a whole frame is wall_time_ms\n"));
     EXPECT_EQ(refusal(columns + "frame_ms}}}\n"),
               "gfxrepro: DIR/mine.yaml:9:43: technique 'external' has no metric 'frame_ms'; the "

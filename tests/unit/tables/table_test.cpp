@@ -203,8 +203,9 @@ TEST(Table, WrongPassSaysWhichThereAre) {
     RecordMaker maker;
     maker.beginCase("models/duck").add("gpu_time_ms", {4.0}, "drawing").add("gpu_time_ms", {5.0});
     const Table table = buildTable(experimentFrom(kPlain), maker.records());
-    EXPECT_EQ(table.rows[0].cells[1].message,
-              "no 'gpu_time_ms' of pass 'draw' was recorded; it is there for pass: drawing, none");
+    EXPECT_EQ(
+        table.rows[0].cells[1].message,
+        "no 'gpu_time_ms' of pass 'draw' was recorded; it is there for pass: (no 'pass'), drawing");
 }
 
 TEST(Table, AMissingFrameSaysWhichThereAre) {
