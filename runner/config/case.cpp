@@ -188,8 +188,7 @@ Measure readMeasure(Params& params, Measure measure) {
     const Measure::Seeds seeds = params.getEnum(
         "seeds", isByProcess ? Measure::Seeds::Process : Measure::Seeds::Case, kSeeds,
         {"random numbers of a technique that draws some, or of a program with {seed}; of the "
-         "latter "
-         "with truths of other seeds: process"});
+         "latter as 'program.seeds' says"});
     if (measure.seeds != Measure::Seeds::None || params.isGiven("seeds")) measure.seeds = seeds;
     measure.sceneSeeds =
         params.getInt("scene_seeds", measure.sceneSeeds,

@@ -309,15 +309,6 @@ void requireTold(const Node& document, const ContentKeys& given, const Experimen
     const bool isSeeded = experiment.measure.seeds != Measure::Seeds::None;
     require(given.measure, isSeeded && measure.find("seeds"), "{seed}, of which 'seeds' tells",
             program.uses(placeholder::kSeed));
-    for (const ProgramPicture& picture : program.pictures) {
-        const bool isOfItsOwn =
-            picture.truthParams.isNull() || picture.truthParams.find(placeholder::kSeed);
-        if (isOfItsOwn || experiment.measure.seeds != Measure::Seeds::Process) continue;
-        throw Error(picture.truthParams.location(),
-                    fmt::format("program: image '{}': truth needs 'seed', as that of the cases is "
-                                "another in each process",
-                                picture.name));
-    }
 }
 
 /// Of a built-in technique, what it would be if that draws random numbers.
@@ -327,7 +318,12 @@ Measure::Seeds defaultSeeds(const Experiment& experiment) {
     const ExternalProgram program = readProgram(programOf(experiment));
     if (program.framesAreSeeds) return Measure::Seeds::Case;
     if (!program.uses(placeholder::kSeed)) return Measure::Seeds::None;
-    return program.seedsByProcess ? Measure::Seeds::Process : Measure::Seeds::Case;
+    const bool isSwept = std::ranges::any_of(expandSweep(experiment.sweep), [](const auto& point) {
+        return std::ranges::any_of(point,
+                                   [](const auto& one) { return one.key() == placeholder::kSeed; });
+    });
+    const bool isByCase = isSwept && !programOf(experiment).find("seeds");
+    return program.seedsByProcess && !isByCase ? Measure::Seeds::Process : Measure::Seeds::Case;
 }
 
 /// Of a program it is known which pictures there are.

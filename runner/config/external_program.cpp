@@ -64,7 +64,7 @@ const KeyTable<ProgramKeys>& programTable() {
                     "what a run of it gives: one frame, {frame}; or all {frames} of the case, each "
                     "line and picture with its own; the run's time is then shared out among them")},
          {&P::seeds,
-          choiceKey("seeds", kSeedsOf, "process of one with {seed} and truths of other seeds",
+          choiceKey("seeds", kSeedsOf, "process of an unswept {seed} with truths of other numbers",
                     "what `measure.seeds` is where it is not given")},
          {&P::gpu, "gpu", "boolean", "false",
           "whether it works on the GPU: then a run asks which that is", boolean()},
@@ -531,14 +531,14 @@ const Node& programOf(const Experiment& experiment) {
 
 namespace {
 
-/// Whether it draws random numbers, and pictures are held against a truth that draws others.
+/// Whether it draws random numbers, and truths others: what differs by words alone may share them.
 bool hasRandomErrors(const ExternalProgram& program) {
-    const auto hasOwnTruth = [](const ProgramPicture& picture) {
-        return picture.truthParams.isNull() || picture.truthParams.find(placeholder::kSeed);
+    const auto isNumber = [](const auto& one) { return one.value.tryDouble().has_value(); };
+    const auto isAlike = [&](const ProgramPicture& one) {
+        return one.truthParams.isMap() && std::ranges::none_of(one.truthParams.entries(), isNumber);
     };
-    return program.uses(placeholder::kSeed) &&
-           std::ranges::any_of(program.pictures, &ProgramPicture::hasTruth) &&
-           std::ranges::all_of(program.pictures, hasOwnTruth);
+    return program.uses(placeholder::kSeed) && std::ranges::none_of(program.pictures, isAlike) &&
+           std::ranges::any_of(program.pictures, &ProgramPicture::hasTruth);
 }
 
 }  // namespace

@@ -76,6 +76,7 @@ class External : public technique::Technique {
         program_.declare(params);
         params.finish();
         values_ = program_.valuesOf(params.resolved());
+        if (program_.uses(placeholder::kSeed)) seedOfTruths_ = values_[placeholder::kSeed];
     }
 
     void requireFrames(int /*frameCount*/) const override {}  // config::requireTold() says more
@@ -325,6 +326,7 @@ class External : public technique::Technique {
             return readPicture(placeOf(picture.truthFile, values_, "out"), what, size);
         }
         config::Placeholders values = values_;
+        values[placeholder::kSeed] = seedOfTruths_;
         for (const auto& [name, value] : picture.truthParams.entries()) values[name] = value.text();
         if (program_.givesAllFrames) {
             const bool isOfItsOwn = picture.truthFrames > 1;
@@ -389,6 +391,7 @@ class External : public technique::Technique {
 
     config::ExternalProgram program_;
     config::Placeholders values_;
+    std::string seedOfTruths_;  // that of the first process, where they have none of their own
     fs::path scratch_;
     std::optional<Folder> folder_;
     glm::ivec2 size_{0};

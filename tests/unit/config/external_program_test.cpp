@@ -98,12 +98,15 @@ TEST(ExternalProgram, ThatTakesASeedHasItAsAParameter) {
               "c.yaml:2:1: program: seeds: the command has no {seed}");
     EXPECT_EQ(errorOf("command: t {seed}\nseeds: repeat"),
               "c.yaml:2:8: program: seeds is repeat; allowed: case | process");
-    // Errors against a truth of another seed are random; those against one of its own are not.
+    // Errors against a truth of another seed or number are random; those of another word need not.
     const std::string image = "command: t {seed} {n}\nparams: {n: 1}\nimages: {r: {file: r.png";
     EXPECT_FALSE(programOf(image + "}}").seedsByProcess);
     EXPECT_TRUE(programOf(image + ", truth: {n: 2, seed: 9}}}").seedsByProcess);
     EXPECT_TRUE(programOf(image + ", truth: \"{here}/t.png\"}}").seedsByProcess);
-    EXPECT_FALSE(programOf(image + ", truth: {n: 2}}}").seedsByProcess);
+    EXPECT_TRUE(programOf(image + ", truth: {n: 2}}}").seedsByProcess);
+    EXPECT_FALSE(programOf("command: t {seed} {m}\nparams: {m: [a, b]}\nimages: {r: {file: r.png, "
+                           "truth: {m: b}}}")
+                     .seedsByProcess);
     EXPECT_FALSE(programOf(image + ", truth: {n: 2, seed: 9}}}\nseeds: case").seedsByProcess);
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: 1}\nimages: {r: {file: r.png, truth: {n: 2, "
                       "seed: 3}}}"),
