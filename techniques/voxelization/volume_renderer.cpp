@@ -1,5 +1,6 @@
 #include "techniques/voxelization/volume_renderer.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "techniques/kit/image_layers.h"
+#include "techniques/kit/path_view.h"
 #include "techniques/kit/view.h"
 #include "techniques/voxelization/phantom.h"
 
@@ -59,6 +61,35 @@ scene::Camera orbitCamera(const scene::Box& box, double azimuthDeg, double eleva
     camera.position = camera.target + distance * frame[2];
     camera.nearM = std::max(distance - 4.0F * radius, 0.01F * distance);
     camera.farM = distance + 4.0F * radius;
+    return camera;
+}
+
+scene::Camera cameraOf(const std::string& view, const scene::Scene& scene, const scene::Box& framed,
+                       const scene::Box& grid, float aspect) {
+    if (view.empty()) return orbitCamera(framed, 30.0, 17.0, aspect);  // ours: slightly above
+    if (const auto towards = kit::towardsEyeOf(view)) {
+        const glm::dvec3 d = glm::normalize(glm::dvec3(*towards));
+        return orbitCamera(framed, glm::degrees(std::atan2(d.x, d.z)), glm::degrees(std::asin(d.y)),
+                           aspect);
+    }
+    scene::Camera camera = kit::stillCamera(scene, view, aspect);
+    float nearest = 0.0F, farthest = 0.0F;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float eye = camera.position[axis];
+        nearest = std::max({nearest, grid.min[axis] - eye, eye - grid.max[axis]});
+    }
+    if (nearest <= 0.0F) {
+        throw Error(fmt::format(
+            "view '{}': the eye lies within the grid, from {:g} {:g} {:g} to "
+            "{:g} {:g} {:g}; allowed: one outside of it",
+            view, grid.min.x, grid.min.y, grid.min.z, grid.max.x, grid.max.y, grid.max.z));
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+        farthest = std::max(farthest, glm::distance(camera.position, grid.corner(corner)));
+    }
+    // Planes are wider than the scene, and none is cut by its camera's.
+    camera.farM = 1.01F * farthest;
+    camera.nearM = 1e-3F * camera.farM;
     return camera;
 }
 
@@ -190,8 +221,7 @@ void VolumeRenderer::setView(const gl::Program& program) const {
 
 namespace {
 
-constexpr int kHeadResolution = 128;    // [zju2005] Sec. 2.4.2
-constexpr double kElevationDeg = 17.0;  // ours: a view from slightly above
+constexpr int kHeadResolution = 128;  // [zju2005] Sec. 2.4.2
 
 constexpr Choice<DrawMode> kModes[] = {
     {DrawMode::None, "none", "no picture"},
@@ -239,14 +269,21 @@ DrawingSettings::DrawingSettings(Params& params, VoxelValue value) {
     draw.opacity = static_cast<float>(params.getDouble(
         "opacity", 0.1, {"of a voxel, where voxels are blended", "1", 0.001, 0.999}));
     framing = params.getEnum("frame", Framing::Model, kFramings, {"what the picture holds"});
-    azimuthDeg = params.getDouble(
-        "azimuth_deg", 30.0,
-        {"of the eye, 17° above the horizon, from +z towards +x", "degree", -360.0, 360.0});
+    view =
+        params.getText("view", "",
+                       {"where from to frame it, \"AZIMUTH ELEVATION\" in degrees, a camera of the "
+                        "scene, a path, seen from its middle, or \"X Y Z > X Y Z\" from and to; "
+                        "none: \"30 17\""});
+    if (params.isGiven("frame") && !view.empty() && !kit::towardsEyeOf(view)) {
+        throw Error(params.locationOf("frame"),
+                    "'frame' needs a 'view' that frames, \"AZIMUTH ELEVATION\" in degrees");
+    }
     draw.cut = readCut(params);
 }
 
-void Drawing::setup(technique::SetupContext& context, const WorksheetLayout& layout,
-                    const scene::Box& box, const scene::Box& shown, bool isCollision) {
+void Drawing::setup(technique::SetupContext& context, const scene::Scene& scene,
+                    const WorksheetLayout& layout, const scene::Box& box, const scene::Box& shown,
+                    bool isCollision) {
     const float aspect =
         static_cast<float>(context.outputSizePx.x) / static_cast<float>(context.outputSizePx.y);
     settings_.draw.hasSecond = isCollision;
@@ -255,7 +292,7 @@ void Drawing::setup(technique::SetupContext& context, const WorksheetLayout& lay
     const scene::Box framed = settings_.framing == Framing::Grid
                                   ? box
                                   : scene::Box{shown.centre() - half, shown.centre() + half};
-    const scene::Camera camera = orbitCamera(framed, settings_.azimuthDeg, kElevationDeg, aspect);
+    const scene::Camera camera = cameraOf(settings_.view, scene, framed, box, aspect);
     view_ = kit::viewOf(camera, context.outputSizePx);
     renderer_.emplace(context.shaders, layout, box, camera, context.outputSizePx, settings_.draw);
     if (settings_.draw.mode == DrawMode::Mixed) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "engine/gl/pass.h"
 #include "engine/image/image.h"
@@ -33,6 +34,12 @@ struct DrawSettings {
 scene::Camera orbitCamera(const scene::Box& box, double azimuthDeg, double elevationDeg,
                           float aspect);
 
+/// A perspective view by `view`, as kit::stillCamera() takes it: where from all of `framed` is seen
+/// (orbitCamera; empty: "30 17"), else a camera of the scene or from a point to another. Throws
+/// Error for an eye within the grid's box, before which there are no planes.
+scene::Camera cameraOf(const std::string& view, const scene::Scene& scene, const scene::Box& framed,
+                       const scene::Box& grid, float aspect);
+
 /// The camera in the terms of the proxy planes.
 struct PlaneView {
     Axis axis;  // of the planes' normals: nearest to the view direction
@@ -43,7 +50,7 @@ struct PlaneView {
     glm::vec3 rayRight{0.0F};   // what a pixel to the right adds
     glm::vec3 rayUp{0.0F};
 };
-/// The eye must lie before all planes or behind all of them: asserted. orbitCamera() sees to it.
+/// The eye must lie before all planes or behind all of them: asserted. cameraOf() sees to it.
 PlaneView planeViewOf(const scene::Camera& camera, const scene::Box& box, int resolution,
                       glm::ivec2 sizePx);
 
@@ -90,10 +97,10 @@ enum class Framing { Model, Grid };
 struct DrawingSettings {
     DrawSettings draw;
     Framing framing = Framing::Model;
-    double azimuthDeg = 0.0;
+    std::string view;       // cameraOf()
     bool isBeside = false;  // no pass: drawn once, when everything is measured
 
-    /// Declares draw, pictures, opacity, frame, azimuth_deg, cut_min and cut_max.
+    /// Declares draw, pictures, opacity, frame, view, cut_min and cut_max.
     DrawingSettings(Params& params, VoxelValue value);
     bool isOn() const { return draw.mode != DrawMode::None; }
     bool isPass() const { return isOn() && !isBeside; }
@@ -105,10 +112,11 @@ class Drawing {
   public:
     explicit Drawing(const DrawingSettings& settings) : settings_(settings) {}
 
-    /// `shown` is what Framing::Model frames; `isCollision`: two grids are drawn, common voxels
-    /// red.
-    void setup(technique::SetupContext& context, const WorksheetLayout& layout,
-               const scene::Box& box, const scene::Box& shown, bool isCollision);
+    /// `scene`, of formulas an empty one, has the cameras; `shown` is what Framing::Model frames;
+    /// `isCollision`: two grids are drawn, common voxels red.
+    void setup(technique::SetupContext& context, const scene::Scene& scene,
+               const WorksheetLayout& layout, const scene::Box& box, const scene::Box& shown,
+               bool isCollision);
     void render(gl::Profiler& profiler, const VoxelGrid& grid, const VoxelGrid* second);
     /// planes, and the image "draw".
     void record(technique::Recorder& recorder) const;

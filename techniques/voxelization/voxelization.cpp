@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "techniques/kit/path_view.h"
 #include "techniques/voxelization/combination.h"
 #include "techniques/voxelization/formula_surface.h"
 #include "techniques/voxelization/mesh_input.h"
@@ -232,6 +233,11 @@ struct VoxelizationParams {
             }
             return;
         }
+        try {
+            kit::stillCamera({}, drawing.view, 1.0F);  // formulas have no scene
+        } catch (const Error& error) {
+            throw Error(params.locationOf("view"), error.what());
+        }
         params.refuseGiven({"addressing", "collision", "compare", "csg", "fill_rule", "method",
                             "offset_b", "padding", "rule", "scene_b", "split", "synthesis"},
                            "'input: mesh'");
@@ -288,7 +294,7 @@ class Voxelization final : public technique::Technique {
         }
         source_->setup(context);
         box_ = source_->grid()->box;
-        if (params_.drawing.isOn()) drawing_.setup(context, layout, box_, box_, false);
+        if (params_.drawing.isOn()) drawing_.setup(context, {}, layout, box_, box_, false);
     }
 
     technique::SceneNeed sceneNeed() const override {
@@ -296,7 +302,9 @@ class Voxelization final : public technique::Technique {
                                                 : technique::SceneNeed::Nothing;
     }
     void requireScene(const scene::Scene& scene) const override {
-        if (params_.input == InputKind::Mesh) requireVoxelizable(scene);
+        if (params_.input != InputKind::Mesh) return;
+        requireVoxelizable(scene);
+        kit::stillCamera(scene, params_.drawing.view, 1.0F);  // that there is one
     }
 
     void render(technique::FrameContext& context) override {
@@ -363,7 +371,7 @@ class Voxelization final : public technique::Technique {
             const scene::Box shown = isInHead      ? headBounds(box_)
                                      : params_.box ? *params_.box
                                                    : bounds;
-            drawing_.setup(context, layout, box_, shown, showsBoth);
+            drawing_.setup(context, *context.scene, layout, box_, shown, showsBoth);
         }
     }
 

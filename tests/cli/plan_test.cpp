@@ -11,10 +11,10 @@ namespace fs = std::filesystem;
 constexpr long long kMostBytes = 2'000'000'000;
 
 constexpr const char* kTwoAxes =
-    "  azimuth_deg: {range: [0, 249.75, 0.25]}\n"
-    "  opacity: {range: [0.1, 0.595, 0.005]}\n";
+    "  opacity: {range: [0.1, 0.5995, 0.0005]}\n"
+    "  output.height: {range: [1, 100, 1]}\n";
 constexpr const char* kSixAxes =
-    "  azimuth_deg: {range: [0, 87, 1]}\n"
+    "  output.height: {range: [1, 88, 1]}\n"
     "  fill: [surface, solid]\n"
     "  voxel_bits: [1, 8, 16, 32]\n"
     "  opacity: {range: [0.1, 0.25, 0.01]}\n"
@@ -28,7 +28,7 @@ std::string largeConfig(const TemporaryFolder& folder, const std::string& axes) 
                         "params: {resolution: 32, draw: opaque}\n"
                         "measure: {lane: quality, warmup: 0, repeats: 1}\n"
                         "sweep:\n" +
-                            axes + "output: {width: 64, height: 64}\n");
+                            axes + "output: {width: 64}\n");
 }
 
 TEST(LargePlan, IsListedAsItComes) {

@@ -1,12 +1,14 @@
 // Proxy planes against a ray march on the CPU through the same grid.
 #include "techniques/voxelization/volume_renderer.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "engine/core/random.h"
 #include "techniques/voxelization/phantom.h"
+#include "tests/support/support.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
 
 namespace gfxrepro::voxelization {
@@ -148,6 +150,29 @@ TEST_P(VolumeRendering, OpaqueShowsTheVoxelsThatARayMeetsFirst) {
     }
 }
 
+/// A view of one's own: beside, over a corner, past the grid's middle, and along a plane's edge.
+TEST_F(GlTest, OpaqueShowsWhatAnEyeOutsideTheGridMeetsFirst) {
+    const WorksheetLayout layout(32, 8);
+    const DenseGrid grid = shell(layout);
+    for (const char* view : {"-6 3 5 > 0 3 5", "3 6 8 > 0 3 5", "2.5 5.5 1 > 2 3 12",
+                             "-2.1 4.9 2.9 > 2 1 7", "0 6 5 > 0 3 5"}) {
+        const scene::Camera camera = cameraOf(view, {}, kBox, kBox, 1.5F);
+        VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, {});
+        renderer.draw(uploaded(grid), nullptr, nullptr);
+        const std::vector<std::uint32_t> hits = hitsOf(renderer);
+        int different = 0, full = 0;
+        for (int y = 0; y < kSizePx.y; ++y) {
+            for (int x = 0; x < kSizePx.x; ++x) {
+                const std::uint32_t expected = firstHit(grid, rayThrough(camera, grid, x, y));
+                if (expected != 0) ++full;
+                if (hits[static_cast<std::size_t>(y * kSizePx.x + x)] != expected) ++different;
+            }
+        }
+        EXPECT_GT(full, kSizePx.x * kSizePx.y / 20) << view;
+        EXPECT_LE(different, kSizePx.x * kSizePx.y / 1000) << view;
+    }
+}
+
 TEST_P(VolumeRendering, TransparencyIsTheLengthOfTheRayInFullVoxels) {
     constexpr float kOpacity = 0.2F;
     const WorksheetLayout layout(32, 8);
@@ -239,6 +264,31 @@ TEST(OrbitCamera, HoldsTheWholeBox) {
             }
         }
     }
+}
+
+TEST(CameraOfVoxels, IsAsAllTechniquesTakeIt) {
+    scene::Scene scene;
+    scene.cameras.resize(1);
+    scene.cameras[0].name = "door";
+    scene.cameras[0].position = {0.0F, 3.0F, 20.0F};
+    scene.cameras[0].target = {0.0F, 3.0F, 5.0F};
+    const auto from = [&](const std::string& view) {
+        return cameraOf(view, scene, kBox, kBox, 1.5F).position;
+    };
+    const auto expectNear = [](const glm::vec3& a, const glm::vec3& b) {
+        EXPECT_LT(glm::distance(a, b), 1e-4F);
+    };
+    expectNear(from(""), orbitCamera(kBox, 30, 17, 1.5F).position);
+    expectNear(from("200 -40"), orbitCamera(kBox, 200, -40, 1.5F).position);
+    expectNear(from("0 90"), orbitCamera(kBox, 0, 90, 1.5F).position);
+    expectNear(from("door"), scene.cameras[0].position);
+    expectNear(from("9 8 7 > 0 3 5"), {9.0F, 8.0F, 7.0F});
+    EXPECT_EQ(test::errorText([&] { from("0 3 5 > 1 3 5"); }),
+              "view '0 3 5 > 1 3 5': the eye lies within the grid, from -2 1 3 to 2 5 7; allowed: "
+              "one outside of it");
+    EXPECT_THAT(test::errorText([&] { from("window"); }),
+                testing::StartsWith("the scene has no path or camera 'window'; paths: none; "
+                                    "cameras: 'door'"));
 }
 
 TEST(PhantomTest, TheHeadFillsItsBounds) {
