@@ -159,7 +159,8 @@ constexpr const char* kLargeUnit =  // larger than a second
     "[a-z]*)";
 constexpr const char* kShortUnit =  // up to a second
     "(?:(?:m|u|n|\u00B5|\u03BC)?s|(?:(?:m|u|n|\u00B5|\u03BC)?se[ck]|milli|micro|mikro|nano)[a-z]*)";
-constexpr const char* kBytesUnit = "(?:[kmgtp]?i?b|(?:[kmgt]|kilo|mega|giga|tera)?(?:byte|bit)s?)";
+constexpr const char* kBytesUnit =
+    "(?:[kmgtp]?i?b|[kmgtp]i|(?:[kmgt]|kilo|mega|giga|tera)?(?:byte|bit)s?)";
 constexpr const char* kOtherUnit =
     "(?:ft|feet|foot|in|inch(?:es)?|yd|[kcm]?m|lbs?|oz|k?g|deg[a-z]*)";
 
@@ -214,9 +215,9 @@ std::regex grammarOfPairs() {
             unit, between, number, group);
         group += 2;
     }
-    return ignoringCase(
-        fmt::format("({0})(?:{1} *{2}{3}(?=([0-9]+(?:[.,:][0-9]+)*)(?! *[a-z0-9.,=])))", number,
-                    pairs, kLargeUnit, fmt::format(kBetween, "+")));
+    return ignoringCase(fmt::format(
+        "({0})(?:{1} *{2}{3}(?=([0-9]+(?:[.,:][0-9]+)*)(?! *(?:[a-z0-9=]|\\.[^ ]|, *[^ ]))))",
+        number, pairs, kLargeUnit, fmt::format(kBetween, "+")));
 }
 
 /// What stands beside a group, and whether the pattern names it.
@@ -307,7 +308,10 @@ class Group {
                 (i == 0 || text_[i - 1] == ' ') &&
                 (last <= begin_ ? end < last && std::ranges::any_of(token, isDigit)
                                 : std::regex_match(token, kNumber));
-            if (isColumn && (asksFor(i, end, {" \0", 2}) || asksFor(i, end, "v\2"))) continue;
+            const bool mayBeThousands = mayBeOneNumber(i, end);
+            if (isColumn && !mayBeThousands &&
+                (asksFor(i, end, {" \0", 2}) || asksFor(i, end, "v\2")))
+                continue;
             const auto isSame = [&](char other) {
                 return isOfDigits ? isDigit(other) || other == '.'
                                   : !isLetter(other) && (other == c || (other & c & 0x80));
@@ -317,6 +321,18 @@ class Group {
             if (c != ' ' && (isColumn || !asksFor(i, end, others))) return false;
         }
         return true;
+    }
+
+    /// Whether the digits and the group may be one number, as 1 234: the pattern begins with them,
+    /// not with the line, and would take a word for them.
+    bool mayBeOneNumber(std::size_t first, std::size_t last) const {
+        static const std::regex kThousands("[0-9]{1,3} [0-9]{3}(?:[.,][0-9]+)?");
+        const bool isOne = last + 1 == begin_ && found_.matchBegin == first &&
+                           std::regex_match(text_.substr(first, end_ - first), kThousands);
+        if (!isOne || asksFor(first, last, "v")) return false;
+        const std::string longer = "v " + std::string(found_.line);
+        const std::optional<Found> found = search_.firstIn(longer, first + 2);
+        return found && found->begin == begin_ + 2;
     }
 
     /// A comma that the pattern names separates, unless it may also be a blank or colon.

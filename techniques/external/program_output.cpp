@@ -15,6 +15,7 @@ namespace gfxrepro::external {
 namespace {
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20;
+constexpr std::size_t kLongestLine = 65536;
 constexpr std::size_t kLongestShown = 80;
 
 std::string textOf(const Json& line, const char* key, bool isRequired, const std::string& what) {
@@ -44,6 +45,11 @@ int frameOf(const Json& line, int first, int count, const std::string& what) {
 
 GivenMetric metricOf(std::string_view text, int number, int frame, int count) {
     const std::string what = fmt::format("line {} of its metrics", number);
+    // An object of many keys takes time with the square of them.
+    if (text.size() > kLongestLine && !isTooDeepJson(text)) {
+        throw Error(
+            fmt::format("{} has {} bytes; allowed: up to {}", what, text.size(), kLongestLine));
+    }
     const Json line = [&] {
         try {
             return parseJsonObject(text, {});

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -97,6 +98,14 @@ TEST(MetricLines, RefusesOneThatIsTooDeep) {
                                  deep.substr(0, 80) + "…");
     const std::string closed = deep + std::string(2'000'000, ']') + "}";
     EXPECT_EQ(errorOf(closed), errorOf(deep));
+}
+
+TEST(MetricLines, RefusesOneOfThousandsOfKeys) {
+    std::string many = "{";
+    for (int i = 0; i < 20000; ++i) many += fmt::format("\"k{}\": 1, ", i);
+    many += "\"value\": 1}";
+    EXPECT_EQ(errorOf(many),
+              fmt::format("line 1 of its metrics has {} bytes; allowed: up to 65536", many.size()));
 }
 
 TEST(MetricLines, RefusesAFileThatIsGoneOrNoPlainOne) {
