@@ -160,6 +160,11 @@ HeightMap withoutHeights(const HeightRows& source, const HeightMapUnits& units) 
     return map;
 }
 
+void sayRounded(HeightMap& map) {
+    map.unitWarning += map.unitWarning.empty() ? "" : "; ";
+    map.unitWarning += "its heights, floats of 64 bits, are rounded to 32: to some 7 digits";
+}
+
 template <class Step>
 void naming(const fs::path& path, const Step& step) {
     try {
@@ -246,6 +251,7 @@ HeightMap loadHeightMap(const fs::path& path, const HeightMapUnits& units) {
     map.heightsM.resize(static_cast<std::size_t>(map.sizeSamples.x) *
                         static_cast<std::size_t>(map.sizeSamples.y));
     rows.read(map.sizeSamples.y, map.heightsM.data());
+    if (rows.source().isRounded) sayRounded(map);
     naming(path, [&] { fillHoles(map); });
     return map;
 }
@@ -267,6 +273,7 @@ HeightMap loadHeightMapInFile(const fs::path& path, const HeightMapUnits& units,
         settleForMemory(path.string(), map.sizeSamples, error);
         return loadHeightMap(path, units);
     }
+    if (conversion.source().areDoubles) sayRounded(map);  // an earlier run may have read them
     map.filledCount = map.file->filledCount();
     return map;
 }

@@ -242,7 +242,8 @@ class TiffRows : public HeightRows {
         readHeader();
         sizeSamples = {static_cast<int>(width_), static_cast<int>(height_)};
         isEightBit = valueBytes(type_) == 1;
-        canBeNan = type_ == ValueType::F32 || type_ == ValueType::F64;
+        areDoubles = type_ == ValueType::F64;
+        canBeNan = type_ == ValueType::F32 || areDoubles;
         if (TIFFIsTiled(tiff_.get()) != 0) {
             prepareTiles();
         } else {
@@ -267,8 +268,9 @@ class TiffRows : public HeightRows {
         for (std::uint32_t x = 0; x < width_; ++x) {
             const double value = valueAt(row + x * valueBytes(type_), type_, kIsBigEndian);
             values[x] = static_cast<float>(value);
-            const bool fits =
-                type_ == ValueType::F64 ? std::isfinite(values[x]) : double{values[x]} == value;
+            const bool isExact = double{values[x]} == value;
+            const bool fits = isExact || (areDoubles && std::isfinite(values[x]));
+            isRounded |= fits && !isExact;
             if (fits || !std::isfinite(value) || std::ranges::count(noData, values[x]) > 0)
                 continue;
             throw Error(
@@ -385,9 +387,6 @@ class TiffRows : public HeightRows {
         spacingM = units.spacingM;
         spacingWarning = units.warning;
         unitWarning = units.unitWarning;
-        if (type_ != ValueType::F64) return;
-        unitWarning += unitWarning.empty() ? "" : "; ";
-        unitWarning += "its heights, floats of 64 bits, are rounded to 32: to some 7 digits";
     }
 
     /// Of a tag that libtiff itself does not know; empty where there is none.

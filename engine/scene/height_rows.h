@@ -30,6 +30,7 @@ class HeightRows {
     std::string spacingWarning;     // of one that is not the same along x and z, or not known
     std::string unitWarning;        // of heights that are taken as metres
     bool canBeNan = false;
+    bool areDoubles = false, isRounded = false;  // the latter once one was read that no float is
     bool isEightBit = false;
 };
 

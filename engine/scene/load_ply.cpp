@@ -551,7 +551,8 @@ Scene parseBody(Reader reader, const Header& header, const std::string& file, An
     Mesh& mesh = vertices.mesh;
     if (mesh.positions.empty()) {
         throw Error({file, vertexElement->line, 0},
-                    "element 'vertex' lacks x, y or z, or has them in no row");
+                    fmt::format("element 'vertex': x, y or z is no number in each of {} rows",
+                                vertexElement->count));
     }
     fillPolygons(faces, mesh.positions, leftOut);
     mesh.triangles = std::move(faces.triangles);

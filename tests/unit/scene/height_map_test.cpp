@@ -132,6 +132,10 @@ TEST(HeightMap, ReadsWiderSamplesOfTiffs) {
     EXPECT_EQ(doubles.heightM(2, 1), -1.5F);
     EXPECT_EQ(doubles.unitWarning,
               "its heights, floats of 64 bits, are rounded to 32: to some 7 digits");
+    const double whole64[] = {1.0, NAN, lowest, 16777216.0, 0.5, -1.5};
+    writeTiff(path, whole64, 64, SAMPLEFORMAT_IEEEFP, "-1.7976931348623157e+308");
+    EXPECT_EQ(loadHeightMap(path, {}).unitWarning, "") << "floats of 32 bits hold them";
+    writeTiff(path, f64, 64, SAMPLEFORMAT_IEEEFP, "-1.7976931348623157e+308");
     const std::string allowed =
         "; allowed: what fits into a float, as whole numbers up to 16777216";
     writeTiff(path, f64, 64, SAMPLEFORMAT_IEEEFP);

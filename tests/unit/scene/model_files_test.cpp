@@ -153,7 +153,7 @@ TEST_F(ModelFiles, PlacesThatAreNoNumbersAreLeftOutOfPointsOrRefused) {
               "DIR/a.ply:13: vertex 0: x is nan; finite numbers in the range of float are allowed");
     const std::string none = "nan nan nan 1 2 3\n";
     EXPECT_EQ(error("a.ply", cloud(none + none + none + none)),
-              "DIR/a.ply:3: element 'vertex' lacks x, y or z, or has them in no row");
+              "DIR/a.ply:3: element 'vertex': x, y or z is no number in each of 4 rows");
     EXPECT_EQ(error("a.obj", "v 0 0 0\nv nan 0 0\n"), "DIR/a.obj:2: 'nan' is not a finite number");
 }
 
