@@ -404,20 +404,20 @@ TEST_F(OwnExperiment, CheckSaysHowToNameAParameter) {
 
 TEST_F(OwnExperiment, CheckRefusesALabelOfWhatNothingIsCalled) {
     const std::string head =
-        "technique: template\nscene: shapes/torus\nsweep: {brightness: [0.25, "
+        "technique: template\nsweep: {brightness: [0.25, "
         "1]}\nlabels: {";
     const std::string layout =
         "layout: {rows: brightness, columns: {bytes: {metric: "
         "peak_memory_bytes}}}\n";
     EXPECT_EQ(checked(folder, head + "brightnes: how bright}\n"),
-              "gfxrepro: DIR/mine.yaml:6:10: labels: nothing is called 'brightnes'; did you mean "
+              "gfxrepro: DIR/mine.yaml:5:10: labels: nothing is called 'brightnes'; did you mean "
               "'brightness'?\n");
     EXPECT_EQ(checked(folder, head + "byte: memory}\n" + layout),
-              "gfxrepro: DIR/mine.yaml:6:10: labels: nothing is called 'byte'; did you mean "
+              "gfxrepro: DIR/mine.yaml:5:10: labels: nothing is called 'byte'; did you mean "
               "'bytes'?\n");
     const std::string good = folder.write(
         "mine.yaml", "sweep_of: mine\ntitle: Mine\n" + head +
-                         "brightness: how bright, 0.25: dark, shapes/torus: a ring, "
+                         "brightness: how bright, 0.25: dark, "
                          "mean_brightness: mean, setup_time_ms: time before, bytes: memory}\n" +
                          layout);
     endedWith(0, gfxrepro({"check", good}));

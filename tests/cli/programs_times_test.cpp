@@ -217,7 +217,7 @@ TEST_F(Timed, WhereItDrawsRandomNumbersEachProcessHasASeedOfItsOwn) {
     other += "  params: {n: 1}\n  images: {result: {file: result.png, truth: {n: 2}}}\n";
     EXPECT_THAT(seedsOf(other), ElementsAre(1, 1001, 2001, 3001, 4001, 5001));
     EXPECT_EQ(readFile(folder.path() / "truths"), "1\n") << "made once";
-    EXPECT_THAT(seedsOf(other + "sweep: {seed: [3, 4]}\n"), Each(AnyOf(3, 4)));
+    EXPECT_THAT(seedsOf(other + "sweep: {seed: [3, 4]}\n"), Each(testing::AnyOf(3, 4)));
 }
 
 /// A built-in technique that declares that it draws them.

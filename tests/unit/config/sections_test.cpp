@@ -299,7 +299,7 @@ TEST_F(ExperimentTest, BadClaims) {
             "or 'ratio: AXIS=b / AXIS=a', with a bound");
     EXPECT_EQ(claimError("{says: s, ratio: bb / aa, at_least: 1}"), "no error");
     EXPECT_EQ(claimError("{says: s, exact: aa, equals: 1, at_most: 2}"),
-              head + "41: claim 'C': 'exact' has no 'at_most'; allowed: 'bound: a' with it");
+              head + "38: claim 'C': 'exact' has no 'at_most'; allowed: 'bound: a' with it");
     EXPECT_EQ(claimError("{says: s, bound: aa, at_most: 2}"), "no error");
     EXPECT_EQ(claimError("{says: s, order: aa < bb, above: 1}"),
               head +
