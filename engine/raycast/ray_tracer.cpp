@@ -1,6 +1,7 @@
 #include "engine/raycast/ray_tracer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "engine/raycast/embree.h"
@@ -83,21 +84,28 @@ struct SelectingContext {
     Faces faces;
     unsigned ignored;
     std::vector<TriangleHit>* hits;  // for collectSelected
+    unsigned accepted;               // by rejectOthers, last
 
     bool isSelected(const RTCRay& ray, const RTCHit& hit) const {
-        const Placed& instance = (*placed)[hit.geomID];
-        if (instance.firstTriangle + hit.primID == ignored) return false;
-        return faces == Faces::All || instance.isDoubleSided || isEntering(ray, hit);
+        if (triangleOf(hit) == ignored) return false;
+        return faces == Faces::All || (*placed)[hit.geomID].isDoubleSided || isEntering(ray, hit);
+    }
+    unsigned triangleOf(const RTCHit& hit) const {
+        return (*placed)[hit.geomID].firstTriangle + hit.primID;
     }
 };
 
 /// Rejects what is not selected, so that the ray goes on.
 void rejectOthers(const RTCFilterFunctionNArguments* arguments) {
     GFXREPRO_ASSERT_EQ(arguments->N, 1U);
-    const auto& context = *reinterpret_cast<const SelectingContext*>(arguments->context);
+    auto& context = *reinterpret_cast<SelectingContext*>(arguments->context);
     const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
     const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
-    if (!context.isSelected(ray, hit)) *arguments->valid = 0;
+    if (context.isSelected(ray, hit)) {
+        context.accepted = context.triangleOf(hit);
+    } else {
+        *arguments->valid = 0;
+    }
 }
 
 /// Notes what is selected and rejects everything, so that traversal goes on.
@@ -107,8 +115,7 @@ void collectSelected(const RTCFilterFunctionNArguments* arguments) {
     const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
     const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
     if (context.isSelected(ray, hit)) {
-        context.hits->push_back(
-            {ray.tfar, (*context.placed)[hit.geomID].firstTriangle + hit.primID});
+        context.hits->push_back({ray.tfar, context.triangleOf(hit)});
     }
     *arguments->valid = 0;
 }
@@ -169,6 +176,7 @@ SelectingContext RayTracer::Impl::selecting(Faces faces, unsigned ignored) const
     context.placed = &placed;
     context.faces = faces;
     context.ignored = ignored;
+    context.accepted = kNoTriangle;
     return context;
 }
 
@@ -221,11 +229,23 @@ void RayTracer::hitsBetween(const glm::vec3& origin, const glm::vec3& direction,
 
 bool RayTracer::isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin,
                            float tMax, Faces faces, unsigned ignored) const {
-    const bool isPlain = faces == Faces::All && ignored == kNoTriangle;
+    if (faces != Faces::All || ignored != kNoTriangle) {
+        return occluder(origin, direction, tMin, tMax, faces, ignored).has_value();
+    }
     SelectingContext context = impl_->selecting(faces, ignored);
     RTCRay ray = rayAlong(origin, glm::normalize(direction), tMin, tMax);
-    occluded(impl_->bvh.get(), ray, context.base, isPlain ? nullptr : &rejectOthers);
+    occluded(impl_->bvh.get(), ray, context.base, nullptr);
     return ray.tfar < 0.0F;  // Embree's sign for "something is in the way"
+}
+
+std::optional<unsigned> RayTracer::occluder(const glm::vec3& origin, const glm::vec3& direction,
+                                            float tMin, float tMax, Faces faces,
+                                            unsigned ignored) const {
+    SelectingContext context = impl_->selecting(faces, ignored);
+    RTCRay ray = rayAlong(origin, glm::normalize(direction), tMin, tMax);
+    occluded(impl_->bvh.get(), ray, context.base, &rejectOthers);
+    if (context.accepted == kNoTriangle) return std::nullopt;
+    return context.accepted;
 }
 
 WorldTriangle RayTracer::triangle(unsigned flattenedTriangle) const {
@@ -248,6 +268,32 @@ bool WorldTriangle::isDrawnFrom(const glm::vec3& point) const {
     const glm::dvec3 outside = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
     const double height = glm::dot(outside, glm::dvec3(point) - a);
     return isDoubleSided ? height != 0.0 : height > 0.0;
+}
+
+bool WorldTriangle::isClearlyHit(const glm::vec3& origin, const glm::vec3& direction, float tMin,
+                                 float tMax) const {
+    const glm::dvec3 ray(direction);
+    const glm::dvec3 a = glm::dvec3(corners[0]) - glm::dvec3(origin);
+    const glm::dvec3 ab = glm::dvec3(corners[1]) - glm::dvec3(corners[0]);
+    const glm::dvec3 ac = glm::dvec3(corners[2]) - glm::dvec3(corners[0]);
+    const glm::dvec3 outside = glm::cross(ab, ac);
+    const double slant = glm::dot(outside, ray);
+    if (slant > 0.0 && !isDoubleSided) return false;
+    // origin + t · ray = corners[0] + (ofB · ab + ofC · ac) / |slant|
+    const glm::dvec3 aside = slant < 0.0 ? glm::cross(ray, a) : glm::cross(a, ray);
+    const double ofB = glm::dot(aside, ac);
+    const double ofC = -glm::dot(aside, ab);
+    const double least = std::min({std::abs(slant) - ofB - ofC, ofB, ofC});
+    if (least <= 0.0) return false;
+    // A tracer's floats err by some 2⁻²⁴ of what these are sums of, and by as much over the sine
+    // between ray and plane in the distance.
+    constexpr double kRounding = 1e-5, kLeastSine = 0.01, kEnds = 1e-4;
+    const double length = glm::length(ray);
+    const double edges = glm::length(ab) + glm::length(ac);
+    if (least <= kRounding * length * edges * (glm::length(a) + edges)) return false;
+    if (std::abs(slant) <= kLeastSine * length * glm::length(outside)) return false;
+    const double distance = glm::dot(outside, a) / slant * length;
+    return distance * (1.0 - kEnds) > tMin && distance * (1.0 + kEnds) < tMax;
 }
 
 }  // namespace gfxrepro::raycast

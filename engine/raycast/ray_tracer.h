@@ -41,6 +41,10 @@ struct WorldTriangle {
 
     /// Whether a drawn face is turned to the point; not for points in the triangle's plane.
     bool isDrawnFrom(const glm::vec3& point) const;
+    /// Whether a ray meets a drawn face in (tMin, tMax) beyond doubt: so far from the edges and
+    /// from both ends, and so steeply, that no rounding of a tracer could miss it.
+    bool isClearlyHit(const glm::vec3& origin, const glm::vec3& direction, float tMin,
+                      float tMax) const;
 };
 
 /// Stands for "no triangle".
@@ -72,6 +76,10 @@ class RayTracer {
     /// Whether there is a hit in (tMin, tMax). `ignored` (of the flattened scene) does not count.
     bool isOccluded(const glm::vec3& origin, const glm::vec3& direction, float tMin, float tMax,
                     Faces faces = Faces::All, unsigned ignored = kNoTriangle) const;
+
+    /// What isOccluded() found in the way: the number of any of these triangles.
+    std::optional<unsigned> occluder(const glm::vec3& origin, const glm::vec3& direction,
+                                     float tMin, float tMax, Faces faces, unsigned ignored) const;
 
     /// By its number in scene::flattened(scene).triangles.
     WorldTriangle triangle(unsigned flattenedTriangle) const;

@@ -195,10 +195,12 @@ VisibilityExperiment::VisibilityExperiment(const scene::Scene& scene, raycast::R
 // [xie2017] Algorithm 1
 void VisibilityExperiment::makeReferenceImages(gl::Profiler& profiler) {
     const gl::CpuScope all(profiler, "reference_images");
+    samples_.clear();
     images_.clear();
     for (std::size_t i = 0; i < sequence_.views().size(); ++i) {
         const gl::CpuScope one(profiler, imageName(i));
-        images_.push_back(rayCastImage(sequence_, i, shading_));
+        samples_.push_back(samplesOf(sequence_, i));
+        images_.push_back(rayCastImage(sequence_.views()[i], samples_.back(), shading_));
     }
 }
 
@@ -209,7 +211,7 @@ Measures VisibilityExperiment::measure(const MeasureSettings& settings) {
     for (std::size_t i = 0; i < images_.size(); ++i) {
         const std::size_t count =
             conventionalImages(method_, settings.occluded, i, conventional_.views().size());
-        marks_.push_back(markedSamples(sequence_, i, conventional_, count,
+        marks_.push_back(markedSamples(sequence_, samples_[i], conventional_, count,
                                        settings.usefulness ? frames_ : noFrames));
         result.images.push_back(countsOf(marks_.back()));
     }
@@ -222,14 +224,12 @@ MarkedImage VisibilityExperiment::markedImage(std::size_t index) const {
 }
 
 MarkedImage VisibilityExperiment::markedFrame(std::size_t index) {
-    MarkedImage frame{rayCastImage(frames_, index, shading_), {}};
-    const glm::ivec2 size = frame.image.view.sizePx;
-    for (int y = 0; y < size.y; ++y) {
-        for (int x = 0; x < size.x; ++x) {
-            const auto point = frames_.sample(index, {x, y});
-            const bool isHeld = point && sequence_.anyHolds(sequence_.views().size(), *point);
-            frame.marks.push_back((point ? kSample : 0U) | (isHeld ? kAvailable : 0U));
-        }
+    const ImageSamples samples = samplesOf(frames_, index);
+    MarkedImage frame{rayCastImage(frames_.views()[index], samples, shading_), {}};
+    for (const SurfacePoint& point : samples.points) {
+        const bool isSample = point.triangleId != 0;
+        const bool isHeld = isSample && sequence_.anyHolds(sequence_.views().size(), point);
+        frame.marks.push_back((isSample ? kSample : 0U) | (isHeld ? kAvailable : 0U));
     }
     return frame;
 }

@@ -143,8 +143,9 @@ class VisibilityExperiment final : public SamplingExperiment {
     VisibilitySequence sequence_;
     VisibilitySequence conventional_;
     VisibilitySequence frames_;
-    std::vector<kit::HostDepthImage> images_;
-    std::vector<std::vector<std::uint32_t>> marks_;  // of images_
+    std::vector<ImageSamples> samples_;
+    std::vector<kit::HostDepthImage> images_;        // of samples_
+    std::vector<std::vector<std::uint32_t>> marks_;  // of samples_
 };
 
 // Depth images as pictures that show what the measures found: rows from the top, 3 linear channels.

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -61,33 +62,49 @@ VisibilitySequence::VisibilitySequence(const raycast::RayTracer& tracer, std::ve
       isNonRedundant_(isNonRedundant),
       isPeeling_(isNonRedundant && std::ranges::all_of(views_, [&](const View& view) {
                      return isSameView(view, views_.front());
-                 })) {}
+                 })) {
+    for (const View& view : views_) clipFromWorld_.push_back(view.clipFromWorld());
+}
+
+struct VisibilitySequence::Target {
+    glm::vec3 positionWorld;
+    unsigned number;  // of its triangle
+    raycast::WorldTriangle triangle;
+};
+
+VisibilitySequence::Target VisibilitySequence::targetOf(const SurfacePoint& point) const {
+    GFXREPRO_ASSERT(point.triangleId > 0);
+    const unsigned number = point.triangleId - 1;
+    return {point.positionWorld, number, tracer_->triangle(number)};
+}
 
 /// Nothing where the image cannot hold the point: outside of its frustum, or turned away.
-std::optional<VisibilitySequence::Sight> VisibilitySequence::sightOf(
-    std::size_t index, const SurfacePoint& point) const {
-    GFXREPRO_ASSERT(point.triangleId > 0);
+std::optional<VisibilitySequence::Sight> VisibilitySequence::sightOf(std::size_t index,
+                                                                     const Target& target) const {
     const View& view = views_[index];
-    if (!pixelOf(view, point.positionWorld)) return std::nullopt;
-    const glm::vec3 towards = point.positionWorld - view.eyeWorld;
+    if (!kit::pixelOf(clipFromWorld_[index], view.sizePx, target.positionWorld)) {
+        return std::nullopt;
+    }
+    const glm::vec3 towards = target.positionWorld - view.eyeWorld;
     const float depthM = glm::dot(towards, forwardOf(view));
     if (depthM < view.nearM || depthM > view.farM) return std::nullopt;
-    if (!tracer_->triangle(point.triangleId - 1).isDrawnFrom(view.eyeWorld)) return std::nullopt;
+    if (!target.triangle.isDrawnFrom(view.eyeWorld)) return std::nullopt;
     const float distance = glm::length(towards);
     return Sight{view.eyeWorld, towards, view.nearM * (distance / depthM), distance};
 }
 
 /// [xie2017] Algorithm 2: the ray from Vⱼ to the point meets nothing before it.
-bool VisibilitySequence::isVisible(std::size_t index, const SurfacePoint& point) const {
-    const auto sight = sightOf(index, point);
+bool VisibilitySequence::isVisible(std::size_t index, const Target& target) const {
+    const auto sight = sightOf(index, target);
     // The point's own triangle cannot hide it, however grazing the ray.
     return sight && !tracer_->isOccluded(sight->eye, sight->direction, sight->begin, sight->end(),
-                                         Faces::Drawn, point.triangleId - 1);
+                                         Faces::Drawn, target.number);
 }
 
 bool VisibilitySequence::isVisibleFromOneOf(std::size_t count, const SurfacePoint& point) const {
+    const Target target = targetOf(point);
     for (std::size_t j = 0; j < count; ++j) {
-        if (isVisible(j, point)) return true;
+        if (isVisible(j, target)) return true;
     }
     return false;
 }
@@ -104,7 +121,7 @@ const std::vector<TriangleHit>& VisibilitySequence::hitsBefore(const Sight& sigh
 /// Whether image j holds the point unless an earlier view sees it: whether one does see all that
 /// lies before the point on the ray from Vⱼ.
 bool VisibilitySequence::isFirstNew(std::size_t index, const SurfacePoint& point) const {
-    const auto sight = sightOf(index, point);
+    const auto sight = sightOf(index, targetOf(point));
     if (!sight) return false;
     // From the back, where hits are hidden most often: the first that no view sees decides.
     const std::vector<TriangleHit>& hits = hitsBefore(*sight, point);
@@ -116,7 +133,7 @@ bool VisibilitySequence::isFirstNew(std::size_t index, const SurfacePoint& point
 
 /// How many surfaces lie before the point; nothing where no layer can hold it.
 std::optional<std::size_t> VisibilitySequence::layerOf(const SurfacePoint& point) const {
-    const auto sight = sightOf(0, point);
+    const auto sight = sightOf(0, targetOf(point));
     if (!sight) return std::nullopt;
     const std::vector<TriangleHit>& hits = hitsBefore(*sight, point);
     std::size_t layer = 0;
@@ -151,16 +168,33 @@ bool VisibilitySequence::anyHolds(std::size_t count, const SurfacePoint& point) 
 
 bool VisibilitySequence::holds(std::size_t index, const SurfacePoint& point) const {
     if (isPeeling_) return layerOf(point) == index;
-    if (!isNonRedundant_) return isVisible(index, point);
+    if (!isNonRedundant_) return isVisible(index, targetOf(point));
     return isFirstNew(index, point) && !isVisibleFromOneOf(index, point);
 }
 
 std::optional<std::size_t> VisibilitySequence::visibleFrom(const SurfacePoint& point,
                                                            std::size_t first) const {
     const std::size_t count = views_.size();
+    const Target target = targetOf(point);
+    // What hid the point from the last views mostly hides it from the next one, and is quicker to
+    // ask than all of the scene.
+    std::array<raycast::WorldTriangle, 4> hiders{};
+    std::size_t oldest = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t index = (first + i) % count;
-        if (isVisible(index, point)) return index;
+        const auto sight = sightOf(index, target);
+        if (!sight) continue;
+        const auto& [eye, direction, begin, distance] = *sight;
+        const float end = sight->end();
+        const auto isHider = [&](const raycast::WorldTriangle& triangle) {
+            return triangle.isClearlyHit(eye, direction, begin, end);
+        };
+        if (std::ranges::any_of(hiders, isHider)) continue;
+        const auto hider =
+            tracer_->occluder(eye, direction, begin, end, Faces::Drawn, target.number);
+        if (!hider) return index;
+        hiders[oldest] = tracer_->triangle(*hider);
+        oldest = (oldest + 1) % hiders.size();
     }
     return std::nullopt;
 }
@@ -250,38 +284,45 @@ glm::vec3 SurfaceShading::radiance(const SurfacePoint& point, const glm::vec3& e
     return interpolated(colors_) * (0.3F + 0.7F * light);
 }
 
-kit::HostDepthImage rayCastImage(const VisibilitySequence& sequence, std::size_t index,
+ImageSamples samplesOf(const VisibilitySequence& sequence, std::size_t index) {
+    const glm::ivec2 size = sequence.views()[index].sizePx;
+    ImageSamples samples{index, std::vector<SurfacePoint>(static_cast<std::size_t>(size.x) *
+                                                          static_cast<std::size_t>(size.y))};
+    tbb::parallel_for(0, size.y, [&](int y) {
+        for (int x = 0; x < size.x; ++x) {
+            const auto point = sequence.sample(index, {x, y});
+            if (point) samples.points[static_cast<std::size_t>(y) * size.x + x] = *point;
+        }
+    });
+    return samples;
+}
+
+kit::HostDepthImage rayCastImage(const View& view, const ImageSamples& samples,
                                  const SurfaceShading& shading) {
     kit::HostDepthImage image;
-    image.view = sequence.views()[index];
-    const glm::ivec2 size = image.view.sizePx;
-    const auto pixelCount = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+    image.view = view;
+    const std::size_t pixelCount = samples.points.size();
     image.shading.assign(pixelCount, glm::u8vec4(0));
     image.depthM.assign(pixelCount, 0.0F);
     image.triangleId.assign(pixelCount, 0);
-    tbb::parallel_for(tbb::blocked_range<int>(0, size.y), [&](const auto& rows) {
-        for (int y = rows.begin(); y < rows.end(); ++y) {
-            for (int x = 0; x < size.x; ++x) {
-                const auto point = sequence.sample(index, {x, y});
-                if (!point) continue;
-                const std::size_t at = image.indexOf({x, y});
-                image.shading[at] = quantized(shading.radiance(*point, image.view.eyeWorld));
-                image.depthM[at] =
-                    -(image.view.viewFromWorld * glm::vec4(point->positionWorld, 1.0F)).z;
-                image.triangleId[at] = point->triangleId;
-            }
-        }
+    tbb::parallel_for(std::size_t{0}, pixelCount, [&](std::size_t at) {
+        const SurfacePoint& point = samples.points[at];
+        if (point.triangleId == 0) return;
+        image.shading[at] = quantized(shading.radiance(point, view.eyeWorld));
+        image.depthM[at] = -(view.viewFromWorld * glm::vec4(point.positionWorld, 1.0F)).z;
+        image.triangleId[at] = point.triangleId;
     });
     return image;
 }
 
-std::vector<std::uint32_t> markedSamples(const VisibilitySequence& sequence, std::size_t index,
+std::vector<std::uint32_t> markedSamples(const VisibilitySequence& sequence,
+                                         const ImageSamples& samples,
                                          const VisibilitySequence& conventional,
                                          std::size_t conventionalCount,
                                          const VisibilitySequence& outputs) {
+    const std::size_t index = samples.index;
     const glm::ivec2 size = sequence.views()[index].sizePx;
-    std::vector<std::uint32_t> marks(static_cast<std::size_t>(size.x) *
-                                     static_cast<std::size_t>(size.y));
+    std::vector<std::uint32_t> marks(samples.points.size());
     // The nearest points on a view's rays are what its conventional image holds, whatever rounding
     // makes of a ray that is cast to one of them again.
     const bool isConventional = index == 0 && conventionalCount > 0 &&
@@ -289,14 +330,15 @@ std::vector<std::uint32_t> markedSamples(const VisibilitySequence& sequence, std
     tbb::parallel_for(0, size.y, [&](int y) {
         std::size_t frameBefore = 0;
         for (int x = 0; x < size.x; ++x) {
-            const auto point = sequence.sample(index, {x, y});
-            if (!point) continue;
-            std::uint32_t& mark = marks[static_cast<std::size_t>(y) * size.x + x];
+            const std::size_t at = static_cast<std::size_t>(y) * size.x + x;
+            const SurfacePoint& point = samples.points[at];
+            if (point.triangleId == 0) continue;
+            std::uint32_t& mark = marks[at];
             mark = kSample;
-            if (sequence.isRedundant(index, *point)) mark |= kRedundant;
-            if (isConventional || conventional.anyHolds(conventionalCount, *point)) continue;
+            if (sequence.isRedundant(index, point)) mark |= kRedundant;
+            if (isConventional || conventional.anyHolds(conventionalCount, point)) continue;
             mark |= kOccluded;
-            const auto frame = outputs.visibleFrom(*point, frameBefore);
+            const auto frame = outputs.visibleFrom(point, frameBefore);
             if (!frame) continue;
             mark |= kUseful;
             frameBefore = *frame;

@@ -86,18 +86,22 @@ class VisibilitySequence {
     std::optional<SurfacePoint> sample(std::size_t index, glm::ivec2 pixel) const;
 
   private:
+    /// A point and its triangle, looked up once for all views.
+    struct Target;
+    Target targetOf(const SurfacePoint& point) const;
     /// From a view's near plane to a little before a point.
     struct Sight;
-    std::optional<Sight> sightOf(std::size_t index, const SurfacePoint& point) const;
+    std::optional<Sight> sightOf(std::size_t index, const Target& target) const;
     const std::vector<raycast::TriangleHit>& hitsBefore(const Sight& sight,
                                                         const SurfacePoint& point) const;
-    bool isVisible(std::size_t index, const SurfacePoint& point) const;
+    bool isVisible(std::size_t index, const Target& target) const;
     bool isVisibleFromOneOf(std::size_t count, const SurfacePoint& point) const;
     bool isFirstNew(std::size_t index, const SurfacePoint& point) const;
     std::optional<std::size_t> layerOf(const SurfacePoint& point) const;
 
     const raycast::RayTracer* tracer_;
     std::vector<kit::View> views_;
+    std::vector<glm::mat4> clipFromWorld_;  // of views_
     bool isNonRedundant_;
     bool isPeeling_;  // non-redundant, and all images have one view
 };
@@ -119,18 +123,27 @@ class SurfaceShading {
     std::vector<bool> isDoubleSided_;  // by triangle
 };
 
-/// Image `index` of the sequence, all its pixels.
-kit::HostDepthImage rayCastImage(const VisibilitySequence& sequence, std::size_t index,
+/// What an image of a sequence holds: sample() of each pixel, rows from the bottom; id 0 where
+/// there is none.
+struct ImageSamples {
+    std::size_t index = 0;  // of the image
+    std::vector<SurfacePoint> points;
+};
+ImageSamples samplesOf(const VisibilitySequence& sequence, std::size_t index);
+
+/// `samples` as the image that `view` has of them.
+kit::HostDepthImage rayCastImage(const kit::View& view, const ImageSamples& samples,
                                  const SurfaceShading& shading);
 
 // The measures of [xie2017] Sec. 2.3.2 under the visibility definition, on the CPU.
 
-/// Marks of the samples of image `index` of `sequence`, a pixel each, rows from the bottom.
-/// Occluded is what the first `conventionalCount` images of `conventional` lack; the output frames
-/// are those of `outputs` (both are conventional sequences; `outputs` may be empty). Measure 1 is
-/// the conventional sequence measured against itself; of a non-redundant or peeled sequence no
-/// sample is redundant.
-std::vector<std::uint32_t> markedSamples(const VisibilitySequence& sequence, std::size_t index,
+/// Marks of the samples of an image of `sequence`, a pixel each, rows from the bottom. Occluded is
+/// what the first `conventionalCount` images of `conventional` lack; the output frames are those of
+/// `outputs` (both are conventional sequences; `outputs` may be empty). Measure 1 is the
+/// conventional sequence measured against itself; of a non-redundant or peeled sequence no sample
+/// is redundant.
+std::vector<std::uint32_t> markedSamples(const VisibilitySequence& sequence,
+                                         const ImageSamples& samples,
                                          const VisibilitySequence& conventional,
                                          std::size_t conventionalCount,
                                          const VisibilitySequence& outputs);

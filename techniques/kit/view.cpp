@@ -53,16 +53,30 @@ View withOffset(View view, glm::vec2 offsetPx) {
     return view;
 }
 
-std::optional<glm::vec2> project(const View& view, const glm::vec3& pointWorld) {
-    const glm::vec4 clip = view.clipFromWorld() * glm::vec4(pointWorld, 1.0F);
+namespace {
+
+std::optional<glm::vec2> project(const glm::mat4& clipFromWorld, glm::ivec2 sizePx,
+                                 const glm::vec3& pointWorld) {
+    const glm::vec4 clip = clipFromWorld * glm::vec4(pointWorld, 1.0F);
     if (clip.w <= 0.0F) return std::nullopt;
-    return (glm::vec2(clip) / clip.w * 0.5F + 0.5F) * glm::vec2(view.sizePx);
+    return (glm::vec2(clip) / clip.w * 0.5F + 0.5F) * glm::vec2(sizePx);
+}
+
+}  // namespace
+
+std::optional<glm::vec2> project(const View& view, const glm::vec3& pointWorld) {
+    return project(view.clipFromWorld(), view.sizePx, pointWorld);
 }
 
 std::optional<glm::ivec2> pixelOf(const View& view, const glm::vec3& pointWorld) {
-    const std::optional<glm::vec2> position = project(view, pointWorld);
+    return pixelOf(view.clipFromWorld(), view.sizePx, pointWorld);
+}
+
+std::optional<glm::ivec2> pixelOf(const glm::mat4& clipFromWorld, glm::ivec2 sizePx,
+                                  const glm::vec3& pointWorld) {
+    const std::optional<glm::vec2> position = project(clipFromWorld, sizePx, pointWorld);
     if (!position) return std::nullopt;
-    const glm::vec2 size(view.sizePx);
+    const glm::vec2 size(sizePx);
     if (position->x < 0.0F || position->y < 0.0F || position->x >= size.x ||
         position->y >= size.y) {
         return std::nullopt;

@@ -40,6 +40,9 @@ std::optional<glm::vec2> project(const View& view, const glm::vec3& pointWorld);
 
 /// The pixel whose square holds the projection; nothing when that is outside of the image.
 std::optional<glm::ivec2> pixelOf(const View& view, const glm::vec3& pointWorld);
+/// The same by View::clipFromWorld(), for who asks of many points.
+std::optional<glm::ivec2> pixelOf(const glm::mat4& clipFromWorld, glm::ivec2 sizePx,
+                                  const glm::vec3& pointWorld);
 
 /// The width of a pixel at a distance of 1 along the view axis.
 float footprintPerDepth(const View& view);

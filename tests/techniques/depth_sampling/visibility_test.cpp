@@ -314,6 +314,13 @@ View viewFrom(float x, int sizePx = 32) {
     return kit::viewOf(camera, {sizePx, sizePx});
 }
 
+ImageCounts measured(const VisibilitySequence& sequence, std::size_t index,
+                     const VisibilitySequence& conventional, std::size_t conventionalCount,
+                     const VisibilitySequence& outputs) {
+    return countsOf(markedSamples(sequence, samplesOf(sequence, index), conventional,
+                                  conventionalCount, outputs));
+}
+
 TEST(VisibilityMeasures, CountTwoSquares) {
     const RayTracer tracer(twoSquares());
     const VisibilitySequence conventional(tracer, {viewFrom(0), viewFrom(0)}, false);
@@ -323,20 +330,19 @@ TEST(VisibilityMeasures, CountTwoSquares) {
 
     // 32 pixels for 4 m: the front square fills 16². The back one, a metre further, is seen at
     // 0.5 · 4/5 = 0.4 m of half size: samples at 0.125 · (k + 0.5) m, so 2 · 3 = 6 a side.
-    EXPECT_EQ(countsOf(markedSamples(conventional, 0, conventional, 2, before)),
-              (ImageCounts{.samples = 256}));
-    EXPECT_EQ(countsOf(markedSamples(conventional, 1, conventional, 2, before)),
+    EXPECT_EQ(measured(conventional, 0, conventional, 2, before), (ImageCounts{.samples = 256}));
+    EXPECT_EQ(measured(conventional, 1, conventional, 2, before),
               (ImageCounts{.samples = 256, .redundant = 256}));
-    EXPECT_EQ(countsOf(markedSamples(layers, 1, conventional, 2, before)),
+    EXPECT_EQ(measured(layers, 1, conventional, 2, before),
               (ImageCounts{.samples = 36, .occluded = 36}));
     // From far aside the gap between the squares shows all of the back one.
-    EXPECT_EQ(countsOf(markedSamples(layers, 1, conventional, 2, aside)),
+    EXPECT_EQ(measured(layers, 1, conventional, 2, aside),
               (ImageCounts{.samples = 36, .occluded = 36, .useful = 36}));
-    EXPECT_EQ(countsOf(markedSamples(layers, 2, conventional, 2, aside)), ImageCounts{});
+    EXPECT_EQ(measured(layers, 2, conventional, 2, aside), ImageCounts{});
     // V₁ has what V₀ has not.
-    EXPECT_EQ(countsOf(markedSamples(layers, 1, aside, 1, aside)),
+    EXPECT_EQ(measured(layers, 1, aside, 1, aside),
               (ImageCounts{.samples = 36, .occluded = 36, .useful = 36}));
-    EXPECT_EQ(countsOf(markedSamples(layers, 1, aside, 2, aside)), (ImageCounts{.samples = 36}));
+    EXPECT_EQ(measured(layers, 1, aside, 2, aside), (ImageCounts{.samples = 36}));
 }
 
 TEST(VisibilityMeasures, AvailabilityOfTwoSquares) {
@@ -366,7 +372,7 @@ TEST(VisibilityMeasures, CountsAgreeWithALoopOverTriangles) {
     const scene::Scene scene = clutter(9);
     const RayTracer tracer(scene);
     const std::vector<View> views = threeViews(24);
-    const std::vector<View> seers{viewFrom(-0.7F), viewFrom(0.5F), viewFrom(6)};
+    const std::vector<View> seers{viewFrom(-0.7F), viewFrom(-0.6F), viewFrom(0.5F), viewFrom(6)};
     const VisibilitySequence sequence(tracer, views, true);
     const VisibilitySequence conventional(tracer, views, false);
     const VisibilitySequence outputs(tracer, seers, false);
@@ -389,10 +395,9 @@ TEST(VisibilityMeasures, CountsAgreeWithALoopOverTriangles) {
             ++expected.samples;
             if (isHeld(bruteConventional, j + 1, *point)) continue;
             ++expected.occluded;
-            expected.useful += isHeld(bruteOutputs, 3, *point);
+            expected.useful += isHeld(bruteOutputs, seers.size(), *point);
         }
-        const ImageCounts counts =
-            countsOf(markedSamples(sequence, j, conventional, j + 1, outputs));
+        const ImageCounts counts = measured(sequence, j, conventional, j + 1, outputs);
         EXPECT_EQ(counts.redundant, 0U);
         // A few samples lie so near to an edge that rounding decides.
         constexpr double kFew = 3.0;
@@ -420,7 +425,7 @@ TEST(RayCastImage, HasDepthTriangleAndLight) {
     const SurfaceShading shading(scene);
     const auto byte = [](float value) { return static_cast<int>(value * 255.0F + 0.5F); };
 
-    const auto front = rayCastImage(layers, 0, shading);
+    const auto front = rayCastImage(layers.views()[0], samplesOf(layers, 0), shading);
     const std::size_t at = front.indexOf({17, 20});
     EXPECT_NEAR(front.depthM[at], 4.0F, 1e-6F);
     EXPECT_EQ(front.triangleId[at], 2U);  // above the diagonal
@@ -435,7 +440,7 @@ TEST(RayCastImage, HasDepthTriangleAndLight) {
     EXPECT_EQ(front.triangleId[corner], 0U);
     EXPECT_EQ(front.shading[corner], glm::u8vec4(0));
 
-    const auto back = rayCastImage(layers, 1, shading);
+    const auto back = rayCastImage(layers.views()[1], samplesOf(layers, 1), shading);
     const std::size_t behind = back.indexOf({16, 18});
     EXPECT_NEAR(back.depthM[behind], 5.0F, 1e-6F);
     EXPECT_EQ(back.triangleId[behind], 4U);

@@ -180,6 +180,64 @@ TEST(RayTracer, DrawnFacesAreThoseThatCullingLeaves) {
     EXPECT_FALSE(tracer.isOccluded(behind, {0, 0, 1}, 1.5F, 3.5F, Faces::Drawn, hits[1].triangle));
 }
 
+TEST(RayTracer, TellsWhatIsInTheWay) {
+    const RayTracer tracer(stackOfSquares());
+    const glm::vec3 front(0.5F, -0.25F, 1);
+    std::vector<TriangleHit> hits;
+    tracer.hitsBetween(front, {0, 0, -2}, 0, kInfinity, Faces::Drawn, hits);
+    const auto occluder = [&](float tMin, float tMax, unsigned ignored = kNoTriangle) {
+        return tracer.occluder(front, {0, 0, -2}, tMin, tMax, Faces::Drawn, ignored);
+    };
+    EXPECT_EQ(occluder(1.5F, 2.5F), hits[1].triangle);
+    EXPECT_EQ(occluder(1.5F, 2.5F, hits[1].triangle), std::nullopt);
+    EXPECT_EQ(occluder(1.5F, 3.5F, hits[1].triangle), hits[2].triangle);
+    EXPECT_EQ(occluder(3.5F, 9.0F), std::nullopt) << "the last one is seen from behind";
+}
+
+TEST(RayTracer, WhatIsClearlyHitIsHit) {
+    const WorldTriangle triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, false};
+    const auto isHit = [&](glm::vec3 target, glm::vec3 from, float tMin, float tMax) {
+        return triangle.isClearlyHit(from, 7.0F * (target - from), tMin, tMax);
+    };
+    const glm::vec3 inside(0.25F, 0.25F, 0);
+    const glm::vec3 eye(0.25F, 0.25F, 2);
+    EXPECT_TRUE(isHit(inside, eye, 0, 3));
+    EXPECT_FALSE(isHit(inside, eye, 0, 2)) << "ends at the triangle";
+    EXPECT_FALSE(isHit(inside, eye, 2, 3)) << "begins at the triangle";
+    EXPECT_FALSE(isHit(inside, -eye, 0, 3)) << "from behind";
+    EXPECT_FALSE(isHit({0.25F, 1e-5F, 0}, eye, 0, 3)) << "near to an edge";
+    EXPECT_FALSE(isHit({0.25F, -0.25F, 0}, eye, 0, 3)) << "beyond an edge";
+    EXPECT_FALSE(isHit({0.49999F, 0.49999F, 0}, eye, 0, 3)) << "near to the third edge";
+    EXPECT_FALSE(isHit(inside, {9, 9, 0.05F}, 0, 20)) << "grazing";
+    WorldTriangle twoSided = triangle;
+    twoSided.isDoubleSided = true;
+    EXPECT_TRUE(twoSided.isClearlyHit(-eye, inside + eye, 0, 9));
+    EXPECT_FALSE(WorldTriangle{}.isClearlyHit(eye, {0, 0, -1}, 0, 3)) << "no area";
+}
+
+TEST(RayTracer, AgreesOnWhatIsClearlyHit) {
+    const scene::Scene scene = body("sphere", 500);
+    const RayTracer tracer(scene);
+    const std::size_t count = scene.triangleCount();
+    Random random(11);
+    int hits = 0, clear = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const glm::vec3 origin = randomPoint(random, 3.0F);
+        const glm::vec3 direction = randomPoint(random, 1.0F) - origin;
+        const float end = glm::length(direction);
+        const auto occluder = tracer.occluder(origin, direction, 0, end, Faces::Drawn, kNoTriangle);
+        hits += occluder ? 1 : 0;
+        bool isClear = false;
+        for (unsigned t = 0; t < count && !isClear; ++t) {
+            isClear = tracer.triangle(t).isClearlyHit(origin, direction, 0, end);
+        }
+        EXPECT_LE(isClear, occluder.has_value());
+        clear += isClear ? 1 : 0;
+    }
+    EXPECT_GT(hits, 1000);
+    EXPECT_GT(clear, hits * 9 / 10);
+}
+
 TEST(RayTracer, TrianglesHaveTheNumbersOfTheFlattenedScene) {
     scene::Scene scene = stackOfSquares();
     scene.meshes.push_back({});  // instances without triangles take no numbers
