@@ -331,13 +331,14 @@ std::vector<const kit::DepthImage*> SoftShadows::earlierOf(std::size_t i) const 
 }
 
 // H of Algorithm 4. H drops what Iⱼ have, j < i. A peeled layer of H drops what the layers of H
-// before it have: in Iⱼ its samples would land on corners of pixels, and rounding would decide.
+// before it have: in Iⱼ its samples would land on corners of pixels, and rounding would decide. Of
+// H depths and ids are read alone.
 void SoftShadows::renderOffsetImages() {
     for (std::size_t i = 0; i < offsetImages_.size(); ++i) {
         const bool isPeeling = params_.method == Method::DepthPeeling;
         renderer_->render(*drawable_, offsetImages_[i],
                           isPeeling ? kit::firstOf(offsetImages_, i) : earlierOf(i),
-                          params_.redundancy);
+                          params_.redundancy, kit::DepthImageRenderer::Content::Samples);
     }
 }
 
