@@ -189,9 +189,9 @@ class Scheduler {
         return unit.item->measure.processes > 1 || unit.firstTry;
     }
 
-    /// The first that waits. Of those side by side that are of its table, rather one of the scene
-    /// that the free worker had last, or of one that no other worker is on: cases of a scene share
-    /// results.
+    /// The first that waits. Of those side by side that wait next, rather one of the scene that the
+    /// free worker had last, or of one that no other worker is on: cases of a scene share results,
+    /// those of several tables, too.
     std::deque<Unit>::iterator nextUnit() {
         constexpr std::ptrdiff_t kMostLookedAt = 64;
         const auto front = waiting_.begin();
@@ -199,7 +199,7 @@ class Scheduler {
         if (isAlone || front->item->measure.lane == Lane::Timing || needsOwn(*front)) return front;
         const auto end = std::find_if(
             front, front + std::min(std::ssize(waiting_), kMostLookedAt), [&](const Unit& unit) {
-                return unit.item->experiment != front->item->experiment || needsOwn(unit);
+                return unit.item->measure.lane == Lane::Timing || needsOwn(unit);
             });
         std::set<std::string> others;
         const WorkerHandle* resting = nullptr;

@@ -44,7 +44,9 @@ class SchedulerTest : public ::testing::Test {
                             std::size_t mostRecords = records::kMostRecords) {
         unsetenv("GFXREPRO_MOCK_LOG");
         const std::string planned = folder.path() / "planned";
-        EXPECT_EQ(mockGfxrepro({"run", config, "--out", planned}).exitCode, 0);
+        std::vector<std::string> arguments = {"run", config, "--out", planned};
+        arguments.insert(arguments.begin() + 2, furtherConfigs.begin(), furtherConfigs.end());
+        EXPECT_EQ(mockGfxrepro(arguments).exitCode, 0);
         fs::remove(folder.path() / "marker");
         const run::Plan plan = run::Plan::fromJsonFile(planned + "/plan.json");
         const run::RunDirectory directory = run::RunDirectory::create(dir);
@@ -60,8 +62,23 @@ class SchedulerTest : public ::testing::Test {
         return run::runUnits(run::unitsOf(plan), rounds, directory, options, phases, observer);
     }
 
+    /// Of the units in the order in which they were given out.
+    std::vector<std::string> scenesStarted() const {
+        const run::Plan plan =
+            run::Plan::fromJsonFile((folder.path() / "planned/plan.json").string());
+        std::vector<std::string> scenes;
+        run::forEachEvent(fs::path(dir) / "journal.jsonl", [&](run::Json&& event) {
+            if (event.value("event", "") != "start") return;
+            for (const config::Case& item : plan.cases) {
+                if (item.id == event.value("case", "")) scenes.push_back(item.recordedScene());
+            }
+        });
+        return scenes;
+    }
+
     TemporaryFolder folder;
     std::string dir = folder.path() / "run";
+    std::vector<std::string> furtherConfigs;  // measured in the same run
     bool arePaired = false;
     int jobs = 1;
 };
@@ -75,17 +92,27 @@ TEST_F(SchedulerTest, ASceneOfATableGoesToOneWorker) {
                                 "number: [1, 2, 3]}\nparams: {pause_ms: 100}\n"),
                 [] {});
     EXPECT_EQ(outcome.finished, 6);
-    const run::Plan plan = run::Plan::fromJsonFile((folder.path() / "planned/plan.json").string());
-    std::vector<std::string> scenes;
-    run::forEachEvent(fs::path(dir) / "journal.jsonl", [&](run::Json&& event) {
-        if (event.value("event", "") != "start") return;
-        for (const config::Case& item : plan.cases) {
-            if (item.id == event.value("case", "")) scenes.push_back(item.recordedScene());
-        }
-    });
+    const std::vector<std::string> scenes = scenesStarted();
     ASSERT_EQ(scenes.size(), 6U);
     EXPECT_NE(scenes[0], scenes[1]) << "the second worker begins with another scene";
     // Of each two that follow one is of each scene, whichever worker was first.
+    EXPECT_EQ(std::ranges::count(std::span(scenes).first(4), scenes[0]), 2);
+}
+
+TEST_F(SchedulerTest, ASceneOfSeveralTablesGoesToOneWorker) {
+    jobs = 2;
+    const auto lines = [](const char* scene) {
+        return "scene: shadows/" + std::string(scene) +
+               "\nsweep: {number: [1, 2, 3]}\nparams: {pause_ms: 100}\n";
+    };
+    const std::string second = readFile(writeMockConfig(folder, lines("town_square")));
+    furtherConfigs = {folder.write("second.yaml", "sweep_of: second" + second.substr(14))};
+    const run::RunOutcome outcome =
+        measure(writeMockConfig(folder, lines("object_on_plane")), [] {});
+    EXPECT_EQ(outcome.finished, 6);
+    const std::vector<std::string> scenes = scenesStarted();
+    ASSERT_EQ(scenes.size(), 6U);
+    EXPECT_NE(scenes[0], scenes[1]) << "the second worker begins with the other table";
     EXPECT_EQ(std::ranges::count(std::span(scenes).first(4), scenes[0]), 2);
 }
 
