@@ -172,10 +172,11 @@ std::string programDigest() {
     return id.empty() ? sha256OfFile("/proc/self/exe") : id;
 }
 
-/// Where a generated scene is kept, by all that it is made of; empty for one of a file.
+/// Where a generated or refined scene is kept, by all that it is made of; empty for others.
 fs::path keptPath(const scene::Catalog& catalog, const std::string& reference) {
     const Node node = Node::scalar(reference);
-    if (catalog.resolve(node).generator == nullptr) return {};
+    const scene::SceneSource source = catalog.resolve(node);
+    if (source.generator == nullptr && !source.refineTo) return {};
     static const std::string program = programDigest();
     const std::string key = program + ' ' + catalog.contentKey(node) + ' ' + reference;
     return cacheFolder() / "scenes" / (sha256(key) + ".scene");
@@ -257,7 +258,8 @@ const SceneCache::CachedScene& SceneCache::get(const std::string& reference) {
     entry.loadTimeMs = time.count();
     entry.sizeBytes = sizeBytesOf(entry.scene);
     entry.peakResidentBytes = peakResidentBytes();
-    if (!kept.empty() && !isKept && entry.sizeBytes >= kLeastKeptBytes && !entry.scene.heights) {
+    const bool mayBeKept = !entry.scene.heights && entry.scene.filesBeside.empty();
+    if (!kept.empty() && !isKept && entry.sizeBytes >= kLeastKeptBytes && mayBeKept) {
         keepScene(kept, entry.scene, mostKeptBytes_);
         // The bytes on their way to the file are not the case's; a later scene comes after a peak
         // that is.

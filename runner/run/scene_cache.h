@@ -19,9 +19,9 @@ namespace gfxrepro::run {
 /// Least recently used scenes go when the rest would exceed the budget; those of the present case
 /// stay whatever their size.
 ///
-/// Generated scenes of a megabyte or more are kept as files in cacheFolder()/scenes, for the next
-/// process: by generator, parameters, seed and the program's build id. What cannot be written, or
-/// is torn, is made anew.
+/// Generated scenes of a megabyte or more, and refined ones of a file, are kept as files in
+/// cacheFolder()/scenes, for the next process: by generator or file, parameters, seed and the
+/// program's build id. What cannot be written, or is torn, is made anew.
 class SceneCache : public technique::SceneProvider {
   public:
     struct CachedScene {

@@ -134,6 +134,19 @@ TEST_F(KeptScenes, TakeNoMoreRoomThanTheyMay) {
     EXPECT_EQ(timesMade, 3);
 }
 
+TEST_F(KeptScenes, AreOfFilesThatAreRefined) {
+    folder.write("y.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    folder.write("s/m/y.yaml",
+                 "scene: m/y\ndoc: a y\nsources: [{file: y.off, refine_to: 65000}]\n");
+    const scene::Scene refined = got("m/y");
+    EXPECT_EQ(files().size(), 1U);
+    const scene::Scene kept = got("m/y");
+    EXPECT_EQ(kept.meshes[0].positions, refined.meshes[0].positions);
+    EXPECT_EQ(kept.meshes[0].triangles, refined.meshes[0].triangles);
+    EXPECT_EQ(kept.origin.description, refined.origin.description);
+    EXPECT_EQ(kept.origin.sha256, refined.origin.sha256);
+}
+
 TEST_F(KeptScenes, SmallOnesAreNot) {
     got("m/x?count=10");
     EXPECT_TRUE(files().empty());
