@@ -15,6 +15,7 @@ void SharedResults::beginCase(std::string work, Node params) {
 std::string SharedResults::keyOf(const std::string& name,
                                  std::initializer_list<const char*> regardless) const {
     nlohmann::ordered_json params = params_.toJson();
+    params.erase("pictures");  // whether they are saved changes nothing that is made
     for (const char* parameter : regardless) params.erase(parameter);
     return name + '\n' + work_ + '\n' + params.dump();
 }

@@ -14,8 +14,8 @@
 
 namespace gfxrepro::technique {
 
-/// Results of earlier cases, by all that a case is but what its technique names as of no influence:
-/// a parameter that nobody names keeps results apart.
+/// Results of earlier cases, by all that a case is but what its technique names as of no influence,
+/// and whether it saves pictures: a parameter that nobody names keeps results apart.
 class SharedResults {
   public:
     /// All together take at most `mostBytes`; those that were asked for longest ago go.
@@ -27,7 +27,8 @@ class SharedResults {
     void beginCase(std::string work, Node params);
 
     /// What `make` gives, or gave for an earlier case with which the present one has all in common
-    /// but the parameters `regardless`. `name` tells results of one case apart. T has sizeBytes().
+    /// but the parameters `regardless` and `pictures`. `name` tells results of one case apart. T
+    /// has sizeBytes().
     template <class T>
     std::shared_ptr<const T> get(std::string_view name,
                                  std::initializer_list<const char*> regardless,

@@ -35,6 +35,8 @@ TEST_F(SharedResultsTest, AreOfAllButTheParametersThatAreNamed) {
     EXPECT_EQ(get({"method"}), 2) << "who names one parameter less has a result of their own";
     begin("{method: b, tau: 2, view: south}");
     EXPECT_EQ(get({"method", "tau"}), 3);
+    begin("{method: b, tau: 2, view: south, pictures: true}");
+    EXPECT_EQ(get({"method", "tau"}), 3) << "saving pictures is of no influence";
     begin("{method: b, tau: 2, view: south, new: 1}");
     EXPECT_EQ(get({"method", "tau"}), 4) << "a parameter that nobody thought of";
     begin("{method: b, tau: 2, view: south, new: 1}", "t scene 8 8 2 1");
