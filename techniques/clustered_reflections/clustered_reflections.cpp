@@ -198,6 +198,8 @@ config::Outputs outputs() {
             {"clusters", "cluster", "clusters of reflective samples"},
             {"environment_pct", "%",
              "share of the clustered samples that fell back to the environment map", Better::Lower},
+            {"march_steps", "step", "steps of a ray through its cluster's depth image",
+             Better::Lower},
             {"occlusion_error_pct", "%",
              "share of the reflective samples whose cluster's image does not hold what they "
              "reflect",
@@ -482,6 +484,7 @@ class ClusteredReflections final : public technique::Technique {
         const std::vector<std::uint8_t> environment = clusteredTracer_->environmentSamples();
         const std::size_t clustered = countOf(clusterOfSample), fallen = countOf(environment);
         if (clustered > 0) recorder.metric("environment_pct", kit::percent(fallen, clustered));
+        if (clustered > 0) recorder.metric("march_steps", marchedSteps(clusterOfSample));
         const ClusteredTracer::Drawn drawn = clusteredTracer_->drawn();
         recorder.metric("drawn_triangles", static_cast<double>(drawn.triangles));
         recorder.metric("drawn_left_out", static_cast<double>(drawn.leftOut));
@@ -489,6 +492,16 @@ class ClusteredReflections final : public technique::Technique {
             recorder.metric("texels_per_sample",
                             static_cast<double>(drawn.texels) / static_cast<double>(clustered));
         }
+    }
+
+    /// Of a ray, in the mean over the samples that have a cluster (intersect.glsl).
+    double marchedSteps(const std::vector<std::uint16_t>& clusterOfSample) const {
+        const auto radiance = target_->radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < radiance.size(); ++i) {
+            if (clusterOfSample[i] != 0) sum += static_cast<double>(radiance[i].a) - 1.0;
+        }
+        return sum / static_cast<double>(countOf(clusterOfSample));
     }
 
     std::vector<std::uint16_t> readClusters() const {

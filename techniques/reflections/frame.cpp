@@ -24,10 +24,30 @@ constexpr Choice<TextureFilter> kTextureFilters[] = {
     {TextureFilter::FinestLevel, "finest_level", "as they are, however much a sample covers"},
 };
 
+/// Frames of rough floors take a dozen times as long as those of mirrors.
+void warnOfManyRays(const ReflectiveScene& scene, const FrameSettings& settings) {
+    int most = 1;
+    for (const Object& object : scene.objects()) {
+        if (object.reflector == 0) continue;
+        most = std::max(most, raysOf(settings.lobe, object.hasOneGlossiness
+                                                        ? object.glossiness
+                                                        : settings.reflectors.maxRoughness));
+    }
+    if (most == 1) return;
+    fmt::print(stderr,
+               "warning: scene '{}': what reflects is as rough as its materials say, with up to {} "
+               "rays a sample; 'glossiness: 0' makes mirrors of it, 'rays' sets how many\n",
+               scene.scene().name, most);
+}
+
 ReflectiveScene prepared(const scene::Scene& given, const FrameSettings& settings) {
     ReflectiveScene scene(given, settings.reflectors, settings.textureFilter);
     scene.printWarnings();
-    if (settings.glossiness) scene.setGlossiness(*settings.glossiness);
+    if (settings.glossiness) {
+        scene.setGlossiness(*settings.glossiness);
+    } else if (settings.lobe.rays == 0) {
+        warnOfManyRays(scene, settings);
+    }
     return scene;
 }
 

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 layout(std430) readonly buffer Samples { uint samples[]; };  // x | y << 16
 uniform uint cluster, firstSample, sampleCount;
 
-layout(rgba16f) uniform writeonly image2D radiance;
+layout(rgba16f) uniform writeonly image2D radiance;  // a: 1 + steps
 layout(r32f) uniform writeonly image2D distanceM;
 layout(r8ui) uniform writeonly uimage2D tookEnvironment;
 
@@ -16,7 +16,7 @@ void main() {
     uint sampleAt = samples[firstSample + gl_GlobalInvocationID.x];
     ivec2 pixel = ivec2(sampleAt & 0xFFFFu, sampleAt >> 16);
     Reflection reflection = reflectionAt(pixel, cluster);
-    imageStore(radiance, pixel, vec4(reflection.radiance, 1.0));
+    imageStore(radiance, pixel, vec4(reflection.radiance, 1.0 + reflection.steps));
     imageStore(distanceM, pixel, vec4(reflection.distance));
     imageStore(tookEnvironment, pixel, uvec4(reflection.tookEnvironment));
 }

@@ -5,7 +5,7 @@
 
 uniform usampler2D clusterOfSample;
 
-layout(location = 0) out vec4 radiance;
+layout(location = 0) out vec4 radiance;  // a: 1 + steps
 layout(location = 1) out float distanceM;
 layout(location = 2) out uint tookEnvironment;
 
@@ -14,7 +14,7 @@ void main() {
     uint cluster = texelFetch(clusterOfSample, pixel, 0).r;
     if (cluster == 0u) discard;
     Reflection reflection = reflectionAt(pixel, cluster - 1u);
-    radiance = vec4(reflection.radiance, 1.0);
+    radiance = vec4(reflection.radiance, 1.0 + reflection.steps);
     distanceM = reflection.distance;
     tookEnvironment = reflection.tookEnvironment;
 }

@@ -73,6 +73,7 @@ struct Reflection {
     vec3 radiance;
     float distance;        // of the lobe's first ray, the nearest to the mirror ray; 0: no hit
     uint tookEnvironment;  // 1: a mirror ray met nothing
+    float steps;           // of the march, in the mean over its rays
 };
 
 Reflection reflectionAt(ivec2 pixel, uint cluster) {
@@ -92,13 +93,15 @@ Reflection reflectionAt(ivec2 pixel, uint cluster) {
     vec3 beam = vec3(0.0);  // images of colours have averaged by their own pitch
 #endif
 
-    Reflection result = Reflection(vec3(0.0), 0.0, 0u);
+    Reflection result = Reflection(vec3(0.0), 0.0, 0u, 0.0);
     int count = raysOf(glossiness);
     for (int i = 0; i < count; ++i) {
         vec3 direction = lobeDirection(mirror, glossiness, i, count);
         float rayLength = lengthToFarPlane(eyeWorld, plane, begin, direction);
         MarchHit hit;
-        if (march(image, begin, begin + direction * rayLength, hit)) {
+        bool isHit = march(image, begin, begin + direction * rayLength, hit);
+        result.steps += float(hit.steps);
+        if (isHit) {
 #if OF_TRIANGLES
             HitSurface surface = surfaceAt(image, hit, begin, direction, rayLength, beam);
             float distance = surface.distanceM;
@@ -120,5 +123,6 @@ Reflection reflectionAt(ivec2 pixel, uint cluster) {
         }
     }
     result.radiance /= float(count);
+    result.steps /= float(count);
     return result;
 }

@@ -21,7 +21,7 @@ struct MarchHit {
     vec2 metPx;       // where it meets the surface, at most a step before
     float fraction;   // u of positionPx
     float along;      // where on the way from begin to end, 0 … 1, it meets the surface
-    int steps;
+    int steps;        // that were looked at, of a miss too
 };
 
 // The includer reads its image. storedAt: nearM / z of a texel. isOwnAt: whether the texel shows
@@ -121,6 +121,7 @@ MarchHit hitAt(MarchImage image, ProjectedRay ray, int step, int steps) {
 
 bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
     ProjectedRay ray;
+    hit.steps = 0;
     if (image.sizePx.x <= 0 || !project(image, beginWorld, endWorld, ray)) return false;
     float perStep = 1.0 / float(ray.steps);
     bool hasLeftOwn = SEES_OWN == 0;
@@ -136,6 +137,7 @@ bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
         }
         hasLeftOwn = hasLeftOwn || k * (1.0 - kLeaving) > stored;
     }
+    hit.steps = ray.steps + 1;
     return false;
 }
 
@@ -164,21 +166,21 @@ int lastInTile(MarchImage image, ProjectedRay ray, int step, ivec2 tile, int shi
 bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
     const int kFewSteps = 8;  // rays of a few texels, as all of a planar reflector, skip nothing
     ProjectedRay ray;
+    hit.steps = 0;
     if (image.sizePx.x <= 0 || !project(image, beginWorld, endWorld, ray)) return false;
     float perStep = 1.0 / float(ray.steps);
     bool hasLeftOwn = SEES_OWN == 0;
     int level = ray.steps < kFewSteps ? 0 : 1;
-    int fetches = 0;
     for (int step = 0; step <= ray.steps;) {
         float u = float(step) * perStep;
         ivec2 texel = texelOf(image, ray, u);
         float k = ray.k1 + ray.k2 * u;
-        ++fetches;
+        ++hit.steps;
         if (level == 0) {
             float stored = storedAt(texel);
             bool isBehind = k < stored;
             if (isBehind && (hasLeftOwn || !isOwnAt(texel))) {
-                hit = hitAt(image, ray, step, fetches);
+                hit = hitAt(image, ray, step, hit.steps);
                 return true;
             }
             hasLeftOwn = hasLeftOwn || k * (1.0 - kLeaving) > stored;

@@ -226,6 +226,24 @@ TEST_F(ClusteredReflectionsTest, PlanarMirrorsHaveNoOcclusionError) {
     }
 }
 
+// [xie2017] Sec. 4.7.2: a pinhole has a planar mirror's rays as points, and those of a lobe as
+// lines.
+TEST_F(ClusteredReflectionsTest, ALobesRaysAreFollowedForMoreStepsThanAMirrors) {
+    for (const char* drawing : {"one_by_one", "visible"}) {
+        const auto stepsOf = [&](const char* glossiness) {
+            return run(fmt::format("{{depth_images: {}, rays: 8, glossiness: {}}}", drawing,
+                                   glossiness),
+                       roomWithMirror())
+                .at("march_steps");
+        };
+        const double mirror = stepsOf("0"), narrow = stepsOf("0.1"), wide = stepsOf("0.3");
+        EXPECT_GE(mirror, 1.0) << drawing;
+        EXPECT_LE(mirror, 2.0) << drawing;  // both ends
+        EXPECT_GT(narrow, mirror) << drawing;
+        EXPECT_GT(wide, 1.1 * narrow) << drawing;
+    }
+}
+
 TEST_F(ClusteredReflectionsTest, ClustersAreNearerToTheTruthThanAnEnvironmentMap) {
     for (const scene::Scene& scene : {roomWithMirror(), roomWithMirrors()}) {
         const Metrics clustered = run("{}", scene);
@@ -383,6 +401,25 @@ TEST_F(ClusteredReflectionsTest, GlossinessOverridesMaterials) {
               truth("{method: embree, pictures: true, glossiness: 0}"));
     EXPECT_NE(truth("{method: embree, pictures: true}"),
               truth("{method: embree, pictures: true, glossiness: 0.3}"));
+}
+
+TEST_F(ClusteredReflectionsTest, SaysHowManyRaysMaterialsAskFor) {
+    scene::Scene scene = roomWithMirror();
+    scene.lights = {{}};
+    const auto said = [&](const std::string& options) {
+        testing::internal::CaptureStderr();
+        run("{method: environment_map" + options + "}", scene);
+        return testing::internal::GetCapturedStderr();
+    };
+    EXPECT_EQ(said(""), "");  // mirrors
+    for (scene::Material& material : scene.materials) {
+        if (material.metallic > 0.0F) material.roughness = 0.25F;
+    }
+    EXPECT_EQ(said(""),
+              "warning: scene 'room': what reflects is as rough as its materials say, with up to "
+              "18 rays a sample; 'glossiness: 0' makes mirrors of it, 'rays' sets how many\n");
+    EXPECT_EQ(said(", glossiness: 0"), "");
+    EXPECT_EQ(said(", rays: 8"), "");
 }
 
 TEST_F(ClusteredReflectionsTest, SameCaseGivesTheSameNumbersAndPictures) {
