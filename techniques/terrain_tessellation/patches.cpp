@@ -11,6 +11,14 @@ Patch patchOf(const Tile& tile, const TileSettings& settings, int index) {
     return {tile.level, tile.firstBlock + cell * settings.blocksPerPatch};
 }
 
+int patchesOnMap(const Tile& tile, const TileSettings& settings, glm::ivec2 mapSizeSamples) {
+    const int span = tile.sizeSamples / settings.patchesPerTile;
+    const glm::ivec2 cells = mapSizeSamples - 1 - tile.originSample;
+    const glm::ivec2 count =
+        glm::clamp((cells + span - 1) / span, glm::ivec2(0), glm::ivec2(settings.patchesPerTile));
+    return count.x * count.y;
+}
+
 HeightRange edgeRange(const TerrainMetadata& metadata, const TileSettings& settings,
                       const Patch& patch, Edge edge) {
     const int last = settings.blocksPerPatch - 1;
@@ -161,6 +169,9 @@ class PatchCosts {
     }
 
     PatchCost ofPatch(const Patch& patch) const {
+        const glm::ivec2 origin = patch.firstBlock * metadata_.blockSizeSamples(patch.level);
+        const glm::ivec2 last = metadata_.sizeSamples() - 1;
+        if (origin.x >= last.x || origin.y >= last.y) return {};  // beyond the map
         const int count = settings_.tile.blocksPerPatch;
         HeightRange range =
             metadata_.block(patch.level, patch.firstBlock.x, patch.firstBlock.y).whole;

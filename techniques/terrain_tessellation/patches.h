@@ -39,6 +39,8 @@ struct Patch {
     glm::ivec2 firstBlock{0};  // column and row at its level
 };
 Patch patchOf(const Tile& tile, const TileSettings& settings, int index);
+/// Of the tile's, those that do not lie beyond the map's last sample.
+int patchesOnMap(const Tile& tile, const TileSettings& settings, glm::ivec2 mapSizeSamples);
 
 /// Eq. (2): over the blocks along the patch's edge.
 HeightRange edgeRange(const TerrainMetadata& metadata, const TileSettings& settings,

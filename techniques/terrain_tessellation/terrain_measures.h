@@ -34,8 +34,8 @@ struct HeightErrors {
     double meanPx = 0.0, maxPx = 0.0;  // seen from the side at the point's depth: an upper bound
     std::size_t pixels = 0;
 };
-/// `heightAt(x, z)`: of the full-resolution terrain in metres; `afterRow` is called between rows of
-/// pixels.
+/// `heightAt(x, z)`: of the truth's triangles (drawnHeightAt) in metres; `afterRow` is called
+/// between rows of pixels.
 HeightErrors heightErrors(
     const DepthMap& drawn, const std::function<float(float x, float z)>& heightAt,
     const std::function<void()>& afterRow = [] {});

@@ -175,6 +175,7 @@ gl::Buffer tileRecords(std::span<const Tile> tiles, std::span<const int> layers)
 
 void setTerrain(const gl::Pass& pass, const DeviceTerrain& terrain, const kit::View& view) {
     pass.setIfActive("spacing", terrain.metadata().spacingM());
+    pass.setIfActive("lastSample", glm::vec2(terrain.metadata().sizeSamples() - 1));
     pass.setIfActive("clipFromWorld", view.clipFromWorld());
 }
 
@@ -227,7 +228,6 @@ void TerrainRenderer::setShading(const gl::Pass& pass) const {
     settings_.showsUnderside ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     glPolygonMode(GL_FRONT_AND_BACK, settings_.isWireframe ? GL_LINE : GL_FILL);
-    pass.setIfActive("lastSample", glm::vec2(terrain_->metadata().sizeSamples() - 1));
     const scene::HeightMap::Extremes ends{terrain_->lowestM(), terrain_->highestM()};
     pass.setIfActive("lowestAndRelief", glm::vec2(ends.lowestM, ends.reliefM()));
 }
@@ -319,7 +319,10 @@ DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, const kit::
         glDrawArrays(GL_PATCHES, 0, 4 * patchesPerTile * tileCount);
         counts.drawCalls = 1;
     }
-    counts.patches = m * m * tileCount;
+    for (const Tile& tile : tiles) {
+        counts.patches +=
+            patchesOnMap(tile, settings_.factors.tile, terrain_->metadata().sizeSamples());
+    }
     return counts;
 }
 

@@ -440,7 +440,7 @@ config::Outputs outputs() {
             {"triangles_per_second", "triangle/s", "triangles drawn per second of the draw alone",
              Better::Higher},
             {"tiles", "tile", "tiles drawn"},
-            {"patches", "patch", "patches drawn"},
+            {"patches", "patch", "patches of the drawn tiles, but for those beyond the map"},
             {"draw_calls", "call", "draw calls of a frame", Better::Lower},
             detail("culled_patches", "patch", "patches left out because they lie outside the view"),
             {"culled_patches_pct", "%", "culled patches as a share of all patches"},

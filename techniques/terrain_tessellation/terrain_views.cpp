@@ -119,16 +119,40 @@ bool isThere(const std::vector<Named>& all, const std::string& name) {
 
 }  // namespace
 
-float heightAt(const scene::HeightMap& map, float x, float z) {
+namespace {
+
+/// The samples around a place, and where it lies between them.
+struct Cell {
+    glm::vec2 inside;  // from the north-western one
+    float northWest, northEast, southWest, southEast;
+};
+
+Cell cellAt(const scene::HeightMap& map, float x, float z) {
     const glm::vec2 position =
         glm::clamp(glm::vec2(x, z) / map.spacingM, glm::vec2(0.0F), glm::vec2(map.sizeSamples - 1));
-    const glm::ivec2 cell(position);
-    const glm::vec2 inside = position - glm::vec2(cell);
-    const float north = glm::mix(map.clampedHeightM(cell.x, cell.y),
-                                 map.clampedHeightM(cell.x + 1, cell.y), inside.x);
-    const float south = glm::mix(map.clampedHeightM(cell.x, cell.y + 1),
-                                 map.clampedHeightM(cell.x + 1, cell.y + 1), inside.x);
-    return glm::mix(north, south, inside.y);
+    const glm::ivec2 at(position);
+    return {position - glm::vec2(at), map.clampedHeightM(at.x, at.y),
+            map.clampedHeightM(at.x + 1, at.y), map.clampedHeightM(at.x, at.y + 1),
+            map.clampedHeightM(at.x + 1, at.y + 1)};
+}
+
+}  // namespace
+
+float heightAt(const scene::HeightMap& map, float x, float z) {
+    const Cell cell = cellAt(map, x, z);
+    return glm::mix(glm::mix(cell.northWest, cell.northEast, cell.inside.x),
+                    glm::mix(cell.southWest, cell.southEast, cell.inside.x), cell.inside.y);
+}
+
+float drawnHeightAt(const scene::HeightMap& map, float x, float z) {
+    const Cell cell = cellAt(map, x, z);
+    const glm::vec2 in = cell.inside;
+    if (in.x + in.y <= 1.0F) {
+        return cell.northWest + in.x * (cell.northEast - cell.northWest) +
+               in.y * (cell.southWest - cell.northWest);
+    }
+    return cell.southEast + (1.0F - in.x) * (cell.southWest - cell.southEast) +
+           (1.0F - in.y) * (cell.northEast - cell.southEast);
 }
 
 TerrainView::TerrainView(const scene::Scene& scene, const std::string& name)

@@ -30,5 +30,7 @@ class TerrainView {
 
 /// The height of the terrain's surface, bilinear between samples, its border's beyond them.
 float heightAt(const scene::HeightMap& map, float x, float z);
+/// Of the truth's triangles: a cell is cut from its south-western to its north-eastern sample.
+float drawnHeightAt(const scene::HeightMap& map, float x, float z);
 
 }  // namespace gfxrepro::terrain_tessellation

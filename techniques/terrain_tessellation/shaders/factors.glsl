@@ -92,8 +92,13 @@ bool isOutside(vec3 centre, float radius) {
 
 // The sphere about the box of the patch with its heights (a skirt's: of the rim down to `foot`).
 // Departure [zhang2012] Sec. 4.2: the printed sphere, the flat patch's diagonal, loses displaced
-// ground at the image's border.
+// ground at the image's border. What lies beyond the map is never drawn; skirts hang from its rim.
+bool isBeyondMap(Patch p) {
+    return p.rim == kSurface && any(greaterThanEqual(vec2(p.origin), lastSample));
+}
+
 bool isPatchCulled(Patch p, float foot) {
+    if (isBeyondMap(p)) return true;
     if (isCulling == 0) return false;
     int span = patchSpan(p.level);
     vec2 low = vec2(p.origin), high = low + float(span);

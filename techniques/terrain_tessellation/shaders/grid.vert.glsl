@@ -22,10 +22,12 @@ void main() {
     ivec2 corner = ivec2(gl_VertexID >> 1, firstRow + gl_InstanceID + (gl_VertexID & 1));
     vec2 at = vec2(tile.xy + corner * (1 << tile.z));
 #if MORPH
-    float away = distance(eye, worldOf(at, groundAt(tile, at).height));
+    vec2 onMap = min(at, lastSample);
+    float away = distance(eye, worldOf(onMap, groundAt(tile, onMap).height));
     float morph = clamp((away - morphRange.x) / (morphRange.y - morphRange.x), 0.0, 1.0);
     at -= vec2(corner & 1) * float(1 << tile.z) * morph;
 #endif
+    at = min(at, lastSample);
     Ground ground = groundAt(tile, at);
     surfaceNormal = ground.normal;
     surfaceHeight = ground.height;

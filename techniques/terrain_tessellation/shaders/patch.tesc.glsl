@@ -76,7 +76,7 @@ void main() {
     drawnParity = (p.cell.x + p.cell.y) & 1;
 #endif
     if (isPatchCulled(p, skirtFoot)) {
-        if (p.rim == kSurface) atomicAdd(culledPatches, 1u);
+        if (p.rim == kSurface && !isBeyondMap(p)) atomicAdd(culledPatches, 1u);
         setFactors(vec4(-1.0), vec2(-1.0));
     } else if (p.rim == kSurface) {
         setSurfaceFactors(p);

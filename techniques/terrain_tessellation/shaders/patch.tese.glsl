@@ -38,7 +38,8 @@ void main() {
         down = abs((isAlongZ ? uv.x : uv.y) - (1.0 - far));
         uv = isAlongZ ? vec2(far, uv.y) : vec2(uv.x, far);
     }
-    precise vec2 at = cornerSamples[0] + uv * (cornerSamples[3] - cornerSamples[0]);
+    precise vec2 inPatch = cornerSamples[0] + uv * (cornerSamples[3] - cornerSamples[0]);
+    vec2 at = min(inPatch, lastSample);
     Ground ground = groundAt(drawnTile, at);
     precise float top = ground.height;
     precise float height = down > 0.0 ? mix(top, skirtFoot, down) : top;
@@ -52,7 +53,7 @@ void main() {
     precise vec4 position = clipFromWorld * vec4(worldOf(at, height), 1.0);
     gl_Position = position;
 #if CAPTURE
-    capturedAt = at;
+    capturedAt = inPatch;
     capturedPosition = position;
     capturedPatch = ivec2(drawnPatch, drawnRim);
 #endif

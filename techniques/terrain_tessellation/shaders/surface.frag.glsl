@@ -6,7 +6,7 @@ in vec3 surfaceNormal;
 in float surfaceHeight;
 #if SHADING == 2
 in vec2 surfaceSample;
-uniform vec2 lastSample;  // the south-eastern one
+uniform vec2 lastSample;  // as in terrain.glsl
 uniform sampler2D colourMap;
 #elif SHADING == 4
 flat in ivec2 surfacePatch;  // on the chequer: 0 or 1; level

@@ -5,7 +5,8 @@ layout(std430) readonly buffer Tiles {
 };
 // A layer has every 2^level-th sample of a tile and a border: HeightPages.
 uniform sampler2DArray heightPages;
-uniform float spacing;  // metres between samples
+uniform float spacing;    // metres between samples
+uniform vec2 lastSample;  // the south-eastern one: tiles may reach beyond, the ground does not
 uniform mat4 clipFromWorld;
 
 struct Ground {

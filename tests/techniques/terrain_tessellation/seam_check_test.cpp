@@ -63,6 +63,20 @@ TEST_F(SeamCheckTest, NorWhereTilesOfSeveralLevelsMeetWhichIsSkirtsWork) {
     EXPECT_GT(mixed, 0);
 }
 
+// Patches that reach beyond the map are folded onto its rim.
+TEST_F(SeamCheckTest, NorWhereTheMapEndsWithinTiles) {
+    for (const int side : {250, 201, 130}) {
+        makeTerrain(roughMap(side, 60.0F));
+        for (const kit::View& view : terrainViews()) {
+            for (int level = 0; level < 2; ++level) {
+                const Seams seams = seamsOf(capturing(), tilesOf(level), view);
+                EXPECT_GT(seams.edges, 1000U);
+                EXPECT_EQ(seams.openEdges, 0U) << side << ' ' << level;
+            }
+        }
+    }
+}
+
 TEST_F(SeamCheckTest, UnequalFactorsLeaveEdgesOpen) {
     const kit::View view = terrainViews()[0];
     EXPECT_GT(seamsOf(capturing(EdgeRule::OwnPatch), tilesOf(0), view).openEdges, 100U);

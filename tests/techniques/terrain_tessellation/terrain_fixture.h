@@ -58,7 +58,7 @@ inline std::vector<kit::View> terrainViews() {
 
 class TerrainTest : public test::GlTest {
   protected:
-    /// 257² samples in blocks of 8, patches of 16 and tiles of 64 samples at level 0.
+    /// Blocks of 8, patches of 16 and tiles of 64 samples at level 0.
     void makeTerrain(scene::HeightMap heights) {
         map = std::move(heights);
         tile = {4, 2};
@@ -81,7 +81,8 @@ class TerrainTest : public test::GlTest {
             added.firstBlock = glm::ivec2(i % side, i / side) * blocks;
             added.originSample = glm::ivec2(i % side, i / side) * span;
             added.sizeSamples = span;
-            if (added.originSample.x >= 256 || added.originSample.y >= 256) continue;
+            const glm::ivec2 last = map.sizeSamples - 1;
+            if (added.originSample.x >= last.x || added.originSample.y >= last.y) continue;
             tiles.push_back(added);
         }
         return tiles;

@@ -147,6 +147,20 @@ TEST(TerrainViewsTest, HeightsAreBilinearAndGoOnBeyondTheBorder) {
     EXPECT_FLOAT_EQ(heightAt(map, 1e6F, 1e6F), 96.0F);
 }
 
+// NW 0, NE 1, SW 1, SE 10: the middle lies on the edge from south-west to north-east.
+TEST(TerrainViewsTest, HeightsOfTheTruthAreItsTriangles) {
+    scene::HeightMap map;
+    map.sizeSamples = {2, 2};
+    map.spacingM = 10.0F;
+    map.heightsM = {0.0F, 1.0F, 1.0F, 10.0F};
+    EXPECT_FLOAT_EQ(drawnHeightAt(map, 0.0F, 10.0F), 1.0F);
+    EXPECT_FLOAT_EQ(drawnHeightAt(map, 10.0F, 10.0F), 10.0F);
+    EXPECT_FLOAT_EQ(drawnHeightAt(map, 2.5F, 2.5F), 0.5F);
+    EXPECT_FLOAT_EQ(drawnHeightAt(map, 5.0F, 5.0F), 1.0F);
+    EXPECT_FLOAT_EQ(drawnHeightAt(map, 7.5F, 7.5F), 5.5F);
+    EXPECT_FLOAT_EQ(heightAt(map, 5.0F, 5.0F), 3.0F);
+}
+
 TEST(TerrainViewsTest, FliesAboveTheGround) {
     const scene::Scene scene = terrainScene();
     const TerrainView view(scene, "round_flight");

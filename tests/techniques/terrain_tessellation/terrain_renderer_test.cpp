@@ -1,4 +1,5 @@
 // Pictures of tessellated terrain: heights, culling, cracks.
+#include <fmt/format.h>
 #include <algorithm>
 
 #include "tests/techniques/terrain_tessellation/terrain_fixture.h"
@@ -53,35 +54,65 @@ TEST_F(TerrainTest, HeightsAtSamplesAreTheMaps) {
     }
 }
 
-TEST_F(TerrainTest, FlatTerrainIsThePlane) {
-    makeTerrain(roughMap(257, 0.0F));
-    RenderSettings set = settings();
-    set.hasSkirts = false;
-    TerrainRenderer renderer(shaders, *terrain, set);
-    const kit::View view = viewAt({128, 30, 300}, {128, 0, 100}, kPictureSize);
-    const auto pixels = picture(kPictureSize, [&](const gl::Framebuffer& target) {
-        renderer.drawTessellated(tilesOf(0), view, target);
-    });
-    int compared = 0;
-    const glm::vec4 first = pixels[static_cast<std::size_t>(20 * kPictureSize.x + 80)];
-    EXPECT_EQ(first.a, 1.0F);
-    for (int y = 0; y < kPictureSize.y; ++y) {
-        for (int x = 0; x < kPictureSize.x; ++x) {
-            const glm::vec2 px(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-            const glm::vec3 ray = kit::rayThrough(view, px);
-            const float away = ray.y < 0.0F ? -view.eyeWorld.y / ray.y : -1.0F;
-            const glm::vec3 hit = view.eyeWorld + away * ray;
-            const float inside =
-                std::min(std::min(hit.x, 256.0F - hit.x), std::min(hit.z, 256.0F - hit.z));
-            if (away > 0.0F && std::abs(inside) < 3.0F) continue;  // on the rim
-            const bool isTerrain = away > 0.0F && inside > 0.0F;
-            const glm::vec4 pixel = pixels[static_cast<std::size_t>(y * kPictureSize.x + x)];
-            ASSERT_EQ(pixel.a, isTerrain ? 1.0F : 0.0F) << x << ' ' << y;
-            if (isTerrain) EXPECT_LT(glm::distance(pixel, first), 1e-5F);
-            ++compared;
+/// Flat ground of `side`² samples a metre apart, drawn, against the rectangle that it is.
+class FlatTerrainTest : public TerrainTest {
+  protected:
+    template <class Draw>
+    void expectThePlane(int side, const Draw& draw) {
+        const float last = static_cast<float>(side - 1);
+        const kit::View view =
+            viewAt({0.5F * last, 30, last + 44.0F}, {0.5F * last, 0, 100}, kPictureSize);
+        const auto pixels = picture(
+            kPictureSize, [&](const gl::Framebuffer& target) { draw(tilesOf(0), view, target); });
+        int ground = 0, background = 0;
+        std::optional<glm::vec4> first;
+        for (int y = 0; y < kPictureSize.y; ++y) {
+            for (int x = 0; x < kPictureSize.x; ++x) {
+                const glm::vec2 px(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+                const glm::vec3 ray = kit::rayThrough(view, px);
+                const float away = ray.y < 0.0F ? -view.eyeWorld.y / ray.y : -1.0F;
+                const glm::vec3 hit = view.eyeWorld + away * ray;
+                const float inside =
+                    std::min(std::min(hit.x, last - hit.x), std::min(hit.z, last - hit.z));
+                if (away > 0.0F && std::abs(inside) < 3.0F) continue;  // on the rim
+                const bool isTerrain = away > 0.0F && inside > 0.0F;
+                const glm::vec4 pixel = pixels[static_cast<std::size_t>(y * kPictureSize.x + x)];
+                ASSERT_EQ(pixel.a, isTerrain ? 1.0F : 0.0F) << x << ' ' << y;
+                if (isTerrain && !first) first = pixel;
+                if (isTerrain) EXPECT_LT(glm::distance(pixel, *first), 1e-5F);
+                ++(isTerrain ? ground : background);
+            }
+        }
+        EXPECT_GT(ground, 4000);
+        EXPECT_GT(background, 2000);
+    }
+};
+
+// Tiles of 64 end with the map, beyond it by less than a patch, by patches, and all but a sample.
+TEST_F(FlatTerrainTest, IsDrawnAsThePlaneAndEndsAtItsMapByEveryMethod) {
+    for (const int side : {257, 250, 201, 130}) {
+        makeTerrain(roughMap(side, 0.0F));
+        for (const bool isCulling : {true, false}) {
+            SCOPED_TRACE(fmt::format("{} {}", side, isCulling));
+            RenderSettings set = settings();
+            set.hasSkirts = false;
+            set.cullsPatches = isCulling;
+            TerrainRenderer renderer(shaders, *terrain, set);
+            MorphRanges ranges;
+            for (int level = 0; level < metadata->levelCount(); ++level) {
+                ranges.rangesM.push_back(std::ldexp(60.0F, level));
+            }
+            expectThePlane(side, [&](const auto& tiles, const auto& view, const auto& target) {
+                renderer.drawTessellated(tiles, view, target);
+            });
+            expectThePlane(side, [&](const auto& tiles, const auto& view, const auto& target) {
+                renderer.drawGrid(tiles, view, target);
+            });
+            expectThePlane(side, [&](const auto& tiles, const auto& view, const auto& target) {
+                renderer.drawGrid(tiles, view, target, &ranges);
+            });
         }
     }
-    EXPECT_GT(compared, 10000);
 }
 
 TEST_F(TerrainTest, CullingChangesNoPixelAndDropsPatches) {

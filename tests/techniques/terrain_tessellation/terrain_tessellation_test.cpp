@@ -153,6 +153,14 @@ TEST_F(TerrainTessellationTest, TrianglesFallAndErrorsGrowWithDeltaS) {
     }
 }
 
+TEST_F(TerrainTessellationTest, TheTruthHasNoHeightError) {
+    const scene::Scene scene = terrain({257, 257});
+    const auto truth = measured("method: uniform_grid, errors: true", scene);
+    const auto coarse = measured("delta_s: 4, errors: true", scene);
+    EXPECT_LT(truth.at("height_error_px/mean"), 0.01 * coarse.at("height_error_px/mean"));
+    EXPECT_LT(truth.at("height_error_px/max"), 0.05);
+}
+
 TEST_F(TerrainTessellationTest, UnequalFactorsCrack) {
     const scene::Scene scene = terrain({257, 257});
     const std::string yaml =
