@@ -41,7 +41,7 @@ std::vector<std::uint8_t> soundBackground(const DepthMap& drawn, const DepthMap&
 
 }  // namespace
 
-HeightErrors heightErrors(const DepthMap& drawn,
+HeightErrors heightErrors(const DepthMap& drawn, const DepthMap& truth,
                           const std::function<float(float x, float z)>& heightAt,
                           const std::function<void()>& afterRow) {
     // k of [zhang2012] Eq. (1), in pixels a metre at a depth of one metre.
@@ -50,7 +50,7 @@ HeightErrors heightErrors(const DepthMap& drawn,
     HeightErrors errors;
     for (int y = 0; y < drawn.view.sizePx.y; ++y) {
         for (int x = 0; x < drawn.view.sizePx.x; ++x) {
-            if (!drawn.isCovered({x, y})) continue;
+            if (!drawn.isCovered({x, y}) || !truth.isCovered({x, y})) continue;
             const float depthM = drawn.depthM[drawn.indexOf({x, y})];
             const glm::vec3 point = kit::unproject(drawn.view, glm::vec2(x, y) + 0.5F, depthM);
             const double errorM = std::abs(double{point.y} - double{heightAt(point.x, point.z)});

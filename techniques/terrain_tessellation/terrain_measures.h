@@ -27,7 +27,8 @@ struct DepthMap {
     bool isCovered(glm::ivec2 pixel) const { return depthM[indexOf(pixel)] > 0.0F; }
 };
 
-/// Over the pixels that show terrain: how far above or below the true terrain the point is that
+/// Over the pixels that show ground, of which the truth shows some, too (skirts hang where it does
+/// not): how far above or below the true terrain the point is that
 /// they show.
 struct HeightErrors {
     double meanM = 0.0, maxM = 0.0;
@@ -37,7 +38,8 @@ struct HeightErrors {
 /// `heightAt(x, z)`: of the truth's triangles (drawnHeightAt) in metres; `afterRow` is called
 /// between rows of pixels.
 HeightErrors heightErrors(
-    const DepthMap& drawn, const std::function<float(float x, float z)>& heightAt,
+    const DepthMap& drawn, const DepthMap& truth,
+    const std::function<float(float x, float z)>& heightAt,
     const std::function<void()>& afterRow = [] {});
 
 /// Marks pixels through which the background shows although the terrain is whole there: below

@@ -258,7 +258,7 @@ void TerrainTessellation::recordErrors(technique::Recorder& recorder, const Draw
     // As frames are drawn: what shows the underside above may show the background here.
     const Drawn framed = drawnAgain(params_.method, selection_, false);
     const HeightErrors height = heightErrors(
-        framed.depths, [&](float x, float z) { return drawnHeightAt(map, x, z); },
+        framed.depths, truth.depths, [&](float x, float z) { return drawnHeightAt(map, x, z); },
         [&] { map.release(); });
     recorder.metric("height_error_m", height.meanM, "mean");
     recorder.metric("height_error_m", height.maxM, "max");

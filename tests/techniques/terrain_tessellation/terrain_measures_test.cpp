@@ -27,7 +27,7 @@ DepthMap fromAbove(float planeM, glm::ivec2 sizePx = {16, 12}) {
 
 TEST(TerrainMeasuresTest, HeightErrorsAreThoseOfThePlane) {
     const DepthMap drawn = fromAbove(10.0F);
-    const HeightErrors errors = heightErrors(drawn, [](float, float) { return 7.0F; });
+    const HeightErrors errors = heightErrors(drawn, drawn, [](float, float) { return 7.0F; });
     EXPECT_EQ(errors.pixels, 16u * 12u);
     EXPECT_NEAR(errors.meanM, 3.0, 1e-4);
     EXPECT_NEAR(errors.maxM, 3.0, 1e-4);
@@ -39,7 +39,7 @@ TEST(TerrainMeasuresTest, HeightErrorsLookWhereThePixelLies) {
     const DepthMap drawn = fromAbove(0.0F);
     // Seen from above with −z upwards: x grows to the right. Half of the pixels are off by 2 m.
     const HeightErrors errors =
-        heightErrors(drawn, [](float x, float) { return x > 0 ? 2.0F : 0.0F; });
+        heightErrors(drawn, drawn, [](float x, float) { return x > 0 ? 2.0F : 0.0F; });
     EXPECT_NEAR(errors.meanM, 1.0, 1e-4);
     EXPECT_NEAR(errors.maxM, 2.0, 1e-4);
 }
@@ -47,9 +47,16 @@ TEST(TerrainMeasuresTest, HeightErrorsLookWhereThePixelLies) {
 TEST(TerrainMeasuresTest, NothingDrawnHasNoErrors) {
     DepthMap drawn = fromAbove(0.0F);
     drawn.depthM.assign(drawn.depthM.size(), 0.0F);
-    const HeightErrors errors = heightErrors(drawn, [](float, float) { return 0.0F; });
+    const HeightErrors errors = heightErrors(drawn, drawn, [](float, float) { return 0.0F; });
     EXPECT_EQ(errors.pixels, 0u);
     EXPECT_EQ(errors.meanM, 0.0);
+}
+
+TEST(TerrainMeasuresTest, WhereTheTruthShowsNoGroundSkirtsHaveNoError) {
+    const DepthMap drawn = fromAbove(10.0F);
+    DepthMap truth = drawn;
+    truth.depthM[truth.indexOf({3, 4})] = 0.0F;
+    EXPECT_EQ(heightErrors(drawn, truth, [](float, float) { return 7.0F; }).pixels, 16u * 12u - 1u);
 }
 
 TEST(TerrainMeasuresTest, CracksAreHolesBelowTerrainInsideOfTheTruth) {
