@@ -121,24 +121,36 @@ std::set<std::string> namesOf(const Context& context, const scene::Catalog& cata
     return names;
 }
 
-/// Throws Error for words, in the config itself, of what nothing is called. A preset may have more;
-/// what an import that nobody laid out has is not known.
-void requireNamed(const Context& context, const scene::Catalog& catalog,
+/// Labels of what nothing is called in any profile; and all that is called something.
+struct IdleLabels {
+    std::vector<std::string> labels, names;
+};
+
+IdleLabels idleOf(const Context& context, const scene::Catalog& catalog,
                   std::span<const config::Experiment> profiles) {
     const config::Experiment& whole = profiles.front();
     const Node* labels = whole.document.find(kLabels);
+    // What an import that nobody laid out has is not known.
     const bool isKnown = config::isMeasuredHere(whole) || !whole.hasDefaultLayout();
-    if (!labels || !isKnown) return;
+    if (!labels || !isKnown) return {};
     const std::set<std::string> names = namesOf(context, catalog, profiles);
+    IdleLabels idle{{}, {names.begin(), names.end()}};
     for (const auto& [name, words] : labels->entries()) {
-        const SourceLocation& where = labels->keyLocation(name);
-        const auto isCalled = [&](const std::string& one) {
+        const bool isCalled = std::ranges::any_of(names, [&](const std::string& one) {
             return one == name || std::filesystem::path(one).filename() == name;
-        };
-        if (where.file.text() != whole.file.string() || std::ranges::any_of(names, isCalled))
-            continue;
+        });
+        if (!isCalled) idle.labels.push_back(name);
+    }
+    return idle;
+}
+
+/// A preset may have labels of what a config that extends it lacks; the config itself may not.
+void requireNamed(const config::Experiment& experiment, const IdleLabels& idle) {
+    for (const std::string& name : idle.labels) {
+        const SourceLocation& where = experiment.document.find(kLabels)->keyLocation(name);
+        if (where.file.text() != experiment.file.string()) continue;
         throw Error(where, fmt::format("{}: nothing is called '{}'{}", kLabels, name,
-                                       suggestion(name, std::vector(names.begin(), names.end()))));
+                                       suggestion(name, idle.names)));
     }
 }
 
@@ -167,7 +179,7 @@ void requireProfiles(const Context& context, const scene::Catalog& catalog,
         if (areRowsKnown && isPrinted) printed.push_back(tables.back());
         profiles.push_back(std::move(one));
     }
-    requireNamed(context, catalog, all);
+    requireNamed(all.front(), idleOf(context, catalog, all));
     // What was measured elsewhere may have more than the sweep says.
     for (const config::Experiment& one : profiles) {
         if (!config::isMeasuredHere(one)) break;
@@ -458,6 +470,15 @@ std::vector<config::Case> checkFile(const Context& context, const Chosen& select
 }
 
 }  // namespace
+
+std::vector<std::string> idleLabels(const Context& context, const scene::Catalog& catalog,
+                                    const config::Experiment& experiment) {
+    std::vector<config::Experiment> profiles;
+    for (const char* profile : {"full", "quick", "paper"}) {
+        profiles.push_back(asItStands(experiment, profile));
+    }
+    return idleOf(context, catalog, profiles).labels;
+}
 
 tables::Table tableBefore(const Context& context, const config::Experiment& experiment,
                           std::span<const config::Case> cases) {
