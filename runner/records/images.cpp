@@ -19,9 +19,6 @@ namespace {
 
 constexpr std::string_view kImagesHeader =
     "case,table,frame,name,png,exr,title,truth_of,png_sha256,exr_sha256";
-// Of runs that were made before the sums were kept.
-constexpr std::string_view kUnsealedHeader =
-    kImagesHeader.substr(0, kImagesHeader.find(",png_sha256"));
 
 fs::path indexOf(const fs::path& runDir) {
     return runDir / "images" / "index.csv";
@@ -29,17 +26,16 @@ fs::path indexOf(const fs::path& runDir) {
 
 void requireHeader(const SourceLocation& where, const std::vector<std::string>& header) {
     const std::string found = joined(header, ",");
-    if (found == kImagesHeader || found == kUnsealedHeader) return;
+    if (found == kImagesHeader) return;
     throw Error(where, "expected the columns " + std::string(kImagesHeader) + ", found " + found);
 }
 
-ImageEntry entryFromFields(const SourceLocation& where, std::vector<std::string> fields,
-                           std::size_t columns) {
-    if (fields.size() != columns) {
-        throw Error(where, "expected " + std::to_string(columns) + " columns, found " +
+ImageEntry entryFromFields(const SourceLocation& where, const std::vector<std::string>& fields) {
+    constexpr std::size_t kColumns = 10;
+    if (fields.size() != kColumns) {
+        throw Error(where, "expected " + std::to_string(kColumns) + " columns, found " +
                                std::to_string(fields.size()));
     }
-    fields.resize(10);  // of an unsealed list two are empty
     ImageEntry entry{fields[0], fields[1], 0,         fields[3], fields[4],
                      fields[5], fields[6], fields[7], fields[8], fields[9]};
     const char* end = fields[2].data() + fields[2].size();
@@ -128,9 +124,8 @@ std::vector<ImageEntry> readImages(const fs::path& runDir) {
     std::map<std::tuple<std::string, int, std::string>, std::size_t> indices;
     if (!reader.next(fields)) return {};
     requireHeader(reader.location(), fields);
-    const std::size_t columns = fields.size();
     while (reader.next(fields)) {
-        ImageEntry entry = entryFromFields(reader.location(), fields, columns);
+        ImageEntry entry = entryFromFields(reader.location(), fields);
         for (const std::string* file : {&entry.png, &entry.exr}) {
             requireInside(reader.location(), *file);
         }

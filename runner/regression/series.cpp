@@ -37,12 +37,10 @@ double meanOfMedians(const Frames& frames) {
     return sum / static_cast<double>(count);
 }
 
-/// Memory of the process, and what rounding and the order of parallel work change. The names
-/// without "work_" are those of older records.
+/// Memory of the process, and what rounding and the order of parallel work change.
 bool isOfTheMachine(const std::string& metric) {
     static constexpr std::array kNames = {"peak_memory_bytes", "baseline_memory_bytes",
-                                          "work_fragments",    "work_image_digest",
-                                          "fragments",         "image_digest"};
+                                          "work_fragments", "work_image_digest"};
     return std::ranges::find(kNames, metric) != kNames.end();
 }
 

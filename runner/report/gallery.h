@@ -48,7 +48,7 @@ struct Shot {
     std::string truth;         // name of the shot that this one is compared with; empty: none
     std::string content;       // of a truth: the same text for the same picture; empty: no truth
     std::string flip;          // FLIP map against the truth, as `thumbnail`; empty: none
-    double flipMean = 0.0;     // what was recorded of it; of older runs that of the map
+    double flipMean = 0.0;     // what was recorded of it
     std::uintmax_t bytes = 0;  // of the PNG
     int width = 0;             // of what the viewer opens
     int height = 0;

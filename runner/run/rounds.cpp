@@ -248,7 +248,7 @@ std::vector<std::string> Rounds::warnings() const {
     std::vector<std::string> lines;
     for (const std::string& name : order_) {
         const TimedTable& table = tables_.at(name);
-        tables::CaseNames names;
+        tables::LabelsOfCases names;
         for (const Case* item : table.cases) {
             const std::string title = item->title();
             if (title != name) names[item->id] = tables::shownCase(title, name);

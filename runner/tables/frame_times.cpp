@@ -217,7 +217,7 @@ std::vector<Outlier> FrameTimes::outliers() const {
     return outliers;
 }
 
-std::vector<std::string> outlierTexts(const FrameTimes& times, const CaseNames& names) {
+std::vector<std::string> outlierTexts(const FrameTimes& times, const LabelsOfCases& names) {
     constexpr std::size_t kMostNamed = 5;
     const std::vector<Outlier> outliers = times.outliers();
     std::vector<std::string> texts;
@@ -265,7 +265,7 @@ std::string_view endInWords(std::string_view end) {
 }  // namespace
 
 std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measure& measure,
-                                   const CaseNames& names) {
+                                   const LabelsOfCases& names) {
     const std::size_t rounds = times.roundCount();
     if (rounds == 0) return {};
     std::vector<std::string> notes;

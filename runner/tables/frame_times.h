@@ -95,14 +95,14 @@ std::optional<double> columnNoise(const Table& table, const std::vector<std::str
 std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& times);
 
 /// What a reader knows cases by, by their ids: "torus, light ratio 0.25".
-using CaseNames = std::map<std::string, std::string>;
+using LabelsOfCases = std::map<std::string, std::string>;
 
 /// A sentence an outlier, of the first few. A case without a name is called by its scene and
 /// method.
-std::vector<std::string> outlierTexts(const FrameTimes& times, const CaseNames& names = {});
+std::vector<std::string> outlierTexts(const FrameTimes& times, const LabelsOfCases& names = {});
 
 /// Sentences below a table of times: its rounds and what ended them, its noise, its outliers.
 std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measure& measure,
-                                   const CaseNames& names = {});
+                                   const LabelsOfCases& names = {});
 
 }  // namespace gfxrepro::tables

@@ -71,8 +71,8 @@ void markUnfit(const config::Experiment& experiment, std::span<const config::Cas
 }
 
 /// Of each case that has swept values these in words.
-CaseNames namesOf(const LayoutCases& cases, const Words& words) {
-    CaseNames names;
+LabelsOfCases namesOf(const LayoutCases& cases, const Words& words) {
+    LabelsOfCases names;
     for (const CaseRecords& item : cases.cases) {
         std::vector<std::string> parts;
         for (std::size_t i = 0; i < item.axes.size(); ++i) {
