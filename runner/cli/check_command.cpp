@@ -130,9 +130,7 @@ IdleLabels idleOf(const Context& context, const scene::Catalog& catalog,
                   std::span<const config::Experiment> profiles) {
     const config::Experiment& whole = profiles.front();
     const Node* labels = whole.document.find(kLabels);
-    // What an import that nobody laid out has is not known.
-    const bool isKnown = config::isMeasuredHere(whole) || !whole.hasDefaultLayout();
-    if (!labels || !isKnown) return {};
+    if (!labels || !config::isMeasuredHere(whole)) return {};  // what an import has is not known
     const std::set<std::string> names = namesOf(context, catalog, profiles);
     IdleLabels idle{{}, {names.begin(), names.end()}};
     for (const auto& [name, words] : labels->entries()) {

@@ -386,18 +386,24 @@ std::vector<CapturedVertex> TerrainRenderer::capture(std::span<const Tile> tiles
     return vertices;
 }
 
-int TerrainRenderer::drawGridTile(const gl::Pass& pass, int tile) const {
-    pass.set("tileIndex", tile);
+int TerrainRenderer::drawGridTile(const gl::Pass& pass, int index, const Tile& tile) const {
+    pass.set("tileIndex", index);
     const int side =
         settings_.factors.tile.blocksPerTile() * terrain_->metadata().settings().blockSegments;
+    // Cells with ground; an even count, as every other vertex may slide onto the one before.
+    const int span = 1 << tile.level;
+    const glm::ivec2 ground = terrain_->metadata().sizeSamples() - 1 - tile.originSample;
+    const glm::ivec2 cells =
+        glm::clamp((ground + 2 * span - 1) / (2 * span) * 2, glm::ivec2(0), glm::ivec2(side));
     kit::FlushedDraws flushed(settings_.batches.has_value());
     const std::uint32_t rows = flushed.mostPrimitives() / (2U * static_cast<std::uint32_t>(side));
     const int step = std::clamp(static_cast<int>(rows), 1, side);
     int draws = 0;
-    for (int first = 0; first < side; first += step, ++draws) {
+    for (int first = 0; first < cells.y; first += step, ++draws) {
+        const int count = std::min(step, cells.y - first);
         pass.set("firstRow", first);
-        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (side + 1), std::min(step, side - first));
-        flushed.drawn(static_cast<std::uint32_t>(2 * side * std::min(step, side - first)));
+        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (cells.x + 1), count);
+        flushed.drawn(static_cast<std::uint32_t>(2 * cells.x * count));
     }
     return draws;
 }
@@ -416,7 +422,7 @@ void TerrainRenderer::drawGrid(std::span<const Tile> tiles, const kit::View& vie
                 const float range = morph->rangesM.at(static_cast<std::size_t>(some[i].level));
                 pass.set("morphRange", glm::vec2(morph->startShare, 1.0F) * range);
             }
-            counts.drawCalls += drawGridTile(pass, static_cast<int>(i));
+            counts.drawCalls += drawGridTile(pass, static_cast<int>(i), some[i]);
         }
         return counts;
     });

@@ -179,7 +179,7 @@ class TerrainRenderer {
     void setTessellated(const kit::View& view);
     void bindNothing() const;
     int drawBatches(const PatchBatches& patches) const;
-    int drawGridTile(const gl::Pass& pass, int tile) const;
+    int drawGridTile(const gl::Pass& pass, int index, const Tile& tile) const;
     void setShading(const gl::Pass& pass) const;
 
     DeviceTerrain* terrain_;

@@ -421,6 +421,13 @@ TEST_F(OwnExperiment, CheckRefusesALabelOfWhatNothingIsCalled) {
                          "mean_brightness: mean, setup_time_ms: time before, bytes: memory}\n" +
                          layout);
     endedWith(0, gfxrepro({"check", good}));
+    // What an import has is not known before it is there.
+    const std::string imported = folder.write(
+        "theirs.yaml",
+        "sweep_of: theirs\ntitle: Theirs\ntechnique: imported\nsweep: {method: [a, b]}\nlayout: "
+        "{rows: method, columns: {rmse: {metric: rmse}}}\nlabels: {method: by which, c: "
+        "another}\n");
+    endedWith(0, gfxrepro({"check", imported}));
 }
 
 TEST_F(OwnExperiment, NoTableIsNamedWhereNoCaseHasAResult) {

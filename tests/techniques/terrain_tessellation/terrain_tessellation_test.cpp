@@ -153,6 +153,12 @@ TEST_F(TerrainTessellationTest, TrianglesFallAndErrorsGrowWithDeltaS) {
     }
 }
 
+TEST_F(TerrainTessellationTest, OnlyTheMapsCellsAreDrawnOfATileBeyondItsRim) {
+    const auto m = measured("method: uniform_grid, culling: none", terrain({200, 90}));
+    // Two triangles a cell, of 199 × 89 cells an even count a side.
+    EXPECT_EQ(m.at("drawn_triangles"), 2.0 * 200 * 90);
+}
+
 TEST_F(TerrainTessellationTest, TheTruthHasNoHeightError) {
     const scene::Scene scene = terrain({257, 257});
     const auto truth = measured("method: uniform_grid, errors: true", scene);
