@@ -115,13 +115,17 @@ TEST_F(Images, OtherColumnsAreAnError) {
 }
 
 TEST_F(Images, MalformedRowIsAnError) {
-    folder.write("images/index.csv",
-                 "case,table,frame,name,png,exr,title,truth_of\na,b,x,n,p,e,t,\n");
-    EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),
+    const auto refused = [&](const std::string& text) {
+        folder.write("images/index.csv", text);
+        return test::errorText([&] { readImages(folder.path()); }, folder.path());
+    };
+    const std::string without = "case,table,frame,name,png,exr,title,truth_of";
+    const std::string header = without + ",png_sha256,exr_sha256";
+    EXPECT_EQ(refused(header + "\na,b,x,n,p,e,t,,s,s\n"),
               "DIR/images/index.csv:2: column 'frame': expected an integer, found 'x'");
-    folder.write("images/index.csv", "case,table,frame,name,png,exr,title,truth_of\na,b\n");
-    EXPECT_EQ(test::errorText([&] { readImages(folder.path()); }, folder.path()),
-              "DIR/images/index.csv:2: expected 8 columns, found 2");
+    EXPECT_EQ(refused(header + "\na,b\n"), "DIR/images/index.csv:2: expected 10 columns, found 2");
+    EXPECT_EQ(refused(without + "\na,b,0,n,images/p.png,,t,\n"),
+              "DIR/images/index.csv:1: expected the columns " + header + ", found " + without);
 }
 
 }  // namespace
