@@ -96,7 +96,7 @@ void addNames(const Node& node, std::set<std::string>& names) {
 /// What may be shown of what the experiment measures in any profile.
 std::set<std::string> namesOf(const Context& context, const scene::Catalog& catalog,
                               std::span<const config::Experiment> profiles) {
-    std::set<std::string> names;
+    std::set<std::string> names = {"output"};  // of every picture
     for (const config::Experiment& one : profiles) {
         for (const auto& [key, value] : one.document.entries()) {
             if (key != kLabels) addNames(Node::map({{key, value}}), names);

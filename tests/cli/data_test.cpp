@@ -500,7 +500,7 @@ TEST_F(Data, AColumnMayHaveAnyName) {
         endedWith(0, import(fmt::format("log2 ('{}') + 1", metric)));
         EXPECT_THAT(verdicts("t"), testing::Contains("c holds")) << metric;
         EXPECT_THAT(endedWith(2, import(fmt::format("'{}' +", metric))).err,
-                    HasSubstr("error: sweep/t: claim 'c': ''" + std::string(metric) +
+                    HasSubstr("t.yaml:5:10: claim 'c': ''" + std::string(metric) +
                               "' +' is no expression: "));
     }
 }

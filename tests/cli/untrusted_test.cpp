@@ -47,9 +47,9 @@ class Untrusted : public ::testing::Test {
 TEST_F(Untrusted, ImagesLieBelowImages) {
     const auto listed = [&](const std::string& file) {
         writeFileAtomic(dir + "/images/index.csv",
-                        "case,table,frame,name,png,exr,title,truth_of\n"
+                        "case,table,frame,name,png,exr,title,truth_of,png_sha256,exr_sha256\n"
                         "0123456789ab,sweep/mock,0,a," +
-                            file + ",,t,\n");
+                            file + ",,t,,,\n");
         expectRefused({"report", dir}, "'" + file + "' is no file of the run");
     };
     listed("images/../../secret.png");
