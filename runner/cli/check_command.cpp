@@ -9,7 +9,6 @@
 #include <set>
 #include <span>
 
-#include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/claims/claims.h"
 #include "runner/cli/annotations.h"
@@ -27,8 +26,6 @@
 namespace gfxrepro::cli {
 
 namespace {
-
-constexpr const char* kLabels = "labels";
 
 /// The file under a profile as it stands, but that the command line may have its times taken.
 config::Experiment asItStands(const config::Experiment& experiment, const std::string& profile) {
@@ -80,89 +77,16 @@ std::vector<config::Case> casesOf(const Context& context, const scene::Catalog& 
     return cases;
 }
 
-/// Every key and every text in it.
-void addNames(const Node& node, std::set<std::string>& names) {
-    if (node.isScalar()) names.insert(node.text());
-    if (node.isSequence()) {
-        for (const Node& item : node.items()) addNames(item, names);
-    }
-    if (!node.isMap()) return;
-    for (const auto& [name, value] : node.entries()) {
-        names.insert(name);
-        addNames(value, names);
-    }
-}
-
-/// What may be shown of what the experiment measures in any profile.
-std::set<std::string> namesOf(const Context& context, const scene::Catalog& catalog,
-                              std::span<const config::Experiment> profiles) {
-    std::set<std::string> names = {"output"};  // of every picture
-    for (const config::Experiment& one : profiles) {
-        for (const auto& [key, value] : one.document.entries()) {
-            if (key != kLabels) addNames(Node::map({{key, value}}), names);
-        }
-        if (one.technique.empty()) continue;
-        for (const config::Case& item : casesOf(context, catalog, one)) {
-            addNames(item.params, names);
-            addNames(item.axes, names);
-        }
-    }
-    const config::Experiment& whole = profiles.front();
-    if (whole.technique.empty()) return names;
-    const config::Outputs outputs =
-        technique::outputsOf(technique::findTechnique(context.techniques, whole.technique, {}),
-                             config::programOf(whole));
-    for (const config::MetricInfo& metric : outputs.metrics) {
-        names.insert(metric.name);
-        for (const config::PassInfo& pass : outputs.passes) {
-            names.insert({pass.name, metric.name + "_" + pass.name});
-        }
-    }
-    return names;
-}
-
-/// Labels of what nothing is called in any profile; and all that is called something.
-struct IdleLabels {
-    std::vector<std::string> labels, names;
-};
-
-IdleLabels idleOf(const Context& context, const scene::Catalog& catalog,
-                  std::span<const config::Experiment> profiles) {
-    const config::Experiment& whole = profiles.front();
-    const Node* labels = whole.document.find(kLabels);
-    if (!labels || !config::isMeasuredHere(whole)) return {};  // what an import has is not known
-    const std::set<std::string> names = namesOf(context, catalog, profiles);
-    IdleLabels idle{{}, {names.begin(), names.end()}};
-    for (const auto& [name, words] : labels->entries()) {
-        const bool isCalled = std::ranges::any_of(names, [&](const std::string& one) {
-            return one == name || std::filesystem::path(one).filename() == name;
-        });
-        if (!isCalled) idle.labels.push_back(name);
-    }
-    return idle;
-}
-
-/// A preset may have labels of what a config that extends it lacks; the config itself may not.
-void requireNamed(const config::Experiment& experiment, const IdleLabels& idle) {
-    for (const std::string& name : idle.labels) {
-        const SourceLocation& where = experiment.document.find(kLabels)->keyLocation(name);
-        if (where.file.text() != experiment.file.string()) continue;
-        throw Error(where, fmt::format("{}: nothing is called '{}'{}", kLabels, name,
-                                       suggestion(name, idle.names)));
-    }
-}
-
 /// Throws Error for what is wrong under some profile, as a value that it fixes and the file sweeps;
 /// and for a printed row or value, or a `where` of the layout, that has no place in the table,
 /// whatever the profile.
 void requireProfiles(const Context& context, const scene::Catalog& catalog,
                      const config::Experiment& experiment) {
-    std::vector<config::Experiment> all, profiles;
+    std::vector<config::Experiment> profiles;
     std::vector<std::vector<config::Case>> cases;
     std::vector<tables::Table> tables, printed;
     for (const char* profile : {"full", "quick", "paper"}) {
         config::Experiment one = asItStands(experiment, profile);
-        all.push_back(one);
         if (one.technique.empty() || !one.layout.isGiven) continue;
         cases.push_back(casesOf(context, catalog, one));
         const bool areRowsKnown =
@@ -177,7 +101,6 @@ void requireProfiles(const Context& context, const scene::Catalog& catalog,
         if (areRowsKnown && isPrinted) printed.push_back(tables.back());
         profiles.push_back(std::move(one));
     }
-    requireNamed(all.front(), idleOf(context, catalog, all));
     // What was measured elsewhere may have more than the sweep says.
     for (const config::Experiment& one : profiles) {
         if (!config::isMeasuredHere(one)) break;
@@ -468,15 +391,6 @@ std::vector<config::Case> checkFile(const Context& context, const Chosen& select
 }
 
 }  // namespace
-
-std::vector<std::string> idleLabels(const Context& context, const scene::Catalog& catalog,
-                                    const config::Experiment& experiment) {
-    std::vector<config::Experiment> profiles;
-    for (const char* profile : {"full", "quick", "paper"}) {
-        profiles.push_back(asItStands(experiment, profile));
-    }
-    return idleOf(context, catalog, profiles).labels;
-}
 
 tables::Table tableBefore(const Context& context, const config::Experiment& experiment,
                           std::span<const config::Case> cases) {

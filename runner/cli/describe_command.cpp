@@ -400,17 +400,9 @@ void writeYaml(const std::string& prefix, const Node& node, std::size_t indent, 
     }
 }
 
-/// Without a preset's labels of what this experiment lacks.
-std::string mergedYaml(const Context& context, const config::Experiment& experiment) {
-    Node whole = config::wholeDocument(experiment.file, dataFolder("configs"));
-    const std::vector<std::string> idle = idleLabels(context, openCatalog(context, ""), experiment);
-    if (const Node* labels = whole.find("labels"); labels && !idle.empty()) {
-        Node kept = *labels;
-        for (const std::string& name : idle) kept.erase(name);
-        whole.set("labels", kept);
-    }
-    return fmt::format("# {} with all that it extends\n{}",
-                       experiment.file.filename().generic_string(), yamlBelow(whole, 0));
+std::string mergedYaml(const std::filesystem::path& file) {
+    return fmt::format("# {} with all that it extends\n{}", file.filename().generic_string(),
+                       yamlBelow(config::wholeDocument(file, dataFolder("configs")), 0));
 }
 
 int sayJson(const Json& json) {
@@ -430,7 +422,7 @@ bool describeTable(const Context& context, const DescribeOptions& options,
         known.push_back(experiment.id);
         if (experiment.id != options.name && !isYamlFile(options.name)) continue;
         if (options.isMerged) {
-            fmt::print("{}", mergedYaml(context, experiment));
+            fmt::print("{}", mergedYaml(experiment.file));
         } else if (options.asJson) {
             sayJson(jsonOf(experiment));
         } else {

@@ -58,11 +58,6 @@ std::string deviceFor(const Context& context, const std::string& asked,
 tables::Table tableBefore(const Context& context, const config::Experiment& experiment,
                           std::span<const config::Case> cases);
 
-/// Names in `labels:`, of the config and of what it extends, of what nothing is called in any
-/// profile.
-std::vector<std::string> idleLabels(const Context& context, const scene::Catalog& catalog,
-                                    const config::Experiment& experiment);
-
 /// Throws Error for what is wrong in an experiment of these cases, all that it has, so that nothing
 /// is measured in vain. What loaders warn of goes to standard error, and to `told`, once.
 void requireSound(const Context& context, const scene::Catalog& catalog,

@@ -402,34 +402,6 @@ TEST_F(OwnExperiment, CheckSaysHowToNameAParameter) {
               "{bin_exponent: {method: clustered}}` in `sweep`, for the cases that have it\n");
 }
 
-TEST_F(OwnExperiment, CheckRefusesALabelOfWhatNothingIsCalled) {
-    const std::string head =
-        "technique: template\nsweep: {brightness: [0.25, "
-        "1]}\nlabels: {";
-    const std::string layout =
-        "layout: {rows: brightness, columns: {bytes: {metric: "
-        "peak_memory_bytes}}}\n";
-    EXPECT_EQ(checked(folder, head + "brightnes: how bright}\n"),
-              "gfxrepro: DIR/mine.yaml:5:10: labels: nothing is called 'brightnes'; did you mean "
-              "'brightness'?\n");
-    EXPECT_EQ(checked(folder, head + "byte: memory}\n" + layout),
-              "gfxrepro: DIR/mine.yaml:5:10: labels: nothing is called 'byte'; did you mean "
-              "'bytes'?\n");
-    const std::string good = folder.write(
-        "mine.yaml", "sweep_of: mine\ntitle: Mine\n" + head +
-                         "brightness: how bright, 0.25: dark, "
-                         "mean_brightness: mean, setup_time_ms: time before, bytes: memory}\n" +
-                         layout);
-    endedWith(0, gfxrepro({"check", good}));
-    // What an import has is not known before it is there.
-    const std::string imported = folder.write(
-        "theirs.yaml",
-        "sweep_of: theirs\ntitle: Theirs\ntechnique: imported\nsweep: {method: [a, b]}\nlayout: "
-        "{rows: method, columns: {rmse: {metric: rmse}}}\nlabels: {method: by which, c: "
-        "another}\n");
-    endedWith(0, gfxrepro({"check", imported}));
-}
-
 TEST_F(OwnExperiment, NoTableIsNamedWhereNoCaseHasAResult) {
     const std::string config =
         folder.write("mine.yaml",
