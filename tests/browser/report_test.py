@@ -2,6 +2,7 @@
 """The report in a real browser: report_test.py MOCK_PROGRAM OUT. Exit 77: something is not installed."""
 
 import csv
+import hashlib
 import json
 import os
 import pathlib
@@ -68,14 +69,21 @@ def make_run(data, folder, name="demo2026"):
     return folder
 
 
+IMAGES = "case,table,frame,name,png,exr,title,truth_of,png_sha256,exr_sha256"
+
+
 def add_images(folder, images):
     """Replaces the run's images by (case, name, truth_of, colour function) of 64² pixels."""
-    rows = ["case,table,frame,name,png,exr,title,truth_of"]
+    rows = [IMAGES]
     for i, (case, name, truth_of, colour) in enumerate(images):
         file = f"images/made/{i}.png"
         png.write(folder / file, 64, 64, colour)
-        rows.append(f'{case},demo2026/1,0,{name},{file},,"demo2026/1 case {case}",{truth_of}')
+        rows.append(f'{case},demo2026/1,0,{name},{file},,"demo2026/1 case {case}",{truth_of},{digest(folder / file)},')
     (folder / "images" / "index.csv").write_text("\n".join(rows) + "\n")
+
+
+def digest(file):
+    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def halves(left, right):
@@ -415,15 +423,16 @@ class Report(unittest.TestCase):
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(self.folder, folder)
         noise = os.urandom(3 * 96 * 96)
-        rows = ["case,table,frame,name,png,exr,title,truth_of"]
+        rows = [IMAGES]
         pixel = lambda x, y: noise[3 * (96 * (y % 96) + x % 96):][:3]
         png.write(folder / "images/made/noise.png", 288, 288, pixel)
+        png_sha256 = digest(folder / "images/made/noise.png")
         for i in range(MANY):
             file = f"images/made/many-{i}.png"
             shutil.copy(folder / "images/made/noise.png", folder / file)
-            rows.append(f"c{i // 4},demo2026/1,0,n{i % 4},{file},,demo2026/1 case {i // 4},")
+            rows.append(f"c{i // 4},demo2026/1,0,n{i % 4},{file},,demo2026/1 case {i // 4},,{png_sha256},")
         (folder / "images" / "index.csv").write_text("\n".join(rows) + "\n")
-        run("report", folder, data=self.data)
+        self.assertEqual(run("report", folder, data=self.data).returncode, 4)  # cases threw
         seconds = self.open("#demo2026-1", folder)
         print(f"\n{MANY} images, {(folder / 'report.html').stat().st_size / 1e6:.1f} MB of HTML: opened in {seconds:.2f} s", file=sys.stderr)
         self.assertEqual(self.browser.script("return document.querySelectorAll('.gallery img').length"), MANY)
