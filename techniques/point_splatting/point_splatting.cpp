@@ -24,7 +24,6 @@ constexpr Choice<Method> kMethods[] = {
     {Method::Reconstruction, "reconstruction", "the reconstruction filter alone everywhere"},
     {Method::LowPass, "low_pass", "the low-pass filter alone everywhere"},
     {Method::Sprites, "sprites", "opaque squares, as QSplat"},
-    {Method::Compute, "compute", "one pixel per point, by compute shaders"},
     {Method::GlPoints, "gl_points", "one white pixel per point, by a plain draw of positions"},
 };
 constexpr Choice<PointStorage> kStorages[] = {
@@ -49,7 +48,6 @@ std::optional<SplatMode> fixedMode(Method method) {
         case Method::LowPass:
             return SplatMode::LowPass;
         case Method::Sprites:
-        case Method::Compute:
         case Method::GlPoints:
             return SplatMode::Sprite;
     }
@@ -167,10 +165,7 @@ PointSplattingParams::PointSplattingParams(Params& params)
         params.refuseGiven({"c_min", "c_max"}, "'method: adaptive'");
     }
     if (method == Method::GlPoints) {
-        params.refuseGiven({"storage"}, "a method that reads compressed points");
-    }
-    if (method == Method::Compute || method == Method::GlPoints) {
-        params.refuseGiven({"low_pass_radius_px", "cutoff", "visibility_offset"},
+        params.refuseGiven({"storage", "low_pass_radius_px", "cutoff", "visibility_offset"},
                            "a method of splats");
     }
     if (!view.name.empty()) {
@@ -274,10 +269,7 @@ void PointSplatting::setup(technique::SetupContext& context) {
     framedBox_ = framedBox(*model_);
     views_.cameras = context.scene->cameras;
     views_.paths = context.scene->paths;
-    if (params_.method == Method::Compute) {
-        renderer_ = std::make_unique<ComputeSplatter>(context.shaders, *model_,
-                                                      params_.splats.storage, sizePx_);
-    } else if (params_.method == Method::GlPoints) {
+    if (params_.method == Method::GlPoints) {
         renderer_ = std::make_unique<PlainPoints>(context.shaders, *model_, sizePx_);
     } else {
         auto splats =

@@ -9,8 +9,8 @@
 #include "engine/image/image.h"
 #include "engine/scene/point_sampling.h"
 #include "runner/technique/technique.h"
+#include "techniques/point_splatting/plain_points.h"
 #include "techniques/point_splatting/splat_renderer.h"
-#include "techniques/point_splatting/yardsticks.h"
 
 namespace gfxrepro::point_splatting {
 
@@ -20,7 +20,6 @@ enum class Method {
     Reconstruction,
     LowPass,
     Sprites,   // opaque squares, as QSplat
-    Compute,   // one pixel per point, by compute shaders
     GlPoints,  // one pixel per point, by a plain draw
 };
 
@@ -128,7 +127,7 @@ class PointSplatting final : public technique::Technique {
     scene::Box framedBox_;
     scene::Scene views_;  // the scene's cameras and paths
     std::unique_ptr<PointRenderer> renderer_;
-    const SplatRenderer* splats_ = nullptr;  // the same; not of Method::Compute and GlPoints
+    const SplatRenderer* splats_ = nullptr;  // the same; not of Method::GlPoints
 
     PatchView view_;  // of the last frame
     scene::Camera camera_;

@@ -65,7 +65,7 @@ TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
             {"{level: all, fine_radius_px: 1}", "30: 'fine_radius_px' needs 'level: by_size'"},
             {"{silhouette_deg: 91}",
              "18: technique 'point_splatting': silhouette_deg is 91; allowed: 0 … 90 °"},
-            {"{method: compute, cutoff: 3}", "27: 'cutoff' needs a method of splats"},
+            {"{method: gl_points, cutoff: 3}", "29: 'cutoff' needs a method of splats"},
             {"{c_min: 4}", "9: c_min 4 is above c_max 3"},
             {"{patch_points_max: 10}", "1: patch_points_min 64 is above patch_points_max 10"},
             {"{distance: 0}",
@@ -75,7 +75,7 @@ TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
             {"{view: front, distance: 2}", "25: 'distance' needs a 'view' that frames it"},
             {"{method: splats}",
              "10: technique 'point_splatting': method is 'splats'; allowed: adaptive | full_ewa | "
-             "reconstruction | low_pass | sprites | compute | gl_points"},
+             "reconstruction | low_pass | sprites | gl_points"},
             {"{storge: compressed}",
              "2: technique 'point_splatting': unknown parameter 'storge'; did you mean 'storage'?"},
         });
@@ -87,9 +87,9 @@ TEST_F(PointSplattingTest, TheTruthOfAViewIsMadeOnce) {
     const std::size_t bytesOfOne = expectSharedAsAlone(common, {"method: adaptive"}, scene);
     EXPECT_GT(bytesOfOne, 0U);
     // Each of what it is made regardless of.
-    const std::vector<std::string> regardless = {
-        "method: adaptive", "method: full_ewa", "method: low_pass",
-        "method: sprites",  "method: compute",  "method: adaptive, target_radius_px: 0.5"};
+    const std::vector<std::string> regardless = {"method: adaptive", "method: full_ewa",
+                                                 "method: low_pass", "method: sprites",
+                                                 "method: adaptive, target_radius_px: 0.5"};
     EXPECT_EQ(expectSharedAsAlone(common, regardless, scene), bytesOfOne);
     // What decides it.
     const std::vector<std::string> deciding = {
@@ -101,15 +101,12 @@ TEST_F(PointSplattingTest, TheTruthOfAViewIsMadeOnce) {
 
 TEST_F(PointSplattingTest, EveryMethodRunsAndRecords) {
     const scene::Scene scene = bumpySphere(20000);
-    for (const char* method :
-         {"adaptive", "full_ewa", "reconstruction", "low_pass", "sprites", "compute"}) {
+    for (const char* method : {"adaptive", "full_ewa", "reconstruction", "low_pass", "sprites"}) {
         SCOPED_TRACE(method);
         const test::MetricRecorder recorder =
-            recorded(fmt::format("{{method: {}, level: {}, cache: false, errors: true, "
-                                 "pictures: true, compression_errors: true, "
-                                 "points_per_second: true}}",
-                                 // A pixel a point leaves holes in coarse levels.
-                                 method, std::string(method) == "compute" ? "all" : "by_size"),
+            recorded(fmt::format("{{method: {}, cache: false, errors: true, pictures: true, "
+                                 "compression_errors: true, points_per_second: true}}",
+                                 method),
                      &scene);
         const auto& metrics = recorder.metrics;
         EXPECT_EQ(metrics.at("points"), 20000.0);
@@ -154,7 +151,7 @@ TEST_F(PointSplattingTest, PlainPointsAreAsManyAsSpritesAndAPixelEach) {
     EXPECT_GT(pixels, 1000);
     EXPECT_LE(pixels, static_cast<int>(plain.metrics.at("drawn_points")));
     EXPECT_EQ(errorText([&] { recorded("{method: gl_points, storage: compressed}", &scene); }),
-              "case.yaml:1:30: 'storage' needs a method that reads compressed points");
+              "case.yaml:1:30: 'storage' needs a method of splats");
 }
 
 TEST_F(PointSplattingTest, CullingDropsNothingThatIsVisible) {
@@ -299,8 +296,7 @@ TEST_F(PointSplattingTest, DrawsOnePointAndManyAtOnePlace) {
     one.points.positions = {{1, 2, 3}};
     scene::Scene equal;
     equal.points.positions.assign(500, {1, 2, 3});
-    for (const char* method :
-         {"adaptive", "full_ewa", "reconstruction", "low_pass", "sprites", "compute"}) {
+    for (const char* method : {"adaptive", "full_ewa", "reconstruction", "low_pass", "sprites"}) {
         SCOPED_TRACE(method);
         const std::string yaml = fmt::format(
             "{{method: {}, cache: false, pictures: true, errors: true, "

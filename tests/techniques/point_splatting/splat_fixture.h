@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/core/files.h"
+#include "techniques/point_splatting/plain_points.h"
 #include "techniques/point_splatting/splat_renderer.h"
-#include "techniques/point_splatting/yardsticks.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/techniques/point_splatting/point_clouds.h"
 
