@@ -88,17 +88,10 @@ enum class Rule {
     Conservative,  // every voxel whose closed cube meets the triangle
 };
 
-/// How synthesis reads the sheets of x and y; the grids are equal bit by bit.
-enum class Merging {
-    PerVoxel,    // a fetch per voxel. [zju2005] Sec. 2.3.2 (3)
-    Transposed,  // tiles of C³ voxels, a fetch per texel
-    Sparse,      // as Transposed, and only tiles that hold fragments; surfaces only
-};
-
 /// How the worksheet method finds the bits of a voxel.
 enum class Addressing {
     Instructions,  // shifts and masks
-    Tables,        // dependent look-ups. [zju2005] Sec. 2.3.2; synthesis per voxel, one sheet
+    Tables,        // dependent look-ups. [zju2005] Sec. 2.3.2; one sheet
 };
 
 /// What flips the inside flag along a scan line of a solid.
@@ -121,7 +114,6 @@ struct MeshVoxelizerSettings {
     Method method = Method::Worksheet;
     Rule rule = Rule::Rasterized;
     Split split = Split::Once;
-    Merging merging = Merging::Transposed;
     Addressing addressing = Addressing::Instructions;
     FillRule fillRule = FillRule::Crossings;
 };

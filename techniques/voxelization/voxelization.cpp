@@ -55,15 +55,9 @@ constexpr Choice<Split> kSplits[] = {
     {Split::Once, "once", "a static model: split at set-up"},
     {Split::EveryFrame, "every_frame", "a deforming model: split and uploaded every frame"},
 };
-constexpr Choice<Merging> kMergings[] = {
-    {Merging::PerVoxel, "per_voxel", "a fetch per voxel, as the thesis"},
-    {Merging::Transposed, "transposed", "tiles of voxels, a fetch per texel"},
-    {Merging::Sparse, "sparse",
-     "as transposed, and only tiles that hold fragments; not for solids"},
-};
 constexpr Choice<Addressing> kAddressings[] = {
     {Addressing::Instructions, "instructions", "shifts and masks"},
-    {Addressing::Tables, "tables", "look-up textures, as the thesis; with synthesis: per_voxel"},
+    {Addressing::Tables, "tables", "look-up textures, as the thesis"},
 };
 
 /// An integer that is one of `allowed`.
@@ -128,28 +122,14 @@ void checkSolid(const Params& params, const MeshVoxelizerSettings& settings) {
     }
 }
 
-/// How the stages of the worksheet method address voxels; every way makes the same grid.
-void readStages(Params& params, MeshVoxelizerSettings& settings) {
-    const bool isSolid = settings.grid.fill == Fill::Solid;
-    settings.merging =
-        params.getEnum("synthesis", isSolid ? Merging::Transposed : Merging::Sparse, kMergings,
-                       {"how the sheets of x and y are read, for the same grid"});
+/// How the stages of the worksheet method address voxels; either way makes the same grid.
+void readAddressing(Params& params, MeshVoxelizerSettings& settings) {
     settings.addressing = params.getEnum("addressing", Addressing::Instructions, kAddressings,
                                          {"how texelization and synthesis find a voxel's bits"});
     if (settings.method != Method::Worksheet) {
-        params.refuseGiven({"synthesis", "addressing"}, "'method: worksheet'");
+        params.refuseGiven({"addressing"}, "'method: worksheet'");
     }
-    if (isSolid && settings.merging == Merging::Sparse) {
-        throw Error(params.locationOf("synthesis"),
-                    "'synthesis: sparse' skips tiles without a surface, which solids fill; allowed "
-                    "with 'fill: solid': per_voxel, transposed");
-    }
-    if (settings.addressing == Addressing::Instructions) return;
-    if (settings.merging != Merging::PerVoxel) {
-        throw Error(params.locationOf("addressing"),
-                    "'addressing: tables' needs 'synthesis: per_voxel'");
-    }
-    if (settings.grid.layout.layers() > 1) {
+    if (settings.addressing == Addressing::Tables && settings.grid.layout.layers() > 1) {
         throw Error(params.locationOf("addressing"),
                     fmt::format("'addressing: tables' needs a grid of one worksheet; {}³ voxels of "
                                 "{} bits take {}",
@@ -189,7 +169,7 @@ MeshVoxelizerSettings readVoxelizer(Params& params) {
                     "'method: slices' and 'method: depth_only' need 'rule: rasterized'");
     }
     checkSolid(params, settings);
-    readStages(params, settings);
+    readAddressing(params, settings);
     return settings;
 }
 
@@ -239,7 +219,7 @@ struct VoxelizationParams {
             throw Error(params.locationOf("view"), error.what());
         }
         params.refuseGiven({"addressing", "collision", "compare", "csg", "fill_rule", "method",
-                            "offset_b", "padding", "rule", "scene_b", "split", "synthesis"},
+                            "offset_b", "padding", "rule", "scene_b", "split"},
                            "'input: mesh'");
         if (drawing.draw.mode == DrawMode::Mixed) {
             throw Error(params.locationOf("draw"), "'draw: mixed' needs 'input: mesh'");

@@ -9,12 +9,10 @@
 namespace gfxrepro::voxelization {
 namespace {
 
-constexpr int kGroupSize = 64;               // texelize.comp.glsl
-constexpr unsigned kMaxGroups = 4096;        // beyond it an invocation takes several fragments
-constexpr int kFillGroupSize = 8;            // fill.comp.glsl: 8 × 8 columns
-constexpr int kGroupEdge = 8;                // synthesis_per_voxel.comp.glsl: 8 × 8 texels
-constexpr int kInvocationsPerGroup = 64;     // synthesis.comp.glsl
-constexpr unsigned kMaxSparseGroups = 1024;  // beyond it a group takes several sets of tiles
+constexpr int kGroupSize = 64;         // texelize.comp.glsl
+constexpr unsigned kMaxGroups = 4096;  // beyond it an invocation takes several fragments
+constexpr int kFillGroupSize = 8;      // fill.comp.glsl: 8 × 8 columns
+constexpr int kGroupEdge = 8;          // synthesis.comp.glsl: 8 × 8 texels
 
 std::size_t indexOf(Axis axis) {
     return static_cast<std::size_t>(axis);
@@ -164,24 +162,6 @@ class Rasterization {
     FragmentList fragments_;
 };
 
-/// The tiles of C³ voxels that hold fragments (tiles.glsl): how many, a flag each, their indices.
-/// Empty unless synthesis is sparse.
-struct TileList {
-    gl::Buffer buffer;
-    std::size_t capacity = 0;
-
-    TileList() = default;
-    /// A tile is listed by one of its fragments.
-    TileList(const WorksheetLayout& layout, const FragmentList& fragments) {
-        const auto across = static_cast<std::size_t>(layout.slabCount());
-        const std::size_t tiles = across * across * across;
-        for (std::uint32_t listed : fragments.capacities) capacity += listed;
-        capacity = std::max<std::size_t>(std::min(tiles, capacity), 1);
-        const std::size_t flagWords = (tiles + 31) / 32;
-        buffer = gl::Buffer((1 + flagWords + capacity) * sizeof(std::uint32_t));
-    }
-};
-
 /// What texelization and synthesis have in common: the layout, and how voxels are addressed.
 gl::Defines stageDefines(const MeshRequest& request) {
     gl::Defines defines = request.layout().defines();
@@ -192,19 +172,13 @@ gl::Defines stageDefines(const MeshRequest& request) {
 /// Stage 2: fragments become bits of the directional sheets. [zju2005] Sec. 2.2.1, 2.2.2.
 class Texelization {
   public:
-    /// `fragments` holds what rasterization can make of the mesh.
-    Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request,
-                 const FragmentList& fragments) {
+    Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request) {
         gl::Defines defines = stageDefines(request);
         defines["GROUP_SIZE"] = kGroupSize;
         defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
         defines[request.fillsByCrossings() ? "ACCUMULATE_XOR"
                 : request.hasValues()      ? "ACCUMULATE_MAX"
                                            : "ACCUMULATE_OR"] = 1;
-        if (request.settings.merging == Merging::Sparse) {
-            defines["LIST_TILES"] = 1;
-            tiles_ = TileList(request.layout(), fragments);
-        }
         pass_ = gl::Pass(shaders, {"voxelization/texelize.comp.glsl"}, defines);
         const auto n = static_cast<std::size_t>(request.layout().resolution());
         for (gl::Buffer& lines : behind_) lines = gl::Buffer(request.isSolid() ? n * n / 8 : 4);
@@ -214,7 +188,6 @@ class Texelization {
     /// LookupTables::resources(), of Addressing::Tables only.
     void run(const FragmentList& fragments, DirectionalSheets& sheets,
              const gl::Resources& tables) {
-        if (tiles_.capacity > 0) tiles_.buffer.clear();
         for (Axis axis : kAxes) {
             sheets.of(axis).clearToZero();
             behind_[indexOf(axis)].clear();
@@ -225,20 +198,17 @@ class Texelization {
                            gl::Resources{{"sheet", sheets.of(axis)},
                                          {"Records", fragments.records[indexOf(axis)]},
                                          {"Counters", fragments.counters},
-                                         {"Behind", behind_[indexOf(axis)]},
-                                         gl::Resource("Tiles", tiles_.buffer).unordered()}
+                                         {"Behind", behind_[indexOf(axis)]}}
                                .with(tables));
         }
     }
     /// Solid: scan lines whose crossing lies behind the grid, one bit each, for each axis.
     const gl::Buffer& behind(Axis axis) const { return behind_[indexOf(axis)]; }
-    const TileList& tiles() const { return tiles_; }
-    std::size_t sizeBytes() const { return 3 * behind_[0].sizeBytes() + tiles_.buffer.sizeBytes(); }
+    std::size_t sizeBytes() const { return 3 * behind_[0].sizeBytes(); }
 
   private:
     gl::Pass pass_;
     std::array<gl::Buffer, 3> behind_;
-    TileList tiles_;
 };
 
 /// What solid filling found; on the device.
@@ -276,49 +246,29 @@ class SolidFill {
 /// (solid by crossings). [zju2005] Sec. 2.2.1.
 class Synthesis {
   public:
-    Synthesis(const gl::ShaderLibrary& shaders, const MeshRequest& request)
-        : merging_(request.settings.merging),
-          tilesPerGroup_(static_cast<unsigned>(
-              std::min(kInvocationsPerGroup / request.layout().voxelsPerTexel(),
-                       request.layout().slabCount()))) {
+    Synthesis(const gl::ShaderLibrary& shaders, const MeshRequest& request) {
         gl::Defines defines = stageDefines(request);
-        defines["TILES"] = static_cast<int>(tilesPerGroup_);
         defines["GROUP_EDGE"] = kGroupEdge;
-        if (merging_ == Merging::Sparse) defines["SPARSE"] = 1;
         defines[request.fillsByCrossings() ? "COMBINE_MAJORITY"
                 : request.hasValues()      ? "COMBINE_MAX"
                                            : "COMBINE_OR"] = 1;
-        pass_ =
-            gl::Pass(shaders,
-                     {merging_ == Merging::PerVoxel ? "voxelization/synthesis_per_voxel.comp.glsl"
-                                                    : "voxelization/synthesis.comp.glsl"},
-                     defines);
+        pass_ = gl::Pass(shaders, {"voxelization/synthesis.comp.glsl"}, defines);
     }
-    /// `tiles` are texelization's (used by Merging::Sparse only), `statistics` holds
-    /// SolidStatistics (used by solid only), `tables` are as Texelization::run() takes them.
-    void run(const DirectionalSheets& sheets, const TileList& tiles, const gl::Buffer& statistics,
+    /// `statistics` holds SolidStatistics (used by solid only), `tables` are as Texelization::run()
+    /// takes them.
+    void run(const DirectionalSheets& sheets, const gl::Buffer& statistics,
              const gl::Resources& tables) {
         const WorksheetLayout& layout = sheets.grid.layout;
-        const auto slabs = static_cast<unsigned>(layout.slabCount());
-        glm::uvec3 groups(slabs, slabs, slabs / tilesPerGroup_);
-        if (merging_ == Merging::PerVoxel) {
-            groups = {layout.sheetSizePx() / kGroupEdge, layout.layers()};
-        } else if (merging_ == Merging::Sparse) {
-            groups = {std::min(kit::groupsFor(tiles.capacity, tilesPerGroup_), kMaxSparseGroups), 1,
-                      1};
-        }
-        pass_.dispatch(groups, gl::Resources{{"sheetX", sheets.x},
-                                             {"sheetY", sheets.y},
-                                             {"sheet", sheets.grid.sheets},
-                                             {"Statistics", statistics}}
-                                   .with({{"Tiles", tiles.buffer}})
-                                   .with(tables));
+        pass_.dispatch({layout.sheetSizePx() / kGroupEdge, layout.layers()},
+                       gl::Resources{{"sheetX", sheets.x},
+                                     {"sheetY", sheets.y},
+                                     {"sheet", sheets.grid.sheets},
+                                     {"Statistics", statistics}}
+                           .with(tables));
     }
 
   private:
     gl::Pass pass_;
-    Merging merging_;
-    unsigned tilesPerGroup_;
 };
 
 class WorksheetMethod : public MeshMethod {
@@ -326,7 +276,7 @@ class WorksheetMethod : public MeshMethod {
     WorksheetMethod(technique::SetupContext& context, const MeshRequest& request,
                     const DeviceMesh& mesh)
         : rasterization_(context, request, mesh),
-          texelization_(context.shaders, request, rasterization_.fragments()),
+          texelization_(context.shaders, request),
           synthesis_(context.shaders, request),
           sheets_(request),
           takesMajority_(request.fillsByCrossings()) {
@@ -350,7 +300,7 @@ class WorksheetMethod : public MeshMethod {
             solidFill_->run(texelization_, sheets_, statistics_);
         }
         gl::GpuScope scope(profiler, "synthesis");
-        synthesis_.run(sheets_, texelization_.tiles(), statistics_, tables);
+        synthesis_.run(sheets_, statistics_, tables);
     }
 
     const VoxelGrid* grid() const override { return &sheets_.grid; }

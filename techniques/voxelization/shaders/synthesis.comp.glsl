@@ -1,64 +1,56 @@
 #version 450 core
-// Synthesis: merges the directional sheets of x and y into that of z, which becomes the grid.
-// A row of C invocations takes a tile of C × C × C voxels: the sheet of x gives C texels along z for
-// each y, that of y C texels along z for each x; transposed, each is C texels of the z layout. One
-// fetch and one store a texel.
-// Departure [zju2005] Sec. 2.3.2: the thesis fetches a texel for each voxel, as
-// synthesis_per_voxel.comp.glsl does; the grids are equal.
-//  SPARSE  only the tiles that texelization listed; the others are empty in all sheets
+// Synthesis: merges the directional sheets of x and y into that of z, which becomes the grid. Each
+// texel of the z layout fetches its C voxels one by one from the sheets of x and y, of which it knows
+// where they have the first: the others follow by offset. [zju2005] Sec. 2.3.2 (3).
+//  TABLES  the place of the first voxel, and a bit's value, by look-up textures
 #include "voxelization/worksheet.glsl"
 #include "voxelization/combine.glsl"
-#include "voxelization/transpose.glsl"
-#ifdef SPARSE
-#include "voxelization/tiles.glsl"
+#ifdef TABLES
+#include "voxelization/lookup_tables.glsl"
 #endif
 
-layout(local_size_x = VOXELS_PER_TEXEL, local_size_y = TILES) in;
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-const int C = VOXELS_PER_TEXEL;
+// Where a sheet has a texel's first voxel: the texel, and in its word the byte and bit of a byte.
+struct Place {
+    ivec3 texel;
+    uvec2 bits;
+};
 
-shared uint tileOfX[TILES][C][C];  // [tile][x][y]: texels of the z layout
-
-// Texels of the z layout out of the sheet of x, for the group's other invocations.
-void shareX(ivec3 slabs, int lane, int tile) {
-    uint words[C];
-    ivec3 corner = worksheetPatch(slabs.x) + ivec3(slabs.yz * C, 0);  // local (y, z, x)
-    for (int i = 0; i < C; ++i) words[i] = imageLoad(sheetX, corner + ivec3(lane, i, 0)).r;
-    transpose(words);
-    for (int i = 0; i < C; ++i) tileOfX[tile][i][lane] = words[i];
+#ifdef TABLES
+Place placeOf(uvec4 entry) { return Place(ivec3(entry.xy, 0), entry.zw); }
+uint voxelAt(uint word, Place place) { return lookedUpVoxel(word, place.bits.x, place.bits.y); }
+#else
+Place placeOf(ivec3 local) {
+    uint shift = uint(worksheetShift(local.z));
+    return Place(worksheetTexel(local), uvec2(shift / 8u, shift % 8u));
 }
-
-void merge(ivec3 slabs, int lane, int tile) {
-    uint words[C];
-    ivec3 corner = worksheetPatch(slabs.y) + ivec3(slabs.zx * C, 0);  // local (z, x, y)
-    for (int i = 0; i < C; ++i) words[i] = imageLoad(sheetY, corner + ivec3(i, lane, 0)).r;
-    transpose(words);
-    corner = worksheetPatch(slabs.z) + ivec3(slabs.xy * C, 0);
-    for (int i = 0; i < C; ++i) {
-        ivec3 texel = corner + ivec3(lane, i, 0);
-        uint z = imageLoad(sheet, texel).r;
-        uint result = combined(tileOfX[tile][lane][i], words[i], z);
-        if (result != z) imageStore(sheet, texel, uvec4(result));
-    }
+uint voxelAt(uint word, Place place) {
+    return (word >> (8u * place.bits.x + place.bits.y)) & LANE_MASK;
 }
+#endif
 
 void main() {
-    int lane = int(gl_LocalInvocationID.x);
-    int tile = int(gl_LocalInvocationID.y);
-#ifdef SPARSE
-    uint total = tileCount;
-    for (uint first = gl_WorkGroupID.x * TILES; first < total; first += gl_NumWorkGroups.x * TILES) {
-        uint index = first + uint(tile);
-        ivec3 slabs = index < total ? listedTile(index) : ivec3(0);
-        if (index < total) shareX(slabs, lane, tile);
-        barrier();
-        if (index < total) merge(slabs, lane, tile);
-        barrier();  // the next tiles take the same shared words
-    }
+    ivec3 texel = ivec3(gl_GlobalInvocationID);
+#ifdef TABLES
+    Place inX = placeOf(texelFetch(xFromZ, texel.xy, 0));
+    Place inY = placeOf(texelFetch(yFromZ, texel.xy, 0));
 #else
-    ivec3 slabs = ivec3(gl_WorkGroupID.xy, int(gl_WorkGroupID.z) * TILES + tile);
-    shareX(slabs, lane, tile);
-    barrier();
-    merge(slabs, lane, tile);
+    ivec2 patchXY = texel.xy / RESOLUTION;
+    int slab = texel.z * PATCHES_PER_SHEET + patchXY.y * PATCHES_X + patchXY.x;
+    ivec3 voxel = ivec3(texel.xy % RESOLUTION, slab * VOXELS_PER_TEXEL);
+    Place inX = placeOf(localFromVolume(0, voxel));
+    Place inY = placeOf(localFromVolume(1, voxel));
 #endif
+    uint x = 0u;
+    uint y = 0u;
+    for (int k = 0; k < VOXELS_PER_TEXEL; ++k) {  // along z: rows of x's sheet, columns of y's
+        uint wordX = imageLoad(sheetX, inX.texel + ivec3(0, k, 0)).r;
+        uint wordY = imageLoad(sheetY, inY.texel + ivec3(k, 0, 0)).r;
+        x |= voxelAt(wordX, inX) << worksheetShift(k);
+        y |= voxelAt(wordY, inY) << worksheetShift(k);
+    }
+    uint z = imageLoad(sheet, texel).r;
+    uint result = combined(x, y, z);
+    if (result != z) imageStore(sheet, texel, uvec4(result));
 }

@@ -2,14 +2,10 @@
 // Texelization: each fragment's voxel goes to its place in the directional sheet of its axis. The
 // cost depends on the fragments, hence on the resolution, not on the triangles.
 // [zju2005] Sec. 2.2.1, 2.2.2. Reads the fragment list, writes the sheet (cleared before).
-// With LIST_TILES it lists the tiles that hold fragments for a sparse synthesis; with TABLES a bit's
-// place in its byte is looked up.
+// With TABLES a bit's place in its byte is looked up.
 // With ACCUMULATE_XOR a toggle at w = N, behind the grid, goes to `behind`, one bit a scan line.
 #include "voxelization/worksheet.glsl"
 #include "voxelization/accumulate.glsl"
-#ifdef LIST_TILES
-#include "voxelization/tiles.glsl"
-#endif
 
 layout(local_size_x = GROUP_SIZE) in;
 
@@ -41,9 +37,6 @@ void main() {
         accumulate(local, records[2u * i + 1u]);
 #else
         accumulate(local, LANE_MASK);
-#endif
-#ifdef LIST_TILES
-        listTileOf(volumeFromLocal(axis, local));
 #endif
     }
 }

@@ -91,13 +91,11 @@ TEST_F(SolidTest, EqualsTheReference) {
     }
 }
 
-TEST_F(SolidTest, EverySynthesisMakesTheSameSolid) {
+TEST_F(SolidTest, TablesMakeTheSameSolid) {
     const scene::Mesh mesh = shapes::torus(glm::vec3(0), 0.7F, 0.3F, 60, 30);
     for (const int bits : {1, 8, 16, 32}) {
         auto s = solid(64, bits);
         const DenseGrid expected = voxelize(mesh, s).grid;
-        s.merging = Merging::PerVoxel;
-        EXPECT_EQ(voxelize(mesh, s).grid, expected) << bits;
         s.addressing = Addressing::Tables;
         EXPECT_EQ(voxelize(mesh, s).grid, expected) << bits;
     }
@@ -117,14 +115,10 @@ TEST_F(SolidTest, FlippingAtVoxelsFillsACube) {
     const scene::Mesh cube = shapes::cube(glm::vec3(1.2F), glm::vec3(28.8F));
     const scene::Box box{glm::vec3(0.0F), glm::vec3(32.0F)};
     for (const int bits : {1, 8, 16, 32}) {
-        for (const Merging merging : {Merging::Transposed, Merging::PerVoxel}) {
-            auto s = byVoxels(32, bits);
-            s.merging = merging;
-            const Voxelized result = voxelize(cube, s, box);
-            EXPECT_EQ(result.grid.countFull(), 28U * 28 * 28) << bits;
-            EXPECT_EQ(result.metrics.at("ambiguous_scan_lines"), 0.0);
-            EXPECT_FALSE(result.metrics.contains("disagreeing_voxels"));
-        }
+        const Voxelized result = voxelize(cube, byVoxels(32, bits), box);
+        EXPECT_EQ(result.grid.countFull(), 28U * 28 * 28) << bits;
+        EXPECT_EQ(result.metrics.at("ambiguous_scan_lines"), 0.0);
+        EXPECT_FALSE(result.metrics.contains("disagreeing_voxels"));
     }
 }
 

@@ -61,16 +61,11 @@ TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
              "37: 'fill: solid' needs 'value: occupancy'"},
             {"{method: slices, rule: thin}",
              "24: 'method: slices' and 'method: depth_only' need 'rule: rasterized'"},
-            {"{method: slices, rule: rasterized, synthesis: sparse}",
-             "47: 'synthesis' needs 'method: worksheet'"},
-            {"{fill: solid, synthesis: sparse}",
-             "26: 'synthesis: sparse' skips tiles without a surface, which solids fill; allowed "
-             "with 'fill: solid': per_voxel, transposed"},
-            {"{addressing: tables}", "14: 'addressing: tables' needs 'synthesis: per_voxel'"},
-            {"{addressing: tables, synthesis: per_voxel, voxel_bits: 32}",
+            {"{method: slices, addressing: tables}", "30: 'addressing' needs 'method: worksheet'"},
+            {"{addressing: tables, voxel_bits: 32}",
              "14: 'addressing: tables' needs a grid of one worksheet; 256³ voxels of 32 bits take "
              "4"},
-            {"{addressing: tables, synthesis: per_voxel}", ""},
+            {"{addressing: tables}", ""},
             {"box_min: [0, 0, 0]", "10: box_min and box_max must be given together"},
             {"{box_min: [0, 0, 0], box_max: [1, 2, 1]}",
              "31: the box must be cubic and not empty; it is 1 × 2 × 1"},
@@ -149,9 +144,8 @@ TEST_F(VoxelizationTest, DigestTellsGridsApart) {
     const auto first = run("{resolution: 32}", sphere_);
     EXPECT_EQ(run("{resolution: 32}", sphere_).at("digest"), first.at("digest"));
     EXPECT_EQ(run("{resolution: 32, method: direct}", sphere_).at("digest"), first.at("digest"));
-    EXPECT_EQ(
-        run("{resolution: 32, synthesis: per_voxel, addressing: tables}", sphere_).at("digest"),
-        first.at("digest"));
+    EXPECT_EQ(run("{resolution: 32, addressing: tables}", sphere_).at("digest"),
+              first.at("digest"));
     EXPECT_NE(run("{resolution: 32, fill: solid}", sphere_).at("digest"), first.at("digest"));
 }
 

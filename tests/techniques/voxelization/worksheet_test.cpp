@@ -118,39 +118,6 @@ void main() {
     }
 }
 
-TEST_F(WorksheetGlTest, TransposesVoxelsOfWords) {
-    const ShaderFolder folder(R"(#version 450 core
-#include "voxelization/transpose.glsl"
-layout(local_size_x = 1) in;
-layout(std430) buffer Words { uint data[]; };
-void main() {
-    uint words[VOXELS_PER_TEXEL];
-    for (int i = 0; i < VOXELS_PER_TEXEL; ++i) words[i] = data[i];
-    transpose(words);
-    for (int i = 0; i < VOXELS_PER_TEXEL; ++i) data[i] = words[i];
-}
-)");
-    Random random(7);
-    for (const int bits : kVoxelBits) {
-        const WorksheetLayout layout(32, bits);
-        const int c = layout.voxelsPerTexel();
-        std::vector<std::uint32_t> words;
-        for (int i = 0; i < c; ++i) words.push_back(random.next());
-        const gl::Buffer buffer = gl::Buffer::of(words);
-        folder.pass(layout.defines()).dispatch({1, 1, 1}, {{"Words", buffer}});
-        const auto result = buffer.read<std::uint32_t>(static_cast<std::size_t>(c));
-        for (int i = 0; i < c; ++i) {
-            for (int j = 0; j < c; ++j) {
-                const auto lane = [&](std::uint32_t word, int k) {
-                    return (word >> (k * bits)) & layout.laneMask();
-                };
-                EXPECT_EQ(lane(result[static_cast<std::size_t>(i)], j),
-                          lane(words[static_cast<std::size_t>(j)], i));
-            }
-        }
-    }
-}
-
 TEST_F(WorksheetGlTest, ShaderValuesEqualTheCpus) {
     const ShaderFolder folder(R"(#version 450 core
 #include "voxelization/voxel_value.glsl"
