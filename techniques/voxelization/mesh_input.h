@@ -102,7 +102,7 @@ enum class FillRule {
 
 enum class Method {
     Worksheet,  // rasterization, texelization, synthesis
-    Direct,     // one pass: fragments write their voxel with an image atomic
+    Direct,     // one pass: each voxel is written with an image atomic
     Slices,     // the mesh is drawn once a slice. [zju2005] Sec. 2.5.3
     DepthOnly,  // no grid: a depth-only draw, the yardstick
 };
@@ -111,8 +111,8 @@ enum class Split { Once, EveryFrame };
 
 struct MeshVoxelizerSettings {
     GridSettings grid;
-    Method method = Method::Worksheet;
-    Rule rule = Rule::Rasterized;
+    Method method = Method::Direct;
+    Rule rule = Rule::Thin;
     Split split = Split::Once;
     Addressing addressing = Addressing::Instructions;
     FillRule fillRule = FillRule::Crossings;
@@ -126,13 +126,11 @@ struct MeshRequest {
 
     const WorksheetLayout& layout() const { return settings.grid.layout; }
     bool isSolid() const { return settings.grid.fill == Fill::Solid; }
-    /// Decided on the lattice, not by the hardware.
+    /// Decided on the lattice, not by the hardware: Method::Direct.
     bool isExact() const {
-        return isSolid() ? fillsByCrossings() : settings.rule != Rule::Rasterized;
+        return isSolid() ? settings.fillRule == FillRule::Crossings
+                         : settings.rule != Rule::Rasterized;
     }
-    bool fillsByCrossings() const { return isSolid() && settings.fillRule == FillRule::Crossings; }
-    /// Every triangle is drawn along every axis, not only along its dominant one.
-    bool drawsAllAxes() const { return settings.rule == Rule::Thin || isSolid(); }
     /// The largest value of a voxel wins (its bits are not simply OR-ed).
     bool hasValues() const { return settings.grid.value != VoxelValue::Occupancy; }
 };
@@ -150,7 +148,7 @@ struct DeviceMesh {
     /// Replaces the indices: the dynamic index buffer of [zju2005] Sec. 2.3.1.
     void update(const AxisSplit& split);
     TriangleRange allTriangles() const { return {0, ranges[2].first + ranges[2].count}; }
-    /// For the exact rules' passes; the others have the vertex array.
+    /// For the exact rules' passes; draws have the vertex array.
     gl::Resources resources() const;
     /// Draws these triangles with the program in use, in pieces: the memory that a software device
     /// takes for a draw then does not grow with the mesh.
@@ -165,29 +163,24 @@ enum class DrawTarget {
     GridSlice,     // as Grid, one slice of the drawn axis at a time
 };
 
-/// Draws a mesh along an axis so that its fragments become voxels: the part that rasterization and
-/// the one-pass baselines share.
+/// Draws a mesh along an axis so that its fragments become voxels (Rule::Rasterized): the part that
+/// rasterization and the one-pass baselines share.
 class MeshDraw {
   public:
     MeshDraw(const gl::ShaderLibrary& shaders, const MeshRequest& request, DrawTarget target);
 
+    /// To be used with what the DrawTarget names, for the draws that follow. Not before each of
+    /// them where that stays: llvmpipe finishes what was drawn when an image is bound again.
     const gl::Pass& pass() const { return pass_; }
-    /// For the draws that follow; `target` is what the DrawTarget names. Not before each of them
-    /// where it stays: llvmpipe finishes what was drawn when an image is bound again.
-    void use(const DeviceMesh& mesh, const gl::Resources& target) const;
-    /// Draws the triangles that the rule projects along `axis`, into an N × N framebuffer without
+    /// Draws the triangles of the axis, of solids all, into an N × N framebuffer without
     /// attachments. Slices: the pass's uniform `slice` says which one.
     void draw(const DeviceMesh& mesh, Axis axis) const;
 
   private:
-    void drawExact(const DeviceMesh& mesh, Axis axis) const;
-
     gl::Pass pass_;
     gl::Framebuffer framebuffer_;
-    gl::VertexArray noAttributes_;
     glm::vec3 boxCentreWorld_;
     float clipFromWorldScale_;
-    bool isExact_;
     bool drawsAllAxes_;
 };
 

@@ -5,11 +5,11 @@
 namespace gfxrepro::voxelization {
 namespace {
 
-/// Image atomics straight into the grid, no directional sheets: the modern comparator in one pass,
-/// or, as [zju2005] Sec. 2.5.3 has it, the whole mesh drawn once per slice, N times in all.
-/// Departure [zju2005] Sec. 2.5.3: triangles outside the slice are culled, not clipped, and a
-/// fragment's depth decides; clipping would move the edges, and each triangle keeps its own axis,
-/// so that the result is the same grid.
+/// Image atomics straight into the grid, no directional sheets: in one pass, or, as [zju2005]
+/// Sec. 2.5.3 has it, the whole mesh drawn once per slice, N times in all. Departure [zju2005]
+/// Sec. 2.5.3: triangles outside the slice are culled, not clipped, and a fragment's depth decides;
+/// clipping would move the edges, and each triangle keeps its own axis, so that the result is the
+/// same grid.
 class GridMethod : public MeshMethod {
   public:
     GridMethod(technique::SetupContext& context, const MeshRequest& request, DrawTarget target)
@@ -20,7 +20,7 @@ class GridMethod : public MeshMethod {
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
         gl::GpuScope scope(profiler, "voxelization");
         grid_.sheets.clearToZero();
-        draw_.use(mesh, {{"sheet", grid_.sheets}});
+        draw_.pass().use({{"sheet", grid_.sheets}});
         for (int slice = 0; slice < drawCount_; ++slice) {
             draw_.pass().setIfActive("slice", slice);
             for (Axis axis : kAxes) draw_.draw(mesh, axis);
@@ -76,6 +76,7 @@ std::unique_ptr<MeshMethod> makeMethod(technique::SetupContext& context, const M
         case Method::Worksheet:
             break;
         case Method::Direct:
+            if (request.isExact()) return makeExactMethod(context, request, mesh);
             return std::make_unique<GridMethod>(context, request, DrawTarget::Grid);
         case Method::Slices:
             return std::make_unique<GridMethod>(context, request, DrawTarget::GridSlice);

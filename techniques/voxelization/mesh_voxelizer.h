@@ -27,8 +27,8 @@ class MeshVoxelizer : public GridSource {
     void setup(technique::SetupContext& context) override;
     void render(gl::Profiler& profiler) override;
     const VoxelGrid* grid() const override { return method_->grid(); }
-    /// fragments, memory_bytes; solid: ambiguous_scan_lines, by crossings disagreeing_voxels.
-    /// Throws Error for a solid of an open mesh when those are to be refused.
+    /// memory_bytes; of worksheets fragments; solid: ambiguous_scan_lines, by crossings
+    /// disagreeing_voxels.
     void record(technique::Recorder& recorder) override;
 
   private:
@@ -41,5 +41,8 @@ class MeshVoxelizer : public GridSource {
 /// Method::Worksheet.
 std::unique_ptr<MeshMethod> makeWorksheetMethod(technique::SetupContext& context,
                                                 const MeshRequest& request, const DeviceMesh& mesh);
+/// Method::Direct of what MeshRequest::isExact().
+std::unique_ptr<MeshMethod> makeExactMethod(technique::SetupContext& context,
+                                            const MeshRequest& request, const DeviceMesh& mesh);
 
 }  // namespace gfxrepro::voxelization

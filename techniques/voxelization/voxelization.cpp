@@ -28,7 +28,7 @@ constexpr Choice<InputKind> kInputs[] = {
     {InputKind::Parametric, "parametric", "a surface (x, y, z)(u, v) (section 2.4.1)"},
 };
 constexpr Choice<Method> kMethods[] = {
-    {Method::Worksheet, "worksheet", "rasterization, texelization and synthesis of worksheets"},
+    {Method::Worksheet, "worksheet", "the thesis's: rasterization, texelization and synthesis"},
     {Method::Direct, "direct", "one pass with image atomics into the grid"},
     {Method::Slices, "slices", "the mesh is drawn once per slice (section 2.5.3)"},
     {Method::DepthOnly, "depth_only", "no grid: a depth-only draw, the yardstick of speed"},
@@ -98,7 +98,7 @@ std::optional<scene::Box> readBox(Params& params) {
     return scene::Box{minimum, minimum + static_cast<float>(longest)};
 }
 
-/// Solids are decided along scan lines, in the worksheets, and say occupancy only.
+/// Solids are decided along scan lines, and say occupancy only.
 void checkSolid(const Params& params, const MeshVoxelizerSettings& settings) {
     if (settings.grid.fill != Fill::Solid) {
         params.refuseGiven({"fill_rule"}, "'fill: solid'");
@@ -114,8 +114,10 @@ void checkSolid(const Params& params, const MeshVoxelizerSettings& settings) {
                         : "'fill_rule: surface_voxels' flips at rasterized voxels; leave "
                           "'rule' out or give 'rasterized'");
     }
-    if (settings.method != Method::Worksheet) {
-        throw Error(params.locationOf("method"), "'fill: solid' needs 'method: worksheet'");
+    if (settings.method != (isByCrossings ? Method::Direct : Method::Worksheet)) {
+        throw Error(params.locationOf("method"),
+                    isByCrossings ? "'fill_rule: crossings' needs 'method: direct'"
+                                  : "'fill_rule: surface_voxels' needs 'method: worksheet'");
     }
     if (settings.grid.value != VoxelValue::Occupancy) {
         throw Error(params.locationOf("value"), "'fill: solid' needs 'value: occupancy'");
@@ -151,11 +153,13 @@ MeshVoxelizerSettings readVoxelizer(Params& params) {
     settings.grid.fill = params.getEnum("fill", Fill::Surface, kFills, {"which voxels are full"});
     settings.fillRule = params.getEnum("fill_rule", FillRule::Crossings, kFillRules,
                                        {"what flips the inside flag along a solid's scan lines"});
-    settings.method = params.getEnum("method", Method::Worksheet, kMethods, {"what is measured"});
-    const bool isRasterizedOnly =
-        settings.method == Method::Slices || settings.method == Method::DepthOnly;
-    settings.rule = params.getEnum("rule", isRasterizedOnly ? Rule::Rasterized : Rule::Thin, kRules,
-                                   {"which voxels a triangle fills (surface)"});
+    const bool isFlipped =
+        settings.grid.fill == Fill::Solid && settings.fillRule == FillRule::SurfaceVoxels;
+    settings.method = params.getEnum("method", isFlipped ? Method::Worksheet : Method::Direct,
+                                     kMethods, {"what is measured"});
+    settings.rule =
+        params.getEnum("rule", settings.method == Method::Direct ? Rule::Thin : Rule::Rasterized,
+                       kRules, {"which voxels a triangle fills (surface)"});
     settings.split =
         params.getEnum("split", Split::Once, kSplits, {"when the index buffer is split by axis"});
     if (settings.grid.value != VoxelValue::Occupancy && voxelBits == 1) {
@@ -164,11 +168,11 @@ MeshVoxelizerSettings readVoxelizer(Params& params) {
             "a voxel of 1 bit says occupancy only; allowed with 'value: normal': voxel_bits "
             "8, 16 or 32");
     }
-    if (isRasterizedOnly && settings.rule != Rule::Rasterized) {
-        throw Error(params.locationOf("rule"),
-                    "'method: slices' and 'method: depth_only' need 'rule: rasterized'");
-    }
     checkSolid(params, settings);
+    if (settings.method != Method::Direct && settings.rule != Rule::Rasterized) {
+        throw Error(params.locationOf("rule"),
+                    "'rule: thin' and 'rule: conservative' need 'method: direct'");
+    }
     readAddressing(params, settings);
     return settings;
 }

@@ -131,13 +131,13 @@ class Rasterization {
         }
     }
 
-    /// Draws the mesh once, in three parts (thin and solid: once an axis).
+    /// Draws the mesh once, in three parts (solid: once an axis).
     void run(const DeviceMesh& mesh) {
         fragments_.counters.clear();
         for (Axis axis : kAxes) {
             draw_.pass().set("fragmentCapacity", fragments_.capacities[indexOf(axis)]);
-            draw_.use(mesh, {{"Records", fragments_.records[indexOf(axis)]},
-                             gl::Resource("Counters", fragments_.counters).unordered()});
+            draw_.pass().use({{"Records", fragments_.records[indexOf(axis)]},
+                              gl::Resource("Counters", fragments_.counters).unordered()});
             draw_.draw(mesh, axis);
         }
     }
@@ -176,12 +176,8 @@ class Texelization {
         gl::Defines defines = stageDefines(request);
         defines["GROUP_SIZE"] = kGroupSize;
         defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
-        defines[request.fillsByCrossings() ? "ACCUMULATE_XOR"
-                : request.hasValues()      ? "ACCUMULATE_MAX"
-                                           : "ACCUMULATE_OR"] = 1;
+        defines[request.hasValues() ? "ACCUMULATE_MAX" : "ACCUMULATE_OR"] = 1;
         pass_ = gl::Pass(shaders, {"voxelization/texelize.comp.glsl"}, defines);
-        const auto n = static_cast<std::size_t>(request.layout().resolution());
-        for (gl::Buffer& lines : behind_) lines = gl::Buffer(request.isSolid() ? n * n / 8 : 4);
     }
 
     /// Clears the three sheets and writes every fragment's voxel. `tables`:
@@ -190,81 +186,63 @@ class Texelization {
              const gl::Resources& tables) {
         for (Axis axis : kAxes) {
             sheets.of(axis).clearToZero();
-            behind_[indexOf(axis)].clear();
             const std::uint32_t capacity = fragments.capacities[indexOf(axis)];
             pass_.set("axis", static_cast<int>(axis));
             pass_.set("fragmentCapacity", capacity);
             pass_.dispatch({std::min(kit::groupsFor(capacity, kGroupSize), kMaxGroups), 1, 1},
                            gl::Resources{{"sheet", sheets.of(axis)},
                                          {"Records", fragments.records[indexOf(axis)]},
-                                         {"Counters", fragments.counters},
-                                         {"Behind", behind_[indexOf(axis)]}}
+                                         {"Counters", fragments.counters}}
                                .with(tables));
         }
     }
-    /// Solid: scan lines whose crossing lies behind the grid, one bit each, for each axis.
-    const gl::Buffer& behind(Axis axis) const { return behind_[indexOf(axis)]; }
-    std::size_t sizeBytes() const { return 3 * behind_[0].sizeBytes(); }
 
   private:
     gl::Pass pass_;
-    std::array<gl::Buffer, 3> behind_;
 };
 
-/// What solid filling found; on the device.
-struct SolidStatistics {
-    std::uint32_t ambiguousScanLines = 0;  // over the three axes
-    std::uint32_t disagreeingVoxels = 0;   // where the three axes differ
-};
-
-/// Solid only: turns the crossings (or surface voxels) in the sheets into inside flags, scan line
-/// by scan line. [zju2005] Sec. 2.2.3.
+/// Solid only: turns the surface's voxels in the sheets into inside flags, scan line by scan line.
+/// [zju2005] Sec. 2.2.3.
 class SolidFill {
   public:
     SolidFill(const gl::ShaderLibrary& shaders, const MeshRequest& request)
         : groupsAcross_(static_cast<unsigned>(request.layout().resolution() / kFillGroupSize)) {
-        gl::Defines defines = request.layout().defines();
-        if (!request.fillsByCrossings()) defines["FLIP_AT_VOXELS"] = 1;
-        pass_ = gl::Pass(shaders, {"voxelization/fill.comp.glsl"}, defines);
+        pass_ = gl::Pass(shaders, {"voxelization/fill.comp.glsl"}, request.layout().defines());
     }
-    void run(const Texelization& texelization, DirectionalSheets& sheets, gl::Buffer& statistics) {
-        statistics.clear();
+    void run(DirectionalSheets& sheets) {
+        openLines_.clear();
         for (Axis axis : kAxes) {
-            pass_.dispatch({groupsAcross_, groupsAcross_, 1},
-                           {{"sheet", sheets.of(axis)},
-                            {"Behind", texelization.behind(axis)},
-                            gl::Resource("Statistics", statistics).unordered()});
+            pass_.dispatch(
+                {groupsAcross_, groupsAcross_, 1},
+                {{"sheet", sheets.of(axis)}, gl::Resource("Statistics", openLines_).unordered()});
         }
     }
+    /// Of the last run; waits for the device.
+    std::uint32_t ambiguousScanLines() const { return openLines_.read<std::uint32_t>(1).front(); }
 
   private:
     gl::Pass pass_;
+    gl::Buffer openLines_ = gl::Buffer(sizeof(std::uint32_t));  // over the three axes
     unsigned groupsAcross_;
 };
 
-/// Stage 3: merges the sheets of x and y into the grid's: OR, the largest value, or the majority
-/// (solid by crossings). [zju2005] Sec. 2.2.1.
+/// Stage 3: merges the sheets of x and y into the grid's: OR, or the largest value.
+/// [zju2005] Sec. 2.2.1.
 class Synthesis {
   public:
     Synthesis(const gl::ShaderLibrary& shaders, const MeshRequest& request) {
         gl::Defines defines = stageDefines(request);
         defines["GROUP_EDGE"] = kGroupEdge;
-        defines[request.fillsByCrossings() ? "COMBINE_MAJORITY"
-                : request.hasValues()      ? "COMBINE_MAX"
-                                           : "COMBINE_OR"] = 1;
+        if (request.hasValues()) defines["VALUES"] = 1;
         pass_ = gl::Pass(shaders, {"voxelization/synthesis.comp.glsl"}, defines);
     }
-    /// `statistics` holds SolidStatistics (used by solid only), `tables` are as Texelization::run()
-    /// takes them.
-    void run(const DirectionalSheets& sheets, const gl::Buffer& statistics,
-             const gl::Resources& tables) {
+    /// `tables` are as Texelization::run() takes them.
+    void run(const DirectionalSheets& sheets, const gl::Resources& tables) {
         const WorksheetLayout& layout = sheets.grid.layout;
-        pass_.dispatch({layout.sheetSizePx() / kGroupEdge, layout.layers()},
-                       gl::Resources{{"sheetX", sheets.x},
-                                     {"sheetY", sheets.y},
-                                     {"sheet", sheets.grid.sheets},
-                                     {"Statistics", statistics}}
-                           .with(tables));
+        pass_.dispatch(
+            {layout.sheetSizePx() / kGroupEdge, layout.layers()},
+            gl::Resources{{"sheetX", sheets.x}, {"sheetY", sheets.y}, {"sheet", sheets.grid.sheets}}
+                .with(tables));
     }
 
   private:
@@ -278,8 +256,7 @@ class WorksheetMethod : public MeshMethod {
         : rasterization_(context, request, mesh),
           texelization_(context.shaders, request),
           synthesis_(context.shaders, request),
-          sheets_(request),
-          takesMajority_(request.fillsByCrossings()) {
+          sheets_(request) {
         if (request.settings.addressing == Addressing::Tables) tables_.emplace(request.layout());
         if (request.isSolid()) solidFill_.emplace(context.shaders, request);
     }
@@ -297,10 +274,10 @@ class WorksheetMethod : public MeshMethod {
         }
         if (solidFill_) {
             gl::GpuScope scope(profiler, "fill");
-            solidFill_->run(texelization_, sheets_, statistics_);
+            solidFill_->run(sheets_);
         }
         gl::GpuScope scope(profiler, "synthesis");
-        synthesis_.run(sheets_, statistics_, tables);
+        synthesis_.run(sheets_, tables);
     }
 
     const VoxelGrid* grid() const override { return &sheets_.grid; }
@@ -308,17 +285,11 @@ class WorksheetMethod : public MeshMethod {
     void record(technique::Recorder& recorder) override {
         const std::size_t fragments = rasterization_.checkedCount();
         recorder.metric("fragments", static_cast<double>(fragments));
-        if (!solidFill_) return;
-        const SolidStatistics found = statistics_.read<SolidStatistics>(1).front();
-        recorder.metric("ambiguous_scan_lines", found.ambiguousScanLines);
-        if (takesMajority_) {
-            recorder.metric("disagreeing_voxels", found.disagreeingVoxels);
-        }
+        if (solidFill_) recorder.metric("ambiguous_scan_lines", solidFill_->ambiguousScanLines());
     }
 
     std::size_t sizeBytes() const override {
         return 3 * sheets_.grid.layout.sizeBytes() + rasterization_.fragments().sizeBytes() +
-               texelization_.sizeBytes() + statistics_.sizeBytes() +
                (tables_ ? tables_->sizeBytes() : 0);
     }
 
@@ -329,8 +300,6 @@ class WorksheetMethod : public MeshMethod {
     std::optional<SolidFill> solidFill_;
     Synthesis synthesis_;
     DirectionalSheets sheets_;
-    gl::Buffer statistics_ = gl::Buffer(sizeof(SolidStatistics));
-    bool takesMajority_;
 };
 
 }  // namespace

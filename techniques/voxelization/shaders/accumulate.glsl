@@ -1,8 +1,8 @@
 // Puts a voxel's value into a worksheet. Any order of the calls gives the same sheet: bits are
-// OR-ed or XOR-ed, values take the largest.
+// OR-ed, values take the largest.
 // Departure [zju2005] Sec. 2.3.2: the thesis adds the bit by alpha blending, which carries into the
 // next voxel when a voxel is hit twice; image atomics do not.
-// Defines: ACCUMULATE_OR, ACCUMULATE_XOR or ACCUMULATE_MAX.
+// Defines: ACCUMULATE_OR or ACCUMULATE_MAX.
 
 #ifdef TABLES
 #include "voxelization/lookup_tables.glsl"
@@ -19,8 +19,6 @@ void accumulate(ivec3 local, uint value) {
 #else
     imageAtomicOr(sheet, texel, value << shift);
 #endif
-#elif defined(ACCUMULATE_XOR)
-    imageAtomicXor(sheet, texel, value << shift);
 #elif VOXEL_BITS == 32
     imageAtomicMax(sheet, texel, value);
 #else

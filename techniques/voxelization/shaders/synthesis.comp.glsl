@@ -3,13 +3,30 @@
 // texel of the z layout fetches its C voxels one by one from the sheets of x and y, of which it knows
 // where they have the first: the others follow by offset. [zju2005] Sec. 2.3.2 (3).
 //  TABLES  the place of the first voxel, and a bit's value, by look-up textures
+//  VALUES  the largest value of a voxel stays; else the bits are OR-ed
 #include "voxelization/worksheet.glsl"
-#include "voxelization/combine.glsl"
 #ifdef TABLES
 #include "voxelization/lookup_tables.glsl"
 #endif
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+layout(r32ui) uniform restrict readonly uimage2DArray sheetX;
+layout(r32ui) uniform restrict readonly uimage2DArray sheetY;
+layout(r32ui) uniform restrict uimage2DArray sheet;
+
+uint combined(uint x, uint y, uint z) {
+#ifdef VALUES
+    uint result = 0u;
+    for (int w = 0; w < VOXELS_PER_TEXEL; ++w) {
+        uint largest = max(voxelOfWord(x, w), max(voxelOfWord(y, w), voxelOfWord(z, w)));
+        result |= largest << worksheetShift(w);
+    }
+    return result;
+#else
+    return x | y | z;
+#endif
+}
 
 // Where a sheet has a texel's first voxel: the texel, and in its word the byte and bit of a byte.
 struct Place {

@@ -3,7 +3,6 @@
 // cost depends on the fragments, hence on the resolution, not on the triangles.
 // [zju2005] Sec. 2.2.1, 2.2.2. Reads the fragment list, writes the sheet (cleared before).
 // With TABLES a bit's place in its byte is looked up.
-// With ACCUMULATE_XOR a toggle at w = N, behind the grid, goes to `behind`, one bit a scan line.
 #include "voxelization/worksheet.glsl"
 #include "voxelization/accumulate.glsl"
 
@@ -16,23 +15,12 @@ layout(std430) restrict readonly buffer Records { uint records[]; };
 layout(std430) restrict readonly buffer Counters { uint fragmentCounts[3]; };
 uniform uint fragmentCapacity;
 
-#ifdef ACCUMULATE_XOR
-layout(std430) restrict buffer Behind { uint behind[]; };
-#endif
-
 void main() {
     uint total = min(fragmentCounts[axis], fragmentCapacity);
     uint stride = gl_NumWorkGroups.x * GROUP_SIZE;
     for (uint i = gl_GlobalInvocationID.x; i < total; i += stride) {
         uint word = records[RECORD_WORDS * i];
         ivec3 local = ivec3(word & 1023u, (word >> 10) & 1023u, word >> 20);
-#ifdef ACCUMULATE_XOR
-        if (local.z == RESOLUTION) {
-            uint line = uint(local.y * RESOLUTION + local.x);
-            atomicXor(behind[line / 32u], 1u << (line % 32u));
-            continue;
-        }
-#endif
 #if RECORD_WORDS == 2
         accumulate(local, records[2u * i + 1u]);
 #else

@@ -1,5 +1,6 @@
 // The rules of surface voxelization against the CPU references, voxel by voxel.
 #include <algorithm>
+#include <cmath>
 
 #include "engine/scene/load.h"
 #include "tests/techniques/voxelization/voxel_value.h"
@@ -175,7 +176,7 @@ TEST_F(RulesTest, ValuesDependOnNoOrder) {
             EXPECT_EQ(voxelize(reversed, s).grid, grid);
             auto occupancy = settings(32, rule, 1);
             EXPECT_EQ(occupancyOf(grid), voxelize(mesh, occupancy).grid);
-            if (rule == Rule::Conservative) continue;
+            if (rule != Rule::Rasterized) continue;
             s.method = Method::Direct;
             EXPECT_EQ(voxelize(mesh, s).grid, grid);
         }
@@ -220,6 +221,24 @@ TEST_F(RulesTest, AGivenBoxCutsTheMesh) {
     EXPECT_GT(rasterized.countFull(), 0U);
     const DenseGrid conservative = reference::conservative(snapped(mesh, box, 64), 64);
     EXPECT_LE(reference::countMissing(rasterized, conservative), rasterized.countFull() / 1000);
+}
+
+// Triangles of a few pixels, which an invocation walks, and larger ones, which are cut into parts,
+// in work groups that hold both: of all sizes from a voxel to the grid.
+TEST_F(RulesTest, SmallAndLargeTrianglesAreAsOnTheCpu) {
+    scene::Mesh mesh;
+    for (int i = 0; i < 5; ++i) {
+        scene::Mesh some = shapes::randomTriangles(60, static_cast<std::uint64_t>(20 + i));
+        const float size = std::ldexp(1.0F, -i);
+        for (glm::vec3& p : some.positions) p = glm::vec3(0.1F * static_cast<float>(i)) + size * p;
+        mesh = shapes::joined(mesh, some);
+    }
+    for (const Rule rule : {Rule::Thin, Rule::Conservative}) {
+        const auto s = settings(128, rule);
+        EXPECT_EQ(voxelize(mesh, s).grid, exact(rule, lattice(mesh, s), 128));
+    }
+    const auto s = solid(128);
+    EXPECT_EQ(voxelize(mesh, s).grid, reference::solid(lattice(mesh, s), 128).grid);
 }
 
 /// A tilted triangle far larger than the grid: decided in integers, and in doubles where it is

@@ -1,6 +1,8 @@
 // The technique as a whole: parameters, metrics, files.
 #include "techniques/voxelization/voxelization.h"
 
+#include <fmt/format.h>
+
 #include "tests/techniques/technique_fixture.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
 
@@ -56,16 +58,22 @@ TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
              "48: 'fill_rule: surface_voxels' flips at rasterized voxels; leave 'rule' out or give "
              "'rasterized'"},
             {"{fill: solid, fill_rule: surface_voxels}", ""},
-            {"{fill: solid, method: direct}", "23: 'fill: solid' needs 'method: worksheet'"},
+            {"{fill: solid, method: worksheet}",
+             "23: 'fill_rule: crossings' needs 'method: direct'"},
+            {"{fill: solid, fill_rule: surface_voxels, method: direct}",
+             "50: 'fill_rule: surface_voxels' needs 'method: worksheet'"},
             {"{fill: solid, voxel_bits: 8, value: normal}",
              "37: 'fill: solid' needs 'value: occupancy'"},
             {"{method: slices, rule: thin}",
-             "24: 'method: slices' and 'method: depth_only' need 'rule: rasterized'"},
+             "24: 'rule: thin' and 'rule: conservative' need 'method: direct'"},
+            {"{method: worksheet, rule: conservative}",
+             "27: 'rule: thin' and 'rule: conservative' need 'method: direct'"},
+            {"{method: worksheet, rule: rasterized}", ""},
             {"{method: slices, addressing: tables}", "30: 'addressing' needs 'method: worksheet'"},
-            {"{addressing: tables, voxel_bits: 32}",
-             "14: 'addressing: tables' needs a grid of one worksheet; 256³ voxels of 32 bits take "
+            {"{method: worksheet, addressing: tables, voxel_bits: 32}",
+             "33: 'addressing: tables' needs a grid of one worksheet; 256³ voxels of 32 bits take "
              "4"},
-            {"{addressing: tables}", ""},
+            {"{method: worksheet, addressing: tables}", ""},
             {"box_min: [0, 0, 0]", "10: box_min and box_max must be given together"},
             {"{box_min: [0, 0, 0], box_max: [1, 2, 1]}",
              "31: the box must be cubic and not empty; it is 1 × 2 × 1"},
@@ -95,18 +103,26 @@ TEST_F(VoxelizationTest, NeedsTrianglesThatReachSomewhere) {
 }
 
 TEST_F(VoxelizationTest, RecordsTheGrid) {
-    const auto metrics = run("{resolution: 64, voxel_bits: 8, rule: thin, compare: true}", sphere_);
+    const auto metrics =
+        run("{resolution: 64, voxel_bits: 8, method: worksheet, compare: true}", sphere_);
     EXPECT_EQ(metrics.at("triangles"), 1280.0);
     EXPECT_EQ(metrics.at("vertices"), 642.0);
     EXPECT_EQ(metrics.at("voxel_bits"), 8.0);
     EXPECT_EQ(metrics.at("worksheet_bytes"), 64.0 * 64 * 64);
-    EXPECT_EQ(metrics.at("missed_thin_voxels"), 0.0);
-    EXPECT_GT(metrics.at("missed_conservative_voxels"), 0.0);
-    EXPECT_EQ(metrics.at("added_conservative_voxels"), 0.0);
+    EXPECT_GT(metrics.at("missed_thin_voxels"), 0.0);
     EXPECT_GT(metrics.at("memory_bytes"), 3.0 * 64 * 64 * 64);
+    EXPECT_GT(metrics.at("fragments"), 0.0);
     for (const char* stage : {"rasterization", "texelization", "synthesis", "voxelization"}) {
         EXPECT_TRUE(hasPass(stage, gl::PassTime::Clock::Gpu)) << stage;
     }
+    const auto direct = run("{resolution: 64, voxel_bits: 8, compare: true}", sphere_);
+    EXPECT_EQ(direct.at("missed_thin_voxels"), 0.0);
+    EXPECT_GT(direct.at("missed_conservative_voxels"), 0.0);
+    EXPECT_EQ(direct.at("added_conservative_voxels"), 0.0);
+    EXPECT_LT(direct.at("memory_bytes"), 2.0 * 64 * 64 * 64);  // one grid
+    EXPECT_FALSE(direct.contains("fragments"));
+    EXPECT_TRUE(hasPass("voxelization", gl::PassTime::Clock::Gpu));
+    EXPECT_FALSE(hasPass("synthesis", gl::PassTime::Clock::Gpu));
 }
 
 TEST_F(VoxelizationTest, TimesPreprocessAndReadBackEachFrame) {
@@ -144,8 +160,12 @@ TEST_F(VoxelizationTest, DigestTellsGridsApart) {
     const auto first = run("{resolution: 32}", sphere_);
     EXPECT_EQ(run("{resolution: 32}", sphere_).at("digest"), first.at("digest"));
     EXPECT_EQ(run("{resolution: 32, method: direct}", sphere_).at("digest"), first.at("digest"));
-    EXPECT_EQ(run("{resolution: 32, addressing: tables}", sphere_).at("digest"),
-              first.at("digest"));
+    const double rasterized = run("{resolution: 32, method: worksheet}", sphere_).at("digest");
+    for (const char* same : {"method: worksheet, addressing: tables",
+                             "method: direct, rule: rasterized", "method: slices"}) {
+        EXPECT_EQ(run(fmt::format("{{resolution: 32, {}}}", same), sphere_).at("digest"),
+                  rasterized);
+    }
     EXPECT_NE(run("{resolution: 32, fill: solid}", sphere_).at("digest"), first.at("digest"));
 }
 

@@ -140,11 +140,12 @@ class VoxelizerTest : public GlTest {
     static MeshVoxelizerSettings settings(int resolution, Rule rule, int voxelBits = 1) {
         MeshVoxelizerSettings result;
         result.grid.layout = WorksheetLayout(resolution, voxelBits);
+        result.method = rule == Rule::Rasterized ? Method::Worksheet : Method::Direct;
         result.rule = rule;
         return result;
     }
     static MeshVoxelizerSettings solid(int resolution, int voxelBits = 1) {
-        MeshVoxelizerSettings result = settings(resolution, Rule::Rasterized, voxelBits);
+        MeshVoxelizerSettings result = settings(resolution, Rule::Thin, voxelBits);
         result.grid.fill = Fill::Solid;
         return result;
     }

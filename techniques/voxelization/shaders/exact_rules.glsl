@@ -1,7 +1,6 @@
-#version 450 core
-#extension GL_ARB_gpu_shader_int64 : enable
-// Exact rules, decided on the lattice in integers of 64 bits: with differences of 20 bits what is largest here, the plane's
-// normal times one, has less than 63. A lattice that is wider, or a device without them, takes doubles.
+// What the exact rules fill of a column of voxels, decided on the lattice in integers of 64 bits: with
+// differences of 20 bits what is largest here, the plane's normal times one, has less than 63. A
+// lattice that is wider, or a device without them, takes doubles.
 //  RULE_THIN          the voxel in which the line through the pixel's centre crosses the triangle:
 //                     6-separating (Laine 2013: the target is the three unit segments through the
 //                     voxel's centre, one an axis).
@@ -11,8 +10,15 @@
 // Sample lines that meet an edge are shifted by an infinitely small (ε, ε², ε³) in x, y, z, the same
 // for the three axes: each closed surface is then crossed an even number of times, and a face on a
 // voxel's centre gives all axes the same inside.
-#include "voxelization/emit_voxel.glsl"
-#include "voxelization/exact_triangle.glsl"
+#include "voxelization/worksheet.glsl"
+#ifdef RULE_TOGGLE
+#include "voxelization/crossings.glsl"
+#else
+#include "voxelization/accumulate.glsl"
+#endif
+#if VALUE != 0
+#include "voxelization/voxel_value.glsl"
+#endif
 
 #if defined(WIDE_LATTICE) || !defined(GL_ARB_gpu_shader_int64)
 #define whole double
@@ -24,14 +30,42 @@
 #define whole3 i64vec3
 #endif
 
-flat in uint triangleIndex;
-
+// 256 units a voxel.
+layout(std430) restrict readonly buffer Positions { int lattice[]; };
+layout(std430) restrict readonly buffer Triangles { uint corners[]; };
 #if VALUE != 0
 layout(std430) restrict readonly buffer Attributes { float attributes[]; };
-vec3 cornerAttribute(uint corner) {
-    uint vertex = 3u * corners[3u * triangleIndex + corner];
-    return vec3(attributes[vertex], attributes[vertex + 1u], attributes[vertex + 2u]);
+#endif
+
+int axis;  // of projection: 0 x, 1 y, 2 z
+uint triangle;
+
+ivec3 cornerAt(uint corner) {
+    uint vertex = 3u * corners[3u * triangle + corner];
+    return ivec3(lattice[vertex], lattice[vertex + 1u], lattice[vertex + 2u]);
 }
+
+#ifdef RULE_TOGGLE
+layout(r32ui) uniform restrict coherent uimage2DArray sheetX;
+layout(r32ui) uniform restrict coherent uimage2DArray sheetY;
+layout(r32ui) uniform restrict coherent uimage2DArray sheet;
+layout(std430) restrict buffer Behind { uint behind[]; };
+
+void toggle(ivec3 local) {
+    if (local.z == RESOLUTION) {
+        ivec3 line = volumeFromLocal(axis, ivec3(local.xy, 0));
+        atomicXor(behind[behindWord(axis, line)], behindBits(axis, line));
+        return;
+    }
+    ivec3 voxel = volumeFromLocal(axis, local);
+    ivec3 texel = worksheetTexel(voxel);
+    uint bits = LANE_MASK << worksheetShift(voxel.z);
+    if (axis == 0) imageAtomicXor(sheetX, texel, bits);
+    if (axis == 1) imageAtomicXor(sheetY, texel, bits);
+    if (axis == 2) imageAtomicXor(sheet, texel, bits);
+}
+#else
+void fill(ivec3 local, uint value) { accumulate(volumeFromLocal(axis, local), value); }
 #endif
 
 // Twice the signed area of (from, to, p) in the projection.
@@ -58,13 +92,20 @@ whole3 planeNormal(whole3 e, whole3 f) {
     return normal;
 }
 
+#if VALUE != 0
+vec3 cornerAttribute(uint corner) {
+    uint vertex = 3u * corners[3u * triangle + corner];
+    return vec3(attributes[vertex], attributes[vertex + 1u], attributes[vertex + 2u]);
+}
+#endif
+
 uint interpolatedValue(whole3 weights) {
 #if VALUE != 0
     vec3 w = max(vec3(weights), vec3(0.0));
     w /= max(w.x + w.y + w.z, 1e-30);  // a triangle seen edge-on has no weights: its normal is 0
-    return encodedValue(w.x * cornerAttribute(0u) + w.y * cornerAttribute(1u) + w.z * cornerAttribute(2u));
+    return encodeNormal(w.x * cornerAttribute(0u) + w.y * cornerAttribute(1u) + w.z * cornerAttribute(2u));
 #else
-    return encodedValue(vec3(0.0));
+    return LANE_MASK;
 #endif
 }
 
@@ -76,7 +117,7 @@ bool isShiftedPositive(whole3 normal) {
     return n.x != 0 ? n.x > 0 : n.y != 0 ? n.y > 0 : n.z > 0;
 }
 
-void emitVoxels(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
+void fillColumn(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
     if (n.z == 0) return;  // edge-on: another axis crosses it
     whole side = n.z > 0 ? whole(1) : whole(-1);
     whole3 areas = side * whole3(edgeArea(b.xy, c.xy, p), edgeArea(c.xy, a.xy, p), edgeArea(a.xy, b.xy, p));
@@ -91,15 +132,14 @@ void emitVoxels(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
     if (side * planeValue(n, whole3(d, whole(w * 256) - a.z)) > 0) --w;
     if (side * planeValue(n, whole3(d, whole(w * 256 + 256) - a.z)) <= 0) ++w;
 #ifdef RULE_TOGGLE
-    whole behind = side * planeValue(n, whole3(d, whole(w * 256 + 128) - a.z));
-    bool isBehind = behind != 0 ? behind > 0 : isShiftedPositive(side * n);
-    w = clamp(isBehind ? w : w + 1, 0, RESOLUTION);
-    emitVoxel(ivec3(pixel, w), LANE_MASK);
+    whole behindCentre = side * planeValue(n, whole3(d, whole(w * 256 + 128) - a.z));
+    bool isBehind = behindCentre != 0 ? behindCentre > 0 : isShiftedPositive(side * n);
+    toggle(ivec3(pixel, clamp(isBehind ? w : w + 1, 0, RESOLUTION)));
 #else
     // The grid is closed: a crossing on its far face belongs to the last voxel.
     if (w == RESOLUTION && planeValue(n, whole3(d, whole(w * 256) - a.z)) == 0) --w;
     if (w < 0 || w >= RESOLUTION) return;
-    emitVoxel(ivec3(pixel, w), interpolatedValue(areas));
+    fill(ivec3(pixel, w), interpolatedValue(areas));
 #endif
 }
 
@@ -134,7 +174,7 @@ bool overlaps(whole3 a, whole3 b, whole3 c, whole3 n, whole3 centre) {
     return !isSeparated(b - a, a, b, c) && !isSeparated(c - b, a, b, c) && !isSeparated(a - c, a, b, c);
 }
 
-void emitVoxels(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
+void fillColumn(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
     int first = max((int(min(a.z, min(b.z, c.z))) - 1) >> 8, 0);
     int last = min(int(max(a.z, max(b.z, c.z))) >> 8, RESOLUTION - 1);
     if (n.z != 0) {
@@ -149,16 +189,8 @@ void emitVoxels(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
     whole3 areas = whole3(edgeArea(b.xy, c.xy, p), edgeArea(c.xy, a.xy, p), edgeArea(a.xy, b.xy, p));
     uint value = interpolatedValue(n.z < 0 ? -areas : areas);
     for (int w = first; w <= last; ++w) {
-        if (overlaps(a, b, c, n, whole3(p, whole(w * 256 + 128)))) emitVoxel(ivec3(pixel, w), value);
+        if (overlaps(a, b, c, n, whole3(p, whole(w * 256 + 128)))) fill(ivec3(pixel, w), value);
     }
 }
 
 #endif
-
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    whole3 a = whole3(cornerLocal(axis, triangleIndex, 0u));
-    whole3 b = whole3(cornerLocal(axis, triangleIndex, 1u));
-    whole3 c = whole3(cornerLocal(axis, triangleIndex, 2u));
-    emitVoxels(pixel, whole2(pixel * 256 + 128), a, b, c, planeNormal(b - a, c - a));
-}
