@@ -1,6 +1,7 @@
 #version 450 core
 // Blends the voxels of one slice over what lies behind: planes come back to front. [zju2005]
-// Sec. 2.4.2. With HEAD, a CT/MR volume is blended plane by plane with them (figure 2.7, right).
+// Sec. 2.4.2. With HEAD, a CT/MR volume is blended plane by plane with them (figure 2.7, right). What
+// two models have in common is opaque (figure 2.8).
 // Reads the worksheet and the volume; writes premultiplied colour.
 
 #include "voxelization/volume_walk.glsl"
@@ -84,7 +85,8 @@ void main() {
         ivec3 voxel = volumeFromLocal(AXIS, ivec3(walk.cell, slice));
         uint value = drawnVoxel(voxel);
         if (value != 0u) {
-            float alpha = 1.0 - pow(1.0 - opacity, (to - from) * pathLength);
+            float blended = 1.0 - pow(1.0 - opacity, (to - from) * pathLength);
+            float alpha = isCommon(voxel) ? 1.0 : blended;
             blendUnder(sum, shaded(voxel, value, towardsEye), alpha);
         }
         if (isLast(walk)) break;

@@ -36,13 +36,21 @@ const vec3 kFirstColor = vec3(0.62, 0.56, 0.47);  // grey-beige
 const vec3 kSecondColor = vec3(0.42, 0.50, 0.60);  // grey-blue
 const vec3 kCommonColor = vec3(0.80, 0.03, 0.02);  // red, as figure 2.8 marks what collides
 
+// Whether both models fill it.
+bool isCommon(ivec3 voxel) {
+#if SECOND
+    return loadVoxel(sheets, voxel) != 0u && loadVoxel(secondSheets, voxel) != 0u;
+#else
+    return false;
+#endif
+}
+
 vec3 albedoOf(ivec3 voxel) {
+    if (isCommon(voxel)) return kCommonColor;
 #if SECOND
     if (loadVoxel(sheets, voxel) == 0u) return kSecondColor;
-    return loadVoxel(secondSheets, voxel) == 0u ? kFirstColor : kCommonColor;
-#else
-    return kFirstColor;
 #endif
+    return kFirstColor;
 }
 
 uniform vec3 light;  // unit, towards it

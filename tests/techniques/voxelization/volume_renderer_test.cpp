@@ -231,21 +231,25 @@ TEST_F(GlTest, CommonVoxelsOfTwoModelsAreRed) {
             if (x >= 12) second.set({x, y, 16}, 1);
         }
     }
-    DrawSettings settings;
-    settings.hasSecond = true;
-    const scene::Camera camera = orbitCamera(kBox, 0, 0, 1.5F);
-    VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, settings);
-    const gl::Texture secondSheets = uploaded(second);
-    renderer.draw(uploaded(first), &secondSheets, nullptr);
-    const image::ImageF image = renderer.readImage();
-    const auto isRed = [&](int x) {
-        return image.at(x, 32, 0) > 5 * image.at(x, 32, 1) && image.at(x, 32, 0) > 0.3F;
-    };
-    EXPECT_TRUE(isRed(48));
-    EXPECT_FALSE(isRed(28));
-    EXPECT_FALSE(isRed(68));
-    EXPECT_GT(image.at(28, 32, 0), image.at(28, 32, 2));  // beige
-    EXPECT_LT(image.at(68, 32, 0), image.at(68, 32, 2));  // blue
+    // Blended, too, they are opaque.
+    for (const DrawMode mode : {DrawMode::Opaque, DrawMode::Transparent}) {
+        DrawSettings settings;
+        settings.hasSecond = true;
+        settings.mode = mode;
+        const scene::Camera camera = orbitCamera(kBox, 0, 0, 1.5F);
+        VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, settings);
+        const gl::Texture secondSheets = uploaded(second);
+        renderer.draw(uploaded(first), &secondSheets, nullptr);
+        const image::ImageF image = renderer.readImage();
+        const auto isRed = [&](int x) {
+            return image.at(x, 32, 0) > 5 * image.at(x, 32, 1) && image.at(x, 32, 0) > 0.3F;
+        };
+        EXPECT_TRUE(isRed(48));
+        EXPECT_FALSE(isRed(28));
+        EXPECT_FALSE(isRed(68));
+        EXPECT_GT(image.at(28, 32, 0), image.at(28, 32, 2));  // beige
+        EXPECT_LT(image.at(68, 32, 0), image.at(68, 32, 2));  // blue
+    }
 }
 
 TEST(OrbitCamera, HoldsTheWholeBox) {
