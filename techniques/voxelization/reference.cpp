@@ -128,6 +128,21 @@ void visitCrossings(const Triangle& t, Axis axis, int resolution, Visit visit) {
     }
 }
 
+/// Sets the voxels in which lines along `axis` cross the triangles that takes(triangle) names.
+template <class Takes>
+void setCrossed(SharedBits& bits, const LatticeMesh& mesh, Axis axis, Takes takes) {
+    forEachTriangle(mesh, axis, [&](const Triangle& t) {
+        if (!takes(t)) return;
+        visitCrossings(t, axis, bits.resolution(), [&](const Crossing& crossing) {
+            glm::ivec3 voxel = crossing.voxel;
+            // The grid is closed: its far face belongs to the last voxel.
+            if (voxel.z == bits.resolution() && crossing.isOnVoxelFloor) --voxel.z;
+            if (voxel.z < 0 || voxel.z >= bits.resolution()) return;
+            bits.set(volumeFromLocal(axis, voxel));
+        });
+    });
+}
+
 /// Whether the centres along one axis lie inside; `oddLines` counts lines crossed an odd number of
 /// times.
 DenseGrid insideAlong(const LatticeMesh& mesh, Axis axis, int resolution, std::size_t& oddLines) {
@@ -180,17 +195,41 @@ DenseGrid conservative(const LatticeMesh& mesh, int resolution) {
 DenseGrid thin(const LatticeMesh& mesh, int resolution) {
     SharedBits bits(resolution);
     for (Axis axis : kAxes) {
-        forEachTriangle(mesh, axis, [&](const Triangle& t) {
-            visitCrossings(t, axis, resolution, [&](const Crossing& crossing) {
-                glm::ivec3 voxel = crossing.voxel;
-                // The grid is closed: its far face belongs to the last voxel.
-                if (voxel.z == resolution && crossing.isOnVoxelFloor) --voxel.z;
-                if (voxel.z < 0 || voxel.z >= resolution) return;
-                bits.set(volumeFromLocal(axis, voxel));
-            });
+        setCrossed(bits, mesh, axis, [](const Triangle&) { return true; });
+    }
+    return std::move(bits).grid();
+}
+
+DenseGrid thinAlongDominantAxes(const LatticeMesh& mesh, int resolution) {
+    SharedBits bits(resolution);
+    for (Axis axis : kAxes) {
+        setCrossed(bits, mesh, axis, [&](const Triangle& t) {
+            const auto corner = [&](const glm::dvec3& p) {
+                return glm::vec3(volumeFromLocal(axis, p));
+            };
+            return dominantAxis(corner(t[0]), corner(t[1]), corner(t[2])) == axis;
         });
     }
     return std::move(bits).grid();
+}
+
+std::size_t countOddScanLines(const LatticeMesh& mesh, int resolution) {
+    std::size_t odd = 0;
+    for (Axis axis : kAxes) {
+        SharedBits bits(resolution);
+        setCrossed(bits, mesh, axis, [](const Triangle&) { return true; });
+        const DenseGrid grid = std::move(bits).grid();
+        for (int v = 0; v < resolution; ++v) {
+            for (int u = 0; u < resolution; ++u) {
+                bool isOdd = false;
+                for (int w = 0; w < resolution; ++w) {
+                    isOdd ^= grid.isFull(volumeFromLocal(axis, glm::ivec3(u, v, w)));
+                }
+                odd += isOdd ? 1 : 0;
+            }
+        }
+    }
+    return odd;
 }
 
 SolidVoxels solid(const LatticeMesh& mesh, int resolution) {

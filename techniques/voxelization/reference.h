@@ -14,6 +14,14 @@ DenseGrid conservative(const LatticeMesh& mesh, int resolution);
 /// triangle. 6-separating (Laine 2013). Lines that meet an edge are shifted by (ε, ε², ε³).
 DenseGrid thin(const LatticeMesh& mesh, int resolution);
 
+/// Those of thin() that lines along a triangle's dominant axis cross: what `rule: rasterized` sets
+/// where nothing is rounded.
+DenseGrid thinAlongDominantAxes(const LatticeMesh& mesh, int resolution);
+
+/// Over the three axes, the scan lines on which an odd number of voxels hold their crossings: what
+/// `fill_rule: surface_voxels` leaves open where nothing is rounded.
+std::size_t countOddScanLines(const LatticeMesh& mesh, int resolution);
+
 /// Voxels whose centre lies inside on two of three axes, by the parity of the crossings before it.
 struct SolidVoxels {
     DenseGrid grid;

@@ -390,10 +390,13 @@ class Voxelization final : public technique::Technique {
             if (params_.voxelizer.fillRule == FillRule::SurfaceVoxels) {
                 count("stray_voxels", grid,
                       together(expected, reference::conservative(mesh, resolution)));
+                recorder.metric("odd_scan_lines", static_cast<double>(reference::countOddScanLines(
+                                                      mesh, resolution)));
             }
             return;
         }
         count("missed_thin_voxels", reference::thin(mesh, resolution), grid);
+        count("missed_dominant_voxels", reference::thinAlongDominantAxes(mesh, resolution), grid);
         const DenseGrid conservative = reference::conservative(mesh, resolution);
         count("missed_conservative_voxels", conservative, grid);
         count("added_conservative_voxels", grid, conservative);
@@ -427,6 +430,10 @@ config::Outputs outputs() {
             detail("digest", "1", "hash of all voxels: equal for equal grids"),
             {"ambiguous_scan_lines", "scan line",
              "scan lines that end inside the model, because its mesh is not closed", Better::Lower},
+            {"odd_scan_lines", "scan line",
+             "scan lines that would end inside the model by exact arithmetic, too, as an odd "
+             "number of their voxels is on the surface",
+             Better::Lower},
             {"disagreeing_voxels", "voxel",
              "voxels that one axis finds inside the model and another outside", Better::Lower},
             {"missed_solid_voxels", "voxel", "voxels of the exact solid that the grid lacks",
@@ -436,6 +443,9 @@ config::Outputs outputs() {
             {"stray_voxels", "voxel",
              "voxels of the grid that are neither in the solid nor on the surface", Better::Lower},
             {"missed_thin_voxels", "voxel", "voxels of the exact thin surface that the grid lacks",
+             Better::Lower},
+            {"missed_dominant_voxels", "voxel",
+             "of these, voxels that a line along a triangle's dominant axis crosses",
              Better::Lower},
             {"missed_conservative_voxels", "voxel",
              "voxels that the surface touches and the grid lacks", Better::Lower},

@@ -125,6 +125,9 @@ TEST_F(SolidTest, FlippingAtVoxelsLeavesStreaks) {
     const Voxelized streaked = voxelize(plate, byVoxels(32), box);
     EXPECT_EQ(streaked.metrics.at("ambiguous_scan_lines"), 100.0);
     EXPECT_EQ(streaked.grid.countFull(), 100U * 22);  // from z = 10 to 31
+    EXPECT_EQ(reference::countOddScanLines(snapped(plate, box, 32), 32), 100U);
+    const scene::Mesh cube = shapes::cube(glm::vec3(1.2F), glm::vec3(28.8F));
+    EXPECT_EQ(reference::countOddScanLines(snapped(cube, box, 32), 32), 0U);
     const Voxelized exact = voxelize(plate, solid(32), box);
     EXPECT_EQ(exact.metrics.at("ambiguous_scan_lines"), 0.0);
     EXPECT_EQ(exact.grid.countFull(), 0U);  // no voxel has its centre inside
