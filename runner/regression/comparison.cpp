@@ -72,6 +72,13 @@ bool differ(const Series& values, double within) {
         values, [&](double value) { return !areSame(value, values.front(), within); });
 }
 
+/// Why what is alike on either side may differ by chance; `series`: of how many of its metric that
+/// differ. No `why`: there is no doubt.
+struct InDoubt {
+    std::string why;
+    std::size_t series = 0;
+};
+
 /// Of numbers of programs and imports without a seed those that may be alike by chance
 /// (tables::Doubt). What is within the tolerance is alike.
 class Doubts {
@@ -82,23 +89,25 @@ class Doubts {
                 const double within = areWhole(values) ? 0.0 : rules.valueTolerance;
                 if (!isOfUnseeded(key) || !differ(values, within)) continue;
                 doubts_[programOf(key)].note(key.metric, key.unit);
+                differing_[{programOf(key), key.metric}].insert(key);
             }
         }
     }
 
-    /// Empty where there is no doubt.
-    std::string whyInDoubt(const SeriesKey& key) const {
+    InDoubt of(const SeriesKey& key) const {
         const auto found = doubts_.find(isOfUnseeded(key) ? programOf(key) : "");
         const bool isOfElsewhere = isOfUnseeded(key) && rules_.unseeded.at(key.table).empty();
         if (found == doubts_.end() ||
             !found->second.reaches(key.metric, tables::isOfMachine(key.metric, key.unit),
                                    rules_.ofSetup.contains({key.table, key.metric}),
                                    isOfElsewhere)) {
-            return "";
+            return {};
         }
-        return found->second.differing.contains(key.metric)
-                   ? "in other cases it differs between processes of one side"
-                   : "other numbers of the program differ between processes of one side";
+        const auto differing = differing_.find({found->first, key.metric});
+        if (differing == differing_.end())
+            return {"other numbers of the program differ between processes of one side"};
+        return {"in other cases it differs between processes of one side",
+                differing->second.size()};
     }
 
   private:
@@ -112,26 +121,34 @@ class Doubts {
 
     const Rules& rules_;
     std::map<std::string, tables::Doubt> doubts_;
+    std::map<std::pair<std::string, std::string>, std::set<SeriesKey>> differing_;  // of a metric
 };
 
 /// Why values that are not alike, and may differ by chance, do not tell whether they changed; empty
-/// where they do. `level`: the chance of an alarm that each may have.
-std::string whyUndecided(const Series& before, const Series& after, const std::string& doubt,
-                         double level) {
-    const std::size_t fewest = std::min(before.size(), after.size());
-    if (!doubt.empty() && fewest >= metrics::kFewestForInterval) return "";
-    if (areApart(before, after) && chanceApart(before.size(), after.size()) <= level) return "";
+/// where they do. What is alike on each side may be one of two values by chance, as any of the
+/// metric's series that differ. `count`: of how many series each may raise an alarm.
+std::string whyUndecided(const Series& before, const Series& after, const InDoubt& doubt,
+                         std::size_t count, double familyError) {
+    const double level = familyError / static_cast<double>(count);
+    const auto tell = [&](std::size_t a, std::size_t b) {
+        if (doubt.why.empty()) return chanceApart(a, b) <= level;
+        const double chance = std::exp2(1.0 - static_cast<double>(a + b));
+        return std::min(a, b) >= metrics::kFewestForInterval &&
+               static_cast<double>(doubt.series) * chance <= familyError;
+    };
+    const bool isDecided = areApart(before, after) || !doubt.why.empty();
+    if (isDecided && tell(before.size(), after.size())) return "";
     std::size_t needed = metrics::kFewestForInterval;
-    while (doubt.empty() && chanceApart(needed, needed) > level) ++needed;
+    while (!tell(needed, needed)) ++needed;
     const std::string why =
-        doubt.empty() ? "numbers that differ between processes of one side" : doubt;
-    if (fewest >= needed) return why;
+        doubt.why.empty() ? "numbers that differ between processes of one side" : doubt.why;
+    if (std::min(before.size(), after.size()) >= needed) return why;
     return fmt::format("{}; {} a side tell: `measure: {{processes: {}}}`", why, needed, needed);
 }
 
 /// `count`: of how many series each may raise an alarm.
 Difference compareValues(const SeriesKey& key, const Series& before, const Series& after,
-                         const Rules& rules, std::size_t count, const std::string& doubt) {
+                         const Rules& rules, std::size_t count, const InDoubt& doubt) {
     Difference result{
         .key = key, .before = metrics::median(before), .after = metrics::median(after)};
     const bool isRatio = result.before != 0.0 && std::isfinite(result.before);
@@ -143,9 +160,9 @@ Difference compareValues(const SeriesKey& key, const Series& before, const Serie
         before, after, [&](double a, double b) { return areSame(a, b, result.floor); });
     const bool isOwn = differ(before, result.floor) || differ(after, result.floor);
     result.verdict = isSame ? SeriesVerdict::Same : SeriesVerdict::Changed;
-    if (isAlike || (!isOwn && doubt.empty())) return result;
-    result.reason = whyUndecided(before, after, isOwn ? "" : doubt,
-                                 rules.familyError / static_cast<double>(count));
+    if (isAlike || (!isOwn && doubt.why.empty())) return result;
+    result.reason =
+        whyUndecided(before, after, isOwn ? InDoubt() : doubt, count, rules.familyError);
     if (!result.reason.empty()) result.verdict = SeriesVerdict::CannotTell;
     return result;
 }
@@ -394,8 +411,8 @@ std::vector<Difference> compare(const SeriesMap& allBefore, const SeriesMap& all
         } else if (key.isTime()) {
             times.push_back(testTime(key, values, found->second, pairing, rules));
         } else {
-            differences.push_back(compareValues(key, values, found->second, rules, before.size(),
-                                                doubts.whyInDoubt(key)));
+            differences.push_back(
+                compareValues(key, values, found->second, rules, before.size(), doubts.of(key)));
         }
     }
     judgeTimes(times, pairing, rules);

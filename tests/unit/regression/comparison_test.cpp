@@ -290,6 +290,41 @@ TEST(Comparison, NumbersThatScatterAreNotChangedByChance) {
     EXPECT_EQ(told({1, 1, 1}, {2, 2, 2}).verdict, SeriesVerdict::Changed);
 }
 
+/// A thousand coins: of some all six of one side are heads, and all of the other tails.
+TEST(Comparison, CoinsAreNotChangedByChance) {
+    constexpr int kRuns = gfxrepro::test::kIsSanitized ? 1 : 100;
+    SeriesKey key = test::timeOf("m");
+    key.metric = "e";
+    key.unit = "1";
+    const auto alarms = [&](std::size_t processes, double last) {
+        int count = 0;
+        for (int run = 0; run < kRuns; ++run) {
+            Random random(static_cast<std::uint64_t>(run));
+            SeriesMap sides[2];
+            for (int i = 0; i < 1000; ++i) {
+                key.params = fmt::format(R"({{"i":{}}})", i);
+                for (SeriesMap& side : sides) {
+                    Series& coins = side[key];
+                    for (std::size_t k = 0; k < processes; ++k)
+                        coins.push_back(double{random.uniform()} < 0.5 ? 4.0 : 5.0);
+                }
+            }
+            key.params = "{}";
+            sides[0][key] = Series(processes, 100.0);
+            sides[1][key] = Series(processes, last);
+            const auto told =
+                compare(sides[0], sides[1], Pairing::Apart, {.unseeded = {{key.table, "p"}}});
+            count += std::ranges::count(told, SeriesVerdict::Changed, &Difference::verdict) > 0;
+        }
+        return count;
+    };
+    if (!gfxrepro::test::kIsSanitized) {
+        EXPECT_LE(alarms(6, 100.0), 0.05 * kRuns);
+        EXPECT_LE(alarms(8, 100.0), 0.05 * kRuns);
+    }
+    EXPECT_EQ(alarms(8, 300.0), kRuns) << "what is alike on either side has changed";
+}
+
 /// x = choice(4, 5): two processes are alike in half of the cases.
 TEST(Comparison, WhatDiffersInOneCaseIsInDoubtInAll) {
     SeriesKey differs = test::timeOf("m"), alike = differs;
