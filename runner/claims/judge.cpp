@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "engine/metrics/alike.h"
 #include "runner/tables/cell.h"
@@ -105,58 +104,66 @@ std::string whyTooFew(std::size_t rounds, const Group& group) {
     return fmt::format("a range of {} processes; {}", rounds, whatIsNeeded());
 }
 
+/// All that the group has, in one order.
+template <class AnyGroup>
+auto valuesOf(AnyGroup& group) {
+    std::vector<decltype(&group.x[0])> all;
+    for (auto& operand : group.operands) {
+        for (auto& value : operand) all.push_back(&value);
+    }
+    for (auto& value : group.x) all.push_back(&value);
+    return all;
+}
+
 /// The first of its values that is such; null where none is.
 const Sampled* findIn(const Group& group, const std::function<bool(const Sampled&)>& isSuch) {
-    std::vector<const std::vector<Sampled>*> all = {&group.x};
-    for (const auto& operand : group.operands) all.push_back(&operand);
-    for (const auto* values : all) {
-        const auto found = std::ranges::find_if(*values, isSuch);
-        if (found != values->end()) return &*found;
-    }
-    return nullptr;
+    const auto all = valuesOf(group);
+    const auto found = std::ranges::find_if(all, [&](const Sampled* one) { return isSuch(*one); });
+    return found == all.end() ? nullptr : *found;
 }
 
-/// Whether it differs between rounds, and is the same in some of them, as what is rounded.
-bool isRounded(const Sampled& sampled, const std::vector<int>& rounds) {
-    std::set<double> values;
-    for (const int round : rounds) values.insert(sampled.at(round));
-    return values.size() > 1 && values.size() < rounds.size();
+bool isRounded(const Sampled& value) {
+    return value.halfStep > 0.0;
 }
 
-/// How often all rounds are at the bound by chance, as rounded values may be: taken from how often
-/// they are when each value is of another round. What is so in any round is no chance, unless
-/// others of the group are rounded.
-double chanceOfEqual(const Group& group, const std::vector<int>& rounds, const Contrast& contrast) {
-    const std::size_t count = rounds.size();
-    std::size_t equal = 0, all = 0;
-    for (std::size_t shift = 1; shift < count; ++shift) {
-        for (std::size_t round = 0; round < count; ++round, ++all) {
-            GroupPoint point = pointOf(group, rounds[round]);
-            for (std::size_t i = 0; i < point.operands.size(); ++i) {
-                for (std::size_t row = 0; row < point.operands[i].size(); ++row) {
-                    const std::size_t other = (round + shift * (i + row)) % count;
-                    point.operands[i][row] = group.operands[i][row].at(rounds[other]);
-                }
-            }
-            const double value = contrast.quantity(point);
-            equal += metrics::areAlike(value, contrast.requirement.low) ||
-                     metrics::areAlike(value, contrast.requirement.high);
-        }
+constexpr const char* kWithinStep =
+    "rounded values: with half a step on either side the interval reaches over the bound";
+
+/// From the least to the most that the quantity comes to where true values lie within half a step
+/// of rounded ones.
+metrics::Interval reachOf(const Group& group, const GroupPoint& point,
+                          const GroupNumber& quantity) {
+    const double own = quantity(point);
+    GroupPoint one = point, least = point, most = point;
+    const auto sampled = valuesOf(group);
+    const auto values = valuesOf(one), lower = valuesOf(least), upper = valuesOf(most);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double half = sampled[i]->halfStep, value = *values[i];
+        if (half == 0.0) continue;
+        *values[i] = value - half;
+        const double before = quantity(one);
+        *values[i] = value + half;
+        const double after = quantity(one);
+        *values[i] = value;
+        const double towards = before < after ? half : before > after ? -half : 0.0;
+        *lower[i] -= towards;
+        *upper[i] += towards;
     }
-    const double share = static_cast<double>(equal) / static_cast<double>(all);
-    const auto isSuch = [&](const Sampled& one) { return isRounded(one, rounds); };
-    if (equal == all && !findIn(group, isSuch)) return 0.0;
-    return std::pow(share, static_cast<double>(count));
+    return {std::min(own, quantity(least)), std::max(own, quantity(most))};
 }
 
 Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
                         const Contrast& contrast, double noise) {
     const GroupPoint whole = pointOf(group);
     double middle = contrast.quantity(whole);
-    std::vector<double> values;
+    std::vector<double> values, least, most;
     std::map<int, double> byRound;
     for (const int round : rounds) {
-        values.push_back(byRound[round] = contrast.quantity(pointOf(group, round)));
+        const GroupPoint point = pointOf(group, round);
+        values.push_back(byRound[round] = contrast.quantity(point));
+        const metrics::Interval reach = reachOf(group, point, contrast.quantity);
+        least.push_back(reach.low);
+        most.push_back(reach.high);
     }
     Judgement judgement;
     if (std::isnan(middle) ||
@@ -174,7 +181,8 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
         judgement.measured = boundedText(
             middle, isRange ? tables::Bounds::Range : tables::Bounds::None, range, requirement);
     } else {
-        const metrics::Interval interval = *metrics::medianInterval(values);
+        const metrics::Interval interval{metrics::medianInterval(least)->low,
+                                         metrics::medianInterval(most)->high};
         middle = metrics::median(values);
         const double distance = contrast.distance ? contrast.distance(whole, middle)
                                                   : ratioToBound(middle, requirement);
@@ -184,12 +192,10 @@ Judgement judgeContrast(const Group& group, const std::vector<int>& rounds,
         if (verdictOf(interval, requirement) != Verdict::Holds) {
             judgement.beyond = beyondBound(byRound, requirement, contrast.scale);
             const auto isAtBound = [](const auto& round) { return round.second == 0.0; };
-            if (decision.verdict == Verdict::Fails &&
-                std::ranges::all_of(judgement.beyond, isAtBound)) {
-                judgement.beyond.clear();
-                judgement.equalByChance = chanceOfEqual(group, rounds, contrast);
-            }
+            if (std::ranges::all_of(judgement.beyond, isAtBound)) judgement.beyond.clear();
         }
+        const bool isOpen = judgement.verdict == Verdict::Ambiguous && judgement.why.empty();
+        if (isOpen && findIn(group, isRounded)) judgement.why = kWithinStep;
         judgement.measured = boundedText(middle, tables::Bounds::Interval, interval, requirement);
     }
     if (!contrast.name.empty()) judgement.measured = contrast.name + " " + judgement.measured;
@@ -414,15 +420,6 @@ void forgiveChance(std::span<Judgement* const> all) {
         if (one->beyond.empty()) continue;
         sampled.push_back(one);
         series.push_back(one->beyond);
-    }
-    for (Judgement* one : all) {
-        const double chance = one->equalByChance.value_or(0.0) * static_cast<double>(all.size());
-        if (one->verdict != Verdict::Fails || chance <= kOneEnd) continue;
-        one->verdict = Verdict::Ambiguous;
-        one->why = fmt::format(
-            "equal in every process, as rounded values are by chance in {:.3g} % of tables; more "
-            "processes tell",
-            100.0 * std::min(chance, 1.0));
     }
     const auto forgive = [](Judgement& one, double chance, std::size_t count) {
         if (one.verdict != Verdict::Fails || chance <= kOneEnd) return;

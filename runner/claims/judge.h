@@ -60,8 +60,6 @@ struct Judgement {
     /// each round lies; of draws, the share of them that lies within.
     std::map<int, double> beyond = {};
     std::optional<double> drawsWithin = {};
-    /// Of what is at an excluded bound in every round: how often its values would be so by chance.
-    std::optional<double> equalByChance = {};
 };
 /// What is inside of the range wholly holds, wholly outside fails, else is ambiguous.
 Verdict verdictOf(const metrics::Interval& interval, const Requirement& requirement);

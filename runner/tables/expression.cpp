@@ -109,6 +109,24 @@ double Operand::withoutRounding(std::span<const double> values) {
     return std::isfinite(rounding) && std::abs(result) <= rounding ? 0.0 : result;
 }
 
+double Operand::halfStep(std::span<const Sampled> cells) {
+    std::vector<double> values;
+    for (const Sampled& cell : cells) values.push_back(cell.point);
+    const double result = evaluate(values);
+    double reach = 0.0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (cells[i].halfStep == 0.0) continue;
+        double farthest = 0.0;
+        for (const double side : {-1.0, 1.0}) {
+            values[i] = cells[i].point + side * cells[i].halfStep;
+            farthest = std::max(farthest, std::abs(evaluate(values) - result));
+        }
+        values[i] = cells[i].point;
+        reach += farthest;
+    }
+    return reach;
+}
+
 Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& statistic) {
     Sampled result;
     std::vector<Sampled> cells;
@@ -124,7 +142,8 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
         cells.push_back({measured.value, hasRounds ? measured.rounds : std::map<int, double>(),
                          measured.areDraws, cell.seedCount > 0 || cell.scatters || isOnceAlong,
                          cell.seedCount, cell.scatters, cell.isTime && !hasRounds, cell.onceAlong,
-                         measured.isOverProcesses ? measured.statistic : "", cell.isRunOnce});
+                         measured.isOverProcesses ? measured.statistic : "", cell.isRunOnce,
+                         measured.halfStep});
         values.push_back(measured.value);
         result.seedCount = fewerSeeds(result.seedCount, cell.seedCount);
     }
@@ -136,6 +155,7 @@ Sampled Operand::evaluate(const TableRow& row, Clock clock, const std::string& s
     result.scatters = std::ranges::any_of(cells, &Sampled::scatters);
     result.isRunOnce = std::ranges::any_of(cells, &Sampled::isRunOnce);
     result.isOnce = std::ranges::any_of(cells, &Sampled::isOnce);
+    result.halfStep = halfStep(cells);
     for (const Sampled& cell : cells) {
         if (result.overProcesses.empty()) result.overProcesses = cell.overProcesses;
         if (result.onceAlong.empty()) result.onceAlong = cell.onceAlong;
@@ -246,6 +266,7 @@ std::vector<Measured> computedValues(Operand& operand, const TableRow& row,
         static_cast<Summary&>(measured) =
             summaryOf(sampled.point, sampled.rounds, sampled.areDraws);
         measured.isOverProcesses = !sampled.overProcesses.empty();
+        measured.halfStep = sampled.halfStep;
         measured.statistic = placeholder.name;
     }
     return values;

@@ -27,6 +27,7 @@ struct Sampled {
     std::string onceAlong = {};      // as Cell::onceAlong; it is random, too, and has no rounds
     std::string overProcesses = {};  // of "mean", "max", …: Summary::isOverProcesses
     bool isRunOnce = false;          // as Cell::isRunOnce
+    double halfStep = 0.0;           // as Summary::halfStep
 
     double at(int round) const { return rounds.empty() ? point : rounds.at(round); }
 };
@@ -91,6 +92,9 @@ class Operand {
     double withoutRounding(std::span<const double> values);
 
   private:
+    /// How far from its own the result may lie as rounded cells do.
+    double halfStep(std::span<const Sampled> cells);
+
     bool isColumn_ = false;
     std::vector<std::size_t> columns_;
     std::vector<double> slots_;  // the parser points at them

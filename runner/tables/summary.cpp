@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -146,6 +149,27 @@ Summary summaryOf(double value, std::map<int, double> rounds, bool areDraws) {
         fillFromRounds(std::move(values), summary);
     }
     return summary;
+}
+
+double halfStepOf(std::span<const std::map<int, double>* const> series) {
+    std::set<double> all;
+    bool areRounded = false;
+    for (const auto* rounds : series) {
+        std::vector<double> values;
+        for (const auto& [round, value] : *rounds) values.push_back(value);
+        values = metrics::withoutRounding(values);
+        std::set<double> own(values.begin(), values.end());
+        areRounded |= own.size() > 1 && own.size() < rounds->size();
+        all.merge(own);
+    }
+    if (!areRounded) return 0.0;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto next = std::next(all.begin()); next != all.end(); ++next) {
+        const double before = *std::prev(next);
+        if (!metrics::areAlike(before, *next)) least = std::min(least, *next - before);
+    }
+    constexpr double kHair = 1e-6;
+    return std::isfinite(least) ? (0.5 - kHair) * least : 0.0;
 }
 
 // What a share that was counted once could be in truth.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct Summary {
     /// It is of the values of processes, one each, that is not their median: without bounds and
     /// rounds, as what is rare may move it by any amount.
     bool isOverProcesses = false;
+    /// Of rounded values: within so much of them the true ones lie. Its bounds are of the rounded.
+    double halfStep = 0.0;
 };
 
 /// The measurements of one cell: of each process (by its number), of each unit (a frame of a case),
@@ -50,6 +53,12 @@ Summary summarize(const Samples& samples, metrics::Statistic statistic);
 /// Of values in each round: their median, with bounds as summarize() gives them; of draws
 /// (shareDraws) the value as it is. Without rounds the value as it is, without bounds.
 Summary summaryOf(double value, std::map<int, double> rounds, bool areDraws);
+
+/// Half the least step between the values of all series where these are rounded, so that their
+/// steps are no finer than their noise: in one of them, at least, some are equal and others are
+/// not. Else 0: what is alike in all rounds of each series is known. A hair less than half, as two
+/// values a step apart were rounded to different ones.
+double halfStepOf(std::span<const std::map<int, double>* const> series);
 
 /// What else a share that was counted once could be in truth: as many draws as metrics' quantiles
 /// need from its posterior under Jeffreys' prior, Beta(k + ½, n − k + ½), which has an interval for

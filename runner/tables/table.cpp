@@ -53,6 +53,29 @@ void buildCells(const config::Layout& layout, const LayoutCases& cases,
     }
 }
 
+/// What varies and is rounded is so in all rows and columns of its metric; what is scaled, in those
+/// of its column.
+void markRounded(Table& table) {
+    std::map<std::tuple<std::string, std::string, Clock>, std::vector<Measured*>> alike;
+    for (TableRow& row : table.rows) {
+        for (std::size_t i = 0; i < row.cells.size(); ++i) {
+            Cell& cell = row.cells[i];
+            if (!cell.isTime && cell.seedCount < 2 && !cell.scatters) continue;
+            const std::string& name = cell.metric.empty() ? table.columns[i].label : cell.metric;
+            for (Measured& one : cell.values)
+                alike[{name, one.statistic, Clock::Wall}].push_back(&one);
+            for (Measured& one : cell.byProcess)
+                alike[{name, one.statistic, Clock::Process}].push_back(&one);
+        }
+    }
+    for (const auto& [name, values] : alike) {
+        std::vector<const std::map<int, double>*> series;
+        for (const Measured* value : values) series.push_back(&value->rounds);
+        const double halfStep = halfStepOf(series);
+        for (Measured* value : values) value->halfStep = halfStep;
+    }
+}
+
 /// Rows of a scene that could not be fitted; all of them where the table is of no other.
 void markUnfit(const config::Experiment& experiment, std::span<const config::Case> planned,
                Table& table) {
@@ -277,6 +300,7 @@ Table buildTable(const config::Experiment& given, std::span<const config::Case> 
     table.knowsPrintedParameters = printed.isKnown();
     table.isPrintUnsaid = printed.isUnsaid();
     buildCells(layout, cases, printed, columns, table);
+    markRounded(table);
     for (TableRow& row : table.rows) {
         for (std::size_t i = 0; i < row.cells.size(); ++i) {
             row.cells[i].isCalibrated =

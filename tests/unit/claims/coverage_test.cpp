@@ -456,6 +456,113 @@ INSTANTIATE_TEST_SUITE_P(Scatters, ScatterCoverage,
                                            Scatter{0.10, false, false}, Scatter{0.05, true, false},
                                            Scatter{0.10, true, false}, Scatter{0.05, false, true}));
 
+/// Integers of ten pairs of rows: in each the second lies `apart` above the first, whose mean is
+/// anywhere between two integers, and noise scatters by `scatter` before it is rounded.
+struct Rounded {
+    std::vector<Group> pairs;  // operands: both, one row each
+    std::vector<double> means;
+
+    Rounded(double scatter, double apart, int processes, Random& random) {
+        for (int pair = 0; pair < 10; ++pair) {
+            means.push_back(10.0 + double{random.uniform()});
+            Group& group = pairs.emplace_back();
+            for (const double mean : {means.back(), means.back() + apart}) {
+                Sampled& one = group.operands.emplace_back(1).front();
+                std::vector<double> values;
+                for (int i = 0; i < processes; ++i) {
+                    values.push_back(one.rounds[i] =
+                                         std::round(mean + scatter * normalDraw(random)));
+                }
+                one.point = metrics::median(values);
+                one.isRandom = one.scatters = true;
+            }
+        }
+    }
+
+    void widen() {
+        std::vector<const std::map<int, double>*> series;
+        for (Group& group : pairs) {
+            for (auto& operand : group.operands) series.push_back(&operand[0].rounds);
+        }
+        const double halfStep = tables::halfStepOf(series);
+        for (Group& group : pairs) {
+            for (auto& operand : group.operands) operand[0].halfStep = halfStep;
+        }
+    }
+};
+
+/// The pair as two rows of one column.
+Group asRows(const Group& pair) {
+    Group group;
+    group.operands = {{pair.operands[0][0], pair.operands[1][0]}};
+    group.x = {{1.0, {}}, {2.0, {}}};
+    return group;
+}
+
+/// Which share of claims of each kind is decided, that the pairs are in order among them; printed.
+std::map<std::string, double> decidedOf(double scatter, double apart, int processes,
+                                        bool isWidened) {
+    ClaimSpec ratio = claimOf("ratio"), rising = claimOf("trend"), alike = claimOf("independent");
+    ratio.high = 1.0;
+    rising.keys.set("direction", Node::scalar("increasing"));
+    ClaimSpec strictly = rising;
+    strictly.keys.set("strictly", Node::scalar("true"));
+    alike.high = 0.0;
+    std::map<std::string, double> decided;
+    const int trials = kTrials / 10;
+    for (int trial = 0; trial < trials; ++trial) {
+        Random random(static_cast<std::uint64_t>(1000 * trial + processes));
+        Rounded rounded(scatter, apart, processes, random);
+        if (isWidened) rounded.widen();
+        for (std::size_t i = 0; i < rounded.pairs.size(); ++i) {
+            const Group& pair = rounded.pairs[i];
+            const auto note = [&](const char* name, const Group& group, const ClaimSpec& claim) {
+                decided[name] += verdictOn(group, claim) != Verdict::Ambiguous;
+            };
+            ClaimSpec bound = claimOf("bound");
+            bound.high = rounded.means[i];
+            note("order", pair, claimOf("order"));
+            note("ratio", pair, ratio);
+            note("trend", asRows(pair), rising);
+            note("strictly", asRows(pair), strictly);
+            note("independent", asRows(pair), alike);
+            note("bound", pair, bound);
+            decided["found"] += verdictOn(pair, claimOf("order")) == Verdict::Holds;
+        }
+    }
+    std::printf("  scatter %.1f, %.0f apart, %d processes%s:", scatter, apart, processes,
+                isWidened ? "" : ", as if not rounded");
+    for (auto& [name, count] : decided) {
+        count /= 10.0 * trials;
+        std::printf(" %s %.1f %%", name.c_str(), 100.0 * count);
+    }
+    std::printf("\n");
+    return decided;
+}
+
+/// Rounded numbers of equal means decide nothing, whether the step is more than their noise or
+/// less; as they are they would decide half of claims.
+TEST(RoundedCoverage, OfEqualMeans) {
+    for (const double scatter : {0.1, 0.3, 0.5, 1.0, 2.0}) {
+        for (const int processes : {2, 6, 12}) {
+            const double most = processes < 6 ? 0.0 : test::kIsSanitized ? 1.0 : 0.05;
+            for (const auto& [kind, share] : decidedOf(scatter, 0.0, processes, true)) {
+                EXPECT_LE(share, most) << kind << ", " << scatter;
+            }
+        }
+    }
+    const auto plain = decidedOf(0.3, 0.0, 6, false);
+    for (const char* kind : {"order", "ratio", "trend", "strictly", "bound"}) {
+        EXPECT_GE(plain.at(kind), atLeast(0.1)) << kind << ": then no half step would be needed";
+    }
+}
+
+TEST(RoundedCoverage, ThreeStepsAreFound) {
+    for (const double scatter : {0.1, 0.3, 0.5}) {
+        EXPECT_GE(decidedOf(scatter, 3.0, 6, true).at("found"), atLeast(0.9)) << scatter;
+    }
+}
+
 /// How many rounds decide what difference, in one row and in one of twenty whose others are equal:
 /// the table of runner/claims/README.md.
 TEST(Power, OfRounds) {
