@@ -166,9 +166,30 @@ Never neverOf(const ClaimSpec& claim, const tables::Table& read) {
     return never;
 }
 
+/// Of the file as it stands, of which nothing took a part: where it reads nothing, or a group lacks
+/// what it needs.
+Never neverInProfile(const ClaimSpec& claim, const tables::Table& read) {
+    Never never = neverOf(claim, read);
+    ClaimReader reader(claim, read);
+    if (!never.what.empty()) return never;
+    if (!reader.readsAny()) return {reader.whyNoRow()};
+    if (reader.plannedRows().empty()) return {"no row has all that it compares"};
+    for (const ClaimPart& part : partsOf(claim)) {
+        for (const Rows& group : reader.groups()) {
+            const std::string why = reader.whyUnread(part, group);
+            std::ranges::copy(group, std::back_inserter(why.empty() ? never.with : never.without));
+            if (never.what.empty()) never.what = why;
+        }
+    }
+    return never;
+}
+
+using WhyNever = Never(const ClaimSpec& claim, const tables::Table& read);
+
 /// The `at` of one axis by which the claim reads only rows that have what it needs; empty where
 /// there is none.
-std::string atInstead(const ClaimSpec& claim, const tables::Table& read, const Never& never) {
+std::string atInstead(const ClaimSpec& claim, const tables::Table& read, WhyNever& why,
+                      const Never& never) {
     for (std::size_t axis = 0; axis < read.rowAxes.size(); ++axis) {
         const std::string& name = read.rowAxes[axis];
         Node::Sequence values;
@@ -188,12 +209,21 @@ std::string atInstead(const ClaimSpec& claim, const tables::Table& read, const N
         ClaimSpec other = claim;
         std::erase_if(other.at, [&](const auto& one) { return one.first == name; });
         other.at.emplace_back(name, values);
-        if (!neverOf(other, read).what.empty()) continue;
+        if (!why(other, read).what.empty()) continue;
         const bool isOne = values.size() == 1;
         return fmt::format("at: {{{}: {}}}", name,
                            (isOne ? values[0] : Node::sequence(values)).toFlowText());
     }
     return "";
+}
+
+/// With what to write instead.
+std::string whyNever(const ClaimSpec& claim, const tables::Table& read, WhyNever& why) {
+    const Never never = why(claim, read);
+    if (never.what.empty()) return "";
+    const std::string at = atInstead(claim, read, why, never);
+    const std::string& instead = at.empty() ? never.instead : at;
+    return never.what + (instead.empty() ? "" : "; allowed: " + instead);
 }
 
 /// Why no measurement could judge the claim; empty where one could, and where it does not fit the
@@ -203,12 +233,7 @@ std::string whyNeverJudged(const ClaimSpec& claim, const tables::Table& table) {
         if (wanted.empty()) return fmt::format("has an empty list of '{}' in 'at'", axis);
     }
     try {
-        const tables::Table read = tableFor(claim, table);
-        const Never never = neverOf(claim, read);
-        if (never.what.empty()) return "";
-        const std::string at = atInstead(claim, read, never);
-        const std::string& instead = at.empty() ? never.instead : at;
-        return never.what + (instead.empty() ? "" : "; allowed: " + instead);
+        return whyNever(claim, tableFor(claim, table), neverOf);
     } catch (const ExpressionError&) {
         throw;
     } catch (const Error&) {
@@ -376,10 +401,7 @@ void requireRows(std::span<const config::Experiment> profiles,
         const auto own = std::ranges::find(profiles[i].claims, id, &ClaimSpec::id);
         if (own == profiles[i].claims.end()) return "";
         try {
-            const tables::Table read = tableFor(*own, tables[i]);
-            const ClaimReader reader(*own, read);
-            if (!reader.readsAny()) return reader.whyNoRow();
-            return reader.plannedRows().empty() ? "no row has all that it compares" : "";
+            return whyNever(*own, tableFor(*own, tables[i]), neverInProfile);
         } catch (const Error&) {  // said elsewhere
             return "";
         }
@@ -391,9 +413,11 @@ void requireRows(std::span<const config::Experiment> profiles,
         for (std::size_t i = 1; i < profiles.size(); ++i) {
             isNowhere = isNowhere && !whyNot(i, claim.id).empty();
         }
-        if (isNowhere)
-            throw Error(claim.location,
-                        fmt::format("claim '{}' is judged in no profile: {}", claim.id, why));
+        if (!isNowhere) continue;
+        const std::string own = whyNeverJudged(claim, tables[0]);
+        throw Error(claim.location,
+                    fmt::format("claim '{}' {}", claim.id,
+                                own.empty() ? "is judged in no profile: " + why : own));
     }
 }
 

@@ -16,16 +16,20 @@ namespace gfxrepro::claims {
 
 namespace {
 
-/// The table with a column of each row axis of numbers: for what a trend is over.
+/// The table with a column of each row axis of numbers, but where `when` of the sweep leaves it
+/// out: for what a trend is over.
 tables::Table withAxesAsColumns(tables::Table table) {
     for (std::size_t axis = 0; axis < table.rowAxes.size(); ++axis) {
         const bool isOfNumbers = std::ranges::all_of(table.rows, [&](const tables::TableRow& row) {
-            return parseDouble(row.labels[axis]).has_value();
+            const std::string& label = row.labels[axis];
+            return parseDouble(label).has_value() || label == tables::kLeftOut;
         });
         if (!isOfNumbers || table.findColumn(table.rowAxes[axis])) continue;
         table.columns.push_back({table.rowAxes[axis], ""});
         for (tables::TableRow& row : table.rows) {
             tables::Cell& cell = row.cells.emplace_back();
+            cell.isNowhere = row.labels[axis] == tables::kLeftOut;
+            if (cell.isNowhere) continue;
             cell.status = records::Status::Ok;
             cell.measured = row.labels[axis];
             cell.isAtPrintedParameters = true;
@@ -132,6 +136,15 @@ std::string ClaimReader::whyNoRow() const {
     return fmt::format("no row is of {}; there are: {}", Node::map(asked).toFlowText(),
                        there.empty() ? "none" : tables::shortened(there, ", "));
 }
+
+namespace {
+
+std::string whyFewRows(const ClaimPart& part, std::size_t rows) {
+    if (rows >= part.minRows) return "";
+    return fmt::format("needs at least {} rows, found {}", part.minRows, rows);
+}
+
+}  // namespace
 
 /// The row axes along which `over` changes: itself, or, if it is a column, each on which that
 /// column depends.
@@ -411,6 +424,27 @@ Sampled ClaimReader::abscissa(std::size_t row) {
     return {*value, {}};
 }
 
+std::string ClaimReader::whyUnread(const ClaimPart& part, const Rows& rows) const {
+    std::size_t count = 0;
+    bool isXKnown = true;
+    for (const std::size_t row : rows) {
+        if (!isPlanned(part, row)) continue;
+        ++count;
+        std::vector<const Operand*> read;
+        for (const std::size_t operand : part.operands) read.push_back(&operands_[operand]);
+        if (part.needsX && !overColumn_.empty()) read.push_back(&overColumn_[0]);
+        for (const Operand* operand : read) {
+            for (const std::size_t column : operand->columns()) {
+                if (!table_.rows[row].cells[column].isNowhere) continue;
+                return fmt::format("'{}' has no value at {}", table_.columns[column].label,
+                                   table_.rowName(row));
+            }
+        }
+        isXKnown &= overColumn_.empty() || problemOf(overColumn_[0], row).empty();
+    }
+    return count == 0 || !isXKnown ? "" : whyFewRows(part, count);
+}
+
 ClaimReader::Reading ClaimReader::read(const ClaimPart& part, const Rows& rows) {
     Reading reading;
     reading.group.operands.resize(part.operands.size() + (part.needsExpected ? 1 : 0));
@@ -436,10 +470,7 @@ ClaimReader::Reading ClaimReader::read(const ClaimPart& part, const Rows& rows) 
         if (part.needsX) reading.group.x.push_back(abscissa(row));
         reading.rows.push_back(row);
     }
-    if (!reading.rows.empty() && reading.rows.size() < part.minRows) {
-        reading.problem = "needs at least " + std::to_string(part.minRows) + " rows, found " +
-                          std::to_string(reading.rows.size());
-    }
+    if (!reading.rows.empty()) reading.problem = whyFewRows(part, reading.rows.size());
     return reading;
 }
 

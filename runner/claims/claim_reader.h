@@ -43,6 +43,8 @@ class ClaimReader {
         std::string problem;
     };
     Reading read(const ClaimPart& part, const Rows& rows);
+    /// Why `part` could not read the group, whatever was measured; empty where it could.
+    std::string whyUnread(const ClaimPart& part, const Rows& rows) const;
 
     /// Reads times by the process's CPU time from now on; false, and nothing is changed, where one
     /// of them was not recorded by it.

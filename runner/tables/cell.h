@@ -95,6 +95,7 @@ struct Cell {
     /// each. Whether they repeat one, as trials do, or are others, as scenes are, nobody
     /// knows.
     std::string onceAlong;
+    bool isNowhere = false;   // no measurement gives it: it reads a row that is not there
     bool isOwnTruth = false;  // an error, 0 whatever the program does: LayoutCases::ownTruths
     /// An input was fitted so that it comes out (config::isCalibrated).
     bool isCalibrated = false;

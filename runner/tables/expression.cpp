@@ -215,6 +215,7 @@ Cell cellElsewhere(const Elsewhere& place, const TableRow& row, const Table& tab
     const auto plain = std::ranges::find(table.rows, labels, &TableRow::labels);
     if (plain != table.rows.end()) return plain->cells[place.column];
     Cell missing;
+    missing.isNowhere = true;
     missing.message = "this run has no row " + place.name;
     return missing;
 }
@@ -280,6 +281,7 @@ void gatherFrom(const Cell& from, Cell& cell) {
     }
     cell.isCalibrated |= from.isCalibrated;
     cell.isOwnTruth |= from.isOwnTruth;
+    cell.isNowhere |= from.isNowhere;
     cell.scatters |= from.scatters;
     cell.isRunOnce |= from.isRunOnce;
     if (cell.onceAlong.empty()) cell.onceAlong = from.onceAlong;

@@ -1396,6 +1396,31 @@ TEST(Claims, WhatWhenLeavesOutIsNoRow) {
     EXPECT_EQ(refused(rows, "trend: b, across: m, of: e, over: n, at_most: 0"), "no error");
 }
 
+/// Of the file as it stands.
+TEST(Claims, WhatHasNoValueSomewhereIsRefused) {
+    const auto refused = [](const std::string& claim) {
+        std::vector<config::Experiment> one = {tables::experimentFrom(
+            "sweep: {m: [a, b, c], n: [1, 2], when: {n: {m: [b, c]}}}\nlayout: {rows: [m, n], "
+            "columns: {e: {metric: e}, r: {of: 'e / e[n=1]'}}}\nclaims: {C: {says: so, " +
+            claim + "}}\n")};
+        one[0].claims[0].location = {"t.yaml", 4, 2};
+        const std::vector<tables::Table> tables = {tables::buildTable(one[0], {})};
+        return errorText([&] { requireRows(one, tables); });
+    };
+    const std::string why = "t.yaml:4:2: claim 'C' is judged in no profile: ";
+    for (const auto& [claim, column] : {std::pair("trend: e, over: 2^n, at_most: 0", "n"),
+                                        {"bound: r, at_most: 1", "r"},
+                                        {"exact: r, equals: 1", "r"}}) {
+        EXPECT_EQ(refused(claim),
+                  why + "'" + column + "' has no value at m=a, n=–; allowed: at: {m: [b, c]}");
+        EXPECT_EQ(refused(std::string(claim) + ", at: {m: [b, c]}"), "no error");
+    }
+    EXPECT_EQ(
+        refused("order: [n=2, n=1], of: e, at: {m: a}"),
+        "t.yaml:4:2: claim 'C' has no row of all that it compares: 'when' of the sweep leaves "
+        "some of it without 'n'; allowed: at: {m: [b, c]}");
+}
+
 /// By whatever the sweep leaves out.
 TEST(Claims, OfWhichNoProfileHasARowIsRefused) {
     const auto refused = [](const std::string& claim, const std::string& quick) {
@@ -1420,6 +1445,12 @@ TEST(Claims, OfWhichNoProfileHasARowIsRefused) {
     EXPECT_EQ(refused("bound: e, at_most: 1, at: {m: a, n: 2}", "{m: b, n: 1}"), "no error");
     EXPECT_EQ(refused("order: [a, b], of: e, at: {n: 2}", "{m: a, n: 2}"),
               why + "no row has all that it compares");
+    const std::string along = "independent: e, of: m, at_most: 1%";
+    EXPECT_EQ(refused(along + ", at: {n: 2}", "{m: a, n: 2}"),
+              why + "needs at least 2 rows, found 1");
+    EXPECT_EQ(refused(along, "{m: a, n: 2}"),
+              why + "needs at least 2 rows, found 1; allowed: at: {n: 1}");
+    EXPECT_EQ(refused(along + ", at: {n: 1}", "{m: b, n: 1}"), "no error") << "in one profile";
     EXPECT_EQ(refused("order: [a, b], of: e", "{m: a, n: 2}"), "no error");
 }
 
