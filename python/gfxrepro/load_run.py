@@ -9,7 +9,8 @@ import os
 import pathlib
 import typing
 
-CASE_COLUMNS = ("case_id", "experiment", "technique", "scene", "lane", "run_seed", "seeds")
+CASE_COLUMNS = ("case_id", "experiment", "technique", "scene", "lane", "run_seed", "seeds",
+                "processes_asked")
 RECORD_COLUMNS = ("case_id", "process", "frame", "repeat", "lane", "pass", "metric", "unit", "value", "status",
                   "message")
 WHOLE = ("process", "frame", "repeat")
@@ -83,7 +84,8 @@ def _case(item):
         "case_id": item["id"], "experiment": item["experiment"], "technique": item["technique"],
         "scene": swept if swept is not None else item["scene"] if item["scene"] is not None else "",
         "lane": item["measure"]["lane"], "run_seed": int(item["seed"]),
-        "seeds": item["measure"].get("seeds", "")}
+        "seeds": item["measure"].get("seeds", ""),
+        "processes_asked": int(item["measure"]["processes"])}
     width, height = item["output"]
     params = item["params"] | {"output": {"width": width, "height": height}}
     params |= {name: item[name] for name in ("stands_for", "scene_sample") if name in item}

@@ -21,9 +21,11 @@ namespace gfxrepro::outcome {
 void writeArtifact(const std::filesystem::path& runDir, const run::StoredRun& run,
                    const scene::Catalog& catalog, const std::filesystem::path& target);
 
+/// By the plan; a budget of time may have ended them before.
+inline constexpr std::string_view kProcessesAsked = "processes_asked";
 /// The columns of cases.csv before the parameters. None is a word of SQL.
-inline constexpr std::string_view kCaseColumns[] = {"case_id", "experiment", "technique", "scene",
-                                                    "lane",    "run_seed",   "seeds"};
+inline constexpr std::string_view kCaseColumns[] = {
+    "case_id", "experiment", "technique", "scene", "lane", "run_seed", "seeds", kProcessesAsked};
 /// Begins the column of a parameter that has the name of one of these.
 inline constexpr std::string_view kParamPrefix = "params.";
 

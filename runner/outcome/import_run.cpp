@@ -99,6 +99,16 @@ config::Measure::Seeds seedsOf(const ImportedCase& given) {
                 fmt::format("column 'seeds': '{}'; allowed: case, process, or nothing", text));
 }
 
+/// Of an exported run, which may have ended before as many were measured.
+int processesAskedOf(const ImportedCase& given) {
+    const std::string column(kProcessesAsked);
+    const std::string text = given.cell(column);
+    if (text.empty()) return 1;
+    return static_cast<int>(numberIn(Node::scalar(text, given.where),
+                                     {.least = 1, .most = records::kMostProcesses, .isWhole = true},
+                                     fmt::format("column '{}'", column)));
+}
+
 /// Cases have an output beside their parameters; a parameter of that name would be lost.
 void requireKnownOutput(const std::string& name, const ImportedCase& given) {
     if (name != "output" && !name.starts_with("output.")) return;
@@ -146,9 +156,9 @@ config::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
     item.outputWidthPx = outputSize(given, kOutputWidth, experiment.outputWidthPx);
     item.outputHeightPx = outputSize(given, kOutputHeight, experiment.outputHeightPx);
     item.measure = experiment.measure;
-    item.measure.processes = 1;
+    item.measure.processes = processesAskedOf(given);
     item.measure.relativeError = 0.0;
-    item.measure.isWithinBudget = false;
+    item.measure.isWithinBudget = item.measure.processes > 1;
     item.measure.seeds = given.hasSeeds ? config::Measure::Seeds::Process : seedsOf(given);
     return item;
 }

@@ -143,7 +143,7 @@ void writeCases(const fs::path& file, std::span<const config::Case> cases) {
             row.text(item.id).text(item.experiment).text(item.technique);
             row.text(item.recordedScene()).text(isTiming ? "timing" : "quality");
             row.integer(static_cast<long long>(item.seed));
-            row.text(seedsName(item.measure.seeds));
+            row.text(seedsName(item.measure.seeds)).integer(item.measure.processes);
             for (const std::string& param : params) row.text(fields[param]);
         });
     }

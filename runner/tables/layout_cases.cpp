@@ -300,8 +300,8 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
     if (cases.isOfProgram) countSweptSeeds(cases);
     for (CaseRecords& item : cases.cases) {
         const bool isSeeded = item.seeds != config::Measure::Seeds::None || item.sweptSeed;
-        item.isRunOnce = cases.isOfProgram && !cases.isOfElsewhere && !isSeeded &&
-                         item.processes.size() == 1 && item.processesAsked > 1;
+        item.isRunOnce =
+            cases.isOfProgram && !isSeeded && item.processes.size() == 1 && item.processesAsked > 1;
     }
     lookAtMetrics(cases);
     for (int frame = 0; frame < cases.frameCount; ++frame) {

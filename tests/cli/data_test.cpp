@@ -300,6 +300,29 @@ TEST_F(Data, WhatAProgramSaysIsAColumnOfItsExportToo) {
                                testing::Not(testing::HasSubstr("1 unmeasured"))));
 }
 
+TEST_F(Data, OneProcessOfSeveralThatWereAskedForDecidesNothingOfAnImport) {
+    const std::string numbers =
+        folder_.write("r.csv", "case_id,process,metric,value\nx,0,err,1\ny,0,err,2\n");
+    const std::string config =
+        folder_.write("t.yaml",
+                      "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n"
+                      "claims: {c: {says: so, order: [m=a, m=b], of: err}}\n");
+    for (const auto& [asked, verdict] : {std::pair("1", "holds"), {"6", "ambiguous"}}) {
+        const std::string cases = folder_.write(
+            "cases.csv", fmt::format("case_id,processes_asked,m\nx,{0},a\ny,{0},b\n", asked));
+        const std::string run = std::string("asked-") + asked;
+        endedWith(0, mockGfxrepro({"import", numbers, "--cases", cases, "--config", config, "--out",
+                                   dir(run)}));
+        EXPECT_THAT(verdicts(run), testing::Contains(std::string("c ") + verdict));
+    }
+    const std::string cases =
+        folder_.write("cases.csv", "case_id,processes_asked,m\nx,0,a\ny,1,b\n");
+    EXPECT_EQ(
+        endedWith(2, mockGfxrepro({"import", numbers, "--cases", cases, "--out", dir("t")})).err,
+        "gfxrepro: " + cases +
+            ":2: column 'processes_asked' is 0; allowed: a whole number, 1 … 1000000\n");
+}
+
 TEST_F(Data, ValuesOfAnAxisAreComparedWithoutALayout) {
     const std::string csv = folder_.write("t.csv", "m,metric,value\na,err,1\nb,err,2\n");
     const std::string head = "sweep_of: t\ntitle: T\ntechnique: imported\n";
