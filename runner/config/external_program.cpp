@@ -64,7 +64,8 @@ const KeyTable<ProgramKeys>& programTable() {
                     "what a run of it gives: one frame, {frame}; or all {frames} of the case, each "
                     "line and picture with its own; the run's time is then shared out among them")},
          {&P::seeds,
-          choiceKey("seeds", kSeedsOf, "process of an unswept {seed} with truths of other numbers",
+          choiceKey("seeds", kSeedsOf,
+                    "process of an unswept {seed} with truths that are files or of other numbers",
                     "what `measure.seeds` is where it is not given")},
          {&P::gpu, "gpu", "boolean", "false",
           "whether it works on the GPU: then a run asks which that is", boolean()},
