@@ -414,10 +414,10 @@ void requireRows(std::span<const config::Experiment> profiles,
             isNowhere = isNowhere && !whyNot(i, claim.id).empty();
         }
         if (!isNowhere) continue;
-        const std::string own = whyNeverJudged(claim, tables[0]);
+        const bool isOfProfile = whyNeverJudged(claim, tables[0]).empty();
         throw Error(claim.location,
-                    fmt::format("claim '{}' {}", claim.id,
-                                own.empty() ? "is judged in no profile: " + why : own));
+                    fmt::format("claim '{}' {}{}", claim.id,
+                                isOfProfile ? "is judged in no profile: " : "", why));
     }
 }
 
