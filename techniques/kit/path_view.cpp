@@ -46,7 +46,13 @@ std::optional<scene::CameraPath> pathOf(const scene::Scene& scene, const std::st
     for (const std::string& key : split(view, ';')) {
         const std::vector<std::string> ends = split(key, '>');
         const auto from = pointOf(ends.front()), to = pointOf(ends.back());
-        if (ends.size() != 2 || !from || !to || *from == *to) return std::nullopt;
+        if (ends.size() != 2 || !from || !to) return std::nullopt;
+        if (*from == *to) {
+            throw Error(
+                fmt::format("view '{}': from {:g} {:g} {:g} to the same point; allowed: to "
+                            "another one",
+                            view, from->x, from->y, from->z));
+        }
         scene::Camera camera;
         camera.position = *from;
         camera.target = *to;

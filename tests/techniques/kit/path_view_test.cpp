@@ -96,12 +96,15 @@ TEST(PathView, LooksFromAPointToAnotherAndAlongAPathOfThem) {
     EXPECT_EQ(cameraAtTime(box(), path, 0.0, 1.0F).position, glm::vec3(0, 0, 8));
     EXPECT_EQ(cameraAtTime(box(), path, 0.5, 1.0F).position, glm::vec3(2, 0, 8));
     EXPECT_EQ(cameraAtTime(box(), path, 1.0, 1.0F).target, glm::vec3(0, 0, 2));
-    for (const char* wrong : {"1 2 > 0 0 0", "1 2 3 > 1 2 3", "1 2 3 > 0 0 0 0", "1 2 3 >",
-                              "1 2 3 > 0 0 0;", "1 2 3 > 0 0 0 > 1 1 1"}) {
+    for (const char* wrong :
+         {"1 2 > 0 0 0", "1 2 3 > 0 0 0 0", "1 2 3 >", "1 2 3 > 0 0 0;", "1 2 3 > 0 0 0 > 1 1 1"}) {
         EXPECT_THAT(test::errorText([&] { stillCamera(box(), wrong, 1.0F); }),
                     testing::StartsWith("the scene has no path or camera '"))
             << wrong;
     }
+    EXPECT_EQ(test::errorText([] { stillCamera(box(), "0 0 8 > 0 0 0; 1 2 3 > 1 2 3", 1.0F); }),
+              "view '0 0 8 > 0 0 0; 1 2 3 > 1 2 3': from 1 2 3 to the same point; allowed: to "
+              "another one");
 }
 
 TEST(PathView, NamesWhatThereIsWhenANameIsUnknown) {
