@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 
-#include "techniques/kit/path_view.h"
 #include "techniques/voxelization/combination.h"
 #include "techniques/voxelization/formula_surface.h"
 #include "techniques/voxelization/mesh_input.h"
@@ -217,11 +216,6 @@ struct VoxelizationParams {
             }
             return;
         }
-        try {
-            kit::stillCamera({}, drawing.view, 1.0F);  // formulas have no scene
-        } catch (const Error& error) {
-            throw Error(params.locationOf("view"), error.what());
-        }
         params.refuseGiven({"addressing", "collision", "compare", "csg", "fill_rule", "method",
                             "offset_b", "padding", "rule", "scene_b", "split"},
                            "'input: mesh'");
@@ -267,6 +261,12 @@ class Voxelization final : public technique::Technique {
           combination_(params_.combination),
           drawing_(params_.drawing) {
         params.finish();
+        if (!source_) return;  // formulas have no scene
+        try {
+            requireView({}, params_.box.value_or(source_->grid()->box));
+        } catch (const Error& error) {
+            throw Error(params.locationOf("view"), error.what());
+        }
     }
 
     void setup(technique::SetupContext& context) override {
@@ -288,7 +288,9 @@ class Voxelization final : public technique::Technique {
     void requireScene(const scene::Scene& scene) const override {
         if (params_.input != InputKind::Mesh) return;
         requireVoxelizable(scene);
-        kit::stillCamera(scene, params_.drawing.view, 1.0F);  // that there is one
+        // A second model may move the grid about both of them.
+        const scene::Box bounds = scene.bounds();
+        requireView(scene, params_.combination.needsSecond() ? bounds : boxAround(bounds));
     }
 
     void render(technique::FrameContext& context) override {
@@ -334,6 +336,17 @@ class Voxelization final : public technique::Technique {
     }
 
   private:
+    /// That there is one, outside of the grid.
+    void requireView(const scene::Scene& scene, const scene::Box& grid) const {
+        cameraOf(params_.drawing.view, scene, grid, grid, 1.0F);
+    }
+
+    scene::Box boxAround(const scene::Box& bounds) const {
+        if (params_.box) return *params_.box;
+        if (params_.drawing.draw.mode == DrawMode::Mixed) return headBoxAround(bounds);
+        return cubicBox(bounds, params_.voxelizer.grid.layout.resolution(), params_.paddingVoxels);
+    }
+
     void setupMesh(technique::SetupContext& context) {
         const MeshVoxelizerSettings& settings = params_.voxelizer;
         const WorksheetLayout& layout = settings.grid.layout;
@@ -342,16 +355,14 @@ class Voxelization final : public technique::Technique {
         if (params_.combination.needsSecond()) {
             bounds.add(combination_.loadSecond(context, bounds));
         }
-        const bool isInHead = params_.drawing.draw.mode == DrawMode::Mixed;
-        box_ = params_.box ? *params_.box
-               : isInHead  ? headBoxAround(bounds)
-                           : cubicBox(bounds, layout.resolution(), params_.paddingVoxels);
+        box_ = boxAround(bounds);
         source_ = std::make_unique<MeshVoxelizer>(settings, input_->mesh(), box_);
         source_->setup(context);
         if (params_.combination.needsSecond()) combination_.setup(context, settings, box_);
         if (params_.drawing.isOn()) {
             const bool showsBoth =
                 params_.combination.findsCollision && !params_.combination.csg.has_value();
+            const bool isInHead = params_.drawing.draw.mode == DrawMode::Mixed;
             const scene::Box shown = isInHead      ? headBounds(box_)
                                      : params_.box ? *params_.box
                                                    : bounds;
