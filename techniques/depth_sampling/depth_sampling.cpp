@@ -115,6 +115,11 @@ ViewTriangleSettings readTriangle(Params& params) {
     settings.rollRad = glm::radians(number(
         "view_roll_deg", 0.0,
         {"turns the triangle of views in its plane; the views stay upright", "°", -360.0, 360.0}));
+    settings.view = params.getText(
+        "view", "",
+        {"where the middle of the triangle looks from: a path of the scene, seen from its middle, "
+         "a camera, \"X Y Z > X Y Z\" from and to, or where from to frame it, \"AZIMUTH "
+         "ELEVATION\" in degrees; none: its first camera"});
     return settings;
 }
 
@@ -244,8 +249,8 @@ void requireSamples(const Measures& measures, Method method, const Views& views,
         const glm::vec3& eye = views.images[i].eyeWorld;
         throw Error(fmt::format(
             "reference image {} has no sample: from ({:g}, {:g}, {:g}) nothing of scene '{}' is in "
-            "view; change 'view_distance', 'view_spread', 'view_yaw_deg', 'view_pitch_deg' or the "
-            "scene's camera",
+            "view; change 'view', 'view_distance', 'view_spread', 'view_yaw_deg' or "
+            "'view_pitch_deg'",
             i, eye.x, eye.y, eye.z, scene));
     }
 }
@@ -319,6 +324,7 @@ class DepthSampling final : public technique::Technique {
 
     void requireScene(const scene::Scene& scene) const override {
         kit::requireTriangles(scene, "depth_sampling");
+        makeViewTriangle(scene, params_.triangle);  // that there is one
     }
 
     void render(technique::FrameContext& context) override {

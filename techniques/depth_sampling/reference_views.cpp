@@ -6,6 +6,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "techniques/kit/path_view.h"
+
 namespace gfxrepro::depth_sampling {
 namespace {
 
@@ -72,7 +74,8 @@ void checkUpright(const scene::Camera& camera) {
     if (glm::length(glm::cross(glm::normalize(camera.up), glm::normalize(back))) >= kMinSine)
         return;
     throw Error(fmt::format(
-        "the camera at ({:g}, {:g}, {:g}) looks along its up direction; change 'view_pitch_deg'",
+        "the camera at ({:g}, {:g}, {:g}) looks along its up direction; change 'view' or "
+        "'view_pitch_deg'",
         camera.position.x, camera.position.y, camera.position.z));
 }
 
@@ -88,8 +91,7 @@ scene::Camera cameraInHull(const ViewTriangle& triangle, int referenceCount, int
 ViewTriangle makeViewTriangle(const scene::Scene& scene, const ViewTriangleSettings& settings) {
     const scene::Box box = scene.bounds();
     ViewTriangle triangle;
-    triangle.centre =
-        scene.cameras.empty() ? scene::framingCamera(box, settings.aspect) : scene.cameras.front();
+    triangle.centre = kit::stillCamera(scene, settings.view, settings.aspect);
     scene::Camera& centre = triangle.centre;
     glm::vec3 back = (centre.position - centre.target) * settings.distance;
     checkUpright(centre);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/raycast/ray_tracer.h"
@@ -10,9 +11,8 @@
 
 namespace gfxrepro::depth_sampling {
 
-/// The triangle V₀V₁V₂ before the scene ([xie2017] Fig. 8). Its centre is where the scene's own
-/// camera stands (the first one; a camera that frames the scene when there is none); all views look
-/// at that camera's target.
+/// The triangle V₀V₁V₂ before the scene ([xie2017] Fig. 8). Its centre is where the camera of
+/// `view` stands (kit::stillCamera()); all views look at that camera's target.
 struct ViewTriangle {
     scene::Camera centre;
     glm::vec3 corners[3];
@@ -25,10 +25,12 @@ struct ViewTriangleSettings {
     float pitchRad = 0.0F;  // … and about its right axis, upwards
     float rollRad = 0.0F;   // turns the triangle in its plane, counter-clockwise seen from the eye
     float aspect = 1.0F;    // width : height
+    std::string view;
 };
 
 /// Equilateral, upright, across the direction of view. Near and far planes are fitted to the scene
-/// from every point of the triangle. Throws Error when the camera looks along its up direction.
+/// from every point of the triangle. Throws Error when the camera looks along its up direction, and
+/// as kit::stillCamera().
 ViewTriangle makeViewTriangle(const scene::Scene& scene, const ViewTriangleSettings& settings);
 
 /// The camera at barycentric coordinates (a, b) of corners 1 and 2.

@@ -118,7 +118,8 @@ TerrainTessellationParams::TerrainTessellationParams(Params& params)
         (1 << 20));
     view = params.getText(
         "view", "valley",
-        {"a camera or path of the scene, or overview, valley, steep or round_flight"});
+        {"a camera or path of the scene; overview, valley, steep or round_flight; \"X Y Z > X Y "
+         "Z\" from and to, more such behind ';' a path; or \"AZIMUTH ELEVATION\" in degrees"});
     keepsMetadata = params.getBool("cache", true, {"keeps the preprocess's result on disk"});
     measuresErrors = params.getBool("errors", false, {"compares with the full resolution"});
     checksSeams = params.getBool("seams", false,

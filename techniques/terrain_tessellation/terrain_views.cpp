@@ -117,6 +117,26 @@ bool isThere(const std::vector<Named>& all, const std::string& name) {
     return std::any_of(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
 }
 
+glm::vec3 eyeAt(const scene::Scene& views, const std::string& name, double time) {
+    try {
+        return kit::cameraAtTime(views, name, time, 1.0F).position;
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}; or overview, valley, steep, round_flight", error.what()));
+    }
+}
+
+/// Of a map only the upper side is drawn.
+void requireAboveGround(const scene::HeightMap& map, const scene::Box& box, const std::string& view,
+                        const glm::vec3& eye) {
+    const bool isOverMap =
+        eye.x >= box.min.x && eye.x <= box.max.x && eye.z >= box.min.z && eye.z <= box.max.z;
+    const float groundM = isOverMap ? heightAt(map, eye.x, eye.z) : box.min.y;
+    if (eye.y > groundM) return;
+    throw Error(fmt::format(
+        "view '{}': the eye at {:g} {:g} {:g} lies under the ground; allowed there: above {:g}",
+        view, eye.x, eye.y, eye.z, groundM));
+}
+
 }  // namespace
 
 namespace {
@@ -156,29 +176,38 @@ float drawnHeightAt(const scene::HeightMap& map, float x, float z) {
 }
 
 TerrainView::TerrainView(const scene::Scene& scene, const std::string& name)
-    : scene_(&scene), name_(name) {
+    : map_(&*scene.heights), name_(name) {
+    views_.cameras = scene.cameras;
+    views_.paths = scene.paths;
     if (isThere(scene.paths, name) || isThere(scene.cameras, name)) return;
-    const scene::HeightMap& map = *scene.heights;
-    if (name == "overview") {
-        still_ = overview(map);
-    } else if (name == "valley") {
-        still_ = valley(map);
-    } else if (name == "steep") {
-        still_ = steep(map);
-    } else if (name == "round_flight") {
-        flight_ = flight(map);
-    } else {
-        throw Error(
-            fmt::format("the scene has no path or camera '{}', and it is none of overview, "
-                        "valley, steep, round_flight",
-                        name));
+    if (name == "round_flight") {
+        views_.paths.push_back(flight(*map_));
+        return;
+    }
+    for (const auto& [own, make] :
+         {std::pair("overview", &overview), {"valley", &valley}, {"steep", &steep}}) {
+        if (name != own) continue;
+        views_.cameras.push_back(make(*map_));
+        views_.cameras.back().name = name;
+        return;
+    }
+    isByPlaces_ = true;
+    const scene::Box box = scene.bounds();
+    views_.points.positions = {box.min, box.max};
+    constexpr int kPlaces = 64;  // of a path
+    for (int i = 0; i < kPlaces; ++i) {
+        requireAboveGround(*map_, box, name, eyeAt(views_, name, kit::frameTime(i, kPlaces)));
     }
 }
 
 scene::Camera TerrainView::camera(int frame, int frameCount, float aspect) const {
-    if (still_) return *still_;
-    if (flight_) return scene::cameraAt(*flight_, kit::frameTime(frame, frameCount));
-    return kit::cameraFor(*scene_, name_, frame, frameCount, aspect);
+    scene::Camera camera = kit::cameraFor(views_, name_, frame, frameCount, aspect);
+    if (isByPlaces_) {  // the ground under a low flight is seen, too, as far as depths allow
+        const glm::vec3& eye = camera.position;
+        const float nearM = 0.1F * (eye.y - heightAt(*map_, eye.x, eye.z));
+        camera.nearM = std::min(camera.nearM, std::max(nearM, 1e-4F * camera.farM));
+    }
+    return camera;
 }
 
 }  // namespace gfxrepro::terrain_tessellation

@@ -1,7 +1,6 @@
 // From where terrain is seen: the scene's cameras and paths, or ones that any height map has.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "engine/scene/scene.h"
@@ -13,19 +12,20 @@ namespace gfxrepro::terrain_tessellation {
 /// `overview`: the whole map from high above its southern border;
 /// `valley`: a low flight towards the highest summit;
 /// `steep`: down at the ground that the valley is seen from, a few patches wide;
-/// `round_flight`: a low round flight about the map's centre, as a path.
+/// `round_flight`: a low round flight about the map's centre, as a path;
+/// or one by places or directions, as kit::cameraAtTime() takes it.
 class TerrainView {
   public:
-    /// `scene` must outlive it. Throws Error for other names.
+    /// `scene` must outlive it. Throws Error for other names, and for places under the ground.
     TerrainView(const scene::Scene& scene, const std::string& name);
     /// Of frame `frame` of `frameCount`.
     scene::Camera camera(int frame, int frameCount, float aspect) const;
 
   private:
-    const scene::Scene* scene_;
+    const scene::HeightMap* map_;
     std::string name_;
-    std::optional<scene::Camera> still_;
-    std::optional<scene::CameraPath> flight_;
+    scene::Scene views_;  // cameras and paths, and the corners of what they see
+    bool isByPlaces_ = false;
 };
 
 /// The height of the terrain's surface, bilinear between samples, its border's beyond them.

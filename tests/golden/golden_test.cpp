@@ -171,7 +171,7 @@ const std::vector<Golden> kGoldens = {
     Golden{"shadow_mapping", "result", {"method=standard", "filter=pcf", "light_kind=spot"}},
     Golden{"soft_shadows", "shadow", {"method=non_redundant"}},
     Golden{"template", "result", {"brightness=1"}},
-    Golden{"terrain_tessellation", "image", {"method=adaptive"}},
+    Golden{"terrain_tessellation", "image", {"method=adaptive", "view=valley"}},
     Golden{"voxelization", "draw", {}},
     Golden{"voxelization-implicit", "draw", {}},
     Golden{"voxelization-mixed", "draw", {}}};

@@ -274,6 +274,22 @@ TEST_F(DepthSamplingTest, GeometryShaderIdsGiveTheSameSamples) {
     EXPECT_EQ(run(common + "geometry_shader}", scene), run(common + "primitive_id}", scene));
 }
 
+TEST_F(DepthSamplingTest, StandsWhereItsViewSays) {
+    scene::Scene scene = clutter();
+    EXPECT_NE(run("{method: non_redundant, view: 110 35}", scene),
+              run("{method: non_redundant}", scene));
+    scene.cameras.front().verticalFovRad = scene::Camera().verticalFovRad;
+    const Metrics first = run("{method: non_redundant}", scene);
+    scene.cameras.front().name = "door";
+    scene.cameras.insert(scene.cameras.begin(), lookingAt({0, 0, 40}, {0, 0, 80}));
+    EXPECT_EQ(run("{method: non_redundant, view: door}", scene), first);
+    EXPECT_EQ(run("{method: non_redundant, view: 1 2 5 > 0 0 0}", scene), first);
+    Params params = test::paramsOf(technique_, "{view: 1 2 5 > 1 2 5}");
+    const auto technique = technique_.create(params);
+    EXPECT_EQ(errorText([&] { technique->requireScene(scene); }),
+              "view '1 2 5 > 1 2 5': from 1 2 5 to the same point; allowed: to another one");
+}
+
 // The camera looks away from everything.
 TEST_F(DepthSamplingTest, NothingInViewIsAnError) {
     scene::Scene scene = cardBeforeWall();
@@ -288,8 +304,8 @@ TEST_F(DepthSamplingTest, NothingInViewIsAnError) {
                               scene);
                       }),
                       "reference image 0 has no sample: from (0, 0, 4) nothing of scene 'cards' is "
-                      "in view; change 'view_distance', 'view_spread', 'view_yaw_deg', "
-                      "'view_pitch_deg' or the scene's camera")
+                      "in view; change 'view', 'view_distance', 'view_spread', 'view_yaw_deg' or "
+                      "'view_pitch_deg'")
                 << method << ' ' << redundancy;
         }
     }

@@ -145,7 +145,8 @@ TEST(ReferenceViewsTest, RefusesToLookAlongUp) {
     scene::Scene scene = boxScene({-1, 0, -2}, {1, 2, 2});
     scene.cameras[0].position = {0, 9, 0};
     EXPECT_EQ(test::errorText([&] { makeViewTriangle(scene, {}); }),
-              "the camera at (0, 9, 0) looks along its up direction; change 'view_pitch_deg'");
+              "the camera at (0, 9, 0) looks along its up direction; change 'view' or "
+              "'view_pitch_deg'");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/image/resample.h"
+#include "techniques/kit/path_view.h"
 #include "techniques/terrain_tessellation/terrain_views.h"
 #include "tests/support/support.h"
 
@@ -186,8 +187,40 @@ TEST(TerrainViewsTest, TheScenesOwnViewsComeFirst) {
     scene.cameras.push_back(camera);
     EXPECT_EQ(TerrainView(scene, "valley").camera(0, 1, 1.0F).position, camera.position);
     EXPECT_EQ(test::errorText([&] { TerrainView(scene, "moon"); }),
-              "the scene has no path or camera 'moon', and it is none of overview, valley, steep, "
-              "round_flight");
+              "the scene has no path or camera 'moon'; paths: none; cameras: 'valley'; or 'AZIMUTH "
+              "ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more such behind ';' a "
+              "path; or overview, valley, steep, round_flight");
+}
+
+TEST(TerrainViewsTest, StandsWhereAUserSays) {
+    const scene::Scene scene = terrainScene();  // 320 m wide, 0 to 96 m high
+    const auto from = [&](const std::string& view, int frame = 0, int frames = 1) {
+        return TerrainView(scene, view).camera(frame, frames, 1.5F);
+    };
+    const auto refused = [&](const std::string& view) {
+        return test::errorText([&] { from(view); });
+    };
+    EXPECT_EQ(from("10 70 300 > 160 0 100").position, glm::vec3(10, 70, 300));
+    EXPECT_EQ(from("10 70 300 > 160 0 100").target, glm::vec3(160, 0, 100));
+    EXPECT_EQ(from("30 60").position,
+              scene::framingCamera(scene.bounds(), 1.5F, *kit::towardsEyeOf("30 60")).position);
+    const std::string path = "10 60 100 > 160 0 100; 90 60 100 > 160 0 100";
+    EXPECT_EQ(from(path).position.x, 50.0F);
+    EXPECT_LT(from(path, 0, 2).position.x, 50.0F);
+    EXPECT_GT(from(path, 1, 2).position.x, 50.0F);
+    // Its near plane is a tenth of what lies between the eye and the ground.
+    EXPECT_FLOAT_EQ(from("160 48.5 160 > 300 64 160").nearM, 0.05F);
+    EXPECT_EQ(
+        refused("160 48 160 > 300 64 160"),
+        "view '160 48 160 > 300 64 160': the eye at 160 48 160 lies under the ground; allowed "
+        "there: above 48");
+    EXPECT_THAT(refused(path + "; 160 47 160 > 300 64 160"),
+                testing::HasSubstr("lies under the ground; allowed there: above 4"));
+    EXPECT_EQ(from("-20 10 160 > 300 64 160").position.x, -20.0F);
+    EXPECT_THAT(refused("-20 0 160 > 300 64 160"),
+                testing::HasSubstr("the eye at -20 0 160 lies under the ground; allowed there: "
+                                   "above 0"));
+    EXPECT_THAT(refused("30 -60"), testing::HasSubstr("lies under the ground"));
 }
 
 }  // namespace

@@ -311,6 +311,29 @@ TEST_F(TerrainTessellationTest, APlainHasOneColourAtAnyHeight) {
     }
 }
 
+// From straight above a map of 1280 m, at 0 m: as much of the picture as a square of its width has.
+TEST_F(TerrainTessellationTest, DrawsWhatAUsersViewHolds) {
+    const scene::Scene plain = terrain({129, 129}, 0.0F);
+    for (const float eyeM : {3000.0F, 6000.0F}) {
+        for (const char* method : {"adaptive", "uniform_grid", "cdlod"}) {
+            const image::ImageF picture =
+                recorded(fmt::format("{{cache: false, pictures: true, method: {}, "
+                                     "view: 640 {} 640 > 640 0 640}}",
+                                     method, eyeM),
+                         &plain)
+                    .images.at("image");
+            int ground = 0;  // the sky is blue
+            for (int i = 0; i < picture.width() * picture.height(); ++i) {
+                const int x = i % picture.width(), y = i / picture.width();
+                ground += picture.at(x, y, 2) > picture.at(x, y, 1) + 0.2F ? 0 : 1;
+            }
+            const float sidePx = 1280.0F * 0.5F * static_cast<float>(picture.height()) /
+                                 (eyeM * std::tan(0.5F * scene::Camera().verticalFovRad));
+            EXPECT_NEAR(std::sqrt(static_cast<float>(ground)), sidePx, 1.0F) << method << eyeM;
+        }
+    }
+}
+
 TEST_F(TerrainTessellationTest, SeesNothingFromUnderTheGroundAndFarOutside) {
     scene::Scene scene = terrain({129, 129});
     scene::Camera camera;
