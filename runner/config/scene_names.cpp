@@ -34,9 +34,14 @@ namespace {
 /// Stars stand for letters of names; what else patterns have stands for itself.
 void addMatches(const Node& reference, Node::Sequence& files) {
     const std::string pattern = reference.isScalar() ? scene::sceneName(reference.text()) : "";
-    if (!scene::isSceneFile(pattern) || pattern.find('*') == pattern.npos) {
+    if (pattern.find('*') == pattern.npos) {
         files.push_back(reference);
         return;
+    }
+    if (!scene::isSceneFile(pattern)) {
+        throw Error(reference.location(), fmt::format("'{}' names no files of scenes; allowed: "
+                                                      "with their ending, as '{}.ply'",
+                                                      pattern, pattern));
     }
     const std::string params = reference.text().substr(pattern.size());
     const auto escaped = [](const std::string& text, std::string_view special) {

@@ -489,6 +489,9 @@ TEST_F(ExperimentTest, SweepsTakeTheSceneFilesThatMatch) {
               "DIR/zju/a.yaml:4:16: no file is called 'scans/*.stl'; looked beside DIR/zju/a.yaml");
     EXPECT_EQ(errorText([&] { scenes("list: [[{scene: 'scans/*.stl'}]]"); }, folder.path()),
               "DIR/zju/a.yaml:4:25: no file is called 'scans/*.stl'; looked beside DIR/zju/a.yaml");
+    EXPECT_EQ(errorText([&] { scenes("scene: ['scans/*']"); }, folder.path()),
+              "DIR/zju/a.yaml:4:17: 'scans/*' names no files of scenes; allowed: with their "
+              "ending, as 'scans/*.ply'");
 }
 
 TEST_F(ExperimentTest, SceneFilesOfTheCommandLineStandInTheCurrentFolder) {
