@@ -153,22 +153,26 @@ std::string withPlainBlanks(std::string_view line) {
 }
 
 /// Letters that may be a unit, and the beginnings of longer words that are one.
-constexpr const char* kLargeUnit =  // larger than a second
-    "(?:[ywdhm]|mn|mo|(?:yr|year|jahr|month|monat|wk|week|woche|day|tag|hr|hour|heure|std|stunde|"
-    "min)"
-    "[a-z]*)";
-constexpr const char* kShortUnit =  // up to a second
-    "(?:(?:m|u|n|\u00B5|\u03BC)?s|(?:(?:m|u|n|\u00B5|\u03BC)?se[ck]|milli|micro|mikro|nano)[a-z]*)";
-constexpr const char* kBytesUnit =
-    "(?:[kmgtp]?i?b|[kmgtp]i|(?:[kmgt]|kilo|mega|giga|tera)?(?:byte|bit)s?)";
-constexpr const char* kOtherUnit =
-    "(?:ft|feet|foot|in|inch(?:es)?|yd|[kcm]?m|lbs?|oz|k?g|deg[a-z]*)";
+constexpr const char* kMinutes =  // and hours and days, as nobody takes them for another thing
+    "(?:h|mn|ore|(?:yr|year|jahr|month|monat|wk|week|woche|day|tag|jour|hr|hour|heure|hora|std|"
+    "stunde|uur|min)[a-z]*)";
+constexpr const char* kBytes =
+    "(?:[kmgtp]?i?b|[kmgtp]i|[kmg]i?o|(?:[kmgt]|kilo|mega|giga|tera)?(?:byte|bit)s?)";
+/// Of which two are of one kind: times, with words of other scripts; lengths, weights and angles.
+constexpr const char* kTimes =
+    "(?:[ywdm]|mo|(?:m|u|n|\u00B5|\u03BC)?s|sn|dk|(?:[\xD0-\xDF\xE3-\xED][\x80-\xBF]+)+|"
+    "(?:(?:m|u|n|\u00B5|\u03BC)?se[ck]|segundo|milli|micro|mikro|nano)[a-z]*)";
+constexpr const char* kOthers =
+    "(?:ft|feet|foot|in|inch(?:es)?|yd|yards?|mi|miles?|[kcm]?m|stone|lbs?|oz|k?g|deg[a-z]*|"
+    "(?:arc)?(?:min|sec)[a-z]*)";
 
 /// Words of size: of a thousand, of its square, and so on; others last.
 const std::vector<std::string> kSizes = split(
-    "k|ki|kilo|thousands?|tausend|tsd m|mi|mega|mio|mln|mill|millions?|millionen "
-    "g|gi|giga|mrd|bn|billions?|milliards?|milliarden? t|ti|tera|trillions?|billionen p|pi "
-    "hundreds?|hundert|dozens?|dutzend|lakhs?|crores?|mille",
+    "k|ki|kilo|thousand(?:th)?s?|milliers?|tausend|tsd "
+    "m|mi|mega|mio|mln|mill|mil[lj]?i?[oe]+n[a-z]* "
+    "g|gi|giga|mrd|bn|billions?|milliards?|milliarden?|b(?=\\s+[a-z]) "
+    "t|ti|tera|trn?|tn|trillions?|billionen p|pi|peta "
+    "hundred(?:th)?s?|hundert|dozens?|dutzend|lakhs?|crores?|mil(?:le|a)?",
     ' ');
 
 std::regex ignoringCase(const std::string& pattern) {
@@ -181,7 +185,11 @@ std::regex grammarBehind() {
     const std::string marks = "[,;:)\\]}>|.\"]*";
     const std::string token =  // marks behind which nothing stands, or a name as in JSON
         fmt::format("[^ ]*?(?={0}(?: |$)|{0}[,;|\"](?:[\"'(\\[{{<#]|[A-Za-z](?![0-9])))", marks);
-    const std::string quantities = "[edqx] *[-+]?[.]?[0-9]|(?:x|and|und|plus|minus|times|over) ";
+    const std::string power = "(?:[edqx*]|\u00D7|\u00B7) *[-+]?[.]?[0-9]";
+    const std::string quantities = fmt::format(
+        "[edqx] *[-+]?[.]?[0-9]|(?:x|and|und|plus|minus|times|over) |[(\\[] *{0}|"
+        "(?:\u00B1|\\+/?-) *[0-9.]+[)\\]]* *(?:{0}|(?:{1})(?![a-z]))",
+        power, joined(kSizes, "|"));
     const std::string sizes = "(" + joined(kSizes, ")|(") + ")";
     const std::string harmless =
         " +[A-Za-z]+(?= +[-+.]?[0-9])|(?= *$| +(?!<<|>>)"
@@ -194,30 +202,39 @@ std::regex grammarBehind() {
 
 /// What stands before a number and makes one quantity with it.
 std::regex grammarBefore() {
-    return ignoringCase("[^ ]*[0-9][^ ]* +(?:[edqx]|and|und|plus|minus|times|" +
+    return ignoringCase("(?:[^ ]*[0-9][^ ]* +(?:[edqx]|and|und|plus|minus|times|" +
                         joined(kSizes, "|") +
-                        ")(?:\\(s\\))?[.,;+_-]* *(?:(?:and|und|plus|then|&|\\+) *)*$");
+                        ")|\\b(?:minus|negative?|moins|menos|meno|hundred|thousand|million|billion|"
+                        "(?:twen|thir|for|fif|six|seven|eigh|nine)ty))"
+                        "(?:\\(s\\))?[.,;+_-]* *(?:(?:and|und|plus|then|&|\\+) *)*$");
 }
 
 /// A number and its unit, before a number and another unit of the same, as in 2 m, 3 s; or none, as
 /// in 2 min 30. What stands second is a group of its own, behind that of the first's unit.
 std::regex grammarOfPairs() {
     const std::string number = "[0-9]+(?:[.,][0-9]+)*";
-    constexpr const char* kBetween = "(?:\\(s\\))?[ .,;:+&_-]{}(?:(?:and|und|plus|then) +|[&+] *)*";
-    const std::string between = fmt::format(kBetween, "*");
+    constexpr const char* kBetween =
+        "(?:\\(s\\))?(?:[ .,;:+&_/*~-]|\xE2\x80[\x80-\xBF]|\u00B7){}"
+        "(?:(?:and|und|plus|then|about|ca[.]?) +|[&+~] *)*";
+    const std::string bracket = "(?:[(\\[] *(?=[0-9]{1,2}(?![0-9])))?";
+    const std::string between = fmt::format(kBetween, "*") + bracket;
+    const std::string apart = fmt::format(kBetween, "+");
     std::string pairs;
     int group = 2;
-    for (const std::string& unit : {fmt::format("(?:{}|{})", kLargeUnit, kShortUnit),
-                                    std::string(kBytesUnit), std::string(kOtherUnit)}) {
+    for (const std::string& unit : {fmt::format("(?:{}|{})", kMinutes, kTimes), std::string(kBytes),
+                                    std::string(kOthers), "(?:" + joined(kSizes, "|") + ")"}) {
         pairs += fmt::format(
-            "(?: +(?!of ))?(?![edqx][-+])({0}){1}(?=({2}(?! *\\{3}(?![a-z])) *{0}"
+            "(?: +(?!of ))?(?![edqx][-+])({0}){1}(?=({2}(?:e[-+]?[0-9]+)?(?! *\\{3}(?![a-z])) *{0}"
             "(?![a-z/=])))|",
             unit, between, number, group);
         group += 2;
     }
+    const std::string second = "(?=([0-9]+(?:[.,:][0-9]+)*)(?! *(?:";
     return ignoringCase(fmt::format(
-        "({0})(?:{1} *{2}{3}(?=([0-9]+(?:[.,:][0-9]+)*)(?! *(?:[a-z0-9=]|\\.[^ ]|, *[^ ]))))",
-        number, pairs, kLargeUnit, fmt::format(kBetween, "+")));
+        "({0}|\\b(?:an?|one|two|three|four|five|six|seven|eight|nine|ten)(?= [a-z]{{3}}))"
+        "(?:{1} *(?:[ywdm]|mo){3}{4}[a-z0-9=]|\\.[^ ]|, *[^ ])))|"
+        " *{2}{3}{6}{4}[.,:]?[0-9]|[=%]|[a-z]+[ :=]+[-+.]?[0-9]|{5}(?![a-z])))))",
+        number, pairs, kMinutes, apart, second, kBytes, bracket));
 }
 
 /// What stands beside a group, and whether the pattern names it.
@@ -323,15 +340,17 @@ class Group {
         return true;
     }
 
-    /// Whether the digits and the group may be one number, as 1 234: the pattern begins with them,
-    /// not with the line, and would take a word for them.
+    /// Whether the digits and the group beside them may be one number, as 1 234: one blank is
+    /// between them, and the pattern would take a word for them and is not of the line's begin.
     bool mayBeOneNumber(std::size_t first, std::size_t last) const {
-        static const std::regex kThousands("[0-9]{1,3} [0-9]{3}(?:[.,][0-9]+)?");
-        const bool isOne = last + 1 == begin_ && found_.matchBegin == first &&
-                           std::regex_match(text_.substr(first, end_ - first), kThousands);
-        if (!isOne || asksFor(first, last, "v")) return false;
+        static const std::regex kThousands("[0-9]{1,3} +[0-9]{3}(?:[.,][0-9]+)?");
+        const std::size_t from = std::min(first, begin_), blank = text_.find(' ', from);
+        if (!std::regex_match(text_.substr(from, std::max(last, end_) - from), kThousands) ||
+            found_.line.substr(blank).starts_with("  ") || asksFor(first, last, "v")) {
+            return false;
+        }
         const std::string longer = "v " + std::string(found_.line);
-        const std::optional<Found> found = search_.firstIn(longer, first + 2);
+        const std::optional<Found> found = search_.firstIn(longer, found_.matchBegin + 2);
         return found && found->begin == begin_ + 2;
     }
 
@@ -381,6 +400,7 @@ class Group {
         const std::size_t last = end_ + static_cast<std::size_t>(match.length());
         for (std::size_t i = 1; i < kSizes.size(); ++i) {
             if (!match[i].matched || match[i].second != match[0].second) continue;
+            if (match.str(i) == "b") return end_;  // bits
             const std::string word = lowerCase(match.str(i));
             const bool isBinary = word.size() == 2 && word[1] == 'i';
             const auto isPowerOf = [&](double base) {
@@ -407,10 +427,17 @@ class Group {
                 return static_cast<std::size_t>(pair->length(group));
             };
             const std::size_t first = from + static_cast<std::size_t>(pair->position());
-            const std::size_t second = first + lengthOf(0),
-                              end = second + lengthOf(3) + lengthOf(5) + lengthOf(7) + lengthOf(8);
-            if (first < end_ && begin_ < first + lengthOf(1)) last_ = std::max(last_, end);
-            if (second < end_ && begin_ < end) first_ = std::min(first_, first);
+            const std::size_t second = first + lengthOf(0);
+            std::size_t end = second;
+            for (const std::size_t group : {3, 5, 7, 9, 10, 11}) end += lengthOf(group);
+            // Of 1 minute (30 s) the second is whole for whoever names the bracket.
+            const std::size_t mark = text_.find_last_not_of(' ', second - 1);
+            const bool isInBrackets = isOneOf(text_[mark], "([");
+            if (first < end_ && begin_ < first + lengthOf(1) && !isInBrackets) {
+                last_ = std::max(last_, end);
+            }
+            if (second < end_ && begin_ < end)
+                first_ = std::min(first_, isInBrackets ? mark : first);
         }
     }
 
