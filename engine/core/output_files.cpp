@@ -162,6 +162,17 @@ void AtomicFile::commitUnflushed() {
     temporary_.clear();
 }
 
+void shareFile(const fs::path& from, const fs::path& to) {
+    std::error_code failure;
+    fs::create_directories(to.parent_path());
+    fs::remove(to, failure);  // of a try that was not recorded
+    fs::create_hard_link(from, to, failure);
+    if (failure) fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);
+    if (failure) {
+        throw Error("cannot write " + to.string() + ": " + failure.message());
+    }
+}
+
 AppendedFile::AppendedFile(const fs::path& path) : path_(path) {
     file_ = Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | kSafe, 0644));
     if (file_.get() < 0) failWriting(path, errno);

@@ -61,6 +61,10 @@ class FileLock {
 void writeFolder(const std::filesystem::path& target,
                  const std::function<void(const std::filesystem::path&)>& write);
 
+/// `to` becomes the same file as `from`, which takes no room, or a copy where the disk is another.
+/// Throws Error.
+void shareFile(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// Whether it is the name of a file that is being written: "a.exr.tmp123", "records.csv.tmp".
 inline bool isTemporary(const std::filesystem::path& file) {
     const std::string name = file.filename();

@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/output_files.h"
 #include "engine/core/text.h"
 #include "runner/run/child_process.h"
 #include "runner/run/plan.h"
@@ -173,8 +174,12 @@ void copyParts(const fs::path& folder) {
         fs::copy(dataFolder(name), folder / name, kAll);
     }
     const fs::path libraries = fs::read_symlink(kSelf).parent_path() / "lib";  // scripts/bundle
-    // Of a link what it leads to: the folder becomes a part of a run, which holds none.
-    if (fs::is_directory(libraries)) fs::copy(libraries, folder / "lib", kAll);
+    if (!fs::is_directory(libraries)) return;
+    // Larger than all the rest, and replaced, not written to, by whoever installs anew. Of a link
+    // what it leads to: the folder becomes a part of a run, which holds none.
+    for (const fs::directory_entry& entry : fs::directory_iterator(libraries)) {
+        shareFile(fs::canonical(entry), folder / "lib" / entry.path().filename());
+    }
 }
 
 void requireBuild(const fs::path& folder, const std::string& buildId) {

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
+#include "engine/core/output_files.h"
 #include "runner/run/recorder.h"
 
 namespace gfxrepro::run {
@@ -21,17 +22,6 @@ void spellNumbersAlike(Json& value) {
     if (value.is_number()) value = value.get<double>();
     if (!value.is_structured()) return;
     for (Json& item : value) spellNumbersAlike(item);
-}
-
-void share(const fs::path& from, const fs::path& to) {
-    std::error_code failure;
-    fs::create_directories(to.parent_path());
-    fs::remove(to, failure);  // of a try that was not recorded
-    fs::create_hard_link(from, to, failure);
-    if (failure) fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);
-    if (failure) {
-        throw Error("cannot write " + to.string() + ": " + failure.message());
-    }
 }
 
 bool hasTimes(const Case& item) {
@@ -180,7 +170,7 @@ std::vector<records::ImageEntry> shareFiles(const fs::path& runDir, const Case& 
             GFXREPRO_ASSERT(file->starts_with(stem));
             const std::string from = *file;
             *file = "images/" + fileStem(twin) + from.substr(stem.size());
-            share(runDir / from, runDir / *file);
+            shareFile(runDir / from, runDir / *file);
         }
     }
     return shared;

@@ -593,7 +593,10 @@ TEST_F(Submit, LinksAmongTheProgramsLibrariesAreFollowed) {
     for (const std::string& line : split(submitted.out, '\n')) {
         EXPECT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0) << line;
     }
-    EXPECT_EQ(readFile(out + "/submitted-program/lib/libsome.so.6"), "a library");
+    const std::string library = out + "/submitted-program/lib/libsome.so.6";
+    EXPECT_EQ(readFile(library), "a library");
+    EXPECT_FALSE(fs::is_symlink(library));
+    EXPECT_TRUE(fs::equivalent(library, folder.path() / "bundle/lib/libsome.so.6.0.30"));
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"table", out}, {"report", out}, {"run", "--resume", out}}) {
         const ProcessResult result = mockGfxrepro(command);
