@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/core/wide.h"
 #include "engine/image/srgb.h"
 #include "engine/metrics/image_error.h"
 
@@ -199,14 +200,6 @@ struct Tap {
     float weight;
     const float* values;
 };
-
-// Compiled twice, and chosen by the processor: eight values at once, or four. The bits are the
-// same, as no product is fused with a sum (-ffp-contract=off).
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define GFXREPRO_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define GFXREPRO_WIDE
-#endif
 
 /// to[x] = the sum of weight · values[x], in the order of the taps.
 GFXREPRO_WIDE void addTaps(const Tap* taps, std::size_t count, int width, float* to) {

@@ -1,6 +1,9 @@
 #include "engine/scene/height_noise.h"
 
 #include <cmath>
+#include <iterator>
+
+#include "engine/core/wide.h"
 
 namespace gfxrepro::scene {
 namespace {
@@ -28,6 +31,18 @@ glm::vec2 gradientAt(std::int64_t x, std::int64_t y, int octave, std::uint64_t s
             static_cast<float>((hash >> 40) & 0xFFFFFF) * 0x1p-23F - 1.0F};
 }
 
+/// columns: slope in x and value at each lattice point.
+GFXREPRO_WIDE void interpolate(const glm::vec2* __restrict columns, double x, double step,
+                               std::int64_t count, float* __restrict to) {
+    for (int i = 0; i < count; ++i) {
+        const double at = x + i * step;
+        const int cell = static_cast<int>(at);
+        const auto fx = static_cast<float>(at - cell);
+        const glm::vec2 west = columns[cell], east = columns[cell + 1];
+        to[i] = between(west.y + west.x * fx, east.y + east.x * (fx - 1.0F), fade(fx));
+    }
+}
+
 }  // namespace
 
 glm::dvec2 NoiseRow::origin() const {
@@ -47,15 +62,7 @@ void NoiseRow::evaluate(double x, double y, double step, std::vector<float>& to)
         columns_[static_cast<std::size_t>(c)] = {between(north.x, south.x, wy),
                                                  between(north.y * fy, south.y * (fy - 1.0F), wy)};
     }
-    for (std::int64_t i = 0; i < count; ++i) {
-        const double at = x + static_cast<double>(i) * step;
-        const auto cell = static_cast<std::int64_t>(at);
-        const auto fx = static_cast<float>(at - static_cast<double>(cell));
-        const glm::vec2 west = columns_[static_cast<std::size_t>(cell)];
-        const glm::vec2 east = columns_[static_cast<std::size_t>(cell + 1)];
-        to[static_cast<std::size_t>(i)] =
-            between(west.y + west.x * fx, east.y + east.x * (fx - 1.0F), fade(fx));
-    }
+    interpolate(columns_.data(), x, step, std::ssize(to), to.data());
 }
 
 }  // namespace gfxrepro::scene

@@ -10,6 +10,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/core/wide.h"
 #include "engine/scene/generators.h"
 #include "engine/scene/height_noise.h"
 
@@ -26,8 +27,22 @@ std::string keyOf(const FractalTerrain& shape, std::uint64_t seed) {
                               shape.featureM, shape.octaves, kRidges, seed));
 }
 
-/// One row of the terrain, before it is scaled to its relief. Ridges follow the folds of |noise|
-/// and are rougher the higher they stand (Musgrave's ridged multifractal).
+/// Ridges follow the folds of |noise| and are rougher the higher they stand (Musgrave's ridged
+/// multifractal).
+GFXREPRO_WIDE void addOctave(const float* __restrict noise, float amplitude, std::size_t count,
+                             float* __restrict hills, float* __restrict ridges,
+                             float* __restrict weight) {
+    for (std::size_t i = 0; i < count; ++i) {
+        hills[i] += amplitude * noise[i];
+        const float crest = 1.0F - 2.0F * std::abs(noise[i]);
+        const float fold = 0.5F * (crest + std::abs(crest));  // at least 0, without a branch
+        const float signal = fold * fold * weight[i];
+        ridges[i] += amplitude * signal;
+        weight[i] = std::min(1.0F, 2.0F * signal);
+    }
+}
+
+/// One row of the terrain, before it is scaled to its relief.
 void fractalRow(const FractalTerrain& terrain, std::uint64_t seed, int row, float* heights) {
     const auto count = static_cast<std::size_t>(terrain.sizeSamples);
     std::vector<float> noise(count);
@@ -43,13 +58,7 @@ void fractalRow(const FractalTerrain& terrain, std::uint64_t seed, int row, floa
         NoiseRow lattice(octave, seed);
         const glm::dvec2 origin = lattice.origin();
         lattice.evaluate(origin.x, origin.y + step * row, step, noise);
-        for (std::size_t i = 0; i < count; ++i) {
-            hills[i] += amplitude * noise[i];
-            const float fold = std::max(0.0F, 1.0F - 2.0F * std::abs(noise[i]));
-            const float signal = fold * fold * weight[i];
-            ridges[i] += amplitude * signal;
-            weight[i] = std::min(1.0F, 2.0F * signal);
-        }
+        addOctave(noise.data(), amplitude, count, hills.data(), ridges.data(), weight.data());
     }
     for (std::size_t i = 0; i < count; ++i) {
         const float share = kRidges * std::clamp(0.5F + 2.0F * mask[i], 0.0F, 1.0F);
