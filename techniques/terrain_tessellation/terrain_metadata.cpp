@@ -14,6 +14,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/core/wide.h"
 #include "techniques/kit/kept_file.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -41,6 +42,25 @@ struct Square {
     int size;
 };
 
+/// Adds a row of samples from `first` on to the extremes of their columns; of a sample beyond
+/// `border` the one there. `grid` begins with the cell of `first`.
+GFXREPRO_WIDE void addSamples(const float* __restrict heightsM, int border,
+                              const float* __restrict grid, int level, int first, int count,
+                              float* __restrict lowestM, float* __restrict highestM,
+                              float* __restrict errorM) {
+    const int west = first >> level;
+    const float perStep = 1.0F / static_cast<float>(1 << level);  // exact: a power of two
+    for (int i = 0; i < count; ++i) {
+        const int column = first + i, cell = column >> level;
+        const float t = static_cast<float>(column - (cell << level)) * perStep;
+        const float height = heightsM[std::min(column, border)];
+        const float error = std::abs(height - between(grid[cell - west], grid[cell - west + 1], t));
+        lowestM[i] = std::min(lowestM[i], height);
+        highestM[i] = std::max(highestM[i], height);
+        errorM[i] = std::max(errorM[i], error);
+    }
+}
+
 /// Heights of a square's samples against the grid of one level.
 class SquareErrors {
   public:
@@ -48,12 +68,16 @@ class SquareErrors {
         : map_(map), level_(level), step_(1 << level) {}
 
     HeightRange over(const Square& square) {
-        HeightRange range = kNothing;
+        const auto count = static_cast<std::size_t>(square.size) + 1;
+        lowestM_.assign(count, kNothing.minM);
+        highestM_.assign(count, kNothing.maxM);
+        errorM_.assign(count, kNothing.errorM);
         for (int row = square.origin.y; row <= square.origin.y + square.size; ++row) {
             interpolateGrid(square, row);
-            addRow(square, row, range);
+            addRow(square, row);
         }
-        return range;
+        return {*std::ranges::min_element(lowestM_), *std::ranges::max_element(highestM_),
+                *std::ranges::max_element(errorM_)};
     }
 
   private:
@@ -73,21 +97,19 @@ class SquareErrors {
         }
     }
 
-    void addRow(const Square& square, int row, HeightRange& range) const {
-        const int first = firstCell(square.origin.x);
-        for (int column = square.origin.x; column <= square.origin.x + square.size; ++column) {
-            const int cell = firstCell(column);
-            const float t = static_cast<float>(column - cell * step_) / static_cast<float>(step_);
-            const float* ends = &grid_[static_cast<std::size_t>(cell - first)];
-            const float height = map_.clampedHeightM(column, row);
-            range.add({height, height, std::abs(height - between(ends[0], ends[1], t))});
-        }
+    void addRow(const Square& square, int row) {
+        const float* heightsM =
+            (map_.file ? map_.file->heightsM(0) : map_.heightsM.data()) +
+            static_cast<std::ptrdiff_t>(std::min(row, map_.sizeSamples.y - 1)) * map_.sizeSamples.x;
+        addSamples(heightsM, map_.sizeSamples.x - 1, grid_.data(), level_, square.origin.x,
+                   square.size + 1, lowestM_.data(), highestM_.data(), errorM_.data());
     }
 
     const scene::HeightMap& map_;
     int level_;
     int step_;
     std::vector<float> grid_;
+    std::vector<float> lowestM_, highestM_, errorM_;  // of the square's columns
 };
 
 /// Rows of finest squares whose samples a file's heights keep in memory at a time.
