@@ -140,30 +140,16 @@ OneByOnePainter::OneByOnePainter(const gl::ShaderLibrary& shaders,
 
 std::vector<std::uint32_t> OneByOnePainter::objectsSeen(const reflections::GpuObjects& objects,
                                                         const ClusterCamera& camera) const {
-    const glm::mat4 rows = glm::transpose(camera.clipFromWorld);
-    const std::array<glm::vec4, 6> planes = {rows[3] + rows[0], rows[3] - rows[0],
-                                             rows[3] + rows[1], rows[3] - rows[1],
-                                             rows[3] + rows[2], rows[3] - rows[2]};
     const bool seesSelf = (camera.flags & kShowsOwn) != 0;
     // Cameras that are no cluster's have none.
     const std::uint32_t own =
         camera.reflector < families_.size() ? families_[camera.reflector] : 0U;
-    std::vector<std::uint32_t> seen;
-    for (std::uint32_t i = 0; i < objects.objectCount(); ++i) {
-        const std::uint32_t reflector = reflectorOfObject_[i];
-        if (reflector == camera.reflector && !seesSelf) continue;
-        if (areBackToBack(families_[reflector], own)) continue;
-        const scene::Box& box = objects.boundsWorld()[i];
-        if (box.isEmpty()) continue;
-        const bool isInside =
-            std::all_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
-                const glm::vec3 normal(plane);
-                return glm::dot(normal, box.centre()) + plane.w +
-                           glm::dot(glm::abs(normal), 0.5F * box.size()) >=
-                       0.0F;
-            });
-        if (isInside) seen.push_back(i);
-    }
+    std::vector<std::uint32_t> seen = objects.within(camera.clipFromWorld);
+    std::erase_if(seen, [&](std::uint32_t object) {
+        const std::uint32_t reflector = reflectorOfObject_[object];
+        return (reflector == camera.reflector && !seesSelf) ||
+               areBackToBack(families_[reflector], own);
+    });
     return seen;
 }
 

@@ -221,6 +221,26 @@ gl::Resources GpuObjects::resources() const {
             {"valueLayers", valueLayers_}};
 }
 
+std::vector<std::uint32_t> GpuObjects::within(const glm::mat4& clipFromWorld) const {
+    const glm::mat4 rows = glm::transpose(clipFromWorld);
+    const std::array<glm::vec4, 6> planes = {rows[3] + rows[0], rows[3] - rows[0],
+                                             rows[3] + rows[1], rows[3] - rows[1],
+                                             rows[3] + rows[2], rows[3] - rows[2]};
+    std::vector<std::uint32_t> objects;
+    for (std::uint32_t i = 0; i < objectCount_; ++i) {
+        const scene::Box& box = boundsWorld_[i];
+        if (box.isEmpty()) continue;
+        const bool isInside = std::ranges::all_of(planes, [&](const glm::vec4& plane) {
+            const glm::vec3 normal(plane);
+            return glm::dot(normal, box.centre()) + plane.w +
+                       glm::dot(glm::abs(normal), 0.5F * box.size()) >=
+                   0.0F;
+        });
+        if (isInside) objects.push_back(i);
+    }
+    return objects;
+}
+
 std::uint32_t GpuObjects::mostTrianglesPerDraw() const {
     return kit::FlushedDraws(splitsDraws_).mostPrimitives();
 }

@@ -51,6 +51,8 @@ class GpuObjects {
     /// Objects, lights and textures for passes that include objects.glsl and shading.glsl: base
     /// colours and emission, sRGB, and roughness, metalness and normals, linear.
     gl::Resources resources() const;
+    /// In their order, without those whose box is wholly outside of one plane of the frustum.
+    std::vector<std::uint32_t> within(const glm::mat4& clipFromWorld) const;
     /// Draws objects in their order with the program in use, in pieces of mostTrianglesPerDraw().
     /// Culling, depth test and target are the caller's.
     void draw(std::span<const std::uint32_t> objects) const;

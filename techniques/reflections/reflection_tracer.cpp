@@ -152,10 +152,11 @@ void EnvironmentMap::render(const GpuObjects& objects) {
         framebuffer.clearColour(0, glm::vec4(keptColour(kBackground), 1.0F));
         framebuffer.clearDepth(1.0F);
         framebuffer.bind();
-        pass_.set("clipFromWorld",
-                  clipFromView *
-                      glm::lookAt(centreWorld_, centreWorld_ + kFaces[i].forward, kFaces[i].up));
-        objects.drawAll();
+        const glm::mat4 clipFromWorld =
+            clipFromView *
+            glm::lookAt(centreWorld_, centreWorld_ + kFaces[i].forward, kFaces[i].up);
+        pass_.set("clipFromWorld", clipFromWorld);
+        objects.draw(objects.within(clipFromWorld));
     }
 }
 
