@@ -277,7 +277,7 @@ class ClusteredReflections final : public technique::Technique {
         gbuffer_.emplace(frame_->viewAt(kit::frameTime(0, 1)),
                          params_.method == Method::RayTraced || params_.method == Method::Embree);
         target_.emplace(frame_->samplesPx());
-        tracer_ = makeTracer(shaders);
+        tracer_ = makeTracer(context);
     }
 
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
@@ -355,16 +355,19 @@ class ClusteredReflections final : public technique::Technique {
         }
     };
 
-    std::unique_ptr<reflections::ReflectionTracer> makeTracer(const gl::ShaderLibrary& shaders) {
+    std::unique_ptr<reflections::ReflectionTracer> makeTracer(technique::SetupContext& context) {
+        const gl::ShaderLibrary& shaders = context.shaders;
         const reflections::LobeSettings& lobe = params_.lobe;
         const float diagonalM = frame_->scene.diagonalM();
         switch (params_.method) {
             case Method::EnvironmentMap:
-                return std::make_unique<reflections::EnvironmentTracer>(shaders, frame_->map, lobe,
+                ownMap_.emplace(shaders, frame_->scene);
+                return std::make_unique<reflections::EnvironmentTracer>(shaders, *ownMap_, lobe,
                                                                         diagonalM);
             case Method::ScreenSpace:
                 return std::make_unique<reflections::ScreenSpaceTracer>(
-                    shaders, frame_->map, lobe, diagonalM, kThickness * diagonalM);
+                    shaders, frame_->environmentMap(context), lobe, diagonalM,
+                    kThickness * diagonalM);
             case Method::RayTraced:
                 return std::make_unique<reflections::GpuRayTracer>(shaders, frame_->objects, lobe,
                                                                    diagonalM);
@@ -377,7 +380,8 @@ class ClusteredReflections final : public technique::Technique {
         settings.camera.diagonalM = diagonalM;
         settings.camera.lobe = lobe;
         auto tracer = std::make_unique<ClusteredTracer>(shaders, frame_->scene, frame_->objects,
-                                                        frame_->map, settings, frame_->samplesPx());
+                                                        frame_->environmentMap(context), settings,
+                                                        frame_->samplesPx());
         clusteredTracer_ = tracer.get();
         return tracer;
     }
@@ -572,6 +576,7 @@ class ClusteredReflections final : public technique::Technique {
     std::optional<reflections::GBufferRenderer> gbufferRenderer_;
     std::optional<reflections::GBuffer> gbuffer_;
     std::optional<reflections::ReflectionTarget> target_;
+    std::optional<reflections::EnvironmentMap> ownMap_;  // of `method: environment_map`
     std::unique_ptr<reflections::ReflectionTracer> tracer_;
     ClusteredTracer* clusteredTracer_ = nullptr;  // the same, of `method: clustered`
 

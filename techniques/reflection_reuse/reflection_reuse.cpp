@@ -257,7 +257,7 @@ class ReflectionReuse final : public technique::Technique {
         const gl::ShaderLibrary& shaders = context.shaders;
         shared_ = context.shared;
         frame_.emplace(context, params_);
-        tracer_ = makeTracer(shaders);
+        tracer_ = makeTracer(context);
         place({0, 1, context.profiler});
         if (params_.method == Method::RayTraced) {
             fullTracing_.emplace(FullTracing{reflections::GBufferRenderer(shaders, frame_->scene),
@@ -355,7 +355,8 @@ class ReflectionReuse final : public technique::Technique {
         reflections::ReflectionTarget target;
     };
 
-    std::unique_ptr<reflections::ReflectionTracer> makeTracer(const gl::ShaderLibrary& shaders) {
+    std::unique_ptr<reflections::ReflectionTracer> makeTracer(technique::SetupContext& context) {
+        const gl::ShaderLibrary& shaders = context.shaders;
         const reflections::LobeSettings& lobe = params_.lobe;
         const float diagonalM = frame_->scene.diagonalM();
         switch (params_.tracer) {
@@ -371,7 +372,8 @@ class ReflectionReuse final : public technique::Technique {
         settings.camera.diagonalM = diagonalM;
         settings.camera.lobe = lobe;
         return std::make_unique<clustered_reflections::ClusteredTracer>(
-            shaders, frame_->scene, frame_->objects, frame_->map, settings, frame_->samplesPx());
+            shaders, frame_->scene, frame_->objects, frame_->environmentMap(context), settings,
+            frame_->samplesPx());
     }
 
     /// Camera and objects as they are in a frame.

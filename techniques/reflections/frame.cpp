@@ -112,9 +112,7 @@ Frame::Frame(technique::SetupContext& context, const FrameSettings& wanted)
       outputSizePx(context.outputSizePx),
       scene(prepared(*context.scene, wanted)),
       objects(scene, context.device.info().isSoftware),
-      map(context.shaders, scene),
       composite(context.shaders, outputSizePx, wanted.supersampling, wanted.blend) {
-    map.render(objects);
     if (!settings.measuresErrors) return;
     untimed.emplace(context.device.info().isSoftware);
     truth.emplace(scene, settings.lobe);
@@ -128,6 +126,20 @@ kit::View Frame::viewAt(double time) const {
 
 void Frame::poseAt(double time) {
     if (settings.hasMotion) objects.setPoses(scene::posesAt(scene.scene(), time));
+}
+
+const EnvironmentMap& Frame::environmentMap(technique::SetupContext& context) {
+    map = technique::sharedResult<EnvironmentMap>(
+        context.shared, "environment map",
+        {"method", "view", "motion", "errors", "errors_of", "rays", "converged_rays", "glossiness",
+         "clustering", "bin_gain", "depth_images", "depth_image_scale", "own_reflector",
+         "own_back"},
+        [&] {
+            EnvironmentMap made(context.shaders, scene);
+            made.render(objects);
+            return made;
+        });
+    return *map;
 }
 
 bool Frame::updateTruth() {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -101,7 +102,7 @@ struct TracedPicture {
     std::size_t sizeBytes() const { return sizeof(float) * picture.values().size(); }
 };
 
-/// Made in setup(), with the environment map drawn; all members live as long as it.
+/// Made in setup(); all members live as long as it.
 struct Frame {
     Frame(technique::SetupContext& context, const FrameSettings& settings);
 
@@ -111,6 +112,8 @@ struct Frame {
     void poseAt(double time);
     glm::ivec2 samplesPx() const { return settings.supersampling * outputSizePx; }
 
+    /// Of objects at rest; drawn for the first tracer that asks for it, of whatever case.
+    const EnvironmentMap& environmentMap(technique::SetupContext& context);
     /// Builds the truth's tracer for where the objects are. False: it was.
     bool updateTruth();
     /// The same composite makes a picture of traced rays, so that nothing but the reflections
@@ -140,7 +143,7 @@ struct Frame {
     glm::ivec2 outputSizePx;
     ReflectiveScene scene;
     GpuObjects objects;
-    EnvironmentMap map;
+    std::shared_ptr<const EnvironmentMap> map;
     Composite composite;
     std::optional<gl::Profiler> untimed;  // of the truth, where errors are measured
     std::optional<EmbreeTracer> truth;
