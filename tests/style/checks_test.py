@@ -120,9 +120,13 @@ if code != 0:
     sys.exit(f"check_style found something in keys that are written:\n{output}")
 for files, wanted in (({"configs/x/base.yaml": BASE}, "a: no shipped config writes 'tau': "),
                       ({**WRITES, TABLE: "technique: b\nextends: x/base.yaml\n# tau: 1\nsays: tau\n"}, "a: no shipped config writes 'tau': "),
-                      ({**WRITES, TABLE: "extends: x/base.yaml\nlabels:\n  tau: words\n"}, "a: no shipped config writes 'tau': "),
+                      *(({**WRITES, TABLE: "extends: x/base.yaml\n" + beside}, "a: no shipped config writes 'tau': ") for beside in
+                        ("labels:\n  tau: words\n", "labels:\n  size: words\n\n  # more\n  tau: words\n", "labels: {size: 'a }', tau: b}\n",
+                         "labels: {size: {of: a},\n  tau: b}\n", "claims:\n  C:\n    says: >-\n      with\n      tau: words\n", "says: 'of\n  tau: c'\n",
+                         "layout: {columns: {tau: t}}\n")),
+                      ({**WRITES, TABLE: WRITES[TABLE] + "tau: 1\n- odd\n"}, f"{TABLE}: is not read from this line on: - odd\n"),
                       ({TABLE: WRITES[TABLE]}, "program: no shipped config writes 'command': ")):
-    expect("check_style", {**SCHEMA, **files}, wanted + WHY)
+    expect("check_style", {**SCHEMA, **files}, wanted + WHY * wanted.endswith("': "))
 expect("check_style", {**SCHEMA, **WRITES, TABLE: WRITES[TABLE] + "program:\n  frames: all\n"},
        "scripts/check_style: UNWRITTEN has program.frames, which a config writes, or nothing declares\n")
 expect("check_style", {**SCHEMA, **WRITES, "scenes/city/b.cpp": 'a = params.getInt(\n    "blocks", 1);\n'},
