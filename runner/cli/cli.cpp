@@ -20,7 +20,6 @@
 #include "runner/cli/help.h"
 #include "runner/cli/parse.h"
 #include "runner/run/manifest.h"
-#include "runner/run/worker.h"
 
 namespace gfxrepro::cli {
 
@@ -35,7 +34,7 @@ struct Options {
     SubmitOptions submit;
     SensitivityOptions sensitivity;
     DescribeOptions describe;
-    run::WorkerOptions worker;
+    WorkerOptions worker;
     std::string name;                 // of list; a run directory; a shell
     std::vector<std::string> shards;  // run directories of merge and report
     ImageCommandOptions image;
@@ -43,7 +42,6 @@ struct Options {
     std::vector<std::string> configs;  // that claims judges by
     std::string out;                   // of table, claims, report
     bool embeds = false;               // of report
-    std::string lane = "quality";
     bool asJson = false;
     std::function<int()> command;
 };
@@ -309,19 +307,12 @@ void addTools(CLI::App& app, const Context& context, Options& o) {
     // The program starts itself with this; `group("")` keeps it out of the help.
     CLI::App* workerApp = app.add_subcommand("worker", "")->group("");
     workerApp->add_option("--device", o.worker.device);
-    workerApp->add_option("--assets", o.worker.assetsFolder);
-    workerApp->add_option("--lane", o.lane);
+    workerApp->add_option("--assets", o.worker.assets);
+    workerApp->add_option("--lane", o.worker.lane);
     workerApp->add_option("--run", o.worker.runDir);
     workerApp->add_option("--command", o.worker.command);
     workerApp->add_option("--jobs", o.worker.jobs);
-    workerApp->callback([&] {
-        o.command = [&] {
-            o.worker.lane =
-                o.lane == "timing" ? config::Measure::Lane::Timing : config::Measure::Lane::Quality;
-            run::runWorker(o.worker, context.techniques, context.generators);
-            return kExitOk;
-        };
-    });
+    workerApp->callback([&] { o.command = [&] { return worker(context, o.worker); }; });
 }
 
 /// What a shell wants to know: the commands as they are defined above.

@@ -112,6 +112,16 @@ struct SensitivityOptions {
     std::string out;        // folder of the summaries and of the runs
 };
 
+/// What the program starts itself with.
+struct WorkerOptions {
+    std::string device = "auto";
+    std::string lane = "quality";  // or timing
+    std::string assets;
+    std::string runDir;
+    std::string command;  // that measures, as typed
+    int jobs = 1;         // quality units at once
+};
+
 /// What `list` lists, as its help has it.
 inline constexpr const char* kListed = "tables|techniques|scenes|configs|generators|runs";
 
@@ -126,6 +136,9 @@ int plan(const Context& context, const Chosen& selection, const std::vector<std:
          bool asJson);
 int run(const Context& context, const RunOptions& options);
 int reproduce(const Context& context, const RunOptions& options);
+/// Runs until standard input ends. Every failure of a case becomes its status; nothing is thrown
+/// but for a broken channel to the runner.
+int worker(const Context& context, const WorkerOptions& options);
 /// Into the run's folder, or into `out`: then the run stays as it is. Of claims(), too.
 int table(const std::string& runDir, const std::string& out);
 /// By the configs that the run was measured with; or by `configs`, written apart.

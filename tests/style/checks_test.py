@@ -146,7 +146,8 @@ for text, wanted in (("std::vector<int> a;", "std::vector, but neither it nor wh
                      ("#include <string_view>\nstd::string a;", "std::string, but neither it nor")):
     expect("check_style", {"engine/core/a.cpp": text + "\n", "engine/core/b.h": "#include <vector>\n"}, f"engine/core/a.cpp: {wanted}")
 code, output = run("check_style", {"engine/README.md": "", "engine/core/README.md": "", "engine/core/b.h": "#pragma once\n#include <glm/vec2.hpp>\n",
-    "engine/core/c.h": '#pragma once\n#include "engine/core/b.h"\n', "engine/core/a.cpp": '#include "engine/core/c.h"\nglm::vec2 a; // std::map\n'})
+    "engine/core/c.h": '#pragma once\n#include "engine/core/b.h"\n', "engine/core/a.cpp": '#include "engine/core/c.h"\nglm::vec2 a; // std::map\n',
+    "engine/core/d.cpp": '#include "engine/core/b.h"\n#include "engine/core/c.h"\n'})
 if code != 0:
     sys.exit(f"check_style found something in good includes:\n{output}")
 for kind in ("int twice(int n) {\n", "template <class T>\nvoid twice(T n) {\n", "struct twice {\n", "constexpr int twice = 1;\n"):
@@ -188,6 +189,13 @@ code, output = run("check_style", {"engine/README.md": "", "engine/core/README.m
 if code != 0:
     sys.exit(f"check_style found something in draws in their order:\n{output}")
 expect("check_style", {"engine/core/a.cpp": ""}, "engine/core: no README.md")
+ALONE = {"engine/core/a.h": "#pragma once\n", "engine/core/a.cpp": '#include "engine/core/a.h"\n', "engine/core/b.cpp": '#include "engine/core/a.h"\n'}
+expect("check_style", ALONE, "engine/core/a.h: engine/core/b.cpp alone includes it: let it stand there\n")
+expect("check_style", {**ALONE, "engine/core/a.cpp": ""}, "engine/core/a.h: engine/core/b.cpp alone includes it: let it stand there\n")
+for more in ({"engine/core/c.cpp": ALONE["engine/core/b.cpp"]}, {"engine/core/a.cpp": ALONE["engine/core/a.cpp"] + "int a;\n" * 599}):
+    code, output = run("check_style", {"engine/README.md": "", "engine/core/README.md": "", **ALONE, **more})
+    if code != 0:
+        sys.exit(f"check_style found something in a header that divides, or serves two:\n{output}")
 # One version of clang-format decides; another is not asked, and that is said.
 for version, wanted in {"14.0.6": (1, "runner/a.h:1:1: error: code should be clang-formatted\n"),
                         "19.1.7": (0, "style: formatting was not looked at: clang-format 14 is not here\nstyle: nothing found\n")}.items():

@@ -1,5 +1,4 @@
-#include "runner/run/worker.h"
-
+// The worker process: holds one device, takes cases from standard input, answers on descriptor 3.
 #include <fcntl.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/json_shape.h"
+#include "runner/cli/commands.h"
 #include "runner/run/child_process.h"
 #include "runner/run/measure.h"
 #include "runner/run/plan_json.h"
@@ -19,9 +19,11 @@
 #include "runner/run/protocol.h"
 #include "runner/run/run_directory.h"
 
-namespace gfxrepro::run {
+namespace gfxrepro::cli {
 
 namespace {
+
+using namespace run;
 
 constexpr std::size_t kSceneBudgetBytes = std::size_t{2} << 30;
 
@@ -69,21 +71,17 @@ CaseResult measuredResult(const Case& item, int process, MeasureContext& context
     }
 }
 
-void serve(gl::Device& device, const WorkerOptions& options,
-           std::span<const technique::TechniqueInfo> techniques,
-           std::span<const scene::GeneratorInfo> generators) {
-    const scene::Catalog catalog(dataFolder("configs") / "scenes", options.assetsFolder,
-                                 generators);
+void serve(gl::Device& device, const WorkerOptions& options, bool isTiming, const Context& tool) {
+    const scene::Catalog catalog(dataFolder("configs") / "scenes", options.assets, tool.generators);
     const gl::ShaderLibrary shaders(dataFolder("shaders"));
     // A timing worker keeps nothing but the scene at hand, so that memory is the case's own.
     ProgramCache programs(std::filesystem::path(options.runDir) / kScratchFolder);
-    SceneCache scenes(catalog,
-                      options.lane == config::Measure::Lane::Timing ? 0 : kSceneBudgetBytes);
+    SceneCache scenes(catalog, isTiming ? 0 : kSceneBudgetBytes);
     MeasureContext context{device,
                            shaders,
                            scenes,
                            programs,
-                           techniques,
+                           tool.techniques,
                            options.runDir,
                            options.command,
                            residentBytes(::getpid()),
@@ -124,22 +122,22 @@ void serve(gl::Device& device, const WorkerOptions& options,
 
 }  // namespace
 
-void runWorker(const WorkerOptions& options, std::span<const technique::TechniqueInfo> techniques,
-               std::span<const scene::GeneratorInfo> generators) {
+int worker(const Context& context, const WorkerOptions& options) {
     if (::fcntl(kMessageFd, F_SETFD, FD_CLOEXEC) != 0) {
         throw UsageError("the worker command is for the program's own use: descriptor 3 is closed");
     }
     noticeSuspensions();
     send({{"begin", "device"}});
-    const bool isTiming = options.lane == config::Measure::Lane::Timing;
+    const bool isTiming = options.lane == "timing";
     const gl::DebugOutput debug = isTiming ? gl::DebugOutput::Off : gl::DebugOutput::Log;
     try {
         gl::Device device = gl::Device::open({options.device, debug, isTiming ? 1 : options.jobs});
         send({{"end", "device"}});
-        serve(device, options, techniques, generators);
+        serve(device, options, isTiming, context);
     } catch (const NoDeviceError& error) {
         send({{"unavailable", error.what()}});
     }
+    return kExitOk;
 }
 
-}  // namespace gfxrepro::run
+}  // namespace gfxrepro::cli
