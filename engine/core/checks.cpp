@@ -10,12 +10,33 @@
 
 namespace gfxrepro {
 
-void requireKeys(const Node& map, std::string_view what, std::span<const std::string> allowed) {
+namespace {
+
+/// "; of 'light' there are light_ratio, …" for `light_size`: names that begin with the same word.
+std::string kinHint(const std::string& name, std::span<const std::string> names) {
+    const std::string word = name.substr(0, name.find('_'));
+    std::vector<std::string> kin;
+    for (const std::string& other : names) {
+        if (other.starts_with(word + '_')) kin.push_back(other);
+    }
+    if (kin.empty() || word.size() == name.size()) return "";
+    return fmt::format("; of '{}' there are {}", word, joined(kin));
+}
+
+}  // namespace
+
+void requireKeys(const Node& map, std::string_view what, std::span<const std::string> allowed,
+                 std::string_view noun) {
     if (!map.isMap()) throwNotAllowed(map, what, "a map of " + joined(allowed));
     for (const auto& [key, value] : map.entries()) {
         if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
-        throw Error(map.keyLocation(key), std::string(what) + ": unknown key '" + key + "'" +
-                                              suggestionOrAll(key, allowed));
+        const std::string near = suggestion(key, allowed), kin = kinHint(key, allowed);
+        const std::string hint = !near.empty()     ? near
+                                 : !kin.empty()    ? kin
+                                 : allowed.empty() ? "; it has none"
+                                                   : "; allowed: " + joined(allowed);
+        throw Error(map.keyLocation(key),
+                    fmt::format("{}: unknown {} '{}'{}", what, noun, key, hint));
     }
 }
 
@@ -33,23 +54,26 @@ const std::string& lineOf(const Node& node, std::string_view what) {
     return node.text();
 }
 
-std::string NumberRange::text() const {
+std::string NumberRange::text(std::string_view unit) const {
+    const std::string end = unit.empty() || unit == "1" ? "" : " " + std::string(unit);
     const auto shown = [](double value) { return Node::number(value).text(); };
     const std::string low = (isLeastExcluded ? "above " : "at least ") + shown(least);
     const std::string high = (isMostExcluded ? "below " : "at most ") + shown(most);
-    if (std::isinf(most)) return std::isinf(least) ? "" : low;
-    if (std::isinf(least)) return high;
+    if (std::isinf(most)) return std::isinf(least) ? "" : low + end;
+    if (std::isinf(least)) return high + end;
     const bool isClosed = !isLeastExcluded && !isMostExcluded;
-    return isClosed ? shown(least) + " … " + shown(most) : low + ", " + high;
+    return (isClosed ? shown(least) + " … " + shown(most) : low + ", " + high) + end;
 }
 
-double numberIn(const Node& node, const NumberRange& range, std::string_view what) {
+double numberIn(const Node& node, const NumberRange& range, std::string_view what,
+                std::string_view unit) {
     const std::optional<double> value = node.tryDouble();
-    if (value && range.has(*value) && (!range.isWhole || node.tryInteger())) return *value;
-    const std::string allowed = range.text();
-    throwNotAllowed(
-        node, what,
-        (range.isWhole ? "a whole number" : "a number") + (allowed.empty() ? "" : ", " + allowed));
+    const bool isOfType = value && (!range.isWhole || node.tryInteger());
+    if (isOfType && range.has(*value)) return *value;
+    const std::string kind = range.isWhole ? "a whole number" : "a number";
+    const std::string allowed = range.text(unit);
+    throwNotAllowed(node, what,
+                    isOfType ? allowed : kind + (allowed.empty() ? "" : ", " + allowed));
 }
 
 bool flagOf(const Node& node, std::string_view what) {
@@ -57,12 +81,10 @@ bool flagOf(const Node& node, std::string_view what) {
     throwNotAllowed(node, what, "true | false");
 }
 
-std::size_t choiceOf(const Node& node, std::span<const std::string_view> names,
-                     std::string_view what) {
+std::size_t choiceOf(const Node& node, std::span<const std::string> names, std::string_view what) {
     const auto found = std::ranges::find(names, node.isScalar() ? node.text() : "");
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-    throwNotAllowed(node, what,
-                    joined(std::vector<std::string>(names.begin(), names.end()), " | "));
+    throwNotAllowed(node, what, joined(names, " | "));
 }
 
 std::optional<double> fractionOf(const Node& node) {

@@ -12,8 +12,9 @@
 namespace gfxrepro {
 
 /// Throws Error at the first key of `map` that is not among `allowed`, with the nearest; `what`
-/// begins the message ("layout"). Throws too when `map` is no map.
-void requireKeys(const Node& map, std::string_view what, std::span<const std::string> allowed);
+/// begins the message ("layout"). Throws too when `map` is no map. `noun`: what a key is.
+void requireKeys(const Node& map, std::string_view what, std::span<const std::string> allowed,
+                 std::string_view noun = "key");
 
 /// Throws Error "WHAT is VALUE; allowed: ALLOWED" at the value's place.
 [[noreturn]] void throwNotAllowed(const Node& value, std::string_view what,
@@ -22,14 +23,15 @@ void requireKeys(const Node& map, std::string_view what, std::span<const std::st
 /// `text` of one line that is not empty. Throws Error for another.
 const std::string& lineOf(const Node& node, std::string_view what);
 
-/// The number that `node` is. Throws Error "WHAT is VALUE; allowed: a number, RANGE" for another.
-double numberIn(const Node& node, const NumberRange& range, std::string_view what);
+/// The number that `node` is. Throws Error "WHAT is VALUE; allowed: RANGE" for another one, and
+/// "…; allowed: a number, RANGE" for what is none.
+double numberIn(const Node& node, const NumberRange& range, std::string_view what,
+                std::string_view unit = "");
 /// Throws Error "WHAT is VALUE; allowed: true | false" for another.
 bool flagOf(const Node& node, std::string_view what);
 /// The place of the name that `node` is among `names`. Throws Error "WHAT is VALUE; allowed: a | b"
 /// for another.
-std::size_t choiceOf(const Node& node, std::span<const std::string_view> names,
-                     std::string_view what);
+std::size_t choiceOf(const Node& node, std::span<const std::string> names, std::string_view what);
 
 /// A share, as a percentage ("25%", "25 %") or a fraction; none for another text, and for a
 /// fraction beyond 1, where the sign is likely forgotten.

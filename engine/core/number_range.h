@@ -3,11 +3,11 @@
 
 #include <limits>
 #include <string>
+#include <string_view>
 
 namespace gfxrepro {
 
-/// Declared once: the reader takes these (numberIn, checks.h), its message names them, and so does
-/// the schema for editors.
+/// The reader takes these (numberIn, checks.h), its message names them, and so does the schema.
 struct NumberRange {
     double least = -std::numeric_limits<double>::infinity();
     double most = std::numeric_limits<double>::infinity();
@@ -19,8 +19,8 @@ struct NumberRange {
         return (isLeastExcluded ? value > least : value >= least) &&
                (isMostExcluded ? value < most : value <= most);
     }
-    /// "1 … 1000", "above 0, at most 1000000", "at least 0", "".
-    std::string text() const;
+    /// "1 … 1000", "above 0, at most 1000000 pixels", "at least 0", "".
+    std::string text(std::string_view unit = "") const;
 };
 
 }  // namespace gfxrepro

@@ -1,5 +1,5 @@
-// Parameters: one declaration gives default, range, unit and meaning; that one call validates the
-// value, marks it read, fills the manifest and feeds `gfxrepro describe`.
+// Parameters, which are keys that are declared as they are read (key_info.h): that one call checks
+// the value, marks it read, fills the manifest and feeds `gfxrepro describe`.
 #pragma once
 
 #include <initializer_list>
@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/key_info.h"
 #include "engine/core/node.h"
 
 namespace gfxrepro {
@@ -28,20 +29,6 @@ struct Choice {
     E value;
     std::string_view name;
     std::string_view doc = "";
-};
-
-/// One declared parameter, as `describe` prints it and as the JSON schema needs it.
-struct ParamInfo {
-    std::string name;
-    std::string type;          // "integer", "number", "boolean", "text", "choice", "vector3", …
-    std::string defaultValue;  // as it would be written in YAML
-    std::string unit;
-    std::string range;  // "64 … 1024", "a | b | c", ""
-    std::string doc;
-    double min = -std::numeric_limits<double>::infinity();
-    double max = std::numeric_limits<double>::infinity();
-    std::vector<std::string> choices = {};
-    std::size_t count = 0;  // of a vector's numbers
 };
 
 /// A map of values that are read by declaration. Errors carry the value's file:line:column.
@@ -101,19 +88,20 @@ class Params {
     /// Every declared parameter with the value that is in force, in order of declaration.
     const Node& resolved() const { return resolved_; }
     /// Every declared parameter, in order of declaration.
-    const std::vector<ParamInfo>& declared() const { return declared_; }
+    const std::vector<KeyInfo>& declared() const { return declared_; }
 
   private:
     std::size_t getChoice(std::string_view name, std::size_t fallback,
                           std::span<const std::string_view> names,
                           std::span<const std::string_view> docs, const ParamSpec& spec);
-    const Node* declare(std::string_view name, ParamInfo info);
+    GivenKey declare(std::string_view name, std::string type, const Node& fallback,
+                     const ParamSpec& spec, std::size_t count = 0);
 
     Node values_;
     Node offered_ = Node::map({});
     std::string owner_;
     Node resolved_;
-    std::vector<ParamInfo> declared_;
+    std::vector<KeyInfo> declared_;
     bool stopsWhenFinished_ = false;
 };
 

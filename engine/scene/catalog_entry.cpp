@@ -63,29 +63,27 @@ const KeyTable<OwnFileKeys>& ownFileTable() {
 
 /// Throws Error for a number that is no distance.
 void readMetres(const GivenKey& key, auto& valueM) {
-    if (key) valueM = static_cast<float>(numberIn(*key, kMetres, key.name()));
+    if (key) valueM = static_cast<float>(key.number());
 }
 
 void readUnits(const UnitKeys& given, HeightMapUnits& units) {
     readMetres(given.spacingM, units.spacingM);
     readMetres(given.heightScaleM, units.heightScaleM);
-    if (given.noData) {
-        units.noData = static_cast<float>(numberIn(*given.noData, {}, given.noData.name()));
-    }
+    if (given.noData) units.noData = static_cast<float>(given.noData.number());
 }
 
 void readUp(const GivenKey& up, SceneSource& source) {
-    if (up) source.isZUp = kUps[choiceOf(*up, kUps, up.name())] == "z";
+    if (up) source.isZUp = kUps[up.choice()] == "z";
 }
 
-std::optional<long long> readWhole(const GivenKey& key, const NumberRange& range) {
+std::optional<long long> readWhole(const GivenKey& key) {
     if (!key) return std::nullopt;
-    (void)numberIn(*key, range, key.name());
+    (void)key.number();
     return key->asInteger();
 }
 
 void readSeed(const GivenKey& key, SceneSource& source) {
-    if (const auto seed = readWhole(key, kSeeds)) {
+    if (const auto seed = readWhole(key)) {
         source.seed = static_cast<std::uint64_t>(*seed);
     }
 }
@@ -127,8 +125,8 @@ SceneSource readFileSource(const Node& node) {
     } catch (const Error& error) {
         throw Error(given.file->location(), given.file.name() + " " + error.what());
     }
-    source.refineTo = readWhole(given.refineTo, kCounts);
-    source.points = readWhole(given.points, kCounts);
+    source.refineTo = readWhole(given.refineTo);
+    source.points = readWhole(given.points);
     readUp(given.up, source);
     if (source.refineTo || source.points) source.kind = Origin::Kind::StandIn;
     return source;
@@ -167,7 +165,7 @@ SceneSource readHeightMapSource(const Node& node) {
     source.file = assetPathOf(given.heightMap);
     HeightMapSource map;
     readUnits(given, map.units);
-    if (const auto samples = readWhole(given.resampleTo, kSamplesPerSide)) {
+    if (const auto samples = readWhole(given.resampleTo)) {
         map.resampleTo = static_cast<int>(*samples);
         source.kind = Origin::Kind::StandIn;
     }
@@ -210,7 +208,7 @@ SceneSource readGeneratorSource(const Node& node, bool isGenerated,
         &findGenerator(generators, given.generator->text(), given.generator->location());
     if (given.params) source.params = *given.params;
     readSeed(given.seed, source);
-    source.points = readWhole(given.points, kCounts);
+    source.points = readWhole(given.points);
     source.kind = isGenerated ? Origin::Kind::Generated : Origin::Kind::StandIn;
     return source;
 }
@@ -250,8 +248,7 @@ const KeyTable<EntryKeys>& entryTable() {
          {&E::doc, "doc", "line", "required", "for `gfxrepro list scenes`", text()},
          {&E::canonical, "canonical", "address", "none", "where one gets the real thing", text()},
          {&E::licence, "licence", "line", "none", "the terms of the real thing", text()},
-         {&E::generated, "generated", "true | false", "false", "there never was a real one",
-          boolean()},
+         {&E::generated, flagKey("generated", "there never was a real one")},
          {&E::sources, "sources", "[source]", "required", "the first that is at hand is taken",
           listOf(source, 1)}}};
     return table;
@@ -294,7 +291,7 @@ SceneEntry readEntry(const fs::path& path, const std::string& expectedName,
     entry.doc = given.doc->text();
     if (given.canonical) entry.canonical = given.canonical->text();
     if (given.licence) entry.licence = given.licence->text();
-    const bool isGenerated = given.generated && flagOf(*given.generated, given.generated.name());
+    const bool isGenerated = given.generated && given.generated.flag();
     for (const Node& source : given.sources->items()) {
         entry.sources.push_back(readSource(source, isGenerated, generators));
     }

@@ -4,7 +4,7 @@
 
 namespace gfxrepro::scene {
 
-std::vector<ParamInfo> declaredParams(const GeneratorInfo& generator, const Node& values) {
+std::vector<KeyInfo> declaredParams(const GeneratorInfo& generator, const Node& values) {
     Params params(values, "generator '" + std::string(generator.name) + "'");
     params.stopWhenFinished();
     try {

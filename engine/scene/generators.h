@@ -26,7 +26,7 @@ struct GeneratorInfo {
 
 /// What the generator declares; throws Error where it does not take `values` (a map or null). No
 /// scene is made.
-std::vector<ParamInfo> declaredParams(const GeneratorInfo& generator, const Node& values);
+std::vector<KeyInfo> declaredParams(const GeneratorInfo& generator, const Node& values);
 
 /// Throws Error with the nearest name when none of `generators` has that name.
 const GeneratorInfo& findGenerator(std::span<const GeneratorInfo> generators, std::string_view name,

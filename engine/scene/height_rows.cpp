@@ -200,20 +200,18 @@ std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
     if (!fs::is_regular_file(sidecar)) {
         std::string keys;
         for (const SchemaKey& key : rawTable().section().keys) {
-            keys += fmt::format("{}{} ({})", keys.empty() ? "" : ", ", key.name, key.type);
+            keys += fmt::format("{}{} ({})", keys.empty() ? "" : ", ", key.name, key.inWords());
         }
         throw Error(
             fmt::format("{0}: a raw height map needs {0}.yaml with {1}", path.string(), keys));
     }
     const Node root = parseYamlFile(sidecar);
     const RawKeys given = rawTable().read(root, "a raw height map's sidecar");
-    const auto side = [](const GivenKey& key) {
-        return static_cast<std::uint32_t>(numberIn(*key, kSides, key.name()));
-    };
+    const auto side = [](const GivenKey& key) { return static_cast<std::uint32_t>(key.number()); };
     const std::uint32_t width = side(given.width), height = side(given.height);
-    const ValueType type = kRawTypes[choiceOf(*given.type, kRawTypeNames, given.type.name())];
+    const ValueType type = kRawTypes[given.type.choice()];
     const GivenKey &order = given.byteOrder, &noData = given.noData;
-    const bool isBigEndian = order && choiceOf(*order, kByteOrders, order.name()) == 1;
+    const bool isBigEndian = order && order.choice() == 1;
     const std::uintmax_t bytes = bytesOfFile(path);
     const std::uintmax_t wanted = std::uintmax_t{width} * height * valueBytes(type);
     if (bytes != wanted) {
@@ -221,7 +219,7 @@ std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
                                 width, height, given.type->text(), wanted));
     }
     auto rows = std::make_unique<BareRows>(path, glm::ivec2(width, height), type, isBigEndian);
-    if (noData) rows->noData.push_back(static_cast<float>(numberIn(*noData, {}, noData.name())));
+    if (noData) rows->noData.push_back(static_cast<float>(noData.number()));
     return rows;
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "engine/core/node.h"
+#include "runner/config/experiment.h"
 
 namespace gfxrepro::cli {
 
@@ -41,7 +42,7 @@ SourceLocation placeOf(const claims::ClaimResult& claim) {
     if (claim.where.line > 0) return claim.where;
     try {
         const Node document = parseYamlFile(claim.where.file.text());
-        const Node* claims = document.isMap() ? document.find("claims") : nullptr;
+        const Node* claims = config::contentOf(document).claims;
         if (claims && claims->isMap() && claims->find(claim.id)) {
             return claims->keyLocation(claim.id);
         }

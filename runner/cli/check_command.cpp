@@ -30,8 +30,7 @@ namespace {
 /// The file under a profile as it stands, but that the command line may have its times taken.
 config::Experiment asItStands(const config::Experiment& experiment, const std::string& profile) {
     std::vector<std::string> sets;
-    const Node* measure = experiment.document.find("measure");
-    const Node* lane = measure && measure->isMap() ? measure->find("lane") : nullptr;
+    const Node* lane = config::measureOf(experiment.document).lane;
     const bool isGiven = lane && lane->location().file.text().starts_with(config::kCommandLine);
     if (isGiven && experiment.measure.lane == config::Measure::Lane::Timing) {
         sets.emplace_back("measure.lane=timing");

@@ -128,7 +128,7 @@ inline constexpr const char* kListed = "tables|techniques|scenes|configs|generat
 int doctor(const Context& context, const std::string& assets, bool asJson);
 int list(const Context& context, const std::string& what, const std::string& assets, bool asJson);
 int describe(const Context& context, const DescribeOptions& options);
-using ParamInfos = std::vector<ParamInfo>;
+using ParamInfos = std::vector<KeyInfo>;
 /// All parameters of a technique: those of its defaults, then those that single choices bring.
 ParamInfos paramsOf(const technique::TechniqueInfo& technique);
 int check(const Context& context, const Chosen& selection);

@@ -183,10 +183,10 @@ Words valuesOf(const std::string& kind, const Context& context, const std::strin
 
 /// What pairs may name.
 struct PairNames {
-    std::vector<ParamInfo> params;
+    std::vector<KeyInfo> params;
     std::vector<config::MetricInfo> metrics;
 
-    void add(std::span<const ParamInfo> more, const config::Outputs& outputs) {
+    void add(std::span<const KeyInfo> more, const config::Outputs& outputs) {
         params.insert(params.end(), more.begin(), more.end());
         metrics.insert(metrics.end(), outputs.metrics.begin(), outputs.metrics.end());
     }
@@ -206,7 +206,7 @@ PairNames pairNamesOf(const Words& tables, const Context& context) {
             if (node.isNull()) continue;
             const config::ExternalProgram program = config::readProgram(node);
             for (const config::ProgramParam& param : program.params) {
-                ParamInfo& info = found.params.emplace_back();
+                KeyInfo& info = found.params.emplace_back();
                 info.name = param.name;
                 info.choices = param.choices;
             }
@@ -231,7 +231,7 @@ Words pairs(const Typed& typed, const Context& context, const std::string& prefi
     const std::string before = typed.key.empty() && isValue ? key + "=" : "";
     const PairNames names = pairNamesOf(typed.arguments, context);
     Words words;
-    for (const ParamInfo& param : names.params) {
+    for (const KeyInfo& param : names.params) {
         if (!isValue) words.push_back(param.name + "=");
         if (!isValue || key != param.name) continue;
         for (const std::string& choice : param.choices) words.push_back(before + choice);

@@ -32,10 +32,10 @@ ParamInfos paramsGiven(const technique::TechniqueInfo& info, Node values) {
 ParamInfos paramsOf(const technique::TechniqueInfo& technique) {
     const ParamInfos usual = paramsGiven(technique, {});
     ParamInfos all = usual;
-    for (const ParamInfo& param : usual) {
+    for (const KeyInfo& param : usual) {
         for (const std::string& choice : param.choices) {
             const auto value = Node::scalar(choice, {}, true);
-            for (ParamInfo& info : paramsGiven(technique, Node::map({{param.name, value}}))) {
+            for (KeyInfo& info : paramsGiven(technique, Node::map({{param.name, value}}))) {
                 const bool isKnown = std::ranges::any_of(
                     all, [&](const auto& known) { return known.name == info.name; });
                 if (isKnown) continue;
@@ -52,23 +52,19 @@ namespace {
 constexpr std::size_t kColumn = 28;
 
 /// "[256; 32 … 1024 voxels]"; a number that was given as a float is printed as one.
-std::string valuesText(const ParamInfo& info) {
-    std::string text = info.defaultValue;
+std::string valuesText(const KeyInfo& info) {
+    std::string text = info.absent;
     const auto number = parseDouble(text);
     const auto single = static_cast<float>(number.value_or(0.0));
     if (number && static_cast<double>(single) == *number) text = fmt::format("{}", single);
     const std::string unit = info.unit.empty() || info.unit == "1" ? "" : ' ' + info.unit;
-    if (!info.range.empty()) {
-        text += "; " + info.range + unit;
-    } else {
-        text += unit;
-    }
+    text += info.allowed().empty() ? unit : "; " + info.allowed() + unit;
     return fmt::format("[{}]", text);
 }
 
-void printParams(const std::vector<ParamInfo>& params) {
+void printParams(const std::vector<KeyInfo>& params) {
     fmt::print("\nparameters, each with [default; what is allowed]\n");
-    for (const ParamInfo& info : params) {
+    for (const KeyInfo& info : params) {
         fmt::print("{}", entryLines("  " + info.name, info.doc + ' ' + valuesText(info), kColumn));
     }
 }
@@ -207,9 +203,9 @@ void describeExperiment(const Context& context, const config::Experiment& experi
 
 Json jsonOf(const ParamInfos& params) {
     Json list = Json::array();
-    for (const ParamInfo& info : params) {
-        Json param = {{"name", info.name}, {"default", info.defaultValue}};
-        if (!info.range.empty()) param["range"] = info.range;
+    for (const KeyInfo& info : params) {
+        Json param = {{"name", info.name}, {"default", info.absent}};
+        if (!info.allowed().empty()) param["range"] = info.allowed();
         if (!info.choices.empty()) param["choices"] = info.choices;
         if (!info.unit.empty()) param["unit"] = info.unit;
         param["doc"] = info.doc;

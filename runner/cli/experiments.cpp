@@ -192,8 +192,9 @@ std::string deviceFor(const Context& context, const std::string& asked,
     const auto isOpened = [&](const config::Experiment& experiment) {
         return config::isMeasuredHere(experiment) &&
                technique::needsDevice(
-                   technique::findTechnique(context.techniques, experiment.technique,
-                                            experiment.document.find("technique")->location()),
+                   technique::findTechnique(
+                       context.techniques, experiment.technique,
+                       config::contentOf(experiment.document).technique->location()),
                    config::programOf(experiment));
     };
     const bool measures = std::ranges::any_of(experiments, config::isMeasuredHere);

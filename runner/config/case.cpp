@@ -1,9 +1,10 @@
 #include "runner/config/case.h"
 
 #include <algorithm>
+#include <array>
+#include <type_traits>
 
 #include "engine/core/checks.h"
-#include "engine/core/params.h"
 #include "engine/scene/scene_reference.h"
 #include "runner/config/experiment.h"
 #include "runner/config/sections.h"
@@ -132,104 +133,129 @@ int Measure::certainRounds() const {
     return lane == Lane::Timing && isWithinBudget ? 1 : processes;
 }
 
-std::pair<int, int> readOutput(Params& params) {
-    const auto side = [&](const char* name, const char* doc) {
-        return params.getInt(name, kDefaultOutputPx,
-                             {doc, "pixels", kOutputSizesPx.least, kOutputSizesPx.most});
-    };
-    const int width = side("width", "width of the image");
-    const int height = side("height", "height of the image");
-    params.finish();
-    return {width, height};
-}
-
-Measure readMeasure(Params& params, Measure measure) {
-    constexpr Choice<Measure::Lane> kLanes[] = {
-        {Measure::Lane::Quality, "quality", "may run beside others"},
-        {Measure::Lane::Timing, "timing", "runs alone"}};
-    constexpr double kMax = 1'000'000;
-    constexpr Choice<Measure::Seeds> kSeeds[] = {
-        {Measure::Seeds::Case, "case", "the same in all processes of a case"},
-        {Measure::Seeds::Process, "process", "others in each, so that errors have an interval"}};
-    measure.lane = params.getEnum("lane", measure.lane, kLanes, {"how cases run"});
-    measure.relativeError = params.getDouble(
-        kRelativeError, measure.relativeError,
-        {"rounds go on until half of each 95 % interval ÷ time is no more, and then "
-         "to 14, 16 or 19, or to 20; with 6 to 19 processes in the timing lane; 0: they do not",
-         "", 0, 1});
-    // Who asks how well a time is known wants times.
-    if (measure.relativeError > 0.0 && !params.isGiven("lane")) {
-        measure.lane = Measure::Lane::Timing;
-    }
-    // Times are wanted with an interval, in about a minute.
-    if (measure.lane == Measure::Lane::Timing) {
-        measure.warmup = 1;
-        measure.processes = kFewestRounds;
-        measure.isWithinBudget = !params.isGiven("processes");
-    }
-    measure.warmup = params.getInt("warmup", measure.warmup,
-                                   {"iterations before the first measured one", "", 0, kMax});
-    measure.repeats = params.getInt("repeats", measure.repeats,
-                                    {"measured iterations in one process", "", 1, kMax});
-    measure.processes = params.getInt(
-        "processes", measure.processes,
-        {"rounds: in each every case is run, in a process of its own; of times six, or "
-         "as many as fit into the budget, where it is not given",
-         "", 1, kMax});
-    measure.timeBudgetS = params.getDouble(
-        kTimeBudget, measure.timeBudgetS,
-        {"of all rounds of the file but those that 'processes' asks for: none is begun to end "
-         "later, but where a quarter more gives six",
-         "seconds", 0, 1e9});
-    measure.frames = params.getInt(
-        "frames", measure.frames,
-        {"frames of a path; each is repeated", "", kFrameCounts.least, kFrameCounts.most});
-    const bool isByProcess = measure.seeds == Measure::Seeds::Process;
-    const Measure::Seeds seeds = params.getEnum(
-        "seeds", isByProcess ? Measure::Seeds::Process : Measure::Seeds::Case, kSeeds,
-        {"random numbers of a technique that draws some, or of a program with {seed}; of the "
-         "latter as 'program.seeds' says"});
-    if (measure.seeds != Measure::Seeds::None || params.isGiven("seeds")) measure.seeds = seeds;
-    measure.sceneSeeds =
-        params.getInt("scene_seeds", measure.sceneSeeds,
-                      {"seeds of a generated scene, from the catalogue's on: a case each", "", 1,
-                       kMostSceneSample + 1});
-    if (measure.sceneSeeds > 1 && measure.lane == Measure::Lane::Timing) {
-        throw Error(params.locationOf("scene_seeds"),
-                    "'scene_seeds' needs the quality lane: a time varies by the process");
-    }
-    measure.timeLimitS =
-        params.getDouble("time_limit_s", measure.timeLimitS,
-                         {"of the whole case, scene loading included", "seconds", 1e-3, 1e9});
-    params.finish();
-    return measure;
-}
-
 namespace {
 
-/// What a reader declares.
-SchemaSection declared(const std::string& name, const Params& params) {
-    SchemaSection section{name, name + ".", ""};
-    for (const ParamInfo& info : params.declared()) {
-        std::string type = info.range.empty() ? info.type : info.range;
-        if (!info.unit.empty()) type += " " + info.unit;
-        section.keys.push_back({info.name, type, info.defaultValue, info.doc, jsonTypeOf(info)});
-    }
-    return section;
+using namespace types;
+
+struct OutputKeys {
+    GivenKey width, height;
+};
+const KeyTable<OutputKeys>& outputTable() {
+    const auto side = [](const char* name, const char* doc) {
+        return numberKey(name, kOutputSizesPx, std::to_string(kDefaultOutputPx), doc, "pixels");
+    };
+    static const KeyTable<OutputKeys> table{
+        {"output", "output.", ""},
+        {{&OutputKeys::width, side("width", "width of the image")},
+         {&OutputKeys::height, side("height", "height of the image")}}};
+    return table;
+}
+
+constexpr double kMost = 1'000'000;
+
+/// The number, where it is given.
+void take(const GivenKey& key, auto& value) {
+    if (key) value = static_cast<std::remove_reference_t<decltype(value)>>(key.number("measure"));
 }
 
 }  // namespace
 
+std::pair<int, int> readOutput(const Node& map) {
+    const OutputKeys given = outputTable().readKnown(map, "output");
+    const auto side = [](const GivenKey& key) {
+        return key ? static_cast<int>(key.number("output")) : kDefaultOutputPx;
+    };
+    return {side(given.width), side(given.height)};
+}
+
+const KeyTable<MeasureKeys>& measureTable() {
+    using M = MeasureKeys;
+    const auto key = [](const char* name, const NumberRange& range, double value, const char* doc,
+                        const char* unit = "") {
+        return numberKey(name, range, Node::number(value).text(), doc, unit);
+    };
+    constexpr NumberRange kAny{.least = 0, .most = kMost, .isWhole = true};
+    constexpr NumberRange kSome{.least = 1, .most = kMost, .isWhole = true};
+    constexpr Measure kUsual{};
+    static const KeyTable<M> table{
+        {"measure", "measure.", ""},
+        {{&M::lane, choiceKey("lane", std::array{"quality", "timing"}, "quality",
+                              "how cases run (quality: may run beside others; timing: runs "
+                              "alone)")},
+         {&M::relativeError,
+          key(kRelativeError, {.least = 0, .most = 1}, kUsual.relativeError,
+              "rounds go on until half of each 95 % interval ÷ time is no more, and then to 14, 16 "
+              "or 19, or to 20; with 6 to 19 processes in the timing lane; 0: they do not")},
+         {&M::warmup,
+          key("warmup", kAny, kUsual.warmup, "iterations before the first measured one")},
+         {&M::repeats, key("repeats", kSome, kUsual.repeats, "measured iterations in one process")},
+         {&M::processes,
+          key("processes", kSome, kUsual.processes,
+              "rounds: in each every case is run, in a process of its own; of times six, or as "
+              "many as fit into the budget, where it is not given")},
+         {&M::timeBudgetS,
+          key(kTimeBudget, {.least = 0, .most = 1e9}, kUsual.timeBudgetS,
+              "of all rounds of the file but those that 'processes' asks for: none is begun to end "
+              "later, but where a quarter more gives six",
+              "seconds")},
+         {&M::frames,
+          key("frames", kFrameCounts, kUsual.frames, "frames of a path; each is repeated")},
+         {&M::seeds,
+          choiceKey("seeds", std::array{"case", "process"}, "case",
+                    "random numbers of a technique that draws some, or of a program with {seed}; "
+                    "of the latter as 'program.seeds' says (case: the same in all processes of a "
+                    "case; process: others in each, so that errors have an interval)")},
+         {&M::sceneSeeds,
+          key("scene_seeds", {.least = 1, .most = kMostSceneSample + 1, .isWhole = true},
+              kUsual.sceneSeeds,
+              "seeds of a generated scene, from the catalogue's on: a case each")},
+         {&M::timeLimitS, key("time_limit_s", {.least = 1e-3, .most = 1e9}, kUsual.timeLimitS,
+                              "of the whole case, scene loading included", "seconds")}}};
+    return table;
+}
+
+MeasureKeys measureOf(const Node& document) {
+    static const Node kNone;
+    const GivenKey measure = contentOf(document).measure;
+    return measureTable().find(measure ? *measure : kNone);
+}
+
+Measure readMeasure(const Node& map, Measure measure) {
+    const MeasureKeys given = measureTable().readKnown(map, "measure");
+    take(given.relativeError, measure.relativeError);
+    // Who asks how well a time is known wants times.
+    if (measure.relativeError > 0.0) measure.lane = Measure::Lane::Timing;
+    if (given.lane) measure.lane = Measure::Lane(given.lane.choice("measure"));
+    // Times are wanted with an interval, in about a minute.
+    if (measure.lane == Measure::Lane::Timing) {
+        measure.warmup = 1;
+        measure.processes = kFewestRounds;
+        measure.isWithinBudget = !given.processes;
+    }
+    take(given.warmup, measure.warmup);
+    take(given.repeats, measure.repeats);
+    take(given.processes, measure.processes);
+    take(given.timeBudgetS, measure.timeBudgetS);
+    take(given.frames, measure.frames);
+    if (given.seeds) {
+        const bool isByCase = given.seeds.choice("measure") == 0;
+        measure.seeds = isByCase ? Measure::Seeds::Case : Measure::Seeds::Process;
+    }
+    take(given.sceneSeeds, measure.sceneSeeds);
+    if (measure.sceneSeeds > 1 && measure.lane == Measure::Lane::Timing) {
+        throw Error(given.sceneSeeds->location(),
+                    "'scene_seeds' needs the quality lane: a time varies by the process");
+    }
+    take(given.timeLimitS, measure.timeLimitS);
+    return measure;
+}
+
 SchemaSection outputKeys() {
-    Params params(Node(), "output");
-    readOutput(params);
-    return declared("output", params);
+    return outputTable().section();
 }
 
 SchemaSection measureKeys() {
-    Params params(Node(), "measure");
-    readMeasure(params);
-    return declared("measure", params);
+    return measureTable().section();
 }
 
 }  // namespace gfxrepro::config

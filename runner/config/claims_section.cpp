@@ -93,25 +93,24 @@ const KeyTable<KnownKeys>& knownTable() {
     return table;
 }
 
-/// Which of `names` it is; none where it is not there.
-std::optional<std::size_t> choiceIn(const GivenKey& key, const std::string& owner,
-                                    std::span<const std::string_view> names) {
-    return key ? std::optional(choiceOf(*key, names, key.in(owner))) : std::nullopt;
+/// Which of those that may stand there it is; none where nothing does.
+std::optional<std::size_t> choiceIn(const GivenKey& key, const std::string& owner) {
+    return key ? std::optional(key.choice(owner)) : std::nullopt;
 }
 
-std::optional<std::string> nameIn(const GivenKey& key, const std::string& owner,
-                                  std::span<const std::string_view> names) {
-    const auto choice = choiceIn(key, owner, names);
-    return choice ? std::optional<std::string>(names[*choice]) : std::nullopt;
+std::optional<std::string> nameIn(const GivenKey& key, const std::string& owner) {
+    return choiceIn(key, owner) ? std::optional(key->text()) : std::nullopt;
 }
 
 /// An entry of `because`; `what` begins the messages.
 ClaimSpec::Known readKnown(const Node& entry, const std::string& what) {
     const KnownKeys given = knownTable().read(entry, what);
-    return {
-        *nameIn(given.verdict, what, kKnownVerdicts), nameIn(given.device, what, kDeviceClasses),
-        nameIn(given.profile, what, kProfiles),       nameIn(given.scenes, what, kSceneClasses),
-        lineOf(*given.reason, given.reason.in(what)), optionalLine(given.shownBy, what)};
+    return {*nameIn(given.verdict, what),
+            nameIn(given.device, what),
+            nameIn(given.profile, what),
+            nameIn(given.scenes, what),
+            lineOf(*given.reason, given.reason.in(what)),
+            optionalLine(given.shownBy, what)};
 }
 
 std::string knownPlace(const ClaimSpec::Known& known) {
@@ -207,7 +206,7 @@ class ClaimParser {
 
     void readCommon() {
         claim_.text = lineOf(*given_.says, given_.says.in(what_));
-        claim_.profile = nameIn(given_.profile, what_, kProfiles);
+        claim_.profile = nameIn(given_.profile, what_);
         if (const GivenKey& same = given_.sameAs) {
             claim_.sameAs = lineOf(*same, same.in(what_));
             const std::size_t blank = claim_.sameAs.find(' ');
@@ -297,7 +296,7 @@ class ClaimParser {
     }
 
     void readProvenance(bool isOfDocument) {
-        const auto origin = choiceIn(given_.origin, what_, kOrigins);
+        const auto origin = choiceIn(given_.origin, what_);
         claim_.origin = origin         ? static_cast<Origin>(*origin)
                         : isOfDocument ? Origin::Document
                                        : Origin::Ours;
@@ -307,10 +306,10 @@ class ClaimParser {
                 given_.boundFrom.in(what_) + ", and there is no number in what it requires");
         }
         if (isOfDocument && claim_.hasBound()) claim_.boundFrom = BoundSource::Ours;
-        if (const auto from = choiceIn(given_.boundFrom, what_, kBoundSources)) {
+        if (const auto from = choiceIn(given_.boundFrom, what_)) {
             claim_.boundFrom = static_cast<BoundSource>(*from);
         }
-        if (const auto kind = choiceIn(given_.kind, what_, kTimeKinds)) {
+        if (const auto kind = choiceIn(given_.kind, what_)) {
             claim_.timeKind = static_cast<TimeKind>(*kind);
         }
         const GivenKey& because = given_.because;

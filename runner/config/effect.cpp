@@ -87,27 +87,27 @@ std::vector<NoEffect> keysInVain(const Experiment& experiment) {
     // A document's profiles share what a file says of rounds.
     const bool isSweep = experiment.kind == ExperimentKind::Sweep;
     const ContentKeys content = contentOf(experiment.document);
-    const Node* measure = content.measure;
-    if (!isSweep) measure = nullptr;
+    const MeasureKeys measure = isSweep ? measureOf(experiment.document) : MeasureKeys();
+    const auto requireGiven = [&](const GivenKey& key, bool hasEffect, const std::string& why) {
+        if (!key || hasEffect) return;
+        found.push_back({key.where(), fmt::format("'{}': {}", key.name(), why)});
+    };
     const Measure& own = experiment.measure;
     const bool isTimed = own.lane == Measure::Lane::Timing;
-    for (const char* key : {kRelativeError, kTimeBudget, "warmup"}) {
-        const bool isNone = key == std::string_view("warmup") && own.warmup == 0;
-        require(measure, key, isTimed || isNone,
-                "in the quality lane no rounds are timed; allowed: lane: timing");
+    for (const GivenKey* key : {&measure.relativeError, &measure.timeBudgetS, &measure.warmup}) {
+        requireGiven(*key, isTimed || (key == &measure.warmup && own.warmup == 0),
+                     "in the quality lane no rounds are timed; allowed: lane: timing");
     }
-    require(measure, kRelativeError, own.relativeError == 0.0 || own.mayContinue(),
-            "no rounds follow; allowed: with 6 to 19 'processes'");
-    require(measure, kTimeBudget, own.isWithinBudget || own.mayContinue(),
-            fmt::format(
-                "all 'processes' are measured whatever they take; allowed: without 'processes', "
-                "or with '{}'",
-                kRelativeError));
+    requireGiven(measure.relativeError, own.relativeError == 0.0 || own.mayContinue(),
+                 "no rounds follow; allowed: with 6 to 19 'processes'");
+    requireGiven(measure.timeBudgetS, own.isWithinBudget || own.mayContinue(),
+                 fmt::format("all 'processes' are measured whatever they take; allowed: without "
+                             "'processes', or with '{}'",
+                             kRelativeError));
     std::ranges::move(printedInVain(experiment), std::back_inserter(found));
     std::set<std::string> scenes;
     addScenes(experiment, scenes);
-    require(&experiment.document, content.sceneParams.name().c_str(), !scenes.empty(),
-            "no case has a scene");
+    requireGiven(content.sceneParams, !scenes.empty(), "no case has a scene");
     for (const auto& [scene, params] : experiment.paramsByScene.entries()) {
         const std::vector<std::string> known(scenes.begin(), scenes.end());
         require(
@@ -165,16 +165,10 @@ namespace {
                                    hasSeeds ? "scene_seeds: 1" : "lane: timing"));
 }
 
-/// Null where none is given.
-const Node* laneOf(const Experiment& experiment) {
-    const GivenKey measure = contentOf(experiment.document).measure;
-    return measure && measure->isMap() ? measure->find("lane") : nullptr;
-}
-
 }  // namespace
 
 bool isLaneGivenBeside(const Experiment& experiment) {
-    const Node* lane = laneOf(experiment);
+    const Node* lane = measureOf(experiment.document).lane;
     return lane && lane->location().file.text() != experiment.file;
 }
 
@@ -185,7 +179,7 @@ void refuseTimes(const Experiment& experiment, const ClaimSpec& claim) {
 
 void requireTimed(const Experiment& experiment) {
     if (!isMeasuredHere(experiment) || experiment.measure.lane == Measure::Lane::Timing) return;
-    const Node* lane = laneOf(experiment);
+    const Node* lane = measureOf(experiment.document).lane;
     if (lane && !isLaneGivenBeside(experiment) && showsTimes(experiment.layout)) {
         refuseTimes(experiment, lane->location(), "the layout shows some");
     }

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <set>
 #include <tuple>
 
 #include "engine/core/checks.h"
-#include "engine/core/params.h"
 #include "engine/core/text.h"
 #include "engine/scene/catalog_entry.h"
 #include "engine/scene/scene_reference.h"
@@ -25,25 +25,22 @@ using namespace types;
 /// Begins the number in the id of a figure: papers count tables and figures apart.
 constexpr std::string_view kFigurePrefix = "figure-";
 
-/// A key that names the experiment.
-struct Identity {
-    SchemaKey key;
-    ExperimentKind kind;
-    std::string_view label;
+/// A key that names the experiment: in the order of ExperimentKind.
+struct IdentityKeys {
+    GivenKey table, figure, section, sweepOf;
 };
-const std::vector<Identity>& identities() {
-    static const std::vector<Identity> all = {
-        {{"table", "PAPER/NUMBER", "none", "a table, as zju2005/2.1", text()},
-         ExperimentKind::Table,
-         "Table"},
-        {{"figure", "PAPER/NUMBER", "none", "a figure", text()}, ExperimentKind::Figure, "Figure"},
-        {{"section", "PAPER/NUMBER", "none", "numbers in running text", text()},
-         ExperimentKind::Section,
-         "Section"},
-        {{"sweep_of", "NAME", "none", "an experiment of one's own; its id is sweep/NAME", text()},
-         ExperimentKind::Sweep,
-         "Sweep"}};
-    return all;
+constexpr std::array kLabels = {"Table", "Figure", "Section", "Sweep"};
+const KeyTable<IdentityKeys>& identityTable() {
+    using I = IdentityKeys;
+    static const KeyTable<I> table{
+        {"identity", "",
+         "Exactly one key names the experiment; a file that others extend has none.", false},
+        {{&I::table, "table", "PAPER/NUMBER", "none", "a table, as zju2005/2.1", text()},
+         {&I::figure, "figure", "PAPER/NUMBER", "none", "a figure", text()},
+         {&I::section, "section", "PAPER/NUMBER", "none", "numbers in running text", text()},
+         {&I::sweepOf, "sweep_of", "NAME", "none",
+          "an experiment of one's own; its id is sweep/NAME", text()}}};
+    return table;
 }
 
 }  // namespace
@@ -145,22 +142,28 @@ bool isName(std::string_view text) {
 
 /// Sets kind and id from the one key that names the experiment.
 void readIdentity(const Node& document, Experiment& experiment) {
-    const Identity* found = nullptr;
-    for (const Identity& identity : identities()) {
-        if (!document.find(identity.key.name)) continue;
-        if (found) {
-            throw Error(document.keyLocation(identity.key.name),
-                        "both '" + found->key.name + "' and '" + identity.key.name +
-                            "' name the experiment; allowed: one");
+    const IdentityKeys given = identityTable().find(document);
+    const GivenKey* found = nullptr;
+    int kind = 0;
+    for (const GivenKey* one : {&given.table, &given.figure, &given.section, &given.sweepOf}) {
+        if (*one && found) {
+            throw Error(one->where(),
+                        fmt::format("both '{}' and '{}' name the experiment; allowed: "
+                                    "one",
+                                    found->name(), one->name()));
         }
-        found = &identity;
+        if (*one) {
+            found = one;
+            experiment.kind = ExperimentKind(kind);
+        }
+        ++kind;
     }
     if (!found) {
         throw Error(document.location(),
                     "nothing names the experiment; allowed: one of " + joined(identityKeys()));
     }
-    const std::string& key = found->key.name;
-    const Node& name = *document.find(key);
+    const std::string& key = found->name();
+    const Node& name = **found;
     const std::string& text = lineOf(name, key);
     const Names parts = split(text, '/');
     for (const std::string& part : parts) {
@@ -169,8 +172,7 @@ void readIdentity(const Node& document, Experiment& experiment) {
                                          " letters; at most " + std::to_string(kLongestName) +
                                          ", for files are named after it");
     }
-    experiment.kind = found->kind;
-    if (found->kind == ExperimentKind::Sweep) {
+    if (experiment.kind == ExperimentKind::Sweep) {
         if (!isName(text)) throwNotAllowed(name, key, "letters, digits, - _ .");
         experiment.id = "sweep/" + text;
         return;
@@ -178,7 +180,7 @@ void readIdentity(const Node& document, Experiment& experiment) {
     if (parts.size() != 2 || !isName(parts[0]) || !isName(parts[1])) {
         throwNotAllowed(name, key, "PAPER/NUMBER, such as zju2005/2.1");
     }
-    experiment.id = found->kind == ExperimentKind::Figure
+    experiment.id = experiment.kind == ExperimentKind::Figure
                         ? parts[0] + "/" + std::string(kFigurePrefix) + parts[1]
                         : text;
 }
@@ -285,20 +287,18 @@ Node paramsByScene(const GivenKey& given, const Node& document) {
 }
 
 /// What a program is not told of it cannot follow.
-void requireTold(const Node& document, const ContentKeys& given, const Experiment& experiment) {
+void requireTold(const ContentKeys& given, const Experiment& experiment) {
     if (programOf(experiment).isNull()) return;
     const ExternalProgram program = readProgram(programOf(experiment));
     const auto require = [&](const GivenKey& key, bool isGiven, const std::string& names,
                              bool isTold) {
         if (!isGiven || isTold) return;
-        throw Error(document.keyLocation(key.name()),
-                    "'" + key.name() + "': the program's command has no " + names);
+        throw Error(key.where(), "'" + key.name() + "': the program's command has no " + names);
     };
     const auto isSwept = [&](std::string_view axis) {
         return experiment.sweep.isMap() && experiment.sweep.find(axis);
     };
     const bool hasScene = !experiment.scene.isNull() || isSwept("scene");
-    const Node measure = mapIn(given.measure, document);
     const bool hasSize = given.output || isSwept("output.width") || isSwept("output.height");
     require(given.scene, hasScene, "{scene}", program.uses(placeholder::kScene));
     require(given.output, hasSize, "{width} or {height}",
@@ -307,8 +307,8 @@ void requireTold(const Node& document, const ContentKeys& given, const Experimen
     require(given.measure, experiment.measure.frames > 1,
             fmt::format("{{{}}}, of which there are several", told), program.uses(told));
     const bool isSeeded = experiment.measure.seeds != Measure::Seeds::None;
-    require(given.measure, isSeeded && measure.find("seeds"), "{seed}, of which 'seeds' tells",
-            program.uses(placeholder::kSeed));
+    require(given.measure, isSeeded && measureOf(experiment.document).seeds,
+            "{seed}, of which 'seeds' tells", program.uses(placeholder::kSeed));
 }
 
 /// Of a built-in technique, what it would be if that draws random numbers.
@@ -322,7 +322,7 @@ Measure::Seeds defaultSeeds(const Experiment& experiment) {
         return std::ranges::any_of(point,
                                    [](const auto& one) { return one.key() == placeholder::kSeed; });
     });
-    const bool isByCase = isSwept && !programOf(experiment).find("seeds");
+    const bool isByCase = isSwept && !programTable().find(programOf(experiment)).seeds;
     return program.seedsByProcess && !isByCase ? Measure::Seeds::Process : Measure::Seeds::Case;
 }
 
@@ -351,8 +351,8 @@ void readMeasurement(const Node& document, const ContentKeys& given, Experiment&
     experiment.sceneParams = mapIn(given.sceneParams, document);
     experiment.sceneInstead = mapIn(given.sceneInstead, document);
     experiment.sweep = valueOf(given.sweep);
-    Params output(valueOf(given.output), given.output.name());
-    std::tie(experiment.outputWidthPx, experiment.outputHeightPx) = readOutput(output);
+    std::tie(experiment.outputWidthPx, experiment.outputHeightPx) =
+        readOutput(mapIn(given.output, document));
     if (!given.shows) return;
     const std::string& what = given.shows.name();
     if (!given.shows->isSequence()) {
@@ -367,30 +367,24 @@ void readMeasurement(const Node& document, const ContentKeys& given, Experiment&
 /// How it is measured, which depends on what is shown: who shows times, or anything that there is,
 /// of one scene, wants times.
 void readLane(const Node& document, const ContentKeys& keys, Experiment& experiment) {
-    const Node* node = keys.measure;
-    const Node* seeds = node && node->isMap() ? node->find("scene_seeds") : nullptr;
-    const bool hasSeveral = seeds && seeds->tryInteger().value_or(1) > 1;
+    const Node map = mapIn(keys.measure, document);
+    const MeasureKeys given = measureTable().find(map);
+    const bool hasSeveral = given.sceneSeeds && given.sceneSeeds->tryInteger().value_or(1) > 1;
     const bool isTimed =
         experiment.hasDefaultLayout() ? !hasSeveral : showsTimes(experiment.layout);
     Measure defaults;
     if (isTimed) defaults.lane = Measure::Lane::Timing;
     defaults.seeds = defaultSeeds(experiment);
     // Who wants other seeds in each process wants several.
-    const Node* given = node && node->isMap() ? node->find("seeds") : nullptr;
-    const bool isByProcess = given ? given->isScalar() && given->text() == "process"
-                                   : defaults.seeds == Measure::Seeds::Process;
+    const bool isByProcess = given.seeds ? given.seeds.choice(keys.measure.name()) == 1
+                                         : defaults.seeds == Measure::Seeds::Process;
     if (isByProcess) defaults.processes = kFewestRounds;
     // One run of a program without a seed does not tell whether another comes to the same.
     const bool isUnseeded =
         !programOf(experiment).isNull() && defaults.seeds == Measure::Seeds::None;
     if (isUnseeded) defaults.processes = 2;
-    if (node && node->isMap() && node->find("runs")) {
-        throw Error(node->keyLocation("runs"),
-                    "measure: unknown parameter 'runs'; did you mean 'processes'?");
-    }
-    Params params(node ? *node : Node(), keys.measure.name());
-    experiment.measure = readMeasure(params, defaults);
-    requireTold(document, keys, experiment);
+    experiment.measure = readMeasure(map, defaults);
+    requireTold(keys, experiment);
 }
 
 /// `printed.at` is of all cases alike.
@@ -454,8 +448,7 @@ void readTable(const Node& document, const ContentKeys& given, bool isComplete,
     const bool isOwn = experiment.kind == ExperimentKind::Sweep;
     for (const GivenKey* key : {&given.fit, &claims, &given.plots}) {
         if (!*key || layout || (isOwn && key == &claims)) continue;
-        throw Error(document.keyLocation(key->name()),
-                    "'" + key->name() + "' without '" + layout.name() + "'");
+        throw Error(key->where(), "'" + key->name() + "' without '" + layout.name() + "'");
     }
     if (!layout) {
         if (claims) {
@@ -484,12 +477,7 @@ void readTable(const Node& document, const ContentKeys& given, bool isComplete,
 }  // namespace
 
 const Names& identityKeys() {
-    static const Names keys = [] {
-        Names names;
-        for (const Identity& identity : identities()) names.push_back(identity.key.name);
-        return names;
-    }();
-    return keys;
+    return identityTable().names();
 }
 
 ContentKeys contentOf(const Node& document) {
@@ -533,6 +521,10 @@ Experiment experimentFromDocument(const Node& document, const std::filesystem::p
     return readExperiment(document, file, false);
 }
 
+bool goesByClock(const Experiment& experiment) {
+    return experiment.technique == kImported || !programOf(experiment).isNull();
+}
+
 bool Experiment::hasDefaultLayout() const {
     return kind == ExperimentKind::Sweep && !technique.empty() && !layout.isGiven;
 }
@@ -548,20 +540,15 @@ std::string Experiment::slug() const {
 }
 
 std::string Experiment::label() const {
-    const auto identity = std::ranges::find(identities(), kind, &Identity::kind);
     std::string number = id.substr(id.find('/') + 1);
     if (kind == ExperimentKind::Figure) number.erase(0, kFigurePrefix.size());
-    return std::string(identity->label) + " " + number;
+    return kLabels.at(static_cast<std::size_t>(kind)) + (" " + number);
 }
 
 SchemaFile experimentSchema() {
-    SchemaSection identity{
-        "identity", "", "Exactly one key names the experiment; a file that others extend has none.",
-        false};
-    for (const Identity& one : identities()) identity.keys.push_back(one.key);
     SchemaFile file{"experiment",
                     "A table, figure, section or sweep",
-                    {std::move(identity), compositionKeys(), contentTable().section()}};
+                    {identityTable().section(), compositionKeys(), contentTable().section()}};
     const auto add = [&](std::vector<SchemaSection> sections) {
         for (SchemaSection& section : sections) file.sections.push_back(std::move(section));
     };

@@ -11,12 +11,27 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/key_info.h"
 #include "engine/core/node.h"
 #include "runner/claims/kinds/claim.h"
 #include "runner/config/case.h"
 #include "runner/config/outputs.h"
 
 namespace gfxrepro::config {
+
+/// What a config has beside its name.
+struct ContentKeys {
+    GivenKey title, technique, program, scene, sceneParams, sceneInstead, params, paramsByScene,
+        paramsInstead, output, sweep, measure, shows, labels, layout, printed, claims, plots, fit,
+        assumptions;
+};
+ContentKeys contentOf(const Node& document);
+/// What its `measure` has.
+struct MeasureKeys {
+    GivenKey lane, relativeError, warmup, repeats, processes, timeBudgetS, frames, seeds,
+        sceneSeeds, timeLimitS;
+};
+MeasureKeys measureOf(const Node& document);
 
 /// One point of a sweep: axis name → value, in the order of the axes.
 using AxisPoint = Node::Map;
@@ -38,6 +53,8 @@ using AxisPoint = Node::Map;
 /// the place of what is wrong, and for more than 1,000,000 points.
 std::vector<AxisPoint> expandSweep(const Node& sweep);
 
+/// Its `when`; null where it has none.
+const Node* whenOf(const Node& sweep);
 /// Leaves out the axes whose condition in `when` is false. That may make further conditions false.
 void applyWhen(const Node& when, AxisPoint& point);
 
@@ -207,10 +224,7 @@ inline bool isMeasuredHere(const Experiment& experiment) {
 
 /// Whether a program of its own measures it, or it was measured elsewhere. Such times are those of
 /// the clock: CPU time tells nothing of what waits.
-inline bool goesByClock(const Experiment& experiment) {
-    if (experiment.technique == kImported) return true;
-    return experiment.document.isMap() && experiment.document.find("program");
-}
+bool goesByClock(const Experiment& experiment);
 
 /// Throws the Error of a claim that reads times where the lane takes none.
 [[noreturn]] void refuseTimes(const Experiment& experiment, const ClaimSpec& claim);

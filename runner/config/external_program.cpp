@@ -22,9 +22,8 @@ namespace {
 using namespace types;
 using ParamType = ProgramParam::Type;
 
-using Two = std::array<std::string_view, 2>;
-constexpr Two kFramesOfARun = {"one", "all"}, kSeedsOf = {"case", "process"};
-constexpr Two kBetter = {"lower", "higher"};
+constexpr std::array kFramesOfARun = {"one", "all"}, kSeedsOf = {"case", "process"};
+constexpr std::array kBetter = {"lower", "higher"};
 
 }  // namespace
 
@@ -67,8 +66,7 @@ const KeyTable<ProgramKeys>& programTable() {
           choiceKey("seeds", kSeedsOf,
                     "process of an unswept {seed} with truths that are files or of other numbers",
                     "what `measure.seeds` is where it is not given")},
-         {&P::gpu, "gpu", "boolean", "false",
-          "whether it works on the GPU: then a run asks which that is", boolean()},
+         {&P::gpu, flagKey("gpu", "whether it works on the GPU: then a run asks which that is")},
          {&P::here, "here", "folder", "that of this file", "what {here} is", text()}}};
     return table;
 }
@@ -108,8 +106,7 @@ const KeyTable<MetricKeys>& metricTable() {
          {&M::scale,
           numberKey("scale", kScales, "1",
                     "multiplies that number: 1000 for ms of what is printed in seconds")},
-         {&M::optional, "optional", "boolean", "false", "whether a run may be without it",
-          boolean()},
+         {&M::optional, flagKey("optional", "whether a run may be without it")},
          {&M::doc, "doc", "line", "\"\"", "what it means", text()}}};
     return table;
 }
@@ -201,11 +198,11 @@ ProgramParam readProgramParam(const Node& params, const std::string& name) {
     param.doc = optionalLine(keys.doc, what);
     param.unit = optionalLine(keys.unit, what);
     param.type = typeOf(keys);
-    param.min = keys.min ? numberIn(*keys.min, {}, keys.min.in(what)) : -kNoLimit;
-    param.max = keys.max ? numberIn(*keys.max, {}, keys.max.in(what)) : kNoLimit;
+    param.min = keys.min ? keys.min.number(what) : -kNoLimit;
+    param.max = keys.max ? keys.max.number(what) : kNoLimit;
     const bool isNumber = param.type == ParamType::Integer || param.type == ParamType::Number;
     if (const GivenKey& end = keys.min ? keys.min : keys.max; end && !isNumber) {
-        throw Error(map.keyLocation(end.name()), end.in(what) + " is of numbers alone");
+        throw Error(end.where(), end.in(what) + " is of numbers alone");
     }
     if (const GivenKey& choices = keys.choices) {
         if (!choices->isSequence() || choices->items().empty()) {
@@ -312,13 +309,13 @@ Names argumentsOf(const Node& node, std::string_view what, const Names& known) {
 }
 
 /// Whether it is the second of the two; where it is not there the first counts.
-bool isSecond(const GivenKey& key, const Two& names) {
-    return key && choiceOf(*key, names, key.in("program")) == 1;
+bool isSecond(const GivenKey& key) {
+    return key && key.choice("program") == 1;
 }
 
 Better betterOf(const GivenKey& key, const std::string& owner) {
     if (!key) return Better::Neither;
-    return choiceOf(*key, kBetter, key.in(owner)) == 0 ? Better::Lower : Better::Higher;
+    return key.choice(owner) == 0 ? Better::Lower : Better::Higher;
 }
 
 /// Throws Error unless it is a map of that `shape`.
@@ -387,11 +384,10 @@ void readMetrics(const GivenKey& metrics, ExternalProgram& program) {
         }
         program.outputs.metrics.push_back(
             {name, unit, optionalLine(keys.doc, what), betterOf(keys.better, what)});
-        if (keys.optional && flagOf(*keys.optional, keys.optional.in(what)))
-            program.optionalMetrics.push_back(name);
+        if (keys.optional && keys.optional.flag(what)) program.optionalMetrics.push_back(name);
         const GivenKey &pattern = keys.pattern, &scale = keys.scale;
         if (scale && !pattern)
-            throw Error(map.keyLocation(scale.name()),
+            throw Error(scale.where(),
                         what + ": '" + scale.name() + "' is of a pattern's number alone");
         if (!pattern) continue;
         if (program.givesAllFrames) {
@@ -407,7 +403,7 @@ void readMetrics(const GivenKey& metrics, ExternalProgram& program) {
         } catch (const std::regex_error& error) {
             throw Error(pattern->location(), pattern.in(what) + ": " + error.what());
         }
-        const double factor = scale ? numberIn(*scale, kScales, scale.in(what)) : 1.0;
+        const double factor = scale ? scale.number(what) : 1.0;
         program.patterns.push_back({name, text, factor});
     }
 }
@@ -524,6 +520,10 @@ bool ExternalProgram::uses(std::string_view name) const {
            std::ranges::any_of(environment, [&](const auto& one) { return has(one.second); });
 }
 
+const SourceLocation& placeOfMetric(const Node& program, const std::string& name) {
+    return programTable().find(program).metrics->keyLocation(name);
+}
+
 const Node& programOf(const Experiment& experiment) {
     static const Node kNone;
     const GivenKey program = contentOf(experiment.document).program;
@@ -549,8 +549,8 @@ ExternalProgram readProgram(const Node& node) {
     const ProgramKeys given = programTable().readKnown(node, what);
     ExternalProgram program;
     program.here = optionalLine(given.here, what);
-    if (given.gpu) program.usesGpu = flagOf(*given.gpu, given.gpu.in(what));
-    program.givesAllFrames = isSecond(given.frames, kFramesOfARun);
+    if (given.gpu) program.usesGpu = given.gpu.flag(what);
+    program.givesAllFrames = isSecond(given.frames);
     Names known = reservedNames();
     if (given.params) readParams(given.params, program, known);
     programTable().require(given, node.location(), what);
@@ -562,8 +562,7 @@ ExternalProgram readProgram(const Node& node) {
                     "{frames}, their number");
     }
     if (given.seeds && !program.uses(placeholder::kSeed)) {
-        throw Error(node.keyLocation(given.seeds.name()),
-                    given.seeds.in(what) + ": the command has no {seed}");
+        throw Error(given.seeds.where(), given.seeds.in(what) + ": the command has no {seed}");
     }
     if (given.version) {
         program.version = argumentsOf(*given.version, given.version.in(what), {placeholder::kHere});
@@ -573,8 +572,7 @@ ExternalProgram readProgram(const Node& node) {
     if (given.metrics) readMetrics(given.metrics, program);
     if (given.passes) readPasses(given.passes, program);
     if (given.images) readPictures(given.images, known, program);
-    program.seedsByProcess =
-        given.seeds ? isSecond(given.seeds, kSeedsOf) : hasRandomErrors(program);
+    program.seedsByProcess = given.seeds ? isSecond(given.seeds) : hasRandomErrors(program);
     program.framesAreSeeds =
         !program.uses(placeholder::kSeed) &&
         std::ranges::any_of(program.pictures, [](const ProgramPicture& picture) {

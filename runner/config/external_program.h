@@ -97,6 +97,8 @@ struct ExternalProgram {
     Placeholders valuesOf(const Node& resolved) const;
 };
 
+/// Where the metric is declared.
+const SourceLocation& placeOfMetric(const Node& program, const std::string& name);
 /// `program` of the config; null where there is none.
 const Node& programOf(const Experiment& experiment);
 /// What tells a program from another: how it is started, and what prints its version.

@@ -76,7 +76,7 @@ bool isOwnTruth(const Case& item, const Node& truth) {
 
 std::vector<std::string> ownTruths(const Experiment& experiment, std::span<const Case> cases) {
     const Node& program = programOf(experiment);
-    if (!program.isMap() || !programTable().find(program).images) return {};
+    if (!programTable().find(program).images) return {};
     std::vector<std::string> sentences;
     for (const ProgramPicture& picture : readProgram(program).pictures) {
         const Node& truth = picture.truthParams;
@@ -127,8 +127,7 @@ Placeholders ExternalProgram::valuesOf(const Node& resolved) const {
 
 void setProgramFolder(Node& document) {
     Node* program = contentTable().find(document, &ContentKeys::program);
-    const ProgramKeys given =
-        program && program->isMap() ? programTable().find(*program) : ProgramKeys();
+    const ProgramKeys given = program ? programTable().find(*program) : ProgramKeys();
     if (!given.command) return;
     const auto folderOf = [&](const Node& node) {
         const std::string& file = node.location().file.text();
@@ -261,15 +260,14 @@ std::string programKey(const std::vector<ProgramFile>& files, FileDigests& diges
 }
 
 std::string programText(const Experiment& experiment) {
-    const Node& program = programOf(experiment);
+    const ProgramKeys given = programTable().find(programOf(experiment));
     std::string text;
-    const auto add = [&](const char* key) {
-        const Node* value = program.isMap() ? program.find(key) : nullptr;
+    const auto add = [&](const Node* value) {
         if (value) text += value->toJson().dump() + '\n';
     };
-    add("command");
-    add("version");
-    if (text.find("{here}") != text.npos) add("here");
+    add(given.command);
+    add(given.version);
+    if (text.find("{here}") != text.npos) add(given.here);
     return text;
 }
 

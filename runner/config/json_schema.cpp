@@ -25,7 +25,7 @@ Json beside(Json type) {
 std::string descriptionOf(const SchemaKey& key) {
     std::string text = key.doc;
     if (!text.empty()) text += "\n";
-    text += key.type;
+    text += key.inWords();
     if (!key.absent.empty()) text += key.isRequired() ? "; required" : "; default: " + key.absent;
     return text;
 }
@@ -187,10 +187,9 @@ void defineTechnique(const SchemaNames::TechniqueNames& technique, Json& definit
     Json params = Json::object();
     Json axes = Json::object();
     for (const std::string& key : keysOf("sweep")) axes[key] = anything();  // `sweep` says more
-    for (const ParamInfo& info : technique.params) {
-        Json param = orNull(jsonTypeOf(info));
-        param["description"] = info.unit.empty() ? info.doc : info.doc + " [" + info.unit + "]";
-        param["default"] = parseYaml(info.defaultValue, "default").toJson();
+    for (const KeyInfo& info : technique.params) {
+        Json param = propertyOf(info, true);
+        param["default"] = parseYaml(info.absent, "default").toJson();
         params[info.name] = std::move(param);
         axes[info.name] = axisSchema(technique.name, info.name);
     }
@@ -282,17 +281,6 @@ Json sceneOrDocuments(std::string_view kind, const SchemaNames& names) {
     throw UsageError(fmt::format("schema '{}'; allowed: {}", kind, fmt::join(kKinds, ", ")));
 }
 
-/// A name such as `12` or `true` is read as text, but a YAML reader makes it a number.
-Json spellingsOf(const std::vector<std::string>& names) {
-    Json values = Json::array();
-    for (const std::string& name : names) {
-        values.push_back(name);
-        const Json plain = Node::scalar(name).toJson();
-        if (!plain.is_string()) values.push_back(plain);
-    }
-    return {{"enum", std::move(values)}};
-}
-
 /// On one line what fits there: people read it, and the differences between two versions.
 std::string dumped(const Json& json, std::size_t indent) {
     constexpr std::size_t kMaxColumns = 200;
@@ -308,15 +296,6 @@ std::string dumped(const Json& json, std::size_t indent) {
 }
 
 }  // namespace
-
-Json jsonTypeOf(const ParamInfo& info) {
-    const NumberRange range{info.min, info.max, false, false, info.type == "integer"};
-    if (info.count > 0) return tupleOf(number(range), static_cast<int>(info.count));
-    if (!info.choices.empty()) return spellingsOf(info.choices);
-    if (info.type == "boolean") return boolean();
-    if (info.type == "integer" || info.type == "number") return number(range);
-    return text();
-}
 
 std::string jsonSchema(std::string_view kind, const SchemaNames& names) {
     Json root = {{"$schema", "http://json-schema.org/draft-07/schema#"},

@@ -77,7 +77,7 @@ const KeyTable<EqualKeys>& equalTable() {
          "value: interpolated between the two nearest cases, on logarithmic scales.",
          false},
         {{&EqualKeys::metric, "metric", "name", "required", "the other metric", text()},
-         {&EqualKeys::is, "is", "number", "required", "its value", number()}}};
+         {&EqualKeys::is, numberKey("is", {}, "required", "its value")}}};
     return table;
 }
 
@@ -95,12 +95,11 @@ Selection readSelection(const Node& node, const Vocabulary& vocabulary) {
         requireCellFormat(*given.format);
         selection.format = given.format->text();
     }
-    if (given.scale) selection.scale = numberIn(*given.scale, kScales, given.scale.name());
+    if (given.scale) selection.scale = given.scale.number();
     if (given.equal) {
         const std::string& what = given.equal.name();
         const EqualKeys equal = equalTable().read(*given.equal, what);
-        selection.equal = Equal{lineOf(*equal.metric, equal.metric.name()),
-                                numberIn(*equal.is, {}, equal.is.in(what))};
+        selection.equal = Equal{lineOf(*equal.metric, equal.metric.name()), equal.is.number(what)};
     }
     if (given.of) {
         selection.of = lineOf(*given.of, given.of.name());

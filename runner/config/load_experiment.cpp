@@ -38,6 +38,20 @@ const KeyTable<CompositionKeys>& compositionTable() {
     return table;
 }
 
+struct ProfileKeys {
+    GivenKey quick, paper;
+};
+const KeyTable<ProfileKeys>& profileTable() {
+    const auto key = [](const std::string& name) {
+        return SchemaKey(name, "part of a config", "none",
+                         "laid over the file by --profile " + name, refTo("content"));
+    };
+    static const KeyTable<ProfileKeys> table{
+        {"profiles", "profiles.", ""},
+        {{&ProfileKeys::quick, key("quick")}, {&ProfileKeys::paper, key("paper")}}};
+    return table;
+}
+
 /// A file with what it extends. Profiles stay apart: their nulls remove keys only once the profile
 /// is laid over the whole.
 struct Merged {
@@ -65,18 +79,18 @@ void refuseTornTexts(const Node& whole) {
 
 /// A scene without a value takes away what a file has of it that is extended; else it says nothing.
 void refuseEmptyScenes(const Node& own, const Node& extended) {
-    for (const char* section : {kParamsByScene, kSceneInstead}) {
-        const Node* scenes = own.find(section);
-        const Node* earlier = extended.find(section);
+    const ContentKeys given = contentOf(own), below = contentOf(extended);
+    for (const auto& [scenes, earlier] : {std::pair(given.paramsByScene, below.paramsByScene),
+                                          std::pair(given.sceneInstead, below.sceneInstead)}) {
         if (!scenes || !scenes->isMap()) continue;
         for (const auto& [scene, value] : scenes->entries()) {
             const SourceLocation& where = scenes->keyLocation(scene);
             const std::string name = withSceneFile(Node::scalar(scene, where)).text();
             if (!value.isNull() || (earlier && earlier->isMap() && earlier->find(name))) continue;
             throw Error(
-                where, fmt::format(
-                           "{}: '{}' has no value; allowed: {{scene: {}}}", section, scene,
-                           std::string_view(section) == kSceneInstead ? "scene" : "{name: value}"));
+                where,
+                fmt::format("{}: '{}' has no value; allowed: {{scene: {}}}", scenes.name(), scene,
+                            scenes.name() == kSceneInstead ? "scene" : "{name: value}"));
         }
     }
 }
@@ -169,7 +183,7 @@ class FileReader {
     }
 
     static void addProfiles(const Node& profiles, Merged& result) {
-        requireKeys(profiles, "profiles", profileKeys().keyNames());
+        requireKeys(profiles, "profiles", profileTable().names());
         for (const auto& [name, overlay] : profiles.entries()) {
             if (!overlay.isNull()) requireKeys(overlay, "profile '" + name + "'", sectionKeys());
             result.profiles.emplace_back(name, overlay.isNull() ? Node::map({}) : overlay);
@@ -445,7 +459,7 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
     }
     auto [document, overlays] = FileReader(configsFolder).read(file);
     Node::Sequence declared;
-    for (const char* name : {"quick", "paper"}) {
+    for (const std::string& name : profileTable().names()) {
         const bool isDeclared = std::any_of(overlays.begin(), overlays.end(),
                                             [&](const auto& one) { return one.first == name; });
         if (isDeclared) declared.push_back(Node::scalar(name));
@@ -459,12 +473,13 @@ Experiment loadExperiment(const fs::path& file, const ExperimentOptions& options
     // The file as it stands must be right whatever is chosen: only there are all names known. But
     // its times may be asked for by the command line alone.
     Node asItStands = document;
+    Node set = Node::map({}, document.location());
     for (const Override& given : options.sets) {
-        const Node* lane = given.key == "measure.lane" ? &given.value : nullptr;
-        if (given.key == "measure" && given.value.isMap()) lane = given.value.find("lane");
-        const bool isTimed = lane && lane->isScalar() && lane->text() == "timing";
-        if (isTimed) asItStands.setPath("measure.lane", *lane);
+        if (given.key.starts_with("measure")) set.setPath(given.key, given.value);
     }
+    const GivenKey lane = measureOf(set).lane;
+    const bool isTimed = lane && lane->isScalar() && lane->text() == "timing";
+    if (isTimed) asItStands.setPath("measure." + lane.name(), *lane);
     resolveNames(asItStands);
     Experiment experiment = readWhole(asItStands, file, true, configsFolder);
 
@@ -490,12 +505,7 @@ SchemaSection compositionKeys() {
 }
 
 SchemaSection profileKeys() {
-    SchemaSection section{"profiles", "profiles.", ""};
-    for (const std::string name : {"quick", "paper"}) {
-        section.keys.push_back({name, "part of a config", "none",
-                                "laid over the file by --profile " + name, refTo("content")});
-    }
-    return section;
+    return profileTable().section();
 }
 
 }  // namespace gfxrepro::config

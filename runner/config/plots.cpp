@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 
 #include "engine/core/checks.h"
 #include "engine/core/text.h"
@@ -10,7 +9,7 @@ namespace gfxrepro::config {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> kPlotAxes = {"x", "y"};
+const Names kPlotAxes = {"x", "y"};
 
 /// The first value of an axis that is no number, if its values are known.
 const Node* firstText(const std::string& axis, const TableNames& names) {
@@ -39,10 +38,10 @@ const KeyTable<PlotKeys>& plotTable() {
          {&P::at, "at", "{row axis: value | [values]}", "all rows", "rows that are read", pairs()},
          {&P::log, "log", "x | y | [x, y]", "[]", "axes that are logarithmic",
           anyOf({choice(kPlotAxes), setOf(choice(kPlotAxes))})},
-         {&P::slope, "slope", "number", "none",
-          "exponent of x that is expected: a dashed line through the mean of each curve's "
-          "points, on two logarithmic axes",
-          number()},
+         {&P::slope,
+          numberKey("slope", {}, "none",
+                    "exponent of x that is expected: a dashed line through the mean of each "
+                    "curve's points, on two logarithmic axes")},
          {&P::title, "title", "line", "the file's", "above the curves", text()}}};
     return table;
 }
@@ -65,7 +64,7 @@ class PlotReader {
         if (given.at) plot_.at = readRowFilter(*given.at, given.at.in(what_), names_);
         if (given.log) readLog(*given.log, given.log.in(what_));
         if (given.slope) {
-            plot_.slope = numberIn(*given.slope, {}, given.slope.in(what_));
+            plot_.slope = given.slope.number(what_);
             if (!plot_.isLogX || !plot_.isLogY) {
                 throw Error(given.slope->location(),
                             given.slope.in(what_) +

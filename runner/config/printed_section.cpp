@@ -367,6 +367,10 @@ void requireSameMeasure(const Selection& ours, const Selection& theirs, const st
 
 }  // namespace
 
+const Node& printedValuesOf(const Node& document) {
+    return *printedTable().find(*contentOf(document).printed).values;
+}
+
 bool isCalibrated(const Experiment& table, const Names& row, const std::string& column) {
     const auto labelOf = [&](const std::string& axis) -> const std::string* {
         for (std::size_t i = 0; i < table.layout.rows.size(); ++i) {

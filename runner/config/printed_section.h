@@ -9,6 +9,9 @@
 
 namespace gfxrepro::config {
 
+/// The text of `printed.values`, which is there.
+const Node& printedValuesOf(const Node& document);
+
 /// A column and the number that it is held against.
 struct FitTarget {
     std::string column;

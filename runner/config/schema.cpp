@@ -43,7 +43,7 @@ std::string tableOf(const SchemaSection& section) {
     text += "| key | type | default | meaning |\n| --- | --- | --- | --- |\n";
     for (const SchemaKey& key : section.keys) {
         const bool isWords = key.isRequired() || key.absent == "none";
-        text += fmt::format("| `{}` | {} | {} | {} |\n", key.name, code(key.type),
+        text += fmt::format("| `{}` | {} | {} | {} |\n", key.name, code(key.inWords()),
                             isWords ? key.absent : code(key.absent), cell(key.doc));
     }
     return text;
@@ -73,7 +73,7 @@ std::string describeConfig() {
     for (const SchemaSection& section : schema().front().sections) {
         if (!section.doc.empty()) rows.push_back({"", "", "", section.doc});
         for (const SchemaKey& key : section.keys) {
-            rows.push_back({section.path + key.name, key.type, key.absent, key.doc});
+            rows.push_back({section.path + key.name, key.inWords(), key.absent, key.doc});
         }
     }
     std::array<std::size_t, 3> widths = {};

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/core/key_schema.h"
-#include "engine/core/params.h"
 #include "runner/config/outputs.h"
 
 namespace gfxrepro::config {
@@ -35,7 +34,7 @@ std::vector<std::string> keysOf(std::string_view section);
 struct SchemaNames {
     struct TechniqueNames {
         std::string name;
-        std::vector<ParamInfo> params;
+        std::vector<KeyInfo> params;
         Outputs outputs;
         bool isOpen = false;  // further parameters, metrics and passes are the config's
     };

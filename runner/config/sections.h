@@ -15,11 +15,6 @@
 #include "engine/core/node.h"
 #include "runner/config/experiment.h"
 
-namespace gfxrepro {
-class Params;
-struct ParamInfo;
-}  // namespace gfxrepro
-
 namespace gfxrepro::config {
 
 using Names = std::vector<std::string>;
@@ -80,14 +75,8 @@ std::string optionalLine(const GivenKey& key, const std::string& owner);
 /// Throws Error "WHAT needs 'KEY'" where it is not there.
 const Node& requiredAt(const Node& map, std::string_view key, std::string_view what);
 
-/// What a config has beside its name.
-struct ContentKeys {
-    GivenKey title, technique, program, scene, sceneParams, sceneInstead, params, paramsByScene,
-        paramsInstead, output, sweep, measure, shows, labels, layout, printed, claims, plots, fit,
-        assumptions;
-};
 const KeyTable<ContentKeys>& contentTable();
-ContentKeys contentOf(const Node& document);
+const KeyTable<MeasureKeys>& measureTable();
 /// The keys of a config that a profile may change.
 const Names& sectionKeys();
 /// table, figure, section, sweep_of.
@@ -162,13 +151,10 @@ std::vector<SchemaSection> claimSections();
 SchemaFile experimentSchema();
 SchemaFile documentsSchema();
 
-/// The JSON schema of a declared parameter's values.
-Json jsonTypeOf(const ParamInfo& info);
-
-/// The `measure` and `output` sections; their declarations are part of the schema. Of `measure`
-/// lane and seeds may be other ones where the section does not name them.
-Measure readMeasure(Params& params, Measure measure = {});
-std::pair<int, int> readOutput(Params& params);
+/// The `measure` and `output` sections, which are maps. Of `measure` lane and seeds may be other
+/// ones where the section does not name them.
+Measure readMeasure(const Node& map, Measure measure);
+std::pair<int, int> readOutput(const Node& map);
 
 /// A reference with a file extension is a file beside the one that names it, or in `folder`.
 Node withSceneFile(const Node& reference, const std::optional<std::filesystem::path>& folder = {});

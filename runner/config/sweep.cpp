@@ -363,6 +363,10 @@ std::vector<Fixed> fixedInVain(const Experiment& experiment) {
 
 }  // namespace
 
+const Node* whenOf(const Node& sweep) {
+    return sweepTable().find(sweep).when;
+}
+
 void applyWhen(const Node& when, AxisPoint& point) {
     for (std::size_t before = point.size() + 1; before != point.size();) {
         before = point.size();

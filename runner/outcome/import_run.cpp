@@ -171,7 +171,7 @@ bool isSeedSwept(const Experiment& experiment) {
 }
 
 bool isSeedLeftOut(const Experiment& experiment) {
-    const Node* when = experiment.sweep.isMap() ? experiment.sweep.find("when") : nullptr;
+    const Node* when = config::whenOf(experiment.sweep);
     return when && when->isMap() && when->find("seed");
 }
 
@@ -297,7 +297,7 @@ void requireSeeds(const ImportedNumbers& numbers, const run::Plan& plan, const f
             std::ranges::find(plan.experiments, item.experiment, &Experiment::id);
         if (!isSeedLeftOut(*experiment)) continue;
         std::optional<bool>& isOut = isLeftOut[row.caseIndex];
-        if (!isOut) isOut = isLeftWithoutSeed(item, *experiment->sweep.find("when"));
+        if (!isOut) isOut = isLeftWithoutSeed(item, *config::whenOf(experiment->sweep));
         const auto refuse = [&](const std::string& what) {
             throw Error({file.string(), row.line, 0}, "column 'seed': " + what);
         };

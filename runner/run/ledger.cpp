@@ -91,16 +91,16 @@ constexpr std::size_t kMostShown = 12;
 /// of their own beside.
 constexpr const char* kView = "view";
 
-std::vector<ParamInfo> declaredBy(const config::Experiment& experiment,
-                                  std::span<const technique::TechniqueInfo> techniques) {
+std::vector<KeyInfo> declaredBy(const config::Experiment& experiment,
+                                std::span<const technique::TechniqueInfo> techniques) {
     Params none(Node::map({}), "technique '" + experiment.technique + "'");
     technique::makeTechnique(technique::findTechnique(techniques, experiment.technique, {}),
                              config::programOf(experiment), none);
     return none.declared();
 }
 
-const ParamInfo* findInfo(const std::vector<ParamInfo>& declared, const std::string& name) {
-    const auto found = std::ranges::find(declared, name, &ParamInfo::name);
+const KeyInfo* findInfo(const std::vector<KeyInfo>& declared, const std::string& name) {
+    const auto found = std::ranges::find(declared, name, &KeyInfo::name);
     return found == declared.end() ? nullptr : &*found;
 }
 
@@ -142,7 +142,7 @@ std::string valuesOf(const std::string& name, const std::vector<Case>& cases,
     return joined(values);
 }
 
-std::string unitOf(const std::string& name, const ParamInfo* info) {
+std::string unitOf(const std::string& name, const KeyInfo* info) {
     if (name == config::kOutputAssumption) return "pixels";
     if (name == config::kFramesAssumption) return "frames";
     return info && info->unit != "1" ? info->unit : "";
@@ -155,10 +155,10 @@ bool isNumber(const Node& node) {
 /// Numbers are what parameters take: a number whose name is nearly a parameter's is that one
 /// misspelt, and a range of numbers is of one.
 void requireFreeText(const Assumption& assumption, const config::Experiment& experiment,
-                     const std::vector<ParamInfo>& declared) {
+                     const std::vector<KeyInfo>& declared) {
     std::vector<std::string> names = {config::kOutputAssumption, config::kSceneAssumption,
                                       config::kSceneSeedAssumption, config::kFramesAssumption};
-    for (const ParamInfo& info : declared) names.push_back(info.name);
+    for (const KeyInfo& info : declared) names.push_back(info.name);
     const std::string near = suggestion(assumption.name, names);
     const auto refuse = [&](const SourceLocation& where, const std::string& what) {
         throw Error(where, fmt::format("assumption '{}' {}: it is no parameter of technique '{}'{}",
@@ -340,9 +340,9 @@ void bindAssumptions(config::Experiment& experiment, const std::vector<Case>& ca
                      const scene::Catalog& catalog,
                      std::span<const technique::TechniqueInfo> techniques) {
     if (!config::isMeasuredHere(experiment)) return;
-    const std::vector<ParamInfo> declared = declaredBy(experiment, techniques);
+    const std::vector<KeyInfo> declared = declaredBy(experiment, techniques);
     for (Assumption& assumption : experiment.assumptions) {
-        const ParamInfo* info = findInfo(declared, assumption.name);
+        const KeyInfo* info = findInfo(declared, assumption.name);
         if (!info && !isOfCases(assumption.name)) {
             requireFreeText(assumption, experiment, declared);
             continue;
@@ -365,7 +365,7 @@ void requireRanges(const config::Experiment& experiment, const std::vector<Case>
                    std::span<const technique::TechniqueInfo> techniques) {
     constexpr NumberRange kSeeds{.least = 0, .most = 1'000'000'000, .isWhole = true};
     if (!config::isMeasuredHere(experiment)) return;
-    const std::vector<ParamInfo> declared = declaredBy(experiment, techniques);
+    const std::vector<KeyInfo> declared = declaredBy(experiment, techniques);
     for (const Assumption& assumption : experiment.assumptions) {
         if (!assumption.isBound || assumption.range.isNull()) continue;
         if (assumption.name == config::kOutputAssumption) {
@@ -381,10 +381,10 @@ void requireRanges(const config::Experiment& experiment, const std::vector<Case>
             requireReadable(experiment, assumption,
                             technique::findTechnique(techniques, experiment.technique, {}));
             requireMeasuredWithin(assumption, cases);
-            const ParamInfo* info = findInfo(declared, assumption.name);
+            const KeyInfo* info = findInfo(declared, assumption.name);
             // A technique whose default is a view by name has views of its own.
             if (assumption.name == kView && info && info->type == "text" &&
-                (info->defaultValue.empty() || info->defaultValue == "\"\"")) {
+                (info->absent.empty() || info->absent == "\"\"")) {
                 requireViews(assumption, cases, catalog);
             }
         }

@@ -28,7 +28,7 @@ std::string hashOf(const Plan& plan) {
 
 void requireNoImport(const config::Experiment& experiment) {
     if (experiment.technique != config::kImported) return;
-    throw Error(experiment.document.find("technique")->location(),
+    throw Error(config::contentOf(experiment.document).technique->location(),
                 "technique 'imported': its numbers are measured elsewhere; `gfxrepro import "
                 "FILE.csv --config " +
                     experiment.file.filename().string() + "` takes them");

@@ -171,12 +171,12 @@ void requireCells(const config::Layout& layout, const config::Outputs& outputs) 
 
 /// A metric of a program with the name of a swept axis: a claim could mean either.
 void requireOwnNames(const config::Experiment& experiment) {
-    const Node* metrics = config::programOf(experiment).find("metrics");
-    if (!metrics) return;
+    const Node& program = config::programOf(experiment);
+    const config::Outputs outputs = config::readProgram(program).outputs;
     for (const config::AxisPoint& point : config::expandSweep(experiment.sweep)) {
         for (const auto& [axis, value] : point) {
-            if (!metrics->find(axis)) continue;
-            throw Error(metrics->keyLocation(axis),
+            if (!outputs.find(axis)) continue;
+            throw Error(config::placeOfMetric(program, axis),
                         fmt::format("program: metric '{}' has the name of an axis that is swept; "
                                     "allowed: another",
                                     axis));
@@ -213,11 +213,9 @@ void requireOutputs(const config::Experiment& experiment,
     if (!config::programOf(experiment).isNull()) requireOwnNames(experiment);
 }
 
-/// The value of `key` in a section of the config; its file where there is none.
-SourceLocation placeOf(const config::Experiment& experiment, const char* section, const char* key) {
-    const Node* map = experiment.document.find(section);
-    const Node* value = map && map->isMap() ? map->find(key) : nullptr;
-    return value ? value->location() : SourceLocation{experiment.file.string(), 0, 0};
+/// The value of a key of the config; its file where there is none.
+SourceLocation placeOf(const GivenKey& key, const config::Experiment& experiment) {
+    return key ? key->location() : SourceLocation{experiment.file.string(), 0, 0};
 }
 
 /// Whether some source of the case's scene, at hand or not, has seeds.
@@ -247,7 +245,8 @@ void requireRead(const config::Experiment& experiment, const std::vector<Case>& 
     }
     const bool hasSeeds =
         std::ranges::any_of(cases, [&](const Case& item) { return mayHaveSeeds(item, catalog); });
-    const SourceLocation seeds = placeOf(experiment, "measure", "scene_seeds");
+    const SourceLocation seeds =
+        placeOf(config::measureOf(experiment.document).sceneSeeds, experiment);
     if (experiment.measure.sceneSeeds < 2 || hasSeeds || !isOwn(seeds)) return;
     throw Error(seeds, fmt::format("'scene_seeds' is {}, and no case has a generated scene",
                                    experiment.measure.sceneSeeds));
@@ -262,7 +261,7 @@ void requireScene(const Case& item, technique::SceneNeed need, const config::Exp
     const char* wanted = needsHeights ? "a height map (.png, .tif, .hgt, .raw)"
                                       : "a model (.glb, .gltf, .obj, .ply)";
     if (item.scene.isNull()) {
-        throw Error(experiment.document.find("technique")->location(),
+        throw Error(placeOf(config::contentOf(experiment.document).technique, experiment),
                     fmt::format("technique '{}' needs a scene: `scene:` with a name of `gfxrepro "
                                 "list scenes`, or {} beside this file",
                                 item.technique, wanted));
@@ -325,7 +324,8 @@ void requireFrames(const technique::Technique& technique, const config::Experime
     try {
         technique.requireFrames(experiment.measure.frames);
     } catch (const Error& error) {
-        throw Error(placeOf(experiment, "measure", "frames"), error.what());
+        throw Error(placeOf(config::measureOf(experiment.document).frames, experiment),
+                    error.what());
     }
 }
 
@@ -333,9 +333,8 @@ void requireFrames(const technique::Technique& technique, const config::Experime
 config::Measure::Seeds seedsOf(const config::Experiment& experiment,
                                const technique::TechniqueInfo& info) {
     if (info.createFrom || info.outputs().areRandom) return experiment.measure.seeds;
-    const Node* measure = experiment.document.find("measure");
-    if (measure && measure->find("seeds")) {
-        throw Error(measure->keyLocation("seeds"),
+    if (const GivenKey seeds = config::measureOf(experiment.document).seeds) {
+        throw Error(seeds.where(),
                     fmt::format("measure: seeds: technique '{}' draws no random numbers",
                                 experiment.technique));
     }
@@ -387,11 +386,9 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
                  std::span<const technique::TechniqueInfo> techniques, std::uint64_t seed,
                  const std::function<void(Case, technique::SceneNeed)>& take) {
     if (!config::isMeasuredHere(experiment)) return;
-    const Node* named = experiment.document.find("technique");
-    const SourceLocation where =
-        named ? named->location() : SourceLocation{experiment.file.string(), 0, 0};
-    const technique::TechniqueInfo& info =
-        technique::findTechnique(techniques, experiment.technique, where);
+    const technique::TechniqueInfo& info = technique::findTechnique(
+        techniques, experiment.technique,
+        placeOf(config::contentOf(experiment.document).technique, experiment));
     std::vector<Case> cases = config::expandCases(experiment);
     requireCaseCount(cases.size(), experiment);
     const config::Measure::Seeds seeds = seedsOf(experiment, info);

@@ -432,14 +432,13 @@ std::string basisOf(const run::Plan& plan, const config::Experiment& experiment)
         }
         content["cases"].push_back(std::move(one));
     }
-    if (const Node* layout = experiment.document.find("layout")) {
-        content["layout"] = layout->toJson();
-    }
+    const config::ContentKeys given = config::contentOf(experiment.document);
+    if (given.layout) content["layout"] = given.layout->toJson();
     for (const std::vector<std::string>& row : experiment.printed.rows) {
         content["printed"].push_back(row);
     }
-    if (const Node* claims = experiment.document.find("claims")) {
-        for (const auto& [id, claim] : claims->entries()) {
+    if (given.claims) {
+        for (const auto& [id, claim] : given.claims->entries()) {
             content["claims"][id] = requirementOf(claim);
         }
     }

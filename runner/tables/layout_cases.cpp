@@ -144,7 +144,7 @@ void countSweptSeeds(LayoutCases& cases) {
 void findOwnTruths(const config::Experiment& experiment, std::span<const config::Case> planned,
                    LayoutCases& cases) {
     const Node& program = config::programOf(experiment);
-    if (!program.isMap() || !program.find("images")) return;
+    if (program.isNull()) return;
     for (const config::ProgramPicture& picture : config::readProgram(program).pictures) {
         if (picture.truthParams.isNull()) continue;
         for (const config::Case& item : planned) {
@@ -290,9 +290,8 @@ LayoutCases gatherCases(const config::Experiment& experiment, std::span<const co
         if (item.experiment != experiment.id || !item.axes.isMap()) continue;
         for (const auto& [axis, value] : item.axes.entries()) addAxis(cases.axes, axis);
     }
-    const Node& sweep = experiment.sweep;
-    cases.cases = groupByCase(planned, records, experiment.id, cases.axes,
-                              sweep.isMap() ? sweep.find("when") : nullptr);
+    cases.cases =
+        groupByCase(planned, records, experiment.id, cases.axes, config::whenOf(experiment.sweep));
     cases.frameCount = experiment.measure.frames;
     cases.isOfElsewhere = !config::isMeasuredHere(experiment);
     cases.isOfProgram = config::goesByClock(experiment);

@@ -7,6 +7,7 @@
 
 #include "engine/core/text.h"
 #include "engine/scene/scene_reference.h"
+#include "runner/config/printed_section.h"
 #include "runner/records/csv.h"
 #include "runner/tables/labels.h"
 
@@ -149,8 +150,7 @@ void layPrintedAlone(const config::Printed& printed, Table& table) {
 void requirePrintedValues(const config::Experiment& experiment, std::span<const Table> tables) {
     const config::Printed& printed = experiment.printed;
     if (printed.rows.empty()) return;
-    const std::vector<SourceLocation> lines =
-        linesOf(*experiment.document.find("printed")->find("values"));
+    const std::vector<SourceLocation> lines = linesOf(config::printedValuesOf(experiment.document));
     for (std::size_t i = 0; i < printed.rows.size(); ++i) {
         bool isMeasured = false;
         for (const Table& table : tables) {

@@ -96,7 +96,7 @@ config::Outputs outputsOf(const TechniqueInfo& technique, const Node& program) {
             return outputs.find(info.name);
         };
         if (!isTaken(all) && !isTaken(own)) continue;
-        throw Error(program.find("metrics")->keyLocation(info.name),
+        throw Error(config::placeOfMetric(program, info.name),
                     "program: metric '" + info.name +
                         "' is recorded of every case already; give it another name");
     }

@@ -310,7 +310,7 @@ TEST(NestAndGrass, BadParametersAreLocated) {
     EXPECT_EQ(refusalOf("grass", "{triangles: 9999}"),
               "t.yaml:1:13: generator 'grass': triangles is 9999; allowed: 10000 … 4000000");
     EXPECT_EQ(refusalOf("grass", "{triangles: many}"),
-              "t.yaml:1:13: generator 'grass': triangles is 'many'; allowed: a whole number, 10000 "
+              "t.yaml:1:13: generator 'grass': triangles is many; allowed: a whole number, 10000 "
               "… 4000000");
     EXPECT_EQ(
         refusalOf("grass", "{triangles: 56001}"),

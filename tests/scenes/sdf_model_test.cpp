@@ -145,7 +145,7 @@ TEST(Generators, BadParametersAreLocated) {
         "602 to 3600");
     EXPECT_EQ(
         test::errorText([] { sampled("{shape: dargon}"); }),
-        "t.yaml:1:9: generator 'sdf_model': shape is 'dargon'; allowed: blade | brain | buddha | "
+        "t.yaml:1:9: generator 'sdf_model': shape is dargon; allowed: blade | brain | buddha | "
         "bunny | dragon | duck | hand | head | hip | hugo | linked_tori | lion | sphere | "
         "torus | "
         "wagner");

@@ -180,7 +180,7 @@ void ClaimKeys::readBounds(const GivenBounds& given, ClaimSpec& claim,
                  fmt::format("'{}' and '{}'; one is allowed", included.name(), excluded.name()));
         }
         const GivenKey& key = included ? included : excluded;
-        if (key) bound = numberIn(*key, {}, key.in(what));
+        if (key) bound = key.number(what);
         if (claim.low && claim.high && *claim.low > *claim.high) {
             fail(*key, "the lower bound exceeds the upper");
         }

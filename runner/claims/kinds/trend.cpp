@@ -26,8 +26,7 @@ const KeyTable<TrendKeys>& trendTable() {
                           "grows or falls, or as a power; bounds are its exponent's", text()},
                          {&T::over, overKey(kOver, "along which")},
                          {&T::direction, choiceKey("direction", kDirections, "none", "which way")},
-                         {&T::strictly, "strictly", "true | false", "false",
-                          "no two equal; with direction", boolean()}},
+                         {&T::strictly, flagKey("strictly", "no two equal; with direction")}},
                         &T::direction);
     return table;
 }
@@ -36,7 +35,7 @@ const KeyTable<TrendKeys>& trendTable() {
 int directionOf(const TrendKeys& given, const std::string& what) {
     const GivenKey& direction = given.direction;
     if (!direction) return 0;
-    return choiceOf(*direction, kDirections, direction.in(what)) == 0 ? 1 : -1;
+    return direction.choice(what) == 0 ? 1 : -1;
 }
 
 void readTrend(const ClaimKeys& keys, const TrendKeys& given, ClaimSpec& claim) {
@@ -46,7 +45,7 @@ void readTrend(const ClaimKeys& keys, const TrendKeys& given, ClaimSpec& claim) 
     const int direction = directionOf(given, keys.what);
     const GivenKey& strictly = given.strictly;
     if (!strictly) return;
-    (void)flagOf(*strictly, strictly.in(keys.what));
+    (void)strictly.flag(keys.what);
     if (direction == 0) {
         keys.fail(*strictly, strictly.name() + " needs '" + given.direction.name() + "'");
     }

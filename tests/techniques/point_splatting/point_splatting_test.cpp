@@ -74,7 +74,7 @@ TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
             {"{view: 30 17, distance: 2}", ""},
             {"{view: front, distance: 2}", "25: 'distance' needs a 'view' that frames it"},
             {"{method: splats}",
-             "10: technique 'point_splatting': method is 'splats'; allowed: adaptive | full_ewa | "
+             "10: technique 'point_splatting': method is splats; allowed: adaptive | full_ewa | "
              "reconstruction | low_pass | sprites | gl_points"},
             {"{storge: compressed}",
              "2: technique 'point_splatting': unknown parameter 'storge'; did you mean 'storage'?"},

@@ -121,7 +121,7 @@ TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
             {"{max_growth: 2}", "14: 'max_growth' needs 'resampling: twice' or 'method: direct'"},
             {"{resampling: twice, matching: second_order, max_growth: 2}", ""},
             {"{resampling: thrice}",
-             "14: technique 'reflection_reuse': resampling is 'thrice'; allowed: twice | gather"},
+             "14: technique 'reflection_reuse': resampling is thrice; allowed: twice | gather"},
             {"{glossiness: -0.5}",
              "14: technique 'reflection_reuse': glossiness is -0.5; allowed: -1, 0 … 1"},
             {"{method: direct, exhaustive_samples: 9}",
@@ -131,7 +131,7 @@ TEST(ReuseParamsTest, RefusesWhatMeansNothing) {
             {"{path_frames: 0}",
              "15: technique 'reflection_reuse': path_frames is 0; allowed: 1 … 1000000 frames"},
             {"{tracer: optix}",
-             "10: technique 'reflection_reuse': tracer is 'optix'; allowed: compute | embree | "
+             "10: technique 'reflection_reuse': tracer is optix; allowed: compute | embree | "
              "clustered"},
             {"{glosiness: 0.2}",
              "2: technique 'reflection_reuse': unknown parameter 'glosiness'; did you mean "

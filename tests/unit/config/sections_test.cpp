@@ -17,11 +17,9 @@ TEST_F(ExperimentTest, BadSections) {
     EXPECT_EQ(errorWith("output: {width: 20000}"),
               "DIR/zju/a.yaml:4:17: output: width is 20000; allowed: 1 … 16384 pixels");
     EXPECT_EQ(errorWith("measure: {lane: fast}"),
-              "DIR/zju/a.yaml:4:17: measure: lane is 'fast'; allowed: quality | timing");
+              "DIR/zju/a.yaml:4:17: measure: lane is fast; allowed: quality | timing");
     EXPECT_EQ(errorWith("measure: {repeat: 3}"),
-              "DIR/zju/a.yaml:4:11: measure: unknown parameter 'repeat'; did you mean 'repeats'?");
-    EXPECT_EQ(errorWith("measure: {runs: 6}"),
-              "DIR/zju/a.yaml:4:11: measure: unknown parameter 'runs'; did you mean 'processes'?");
+              "DIR/zju/a.yaml:4:11: measure: unknown key 'repeat'; did you mean 'repeats'?");
     EXPECT_EQ(errorWith("params: [1]"), "DIR/zju/a.yaml:4:9: params is [1]; allowed: a map");
     EXPECT_EQ(errorWith("assumptions: {a: {value: 1}}"),
               "DIR/zju/a.yaml:4:15: assumption 'a' needs 'why'");
@@ -33,9 +31,8 @@ TEST_F(ExperimentTest, BadSections) {
     const std::string table =
         "sweep: {scene: [s]}\nlayout: {rows: scene, columns: {aa: {metric: m, ";
     for (const char* scale : {"big", "0", "-1"}) {
-        EXPECT_EQ(
-            errorWith(table + "scale: " + scale + "}}}"),
-            std::string("DIR/zju/a.yaml:5:56: scale is ") + scale + "; allowed: a number, above 0");
+        EXPECT_EQ(errorWith(table + "scale: " + scale + "}}}"),
+                  std::string("DIR/zju/a.yaml:5:56: scale is ") + scale + "; allowed: above 0");
     }
     EXPECT_EQ(errorWith("claims: {}"), "DIR/zju/a.yaml:4:1: 'claims' without 'layout'");
     EXPECT_EQ(loadError("sweep_of: own\ntitle: t\ntechnique: x\nsweep: {n: [1, 2]}\nclaims:\n"
@@ -234,7 +231,7 @@ TEST_F(ExperimentTest, PrintedParameters) {
               "DIR/zju/a.yaml:6:32: printed.at: measure.frames is all; allowed: a whole number, 1 "
               "… 1000000");
     EXPECT_EQ(loadError(at("{output.width: 20000}")),
-              "DIR/zju/a.yaml:6:30: printed.at: output.width is 20000; allowed: a whole number, 1 "
+              "DIR/zju/a.yaml:6:30: printed.at: output.width is 20000; allowed: 1 "
               "… 16384");
     EXPECT_EQ(loadError(at("{grid: 16}")),
               "DIR/zju/a.yaml:6:22: printed.at: 'grid' is swept; allowed: what all cases share");

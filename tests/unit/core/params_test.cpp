@@ -71,8 +71,8 @@ TEST(Params, DeclarationsAreListed) {
     params.getText("tag", "", {"tag"});
     params.getBool("lit", true, {"lit"});
     const auto row = [&](std::size_t i) {
-        const ParamInfo& p = params.declared()[i];
-        return p.name + "; " + p.type + "; " + p.defaultValue + "; " + p.unit + "; " + p.range +
+        const KeyInfo& p = params.declared()[i];
+        return p.name + "; " + p.type + "; " + p.absent + "; " + p.unit + "; " + p.allowed() +
                "; " + p.doc;
     };
     EXPECT_EQ(row(0), "resolution; integer; 256; voxels; 8 … 1024; voxels along each axis");
@@ -94,11 +94,11 @@ TEST(Params, BadNumbers) {
     EXPECT_EQ(asInt("256.0", kResolution),
               head + "256.0; allowed: a whole number, 8 … 1024 voxels");
     EXPECT_EQ(asInt("'256'", kResolution),
-              head + "'256'; allowed: a whole number, 8 … 1024 voxels");
-    EXPECT_EQ(asInt("0100", {"x"}), head + "'0100'; allowed: a whole number");
+              head + "\"256\"; allowed: a whole number, 8 … 1024 voxels");
+    EXPECT_EQ(asInt("0100", {"x"}), head + "0100; allowed: a whole number");
     EXPECT_EQ(asInt("[1]", {"x"}), head + "[1]; allowed: a whole number");
     EXPECT_EQ(asInt("true", {"x"}), head + "true; allowed: a whole number");
-    EXPECT_EQ(asInt("~", {"x"}), head + "nothing; allowed: a whole number");
+    EXPECT_EQ(asInt("~", {"x"}), head + "empty; allowed: a whole number");
     EXPECT_EQ(asInt("3000000000", {"x"}), head + "3000000000; allowed: -2147483648 … 2147483647");
     EXPECT_EQ(asInt("0", {"x", "", 1}), head + "0; allowed: at least 1");
 
@@ -108,7 +108,7 @@ TEST(Params, BadNumbers) {
               }),
               "a.yaml:1:8: technique 'voxelization': bias is -1; allowed: at least 0 texels");
     EXPECT_EQ(errorText([&] { params.getDouble("gain", 0, {"g"}); }),
-              "a.yaml:1:18: technique 'voxelization': gain is 'high'; allowed: a number");
+              "a.yaml:1:18: technique 'voxelization': gain is high; allowed: a number");
     EXPECT_EQ(
         errorText([&] {
             params.getDouble("top", 0, {"t", "", -std::numeric_limits<double>::infinity(), 4});
@@ -120,11 +120,11 @@ TEST(Params, BadTextsListsAndChoices) {
     Params params =
         paramsOf("{voxel: bite, other: [1], lit: yes, up: [1, 2], eye: [1, 2, 30], name: [a]}");
     EXPECT_EQ(errorText([&] { params.getEnum("voxel", Voxel::Bit, kVoxels, {"v"}); }),
-              "a.yaml:1:9: technique 'voxelization': voxel is 'bite'; allowed: bit | byte");
+              "a.yaml:1:9: technique 'voxelization': voxel is bite; allowed: bit | byte");
     EXPECT_EQ(errorText([&] { params.getEnum("other", Voxel::Bit, kVoxels, {"v"}); }),
               "a.yaml:1:22: technique 'voxelization': other is [1]; allowed: bit | byte");
     EXPECT_EQ(errorText([&] { params.getBool("lit", true, {"l"}); }),
-              "a.yaml:1:32: technique 'voxelization': lit is 'yes'; allowed: true | false");
+              "a.yaml:1:32: technique 'voxelization': lit is yes; allowed: true | false");
     EXPECT_EQ(errorText([&] {
                   params.getVector("up", std::array{0.0, 0.0, 1.0}, {"u"});
               }),

@@ -432,13 +432,13 @@ TEST(Catalog, RefusesBadEntries) {
               "DIR/scenes/m/x.yaml:3:18: file is '/a.ply', but must be a path within the assets "
               "folder");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, refine_to: 0}]\n"),
-              "DIR/scenes/m/x.yaml:3:36: refine_to is 0; allowed: a whole number, at least 1");
+              "DIR/scenes/m/x.yaml:3:36: refine_to is 0; allowed: at least 1");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_modell}]\n"),
               "DIR/scenes/m/x.yaml:3:23: unknown generator 'sdf_modell'; did you mean 'sdf_model'? "
               "(there are: bathroom, bird_nest, city, four_objects, grass, living_room, "
               "object_on_plane, sdf_model, terrain, town_square, tree)");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_model, seed: -1}]\n"),
-              "DIR/scenes/m/x.yaml:3:40: seed is -1; allowed: a whole number, at least 0");
+              "DIR/scenes/m/x.yaml:3:40: seed is -1; allowed: at least 0");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{height_map: a.png, spacing_m: far}]\n"),
               "DIR/scenes/m/x.yaml:3:42: spacing_m is far; allowed: a number, 1e-09 … 1000000");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\ngenerated: maybe\nsources: [{file: a.ply}]\n"),
