@@ -436,8 +436,7 @@ TableNames sweptNames(const std::vector<AxisPoint>& points, const Vocabulary& vo
 }
 
 /// Layout, and what is checked against it: printed values, claims, plots.
-void readTable(const Node& document, const ContentKeys& given, bool isComplete,
-               Experiment& experiment) {
+void readTable(const ContentKeys& given, bool isComplete, Experiment& experiment) {
     const GivenKey &printed = given.printed, &layout = given.layout, &claims = given.claims;
     if (experiment.technique.empty()) {
         experiment.printed = readPrinted(*printed, nullptr, nullptr);
@@ -508,7 +507,7 @@ Experiment readExperiment(const Node& document, const std::filesystem::path& fil
     } else {
         requireOnlyPrinted(document, given);
     }
-    readTable(document, given, isComplete, experiment);
+    readTable(given, isComplete, experiment);
     if (given.technique) readLane(document, given, experiment);
     if (given.assumptions) experiment.assumptions = readAssumptions(*given.assumptions);
     if (const Node* profiles = document.find(kProfilesKey)) {
