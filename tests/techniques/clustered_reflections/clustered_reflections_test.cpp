@@ -48,7 +48,11 @@ TEST_F(ClusteredReflectionsTest, TheTruthOfAFrameIsTracedOnce) {
     scene.cameras = {{.position = {0.9F, 0.4F, 1.4F}, .verticalFovRad = 1.0F}};
     const std::string glossy = "pictures: true, glossiness: 0.2, rays: 8, converged_rays: 16, ";
     const std::size_t bytesOfOne = expectSharedAsAlone(glossy, {"method: clustered"}, scene);
-    EXPECT_GT(bytesOfOne, 0U);
+    const std::size_t bytesOfTruth =  // without an environment map
+        expectSharedAsAlone(glossy, {"method: ray_traced"}, scene);
+    EXPECT_GT(bytesOfTruth, 0U);
+    const std::size_t bytesOfMap = bytesOfOne - bytesOfTruth;
+    EXPECT_EQ(bytesOfMap, (6U * 4U + 4U) * 512U * 512U);  // colours of a cube, and depths of a face
     // Each of what it is traced regardless of.
     const std::vector<std::string> regardless = {"method: clustered",
                                                  "method: environment_map",
@@ -71,7 +75,7 @@ TEST_F(ClusteredReflectionsTest, TheTruthOfAFrameIsTracedOnce) {
                                                "glossiness: 0.2, reflector_roughness: 0.1",
                                                "depth_images: none",
                                                ""};
-    EXPECT_GT(expectSharedAsAlone("", deciding, scene), 8 * bytesOfOne);
+    EXPECT_GT(expectSharedAsAlone("", deciding, scene), 4 * bytesOfMap + 8 * bytesOfTruth);
 }
 
 // Views that were chosen do not tell what a path shows.
