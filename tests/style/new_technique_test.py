@@ -63,13 +63,10 @@ def compiles(root, name, template):
 
 with tempfile.TemporaryDirectory() as folder:
     root = pathlib.Path(folder).resolve()
-    for part in ("scripts", "techniques", "tests/techniques", "configs", "engine/gl"):
+    for part in ("scripts", "techniques", "tests", "configs", "engine", "runner", "scenes"):
         shutil.copytree(SOURCE / part, root / part)
     for part in (".clang-format", "techniques/README.md"):
         shutil.copy(SOURCE / part, root / part)
-    for part in ("configs", "engine", "runner", "tests"):
-        (root / part).mkdir(exist_ok=True)
-        shutil.copy(SOURCE / part / "README.md", root / part / "README.md")
     script = root / "scripts/new_technique"
     git = ("git", "-C", root, "-c", "user.name=test", "-c", "user.email=test@gfxrepro.invalid")
     for command in (["init", "--quiet"], ["add", "."], ["commit", "--quiet", "-m", "before"]):

@@ -155,7 +155,7 @@ for step in $steps; do
         timed "apt-get update -qq && apt-get install -y -qq libegl-mesa0 libgl1-mesa-dri xz-utils >/dev/null"
         timed "tar -xf gfxrepro-*.tar.xz" someone
         timed "gfxrepro-*/gfxrepro doctor" someone
-        timed "gfxrepro-*/gfxrepro reproduce zju2005/figure-4.3 --profile quick" someone
+        timed "gfxrepro-*/gfxrepro reproduce zju2005/figure-4.4 --profile quick" someone
         require_report
         ;;
     *) echo "fresh_system.sh: unknown step '$step'" >&2; exit 2 ;;

@@ -22,7 +22,9 @@ enum class Of { Import, Program };
 config::Experiment experimentOf(Of of, const std::string& body) {
     config::Experiment experiment = tables::experimentFrom(body);
     experiment.technique = of == Of::Import ? config::kImported : "external";
-    if (of == Of::Program) experiment.document.set("program", Node::map({}));
+    if (of == Of::Program) {
+        experiment.document.set("program", parseYaml("{command: x}", "t.yaml"));
+    }
     return experiment;
 }
 
