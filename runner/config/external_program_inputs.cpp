@@ -26,7 +26,7 @@ void readChoice(const ProgramParam& param, Params& values) {
     const std::string value = values.getText(param.name, param.fallback.text(), {doc, param.unit});
     if (contains(param.choices, value)) return;
     throw Error(values.locationOf(param.name),
-                fmt::format("{} is '{}'; allowed: {}", param.name, value, allowed));
+                fmt::format("{} is {}; allowed: {}", param.name, value, allowed));
 }
 
 }  // namespace

@@ -509,7 +509,7 @@ std::map<std::string, double> decidedOf(double scatter, double apart, int proces
     strictly.keys.set("strictly", Node::scalar("true"));
     alike.high = 0.0;
     std::map<std::string, double> decided;
-    const int trials = kTrials / 10;
+    const int trials = std::max(kTrials / 10, 1);
     for (int trial = 0; trial < trials; ++trial) {
         Random random(static_cast<std::uint64_t>(1000 * trial + processes));
         Rounded rounded(scatter, apart, processes, random);

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,9 +31,10 @@ TEST_F(ExperimentTest, BadSections) {
               "DIR/zju/a.yaml:4:19: assumption 'a': unknown key 'valu'; did you mean 'value'?");
     const std::string table =
         "sweep: {scene: [s]}\nlayout: {rows: scene, columns: {aa: {metric: m, ";
-    for (const char* scale : {"big", "0", "-1"}) {
+    for (const auto& [scale, allowed] :
+         {std::pair("big", "a number, above 0"), {"0", "above 0"}, {"-1", "above 0"}}) {
         EXPECT_EQ(errorWith(table + "scale: " + scale + "}}}"),
-                  std::string("DIR/zju/a.yaml:5:56: scale is ") + scale + "; allowed: above 0");
+                  fmt::format("DIR/zju/a.yaml:5:56: scale is {}; allowed: {}", scale, allowed));
     }
     EXPECT_EQ(errorWith("claims: {}"), "DIR/zju/a.yaml:4:1: 'claims' without 'layout'");
     EXPECT_EQ(loadError("sweep_of: own\ntitle: t\ntechnique: x\nsweep: {n: [1, 2]}\nclaims:\n"
