@@ -85,7 +85,7 @@ std::string mesaVersionIn(const std::string& version) {
 
 /// From stamps that the device takes in a row. Steps between answers of
 /// glGetInteger64v(GL_TIMESTAMP) would be how long the question takes: a microsecond and more on a
-/// GPU. A clock of less than half the speed of the processor's is none, either.
+/// GPU. A clock that surely goes slower or faster than the processor's is none, either.
 DeviceTimer measureTimer() {
     DeviceTimer timer;
     glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &timer.bits);
@@ -98,7 +98,10 @@ DeviceTimer measureTimer() {
     const Clock::time_point begin = Clock::now();
     std::optional<GLuint64> first;  // of the first row its last stamp, which came before this:
     GLuint64 newest = 0;            // and that of the newest row, which came after this
-    Clock::time_point firstRead, newestAsked;
+    Clock::time_point firstRead, newestAsked, newestRead;
+    const auto isDecided = [&] {  // how fast it goes is known to a fifth
+        return timer.stepNs > 0.0 && newestRead - begin < 1.2 * (newestAsked - firstRead);
+    };
     do {
         newestAsked = Clock::now();
         for (const GLuint stamp : stamps) glQueryCounter(stamp, GL_TIMESTAMP);
@@ -117,15 +120,18 @@ DeviceTimer measureTimer() {
             first = newest;
             firstRead = Clock::now();
         }
+        newestRead = Clock::now();
     } while (newestAsked - firstRead < kWatched ||
-             (timer.stepNs == 0.0 && Clock::now() - begin < kCoarsest));
+             (!isDecided() && newestRead - begin < kCoarsest));
     glDeleteQueries(static_cast<GLsizei>(stamps.size()), stamps.data());
     const std::chrono::duration<double, std::nano> least = newestAsked - firstRead;
-    const std::chrono::duration<double, std::nano> most = Clock::now() - begin;
+    const std::chrono::duration<double, std::nano> most = newestRead - begin;
     const bool mayWrap = most.count() > std::ldexp(0.5, timer.bits);
     const auto told = static_cast<double>(nsBetween(*first, newest, timer.bits));
-    const bool isSlow = !mayWrap && told < 0.5 * least.count();
-    return timer.stepNs > 0.0 && !isSlow ? timer : DeviceTimer{0};
+    const double rounding = 2.0 * timer.stepNs;
+    const bool goesAlike =
+        told > 0.99 * least.count() - rounding && told < 1.01 * most.count() + rounding;
+    return timer.stepNs > 0.0 && (goesAlike || mayWrap) ? timer : DeviceTimer{0};
 }
 
 std::set<std::string, std::less<>> readExtensions() {

@@ -14,7 +14,7 @@ struct Candidate;
 /// Its clock, which GL_TIMESTAMP asks.
 struct DeviceTimer {
     /// GL_QUERY_COUNTER_BITS: stamps are told modulo 2^bits ns. 0: the device has no clock for
-    /// them, or one that does not go forwards.
+    /// them, or one that does not go as the processor's.
     int bits = 64;
     double stepNs = 0.0;   // the smallest between stamps in a row
     bool repeats = false;  // stamps in a row are equal, too: so may those of a short pass be

@@ -11,6 +11,9 @@
 namespace gfxrepro::gl {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+using Milliseconds = std::chrono::duration<double, std::milli>;
+
 detail::Name<detail::deleteQuery> stamp(bool isSoftwareDevice) {
     // llvmpipe runs vertex work when the draw is called, but rasterizes, and takes timestamps, when
     // it flushes. Finishing before keeps the predecessor's pixels out of the pass; finishing after
@@ -45,6 +48,7 @@ std::uint64_t nsBetween(std::uint64_t first, std::uint64_t second, int bits) {
 std::size_t Profiler::beginGpu(std::string_view pass) {
     entries_.push_back({std::string(pass), PassTime::Clock::Gpu, {}, {}});
     entries_.back().begin = stamp(isSoftwareDevice_);
+    entries_.back().stamped = Clock::now();
     entries_.back().processTimeMs = -processTimeMs();
     return entries_.size() - 1;
 }
@@ -52,28 +56,37 @@ std::size_t Profiler::beginGpu(std::string_view pass) {
 void Profiler::endGpu(std::size_t entry) {
     if (isSoftwareDevice_) glFinish();  // the pass's work, but not the second stamp's
     entries_[entry].processTimeMs += processTimeMs();
+    const Clock::time_point done = Clock::now();
     entries_[entry].end = stamp(isSoftwareDevice_);
-    // Around both stamps, where they are taken by now.
-    const std::chrono::duration<double, std::milli> around =
-        std::chrono::steady_clock::now() - entries_[entry].begun;
-    if (isSoftwareDevice_) entries_[entry].cpuTimeMs = around.count();
+    if (!isSoftwareDevice_) return;
+    // Around both stamps, and between them, as they are taken by now.
+    entries_[entry].cpuTimeMs = Milliseconds(Clock::now() - entries_[entry].begun).count();
+    entries_[entry].leastMs = Milliseconds(done - entries_[entry].stamped).count();
 }
 
 /// A driver's clock may be wrong: it is held against the processor's, from the scope's begin to
-/// now.
-double Profiler::gpuTimeMs(const Entry& entry) const {
+/// now, and against what a software device did between the stamps.
+double Profiler::gpuTimeMs(const Entry& entry) {
     GFXREPRO_ASSERT(entry.end.get() != 0);  // a scope is still open
     const GLuint64 begin = timeNs(entry.begin.get()), end = timeNs(entry.end.get());
-    const std::chrono::duration<double, std::milli> passed =
-        std::chrono::steady_clock::now() - entry.begun;
+    const Clock::time_point now = Clock::now();
+    const Milliseconds passed = now - entry.begun;
     const double timeMs = static_cast<double>(nsBetween(begin, end, timer_.bits)) * 1e-6;
     // Quartzes differ by less than 1 %, and both stamps are rounded to steps of the clock.
-    const bool isAhead = timeMs > 1.01 * passed.count() + 2e-6 * timer_.stepNs;
-    const bool standsStill = begin == end && (begin == 0 || !timer_.repeats);
+    const double roundingMs = 2e-6 * timer_.stepNs;
+    const bool isAhead = timeMs > 1.01 * passed.count() + roundingMs;
+    const bool isBehind = timeMs < 0.99 * entry.leastMs - roundingMs;
+    // A short pass may have two equal stamps, but then another one than those before it.
+    const bool isAsBefore =
+        begin == lastNs_ && Milliseconds(entry.begun - lastRead_).count() > roundingMs;
+    const bool standsStill =
+        begin == end && (begin == 0 || !timer_.repeats || isBehind || isAsBefore);
+    lastNs_ = end;
+    lastRead_ = now;
     // Of a pass that may be longer than its clock's round nobody knows how many rounds it took.
     const double mostMs = isSoftwareDevice_ ? entry.cpuTimeMs : passed.count();
     const bool wraps = mostMs * 1e6 >= std::ldexp(1.0, timer_.bits);
-    if (!isAhead && !standsStill && !wraps) return timeMs;
+    if (!isAhead && !isBehind && !standsStill && !wraps) return timeMs;
     throw Error(
         fmt::format("pass '{}': the device's clock {}: {} to {} ns in at most {:.3g} ms of "
                     "the processor's clock; its GPU times cannot be used",
@@ -81,6 +94,7 @@ double Profiler::gpuTimeMs(const Entry& entry) const {
                     wraps                              ? "wraps"
                     : standsStill                      ? "stands still"
                     : timer_.bits >= 64 && end < begin ? "runs backwards"
+                    : isBehind                         ? "runs slowly"
                                                        : "runs ahead",
                     begin, end, passed.count()));
 }
@@ -113,13 +127,11 @@ CpuScope::CpuScope(Profiler& profiler, std::string_view pass)
     if (profiler.isSoftwareDevice_) glFinish();
     profiler.entries_.push_back({std::string(pass), PassTime::Clock::Cpu, {}, {}});
     profiler.entries_.back().processTimeMs = -processTimeMs();
-    begin_ = std::chrono::steady_clock::now();
+    begin_ = Clock::now();
 }
 
 CpuScope::~CpuScope() {
-    const std::chrono::duration<double, std::milli> time =
-        std::chrono::steady_clock::now() - begin_;
-    profiler_.entries_[entry_].cpuTimeMs = time.count();
+    profiler_.entries_[entry_].cpuTimeMs = Milliseconds(Clock::now() - begin_).count();
     profiler_.entries_[entry_].processTimeMs += processTimeMs();
 }
 

@@ -43,7 +43,8 @@ class Profiler {
 
     /// The scopes since the last call, in the order in which they began, scopes of one name and
     /// clock summed. Waits for the device. Throws Error, naming the pass, where the device's clock
-    /// ran backwards, stood still, or is ahead of the processor's.
+    /// ran backwards, stood still, is ahead of the processor's, or, of a software device, behind
+    /// it.
     std::vector<PassTime> collect();
 
   private:
@@ -56,14 +57,18 @@ class Profiler {
         double cpuTimeMs = 0.0;
         double processTimeMs = 0.0;  // less what it was at the begin
         std::chrono::steady_clock::time_point begun = std::chrono::steady_clock::now();
+        std::chrono::steady_clock::time_point stamped = {};  // when the first stamp was asked for
+        double leastMs = 0.0;  // of a software device, between the stamps
     };
-    double gpuTimeMs(const Entry& entry) const;
+    double gpuTimeMs(const Entry& entry);
     std::size_t beginGpu(std::string_view pass);
     void endGpu(std::size_t entry);
 
     bool isSoftwareDevice_;
     DeviceTimer timer_;
     std::vector<Entry> entries_;
+    std::optional<GLuint64> lastNs_;                  // the last stamp that was read,
+    std::chrono::steady_clock::time_point lastRead_;  // and when
 };
 
 /// Times the commands issued in its life on the device. Scopes may nest.

@@ -87,7 +87,7 @@ void addLimitFindings(const DeviceFacts& device, Findings& findings) {
         findings.push_back(
             {"no_timer", Severity::Timing,
              fmt::format("Device {}: it has no clock for GPU times, or one that does "
-                         "not go forwards, so passes have none.",
+                         "not go as the processor's, so passes have none.",
                          device.index),
              "Compare times of the whole frame (wall_time_ms), update its driver, "
              "or take another device."});

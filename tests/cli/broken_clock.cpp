@@ -1,6 +1,7 @@
 // To be preloaded into the program (LD_PRELOAD): the device's time stamps are those of a driver
-// whose clock is BROKEN_CLOCK: "none" (0 bits), "zero", "slow", "short" (16 bits: a round of 66
-// us), or, once something is drawn, "back", "still", "ahead" and "wraps" (32 bits, whose round ends
+// whose clock is BROKEN_CLOCK: "none" (0 bits), "zero", "slow", "fast", "short" (16 bits: a round
+// of 66 us), or, once something is drawn, "back", "still", "stuck" (still, of steps in which two
+// stamps may be equal before), "late" (slow), "ahead" and "wraps" (32 bits, whose round ends
 // between any two stamps that are read as a pair).
 #include <dlfcn.h>
 
@@ -50,7 +51,11 @@ __attribute__((visibility("default"))) void APIENTRY glGetQueryObjectui64v(GLuin
     if (name != GL_QUERY_RESULT || *value < kLeastTime) return;
     static const GLuint64 first = *value;
     if (is("zero") || is("none")) *value = 0;
-    if (is("slow")) *value = first + (*value - first) / 1000;
+    if (is("slow")) *value = first + (*value - first) * 3 / 5;
+    if (is("fast")) *value = first + (*value - first) * 3 / 2;
+    if (is("late") && hasDrawn) *value = first + (*value - first) / 1000;
+    constexpr GLuint64 kStepNs = 4096;
+    if (is("stuck")) *value = (hasDrawn ? first : *value) / kStepNs * kStepNs;
     if (is("short")) *value &= 0xFFFF;
     if (is("wraps")) {
         static GLuint64 end = 0;

@@ -21,22 +21,26 @@ class BrokenClock : public testing::Test {
                         "output: {width: 32, height: 32}\n"
                         "measure: {lane: timing, processes: 1, warmup: 0, repeats: 20}\n");
     }
-    ProcessResult with(const std::string& clock, std::vector<std::string> arguments) const {
+    ProcessResult with(const std::string& clock, std::vector<std::string> arguments,
+                       const std::string& more = "") const {
         arguments.insert(arguments.begin(), GFXREPRO_PROGRAM);
         return runProgram(arguments,
-                          {"LD_PRELOAD=" GFXREPRO_BROKEN_CLOCK, "BROKEN_CLOCK=" + clock});
+                          {"LD_PRELOAD=" GFXREPRO_BROKEN_CLOCK + more, "BROKEN_CLOCK=" + clock});
     }
-    ProcessResult measured(const std::string& clock) const {
-        return with(clock, {"run", folder.path() / "torus.yaml", "--device", "software", "--quiet",
-                            "--out", runOf(clock)});
+    ProcessResult measured(const std::string& clock, const std::string& device = "software",
+                           const std::string& more = "") const {
+        return with(clock,
+                    {"run", folder.path() / "torus.yaml", "--device", device, "--quiet", "--out",
+                     runOf(clock)},
+                    more);
     }
     std::filesystem::path runOf(const std::string& clock) const { return folder.path() / clock; }
 
     TemporaryFolder folder;
 };
 
-TEST_F(BrokenClock, OneThatHardlyMovesGivesNoTimesOfTheDevice) {
-    for (const std::string clock : {"none", "zero", "slow"}) {
+TEST_F(BrokenClock, OneThatGoesOtherwiseThanTheProcessorsGivesNoTimesOfTheDevice) {
+    for (const std::string clock : {"none", "zero", "slow", "fast"}) {
         EXPECT_THAT(endedWith(0, measured(clock)).err,
                     HasSubstr("; it has no clock for GPU times\n"))
             << clock;
@@ -51,10 +55,9 @@ TEST_F(BrokenClock, OneThatHardlyMovesGivesNoTimesOfTheDevice) {
 }
 
 TEST_F(BrokenClock, OneThatBreaksEndsTheCase) {
-    const std::map<std::string, std::string> words = {{"back", "runs backwards"},
-                                                      {"still", "stands still"},
-                                                      {"ahead", "runs ahead"},
-                                                      {"short", "wraps"}};
+    const std::map<std::string, std::string> words = {
+        {"back", "runs backwards"}, {"still", "stands still"}, {"stuck", "stands still"},
+        {"late", "runs slowly"},    {"ahead", "runs ahead"},   {"short", "wraps"}};
     for (const auto& [clock, what] : words) {
         const ProcessResult run = measured(clock);
         EXPECT_EQ(run.exitCode, 4) << clock << run.err;
@@ -62,6 +65,17 @@ TEST_F(BrokenClock, OneThatBreaksEndsTheCase) {
         EXPECT_THAT(readFile(runOf(clock) / "records.csv"),
                     testing::ContainsRegex("pass '[a-z_]+': the device's clock " + what + ": "));
     }
+}
+
+/// Its passes are not waited for one by one, and may be shorter than a step of the clock.
+TEST_F(BrokenClock, OneOfAGpuThatStandsStillEndsTheCase) {
+    constexpr const char* kPretended = "00112233-4455-6677-8899-aabbccddeeff";
+    const ProcessResult run = measured("stuck", kPretended, ":" GFXREPRO_PRETENDED_GPU);
+    EXPECT_EQ(run.exitCode, 4) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("Pretended GPU"));
+    EXPECT_TRUE(rowsOf(runOf("stuck"), "gpu_time_ms").empty());
+    EXPECT_THAT(readFile(runOf("stuck") / "records.csv"),
+                HasSubstr("the device's clock stands still: "));
 }
 
 TEST_F(BrokenClock, OneOfFewBitsIsReadPastItsEnd) {

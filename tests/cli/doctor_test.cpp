@@ -187,7 +187,8 @@ TEST(Doctor, NoTimer) {
     facts.devices[0].timer = {0};
     EXPECT_EQ(linesOf(facts),
               "times no_timer: Device 0: it has no clock for GPU times, or one that does not go "
-              "forwards, so passes have none. → Compare times of the whole frame (wall_time_ms), "
+              "as the processor's, so passes have none. → Compare times of the whole frame "
+              "(wall_time_ms), "
               "update its driver, or take another device.\n");
 }
 
