@@ -193,17 +193,18 @@ void AppendedFile::requireOurs() const {
 
 void AppendedFile::append(std::string_view block) {
     requireOurs();
-    ssize_t written = 0;
-    do {
-        written = ::write(file_.get(), block.data(), block.size());
-    } while (written < 0 && errno == EINTR);
-    if (written != static_cast<ssize_t>(block.size())) {
-        // A full disk takes a part of the block: give it back, so that no half case stays.
-        const int reason = written < 0 ? errno : ENOSPC;
+    for (std::string_view rest = block; !rest.empty();) {
+        const ssize_t written = ::write(file_.get(), rest.data(), rest.size());
+        if (written >= 0) {  // a full disk takes a part of the block, and tells of the rest
+            rest.remove_prefix(static_cast<std::size_t>(written));
+            continue;
+        }
+        if (errno == EINTR) continue;
+        const int reason = errno;  // give that part back, so that no half case stays
         if (::ftruncate(file_.get(), endBytes_) != 0) failWriting(path_, errno);
         failWriting(path_, reason);
     }
-    endBytes_ += written;
+    endBytes_ += static_cast<off_t>(block.size());
     if (::fdatasync(file_.get()) != 0) failWriting(path_, errno);
 }
 
