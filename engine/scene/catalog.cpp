@@ -111,7 +111,7 @@ void requireWhatIsRead(const fs::path& file) {
     if (!isHeightMapFile(file)) return requireReadAtOnce(file);
     const std::uintmax_t bytes = fs::file_size(file);
     if (bytes < kMostBytesAtOnce) return;
-    const auto size = openHeightRows(file)->sizeSamples;
+    const auto size = openHeightRows(file, false)->sizeSamples;
     // Floats, and as much again for the coarser levels that surveyors' programs put beside them.
     const auto mostBytes = 2 * sizeof(float) * static_cast<std::uintmax_t>(size.x) *
                            static_cast<std::uintmax_t>(size.y);

@@ -189,8 +189,9 @@ glm::dvec2 verticalOf(const GeoTags& tags, const std::string& file) {
 }
 
 /// How far samples stand apart along x and y, in units of the model; none where the file does not
-/// say it.
-std::optional<glm::dvec2> stepOf(const GeoTags& tags, bool isGeographic, const std::string& file) {
+/// say it, or where nobody asks.
+std::optional<glm::dvec2> stepOf(const GeoTags& tags, bool isGeographic, bool isAsked,
+                                 const std::string& file) {
     double x = 0.0, y = 0.0, skew = 0.0;
     double right = 1.0, up = -1.0;  // where columns and rows go
     bool isMirrored = false;
@@ -216,7 +217,7 @@ std::optional<glm::dvec2> stepOf(const GeoTags& tags, bool isGeographic, const s
         throw Error(
             fmt::format("{}: {}; allowed: from west to east and north to south", file, found));
     }
-    if (!(y > 0.0) || !std::isfinite(y)) return std::nullopt;
+    if (!isAsked || !(y > 0.0) || !std::isfinite(y)) return std::nullopt;
     constexpr double kRounding = 1e-3;
     if (!isGeographic && (std::abs(x - y) > kRounding * y || skew > kRounding * y * y)) {
         throw Error(
@@ -308,7 +309,7 @@ std::optional<float> floatIn(const std::string& text, const std::string& what) {
     throw Error(fmt::format("{} is '{}'; allowed: a number", what, number));
 }
 
-GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
+GeoUnits unitsOf(const GeoTags& tags, const std::string& file, bool needsSpacing) {
     const Keys keys(tags, file);
     GeoUnits units;
     const auto scale = floatIn(itemOf(tags.metadata, "scale"), file + ": its scale");
@@ -335,7 +336,7 @@ GeoUnits unitsOf(const GeoTags& tags, const std::string& file) {
     const bool isGeographic = keys.find(kModelType) == kGeographic;
     units.unitWarning = units.scale == 0.0F ? "its scale of 0 makes all its heights the same"
                                             : heightsTakenAsMetres(tags, keys);
-    if (const std::optional<glm::dvec2> step = stepOf(tags, isGeographic, file)) {
+    if (const std::optional<glm::dvec2> step = stepOf(tags, isGeographic, needsSpacing, file)) {
         useStep(tags, keys, *step, file, units);
     } else if (tags.tiepoint.size() > 6) {
         units.warning =

@@ -37,8 +37,9 @@ struct GeoUnits {
 std::optional<float> floatIn(const std::string& text, const std::string& what);
 
 /// Feet and kilometres become metres, degrees those along a meridian. Throws Error, which names the
-/// file, for other units, and where samples on the ground do not stand on squares.
-GeoUnits unitsOf(const GeoTags& tags, const std::string& file);
+/// file, for other units, and where samples on the ground do not stand on squares; not for what
+/// says their spacing, if another is given.
+GeoUnits unitsOf(const GeoTags& tags, const std::string& file, bool needsSpacing);
 
 /// What to say of samples that are drawn as far apart from west to east as from north to south,
 /// though they are not; empty where the two differ by less than 1 %.

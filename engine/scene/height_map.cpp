@@ -120,7 +120,7 @@ namespace {
 class Metres {
   public:
     Metres(const fs::path& path, const HeightMapUnits& units)
-        : rows_(openHeightRows(path)), units_(units) {
+        : rows_(openHeightRows(path, !units.spacingM)), units_(units) {
         if (units.noData) rows_->noData.push_back(*units.noData);
     }
 

@@ -43,7 +43,7 @@ constexpr float kSrtmVoid = -32768.0F;
 
 class PngHeightRows : public HeightRows {
   public:
-    explicit PngHeightRows(const fs::path& path) : rows_(path, kMaxHeightFileSide) {
+    PngHeightRows(const fs::path& path, bool /*needsSpacing*/) : rows_(path, kMaxHeightFileSide) {
         if (rows_.channels() > 2) {
             throw Error(fmt::format("{}: {} channels; a height map is grey, with or without alpha",
                                     path.string(), rows_.channels()));
@@ -157,7 +157,7 @@ std::uintmax_t bytesOfFile(const fs::path& path) {
     return bytes;
 }
 
-std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path) {
+std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path, bool /*needsSpacing*/) {
     const std::uintmax_t bytes = bytesOfFile(path);
     for (const int side : {1201, 3601}) {
         if (bytes != 2 * static_cast<std::uintmax_t>(side) * static_cast<std::uintmax_t>(side)) {
@@ -195,7 +195,7 @@ const KeyTable<RawKeys>& rawTable() {
     return table;
 }
 
-std::unique_ptr<HeightRows> openRawRows(const fs::path& path) {
+std::unique_ptr<HeightRows> openRawRows(const fs::path& path, bool /*needsSpacing*/) {
     const fs::path sidecar = path.string() + ".yaml";
     if (!fs::is_regular_file(sidecar)) {
         std::string keys;
@@ -233,7 +233,7 @@ constexpr std::size_t kMostTileRowBytes = std::size_t{260} << 20;
 /// no-data tag (libtiff).
 class TiffRows : public HeightRows {
   public:
-    explicit TiffRows(const fs::path& path)
+    TiffRows(const fs::path& path, bool needsSpacing)
         : name_(path.string()), tiff_(image::openTiff(path, message_)) {
         fileBytes_ = fs::file_size(path);
         image::requireOnePage(*tiff_, path, message_);
@@ -249,7 +249,7 @@ class TiffRows : public HeightRows {
             if (band_.size() < rowBytes()) fail();
         }
         findNoData();
-        findUnits();
+        findUnits(needsSpacing);
     }
 
     void read(float* values) override {
@@ -371,7 +371,7 @@ class TiffRows : public HeightRows {
         }
     }
 
-    void findUnits() {
+    void findUnits(bool needsSpacing) {
         // Values of another type than GeoTIFF's would be read beyond their end.
         const GeoUnits units =
             unitsOf({textOf(kGdalMetadata), valuesOf<double>(kGeoPixelScale, TIFF_DOUBLE),
@@ -379,7 +379,7 @@ class TiffRows : public HeightRows {
                      valuesOf<std::uint16_t>(kGeoKeys, TIFF_SHORT),
                      valuesOf<double>(kGeoKeyDoubles, TIFF_DOUBLE),
                      valuesOf<double>(kGeoTiepoint, TIFF_DOUBLE), sizeSamples},
-                    name_);
+                    name_, needsSpacing);
         scale = units.scale;
         offset = units.offset;
         spacingM = units.spacingM;
@@ -419,13 +419,13 @@ class TiffRows : public HeightRows {
 };
 
 template <class Rows>
-std::unique_ptr<HeightRows> openRows(const fs::path& path) {
-    return std::make_unique<Rows>(path);
+std::unique_ptr<HeightRows> openRows(const fs::path& path, bool needsSpacing) {
+    return std::make_unique<Rows>(path, needsSpacing);
 }
 
 struct HeightFormat {
     std::string_view extension;
-    std::unique_ptr<HeightRows> (*open)(const fs::path& path);
+    std::unique_ptr<HeightRows> (*open)(const fs::path& path, bool needsSpacing);
 };
 
 constexpr HeightFormat kHeightFormats[] = {
@@ -452,8 +452,8 @@ bool isHeightMapFile(const fs::path& path) {
     return heightFormatOf(path) != nullptr;
 }
 
-std::unique_ptr<HeightRows> openHeightRows(const fs::path& path) {
-    if (const HeightFormat* format = heightFormatOf(path)) return format->open(path);
+std::unique_ptr<HeightRows> openHeightRows(const fs::path& path, bool needsSpacing) {
+    if (const HeightFormat* format = heightFormatOf(path)) return format->open(path, needsSpacing);
     throw Error(path.string() +
                 ": unknown kind of height map; allowed: .png .tif .tiff .hgt .raw .r16 .bin");
 }

@@ -39,8 +39,10 @@ class HeightRows {
 void checkHeightMapSize(std::int64_t width, std::int64_t height, const std::string& name);
 
 /// By extension (loadHeightMap()). Reads what stands before the first row, and throws Error for
-/// what cannot be read so: an interlaced PNG and a row of tiles come whole, which is bounded.
-std::unique_ptr<HeightRows> openHeightRows(const std::filesystem::path& path);
+/// what cannot be read so: an interlaced PNG and a row of tiles come whole, which is bounded. Where
+/// a spacing is given the file's is not read.
+std::unique_ptr<HeightRows> openHeightRows(const std::filesystem::path& path,
+                                           bool needsSpacing = true);
 
 /// Of every source of heights.
 inline SchemaKey noDataKey() {

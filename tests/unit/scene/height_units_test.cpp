@@ -229,6 +229,10 @@ TEST_F(HeightUnits, SpacingOfATransformAndOfOtherUnitsIsConverted) {
                   },
                   folder.path()),
               "DIR/a.tif: the angular unit is 9101; allowed: 9102 (degree)");
+    // Who says it does not need the file's.
+    HeightMapUnits units;
+    units.spacingM = 5.0F;
+    EXPECT_EQ(loadHeightMap(folder.path() / "a.tif", units).spacingM, 5.0F);
 }
 
 TEST_F(HeightUnits, SamplesThatStandOnNoSquaresAreRefused) {
@@ -246,6 +250,9 @@ TEST_F(HeightUnits, SamplesThatStandOnNoSquaresAreRefused) {
     EXPECT_EQ(error({}, {10, 6, 0, 0, 0, -8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}),
               "DIR/a.tif: its samples stand 10 apart along x and 10 along y, askew; allowed: the "
               "same, on squares");
+    HeightMapUnits units;
+    units.spacingM = 8.0F;
+    EXPECT_EQ(loadHeightMap(path, units).spacingM, 8.0F) << "by who reads it";
     EXPECT_EQ(error({30.001, 30, 0}, {}), "no error") << "rounded";
     const std::string north =
         "DIR/a.tif: its rows go north; allowed: from west to east and north to south";
