@@ -61,8 +61,24 @@ struct Folder {
     }
 };
 
+constexpr std::string_view kBase64 = ";base64,";
+
+/// Of a media type that tinygltf does not know, as image/jpg: it takes the others for itself.
+bool isData(const std::string& uri) {
+    return uri.starts_with("data:") && uri.find(kBase64) != uri.npos;
+}
+
+std::vector<unsigned char> dataOf(std::string uri) {
+    std::ranges::replace(uri, ' ', '+');  // some versions have decoded it
+    std::vector<unsigned char> data;
+    std::string type;
+    const std::string known = "data:application/octet-stream" + uri.substr(uri.find(kBase64));
+    tinygltf::DecodeDataURI(&data, type, known, 0, false);
+    return data;
+}
+
 bool fileExists(const std::string& uri, void* folder) {
-    return static_cast<Folder*>(folder)->find(uri).has_value();
+    return isData(uri) || static_cast<Folder*>(folder)->find(uri).has_value();
 }
 
 std::string sameUri(const std::string& uri, void*) {
@@ -71,6 +87,10 @@ std::string sameUri(const std::string& uri, void*) {
 
 bool readWholeFile(std::vector<unsigned char>* content, std::string*, const std::string& uri,
                    void* folder) {
+    if (isData(uri)) {
+        *content = dataOf(uri);
+        return true;
+    }
     const auto path = static_cast<Folder*>(folder)->find(uri);
     if (!path) return false;
     requireReadAtOnce(*path);
@@ -83,6 +103,10 @@ bool readWholeFile(std::vector<unsigned char>* content, std::string*, const std:
 
 [[maybe_unused]]  // before tinygltf 2.9
 bool fileSize(std::size_t* sizeBytes, std::string*, const std::string& uri, void* folder) {
+    if (isData(uri)) {
+        *sizeBytes = dataOf(uri).size();
+        return true;
+    }
     const auto path = static_cast<Folder*>(folder)->find(uri);
     if (!path) return false;
     requireReadAtOnce(*path);

@@ -108,7 +108,8 @@ class TextureTable {
         const tinygltf::Image& image = elementOf(file_.model.images, index, "{}", where);
         std::span<const unsigned char> bytes = image.image;
         if (image.bufferView >= 0) bytes = accessors_.view(image.bufferView);
-        if (bytes.empty()) throw Error(fmt::format("{}: '{}' cannot be read", where, image.uri));
+        if (bytes.empty())
+            throw Error(fmt::format("{}: {} cannot be read", where, inQuotes(image.uri)));
         return decodeTexture(std::as_bytes(bytes), where, leftOut_);
     }
 

@@ -165,6 +165,36 @@ TEST_F(LoadMeaning, RestsOfGltfAreSaid) {
               Lines{"left out: a byte behind the file's length (6 times)"});
 }
 
+/// As programs write them: image/jpg is no media type, and some have none.
+TEST_F(LoadMeaning, DataOfAnyMediaTypeIsRead) {
+    Document document = square();
+    const std::string png =
+        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg"
+        "==";
+    document["textures"] = R"([{"source":0}])";
+    document["materials"] = R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+    const auto load = [&](const std::string& uri) {
+        document["images"] = R"([{"uri":")" + uri + R"("}])";
+        return loadGltf(folder_.write("a.gltf", text(document)));
+    };
+    for (const char* type : {"image/png", "image/jpg", "image/x-png;charset=utf8", ""}) {
+        EXPECT_EQ(load(fmt::format("data:{};base64,{}", type, png)).textures.size(), 1U) << type;
+    }
+    EXPECT_EQ(errorText([&] { load("data:image/jpg," + std::string(200, 'a')); }, folder_.path()),
+              "DIR/a.gltf: image 0: 'data:image/jpg," + std::string(85, 'a') +
+                  "…' (215 bytes) cannot be read");
+    document.erase("images");
+    document.erase("textures");
+    document.erase("materials");
+    document["accessors"] = R"([{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}])";
+    document["bufferViews"] = R"([{"buffer":0,"byteLength":36}])";
+    document["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0}}]}])";
+    document["buffers"] =
+        R"([{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAA+"}])";
+    const Scene scene = loadGltf(folder_.write("a.gltf", text(document)));
+    EXPECT_EQ(scene.bounds().max, glm::vec3(1, 1, 0.125F)) << "'+' is a digit";
+}
+
 TEST_F(LoadMeaning, ColoursThatNoSurfaceHasAreSaid) {
     Document document = square();
     document["materials"] = R"([{"pbrMetallicRoughness":{"baseColorFactor":[2,0,0,1],
