@@ -59,11 +59,12 @@ std::vector<glm::uvec3> trianglesOf(const std::vector<std::uint32_t>& indices, i
 
 class SceneBuilder {
   public:
-    /// `offset` is subtracted from everything in world space.
-    SceneBuilder(const gltf::File& file, const glm::dvec3& offset, LeftOut& leftOut)
+    /// The anchor's offset is subtracted from everything in world space.
+    SceneBuilder(const gltf::File& file, Anchor& anchor, LeftOut& leftOut)
         : file_(file),
-          offset_(offset),
-          isMoved_(offset != glm::dvec3(0.0)),
+          anchor_(anchor),
+          offset_(anchor.offset),
+          isMoved_(offset_ != glm::dvec3(0.0)),
           leftOut_(leftOut),
           accessors_(file),
           lights_(file) {}
@@ -84,6 +85,7 @@ class SceneBuilder {
             if (!isPosed[i]) partsOf({i, -1, model().meshes[i].weights});
         }
         worldFromNode_.resize(model().nodes.size());
+        exactFromNode_.resize(model().nodes.size());
         for (const int root : roots()) visit(root);
         for (const int node : drawn_) addContent(model().nodes[node], node, *worldFromNode_[node]);
         if (scene_.triangleCount() == 0 && scene_.points.positions.empty()) {
@@ -358,6 +360,7 @@ class SceneBuilder {
             checkFinite(*worldFromNode, index);
             if (inner.isVisible) {
                 drawn_.push_back(index);
+            exactFromNode_[index] = inner.exactFromParent;
             } else {
                 leftOut_.add("a node that KHR_node_visibility hides");
             }
@@ -447,6 +450,14 @@ class SceneBuilder {
         }
     }
 
+            if (!anchor_.counts || isInWorld) continue;
+            const glm::dmat4 exact = exactFromNode_[index] * glm::dmat4(nodeFromInstance);
+            for (const int part : parts.meshes) {
+                anchor_.countJoined(scene_.meshes[part].positions, exact);
+            }
+            for (const PointCloud& cloud : parts.clouds) {
+                anchor_.countJoined(cloud.positions, exact);
+            }
     static constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
     /// One matrix an instance; without that extension the identity.
@@ -553,6 +564,7 @@ class SceneBuilder {
     glm::dvec3 offset_;
     bool isMoved_;
     LeftOut& leftOut_;
+    Anchor& anchor_;
     gltf::Accessors accessors_;
     gltf::Lights lights_;
     std::vector<gltf::TextureUse> textureUses_;
@@ -564,6 +576,7 @@ class SceneBuilder {
     std::vector<int> drawn_;                               // in the order of their visits
     float largestColour_ = 0.0F;                           // of vertices
     std::vector<std::size_t> unaimed_;  // cameras whose file does not say how far they look
+    std::vector<glm::dmat4> exactFromNode_;                // likewise, unrounded
     Scene scene_;
 };
 
@@ -571,9 +584,9 @@ class SceneBuilder {
 
 Scene loadGltf(const std::filesystem::path& path) {
     const gltf::File file = gltf::readFile(path);
-    return loadedNearOrigin([&](const Anchor& anchor, LeftOut& leftOut) {
+    return loadedNearOrigin([&](Anchor& anchor, LeftOut& leftOut) {
         leftOut = file.leftOut;
-        return SceneBuilder(file, anchor.offset, leftOut).build();
+        return SceneBuilder(file, anchor, leftOut).build();
     });
 }
 

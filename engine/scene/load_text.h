@@ -110,6 +110,13 @@ class Anchor {
 
   private:
     void count(const glm::dvec3& position, const glm::vec3& rounded) {
+    /// Of the vertices of one instance, which already are relative.
+    void countJoined(const std::vector<glm::vec3>& positions, const glm::dmat4& toWorld) {
+        Anchor own(glm::dvec3(0.0), true);
+        for (const glm::vec3& position : positions) own.relative(toWorld * glm::dvec4(position, 1));
+        joined += own.joined;
+    }
+
         const glm::vec3 r = rounded + 0.0F;  // −0 is 0
         const auto [place, isNew] = places_.number(std::bit_cast<std::array<std::uint32_t, 3>>(r));
         if (isNew) {

@@ -247,6 +247,13 @@ TEST_F(FarFiles, VerticesThatFallTogetherAreCounted) {
         stl += "endloop\nendfacet\n";
     }
     EXPECT_EQ(warnings("a.stl", stl + "endsolid\n"), two);
+    folder.write("square.bin", squareBytes());
+    Document document = square();
+    document["nodes"] =
+        R"([{"mesh":0,"translation":[-400000,0,0],"scale":[0.01,0.01,1]},
+        {"mesh":0,"translation":[399999,0,0]}])";
+    document["scenes"] = R"([{"nodes":[0,1]}])";
+    EXPECT_EQ(warnings("a.gltf", text(document)), two) << "of one node";
     EXPECT_EQ(warnings("a.obj", "v -60000 0 0\nv 60000 0 0\nv 60000.001 0 0\nf 1 2 3\n"),
               Lines{"floats put 1 of its vertices where others are: it reaches to 60000, where "
                     "their steps are 0.00390625"})
