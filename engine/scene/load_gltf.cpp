@@ -221,14 +221,17 @@ class SceneBuilder {
         if (!isPoints) {
             mesh.texcoords =
                 attribute<glm::vec2>(part, fmt::format("TEXCOORD_{}", use.texcoordSet).c_str());
-            if (mesh.texcoords.empty() && mesh.material >= 0 &&
-                scene_.materials[mesh.material].baseColorTexture >= 0) {
+            if (mesh.texcoords.empty() && mesh.material >= 0) {
                 leftOut_.add(
-                    fmt::format("a texture of a mesh without TEXCOORD_{}", use.texcoordSet));
+                    fmt::format("a texture of a mesh without TEXCOORD_{}", use.texcoordSet),
+                    gltf::textureCount(scene_.materials[mesh.material]));
             }
         }
         if (use.isTransformed) {
             for (glm::vec2& uv : mesh.texcoords) uv = use.transform * glm::vec3(uv, 1.0F);
+        }
+        for (std::size_t i = primitive.targets.size(); i < posed.weights.size(); ++i) {
+            leftOut_.add("a weight of a morph target that is not there", posed.weights[i] != 0.0);
         }
         gltf::morph(accessors_, part, posed.weights, mesh);
         if (posed.skin >= 0) {
@@ -357,10 +360,10 @@ class SceneBuilder {
                        parent.isVisible && isVisible(node)};
             if (isMoved_) inner.worldFromParent = glm::mat4(inner.exactFromParent);
             worldFromNode = inner.worldFromParent;
+            exactFromNode_[index] = inner.exactFromParent;
             checkFinite(*worldFromNode, index);
             if (inner.isVisible) {
                 drawn_.push_back(index);
-            exactFromNode_[index] = inner.exactFromParent;
             } else {
                 leftOut_.add("a node that KHR_node_visibility hides");
             }
@@ -447,9 +450,6 @@ class SceneBuilder {
                 scene_.instances.push_back({part, worldFromMesh});
             }
             for (const PointCloud& cloud : parts.clouds) addPoints(cloud, worldFromMesh);
-        }
-    }
-
             if (!anchor_.counts || isInWorld) continue;
             const glm::dmat4 exact = exactFromNode_[index] * glm::dmat4(nodeFromInstance);
             for (const int part : parts.meshes) {
@@ -458,6 +458,9 @@ class SceneBuilder {
             for (const PointCloud& cloud : parts.clouds) {
                 anchor_.countJoined(cloud.positions, exact);
             }
+        }
+    }
+
     static constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
     /// One matrix an instance; without that extension the identity.
@@ -561,10 +564,10 @@ class SceneBuilder {
     }
 
     const gltf::File& file_;
+    Anchor& anchor_;
     glm::dvec3 offset_;
     bool isMoved_;
     LeftOut& leftOut_;
-    Anchor& anchor_;
     gltf::Accessors accessors_;
     gltf::Lights lights_;
     std::vector<gltf::TextureUse> textureUses_;
@@ -573,10 +576,10 @@ class SceneBuilder {
     UsedVertices usedVertices_;
     std::map<int, PositionUses> positionUses_;             // by their accessors
     std::vector<std::optional<glm::mat4>> worldFromNode_;  // of those visited
+    std::vector<glm::dmat4> exactFromNode_;                // likewise, unrounded
     std::vector<int> drawn_;                               // in the order of their visits
     float largestColour_ = 0.0F;                           // of vertices
     std::vector<std::size_t> unaimed_;  // cameras whose file does not say how far they look
-    std::vector<glm::dmat4> exactFromNode_;                // likewise, unrounded
     Scene scene_;
 };
 

@@ -197,6 +197,12 @@ std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessor
     return uses;
 }
 
+std::size_t textureCount(const Material& material) {
+    const int textures[] = {material.baseColorTexture, material.metallicRoughnessTexture,
+                            material.normalTexture, material.emissiveTexture};
+    return std::ranges::count_if(textures, [](int texture) { return texture >= 0; });
+}
+
 void Lights::add(const tinygltf::Node& node, int index, const glm::mat4& worldFromNode) {
     const auto extension = node.extensions.find("KHR_lights_punctual");
     if (extension == node.extensions.end() || !extension->second.Has("light")) return;

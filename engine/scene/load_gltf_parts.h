@@ -33,6 +33,9 @@ struct TextureUse {
 std::vector<TextureUse> addMaterials(const File& file, const Accessors& accessors, Scene& scene,
                                      LeftOut& leftOut);
 
+/// How many a material has.
+std::size_t textureCount(const Material& material);
+
 // KHR_lights_punctual of glTF files.
 
 /// The lights of the nodes that are visited. Point lights are taken; spot lights shine in all

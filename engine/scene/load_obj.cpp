@@ -89,7 +89,7 @@ class ObjParser {
         } else if (key == "vn") {
             const float x = lines_.anyNumber();
             const float y = lines_.anyNumber();
-            content_.normals.push_back(unitNormal({x, y, lines_.anyNumber()}));
+            content_.normals.push_back(readNormal({x, y, lines_.anyNumber()}, leftOut_));
             leaveRest("vn");
         } else if (key == "f" || key == "fo") {
             parseFace();
@@ -422,6 +422,9 @@ Scene sceneOf(ObjContent content, const std::filesystem::path& path, LeftOut& le
     scene.warnings = std::move(content.warnings);
     if (content.groups.empty()) {
         if (content.linesOfLines > 0) throw Error(file + ": lines, but no faces or points");
+        leftOut.add("the line 'vn' of a file without faces", content.normals.size());
+        leftOut.add("the line 'vt' of a file without faces", content.texcoords.size());
+        leftOut.add("the line 'mtllib' of a file without faces", content.libraries.size());
         scene.points.positions = std::move(content.positions);
         scene.points.colors = std::move(content.colors);
         return scene;
@@ -434,6 +437,9 @@ Scene sceneOf(ObjContent content, const std::filesystem::path& path, LeftOut& le
         if (!material.empty()) {
             mesh.name = material;
             mesh.material = static_cast<int>(scene.materials.size()) - 1;
+            const bool isTextured = scene.materials.back().baseColorTexture >= 0;
+            leftOut.add("a texture of faces without texture coordinates",
+                        isTextured && mesh.texcoords.empty());
         }
         scene.instances.push_back({static_cast<int>(scene.meshes.size()), glm::mat4(1.0F)});
         scene.meshes.push_back(std::move(mesh));

@@ -291,7 +291,9 @@ class VertexParser {
                 continue;
             }
             mesh.positions.push_back(anchor_.relative(place_));
-            if (normals) mesh.normals.push_back(unitNormal({row_[kNx], row_[kNy], row_[kNz]}));
+            if (normals) {
+                mesh.normals.push_back(readNormal({row_[kNx], row_[kNy], row_[kNz]}, leftOut_));
+            }
             if (colors) mesh.colors.push_back({row_[kRed], row_[kGreen], row_[kBlue]});
             if (texcoords) mesh.texcoords.push_back({row_[kU], row_[kV]});
             if (radii) vertices.radii.push_back(row_[kRadius]);
@@ -361,7 +363,7 @@ class VertexParser {
         if (isColour(slot) && areBytes_) return linearBytes_[static_cast<std::size_t>(number)];
         if (isPosition) place_[slot] = number;
         const auto value = static_cast<float>(number);
-        // Scanners write normals that are not numbers; unitNormal() takes those.
+        // readNormal() takes normals that are not numbers.
         const bool isNormal = slot == kNx || slot == kNy || slot == kNz;
         // So are points where a depth camera saw nothing.
         if (isPosition && arePoints_ && std::isnan(value)) return value;

@@ -91,6 +91,12 @@ inline glm::vec3 unitNormal(const glm::vec3& normal) {
     return isFinite(unit) ? unit : glm::vec3(0.0F);
 }
 
+/// Scanners write normals that are not numbers.
+inline glm::vec3 readNormal(const glm::vec3& normal, LeftOut& leftOut) {
+    if (!isFinite(normal)) leftOut.add("a normal that is not finite");
+    return unitNormal(normal);
+}
+
 /// What the coordinates of a scene are relative to. One that counts says how many vertices floats
 /// put where others of the file's are.
 class Anchor {
@@ -104,12 +110,6 @@ class Anchor {
         return rounded;
     }
 
-    const glm::dvec3 offset;
-    const bool counts;
-    std::size_t joined = 0;
-
-  private:
-    void count(const glm::dvec3& position, const glm::vec3& rounded) {
     /// Of the vertices of one instance, which already are relative.
     void countJoined(const std::vector<glm::vec3>& positions, const glm::dmat4& toWorld) {
         Anchor own(glm::dvec3(0.0), true);
@@ -117,6 +117,12 @@ class Anchor {
         joined += own.joined;
     }
 
+    const glm::dvec3 offset;
+    const bool counts;
+    std::size_t joined = 0;
+
+  private:
+    void count(const glm::dvec3& position, const glm::vec3& rounded) {
         const glm::vec3 r = rounded + 0.0F;  // −0 is 0
         const auto [place, isNew] = places_.number(std::bit_cast<std::array<std::uint32_t, 3>>(r));
         if (isNew) {

@@ -358,6 +358,8 @@ std::vector<std::string> savePly(const std::filesystem::path& path, const Scene&
         countLost("normals", &Mesh::normals);
         countLost("texture coordinates", &Mesh::texcoords);
         countLost("colours", &Mesh::colors);
+        leftOut.add("that the triangles of a mesh are flat",
+                    std::ranges::count_if(scene.meshes, &Mesh::isFlat));
         leftOut.add("a point beside triangles", scene.points.positions.size());
         const PlyVertices vertices{mesh.positions, mesh.normals, mesh.texcoords,
                                    mesh.colors,    {},           scene.offset};

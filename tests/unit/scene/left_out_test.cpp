@@ -177,8 +177,10 @@ TEST(LeftOut, OfGltf) {
     EXPECT_EQ(
         scene.warnings,
         (Lines{"left out: a material's alphaMode BLEND, drawn as solid",
-               "left out: a primitive of lines", "left out: a texture that only an extension gives",
-               keyLine("animations"), keyLine("bufferViews.extensions.EXT_meshopt_compression"),
+               "left out: a primitive of lines",
+               "left out: a texture of a mesh without TEXCOORD_0 (3 times)",
+               "left out: a texture that only an extension gives", keyLine("animations"),
+               keyLine("bufferViews.extensions.EXT_meshopt_compression"),
                keyLine("cameras.orthographic"),
                keyLine("materials.extensions.KHR_materials_pbrSpecularGlossiness"),
                keyLine("materials.extensions.KHR_materials_sheen"),

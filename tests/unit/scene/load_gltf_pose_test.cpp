@@ -136,6 +136,10 @@ TEST_F(PoseGltf, MorphTargetsHaveTheirDefaultWeights) {
     };
     meshes(R"(,"weights":[1,0.5])");
     EXPECT_EQ(load().bounds().min, glm::vec3(2, 0, 3));
+    meshes(R"(,"weights":[1,0.5,0,7])");
+    EXPECT_EQ(load().warnings,
+              std::vector<std::string>{"left out: a weight of a morph target that is not there"});
+    meshes(R"(,"weights":[1,0.5])");
     document_["nodes"] = R"([{"mesh":0,"weights":[0.5]},{"mesh":0},{"mesh":0,"weights":[0.5]}])";
     document_["scenes"] = R"([{"nodes":[0,1,2]}])";
     const Scene scene = load();

@@ -183,12 +183,21 @@ TEST_F(LoadObj, SaysWhichColoursOfTexturesAreNotRead) {
         // A chunk before the others: its length, its name, what it holds, a checksum.
         png.insert(33, std::string("\0\0\0\x04", 4) + "gAMA" + gamma + std::string(4, '\0'));
         folder_.write("a.png", png);
-        return load("mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\n").warnings;
+        return load("mtllib a.mtl\nvt 0 0\n" + kSquare + "usemtl a\nf 1/1 2/1 3/1 4/1\n").warnings;
     };
     EXPECT_EQ(warnings(std::string("\0\0\xB1\x8F", 4)), std::vector<std::string>{});
     EXPECT_EQ(
         warnings(std::string("\0\x01\x86\xA0", 4)),
         std::vector<std::string>{"left out: the gamma, primaries or colour profile of a texture"});
+}
+
+TEST_F(LoadObj, SaysWhichTexturesFacesCannotHave) {
+    folder_.write("a.mtl", "newmtl a\nmap_Kd a.png\n");
+    folder_.write("a.png", image::encodePng(image::Image8(1, 1, 3)));
+    const std::vector<std::string> said{"left out: a texture of faces without texture coordinates"};
+    const std::string start = "mtllib a.mtl\nvt 0 0\n" + kSquare + "usemtl a\n";
+    EXPECT_EQ(load(start + "f 1 2 3 4\n").warnings, said);
+    EXPECT_EQ(load(start + "f 1/1 2/1 3/1\nf 1 3 4\n").warnings, said);
 }
 
 TEST_F(LoadObj, ReadsWhatIsUnusual) {
@@ -209,11 +218,12 @@ TEST_F(LoadObj, ReadsWhatIsUnusual) {
     EXPECT_EQ(odd.meshes.at(0).normals[0], glm::vec3(0));
     EXPECT_EQ(odd.meshes[0].texcoords[0], glm::vec2(0, 1));
     EXPECT_EQ(odd.meshes[0].positions[3], glm::vec3(0));
-    EXPECT_EQ(odd.warnings,
-              (std::vector<std::string>{
-                  "left out: a face of fewer than 3 corners",
-                  "left out: a texture coordinate that is not finite, taken as 0 (2 times)",
-                  "left out: a vertex that no face uses"}));
+    EXPECT_EQ(
+        odd.warnings,
+        (std::vector<std::string>{
+            "left out: a face of fewer than 3 corners", "left out: a normal that is not finite",
+            "left out: a texture coordinate that is not finite, taken as 0 (2 times)",
+            "left out: a vertex that no face uses"}));
 
     const Scene forward = load(kSquare + "f 1/1/1 2/2/1 3/3/1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n");
     EXPECT_EQ(forward.meshes.at(0).texcoords[1], glm::vec2(1, 1));
@@ -249,7 +259,8 @@ TEST_F(LoadObj, SaysWhichNumbersAndOptionsItLeavesOut) {
     image::writePng(folder_.path() / "a.png", image::Image8(2, 1, 1, 128));
     const auto warnings = [&](const std::string& options) {
         folder_.write("a.mtl", "newmtl a\nmap_Kd " + options + "a.png\n");
-        const Scene scene = load("mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\n");
+        const Scene scene =
+            load("mtllib a.mtl\nvt 0 0\n" + kSquare + "usemtl a\nf 1/1 2/1 3/1 4/1\n");
         EXPECT_EQ(scene.materials.at(0).baseColorTexture, 0) << options;
         return scene.warnings;
     };
@@ -297,6 +308,10 @@ TEST_F(LoadObj, LivesWithoutItsMaterialFile) {
 
 TEST_F(LoadObj, ReadsVerticesWithoutFacesAsPoints) {
     EXPECT_EQ(load(kSquare).points.positions.size(), 4U);
+    EXPECT_EQ(load("mtllib a.mtl\nusemtl a\nvt 0 0\nvn 0 0 1\nvn 0 0 1\n" + kSquare).warnings,
+              (std::vector<std::string>{"left out: the line 'mtllib' of a file without faces",
+                                        "left out: the line 'vn' of a file without faces (2 times)",
+                                        "left out: the line 'vt' of a file without faces"}));
     EXPECT_EQ(error(kSquare + "l 1 2\n"), "DIR/a.obj: lines, but no faces or points");
     const auto isNoText = [](const char* kind) {
         return fmt::format("DIR/a.obj: is {}; allowed: as it is, text in UTF-8", kind);

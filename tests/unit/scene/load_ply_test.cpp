@@ -92,6 +92,7 @@ TEST_F(LoadPly, ReadsPointsWithAttributes) {
     EXPECT_EQ(scene.points.positions[1], glm::vec3(1, 2, 3));
     EXPECT_EQ(scene.points.normals[0], glm::vec3(0, 0, 1));
     EXPECT_EQ(scene.points.normals[1], glm::vec3(0));
+    EXPECT_EQ(scene.warnings, std::vector<std::string>{"left out: a normal that is not finite"});
     EXPECT_EQ(scene.points.radii, (std::vector<float>{0.5F, 0.25F}));
     EXPECT_EQ(scene.points.colors[0].r, 1.0F);
     EXPECT_NEAR(scene.points.colors[0].b, 0.5029F, 1e-4F);  // 188/255 in sRGB

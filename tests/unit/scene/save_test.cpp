@@ -255,6 +255,7 @@ TEST(Save, SaysWhatIsLeftOut) {
     Scene scene = litAndMoving(glm::dvec3(0.0));
     scene.meshes.push_back(scene.meshes[0]);
     scene.meshes[1].normals.clear();
+    scene.meshes[1].isFlat = true;
     scene.instances.push_back({1, glm::mat4(1.0F)});
     scene.cameras = {Camera{}};
     scene.materials = {Material{}, Material{}};
@@ -269,6 +270,7 @@ TEST(Save, SaysWhatIsLeftOut) {
         (Lines{"left out: a camera", "left out: a camera path (2 times)", "left out: a height map",
                "left out: a light (2 times)", "left out: a material (2 times)",
                "left out: a motion", "left out: a point beside triangles", "left out: a texture",
+               "left out: that the triangles of a mesh are flat",
                "left out: the normals of a mesh, as others have none"}));
 }
 
