@@ -38,14 +38,14 @@ def table(root, number, pause_ms, origins):
     return file
 
 
-def started(root, *arguments):
+def started(root, *arguments, **options):
     environment = {**os.environ, "GFXREPRO_ROOT": str(root), "GFXREPRO_DATA": str(root)}
     return subprocess.Popen([SOURCE / "scripts/measure-reference", *arguments], env=environment, text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
 
-def measure(root, *arguments, program=PROGRAM):
-    process = started(root, "--program", program, "--name", "mock", *arguments)
+def measure(root, *arguments, program=PROGRAM, **options):
+    process = started(root, "--program", program, "--name", "mock", *arguments, **options)
     out, err = process.communicate(timeout=120)
     return process.returncode, out, err
 
@@ -177,6 +177,13 @@ with tempfile.TemporaryDirectory() as folder:
     code, out, err = measure(root, "--profile", "full", "paper/1")
     assert code == 0 and "begun anew: the run that is there is of another device, llvmpipe" in out, (code, out, err)
     assert module.json_of(kept / "paper-table-1/manifest.json")["cpu"] != "Another Processor"
+
+    # What did not finish is not kept, also where whoever starts the script ignores the ends of children.
+    table(root, 4, "0, behaviour: throw", ["ours"])
+    for options in ({}, {"preexec_fn": lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN)}):
+        code, out, err = measure(root, "--profile", "full", "paper/4", **options)
+        assert code == 4 and "paper-table-4: exit code 4: not kept" in out, (code, out, err)
+        assert not (kept / "paper-table-4").exists(), options
 
     # Where it cannot be built, and where there is no such program.
     build = root / "scripts/reproduce-paper-tables"
