@@ -529,7 +529,8 @@ void markRepeats(std::vector<ClaimResult>& results) {
     }
     for (ClaimResult& result : results) {
         const auto found = verdicts.find(result.sameAs);
-        result.isRepeat = found != verdicts.end() && found->second == result.verdict;
+        result.isRepeat = found != verdicts.end() &&
+                          (result.verdict == Verdict::Holds || result.verdict == found->second);
     }
 }
 

@@ -83,7 +83,7 @@ struct ClaimResult {
     /// Of a claim about several scenes that does not hold on all: "3 of 4 scenes, not on tree".
     std::string holdsOn = {};
     std::string sameAs;     // "TABLE CLAIM": ClaimSpec
-    bool isRepeat = false;  // that one has the same verdict: markRepeats()
+    bool isRepeat = false;  // not counted beside that one: markRepeats()
 
     /// A statement of the document itself.
     bool isOfDocument() const { return origin == ClaimSpec::Origin::Document; }
@@ -172,7 +172,8 @@ void requireInOneRow(const config::Experiment& experiment, const tables::Table& 
 /// and what its kind refuses. `table` may have been built from no records.
 void requireProvenance(const config::Experiment& experiment, const tables::Table& table);
 
-/// Marks the claims whose `sameAs` is among them and has the same verdict.
+/// Marks the claims whose `sameAs` is among them, and that hold or have its verdict: a truth holds
+/// once, and only where the claim that the others name does.
 void markRepeats(std::vector<ClaimResult>& results);
 
 /// "12 hold, 3 fail (2 hold on some scenes), 2 unmeasured": only those that occur; "no

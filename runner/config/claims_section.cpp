@@ -51,8 +51,8 @@ const KeyTable<CommonKeys>& commonTable() {
               "of an input fitted to it; or a statement that there is such a thing at all, which "
               "can hardly fail. Only the first is counted")},
          {&C::sameAs, "same_as", "TABLE CLAIM", "none",
-          "another claim, of this table or another, that says the same truth: where both have one "
-          "verdict, one is counted",
+          "another claim, of this table or another, that says the same truth or reads its number "
+          "otherwise: beside it this one is not counted where it holds or has the same verdict",
           text()},
          {&C::boundFrom,
           choiceKey(

@@ -25,6 +25,8 @@ CLAIMS = [  # claim, verdict, the run's reason, the config's, what the page says
     ("I", "fails", "worst at n 1", "an earlier cause", ". Why: It is so: in a config. ([numbers](../../findings/p.md#table-1-i))"),
 ]
 CONFIG = """claims:
+  F:
+    says: it is so
   I:
     says: it is so
     because:
@@ -90,6 +92,7 @@ A,p/1,quick,document,holds,,,it is so,x < 1,bias (of 2 tried),,,
 B,p/1,quick,document,holds,,,it is so,x < 1,none of the 2 tried,1 of 4 values of scene,,
 C,p/1,quick,document,holds,,,it is so,x < 1,none of the 2 tried,,p/1 A,
 D,p/1,quick,document,fails,,a cause,it is so,x < 1,,1 of 4 values of scene,p/1 A,"3 of 4 scenes, not on tree"
+K,p/1,quick,document,holds,,,it is so,x < 1,none of the 2 tried,,p/1 D,
 E,p/1,quick,document,not-applicable,,,it is so,x < 1,,,,
 F,p/1,quick,document,not-applicable,,,it is so,x < 1,,,,
 G,p/1,quick,existence,holds,,,it is so,x < 1,not tried,,,
@@ -106,20 +109,29 @@ with tempfile.TemporaryDirectory() as folder:
         (root / "results" / "reference" / device).mkdir(parents=True)
         (root / "results" / "reference" / device / "claims.csv").write_text(text)
     (root / "configs" / "p").mkdir(parents=True)
-    (root / "configs" / "p" / "table-1.yaml").write_text("claims:\n  A:\n    says: s\n  C:\n    same_as: p/1 A\n")
+    (root / "configs" / "p" / "table-1.yaml").write_text("claims:\n  A:\n    says: s\n  C:\n    same_as: p/1 A\n  D:\n    says: s\n"
+                                                            "  E:\n    says: s\n")
     for name in ("README.md", "results/README.md"):
         (root / name).write_text(MARKERS)
     subprocess.run([sys.executable, SCRIPT, root], check=True)
     counts = ("2 hold (1 of them on an assumption of ours, 1 not tried) · 1 fails (1 on some scenes alone) · "
-              "2 not-applicable (on a GPU 1 fails, 1 never judged) (and 3 not counted)")
-    for name, text in (("README.md", "| `p` | table 1 | 7 | 2 | 2 | 1 | 2 |\n"), ("README.md", counts), ("README.md", ALL),
+              "2 not-applicable (on a GPU 1 fails, 1 never judged) (and 4 not counted)")
+    for name, text in (("README.md", "| `p` | table 1 | 8 | 2 | 3 | 1 | 2 |\n"), ("README.md", counts), ("README.md", ALL),
                        ("results/README.md", counts.replace("1 fails (1", "2 fail (1")),
                        ("results/reference/llvmpipe-1/quick.md", "holds** it is so (B, document, on 1 of 4 values of scene)\n"),
                        ("results/reference/llvmpipe-1/quick.md", "holds** it is so (C, document, counted as p/1 A)\n"),
+                       ("results/reference/llvmpipe-1/quick.md", "holds** it is so (K, document, counted as p/1 D)\n"),
                        ("results/reference/llvmpipe-1/quick.md", "fails** it is so (D). It holds on 3 of 4 scenes, not on tree. Why: a cause\n"),
                        ("results/reference/llvmpipe-1/quick.md", "not-applicable** it is so (E). On nvidia-1, paper profile: fails\n")):
         if text not in (root / name).read_text(encoding="utf-8"):
             sys.exit(f"{name} should have said {text!r}:\n{(root / name).read_text(encoding='utf-8')}")
+    text = (root / "configs" / "p" / "table-1.yaml").read_text()
+    (root / "configs" / "p" / "table-1.yaml").write_text(text.replace("  D:\n", "  D-looser:\n"))
+    for row, code in (("", 1), ("| p/1 D, now D-looser | x < 1 |\n\n", 0)):
+        (root / "results" / "README.md").write_text(row + (root / "results" / "README.md").read_text())
+        said = subprocess.run([sys.executable, SCRIPT, root], stdout=subprocess.PIPE, text=True)
+        if said.returncode != code or said.stdout.startswith("p/1 D fails in results/reference and is asked no more: ") != bool(code):
+            sys.exit(f"a claim that failed and is gone, with {row!r}, should have exit code {code}: {said.returncode}, {said.stdout!r}")
     (root / "configs" / "p" / "table-2.yaml").write_text("claims:\n  A:\n    same_as: p/1 C\n")
     said = subprocess.run([sys.executable, SCRIPT, root], stdout=subprocess.PIPE, text=True)
     if said.returncode != 1 or "configs/p/table-2.yaml: same_as: p/1 C names no claim, or one that" not in said.stdout:

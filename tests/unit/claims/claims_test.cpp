@@ -1718,6 +1718,11 @@ TEST(Claims, OneTruthCountsOnce) {
     EXPECT_TRUE(results[0].isCounted());
     EXPECT_FALSE(results[1].isCounted());
     EXPECT_TRUE(results[2].isCounted()) << "another verdict";
+    std::swap(results[0].verdict, results[2].verdict);
+    markRepeats(results);
+    EXPECT_TRUE(results[0].isCounted());
+    EXPECT_FALSE(results[2].isCounted()) << "a hold beside what fails";
+    std::swap(results[0].verdict, results[2].verdict);
     results[1].sameAs = "p/2 A";
     markRepeats(results);
     EXPECT_TRUE(results[1].isCounted()) << "the other is not of this run";
