@@ -301,7 +301,13 @@ void saySize(const std::string& name, const Size& size) {
                                 "--shard)"
                               : "");
     };
-    say(size.rows, static_cast<double>(records::kMostRecords), "rows of records");
+    constexpr auto kMostRows = static_cast<double>(records::kMostRecords);
+    say(size.rows, kMostRows, "rows of records");
+    if (size.rows >= 0.01 * kMostRows) {
+        const double bytes = std::min(size.rows, kMostRows) * sizeof(records::Record);
+        cli::say("{}: `table`, `report` and the like take {:.2g} GB of memory for them, or more\n",
+                 name, 1e-9 * bytes);
+    }
     say(size.pictures, static_cast<double>(records::CsvReader::kMostRows), "pictures");
     const auto sayRefused = [&](double count, double most, const char* what) {
         if (count <= most) return;
