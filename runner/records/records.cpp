@@ -157,10 +157,8 @@ class UnitReader {
         requireColumns(path_, first);
         result_.endBytes = file_.rowEnd();
         Record record;
-        while (file_.next(fields)) {
-            const SourceLocation where = file_.location();
-            readRecord(where, fields, record);
-            add(record, where, integerField(where, "rows", fields.back()));
+        while (const std::optional<int> unitRows = readRow(fields, record)) {
+            add(record, file_.location(), *unitRows);
             result_.endBytes = file_.rowEnd();
             reserve(lines_.size());
         }
@@ -171,6 +169,30 @@ class UnitReader {
     }
 
   private:
+    /// How many rows the row's unit has; none at the end.
+    std::optional<int> readRow(std::vector<std::string>& fields, Record& record) {
+        try {
+            if (!file_.next(fields)) return std::nullopt;
+            readRecord(file_.location(), fields, record);
+            return integerField(file_.location(), "rows", fields.back());
+        } catch (const Error& error) {
+            if (error.where().line == 0 || !areWhole()) throw;
+            const std::string text = error.what();
+            throw Error(error.where(),
+                        fmt::format("{}; what stands before it is whole, and stays by: "
+                                    "sed -i '{},$d' {}",
+                                    text.substr(toString(error.where()).size() + 2),
+                                    error.where().line, shellQuoted(path_.string())));
+        }
+    }
+
+    /// What was read so far.
+    bool areWhole() const {
+        return !units_.empty() && std::ranges::all_of(units_, [](const auto& unit) {
+            return unit.second.count == unit.second.expected;
+        });
+    }
+
     /// Of a large file: a vector that grows is there twice for a moment.
     void reserve(std::size_t readRows) {
         constexpr std::size_t kSample = 4096;

@@ -159,9 +159,18 @@ TEST_F(Records, MalformedRowsAreErrorsWithTheirLine) {
     for (const std::size_t length : {0U, 10U}) {  // the write of the header was cut
         EXPECT_EQ(error(std::string(kHeader).substr(0, length)), "no error");
     }
-    EXPECT_EQ(error(kHeader + good + "3,c,t\n"), "DIR/records.csv:3: expected 17 columns, found 3");
+    const std::string cut =
+        "; what stands before it is whole, and stays by: sed -i '3,$d' DIR/records.csv";
+    EXPECT_EQ(error(kHeader + good + "3,c,t\n"),
+              "DIR/records.csv:3: expected 17 columns, found 3" + cut);
+    EXPECT_EQ(error(kHeader + good + "garbage \"\n" + good),
+              "DIR/records.csv:3: expected a comma or the end of the line after 'garbage ', "
+              "found '\"'" +
+                  cut);
     EXPECT_EQ(error(kHeader + good + "2,c,t,q,m,s,0,0,0,timing,p,x,ms,1,ok,,1\n"),
-              "DIR/records.csv:3: expected records of schema 3, found 2");
+              "DIR/records.csv:3: expected records of schema 3, found 2" + cut);
+    EXPECT_EQ(error(kHeader + good.substr(0, good.size() - 2) + "2\n3,c,t\n"),
+              "DIR/records.csv:3: expected 17 columns, found 3");  // of a unit that is not whole
     EXPECT_EQ(error(std::string(kHeader) + "3,c,t,q,m,s,0.5,0,0,timing,p,x,ms,1,ok,,1\n"),
               "DIR/records.csv:2: column 'frame': expected an integer, found '0.5'");
     EXPECT_EQ(error(std::string(kHeader) + "3,c,t,q,m,s,0,0,-2,timing,p,x,ms,1,ok,,1\n"),
