@@ -24,7 +24,7 @@ bool isSubmission(const fs::path& folder) {
 }
 
 cluster::ShardRun readShard(const fs::path& folder) {
-    cluster::ShardRun shard{folder, run::readRun(folder)};
+    cluster::ShardRun shard{folder, run::readPart(folder)};
     run::noteChangedImages(shard.run.manifest, folder);
     return shard;
 }

@@ -264,7 +264,7 @@ cluster::ShardProgress progressOf(const fs::path& folder, int unitCount, Parts* 
     try {
         std::optional<run::Plan> plan;
         if (parts) {
-            plan = run::planWithoutExperiments(folder / "plan.json");
+            plan = run::planWithUnreadExperiments(folder / "plan.json");
             progress.problem = parts->whyNot(plan->shard, folder);
         }
         const run::Completeness counts = run::readCompleteness(folder, plan ? &*plan : nullptr);

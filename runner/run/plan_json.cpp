@@ -159,6 +159,13 @@ class ExperimentReader {
         requireEach(json, "/metrics", kMetric, where, prefix_);
     }
 
+    config::Experiment unread() const {
+        config::Experiment experiment;
+        experiment.file = json_.at("file").get<std::string>();
+        experiment.document = nodeFromJson(json_.at("document"), where_);
+        return experiment;
+    }
+
     config::Experiment read() const {
         config::Experiment experiment = config::experimentFromDocument(
             nodeFromJson(json_.at("document"), where_), json_.at("file").get<std::string>());
@@ -473,10 +480,13 @@ Plan Plan::fromJsonFile(const fs::path& path) {
     return plan;
 }
 
-Plan planWithoutExperiments(const fs::path& path) {
+Plan planWithUnreadExperiments(const fs::path& path) {
     const SourceLocation where{path.string(), 0, 0};
     Json json = parseJsonObject(MappedFile(path).text(), where);
     Plan plan = headFrom(json, where);
+    for (const auto& [place, item] : json.at("experiments").items()) {
+        plan.experiments.push_back(ExperimentReader(item, where, "/experiments/" + place).unread());
+    }
     takeCases(std::move(json), where, plan);
     return plan;
 }

@@ -15,9 +15,10 @@ nlohmann::ordered_json toJson(const Case& item);
 Case caseFromJson(const nlohmann::ordered_json& json, const SourceLocation& where,
                   const std::string& prefix);
 
-/// The same as Plan::fromJsonFile(), also where it throws for a change, without the experiments: of
-/// a thousand shards' plans these take most of the time.
-Plan planWithoutExperiments(const std::filesystem::path& path);
+/// The same as Plan::fromJsonFile(), also where it throws for a change, but of the experiments only
+/// where they stand and their documents, unread: a sweep is expanded when it is read, which would
+/// take most of the time of a thousand shards' plans.
+Plan planWithUnreadExperiments(const std::filesystem::path& path);
 
 /// References to the scenes that a case loads: `scene`, and its parameters that are references
 /// (scene::isSceneKey), by their names; none that is empty.

@@ -11,6 +11,7 @@
 #include "engine/core/text.h"
 #include "runner/records/images.h"
 #include "runner/run/manifest.h"
+#include "runner/run/plan_json.h"
 #include "runner/run/run_directory.h"
 #include "runner/run/twins.h"
 
@@ -140,7 +141,14 @@ bool holdsRun(const fs::path& folder) {
            (fs::exists(folder / "manifest.json") || fs::exists(folder / "records.csv"));
 }
 
-StoredRun readRun(const fs::path& runDir) {
+namespace {
+
+Plan planOfPart(const fs::path& file) {
+    Plan plan = planWithUnreadExperiments(file);
+    return plan.shard ? plan : Plan::fromJsonFile(file);
+}
+
+StoredRun readRunWith(Plan (*readPlan)(const fs::path&), const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
         throw Error(runDir.string() + ": is not a run directory (it has no plan.json)");
     }
@@ -150,7 +158,7 @@ StoredRun readRun(const fs::path& runDir) {
     requirePlainFiles(runDir);
     requireModestFiles(runDir);
     StoredRun run;
-    run.plan = Plan::fromJsonFile(runDir / "plan.json");
+    run.plan = readPlan(runDir / "plan.json");
     run.manifest = readManifest(runDir / "manifest.json");
     requireOfPlan(run.manifest, run.plan, runDir / "manifest.json");
     noteChanges(run.manifest, runDir);
@@ -160,6 +168,16 @@ StoredRun readRun(const fs::path& runDir) {
         requirePlanned(runDir / "records.csv", run.plan, run.records);
     }
     return run;
+}
+
+}  // namespace
+
+StoredRun readRun(const fs::path& runDir) {
+    return readRunWith(&Plan::fromJsonFile, runDir);
+}
+
+StoredRun readPart(const fs::path& runDir) {
+    return readRunWith(&planOfPart, runDir);
 }
 
 void noteChangedImages(Json& manifest, const fs::path& runDir, const std::vector<Unit>& again) {

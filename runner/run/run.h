@@ -43,6 +43,8 @@ struct StoredRun {
 /// Throws Error when the folder is no run. The manifest notes what was changed since its end
 /// (noteChanges), and that several machines measured (noteMachines).
 StoredRun readRun(const std::filesystem::path& runDir);
+/// The same; of a shard with its experiments unread, as the plan that was cut has them.
+StoredRun readPart(const std::filesystem::path& runDir);
 /// Adds to the manifest's notes which pictures are missing or are not as they were written, but for
 /// those of the cases that are measured `again`: each is read, which takes time.
 void noteChangedImages(Json& manifest, const std::filesystem::path& runDir,

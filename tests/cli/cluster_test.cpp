@@ -8,6 +8,7 @@
 #include "engine/core/files.h"
 #include "engine/core/text.h"
 #include "runner/records/images.h"
+#include "runner/run/run.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -399,6 +400,23 @@ TEST_F(Submit, AShardHasTheSizeOfItsOwnCases) {
     EXPECT_LE(planned[1], planned[0] + 20) << "but for longer numbers";
     EXPECT_LE(measured[1], measured[0] + 500) << "but for what differs between two runs";
     EXPECT_EQ(command[1], command[0]) << "the merge names no shard";
+}
+
+/// What all shards have in common is read once, in the plan that they were cut from.
+TEST_F(Submit, OfAShardTheExperimentsAreNotReadForAMerge) {
+    const std::string out = folder.path() / "out", shard = out + "/shards/1";
+    const std::vector<std::string> lines = submitPairs(folder, 4, out);
+    ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
+    const run::StoredRun whole = run::readRun(shard), part = run::readPart(shard);
+    ASSERT_EQ(part.plan.experiments.size(), 1U);
+    EXPECT_TRUE(part.plan.experiments[0].sweep.isNull());
+    EXPECT_FALSE(whole.plan.experiments[0].sweep.isNull());
+    EXPECT_EQ(part.plan.experiments[0].document.toJson(),
+              whole.plan.experiments[0].document.toJson());
+    EXPECT_EQ(part.plan.cases.size(), whole.plan.cases.size());
+    EXPECT_EQ(part.records, whole.records);
+    ASSERT_EQ(mockGfxrepro({"merge", out}).exitCode, 4);
+    EXPECT_FALSE(run::readPart(out).plan.experiments[0].sweep.isNull()) << "no shard";
 }
 
 TEST_F(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
