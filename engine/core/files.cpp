@@ -25,6 +25,17 @@ namespace {
     throw Error(std::string("cannot ") + what + ' ' + path.string() + ": " + std::strerror(errno));
 }
 
+/// By one of the library's iterators, which name no folder when they fail.
+template <class Iterator>
+std::vector<fs::directory_entry> entriesBy(const fs::path& folder) {
+    std::vector<fs::directory_entry> entries;
+    std::error_code failure;
+    Iterator entry(folder, failure);
+    for (; !failure && entry != Iterator(); entry.increment(failure)) entries.push_back(*entry);
+    if (failure) throw Error("cannot read " + folder.string() + ": " + failure.message());
+    return entries;
+}
+
 std::string environment(const char* name) {
     const char* value = std::getenv(name);
     return value ? value : "";
@@ -80,6 +91,14 @@ bool isStillAt(const fs::path& path, int fd) {
            opened.st_dev == there.st_dev;
 }
 
+std::vector<fs::directory_entry> entriesIn(const fs::path& folder) {
+    return entriesBy<fs::directory_iterator>(folder);
+}
+
+std::vector<fs::directory_entry> entriesBelow(const fs::path& folder) {
+    return entriesBy<fs::recursive_directory_iterator>(folder);
+}
+
 void copyTree(const fs::path& from, const fs::path& to) {
     const fs::file_status status = fs::symlink_status(from);
     if (fs::is_regular_file(status)) {
@@ -98,7 +117,7 @@ void copyTree(const fs::path& from, const fs::path& to) {
         }
     } else if (fs::is_directory(status)) {
         fs::create_directories(to);
-        for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
+        for (const fs::directory_entry& entry : entriesIn(from)) {
             if (!isTemporary(entry.path())) copyTree(entry.path(), to / entry.path().filename());
         }
     } else if (fs::exists(status)) {

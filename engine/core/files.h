@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gfxrepro {
 
@@ -37,6 +38,10 @@ class MappedFile {
 /// Whether what lies at `path` is what was opened: it was neither removed nor replaced. Also true
 /// where nobody can tell, as of a file system that is away.
 bool isStillAt(const std::filesystem::path& path, int fd);
+
+/// What is in the folder; or also in those below it. Throws Error("cannot read PATH: reason").
+std::vector<std::filesystem::directory_entry> entriesIn(const std::filesystem::path& folder);
+std::vector<std::filesystem::directory_entry> entriesBelow(const std::filesystem::path& folder);
 
 /// Copies a file, or a folder with all that is in it, over what is there. Leaves out what is
 /// temporary (isTemporary()) and what goes away meanwhile. Throws Error for a link,

@@ -103,7 +103,7 @@ void removeOldest(const fs::path& folder, std::string_view extension, const fs::
                   std::uintmax_t mostBytes) {
     std::vector<std::pair<fs::file_time_type, fs::path>> files;
     std::uintmax_t bytes = 0;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    for (const fs::directory_entry& entry : entriesIn(folder)) {
         if (entry.path().extension() != extension && !isTemporary(entry.path())) continue;
         bytes += entry.file_size();
         if (entry.path() != kept) files.emplace_back(entry.last_write_time(), entry.path());

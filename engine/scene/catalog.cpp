@@ -192,7 +192,7 @@ Catalog::Catalog(const fs::path& scenesFolder, fs::path assetsFolder,
                  std::span<const GeneratorInfo> generators)
     : assetsFolder_(std::move(assetsFolder)) {
     std::vector<fs::path> files;
-    for (const auto& file : fs::recursive_directory_iterator(scenesFolder)) {
+    for (const auto& file : entriesBelow(scenesFolder)) {
         if (file.is_regular_file() && file.path().extension() == ".yaml") {
             files.push_back(file.path());
         }

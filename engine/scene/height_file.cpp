@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "engine/core/descriptor.h"
+#include "engine/core/files.h"
 #include "engine/core/output_files.h"
 
 namespace gfxrepro::scene {
@@ -187,7 +188,7 @@ bool isThere(const fs::path& path, glm::ivec2 sizeSamples) {
 
 /// What processes that were killed left behind, in a folder that nobody else writes to.
 void removeTemporaries(const fs::path& folder) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    for (const fs::directory_entry& entry : entriesIn(folder)) {
         if (isTemporary(entry.path())) fs::remove(entry.path());
     }
 }

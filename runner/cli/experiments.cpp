@@ -76,9 +76,9 @@ bool isYamlFile(const fs::path& name) {
 
 std::vector<fs::path> paperConfigs() {
     std::vector<fs::path> files;
-    for (const fs::directory_entry& folder : fs::directory_iterator(dataFolder("configs"))) {
+    for (const fs::directory_entry& folder : entriesIn(dataFolder("configs"))) {
         if (!outcome::isPaperFolder(folder.path())) continue;
-        for (const fs::directory_entry& file : fs::directory_iterator(folder.path())) {
+        for (const fs::directory_entry& file : entriesIn(folder.path())) {
             if (isConfig(file.path())) files.push_back(fs::absolute(file.path()));
         }
     }

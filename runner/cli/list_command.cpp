@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/files.h"
 #include "engine/core/text.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/experiments.h"
@@ -32,7 +33,7 @@ Rows tables() {
 Rows configs() {
     const fs::path folder = dataFolder("configs");
     Rows rows;
-    for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder)) {
+    for (const fs::directory_entry& file : entriesBelow(folder)) {
         const fs::path path = fs::relative(file.path(), folder);
         const std::string first = *path.begin();
         if (path.extension() == ".yaml" && first != "scenes" && first != "presets" &&

@@ -61,8 +61,8 @@ fs::path Submission::shardFolder(int index) const {
 
 std::vector<fs::path> shardFolders(const fs::path& out) {
     std::map<long long, fs::path> folders;
-    std::error_code isAbsent;
-    for (const auto& entry : fs::directory_iterator(out / "shards", isAbsent)) {
+    if (!fs::exists(out / "shards")) return {};
+    for (const auto& entry : entriesIn(out / "shards")) {
         const auto index = parseInteger(entry.path().filename().string());
         if (index) folders[*index] = entry.path();
     }
@@ -177,7 +177,7 @@ void copyParts(const fs::path& folder) {
     if (!fs::is_directory(libraries)) return;
     // Larger than all the rest, and replaced, not written to, by whoever installs anew. Of a link
     // what it leads to: the folder becomes a part of a run, which holds none.
-    for (const fs::directory_entry& entry : fs::directory_iterator(libraries)) {
+    for (const fs::directory_entry& entry : entriesIn(libraries)) {
         shareFile(fs::canonical(entry), folder / "lib" / entry.path().filename());
     }
 }

@@ -29,7 +29,7 @@ std::uintmax_t sizeOf(const fs::path& path) {
     if (!fs::exists(path)) return 0;
     if (fs::is_regular_file(path)) return fs::file_size(path);
     std::uintmax_t bytes = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(path)) {
+    for (const auto& entry : entriesBelow(path)) {
         if (entry.is_regular_file()) bytes += entry.file_size();
     }
     return bytes;
@@ -232,7 +232,7 @@ std::string readmeText(const fs::path& artifact, const run::StoredRun& run) {
 
 std::string checksums(const fs::path& target) {
     std::vector<fs::path> files;
-    for (const auto& entry : fs::recursive_directory_iterator(target)) {
+    for (const auto& entry : entriesBelow(target)) {
         if (entry.is_regular_file()) files.push_back(entry.path());
     }
     std::ranges::sort(files);

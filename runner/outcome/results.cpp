@@ -71,7 +71,7 @@ void takeFolder(const fs::path& folder, const fs::path& runDir, const run::Json&
 
 bool isPaperFolder(const fs::path& folder) {
     if (!fs::is_directory(folder)) return false;
-    return std::ranges::any_of(fs::directory_iterator(folder), [](const auto& file) {
+    return std::ranges::any_of(entriesIn(folder), [](const auto& file) {
         const std::string name = file.path().filename().string();
         return name.starts_with("table-") || name.starts_with("figure-") ||
                name.starts_with("section-");

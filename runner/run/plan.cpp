@@ -167,7 +167,7 @@ std::string programBuildId() {
 
 std::string buildIdOf(const fs::path& program, const fs::path& shaders) {
     std::vector<fs::path> files;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(shaders)) {
+    for (const fs::directory_entry& entry : entriesBelow(shaders)) {
         if (entry.is_regular_file()) files.push_back(entry.path());
     }
     std::sort(files.begin(), files.end());

@@ -221,7 +221,7 @@ void removeScratchOf(const fs::path& folder) {
 void removeTemporaryFiles(const fs::path& folder) {
     removeScratchOf(folder);
     std::vector<fs::path> files;
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    for (const auto& entry : entriesBelow(folder)) {
         if (entry.is_regular_file() && isTemporary(entry.path())) files.push_back(entry.path());
     }
     for (const fs::path& file : files) fs::remove(file);

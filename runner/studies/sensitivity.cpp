@@ -458,7 +458,7 @@ std::string sensitivityIndex(const fs::path& folder, const std::string& command)
         "assumption tried turned.\nWritten by `gfxrepro sensitivity … --keep`, last by\n\n    " +
         command + "\n";
     std::set<fs::path> files;
-    for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder)) {
+    for (const fs::directory_entry& file : entriesBelow(folder)) {
         const bool isPage = file.path().extension() == ".md" && file.path().parent_path() != folder;
         if (isPage) files.insert(fs::path(file.path()).replace_extension(".csv"));
     }

@@ -202,7 +202,7 @@ TableNotes keptCalibrations(const fs::path& folder) {
     TableNotes kept;
     if (!fs::is_directory(folder)) return kept;
     std::set<fs::path> files;
-    for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
+    for (const fs::directory_entry& file : entriesIn(folder)) {
         if (file.path().extension() == ".csv") files.insert(file.path());
     }
     for (const fs::path& file : files) addCalibration(file, kept);

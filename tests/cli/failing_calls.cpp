@@ -1,7 +1,9 @@
 // To be preloaded into the program (LD_PRELOAD): call number FAILING_CALL of those that change
-// files under the folder FAILING_UNDER fails with FAILING_ERRNO; -1: the process is killed there,
-// with half of a write done. With FAILING_COUNT the number of such calls is written to that file at
-// the end. The processes that it starts are left alone.
+// files under the folder FAILING_UNDER, or with FAILING_FOLDERS of those that read folders there,
+// fails with FAILING_ERRNO; -1: the process is killed there, with half of a write done. With
+// FAILING_COUNT the number of such calls is written to that file at the end. The processes that it
+// starts are left alone.
+#include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -22,6 +24,7 @@ namespace {
 const char* under = nullptr;  // set once by the constructor
 long failing = 0;
 int failure = 0;
+bool isOfFolders = false;
 std::atomic<long> calls = 0;
 
 template <class Function>
@@ -37,6 +40,7 @@ __attribute__((constructor)) void begin() {
     under = std::getenv("FAILING_UNDER");
     failing = number("FAILING_CALL");
     failure = static_cast<int>(number("FAILING_ERRNO"));
+    isOfFolders = std::getenv("FAILING_FOLDERS") != nullptr;
     ::unsetenv("LD_PRELOAD");
 }
 
@@ -66,8 +70,8 @@ bool isCounted(int file) {
 
 /// Counts a call; whether it is to fail, with errno set. `half` is done before a kill.
 template <class Target, class Half>
-bool fails(Target target, Half half) {
-    if (!isCounted(target) || ++calls != failing) return false;
+bool fails(Target target, Half half, bool readsFolder = false) {
+    if (readsFolder != isOfFolders || !isCounted(target) || ++calls != failing) return false;
     if (failure < 0) {
         half();
         ::kill(::getpid(), SIGKILL);
@@ -130,6 +134,12 @@ int ftruncate(int file, off_t size) noexcept {
 
 int rename(const char* from, const char* to) noexcept {
     return fails(to) ? -1 : next<int (*)(const char*, const char*)>("rename")(from, to);
+}
+
+dirent* readdir(DIR* folder) {
+    const auto nothing = [] {};
+    if (fails(::dirfd(folder), nothing, true)) return nullptr;
+    return next<dirent* (*)(DIR*)>("readdir")(folder);
 }
 
 int mkdir(const char* path, mode_t mode) noexcept {

@@ -34,13 +34,14 @@ class FailingCalls : public testing::Test {
         EXPECT_EQ(mockGfxrepro({"table", whole_}).exitCode, 0);
     }
 
-    ProcessResult failing(Arguments command, long call, int failure) const {
+    ProcessResult failing(Arguments command, long call, int failure, Arguments more = {}) const {
         command.insert(command.begin(), GFXREPRO_MOCK_PROGRAM);
-        return runProgram(
-            command,
+        more.insert(
+            more.end(),
             {"LD_PRELOAD=" GFXREPRO_FAILING_CALLS, "FAILING_UNDER=" + place_.string(),
              "FAILING_CALL=" + std::to_string(call), "FAILING_ERRNO=" + std::to_string(failure),
              "FAILING_COUNT=" + countFile_.string()});
+        return runProgram(command, more);
     }
 
     static ProcessResult run(const std::string& config, const std::string& dir) {
@@ -155,6 +156,31 @@ TEST_F(FailingCalls, OfWhatReadsARunLeaveItAsItIs) {
             endedWith(0, mockGfxrepro(command));
             expectAsUntouched(dir);
         });
+    }
+}
+
+/// A folder that cannot be read to its end is named, wherever it is not only looked into.
+TEST_F(FailingCalls, OfFoldersAreSaidWithTheFolder) {
+    const fs::path dir = place_ / "run", out = place_ / "out";
+    const std::vector<Arguments> commands = {{"run", "--resume", dir, "--jobs", "1"},
+                                             {"export", dir, "--out", out},
+                                             {"merge", "--out", out, dir}};
+    for (const Arguments& command : commands) {
+        long calls = 1, said = 0, step = 1;
+        for (long call = 0; call <= calls; call += step) {
+            SCOPED_TRACE(testing::Message() << command[0] << ", call " << call << " of " << calls);
+            fs::remove_all(place_);
+            fs::create_directories(place_);
+            fs::copy(whole_, dir, fs::copy_options::recursive);
+            const ProcessResult result = failing(command, call, EIO, {"FAILING_FOLDERS=1"});
+            if (call == 0) calls = std::stol(readFile(countFile_));
+            if (call == 1) step = std::max(1L, calls / (4 * kCallsTried));
+            const std::string message = "gfxrepro: cannot read " + place_.string();
+            const bool isSaid = result.err.find(message) != std::string::npos;
+            EXPECT_EQ(result.exitCode, isSaid ? 2 : 0) << result.err;
+            said += isSaid ? 1 : 0;
+        }
+        EXPECT_GT(said, 3) << command[0];
     }
 }
 
