@@ -210,15 +210,13 @@ void requireTimesTaken(const config::Experiment& experiment, const tables::Table
     }
 }
 
-/// Says which programs are not on this machine: other machines may have them. Files that they read
-/// have to be there.
+/// Says which programs are not on this machine: other machines may have them.
 void sayAbsent(const std::string& file, const std::vector<config::Case>& cases) {
     std::set<std::string> absent, absentArguments;
     for (const config::Case& item : cases) {
         if (item.program.isNull()) continue;
         const config::ExternalProgram program = config::readProgram(item.program);
         const config::Placeholders values = program.valuesOf(item.params);
-        config::requireFiles(item.program, program, values);
         for (std::string& line : config::absentArguments(program, values)) {
             absentArguments.insert(std::move(line));
         }
@@ -379,6 +377,7 @@ std::vector<config::Case> checkFile(const Context& context, const Chosen& select
     requireSound(context, catalog, experiment, cases, told);
     Size size = sizeOf(context, experiment, cases);
     size.planBytes = planBytesOf(experiment, cases, selection);
+    requireFiles(cases);
     sayAbsent(file, cases);
     for (const std::string& line : config::ownTruths(experiment, cases))
         say("{}: {}\n", file, line);
@@ -415,6 +414,18 @@ tables::Table tableBefore(const Context& context, const config::Experiment& expe
         throw Error(claim.location, fmt::format("claim '{}': {}", claim.id, absent));
     }
     return table;
+}
+
+void requireFiles(std::span<const config::Case> cases) {
+    std::map<std::string_view, config::ExternalProgram> programs;  // by experiment
+    for (const config::Case& item : cases) {
+        if (item.program.isNull()) continue;
+        auto program = programs.find(item.experiment);
+        if (program == programs.end()) {
+            program = programs.emplace(item.experiment, config::readProgram(item.program)).first;
+        }
+        config::requireFiles(item.program, program->second, program->second.valuesOf(item.params));
+    }
 }
 
 void requireSound(const Context& context, const scene::Catalog& catalog,

@@ -220,6 +220,7 @@ run::Plan planFor(const Context& context, const run::Request& request, const std
         requireSound(context, catalog, experiment, std::span(first, end), told);
     }
     run::keepOnly(plan, request.only);
+    requireFiles(plan.cases);
     run::requirePlanBytes(plan, run::planBytes(plan));
     return plan;
 }

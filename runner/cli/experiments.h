@@ -64,6 +64,10 @@ void requireSound(const Context& context, const scene::Catalog& catalog,
                   const config::Experiment& experiment, std::span<const config::Case> cases,
                   std::set<std::string>& told);
 
+/// Throws Error where a file that a program needs, or a program of the config's own folder, is not
+/// there: no case could be measured.
+void requireFiles(std::span<const config::Case> cases);
+
 /// Throws Error where what was measured elsewhere is not what its config, a sound one, lays out: it
 /// tells cases apart that the config does not, or lacks those that a `where` asks for.
 void requireLaidOut(const Context& context, const scene::Catalog& catalog,

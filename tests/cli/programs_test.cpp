@@ -285,6 +285,25 @@ TEST_F(ExternalProgram, OneThatIsNotHereIsUnsupported) {
     EXPECT_EQ(rows[0].message, "the program 'no-such-program-anywhere' is not on this machine");
 }
 
+/// Of its own folder; what is elsewhere another machine may have.
+TEST_F(ExternalProgram, OneThatLacksAFileIsNotMeasured) {
+    std::string gone = kProgram;
+    gone.replace(gone.find("renderer.sh"), 11, "gone.sh");
+    for (const auto& [config, error] :
+         {std::pair{kProgram + std::string("  images: {result: {file: result.png, truth: "
+                                           "\"{here}/gone.png\"}}\n"),
+                    ":11:46: program: image 'result': truth: there is no file "},
+          {gone, ":5:12: program: command: there is no program "}}) {
+        const fs::path file = folder.write("mine.yaml", config);
+        for (const char* command : {"check", "run", "reproduce", "plan"}) {
+            std::vector<std::string> arguments = {command, file};
+            if (*command == 'r') arguments.insert(arguments.end(), {"--out", dir});
+            EXPECT_THAT(endedWith(2, gfxrepro(arguments)).err, HasSubstr(file.string() + error));
+        }
+        EXPECT_FALSE(fs::exists(dir + "/records.csv"));
+    }
+}
+
 TEST_F(ExternalProgram, TheTruthIsMadeOnce) {
     // Says of each run with which number it was made.
     fs::permissions(folder.write("renderer.sh",
