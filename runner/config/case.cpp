@@ -208,7 +208,7 @@ const KeyTable<MeasureKeys>& measureTable() {
          {&M::sceneSeeds,
           key("scene_seeds", {.least = 1, .most = kMostSceneSample + 1, .isWhole = true},
               kUsual.sceneSeeds,
-              "seeds of a generated scene, from the catalogue's on: a case each")},
+              "seeds of a generated scene, from the catalogue's on: a case each, without times")},
          {&M::timeLimitS, key("time_limit_s", {.least = 1e-3, .most = 1e9}, kUsual.timeLimitS,
                               "of the whole case, scene loading included", "seconds")}}};
     return table;
@@ -244,7 +244,7 @@ Measure readMeasure(const Node& map, Measure measure) {
     take(given.sceneSeeds, measure.sceneSeeds);
     if (measure.sceneSeeds > 1 && measure.lane == Measure::Lane::Timing) {
         throw Error(given.sceneSeeds->location(),
-                    "'scene_seeds' needs the quality lane: a time varies by the process");
+                    "'scene_seeds' takes no times; allowed: 1, or with lane: quality");
     }
     take(given.timeLimitS, measure.timeLimitS);
     return measure;

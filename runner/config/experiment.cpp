@@ -365,13 +365,11 @@ void readMeasurement(const Node& document, const ContentKeys& given, Experiment&
 }
 
 /// How it is measured, which depends on what is shown: who shows times, or anything that there is,
-/// of one scene, wants times.
+/// wants times.
 void readLane(const Node& document, const ContentKeys& keys, Experiment& experiment) {
     const Node map = mapIn(keys.measure, document);
     const MeasureKeys given = measureTable().find(map);
-    const bool hasSeveral = given.sceneSeeds && given.sceneSeeds->tryInteger().value_or(1) > 1;
-    const bool isTimed =
-        experiment.hasDefaultLayout() ? !hasSeveral : showsTimes(experiment.layout);
+    const bool isTimed = experiment.hasDefaultLayout() || showsTimes(experiment.layout);
     Measure defaults;
     if (isTimed) defaults.lane = Measure::Lane::Timing;
     defaults.seeds = defaultSeeds(experiment);

@@ -184,7 +184,7 @@ TEST_F(OwnProgram, AQuotientOfTimesIsATime) {
     const auto file = folder.write("mine.yaml",
                                    "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\n"
                                    "scene: models/duck\nsweep: {rule: [rasterized, thin]}\n"
-                                   "measure: {scene_seeds: 3}\n"
+                                   "measure: {lane: quality, scene_seeds: 3}\n"
                                    "claims: {c: {says: so, bound: \"frame ÷ rasterized\", "
                                    "at_most: 1.2}}\n");
     EXPECT_THAT(gfxrepro({"check", file}).err,
