@@ -285,6 +285,11 @@ std::vector<Series> seriesOf(const std::string& table,
     return all;
 }
 
+/// A time that the runner takes beside those of frames, as an import may have it.
+bool isByTheWay(const std::string& metric) {
+    return metric == "process_time_ms" || metric == "setup_time_ms" || metric == "load_time_ms";
+}
+
 /// In the order of declaration, without details; the times that a program says of itself first.
 std::vector<Series> declared(std::vector<Series> all, const config::Experiment& experiment) {
     const config::Outputs& outputs = experiment.outputs;
@@ -298,7 +303,8 @@ std::vector<Series> declared(std::vector<Series> all, const config::Experiment& 
         const auto at =
             std::ranges::find(outputs.metrics, series.metric, &config::MetricInfo::name);
         const bool isPass = series.metric == "gpu_time_ms" || series.metric == "cpu_time_ms";
-        const bool isItsOwn = config::goesByClock(experiment) && series.metric.ends_with("_ms");
+        const bool isItsOwn = config::goesByClock(experiment) && series.metric.ends_with("_ms") &&
+                              !isByTheWay(series.metric);
         const int group = series.metric == "wall_time_ms" ? 1 : isPass ? 2 : isItsOwn ? 0 : 3;
         const bool isByTheRunner = group == 1 || group == 2;
         return std::tuple(group, isByTheRunner ? outputs.metrics.begin() : at, series.order);

@@ -155,6 +155,29 @@ TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
                 testing::Not(Contains(testing::HasSubstr("÷"))));
 }
 
+/// The CPU time of what waits says nothing of it.
+TEST(DefaultLayout, OfAnImportTheClockComesBeforeCpuTime) {
+    RecordMaker maker;
+    for (const char* method : {"plain", "fast"}) {
+        maker.beginCase("", fmt::format(R"({{"method": "{}"}})", method)).lane("timing");
+        for (int process = 0; process < 6; ++process) {
+            const double time = (method[0] == 'p' ? 200.0 : 100.0) + 0.1 * process;
+            maker.process(process).add("process_time_ms", {10.0 + 0.01 * process});
+            maker.add("setup_time_ms", {3.0}).add("wall_time_ms", {time});
+        }
+    }
+    Recorded records = maker.records();
+    for (records::Record& record : records) record.table = "sweep/s";
+    for (config::Case& item : records.cases) item.experiment = "sweep/s";
+    config::Experiment experiment = sweepOf("{method: [plain, fast]}");
+    experiment.technique = config::kImported;
+    experiment.outputs = {};
+    const Table table = buildTable(experiment, records);
+    EXPECT_THAT(labelsOf(table),
+                ElementsAre("frame_ms", "frame ÷ plain", "process_time_ms", "setup_time_ms"));
+    EXPECT_THAT(table.notes[0], HasSubstr("frame: fast is faster than plain in the one row (0.5"));
+}
+
 /// Of what was measured elsewhere no technique declares it.
 TEST(DefaultLayout, ImportedErrorsAreKnownByTheirNames) {
     RecordMaker maker;
