@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -52,6 +53,9 @@ using AxisPoint = Node::Map;
 /// A pair's value may be a list: any of these. Points made equal by `when` are one. Throws Error at
 /// the place of what is wrong, and for more than 1,000,000 points.
 std::vector<AxisPoint> expandSweep(const Node& sweep);
+
+/// Axes that go together with this one: of the same block of `zip`, or of points spelt out.
+std::set<std::string> axesBeside(const Node& sweep, std::string_view axis);
 
 /// Its `when`; null where it has none.
 const Node* whenOf(const Node& sweep);

@@ -229,6 +229,19 @@ class Factors {
         return &places_[static_cast<std::size_t>(found - axes_.begin())];
     }
 
+    /// Axes of the factor that has this one.
+    std::set<std::string> besides(std::string_view axis) const {
+        std::set<std::string> names;
+        for (const Factor& factor : factors_) {
+            std::set<std::string> own;
+            for (const AxisPoint& point : factor) {
+                for (const auto& [name, value] : point) own.insert(name);
+            }
+            if (own.erase(std::string(axis)) > 0) names = std::move(own);
+        }
+        return names;
+    }
+
     std::vector<AxisPoint> product(const SourceLocation& where) const {
         double count = 1;
         for (const Factor& factor : factors_) count *= static_cast<double>(factor.size());
@@ -365,6 +378,10 @@ std::vector<Fixed> fixedInVain(const Experiment& experiment) {
 
 const Node* whenOf(const Node& sweep) {
     return sweepTable().find(sweep).when;
+}
+
+std::set<std::string> axesBeside(const Node& sweep, std::string_view axis) {
+    return sweep.isMap() ? factorsOf(sweep).besides(axis) : std::set<std::string>();
 }
 
 void applyWhen(const Node& when, AxisPoint& point) {

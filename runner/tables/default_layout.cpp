@@ -23,7 +23,16 @@ namespace gfxrepro::tables {
 
 namespace {
 
-/// The first such axis of the cases.
+/// What the place of another row, "[AXIS=VALUE, …]", is read by.
+bool hasMarks(const std::string& value) {
+    return value.find_first_of("[],='\"") != value.npos;
+}
+
+bool isSwitch(const std::string& value) {
+    return value == "true" || value == "false";
+}
+
+/// The first such axis of the cases; one that is on and off where there is none of words.
 Rivals rivalsOf(const std::vector<const config::Case*>& cases) {
     std::vector<Rivals> axes;
     for (const config::Case* item : cases) {
@@ -37,25 +46,53 @@ Rivals rivalsOf(const std::vector<const config::Case*>& cases) {
         }
     }
     const auto isWord = [](const std::string& value) {
-        return !value.empty() && !parseDouble(value) && value != "true" && value != "false" &&
-               value != kLeftOut && value.find_first_of("[],='\"") == value.npos;
+        return !value.empty() && !parseDouble(value) && !isSwitch(value) && value != kLeftOut &&
+               !hasMarks(value);
     };
-    for (Rivals& axis : axes) {
-        const bool isSuch = axis.axis != "scene" && axis.values.size() > 1 &&
-                            std::ranges::all_of(axis.values, isWord);
-        if (isSuch) return axis;
+    for (const bool isOfWords : {true, false}) {
+        for (Rivals& axis : axes) {
+            const bool isSuch = isOfWords ? std::ranges::all_of(axis.values, isWord)
+                                          : std::ranges::all_of(axis.values, isSwitch);
+            if (axis.axis != "scene" && axis.values.size() > 1 && isSuch) return axis;
+        }
     }
     return {};
+}
+
+/// As the table has it; what is on or off by its axis: "denoised true".
+std::string rivalName(const Rivals& rivals, std::size_t which, const Words& words) {
+    const std::string& value = rivals.values[which];
+    return isSwitch(value) ? shownValue(rivals.axis, value, words) : value;
+}
+
+/// Where the first rival stands: what goes together with its axis is what it has of it.
+std::string placeOfFirst(const Rivals& rivals, const config::Experiment& experiment,
+                         const std::vector<const config::Case*>& cases) {
+    std::string at = rivals.axis + "=" + rivals.values[0];
+    for (const std::string& axis : config::axesBeside(experiment.sweep, rivals.axis)) {
+        std::set<std::string> values;
+        for (const config::Case* item : cases) {
+            const Node* own = item->axes.find(rivals.axis);
+            const Node* beside = item->axes.find(axis);
+            const bool isFirst = own && canonicalText(*own) == rivals.values[0];
+            if (isFirst && beside) values.insert(canonicalText(*beside));
+        }
+        const bool isOne = values.size() == 1 && !hasMarks(*values.begin());
+        if (isOne) at += fmt::format(", {}={}", axis, *values.begin());
+    }
+    return at;
 }
 
 /// Of that column the one that divides it by its value for the first rival.
 std::pair<std::string, config::Selection> columnAgainst(const Rivals& rivals,
                                                         const std::string& column,
+                                                        const std::string& first,
                                                         const config::Experiment& experiment) {
     config::Selection selection;
-    selection.of = fmt::format("{0} / {0}[{1}={2}]", column, rivals.axis, rivals.values[0]);
+    selection.of = fmt::format("{0} / {0}[{1}]", column, first);
     selection.format = "{median:.3g}";
-    return {fmt::format("{} ÷ {}", quantityOf(column, experiment.labels).words, rivals.values[0]),
+    return {fmt::format("{} ÷ {}", quantityOf(column, experiment.labels).words,
+                        rivalName(rivals, 0, experiment.labels)),
             std::move(selection)};
 }
 
@@ -95,8 +132,15 @@ struct RivalCells {
         const Measured* ratio = cell.isOk() ? cell.find("", clock) : nullptr;
         return ratio && ratio->value > 0.0 ? ratio : nullptr;
     }
-    bool isTold(std::size_t row, const Measured& ratio) const {
+    /// Of numbers that another measurement would not change.
+    static bool isKnown(const Cell& cell) {
+        return cell.isOk() && !cell.isTime && cell.seedCount == 0 && !cell.scatters &&
+               cell.onceAlong.empty() && cell.bounds() == Bounds::None &&
+               !cell.values[0].isOverProcesses;
+    }
+    bool isTold(std::size_t row, const Cell& cell, const Measured& ratio) const {
         constexpr double kBothEnds = 0.05;
+        if (isKnown(cell)) return !metrics::areAlike(ratio.value, 1.0);
         const bool isSure = ratio.bounds == Bounds::Interval &&
                             (ratio.interval.high < 1.0 || ratio.interval.low > 1.0) &&
                             !metrics::areAlike(ratio.interval.high, 1.0) &&
@@ -138,7 +182,7 @@ RivalTally rivalTallyOf(Table& table, const RivalCells& cells, const std::string
         TableRow& row = table.rows[i];
         const Measured* ratio = cells.ratioOf(row.cells[cells.column]);
         if (row.labels[cells.axis] != rival || !ratio) continue;
-        const bool isTold = cells.isTold(i, *ratio);
+        const bool isTold = cells.isTold(i, row.cells[cells.column], *ratio);
         row.cells[cells.column].isWithinNoise = !isTold;
         if (!isTold) {
             ++tally.open;
@@ -199,15 +243,15 @@ void compareRivals(const Rivals& rivals, const std::vector<std::string>& columns
         const auto column = table.findColumn(label);
         if (!column || axis == table.rowAxes.end()) continue;
         std::string metric;
-        bool hasIntervals = false, hasProcessTimes = !table.goesByClock;
+        bool canBeTold = false, hasProcessTimes = !table.goesByClock;
         for (const TableRow& row : table.rows) {
             const Cell& cell = row.cells[*column];
             hasProcessTimes &= cell.values.empty() || !cell.byProcess.empty();
-            if (cell.bounds() != Bounds::Interval) continue;
-            hasIntervals = true;
+            if (cell.bounds() != Bounds::Interval && !RivalCells::isKnown(cell)) continue;
+            canBeTold = true;
             metric = row.cells[*column - 1].metric;  // of the column beside which it stands
         }
-        if (!hasIntervals) continue;
+        if (!canBeTold) continue;
         const std::string& divided = table.columns[*column - 1].label;
         const Clock clock = hasProcessTimes ? Clock::Process : Clock::Wall;
         const bool isTime = config::isTimeMetric(metric);
@@ -221,7 +265,8 @@ void compareRivals(const Rivals& rivals, const std::vector<std::string>& columns
             if (tally.rows() == 0) continue;
             (tally.open == tally.rows() ? open : told)
                 .push_back(fmt::format("{}: {}.", label.substr(0, label.find(" ÷ ")),
-                                       rivalSentence(tally, rivals.values[i], rivals.values[0],
+                                       rivalSentence(tally, rivalName(rivals, i, table.words),
+                                                     rivalName(rivals, 0, table.words),
                                                      RivalWords::of(metric, clock))));
         }
     }
@@ -417,6 +462,8 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
         }
     }
     result.rivals = rivalsOf(own);
+    const std::string first =
+        result.rivals.isThere() ? placeOfFirst(result.rivals, experiment, own) : "";
     const std::vector<Series> all = seriesOf(experiment.id, records);
     result.notes = frameNotes(experiment, all);
     std::set<std::string> measured;
@@ -457,7 +504,7 @@ DefaultLayout defaultLayout(const config::Experiment& experiment,
         }
         columns.labels.emplace_back(label, std::move(selection));
         if (isRivals(series, columns.labels.size() == 1)) {
-            columns.labels.push_back(columnAgainst(result.rivals, label, experiment));
+            columns.labels.push_back(columnAgainst(result.rivals, label, first, experiment));
             result.against.push_back(columns.labels.back().first);
         }
     }

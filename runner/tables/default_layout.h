@@ -11,8 +11,8 @@
 
 namespace gfxrepro::tables {
 
-/// An axis whose values are methods, patterns, variants: words, of which there are two or more. The
-/// first is what the others are held against. Scenes and truth values are none.
+/// An axis whose values are methods, patterns, variants: words, of which there are two or more, or
+/// else off and on. The first is what the others are held against. Scenes are none.
 struct Rivals {
     std::string axis;
     std::vector<std::string> values;
@@ -44,9 +44,9 @@ void describeColumns(const config::Experiment& experiment, const config::Layout&
 /// Puts before the notes which rivals are faster or slower, nearer to their truth or farther from
 /// it, than the first, in how many rows and by how much: by the intervals of those columns, all
 /// rows together (metrics::jointChances), a time only beyond the noise of what is divided, and by
-/// the CPU time of the process where that was recorded (Table::judgedByProcess). Behind what is
-/// told (Table::toldNotes) stands what cannot be. Marks the cells that are not apart. Nothing where
-/// a column has no intervals.
+/// the CPU time of the process where that was recorded (Table::judgedByProcess); of what is known
+/// as it is. Behind what is told (Table::toldNotes) stands what cannot be. Marks the cells that are
+/// not apart. Nothing where a column has neither.
 void compareRivals(const Rivals& rivals, const std::vector<std::string>& columns, Table& table);
 
 }  // namespace gfxrepro::tables

@@ -155,6 +155,69 @@ TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
                 testing::Not(Contains(testing::HasSubstr("÷"))));
 }
 
+/// Methods with parameters of their own, each with an error that no measurement changes.
+TEST(DefaultLayout, WhatIsKnownOfMethodsIsToldAsItIs) {
+    RecordMaker maker;
+    for (const auto& [method, samples, error] :
+         {std::tuple("plain", 16, 4.0), {"fine", 64, 1.0}, {"alike", 32, 4.0}}) {
+        maker.beginCase("", fmt::format(R"({{"method": "{}", "samples": {}}})", method, samples));
+        maker.add("error_pct", {error}, "", "%");
+    }
+    Recorded records = maker.records();
+    for (records::Record& record : records) record.table = "sweep/s";
+    for (config::Case& item : records.cases) item.experiment = "sweep/s";
+    for (const char* sweep :
+         {"{zip: [{method: [plain, fine, alike], samples: [16, 64, 32]}]}",
+          "{list: [[{method: plain, samples: 16}, {method: fine, samples: 64}, {method: alike, "
+          "samples: 32}]]}"}) {
+        const Table table = buildTable(sweepOf(sweep), records);
+        EXPECT_THAT(labelsOf(table), ElementsAre("error_pct", "error ÷ plain"));
+        EXPECT_EQ(table.rows[1].cells[1].measured, "0.25");
+        EXPECT_EQ(table.notes[0],
+                  "error: fine is lower than plain in the one row (0.25 times its value).");
+        EXPECT_EQ(table.notes[1], "error: alike and plain cannot be told apart in the one row.");
+        EXPECT_EQ(table.toldNotes, 1U);
+        EXPECT_FALSE(table.rows[1].cells[1].isWithinNoise);
+        EXPECT_TRUE(table.rows[2].cells[1].isWithinNoise);
+    }
+    // What else is swept may have other values with each method.
+    EXPECT_EQ(buildTable(sweepOf("{method: [plain, fine, alike], samples: [16, 64, 32]}"), records)
+                  .rows[1]
+                  .cells[1]
+                  .measured,
+              "missing");
+}
+
+/// What is on in some cases is held against those where it is off, unless there are methods.
+TEST(DefaultLayout, HoldsOnAgainstOff) {
+    const auto timed = [](const char* axes) {
+        RecordMaker maker;
+        for (const char* value : {"false", "true"}) {
+            for (const char* method : {"plain", "fast"}) {
+                maker.beginCase("", fmt::format(fmt::runtime(axes), value, method)).lane("timing");
+                for (int process = 0; process < 6; ++process) {
+                    const double time = (value[0] == 't' ? 5.0 : 10.0) + 0.01 * process;
+                    maker.process(process).add("wall_time_ms", {time});
+                }
+                if (std::string_view(axes).find("method") == std::string_view::npos) break;
+            }
+        }
+        Recorded records = maker.records();
+        for (records::Record& record : records) record.table = "sweep/s";
+        for (config::Case& item : records.cases) item.experiment = "sweep/s";
+        return records;
+    };
+    const Table table =
+        buildTable(sweepOf("{is_culled: [false, true]}"), timed(R"({{"is_culled": {}}})"));
+    EXPECT_THAT(labelsOf(table), ElementsAre("frame_ms", "frame ÷ is culled false"));
+    EXPECT_THAT(table.notes[0],
+                "frame: is culled true is faster than is culled false in the one "
+                "row (0.501 times its time).");
+    EXPECT_THAT(labelsOf(buildTable(sweepOf("{is_culled: [false, true], method: [plain, fast]}"),
+                                    timed(R"({{"is_culled": {}, "method": "{}"}})"))),
+                ElementsAre("frame_ms", "frame ÷ plain"));
+}
+
 /// The CPU time of what waits says nothing of it.
 TEST(DefaultLayout, OfAnImportTheClockComesBeforeCpuTime) {
     RecordMaker maker;
