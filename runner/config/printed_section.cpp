@@ -197,7 +197,7 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
                     fmt::format("printed: '{}' without '{}'", key.name(), without));
     };
     if (given.values && layout && !names) refuse(given.values, "layout");
-    if (given.calibrated && !names) refuse(given.calibrated, "technique");
+    if (given.calibrated && !names) refuse(given.calibrated, layout ? "layout" : "technique");
     if (given.at && !layout) refuse(given.at, "technique");
     Printed printed;
     printed.location = node.location();

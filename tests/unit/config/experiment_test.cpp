@@ -573,6 +573,8 @@ TEST_F(ExperimentTest, KeysOfWhichNothingFollowsAreRefused) {
     EXPECT_EQ(errorOf("printed: {at: {n: 3}}\n"),
               "DIR/zju/a.yaml:4:11: 'at': nothing is printed that could have been measured there; "
               "allowed: with 'values'");
+    EXPECT_EQ(errorOf("printed: {calibrated: [{n: 1, column: a}]}\n"),
+              "DIR/zju/a.yaml:4:11: printed: 'calibrated' without 'layout'");
     EXPECT_EQ(errorOf("printed: {compared: [usual]}\n"),
               "DIR/zju/a.yaml:4:11: 'compared': no fit reads a table without printed cells; "
               "allowed: with 'values'");
