@@ -61,6 +61,20 @@ void addRanges(const Experiment& experiment, std::set<std::string> scenes,
     }
 }
 
+/// What was measured elsewhere has its parameters, scenes and rounds from its own file.
+std::vector<NoEffect> keysOfMeasuring(const ContentKeys& given) {
+    std::vector<NoEffect> found;
+    for (const GivenKey* key :
+         {&given.program, &given.scene, &given.sceneParams, &given.sceneInstead, &given.params,
+          &given.paramsByScene, &given.paramsInstead, &given.measure, &given.shows}) {
+        if (!*key) continue;
+        found.push_back({key->where(), fmt::format("'{}': nothing is measured with technique {}; "
+                                                   "allowed: columns of the file that is imported",
+                                                   key->name(), kImported)});
+    }
+    return found;
+}
+
 }  // namespace
 
 bool showsTimes(const Layout& layout) {
@@ -77,6 +91,7 @@ bool showsTimes(const Layout& layout) {
 }
 
 std::vector<NoEffect> keysInVain(const Experiment& experiment) {
+    if (experiment.technique == kImported) return keysOfMeasuring(contentOf(experiment.document));
     if (!isMeasuredHere(experiment)) return {};
     std::vector<NoEffect> found;
     const auto require = [&](const Node* map, const char* key, bool hasEffect,

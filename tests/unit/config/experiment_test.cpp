@@ -609,6 +609,23 @@ TEST_F(ExperimentTest, KeysOfWhichNothingFollowsAreRefused) {
     EXPECT_EQ(errorOf("extends: presets/more.yaml\n"), "no error");
 }
 
+TEST_F(ExperimentTest, OfAnImportNothingIsMeasured) {
+    const std::string head = "sweep_of: s\ntitle: t\ntechnique: imported\nsweep: {m: [a, b]}\n";
+    EXPECT_EQ(loadError(head), "no error");
+    for (const char* line :
+         {"scene: a", "scene_params: {up: z}", "scene_instead: {a: b}", "params: {n: 3}",
+          "params_by_scene: {a: {n: 3}}", "params_instead: {n: 3}", "measure: {processes: 3}",
+          "measure: {lane: quality, warmup: 0}", "shows: [p]", "program: {command: t}"}) {
+        const std::string key(line, std::string(line).find(':'));
+        EXPECT_EQ(loadError(head + line + '\n'),
+                  "DIR/zju/a.yaml:5:1: '" + key +
+                      "': nothing is measured with technique imported; allowed: columns of the "
+                      "file that is imported");
+    }
+    folder.write("presets/rounds.yaml", "measure: {processes: 6}\n");
+    EXPECT_EQ(loadError(head + "extends: presets/rounds.yaml\n"), "no error");
+}
+
 TEST_F(ExperimentTest, TimesAreNotAskedOfALaneThatTakesNone) {
     const std::string head = "sweep_of: s\ntitle: t\ntechnique: x\nmeasure: {lane: quality}\n";
     EXPECT_EQ(loadError(head + "layout: {columns: {t: {metric: render_ms}}}\n"),
