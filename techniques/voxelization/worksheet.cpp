@@ -4,34 +4,54 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "engine/core/error.h"
 
 namespace gfxrepro::voxelization {
+namespace {
 
-WorksheetLayout::WorksheetLayout(int resolution, int voxelBits)
-    : resolution_(resolution), voxelBits_(voxelBits) {
-    GFXREPRO_ASSERT(resolution >= 32 && resolution <= 1024 &&
-                    std::has_single_bit(static_cast<unsigned>(resolution)));
+int dividedUp(int a, int b) {
+    return (a + b - 1) / b;
+}
+
+}  // namespace
+
+WorksheetLayout::WorksheetLayout(const GridShape& shape, int voxelBits)
+    : shape_(shape), voxelBits_(voxelBits) {
+    GFXREPRO_ASSERT(glm::all(glm::greaterThan(shape.size, glm::ivec3(0))));
     GFXREPRO_ASSERT(voxelBits == 1 || voxelBits == 8 || voxelBits == 16 || voxelBits == 32);
-    const int patchesAcross = kMaxSheetSizePx / resolution;
-    const int patches = std::min(slabCount(), patchesAcross * patchesAcross);
-    // Powers of two: as square as they can be, the wider side along x.
-    while (patchesX_ * patchesX_ < patches) patchesX_ *= 2;
-    patchesY_ = patches / patchesX_;
+    // A patch that is larger than the thesis's sheet has one of its own.
+    const glm::ivec2 most = glm::max(kMaxSheetSizePx / glm::ivec2(shape.size), glm::ivec2(1));
+    const int sheets = dividedUp(slabCount(), most.x * most.y);
+    const int patches = dividedUp(slabCount(), sheets);
+    // As square as powers of two make it, the wider side along x, unless another wastes less.
+    int widest = 1;
+    while (widest * widest < patches) widest *= 2;
+    widest = std::clamp(widest, dividedUp(patches, most.y), most.x);
+    int fewest = std::numeric_limits<int>::max();
+    for (int across = widest; across > 0; --across) {
+        const int down = dividedUp(patches, across);
+        if (down > most.y) break;
+        if (across * down >= fewest) continue;
+        fewest = across * down;
+        patchesX_ = across;
+        patchesY_ = down;
+    }
 }
 
 std::size_t WorksheetLayout::wordCount() const {
-    const auto n = static_cast<std::size_t>(resolution_);
-    return n * n * n / static_cast<std::size_t>(voxelsPerTexel());
+    const glm::ivec2 size = sheetSizePx();
+    return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+           static_cast<std::size_t>(layers());
 }
 
 // [zju2005] Sec. 2.2.2: pz by C gives the patch, (px, py) the texel in it, pz modulo C the bits.
 glm::ivec3 WorksheetLayout::texel(const glm::ivec3& local) const {
     const int slab = local.z / voxelsPerTexel();
     const int patch = slab % patchesPerSheet();
-    return {patch % patchesX_ * resolution_ + local.x, patch / patchesX_ * resolution_ + local.y,
-            slab / patchesPerSheet()};
+    return {patch % patchesX_ * shape_.size.x + local.x,
+            patch / patchesX_ * shape_.size.y + local.y, slab / patchesPerSheet()};
 }
 
 std::size_t WorksheetLayout::wordIndex(const glm::ivec3& local) const {
@@ -44,7 +64,7 @@ std::size_t WorksheetLayout::wordIndex(const glm::ivec3& local) const {
 }
 
 gl::Defines WorksheetLayout::defines() const {
-    return {{"RESOLUTION", resolution_},
+    return {{"RESOLUTION", resolution()},
             {"VOXEL_BITS", voxelBits_},
             {"VOXELS_PER_TEXEL", voxelsPerTexel()},
             {"PATCHES_X", patchesX_},

@@ -10,6 +10,7 @@
 #include "engine/gl/program.h"
 #include "engine/scene/scene.h"
 #include "runner/technique/technique.h"
+#include "techniques/voxelization/grid_shape.h"
 
 namespace gfxrepro::voxelization {
 
@@ -43,25 +44,29 @@ Vector volumeFromLocal(Axis axis, const Vector& local) {
     return local;
 }
 
-/// How N³ voxels of b bits lie in R32UI sheets. A texel packs C = 32 / b voxels along w; a slab of
-/// C slices is a patch of N × N texels; patches tile a sheet row by row; what does not fit a sheet
-/// of 2048² texels (the thesis's) takes further sheets, layers of one array texture. Capacity: N³ =
-/// W · H · layers · C.
+/// How L × M × N voxels of b bits lie in R32UI sheets. A texel packs C = 32 / b voxels along w; a
+/// slab of C slices is a patch of L × M texels; patches tile a sheet row by row; what does not fit
+/// a sheet of 2048² texels (the thesis's) takes further sheets, layers of one array texture.
+/// Capacity: L · M · N = W · H · layers · C, where C divides N and the patches fill their sheets;
+/// else bits beyond the last slice, and whole patches, stay 0.
 class WorksheetLayout {
   public:
     static constexpr int kMaxSheetSizePx = 2048;
 
     WorksheetLayout() = default;
-    /// Asserts a power of two 32 … 1024 and 1, 8, 16 or 32 bits.
-    WorksheetLayout(int resolution, int voxelBits);
+    /// Asserts 1, 8, 16 or 32 bits.
+    WorksheetLayout(const GridShape& shape, int voxelBits);
 
-    int resolution() const { return resolution_; }          // N
+    const GridShape& shape() const { return shape_; }
+    int resolution() const { return shape_.longest(); }
     int voxelBits() const { return voxelBits_; }            // b
     int voxelsPerTexel() const { return 32 / voxelBits_; }  // C
-    int slabCount() const { return resolution_ / voxelsPerTexel(); }
+    int slabCount() const { return (shape_.size.z + voxelsPerTexel() - 1) / voxelsPerTexel(); }
     int patchesPerSheet() const { return patchesX_ * patchesY_; }
-    int layers() const { return slabCount() / patchesPerSheet(); }
-    glm::ivec2 sheetSizePx() const { return {patchesX_ * resolution_, patchesY_ * resolution_}; }
+    int layers() const { return (slabCount() + patchesPerSheet() - 1) / patchesPerSheet(); }
+    glm::ivec2 sheetSizePx() const {
+        return glm::ivec2(patchesX_, patchesY_) * glm::ivec2(shape_.size);
+    }
     std::size_t wordCount() const;
     std::size_t sizeBytes() const { return wordCount() * sizeof(std::uint32_t); }
     std::uint32_t laneMask() const { return voxelBits_ == 32 ? ~0U : (1U << voxelBits_) - 1U; }
@@ -80,7 +85,7 @@ class WorksheetLayout {
     bool operator==(const WorksheetLayout&) const = default;
 
   private:
-    int resolution_ = 32;
+    GridShape shape_ = 32;
     int voxelBits_ = 1;
     int patchesX_ = 1;
     int patchesY_ = 1;
@@ -95,6 +100,7 @@ class DenseGrid {
     DenseGrid(const WorksheetLayout& layout, std::vector<std::uint32_t> words);
 
     const WorksheetLayout& layout() const { return layout_; }
+    const GridShape& shape() const { return layout_.shape(); }
     int resolution() const { return layout_.resolution(); }
     std::span<const std::uint32_t> words() const { return words_; }
 

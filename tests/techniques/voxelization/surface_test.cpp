@@ -142,7 +142,7 @@ TEST_F(SurfaceTest, SamplesThatAreNotANumberAreNoSurface) {
 bool isBeside(const DenseGrid& grid, const glm::ivec3& voxel) {
     for (int i = 0; i < 27; ++i) {
         const glm::ivec3 next = voxel + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
-        if (isInGrid(next, grid.resolution()) && grid.isFull(next)) return true;
+        if (grid.shape().has(next) && grid.isFull(next)) return true;
     }
     return false;
 }

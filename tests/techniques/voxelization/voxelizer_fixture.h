@@ -21,36 +21,22 @@
 
 namespace gfxrepro::voxelization {
 
-/// Calls visit(voxel) for all of a grid, x fastest.
-template <class Visit>
-void forEachVoxel(int resolution, Visit&& visit) {
-    for (int z = 0; z < resolution; ++z)
-        for (int y = 0; y < resolution; ++y)
-            for (int x = 0; x < resolution; ++x) visit(glm::ivec3(x, y, z));
-}
-
-inline bool isInGrid(const glm::ivec3& voxel, int resolution) {
-    return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) &&
-           glm::all(glm::lessThan(voxel, glm::ivec3(resolution)));
-}
-
 /// Empty voxels that a path over faces of empty voxels joins to the grid's boundary.
 inline DenseGrid outsideOf(const DenseGrid& surface) {
-    const int n = surface.resolution();
-    DenseGrid result(WorksheetLayout(n, 1));
+    const GridShape& shape = surface.shape();
+    DenseGrid result(WorksheetLayout(shape, 1));
     std::vector<glm::ivec3> open;
     const auto reach = [&](const glm::ivec3& voxel) {
-        if (!isInGrid(voxel, n) || surface.isFull(voxel) || result.isFull(voxel)) return;
+        if (!shape.has(voxel) || surface.isFull(voxel) || result.isFull(voxel)) return;
         result.set(voxel, 1);
         open.push_back(voxel);
     };
-    for (int a = 0; a < n; ++a) {
-        for (int b = 0; b < n; ++b) {
-            for (const int side : {0, n - 1}) {
-                for (Axis axis : kAxes) reach(volumeFromLocal(axis, glm::ivec3(a, b, side)));
-            }
+    forEachVoxel(shape, [&](const glm::ivec3& voxel) {
+        const glm::ivec3 opposite = shape.size - 1 - voxel;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (voxel[axis] == 0 || opposite[axis] == 0) reach(voxel);
         }
-    }
+    });
     while (!open.empty()) {
         const glm::ivec3 voxel = open.back();
         open.pop_back();
@@ -67,8 +53,8 @@ inline DenseGrid outsideOf(const DenseGrid& surface) {
 
 /// The voxels that are full in `grid`, 1 bit each.
 inline DenseGrid occupancyOf(const DenseGrid& grid) {
-    DenseGrid bits(WorksheetLayout(grid.resolution(), 1));
-    forEachVoxel(grid.resolution(), [&](const glm::ivec3& voxel) {
+    DenseGrid bits(WorksheetLayout(grid.shape(), 1));
+    forEachVoxel(grid.shape(), [&](const glm::ivec3& voxel) {
         if (grid.isFull(voxel)) bits.set(voxel, 1);
     });
     return bits;
