@@ -4,6 +4,7 @@
 #include <array>
 
 #include "engine/core/error.h"
+#include "techniques/kit/draws.h"
 
 namespace gfxrepro::voxelization {
 namespace {
@@ -24,8 +25,9 @@ void CsgPass::run(const gl::Texture& left, const gl::Texture& right,
                   const gl::Texture& result) const {
     const glm::ivec3 size(layout_.sheetSizePx(), layout_.layers());
     GFXREPRO_ASSERT(left.size() == size && right.size() == size && result.size() == size);
-    pass_.dispatch({size.x / kCsgGroupSize, size.y / kCsgGroupSize, size.z},
-                   {{"left", left}, {"right", right}, {"result", result}});
+    pass_.dispatch(
+        {kit::groupsFor(size.x, kCsgGroupSize), kit::groupsFor(size.y, kCsgGroupSize), size.z},
+        {{"left", left}, {"right", right}, {"result", result}});
 }
 
 namespace {
@@ -41,8 +43,10 @@ void CountPass::run(const gl::Texture& sheets) {
     GFXREPRO_ASSERT(sheets.size() == glm::ivec3(layout_.sheetSizePx(), layout_.layers()));
     constexpr std::array kNothing{0U};
     count_.write(std::span<const std::uint32_t>(kNothing));
-    const auto groups = static_cast<GLuint>(layout_.resolution() / kCollisionGroupSize);
-    pass_.dispatch({groups, groups, layout_.slabCount()}, {{"sheets", sheets}, {"Count", count_}});
+    const glm::ivec3& size = layout_.shape().size;
+    pass_.dispatch({kit::groupsFor(size.x, kCollisionGroupSize),
+                    kit::groupsFor(size.y, kCollisionGroupSize), layout_.slabCount()},
+                   {{"sheets", sheets}, {"Count", count_}});
 }
 
 namespace {

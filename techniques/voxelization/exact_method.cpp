@@ -29,9 +29,10 @@ class CrossingFill {
                                  std::vector<std::string>{"voxelization/fill_crossings.comp.glsl"},
                                  defines);
         }
-        const auto n = static_cast<std::size_t>(layout.resolution());
-        const auto slabs = static_cast<std::size_t>(layout.slabCount());
-        behind_ = gl::Buffer((2 * slabs * n + n * n / 32) * sizeof(std::uint32_t));
+        const glm::uvec3 size(layout.shape().size);
+        const auto slabs = static_cast<unsigned>(layout.slabCount());
+        const unsigned words = slabs * (size.x + size.y) + size.y * kit::groupsFor(size.x, 32);
+        behind_ = gl::Buffer(words * sizeof(std::uint32_t));
     }
 
     void clear() {
@@ -45,12 +46,13 @@ class CrossingFill {
     }
     void run(const gl::Texture& grid) {
         statistics_.clear();
-        const auto n = static_cast<unsigned>(layout_.resolution());
+        const glm::uvec3 size(layout_.shape().size);
         const auto slabs = static_cast<unsigned>(layout_.slabCount());
         const gl::Texture* const sheets[] = {&x_, &y_, &grid};
         for (std::size_t axis = 0; axis < 3; ++axis) {
             passes_[axis].dispatch(
-                {n / kLinesPerGroup, axis == 2 ? n : slabs, 1},
+                {kit::groupsFor(axis == 0 ? size.y : size.x, kLinesPerGroup),
+                 axis == 2 ? size.y : slabs, 1},
                 gl::Resources{
                     {"sheet", *sheets[axis]}, {"Behind", behind_}, {"Statistics", statistics_}}
                     .with({{"sheetX", x_}, {"sheetY", y_}}));
@@ -81,7 +83,7 @@ gl::Defines exactDefines(const MeshRequest& request, bool isSoftware) {
     defines["CHUNK"] = static_cast<int>(kChunk);
     defines["SMALL_PIXELS"] = kSmallPixels;
     defines["PART_PIXELS"] = kPartPixels;
-    if (isWide(request.mesh, request.box, request.layout().resolution())) {
+    if (isWide(request.mesh, request.box, request.layout().shape())) {
         defines["WIDE_LATTICE"] = 1;
     }
     if (request.isSolid()) {

@@ -31,6 +31,7 @@ ImplicitSource::ImplicitSource(Params& params, const GridSettings& settings,
 }
 
 void ImplicitSource::setup(technique::SetupContext& context) {
+    checkFitsDevice(grid_.layout, context.device.limits());
     grid_.sheets = makeSheets(grid_.layout);
     gl::Defines defines = grid_.layout.defines();
     defines["NORMALS"] = settings_.value == VoxelValue::Normal ? 1 : 0;
@@ -43,8 +44,10 @@ void ImplicitSource::render(gl::Profiler& profiler) {
     const gl::GpuScope scope(profiler, "implicit");
     pass_.set("boxMin", grid_.box.min);
     pass_.set("voxelSize", grid_.voxelSize());
-    const auto groups = static_cast<GLuint>(grid_.layout.resolution() / kImplicitGroupSize);
-    pass_.dispatch({groups, groups, grid_.layout.slabCount()}, {{"sheets", grid_.sheets}});
+    const glm::ivec3& size = grid_.layout.shape().size;
+    pass_.dispatch({kit::groupsFor(size.x, kImplicitGroupSize),
+                    kit::groupsFor(size.y, kImplicitGroupSize), grid_.layout.slabCount()},
+                   {{"sheets", grid_.sheets}});
 }
 
 namespace {
@@ -140,13 +143,15 @@ void ParametricSource::setup(technique::SetupContext& context) {
     const std::vector<glm::vec3> points = samplePoints(context.shaders);
     const scene::Box bounds = finiteBounds(points);
     if (bounds.isEmpty()) throw Error("the parametric surface has no finite sample");
+    if (!box_) settings_.fitTo(bounds, 1);
     grid_.layout = settings_.layout;
-    grid_.box = box_ ? *box_ : cubicBox(bounds, settings_.layout.resolution(), 1);
+    grid_.box = box_ ? *box_ : gridBox(bounds, grid_.layout.shape(), 1);
+    checkFitsDevice(grid_.layout, context.device.limits());
     grid_.sheets = makeSheets(grid_.layout);
     pass_ = gl::Pass(context.shaders,
                      {"voxelization/parametric.vert.glsl", "voxelization/parametric.frag.glsl"},
                      defines(), snippets());
-    framebuffer_ = gl::Framebuffer::withoutAttachments(glm::ivec2(grid_.layout.resolution()));
+    framebuffer_ = gl::Framebuffer::withoutAttachments(glm::ivec2(grid_.layout.shape().size));
     vertexArray_ = gl::VertexArray();
 }
 

@@ -11,8 +11,8 @@ namespace gfxrepro::voxelization {
 /// Surface: 6-separating, by the crosshair of each voxel. Solid: the voxels whose centre is inside.
 class ImplicitSource final : public GridSource {
   public:
-    /// Declares `formula`. `box` is cubic, world space; without one, the box of the thesis's
-    /// quartic.
+    /// Declares `formula`. `box` is of the layout's shape, world space; without one, the box of the
+    /// thesis's quartic.
     ImplicitSource(Params& params, const GridSettings& settings,
                    const std::optional<scene::Box>& box);
 
@@ -36,8 +36,8 @@ scene::Box finiteBounds(std::span<const glm::vec3> points);
 /// (2). Every voxel that holds a sample; without holes where the sample gap is at most one voxel.
 class ParametricSource final : public GridSource {
   public:
-    /// Declares `x`, `y`, `z`, `u_range`, `v_range` and `samples`. `box` is cubic, world space;
-    /// without one, the surface fits with a voxel to spare.
+    /// Declares `x`, `y`, `z`, `u_range`, `v_range` and `samples`. `box` is of the layout's
+    /// shape, world space; without one, the surface fits with a voxel to spare.
     ParametricSource(Params& params, const GridSettings& settings,
                      const std::optional<scene::Box>& box);
 

@@ -51,10 +51,11 @@ MeshInput::MeshInput(const scene::Scene& scene) {
     }
 }
 
-LatticeMesh snapped(const scene::Mesh& mesh, const scene::Box& box, int resolution) {
+LatticeMesh snapped(const scene::Mesh& mesh, const scene::Box& box, const GridShape& shape) {
     const glm::dvec3 origin(box.min);
-    const double unitsPerMetre = static_cast<double>(resolution) * kLatticePerVoxel /
-                                 (static_cast<double>(box.max.x) - static_cast<double>(box.min.x));
+    const int axis = shape.longestAxis();
+    const double unitsPerMetre = static_cast<double>(shape.longest()) * kLatticePerVoxel /
+                                 (glm::dvec3(box.max) - origin)[axis];
     const double limit = static_cast<double>(kMaxExtentVoxels) * kLatticePerVoxel;
     LatticeMesh result{.positions = {}, .triangles = mesh.triangles};
     result.positions.reserve(mesh.positions.size());
@@ -71,9 +72,14 @@ LatticeMesh snapped(const scene::Mesh& mesh, const scene::Box& box, int resoluti
     return result;
 }
 
-bool isWide(const scene::Mesh& mesh, const scene::Box& box, int resolution) {
+glm::vec3 clipFromWorldScale(const scene::Box& box, const GridShape& shape) {
+    const auto n = static_cast<float>(shape.longest());
+    return 2.0F / box.size()[shape.longestAxis()] * (n / glm::vec3(shape.size));
+}
+
+bool isWide(const scene::Mesh& mesh, const scene::Box& box, const GridShape& shape) {
     const glm::vec3 size = mesh.bounds().size();
-    const float voxels = static_cast<float>(resolution) / box.size().x;
+    const float voxels = static_cast<float>(shape.longest()) / box.size()[shape.longestAxis()];
     const float margin = 1.0F;  // corners are rounded to the lattice
     return voxels * std::max({size.x, size.y, size.z}) + margin > kIntegerExtentVoxels;
 }
@@ -158,8 +164,8 @@ DeviceMesh::DeviceMesh(const MeshRequest& request, const AxisSplit& split,
     if (request.isExact()) {
         checkFits("positions", request.mesh.positions.size() * sizeof(glm::ivec3), limits);
         checkFits("triangles", request.mesh.triangles.size() * sizeof(glm::uvec3), limits);
-        const int resolution = request.layout().resolution();
-        positions = gl::Buffer::of(snapped(request.mesh, request.box, resolution).positions);
+        const GridShape& shape = request.layout().shape();
+        positions = gl::Buffer::of(snapped(request.mesh, request.box, shape).positions);
         return;
     }
     positions = gl::Buffer::of(request.mesh.positions);
@@ -207,13 +213,17 @@ gl::Defines drawDefines(const MeshRequest& request, DrawTarget target) {
 MeshDraw::MeshDraw(const gl::ShaderLibrary& shaders, const MeshRequest& request, DrawTarget target)
     : pass_(shaders, {"voxelization/rasterized.vert.glsl", "voxelization/rasterized.frag.glsl"},
             drawDefines(request, target)),
-      framebuffer_(gl::Framebuffer::withoutAttachments(glm::ivec2(request.layout().resolution()))),
+      framebuffer_(
+          gl::Framebuffer::withoutAttachments(glm::ivec2(request.layout().shape().longest()))),
+      shape_(request.layout().shape()),
       boxCentreWorld_(request.box.centre()),
-      clipFromWorldScale_(2.0F / request.box.size().x),
+      clipFromWorldScale_(clipFromWorldScale(request.box, shape_)),
       drawsAllAxes_(request.isSolid()) {}
 
 void MeshDraw::draw(const DeviceMesh& mesh, Axis axis) const {
-    framebuffer_.bind();
+    framebuffer_.bind();  // one for all: another would end what was drawn
+    const glm::ivec3 size = localFromVolume(axis, shape_.size);
+    glViewport(0, 0, size.x, size.y);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     pass_.set("axis", static_cast<int>(axis));

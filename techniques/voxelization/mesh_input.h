@@ -52,10 +52,13 @@ struct LatticeMesh {
 };
 
 /// Each vertex at the nearest lattice point. Throws Error for a vertex beyond kMaxExtentVoxels.
-LatticeMesh snapped(const scene::Mesh& mesh, const scene::Box& box, int resolution);
+LatticeMesh snapped(const scene::Mesh& mesh, const scene::Box& box, const GridShape& shape);
+
+/// 2 / the box's edges, of which the longest is exact.
+glm::vec3 clipFromWorldScale(const scene::Box& box, const GridShape& shape);
 
 /// Whether the mesh is wider than kIntegerExtentVoxels, so that doubles decide on the device too.
-bool isWide(const scene::Mesh& mesh, const scene::Box& box, int resolution);
+bool isWide(const scene::Mesh& mesh, const scene::Box& box, const GridShape& shape);
 
 /// Triangles [first, first + count) of the split index buffer.
 struct TriangleRange {
@@ -121,7 +124,7 @@ struct MeshVoxelizerSettings {
 /// A mesh and how it is to become voxels. `mesh` must outlive what is made of this.
 struct MeshRequest {
     const scene::Mesh& mesh;
-    scene::Box box;  // cubic, world space
+    scene::Box box;  // of the layout's shape, world space
     MeshVoxelizerSettings settings;
 
     const WorksheetLayout& layout() const { return settings.grid.layout; }
@@ -172,15 +175,15 @@ class MeshDraw {
     /// To be used with what the DrawTarget names, for the draws that follow. Not before each of
     /// them where that stays: llvmpipe finishes what was drawn when an image is bound again.
     const gl::Pass& pass() const { return pass_; }
-    /// Draws the triangles of the axis, of solids all, into an N × N framebuffer without
-    /// attachments. Slices: the pass's uniform `slice` says which one.
+    /// Draws the triangles of the axis, of solids all, into a framebuffer without attachments, a
+    /// pixel a voxel. Slices: the pass's uniform `slice` says which one.
     void draw(const DeviceMesh& mesh, Axis axis) const;
 
   private:
     gl::Pass pass_;
     gl::Framebuffer framebuffer_;
-    glm::vec3 boxCentreWorld_;
-    float clipFromWorldScale_;
+    GridShape shape_;
+    glm::vec3 boxCentreWorld_, clipFromWorldScale_;
     bool drawsAllAxes_;
 };
 

@@ -6,15 +6,15 @@ namespace gfxrepro::voxelization {
 namespace {
 
 /// Image atomics straight into the grid, no directional sheets: in one pass, or, as [zju2005]
-/// Sec. 2.5.3 has it, the whole mesh drawn once per slice, N times in all. Departure [zju2005]
-/// Sec. 2.5.3: triangles outside the slice are culled, not clipped, and a fragment's depth decides;
-/// clipping would move the edges, and each triangle keeps its own axis, so that the result is the
-/// same grid.
+/// Sec. 2.5.3 has it, the whole mesh drawn once per slice, as often as the longest side has voxels.
+/// Departure [zju2005] Sec. 2.5.3: triangles outside the slice are culled, not clipped, and a
+/// fragment's depth decides; clipping would move the edges, and each triangle keeps its own axis,
+/// so that the result is the same grid.
 class GridMethod : public MeshMethod {
   public:
     GridMethod(technique::SetupContext& context, const MeshRequest& request, DrawTarget target)
         : draw_(context.shaders, request, target),
-          drawCount_(target == DrawTarget::GridSlice ? request.layout().resolution() : 1),
+          drawCount_(target == DrawTarget::GridSlice ? request.layout().shape().longest() : 1),
           grid_{makeSheets(request.layout()), request.layout(), request.box} {}
 
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
@@ -23,7 +23,11 @@ class GridMethod : public MeshMethod {
         draw_.pass().use({{"sheet", grid_.sheets}});
         for (int slice = 0; slice < drawCount_; ++slice) {
             draw_.pass().setIfActive("slice", slice);
-            for (Axis axis : kAxes) draw_.draw(mesh, axis);
+            for (Axis axis : kAxes) {
+                if (slice < localFromVolume(axis, grid_.layout.shape().size).z) {
+                    draw_.draw(mesh, axis);
+                }
+            }
         }
     }
     const VoxelGrid* grid() const override { return &grid_; }
@@ -35,17 +39,17 @@ class GridMethod : public MeshMethod {
     VoxelGrid grid_;
 };
 
-/// The yardstick of speed: the mesh's depth along z in N × N pixels.
+/// The yardstick of speed: the mesh's depth along z, a pixel a voxel.
 class DepthOnlyMethod : public MeshMethod {
   public:
     DepthOnlyMethod(technique::SetupContext& context, const MeshRequest& request)
         : pass_(context.shaders, {"voxelization/depth_only.vert.glsl"},
                 gpu_scene::attributeDefines()),
           depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F,
-                                     glm::ivec2(request.layout().resolution()))),
+                                     glm::ivec2(request.layout().shape().size))),
           framebuffer_({}, &depth_),
           boxCentreWorld_(request.box.centre()),
-          clipFromWorldScale_(2.0F / request.box.size().x) {}
+          clipFromWorldScale_(clipFromWorldScale(request.box, request.layout().shape())) {}
 
     void run(const DeviceMesh& mesh, gl::Profiler& profiler) override {
         gl::GpuScope scope(profiler, "draw_depth");
@@ -66,8 +70,7 @@ class DepthOnlyMethod : public MeshMethod {
     gl::Pass pass_;
     gl::Texture depth_;
     gl::Framebuffer framebuffer_;
-    glm::vec3 boxCentreWorld_;
-    float clipFromWorldScale_;
+    glm::vec3 boxCentreWorld_, clipFromWorldScale_;
 };
 
 std::unique_ptr<MeshMethod> makeMethod(technique::SetupContext& context, const MeshRequest& request,

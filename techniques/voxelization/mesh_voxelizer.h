@@ -20,7 +20,8 @@ class MeshMethod {
 
 class MeshVoxelizer : public GridSource {
   public:
-    /// `mesh` must outlive the voxelizer. `box` is cubic, in world space.
+    /// `mesh` must outlive the voxelizer. `box` is of the layout's
+    /// shape, in world space.
     MeshVoxelizer(const MeshVoxelizerSettings& settings, const scene::Mesh& mesh,
                   const scene::Box& box);
 

@@ -16,8 +16,8 @@ using Triangle = std::array<glm::dvec3, 3>;  // lattice units, local (u, v, w)
 /// A grid of bits that threads may fill together.
 class SharedBits {
   public:
-    explicit SharedBits(int resolution) : layout_(resolution, 1), words_(layout_.wordCount()) {}
-    int resolution() const { return layout_.resolution(); }
+    explicit SharedBits(const GridShape& shape) : layout_(shape, 1), words_(layout_.wordCount()) {}
+    const GridShape& shape() const { return layout_.shape(); }
     void set(const glm::ivec3& voxel) {
         std::atomic_ref(word(voxel)).fetch_or(1U << layout_.shift(voxel.z));
     }
@@ -49,9 +49,9 @@ glm::ivec3 firstVoxel(const Triangle& t) {
     const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2]));
     return glm::max(glm::ivec3(glm::ceil(low / 256.0)) - 1, glm::ivec3(0));
 }
-glm::ivec3 lastVoxel(const Triangle& t, int resolution) {
+glm::ivec3 lastVoxel(const Triangle& t, const glm::ivec3& size) {
     const glm::dvec3 high = glm::max(t[0], glm::max(t[1], t[2]));
-    return glm::min(glm::ivec3(glm::floor(high / 256.0)), glm::ivec3(resolution - 1));
+    return glm::min(glm::ivec3(glm::floor(high / 256.0)), size - 1);
 }
 
 /// Whether the projections on `axis` of the triangle and of the cube of half edge 128 are apart.
@@ -93,14 +93,15 @@ struct Crossing {
     bool isOnVoxelFloor;  // exactly
 };
 
-/// Calls visit(Crossing) for each of the axis's lines that crosses the triangle.
+/// Calls visit(Crossing) for each of the axis's lines that crosses the triangle; `size` of the
+/// grid, local.
 template <class Visit>
-void visitCrossings(const Triangle& t, Axis axis, int resolution, Visit visit) {
+void visitCrossings(const Triangle& t, Axis axis, const glm::ivec3& size, Visit visit) {
     const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
     if (normal.z == 0.0) return;
     const double side = normal.z > 0.0 ? 1.0 : -1.0;
     const glm::ivec3 first = firstVoxel(t);
-    const glm::ivec3 last = lastVoxel(t, resolution);
+    const glm::ivec3 last = lastVoxel(t, size);
     for (int v = first.y; v <= last.y; ++v) {
         for (int u = first.x; u <= last.x; ++u) {
             const glm::dvec3 p(u * 256.0 + 128.0, v * 256.0 + 128.0, 0.0);
@@ -131,13 +132,14 @@ void visitCrossings(const Triangle& t, Axis axis, int resolution, Visit visit) {
 /// Sets the voxels in which lines along `axis` cross the triangles that takes(triangle) names.
 template <class Takes>
 void setCrossed(SharedBits& bits, const LatticeMesh& mesh, Axis axis, Takes takes) {
+    const glm::ivec3 size = localFromVolume(axis, bits.shape().size);
     forEachTriangle(mesh, axis, [&](const Triangle& t) {
         if (!takes(t)) return;
-        visitCrossings(t, axis, bits.resolution(), [&](const Crossing& crossing) {
+        visitCrossings(t, axis, size, [&](const Crossing& crossing) {
             glm::ivec3 voxel = crossing.voxel;
             // The grid is closed: its far face belongs to the last voxel.
-            if (voxel.z == bits.resolution() && crossing.isOnVoxelFloor) --voxel.z;
-            if (voxel.z < 0 || voxel.z >= bits.resolution()) return;
+            if (voxel.z == size.z && crossing.isOnVoxelFloor) --voxel.z;
+            if (voxel.z < 0 || voxel.z >= size.z) return;
             bits.set(volumeFromLocal(axis, voxel));
         });
     });
@@ -145,30 +147,34 @@ void setCrossed(SharedBits& bits, const LatticeMesh& mesh, Axis axis, Takes take
 
 /// Whether the centres along one axis lie inside; `oddLines` counts lines crossed an odd number of
 /// times.
-DenseGrid insideAlong(const LatticeMesh& mesh, Axis axis, int resolution, std::size_t& oddLines) {
-    const auto n = static_cast<std::size_t>(resolution);
+DenseGrid insideAlong(const LatticeMesh& mesh, Axis axis, const GridShape& shape,
+                      std::size_t& oddLines) {
+    const glm::ivec3 size = localFromVolume(axis, shape.size);
+    const auto flipsPerLine = static_cast<std::size_t>(size.z) + 1;
+    const auto lineOf = [&](int u, int v) {
+        return static_cast<std::size_t>(v) * static_cast<std::size_t>(size.x) +
+               static_cast<std::size_t>(u);
+    };
     // toggles[line · (N + 1) + w]: the flag flips before centre w; w = N: behind the grid.
-    std::vector<std::uint8_t> toggles(n * n * (n + 1));
+    std::vector<std::uint8_t> toggles(lineOf(0, size.y) * flipsPerLine);
     forEachTriangle(mesh, axis, [&](const Triangle& t) {
-        visitCrossings(t, axis, resolution, [&](const Crossing& crossing) {
+        visitCrossings(t, axis, size, [&](const Crossing& crossing) {
             const int w = crossing.voxel.z + (crossing.isBeforeCentre ? 0 : 1);
-            const auto line =
-                static_cast<std::size_t>(crossing.voxel.y * resolution + crossing.voxel.x);
-            const auto at = static_cast<std::size_t>(std::clamp(w, 0, resolution));
-            std::atomic_ref(toggles[line * (n + 1) + at]).fetch_xor(1);
+            const auto at = static_cast<std::size_t>(std::clamp(w, 0, size.z));
+            const std::size_t line = lineOf(crossing.voxel.x, crossing.voxel.y);
+            std::atomic_ref(toggles[line * flipsPerLine + at]).fetch_xor(1);
         });
     });
-    DenseGrid inside(WorksheetLayout(resolution, 1));
-    for (int v = 0; v < resolution; ++v) {
-        for (int u = 0; u < resolution; ++u) {
-            const std::uint8_t* flips =
-                &toggles[static_cast<std::size_t>(v * resolution + u) * (n + 1)];
+    DenseGrid inside(WorksheetLayout(shape, 1));
+    for (int v = 0; v < size.y; ++v) {
+        for (int u = 0; u < size.x; ++u) {
+            const std::uint8_t* flips = &toggles[lineOf(u, v) * flipsPerLine];
             bool isInside = false;
-            for (int w = 0; w < resolution; ++w) {
+            for (int w = 0; w < size.z; ++w) {
                 isInside ^= flips[w] != 0;
                 if (isInside) inside.set(volumeFromLocal(axis, glm::ivec3(u, v, w)), 1);
             }
-            if (isInside != (flips[n] != 0)) ++oddLines;
+            if (isInside != (flips[size.z] != 0)) ++oddLines;
         }
     }
     return inside;
@@ -176,11 +182,11 @@ DenseGrid insideAlong(const LatticeMesh& mesh, Axis axis, int resolution, std::s
 
 }  // namespace
 
-DenseGrid conservative(const LatticeMesh& mesh, int resolution) {
-    SharedBits bits(resolution);
+DenseGrid conservative(const LatticeMesh& mesh, const GridShape& shape) {
+    SharedBits bits(shape);
     forEachTriangle(mesh, Axis::Z, [&](const Triangle& t) {
         const glm::ivec3 first = firstVoxel(t);
-        const glm::ivec3 last = lastVoxel(t, resolution);
+        const glm::ivec3 last = lastVoxel(t, shape.size);
         for (int z = first.z; z <= last.z; ++z) {
             for (int y = first.y; y <= last.y; ++y) {
                 for (int x = first.x; x <= last.x; ++x) {
@@ -192,16 +198,16 @@ DenseGrid conservative(const LatticeMesh& mesh, int resolution) {
     return std::move(bits).grid();
 }
 
-DenseGrid thin(const LatticeMesh& mesh, int resolution) {
-    SharedBits bits(resolution);
+DenseGrid thin(const LatticeMesh& mesh, const GridShape& shape) {
+    SharedBits bits(shape);
     for (Axis axis : kAxes) {
         setCrossed(bits, mesh, axis, [](const Triangle&) { return true; });
     }
     return std::move(bits).grid();
 }
 
-DenseGrid thinAlongDominantAxes(const LatticeMesh& mesh, int resolution) {
-    SharedBits bits(resolution);
+DenseGrid thinAlongDominantAxes(const LatticeMesh& mesh, const GridShape& shape) {
+    SharedBits bits(shape);
     for (Axis axis : kAxes) {
         setCrossed(bits, mesh, axis, [&](const Triangle& t) {
             const auto corner = [&](const glm::dvec3& p) {
@@ -213,16 +219,17 @@ DenseGrid thinAlongDominantAxes(const LatticeMesh& mesh, int resolution) {
     return std::move(bits).grid();
 }
 
-std::size_t countOddScanLines(const LatticeMesh& mesh, int resolution) {
+std::size_t countOddScanLines(const LatticeMesh& mesh, const GridShape& shape) {
     std::size_t odd = 0;
     for (Axis axis : kAxes) {
-        SharedBits bits(resolution);
+        SharedBits bits(shape);
         setCrossed(bits, mesh, axis, [](const Triangle&) { return true; });
         const DenseGrid grid = std::move(bits).grid();
-        for (int v = 0; v < resolution; ++v) {
-            for (int u = 0; u < resolution; ++u) {
+        const glm::ivec3 size = localFromVolume(axis, shape.size);
+        for (int v = 0; v < size.y; ++v) {
+            for (int u = 0; u < size.x; ++u) {
                 bool isOdd = false;
-                for (int w = 0; w < resolution; ++w) {
+                for (int w = 0; w < size.z; ++w) {
                     isOdd ^= grid.isFull(volumeFromLocal(axis, glm::ivec3(u, v, w)));
                 }
                 odd += isOdd ? 1 : 0;
@@ -232,11 +239,11 @@ std::size_t countOddScanLines(const LatticeMesh& mesh, int resolution) {
     return odd;
 }
 
-SolidVoxels solid(const LatticeMesh& mesh, int resolution) {
+SolidVoxels solid(const LatticeMesh& mesh, const GridShape& shape) {
     SolidVoxels result;
-    const DenseGrid x = insideAlong(mesh, Axis::X, resolution, result.ambiguousScanLines);
-    const DenseGrid y = insideAlong(mesh, Axis::Y, resolution, result.ambiguousScanLines);
-    const DenseGrid z = insideAlong(mesh, Axis::Z, resolution, result.ambiguousScanLines);
+    const DenseGrid x = insideAlong(mesh, Axis::X, shape, result.ambiguousScanLines);
+    const DenseGrid y = insideAlong(mesh, Axis::Y, shape, result.ambiguousScanLines);
+    const DenseGrid z = insideAlong(mesh, Axis::Z, shape, result.ambiguousScanLines);
     std::vector<std::uint32_t> words(x.words().size());
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::uint32_t a = x.words()[i];
@@ -250,13 +257,13 @@ SolidVoxels solid(const LatticeMesh& mesh, int resolution) {
 }
 
 std::size_t countMissing(const DenseGrid& expected, const DenseGrid& grid) {
-    const int n = expected.resolution();
-    GFXREPRO_ASSERT_EQ(n, grid.resolution());
+    const glm::ivec3& size = expected.shape().size;
+    GFXREPRO_ASSERT(size == grid.shape().size);
     std::atomic<std::size_t> missing = 0;
-    tbb::parallel_for(0, n, [&](int z) {
+    tbb::parallel_for(0, size.z, [&](int z) {
         std::size_t count = 0;
-        for (int y = 0; y < n; ++y) {
-            for (int x = 0; x < n; ++x) {
+        for (int y = 0; y < size.y; ++y) {
+            for (int x = 0; x < size.x; ++x) {
                 if (expected.isFull({x, y, z}) && !grid.isFull({x, y, z})) ++count;
             }
         }

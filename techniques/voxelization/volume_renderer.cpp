@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 
 #include "engine/core/error.h"
 #include "techniques/kit/image_layers.h"
@@ -25,6 +26,30 @@ glm::mat3 frameOf(const scene::Camera& camera) {
 /// From the upper left behind the eye.
 glm::vec3 headlight(const scene::Camera& camera) {
     return frameOf(camera) * glm::normalize(glm::vec3(-0.5F, 0.7F, 1.0F));
+}
+
+/// What is flat would be a strip of the picture, seen from as low as others are.
+double usualElevationDeg(const scene::Box& framed) {
+    const glm::vec3 size = framed.size();
+    return size.y < 0.125F * std::min(size.x, size.z) ? 45.0 : 17.0;
+}
+
+/// Moves the eye of a camera whose target lies in the grid back until it is outside: of something
+/// thin, seen along itself, the nearest eye that holds it may not be.
+void moveOutOf(const scene::Box& grid, scene::Camera& camera) {
+    const float distance = glm::distance(camera.position, camera.target);
+    const glm::vec3 back = (camera.position - camera.target) / distance;
+    float leaves = std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        const float side = back[axis] < 0.0F ? grid.min[axis] : grid.max[axis];
+        if (back[axis] != 0.0F) {
+            leaves = std::min(leaves, (side - camera.target[axis]) / back[axis]);
+        }
+    }
+    const float move = std::max(1.01F * leaves - distance, 0.0F);
+    camera.position += move * back;
+    camera.nearM += move;
+    camera.farM += move;
 }
 
 }  // namespace
@@ -66,11 +91,17 @@ scene::Camera orbitCamera(const scene::Box& box, double azimuthDeg, double eleva
 
 scene::Camera cameraOf(const std::string& view, const scene::Scene& scene, const scene::Box& framed,
                        const scene::Box& grid, float aspect) {
-    if (view.empty()) return orbitCamera(framed, 30.0, 17.0, aspect);  // ours: slightly above
-    if (const auto towards = kit::towardsEyeOf(view)) {
-        const glm::dvec3 d = glm::normalize(glm::dvec3(*towards));
-        return orbitCamera(framed, glm::degrees(std::atan2(d.x, d.z)), glm::degrees(std::asin(d.y)),
-                           aspect);
+    const auto towards = kit::towardsEyeOf(view);
+    if (towards || view.empty()) {
+        double azimuthDeg = 30.0, elevationDeg = usualElevationDeg(framed);  // ours
+        if (towards) {
+            const glm::dvec3 d = glm::normalize(glm::dvec3(*towards));
+            azimuthDeg = glm::degrees(std::atan2(d.x, d.z));
+            elevationDeg = glm::degrees(std::asin(d.y));
+        }
+        scene::Camera camera = orbitCamera(framed, azimuthDeg, elevationDeg, aspect);
+        moveOutOf(grid, camera);
+        return camera;
     }
     scene::Camera camera = kit::stillCamera(scene, view, aspect);
     float nearest = 0.0F, farthest = 0.0F;
@@ -93,19 +124,21 @@ scene::Camera cameraOf(const std::string& view, const scene::Scene& scene, const
     return camera;
 }
 
-PlaneView planeViewOf(const scene::Camera& camera, const scene::Box& box, int resolution,
+PlaneView planeViewOf(const scene::Camera& camera, const scene::Box& box, const GridShape& shape,
                       glm::ivec2 sizePx) {
-    const float voxelSize = box.size().x / static_cast<float>(resolution);
+    const float voxelSize = voxelSizeOf(box, shape);
     const float aspect = static_cast<float>(sizePx.x) / static_cast<float>(sizePx.y);
     const glm::vec3 eye = (camera.position - box.min) / voxelSize;
-    const glm::vec3 towardsCentre = glm::abs(0.5F * static_cast<float>(resolution) - eye);
+    const glm::vec3 half = 0.5F * glm::vec3(shape.size);
+    const glm::vec3 outside = glm::abs(half - eye) - half;
 
     PlaneView view;
     view.axis = Axis::X;
-    if (towardsCentre.y > towardsCentre.x) view.axis = Axis::Y;
-    if (towardsCentre.z > std::max(towardsCentre.x, towardsCentre.y)) view.axis = Axis::Z;
+    if (outside.y > outside.x) view.axis = Axis::Y;
+    if (outside.z > std::max(outside.x, outside.y)) view.axis = Axis::Z;
     view.eye = localFromVolume(view.axis, eye);
-    GFXREPRO_ASSERT(view.eye.z < 0.0F || view.eye.z > static_cast<float>(resolution));
+    const auto end = static_cast<float>(localFromVolume(view.axis, shape.size).z);
+    GFXREPRO_ASSERT(view.eye.z < 0.0F || view.eye.z > end);
     view.clipFromVoxel = kit::viewOf(camera, sizePx).clipFromWorld() *
                          glm::translate(glm::mat4(1.0F), box.min) *
                          glm::scale(glm::mat4(1.0F), glm::vec3(voxelSize));
@@ -125,7 +158,7 @@ VolumeRenderer::VolumeRenderer(const gl::ShaderLibrary& shaders, const Worksheet
                                glm::ivec2 sizePx, const DrawSettings& settings)
     : layout_(layout),
       settings_(settings),
-      view_(planeViewOf(camera, box, layout.resolution(), sizePx)),
+      view_(planeViewOf(camera, box, layout.shape(), sizePx)),
       eyeVolume_(volumeFromLocal(view_.axis, view_.eye)),
       light_(headlight(camera)) {
     GFXREPRO_ASSERT(settings.mode != DrawMode::None);
@@ -214,9 +247,9 @@ void VolumeRenderer::setView(const gl::Program& program) const {
     program.setIfActive("eyeVolume", eyeVolume_);
     program.setIfActive("opacity", settings_.opacity);
     if (!settings_.cut) return;
-    const auto n = static_cast<float>(layout_.resolution());
-    program.setIfActive("cutLow", glm::ivec3(glm::round(settings_.cut->min * n)));
-    program.setIfActive("cutHigh", glm::ivec3(glm::round(settings_.cut->max * n)));
+    const glm::vec3 size(layout_.shape().size);
+    program.setIfActive("cutLow", glm::ivec3(glm::round(settings_.cut->min * size)));
+    program.setIfActive("cutHigh", glm::ivec3(glm::round(settings_.cut->max * size)));
 }
 
 namespace {
@@ -273,7 +306,7 @@ DrawingSettings::DrawingSettings(Params& params, VoxelValue value) {
         params.getText("view", "",
                        {"where from to frame it, \"AZIMUTH ELEVATION\" in degrees, a camera of the "
                         "scene, a path, seen from its middle, or \"X Y Z > X Y Z\" from and to; "
-                        "none: \"30 17\""});
+                        "none: \"30 17\", of what is flat \"30 45\""});
     if (params.isGiven("frame") && !view.empty() && !kit::towardsEyeOf(view)) {
         throw Error(params.locationOf("frame"),
                     "'frame' needs a 'view' that frames, \"AZIMUTH ELEVATION\" in degrees");
@@ -287,11 +320,7 @@ void Drawing::setup(technique::SetupContext& context, const scene::Scene& scene,
     const float aspect =
         static_cast<float>(context.outputSizePx.x) / static_cast<float>(context.outputSizePx.y);
     settings_.draw.hasSecond = isCollision;
-    // Something thin, seen along itself, would bring the eye into the grid.
-    const glm::vec3 half = glm::max(0.5F * shown.size(), 0.1F * box.size());
-    const scene::Box framed = settings_.framing == Framing::Grid
-                                  ? box
-                                  : scene::Box{shown.centre() - half, shown.centre() + half};
+    const scene::Box& framed = settings_.framing == Framing::Grid ? box : shown;
     const scene::Camera camera = cameraOf(settings_.view, scene, framed, box, aspect);
     view_ = kit::viewOf(camera, context.outputSizePx);
     renderer_.emplace(context.shaders, layout, box, camera, context.outputSizePx, settings_.draw);

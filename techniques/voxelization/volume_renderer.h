@@ -35,14 +35,15 @@ scene::Camera orbitCamera(const scene::Box& box, double azimuthDeg, double eleva
                           float aspect);
 
 /// A perspective view by `view`, as kit::stillCamera() takes it: where from all of `framed` is seen
-/// (orbitCamera; empty: "30 17"), else a camera of the scene or from a point to another. Throws
-/// Error for an eye within the grid's box, before which there are no planes.
+/// (orbitCamera; empty: "30 17", of what is flat "30 45"), else a camera of the scene or from a
+/// point to another. Throws Error for an eye within the grid's box, before which there are no
+/// planes.
 scene::Camera cameraOf(const std::string& view, const scene::Scene& scene, const scene::Box& framed,
                        const scene::Box& grid, float aspect);
 
 /// The camera in the terms of the proxy planes.
 struct PlaneView {
-    Axis axis;  // of the planes' normals: nearest to the view direction
+    Axis axis;  // of the planes' normals: that along which the eye is farthest outside
     glm::mat4 clipFromVoxel{1.0F};
     // Local to the axis, in voxels.
     glm::vec3 eye{0.0F};
@@ -51,7 +52,7 @@ struct PlaneView {
     glm::vec3 rayUp{0.0F};
 };
 /// The eye must lie before all planes or behind all of them: asserted. cameraOf() sees to it.
-PlaneView planeViewOf(const scene::Camera& camera, const scene::Box& box, int resolution,
+PlaneView planeViewOf(const scene::Camera& camera, const scene::Box& box, const GridShape& shape,
                       glm::ivec2 sizePx);
 
 class VolumeRenderer {
@@ -64,7 +65,7 @@ class VolumeRenderer {
     /// `second` is needed with hasSecond, `head` (RGBA8 3D, see phantom.h) with DrawMode::Mixed.
     void draw(const gl::Texture& sheets, const gl::Texture* second, const gl::Texture* head);
 
-    int planeCount() const { return layout_.resolution(); }
+    int planeCount() const { return localFromVolume(view_.axis, layout_.shape().size).z; }
     const PlaneView& view() const { return view_; }
     /// Linear RGB; waits for the device.
     image::ImageF readImage() const { return color_.readImage(3); }

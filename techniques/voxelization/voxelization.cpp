@@ -26,6 +26,15 @@ constexpr Choice<InputKind> kInputs[] = {
     {InputKind::Implicit, "implicit", "a surface f(x, y, z) = 0 (section 2.4.1)"},
     {InputKind::Parametric, "parametric", "a surface (x, y, z)(u, v) (section 2.4.1)"},
 };
+// The largest texture that every device has.
+constexpr int kMostVoxelsAlong = 16384;
+// Where a fragment's voxel, or a pixel's, is a word.
+constexpr int kMostVoxelsInWord = 1024;
+
+constexpr Choice<Extent> kExtents[] = {
+    {Extent::Cube, "cube", "as many voxels along each axis"},
+    {Extent::Box, "box", "as many as the model, or the given box, takes along each"},
+};
 constexpr Choice<Method> kMethods[] = {
     {Method::Worksheet, "worksheet", "the thesis's: rasterization, texelization and synthesis"},
     {Method::Direct, "direct", "one pass with image atomics into the grid"},
@@ -73,11 +82,13 @@ int getOneOf(Params& params, std::string_view name, int fallback, const std::arr
                 fmt::format("{}: {} is not allowed; allowed: {}", name, value, list));
 }
 
-std::optional<scene::Box> readBox(Params& params) {
+/// With Extent::Box of any shape.
+std::optional<scene::Box> readBox(Params& params, Extent extent) {
     const auto low = params.getOptionalVector(
         "box_min", 3, {"lowest corner of the grid; with box_max", "scene units"});
     const auto high = params.getOptionalVector(
-        "box_max", 3, {"highest corner of the grid, which must be cubic", "scene units"});
+        "box_max", 3,
+        {"highest corner of the grid, which is cubic but with 'grid: box'", "scene units"});
     if (!low && !high) return std::nullopt;
     if (!low || !high) {
         throw Error(params.locationOf(low ? "box_min" : "box_max"),
@@ -87,14 +98,17 @@ std::optional<scene::Box> readBox(Params& params) {
     const glm::dvec3 size = vector(*high) - vector(*low);
     const double longest = std::max({size.x, size.y, size.z});
     const double shortest = std::min({size.x, size.y, size.z});
+    const bool isCube = extent == Extent::Cube;
     // A millionth: what decimal fractions lose as floats.
-    if (!(shortest > 0.0) || longest - shortest > 1e-6 * longest) {
+    if (!(shortest > 0.0) || (isCube && longest - shortest > 1e-6 * longest)) {
         throw Error(params.locationOf("box_max"),
-                    fmt::format("the box must be cubic and not empty; it is {:g} × {:g} × {:g}",
-                                size.x, size.y, size.z));
+                    fmt::format("the box must {}not be empty; it is {:g} × {:g} × {:g}{}",
+                                isCube ? "be cubic and " : "", size.x, size.y, size.z,
+                                isCube ? "; allowed with 'grid: box': any other" : ""));
     }
     const glm::vec3 minimum(vector(*low));
-    return scene::Box{minimum, minimum + static_cast<float>(longest)};
+    if (isCube) return scene::Box{minimum, minimum + static_cast<float>(longest)};
+    return scene::Box{minimum, glm::vec3(vector(*high))};
 }
 
 /// Solids are decided along scan lines, and say occupancy only.
@@ -132,18 +146,18 @@ void readAddressing(Params& params, MeshVoxelizerSettings& settings) {
     }
     if (settings.addressing == Addressing::Tables && settings.grid.layout.layers() > 1) {
         throw Error(params.locationOf("addressing"),
-                    fmt::format("'addressing: tables' needs a grid of one worksheet; {}³ voxels of "
+                    fmt::format("'addressing: tables' needs a grid of one worksheet; {} voxels of "
                                 "{} bits take {}",
-                                settings.grid.layout.resolution(), settings.grid.layout.voxelBits(),
-                                settings.grid.layout.layers()));
+                                settings.grid.layout.shape().text(),
+                                settings.grid.layout.voxelBits(), settings.grid.layout.layers()));
     }
 }
 
 MeshVoxelizerSettings readVoxelizer(Params& params) {
     MeshVoxelizerSettings settings;
-    const int resolution =
-        getOneOf(params, "resolution", 256, std::array{32, 64, 128, 256, 512, 1024},
-                 {"voxels along each axis, a power of two", "voxels", 32, 1024});
+    const int resolution = params.getInt(
+        "resolution", 256, {"voxels along the grid's longest side", "voxels", 1, kMostVoxelsAlong});
+    settings.grid.extent = params.getEnum("grid", Extent::Cube, kExtents, {"the grid's shape"});
     const int voxelBits = getOneOf(params, "voxel_bits", 1, std::array{1, 8, 16, 32},
                                    {"bits of each voxel: 1, 8, 16 or 32", "bits", 1, 32});
     settings.grid.layout = WorksheetLayout(resolution, voxelBits);
@@ -172,6 +186,12 @@ MeshVoxelizerSettings readVoxelizer(Params& params) {
         throw Error(params.locationOf("rule"),
                     "'rule: thin' and 'rule: conservative' need 'method: direct'");
     }
+    if (settings.method == Method::Worksheet && resolution > kMostVoxelsInWord) {
+        throw Error(params.locationOf("resolution"),
+                    fmt::format("resolution: {} is not allowed with 'method: worksheet'; allowed: "
+                                "at most {}",
+                                resolution, kMostVoxelsInWord));
+    }
     readAddressing(params, settings);
     return settings;
 }
@@ -183,7 +203,7 @@ struct VoxelizationParams {
     CombinationSettings combination;
     DrawingSettings drawing;
     int paddingVoxels = 1;
-    std::optional<scene::Box> box;  // cubic; empty: around the mesh
+    std::optional<scene::Box> box;  // of the grid's shape; empty: around the mesh
     bool readsBack = false;
     bool comparesWithReference = false;
 
@@ -195,7 +215,7 @@ struct VoxelizationParams {
           drawing(params, voxelizer.grid.value),
           paddingVoxels(params.getInt(
               "padding", 1, {"free voxels around the mesh where no box is given", "voxels", 0, 8})),
-          box(readBox(params)),
+          box(readBox(params, voxelizer.grid.extent)),
           readsBack(
               params.getBool("read_back", false,
                              {"copy the worksheet to the CPU each frame, timed as read_back"})),
@@ -203,6 +223,33 @@ struct VoxelizationParams {
                                                {"count what the rule misses, against the CPU "
                                                 "references of thin and conservative"})) {
         checkInput(params);
+        checkResolution(params);
+        if (!box) return;
+        voxelizer.grid.fitTo(*box, 0);
+        // Whole voxels: the highest corner moves up to them.
+        const GridShape& shape = voxelizer.grid.layout.shape();
+        if (voxelizer.grid.extent == Extent::Box) {
+            box->max = box->min + voxelSizeOf(*box, shape) * glm::vec3(shape.size);
+        }
+    }
+
+    void checkResolution(const Params& params) const {
+        const int resolution = voxelizer.grid.layout.shape().longest();
+        if (drawing.isOn() && resolution > kMostVoxelsInWord) {
+            throw Error(params.locationOf("resolution"),
+                        fmt::format("resolution: {} is not allowed with a picture; allowed: at "
+                                    "most {}",
+                                    resolution, kMostVoxelsInWord));
+        }
+        if (!box && 2 * paddingVoxels >= resolution) {
+            throw Error(params.locationOf("resolution"),
+                        fmt::format("resolution: {} is not allowed with 'padding: {}'; allowed: at "
+                                    "least {}",
+                                    resolution, paddingVoxels, 2 * paddingVoxels + 1));
+        }
+        if (drawing.draw.mode == DrawMode::Mixed && voxelizer.grid.extent == Extent::Box) {
+            throw Error(params.locationOf("grid"), "'draw: mixed' needs 'grid: cube'");
+        }
     }
 
     /// Formulas know neither triangles nor the ways to them.
@@ -270,15 +317,14 @@ class Voxelization final : public technique::Technique {
     }
 
     void setup(technique::SetupContext& context) override {
-        const WorksheetLayout& layout = params_.voxelizer.grid.layout;
-        checkFitsDevice(layout, context.device.limits());
         if (params_.input == InputKind::Mesh) {
             setupMesh(context);
             return;
         }
         source_->setup(context);
-        box_ = source_->grid()->box;
-        if (params_.drawing.isOn()) drawing_.setup(context, {}, layout, box_, box_, false);
+        const VoxelGrid& grid = *source_->grid();
+        box_ = grid.box;
+        if (params_.drawing.isOn()) drawing_.setup(context, {}, grid.layout, box_, box_, false);
     }
 
     technique::SceneNeed sceneNeed() const override {
@@ -290,7 +336,9 @@ class Voxelization final : public technique::Technique {
         requireVoxelizable(scene);
         // A second model may move the grid about both of them.
         const scene::Box bounds = scene.bounds();
-        requireView(scene, params_.combination.needsSecond() ? bounds : boxAround(bounds));
+        requireView(scene, params_.combination.needsSecond()
+                               ? bounds
+                               : boxAround(bounds, settingsFor(bounds).grid.layout.shape()));
     }
 
     void render(technique::FrameContext& context) override {
@@ -341,21 +389,28 @@ class Voxelization final : public technique::Technique {
         cameraOf(params_.drawing.view, scene, grid, grid, 1.0F);
     }
 
-    scene::Box boxAround(const scene::Box& bounds) const {
+    /// Of a grid around a model.
+    MeshVoxelizerSettings settingsFor(const scene::Box& bounds) const {
+        MeshVoxelizerSettings settings = params_.voxelizer;
+        if (!params_.box) settings.grid.fitTo(bounds, params_.paddingVoxels);
+        return settings;
+    }
+    scene::Box boxAround(const scene::Box& bounds, const GridShape& shape) const {
         if (params_.box) return *params_.box;
         if (params_.drawing.draw.mode == DrawMode::Mixed) return headBoxAround(bounds);
-        return cubicBox(bounds, params_.voxelizer.grid.layout.resolution(), params_.paddingVoxels);
+        return gridBox(bounds, shape, params_.paddingVoxels);
     }
 
     void setupMesh(technique::SetupContext& context) {
-        const MeshVoxelizerSettings& settings = params_.voxelizer;
-        const WorksheetLayout& layout = settings.grid.layout;
         input_.emplace(*context.scene);
         scene::Box bounds = input_->mesh().bounds();
         if (params_.combination.needsSecond()) {
             bounds.add(combination_.loadSecond(context, bounds));
         }
-        box_ = boxAround(bounds);
+        const MeshVoxelizerSettings settings = settingsFor(bounds);
+        const WorksheetLayout& layout = settings.grid.layout;
+        checkFitsDevice(layout, context.device.limits());
+        box_ = boxAround(bounds, layout.shape());
         source_ = std::make_unique<MeshVoxelizer>(settings, input_->mesh(), box_);
         source_->setup(context);
         if (params_.combination.needsSecond()) combination_.setup(context, settings, box_);
@@ -382,6 +437,7 @@ class Voxelization final : public technique::Technique {
     static void recordGrid(technique::Recorder& recorder, const DenseGrid& grid) {
         const WorksheetLayout& layout = grid.layout();
         recorder.metric("voxels", static_cast<double>(grid.countFull()));
+        recorder.metric("grid_voxels", static_cast<double>(grid.shape().voxelCount()));
         recorder.metric("voxel_bits", layout.voxelBits());
         recorder.metric("worksheet_bytes", static_cast<double>(layout.sizeBytes()));
         recorder.metric("digest", digestOf(grid.words()));
@@ -389,26 +445,26 @@ class Voxelization final : public technique::Technique {
 
     /// `stray_voxels` (fill_rule: surface_voxels) neither lie inside nor touch the surface.
     void recordMisses(technique::Recorder& recorder, const DenseGrid& grid) const {
-        const int resolution = grid.resolution();
-        const LatticeMesh mesh = snapped(input_->mesh(), box_, resolution);
+        const GridShape& shape = grid.shape();
+        const LatticeMesh mesh = snapped(input_->mesh(), box_, shape);
         const auto count = [&](const char* name, const DenseGrid& a, const DenseGrid& b) {
             recorder.metric(name, static_cast<double>(reference::countMissing(a, b)));
         };
         if (params_.voxelizer.grid.fill == Fill::Solid) {
-            const DenseGrid expected = reference::solid(mesh, resolution).grid;
+            const DenseGrid expected = reference::solid(mesh, shape).grid;
             count("missed_solid_voxels", expected, grid);
             count("added_solid_voxels", grid, expected);
             if (params_.voxelizer.fillRule == FillRule::SurfaceVoxels) {
                 count("stray_voxels", grid,
-                      together(expected, reference::conservative(mesh, resolution)));
-                recorder.metric("odd_scan_lines", static_cast<double>(reference::countOddScanLines(
-                                                      mesh, resolution)));
+                      together(expected, reference::conservative(mesh, shape)));
+                recorder.metric("odd_scan_lines",
+                                static_cast<double>(reference::countOddScanLines(mesh, shape)));
             }
             return;
         }
-        count("missed_thin_voxels", reference::thin(mesh, resolution), grid);
-        count("missed_dominant_voxels", reference::thinAlongDominantAxes(mesh, resolution), grid);
-        const DenseGrid conservative = reference::conservative(mesh, resolution);
+        count("missed_thin_voxels", reference::thin(mesh, shape), grid);
+        count("missed_dominant_voxels", reference::thinAlongDominantAxes(mesh, shape), grid);
+        const DenseGrid conservative = reference::conservative(mesh, shape);
         count("missed_conservative_voxels", conservative, grid);
         count("added_conservative_voxels", grid, conservative);
     }
@@ -430,6 +486,7 @@ config::Outputs outputs() {
     return {
         {
             {"voxels", "voxel", "full voxels of the grid"},
+            {"grid_voxels", "voxel", "all voxels of the grid, full and empty"},
             {"triangles", "triangle", "triangles of the mesh"},
             {"vertices", "vertex", "vertices of the mesh"},
             {"fragments", "fragment",

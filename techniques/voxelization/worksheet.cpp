@@ -63,12 +63,21 @@ std::size_t WorksheetLayout::wordIndex(const glm::ivec3& local) const {
            static_cast<std::size_t>(at.x);
 }
 
+WorksheetLayout WorksheetLayout::ofAxis(Axis axis) const {
+    return {GridShape(localFromVolume(axis, shape_.size)), voxelBits_};
+}
+
+std::string WorksheetLayout::sheetDefine() const {
+    return fmt::format("ivec4({}, {}, {}, {})", shape_.size.x, shape_.size.y, patchesX_,
+                       patchesPerSheet());
+}
+
 gl::Defines WorksheetLayout::defines() const {
-    return {{"RESOLUTION", resolution()},
+    const glm::ivec3& size = shape_.size;
+    return {{"SIZE", fmt::format("ivec3({}, {}, {})", size.x, size.y, size.z)},
+            {"SHEET", sheetDefine()},
             {"VOXEL_BITS", voxelBits_},
             {"VOXELS_PER_TEXEL", voxelsPerTexel()},
-            {"PATCHES_X", patchesX_},
-            {"PATCHES_PER_SHEET", patchesPerSheet()},
             {"LANE_MASK", laneMask()}};
 }
 
@@ -118,12 +127,28 @@ std::vector<std::uint32_t> readSheets(const gl::Texture& sheets) {
     return sheets.read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
 }
 
-scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels) {
+float voxelSizeOf(const scene::Box& box, const GridShape& shape) {
+    return box.size()[shape.longestAxis()] / static_cast<float>(shape.longest());
+}
+
+scene::Box gridBox(const scene::Box& bounds, const GridShape& shape, int paddingVoxels) {
     const glm::vec3 size = bounds.size();
     const float longest = std::max({size.x, size.y, size.z});
-    const float half = 0.5F * longest * static_cast<float>(resolution) /
-                       static_cast<float>(resolution - 2 * paddingVoxels);
-    return {bounds.centre() - half, bounds.centre() + half};
+    const auto n = static_cast<float>(shape.longest());
+    const float half = 0.5F * longest * n / static_cast<float>(shape.longest() - 2 * paddingVoxels);
+    const glm::vec3 halves = half * (glm::vec3(shape.size) / n);
+    return {bounds.centre() - halves, bounds.centre() + halves};
+}
+
+void GridSettings::fitTo(const scene::Box& bounds, int paddingVoxels) {
+    if (extent == Extent::Cube) return;
+    const int n = layout.shape().longest();
+    const glm::dvec3 size(bounds.size());
+    const double voxelSize = std::max({size.x, size.y, size.z}) / (n - 2 * paddingVoxels);
+    // A thousandth of a voxel: what decimal fractions lose as floats.
+    const glm::ivec3 voxels(glm::ceil(size / voxelSize - 1e-3));
+    layout = WorksheetLayout(GridShape(glm::max(voxels, glm::ivec3(1)) + 2 * paddingVoxels),
+                             layout.voxelBits());
 }
 
 void checkFitsDevice(const WorksheetLayout& layout, const gl::DeviceLimits& limits) {
@@ -131,16 +156,16 @@ void checkFitsDevice(const WorksheetLayout& layout, const gl::DeviceLimits& limi
     if (std::max(size.x, size.y) > limits.maxTextureSizePx ||
         layout.layers() > limits.maxArrayLayers) {
         throw UnsupportedError(fmt::format(
-            "{}³ voxels of {} bits take {} worksheets of {} × {} texels; the device holds {} of "
+            "{} voxels of {} bits take {} worksheets of {} × {} texels; the device holds {} of "
             "{} × {}",
-            layout.resolution(), layout.voxelBits(), layout.layers(), size.x, size.y,
+            layout.shape().text(), layout.voxelBits(), layout.layers(), size.x, size.y,
             limits.maxArrayLayers, limits.maxTextureSizePx, limits.maxTextureSizePx));
     }
     // What Mesa's software rasterizer holds, and a third of what three axes would take elsewhere.
     constexpr std::size_t kMaxSheetsBytes = std::size_t{1} << 30;
     if (layout.sizeBytes() > kMaxSheetsBytes) {
         throw UnsupportedError(fmt::format(
-            "{}³ voxels of {} bits take {} bytes an axis; allowed: {}", layout.resolution(),
+            "{} voxels of {} bits take {} bytes an axis; allowed: {}", layout.shape().text(),
             layout.voxelBits(), layout.sizeBytes(), kMaxSheetsBytes));
     }
 }

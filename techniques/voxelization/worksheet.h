@@ -58,7 +58,6 @@ class WorksheetLayout {
     WorksheetLayout(const GridShape& shape, int voxelBits);
 
     const GridShape& shape() const { return shape_; }
-    int resolution() const { return shape_.longest(); }
     int voxelBits() const { return voxelBits_; }            // b
     int voxelsPerTexel() const { return 32 / voxelBits_; }  // C
     int slabCount() const { return (shape_.size.z + voxelsPerTexel() - 1) / voxelsPerTexel(); }
@@ -78,9 +77,13 @@ class WorksheetLayout {
     /// Index of that texel in a whole read-back, layer after layer, rows in the order of y.
     std::size_t wordIndex(const glm::ivec3& local) const;
 
-    /// RESOLUTION, VOXEL_BITS, VOXELS_PER_TEXEL, PATCHES_X, PATCHES_PER_SHEET, LANE_MASK for
-    /// worksheet.glsl.
+    /// Of the directional sheet of an axis: the same voxels in its local coordinates.
+    WorksheetLayout ofAxis(Axis axis) const;
+
+    /// SIZE, SHEET, VOXEL_BITS, VOXELS_PER_TEXEL, LANE_MASK for worksheet.glsl.
     gl::Defines defines() const;
+    /// SHEET alone.
+    std::string sheetDefine() const;
 
     bool operator==(const WorksheetLayout&) const = default;
 
@@ -101,7 +104,6 @@ class DenseGrid {
 
     const WorksheetLayout& layout() const { return layout_; }
     const GridShape& shape() const { return layout_.shape(); }
-    int resolution() const { return layout_.resolution(); }
     std::span<const std::uint32_t> words() const { return words_; }
 
     std::uint32_t value(const glm::ivec3& voxel) const;
@@ -120,13 +122,16 @@ class DenseGrid {
 /// An R32UI 2D array texture of the layout's size, all bits 0.
 gl::Texture makeSheets(const WorksheetLayout& layout);
 
+/// The edge of a voxel, by the longest side.
+float voxelSizeOf(const scene::Box& box, const GridShape& shape);
+
 /// A voxel grid on the device, in the z layout. Voxel (0, 0, 0) lies at box.min.
 struct VoxelGrid {
     gl::Texture sheets;
     WorksheetLayout layout;
-    scene::Box box;  // cubic, world space
+    scene::Box box;  // of the layout's shape, world space
 
-    float voxelSize() const { return box.size().x / static_cast<float>(layout.resolution()); }
+    float voxelSize() const { return voxelSizeOf(box, layout.shape()); }
     /// Waits for the device.
     DenseGrid read() const;
 };
@@ -137,9 +142,15 @@ std::vector<std::uint32_t> readSheets(const gl::Texture& sheets);
 /// Throws UnsupportedError, with the numbers, when the sheets do not fit the device.
 void checkFitsDevice(const WorksheetLayout& layout, const gl::DeviceLimits& limits);
 
-/// Cubic, about the centre of `bounds`, with `paddingVoxels` free voxels at both ends of its
-/// longest side, which has a length.
-scene::Box cubicBox(const scene::Box& bounds, int resolution, int paddingVoxels);
+/// About the centre of `bounds`, with `paddingVoxels` free voxels, of those along the shape's
+/// longest side, at both ends of the longest side of `bounds`, which has a length.
+scene::Box gridBox(const scene::Box& bounds, const GridShape& shape, int paddingVoxels);
+
+/// Which shape a grid has.
+enum class Extent {
+    Cube,
+    Box,  // L × M × N: as many voxels as reach from end to end, and the padding
+};
 
 /// What a voxel's value says.
 enum class VoxelValue { Occupancy, Normal };
@@ -147,9 +158,13 @@ enum class Fill { Surface, Solid };
 
 /// What every source has to know of the grid that is asked for.
 struct GridSettings {
-    WorksheetLayout layout;
+    WorksheetLayout layout;  // of Extent::Box the cube's until fitTo()
     VoxelValue value = VoxelValue::Occupancy;
     Fill fill = Fill::Surface;
+    Extent extent = Extent::Cube;
+
+    /// Extent::Box takes the shape of what has these bounds; a cube stays as it is.
+    void fitTo(const scene::Box& bounds, int paddingVoxels);
 };
 
 /// Life: setup → render, repeatedly → grid, record.

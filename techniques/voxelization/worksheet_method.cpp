@@ -24,10 +24,13 @@ struct DirectionalSheets {
     VoxelGrid grid;
 
     explicit DirectionalSheets(const MeshRequest& request)
-        : x(makeSheets(request.layout())),
-          y(makeSheets(request.layout())),
+        : x(makeSheets(request.layout().ofAxis(Axis::X))),
+          y(makeSheets(request.layout().ofAxis(Axis::Y))),
           grid{makeSheets(request.layout()), request.layout(), request.box} {}
     gl::Texture& of(Axis axis) { return axis == Axis::X ? x : axis == Axis::Y ? y : grid.sheets; }
+    std::size_t sizeBytes() const {
+        return x.sizeBytes() + y.sizeBytes() + grid.sheets.sizeBytes();
+    }
 };
 
 /// The look-up textures of [zju2005] Sec. 2.3.2, beside the integer instructions of worksheet.glsl:
@@ -62,14 +65,15 @@ class LookupTables {
   private:
     static gl::Texture fromZ(const WorksheetLayout& layout, Axis axis) {
         using Texel = glm::u16vec4;
-        const int n = layout.resolution();
+        const glm::ivec3& size = layout.shape().size;
+        const WorksheetLayout from = layout.ofAxis(axis);
         std::vector<glm::ivec3> slabCorners;  // by w
-        for (int w = 0; w < n; ++w) slabCorners.push_back(layout.texel({0, 0, w}));
+        for (int w = 0; w < from.shape().size.z; ++w) slabCorners.push_back(from.texel({0, 0, w}));
         std::vector<Texel> texels(layout.wordCount());
-        for (int z = 0; z < n; z += layout.voxelsPerTexel()) {
-            for (int y = 0; y < n; ++y) {
+        for (int z = 0; z < size.z; z += layout.voxelsPerTexel()) {
+            for (int y = 0; y < size.y; ++y) {
                 Texel* row = &texels[layout.wordIndex({0, y, z})];
-                for (int x = 0; x < n; ++x) {
+                for (int x = 0; x < size.x; ++x) {
                     const glm::ivec3 local = localFromVolume(axis, glm::ivec3(x, y, z));
                     const glm::ivec3& corner = slabCorners[static_cast<std::size_t>(local.z)];
                     const int shift = layout.shift(local.z);
@@ -163,8 +167,8 @@ class Rasterization {
 };
 
 /// What texelization and synthesis have in common: the layout, and how voxels are addressed.
-gl::Defines stageDefines(const MeshRequest& request) {
-    gl::Defines defines = request.layout().defines();
+gl::Defines stageDefines(const MeshRequest& request, Axis axis) {
+    gl::Defines defines = request.layout().ofAxis(axis).defines();
     if (request.settings.addressing == Addressing::Tables) defines["TABLES"] = 1;
     return defines;
 }
@@ -173,11 +177,15 @@ gl::Defines stageDefines(const MeshRequest& request) {
 class Texelization {
   public:
     Texelization(const gl::ShaderLibrary& shaders, const MeshRequest& request) {
-        gl::Defines defines = stageDefines(request);
-        defines["GROUP_SIZE"] = kGroupSize;
-        defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
-        defines[request.hasValues() ? "ACCUMULATE_MAX" : "ACCUMULATE_OR"] = 1;
-        pass_ = gl::Pass(shaders, {"voxelization/texelize.comp.glsl"}, defines);
+        for (Axis axis : kAxes) {
+            gl::Defines defines = stageDefines(request, axis);
+            defines["AXIS"] = static_cast<int>(axis);
+            defines["GROUP_SIZE"] = kGroupSize;
+            defines["RECORD_WORDS"] = request.hasValues() ? 2 : 1;
+            defines[request.hasValues() ? "ACCUMULATE_MAX" : "ACCUMULATE_OR"] = 1;
+            passes_[indexOf(axis)] =
+                gl::Pass(shaders, {"voxelization/texelize.comp.glsl"}, defines);
+        }
     }
 
     /// Clears the three sheets and writes every fragment's voxel. `tables`:
@@ -187,33 +195,36 @@ class Texelization {
         for (Axis axis : kAxes) {
             sheets.of(axis).clearToZero();
             const std::uint32_t capacity = fragments.capacities[indexOf(axis)];
-            pass_.set("axis", static_cast<int>(axis));
-            pass_.set("fragmentCapacity", capacity);
-            pass_.dispatch({std::min(kit::groupsFor(capacity, kGroupSize), kMaxGroups), 1, 1},
-                           gl::Resources{{"sheet", sheets.of(axis)},
-                                         {"Records", fragments.records[indexOf(axis)]},
-                                         {"Counters", fragments.counters}}
-                               .with(tables));
+            const gl::Pass& pass = passes_[indexOf(axis)];
+            pass.set("fragmentCapacity", capacity);
+            pass.dispatch({std::min(kit::groupsFor(capacity, kGroupSize), kMaxGroups), 1, 1},
+                          gl::Resources{{"sheet", sheets.of(axis)},
+                                        {"Records", fragments.records[indexOf(axis)]},
+                                        {"Counters", fragments.counters}}
+                              .with(tables));
         }
     }
 
   private:
-    gl::Pass pass_;
+    std::array<gl::Pass, 3> passes_;
 };
 
 /// Solid only: turns the surface's voxels in the sheets into inside flags, scan line by scan line.
 /// [zju2005] Sec. 2.2.3.
 class SolidFill {
   public:
-    SolidFill(const gl::ShaderLibrary& shaders, const MeshRequest& request)
-        : groupsAcross_(static_cast<unsigned>(request.layout().resolution() / kFillGroupSize)) {
-        pass_ = gl::Pass(shaders, {"voxelization/fill.comp.glsl"}, request.layout().defines());
+    SolidFill(const gl::ShaderLibrary& shaders, const MeshRequest& request) {
+        for (Axis axis : kAxes) {
+            passes_[indexOf(axis)] = gl::Pass(shaders, {"voxelization/fill.comp.glsl"},
+                                              request.layout().ofAxis(axis).defines());
+        }
     }
     void run(DirectionalSheets& sheets) {
         openLines_.clear();
         for (Axis axis : kAxes) {
-            pass_.dispatch(
-                {groupsAcross_, groupsAcross_, 1},
+            const glm::ivec3 size = localFromVolume(axis, sheets.grid.layout.shape().size);
+            passes_[indexOf(axis)].dispatch(
+                {kit::groupsFor(size.x, kFillGroupSize), kit::groupsFor(size.y, kFillGroupSize), 1},
                 {{"sheet", sheets.of(axis)}, gl::Resource("Statistics", openLines_).unordered()});
         }
     }
@@ -221,9 +232,8 @@ class SolidFill {
     std::uint32_t ambiguousScanLines() const { return openLines_.read<std::uint32_t>(1).front(); }
 
   private:
-    gl::Pass pass_;
+    std::array<gl::Pass, 3> passes_;
     gl::Buffer openLines_ = gl::Buffer(sizeof(std::uint32_t));  // over the three axes
-    unsigned groupsAcross_;
 };
 
 /// Stage 3: merges the sheets of x and y into the grid's: OR, or the largest value.
@@ -231,7 +241,9 @@ class SolidFill {
 class Synthesis {
   public:
     Synthesis(const gl::ShaderLibrary& shaders, const MeshRequest& request) {
-        gl::Defines defines = stageDefines(request);
+        gl::Defines defines = stageDefines(request, Axis::Z);
+        defines["SHEET_X"] = request.layout().ofAxis(Axis::X).sheetDefine();
+        defines["SHEET_Y"] = request.layout().ofAxis(Axis::Y).sheetDefine();
         defines["GROUP_EDGE"] = kGroupEdge;
         if (request.hasValues()) defines["VALUES"] = 1;
         pass_ = gl::Pass(shaders, {"voxelization/synthesis.comp.glsl"}, defines);
@@ -239,8 +251,10 @@ class Synthesis {
     /// `tables` are as Texelization::run() takes them.
     void run(const DirectionalSheets& sheets, const gl::Resources& tables) {
         const WorksheetLayout& layout = sheets.grid.layout;
+        const glm::ivec2 size = layout.sheetSizePx();
         pass_.dispatch(
-            {layout.sheetSizePx() / kGroupEdge, layout.layers()},
+            {kit::groupsFor(size.x, kGroupEdge), kit::groupsFor(size.y, kGroupEdge),
+             layout.layers()},
             gl::Resources{{"sheetX", sheets.x}, {"sheetY", sheets.y}, {"sheet", sheets.grid.sheets}}
                 .with(tables));
     }
@@ -289,7 +303,7 @@ class WorksheetMethod : public MeshMethod {
     }
 
     std::size_t sizeBytes() const override {
-        return 3 * sheets_.grid.layout.sizeBytes() + rasterization_.fragments().sizeBytes() +
+        return sheets_.sizeBytes() + rasterization_.fragments().sizeBytes() +
                (tables_ ? tables_->sizeBytes() : 0);
     }
 

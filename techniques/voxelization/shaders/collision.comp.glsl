@@ -19,7 +19,8 @@ void main() {
     barrier();
     ivec2 column = ivec2(gl_GlobalInvocationID.xy);
     int slab = int(gl_GlobalInvocationID.z);
-    uint word = imageLoad(sheets, worksheetPatch(slab) + ivec3(column, 0)).r;
+    bool isInGrid = all(lessThan(column, SIZE.xy));
+    uint word = isInGrid ? imageLoad(sheets, worksheetPatch(slab) + ivec3(column, 0)).r : 0u;
     if (word != 0u) {
         uint full = 0u;
         for (int lane = 0; lane < VOXELS_PER_TEXEL; ++lane) {

@@ -2,12 +2,12 @@
 // fill_crossings.comp.glsl: along x and y in words that are as the texels that the lines run through,
 // along z 32 lines of a row in a word.
 
-const int kSlabs = RESOLUTION / VOXELS_PER_TEXEL;
-
 // `line`: the first voxel of the scan line.
 int behindWord(int axis, ivec3 line) {
-    if (axis == 2) return 2 * kSlabs * RESOLUTION + (line.y * RESOLUTION + line.x) / 32;
-    return (axis * kSlabs + line.z / VOXELS_PER_TEXEL) * RESOLUTION + (axis == 0 ? line.y : line.x);
+    int slab = line.z / VOXELS_PER_TEXEL;
+    if (axis == 0) return slab * SIZE.y + line.y;
+    if (axis == 1) return kSlabs * SIZE.y + slab * SIZE.x + line.x;
+    return kSlabs * (SIZE.x + SIZE.y) + line.y * ((SIZE.x + 31) / 32) + line.x / 32;
 }
 
 uint behindBits(int axis, ivec3 line) {

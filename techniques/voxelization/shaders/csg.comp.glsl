@@ -2,7 +2,8 @@
 // Boolean operations on two worksheets of one layout, all voxels of a texel at once.
 // Departure [zju2005] Sec. 2.4.1 (3): instructions instead of blending modes, which reach only the
 // sum of 8-bit channels and would carry between voxels.
-// Reads `left` and `right`, writes every texel of `result`, which may be one of them.
+// Reads `left` and `right`, writes every texel of `result`, which may be one of them. What lies beyond
+// the sheets in the last work groups is read as 0 and not written, as GL has it.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -3,6 +3,6 @@
 layout(location = kPosition) in vec3 positionWorld;
 
 uniform vec3 boxCentreWorld;
-uniform float clipFromWorldScale;  // 2 / edge of the box
+uniform vec3 clipFromWorldScale;  // 2 / edges of the box
 
 void main() { gl_Position = vec4((positionWorld - boxCentreWorld) * clipFromWorldScale, 1.0); }

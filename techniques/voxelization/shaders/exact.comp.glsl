@@ -13,12 +13,13 @@ layout(local_size_x = GROUP_SIZE) in;
 void findPixels(ivec3 a, ivec3 b, ivec3 c, out ivec2 first, out ivec2 size) {
     ivec2 low = min(a.xy, min(b.xy, c.xy));
     ivec2 high = max(a.xy, max(b.xy, c.xy));
+    ivec2 last = localFromVolume(axis, SIZE).xy - 1;
 #ifdef RULE_CONSERVATIVE
     first = max((low - 1) >> 8, ivec2(0));  // closed pixels that touch [low, high]
-    size = min(high >> 8, ivec2(RESOLUTION - 1)) - first + 1;
+    size = min(high >> 8, last) - first + 1;
 #else
     first = max((low + 127) >> 8, ivec2(0));  // pixels whose centre lies in [low, high]
-    size = min((high - 128) >> 8, ivec2(RESOLUTION - 1)) - first + 1;
+    size = min((high - 128) >> 8, last) - first + 1;
 #endif
 }
 
@@ -101,7 +102,7 @@ bool fillRow(ivec3 a, ivec3 b, ivec3 c) {
     ivec3 step = min(last - first, ivec3(1));
     if (step.x + step.y + step.z > 1) return false;
     first = max(first, ivec3(0));
-    last = min(last, ivec3(RESOLUTION - 1));
+    last = min(last, SIZE - 1);
     ivec3 length = last - first;
     int steps = any(lessThan(length, ivec3(0))) ? -1 : length.x + length.y + length.z;
     for (int i = 0; i <= steps; ++i) accumulate(first + i * step, LANE_MASK);

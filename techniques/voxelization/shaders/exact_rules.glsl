@@ -5,7 +5,7 @@
 //                     6-separating (Laine 2013: the target is the three unit segments through the
 //                     voxel's centre, one an axis).
 //  RULE_TOGGLE        as thin, but the first voxel whose centre lies behind the crossing; a crossing
-//                     behind the grid goes to w = N. [zju2005] Sec. 2.2.3.
+//                     behind the grid goes to w = its size. [zju2005] Sec. 2.2.3.
 //  RULE_CONSERVATIVE  every voxel of the column whose closed cube meets the triangle.
 // Sample lines that meet an edge are shifted by an infinitely small (ε, ε², ε³) in x, y, z, the same
 // for the three axes: each closed surface is then crossed an even number of times, and a face on a
@@ -52,7 +52,7 @@ layout(r32ui) uniform restrict coherent uimage2DArray sheet;
 layout(std430) restrict buffer Behind { uint behind[]; };
 
 void toggle(ivec3 local) {
-    if (local.z == RESOLUTION) {
+    if (local.z == localFromVolume(axis, SIZE).z) {
         ivec3 line = volumeFromLocal(axis, ivec3(local.xy, 0));
         atomicXor(behind[behindWord(axis, line)], behindBits(axis, line));
         return;
@@ -131,14 +131,15 @@ void fillColumn(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
     int w = int(floor(heightUnits / 256.0));
     if (side * planeValue(n, whole3(d, whole(w * 256) - a.z)) > 0) --w;
     if (side * planeValue(n, whole3(d, whole(w * 256 + 256) - a.z)) <= 0) ++w;
+    int size = localFromVolume(axis, SIZE).z;
 #ifdef RULE_TOGGLE
     whole behindCentre = side * planeValue(n, whole3(d, whole(w * 256 + 128) - a.z));
     bool isBehind = behindCentre != 0 ? behindCentre > 0 : isShiftedPositive(side * n);
-    toggle(ivec3(pixel, clamp(isBehind ? w : w + 1, 0, RESOLUTION)));
+    toggle(ivec3(pixel, clamp(isBehind ? w : w + 1, 0, size)));
 #else
     // The grid is closed: a crossing on its far face belongs to the last voxel.
-    if (w == RESOLUTION && planeValue(n, whole3(d, whole(w * 256) - a.z)) == 0) --w;
-    if (w < 0 || w >= RESOLUTION) return;
+    if (w == size && planeValue(n, whole3(d, whole(w * 256) - a.z)) == 0) --w;
+    if (w < 0 || w >= size) return;
     fill(ivec3(pixel, w), interpolatedValue(areas));
 #endif
 }
@@ -176,7 +177,7 @@ bool overlaps(whole3 a, whole3 b, whole3 c, whole3 n, whole3 centre) {
 
 void fillColumn(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
     int first = max((int(min(a.z, min(b.z, c.z))) - 1) >> 8, 0);
-    int last = min(int(max(a.z, max(b.z, c.z))) >> 8, RESOLUTION - 1);
+    int last = min(int(max(a.z, max(b.z, c.z))) >> 8, localFromVolume(axis, SIZE).z - 1);
     if (n.z != 0) {
         // Heights of the plane over the pixel, times |n.z|; one voxel of slack on both sides for the rounding.
         whole across = n.x * (p.x - a.x) + n.y * (p.y - a.y);

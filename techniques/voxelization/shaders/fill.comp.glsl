@@ -13,15 +13,16 @@ layout(std430) restrict buffer Statistics { uint ambiguousScanLines; };
 
 void main() {
     ivec2 column = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(column, SIZE.xy))) return;
     uint carry = 0u;
-    for (int slab = 0; slab < RESOLUTION / VOXELS_PER_TEXEL; ++slab) {
+    for (int slab = 0; slab < kSlabs; ++slab) {
         ivec3 texel = worksheetPatch(slab) + ivec3(column, 0);
         uint surface = imageLoad(sheet, texel).r;
         uint flags = surface;
         for (int shift = VOXEL_BITS; shift < 32; shift *= 2) flags ^= flags << shift;
         flags ^= carry;
         carry = (flags & 0x80000000u) != 0u ? 0xFFFFFFFFu : 0u;
-        flags |= surface;
+        flags = (flags & bitsOfSlices(slab)) | surface;
         if (flags != surface) imageStore(sheet, texel, uvec4(flags));
     }
     if (carry != 0u) atomicAdd(ambiguousScanLines, 1u);

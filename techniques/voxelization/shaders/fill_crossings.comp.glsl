@@ -25,6 +25,7 @@ layout(r32ui) uniform restrict readonly uimage2DArray sheetY;
 
 void main() {
     ivec3 line = ivec3(gl_GlobalInvocationID.xy, 0);
+    if (line.x >= SIZE.x) return;
     uint inside = 0u;  // all bits alike
     for (int slab = 0; slab < kSlabs; ++slab) {
         ivec3 texel = worksheetPatch(slab) + line;
@@ -32,6 +33,7 @@ void main() {
         for (int shift = VOXEL_BITS; shift < 32; shift *= 2) z ^= z << shift;
         z ^= inside;
         inside = (z & 0x80000000u) != 0u ? 0xFFFFFFFFu : 0u;
+        z &= bitsOfSlices(slab);
         uint x = imageLoad(sheetX, texel).r;
         uint y = imageLoad(sheetY, texel).r;
         uint differing = (x ^ y) | (y ^ z);
@@ -47,15 +49,16 @@ void main() {
 void main() {
     int line = int(gl_GlobalInvocationID.x);
     int slab = int(gl_GlobalInvocationID.y);
+    if (line >= (AXIS == 0 ? SIZE.y : SIZE.x)) return;
     ivec3 along = AXIS == 0 ? ivec3(1, 0, 0) : ivec3(0, 1, 0);
     ivec3 texel = worksheetPatch(slab) + (AXIS == 0 ? ivec3(0, line, 0) : ivec3(line, 0, 0));
     uint inside = 0u;
-    for (int i = 0; i < RESOLUTION; ++i, texel += along) {
+    for (int i = 0; i < (AXIS == 0 ? SIZE.x : SIZE.y); ++i, texel += along) {
         uint toggles = imageLoad(sheet, texel).r;
         inside ^= toggles;
         if (inside != toggles) imageStore(sheet, texel, uvec4(inside));
     }
-    uint open = inside ^ behind[(AXIS * kSlabs + slab) * RESOLUTION + line];
+    uint open = inside ^ behind[behindWord(AXIS, ivec3(line, line, slab * VOXELS_PER_TEXEL))];
     if (open != 0u) atomicAdd(ambiguousScanLines, uint(bitCount(open)) / VOXEL_BITS);
 }
 

@@ -1,7 +1,7 @@
 #version 450 core
 // Samples an implicit surface f(x, y, z) = 0 on the slices of the grid and writes the worksheet, one
 // invocation a texel: C voxels along z. [zju2005] Sec. 2.4.1 (1).
-// Reads the formula (snippet); writes every texel of `sheets`.
+// Reads the formula (snippet); writes every texel of `sheets` that holds voxels.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -67,11 +67,12 @@ uint solidVoxel(ivec3 voxel) {
 void main() {
     ivec2 column = ivec2(gl_GlobalInvocationID.xy);
     int slab = int(gl_GlobalInvocationID.z);
+    if (any(greaterThanEqual(column, SIZE.xy))) return;
     uint word = 0u;
 #if !SOLID
     float below = sampleAt(ivec3(2 * column + 1, 2 * slab * VOXELS_PER_TEXEL));
 #endif
-    for (int lane = 0; lane < VOXELS_PER_TEXEL; ++lane) {
+    for (int lane = 0; lane < slicesOf(slab); ++lane) {
         ivec3 voxel = ivec3(column, slab * VOXELS_PER_TEXEL + lane);
 #if SOLID
         uint value = solidVoxel(voxel);

@@ -24,8 +24,8 @@ void main() {
 #else
     value = 1u;
 #endif
-    bool isInBox = all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, ivec3(RESOLUTION)));
+    bool isInBox = all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, SIZE));
     // The centre of pixel (x, y); z = 2 lies outside the clip volume.
-    gl_Position = vec4((2.0 * vec2(voxel.xy) + 1.0) / float(RESOLUTION) - 1.0, isInBox ? 0.0 : 2.0, 1.0);
+    gl_Position = vec4((2.0 * vec2(voxel.xy) + 1.0) / vec2(SIZE.xy) - 1.0, isInBox ? 0.0 : 2.0, 1.0);
     gl_PointSize = 1.0;
 }

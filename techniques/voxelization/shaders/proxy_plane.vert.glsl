@@ -13,7 +13,8 @@ flat out int slice;
 
 void main() {
     bool ascends = (eye.z < 0.0) == bool(FRONT_TO_BACK);
-    slice = ascends ? gl_InstanceID : RESOLUTION - 1 - gl_InstanceID;
+    ivec3 size = localFromVolume(AXIS, SIZE);
+    slice = ascends ? gl_InstanceID : size.z - 1 - gl_InstanceID;
     float front = eye.z < 0.0 ? float(slice) : float(slice + 1);
     float back = eye.z < 0.0 ? float(slice + 1) : float(slice);
 
@@ -21,7 +22,7 @@ void main() {
     // where the far face is seen through it.
     float shrink = (front - eye.z) / (back - eye.z);
     vec2 low = min(vec2(0.0), eye.xy + (0.0 - eye.xy) * shrink);
-    vec2 high = max(vec2(RESOLUTION), eye.xy + (float(RESOLUTION) - eye.xy) * shrink);
+    vec2 high = max(vec2(size.xy), eye.xy + (vec2(size.xy) - eye.xy) * shrink);
     vec2 corner = mix(low, high, vec2(gl_VertexID & 1, gl_VertexID >> 1));
     gl_Position = clipFromVoxel * vec4(volumeFromLocal(AXIS, vec3(corner, front)), 1.0);
 }

@@ -13,7 +13,8 @@ uniform int slice;
 #endif
 
 void main() {
-    int w = min(int(gl_FragCoord.z * float(RESOLUTION)), RESOLUTION - 1);
+    int size = localFromVolume(axis, SIZE).z;
+    int w = min(int(gl_FragCoord.z * float(size)), size - 1);
 #ifdef SLICED
     if (w != slice) return;
 #endif

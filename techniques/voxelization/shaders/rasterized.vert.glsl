@@ -1,6 +1,6 @@
 #version 450 core
-// Rasterization by the hardware: projects a triangle along its axis onto N × N pixels; window z
-// times N is the depth in voxels. With SLICED, triangles wholly outside the slice are culled.
+// Rasterization by the hardware: projects a triangle along its axis onto a pixel a voxel; window z
+// times the voxels along it is the depth in voxels. With SLICED, triangles wholly outside the slice are culled.
 // [zju2005] Sec. 2.2.1.
 #include "voxelization/worksheet.glsl"
 
@@ -16,7 +16,7 @@ out float gl_CullDistance[2];
 
 uniform int axis;
 uniform vec3 boxCentreWorld;
-uniform float clipFromWorldScale;  // 2 / edge of the box
+uniform vec3 clipFromWorldScale;  // 2 / edges of the box
 
 void main() {
     vec3 local = localFromVolume(axis, (positionWorld - boxCentreWorld) * clipFromWorldScale);
@@ -26,7 +26,7 @@ void main() {
 #endif
 #ifdef SLICED
     // Half a voxel of margin: the fragment shader decides by its own depth to which slice it goes.
-    float depth = (local.z * 0.5 + 0.5) * float(RESOLUTION);
+    float depth = (local.z * 0.5 + 0.5) * float(localFromVolume(axis, SIZE).z);
     gl_CullDistance[0] = depth - (float(slice) - 0.5);
     gl_CullDistance[1] = float(slice) + 1.5 - depth;
 #endif

@@ -9,11 +9,16 @@
 #include "voxelization/lookup_tables.glsl"
 #endif
 
+// SHEET_X and SHEET_Y are of these sheets as SHEET is of the grid's.
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 layout(r32ui) uniform restrict readonly uimage2DArray sheetX;
 layout(r32ui) uniform restrict readonly uimage2DArray sheetY;
 layout(r32ui) uniform restrict uimage2DArray sheet;
+
+// Whether the grid's texels fill its sheets and the work groups.
+const bool kIsFull = kSlabs % SHEET.w == 0 && SIZE.x * SHEET.z % GROUP_EDGE == 0 &&
+                     SIZE.y * (SHEET.w / SHEET.z) % GROUP_EDGE == 0;
 
 uint combined(uint x, uint y, uint z) {
 #ifdef VALUES
@@ -38,9 +43,9 @@ struct Place {
 Place placeOf(uvec4 entry) { return Place(ivec3(entry.xy, 0), entry.zw); }
 uint voxelAt(uint word, Place place) { return lookedUpVoxel(word, place.bits.x, place.bits.y); }
 #else
-Place placeOf(ivec3 local) {
+Place placeOf(ivec4 sheet, ivec3 local) {
     uint shift = uint(worksheetShift(local.z));
-    return Place(worksheetTexel(local), uvec2(shift / 8u, shift % 8u));
+    return Place(worksheetTexel(sheet, local), uvec2(shift / 8u, shift % 8u));
 }
 uint voxelAt(uint word, Place place) {
     return (word >> (8u * place.bits.x + place.bits.y)) & LANE_MASK;
@@ -49,19 +54,20 @@ uint voxelAt(uint word, Place place) {
 
 void main() {
     ivec3 texel = ivec3(gl_GlobalInvocationID);
+    ivec2 patchXY = texel.xy / SIZE.xy;
+    int slab = texel.z * SHEET.w + patchXY.y * SHEET.z + patchXY.x;
+    if (!kIsFull && (patchXY.x >= SHEET.z || slab >= kSlabs)) return;
 #ifdef TABLES
     Place inX = placeOf(texelFetch(xFromZ, texel.xy, 0));
     Place inY = placeOf(texelFetch(yFromZ, texel.xy, 0));
 #else
-    ivec2 patchXY = texel.xy / RESOLUTION;
-    int slab = texel.z * PATCHES_PER_SHEET + patchXY.y * PATCHES_X + patchXY.x;
-    ivec3 voxel = ivec3(texel.xy % RESOLUTION, slab * VOXELS_PER_TEXEL);
-    Place inX = placeOf(localFromVolume(0, voxel));
-    Place inY = placeOf(localFromVolume(1, voxel));
+    ivec3 voxel = ivec3(texel.xy % SIZE.xy, slab * VOXELS_PER_TEXEL);
+    Place inX = placeOf(SHEET_X, localFromVolume(0, voxel));
+    Place inY = placeOf(SHEET_Y, localFromVolume(1, voxel));
 #endif
     uint x = 0u;
     uint y = 0u;
-    for (int k = 0; k < VOXELS_PER_TEXEL; ++k) {  // along z: rows of x's sheet, columns of y's
+    for (int k = 0; k < slicesOf(slab); ++k) {  // along z: rows of x's sheet, columns of y's
         uint wordX = imageLoad(sheetX, inX.texel + ivec3(0, k, 0)).r;
         uint wordY = imageLoad(sheetY, inY.texel + ivec3(k, 0, 0)).r;
         x |= voxelAt(wordX, inX) << worksheetShift(k);

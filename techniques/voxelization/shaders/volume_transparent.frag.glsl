@@ -26,7 +26,7 @@ vec4 headTissue(vec3 position, vec3 towardsEye) {
     bool isOutside = any(lessThan(position, vec3(0.0))) || any(greaterThan(position, vec3(1.0)));
     if (isOutside || data.a < 0.05) return vec4(0.0);
 #if CUT
-    if (isCut(ivec3(position * float(RESOLUTION)))) return vec4(0.0);
+    if (isCut(ivec3(position * vec3(SIZE)))) return vec4(0.0);
 #endif
     // Skin is where the density rises from air; soft tissue, fluid, brain, bone follow.
     float skin = band(data.a, 0.10, 0.22, 0.05);
@@ -95,8 +95,8 @@ void main() {
     }
 #if HEAD
     vec3 middle = volumeFromLocal(AXIS, vec3(0.5 * (entry + exit), float(slice) + 0.5));
-    vec4 tissue = headTissue(middle / float(RESOLUTION), towardsEye);
-    blendUnder(sum, tissue.rgb, 1.0 - pow(1.0 - tissue.a, pathLength * 128.0 / float(RESOLUTION)));
+    vec4 tissue = headTissue(middle / vec3(SIZE), towardsEye);
+    blendUnder(sum, tissue.rgb, 1.0 - pow(1.0 - tissue.a, pathLength * 128.0 / float(SIZE.x)));
 #endif
     if (sum.a == 0.0) discard;
     color = sum;

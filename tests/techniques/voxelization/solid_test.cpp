@@ -28,7 +28,7 @@ Differences countAgainstRays(const DenseGrid& grid, const LatticeMesh& lattice) 
         mesh.positions.push_back(glm::vec3(p) / static_cast<float>(kLatticePerVoxel));
     }
     const raycast::RayTracer tracer(scene::sceneOf(mesh));
-    const int n = grid.resolution();
+    const int n = grid.shape().longest();
     Differences result;
     for (int y = 0; y < n; ++y) {
         for (int x = 0; x < n; ++x) {

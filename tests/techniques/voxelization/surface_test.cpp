@@ -21,7 +21,7 @@ scene::Box cube(float half) {
 }
 
 glm::dvec3 centreOf(const VoxelGrid& grid, const glm::ivec3& voxel) {
-    const double size = static_cast<double>(grid.box.size().x) / grid.layout.resolution();
+    const auto size = static_cast<double>(grid.voxelSize());
     return glm::dvec3(grid.box.min) + (glm::dvec3(voxel) + 0.5) * size;
 }
 

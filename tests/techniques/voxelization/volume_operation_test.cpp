@@ -14,8 +14,8 @@ namespace {
 /// Solid; the grid's box is [-1, 1]³.
 DenseGrid sphere(const WorksheetLayout& layout, const glm::vec3& centre, float radius) {
     DenseGrid grid(layout);
-    const float size = 2.0F / static_cast<float>(layout.resolution());
-    forEachVoxel(layout.resolution(), [&](const glm::ivec3& voxel) {
+    const float size = 2.0F / static_cast<float>(layout.shape().longest());
+    forEachVoxel(layout.shape(), [&](const glm::ivec3& voxel) {
         const glm::vec3 p = (glm::vec3(voxel) + 0.5F) * size - 1.0F;
         if (glm::distance(p, centre) <= radius) grid.set(voxel, 1);
     });
@@ -25,7 +25,7 @@ DenseGrid sphere(const WorksheetLayout& layout, const glm::vec3& centre, float r
 DenseGrid randomGrid(const WorksheetLayout& layout, std::uint64_t seed) {
     Random random(seed);
     DenseGrid grid(layout);
-    forEachVoxel(layout.resolution(), [&](const glm::ivec3& voxel) {
+    forEachVoxel(layout.shape(), [&](const glm::ivec3& voxel) {
         if (random.index(3) == 0) grid.set(voxel, std::max(random.next() & layout.laneMask(), 1U));
     });
     return grid;

@@ -43,8 +43,21 @@ TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
         kVoxelization,
         {
             {"{}", ""},
-            {"resolution: 100",
-             "13: resolution: 100 is not allowed; allowed: 32, 64, 128, 256, 512, 1024"},
+            {"resolution: 100", ""},
+            {"resolution: 0.5",
+             "13: technique 'voxelization': resolution: 0.5 is not allowed; allowed: whole"},
+            {"resolution: 20000", "13: technique 'voxelization': resolution"},
+            {"{resolution: 2048, method: worksheet}",
+             "14: resolution: 2048 is not allowed with 'method: worksheet'; allowed: at most 1024"},
+            {"{resolution: 2048, draw: opaque}",
+             "14: resolution: 2048 is not allowed with a picture; allowed: at most 1024"},
+            {"resolution: 2048", ""},
+            {"{resolution: 4, padding: 2}",
+             "14: resolution: 4 is not allowed with 'padding: 2'; allowed: at least 5"},
+            {"{resolution: 5, padding: 2}", ""},
+            {"{resolution: 1, box_min: [0, 0, 0], box_max: [1, 1, 1]}", ""},
+            {"grid: sphere", "7: grid"},
+            {"{grid: box, draw: mixed, voxel_bits: 8}", "8: 'draw: mixed' needs 'grid: cube'"},
             {"voxel_bits: 4", "13: voxel_bits: 4 is not allowed; allowed: 1, 8, 16, 32"},
             {"value: normal",
              "8: a voxel of 1 bit says occupancy only; allowed with 'value: normal': voxel_bits 8, "
@@ -76,7 +89,12 @@ TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
             {"{method: worksheet, addressing: tables}", ""},
             {"box_min: [0, 0, 0]", "10: box_min and box_max must be given together"},
             {"{box_min: [0, 0, 0], box_max: [1, 2, 1]}",
-             "31: the box must be cubic and not empty; it is 1 × 2 × 1"},
+             "31: the box must be cubic and not be empty; it is 1 × 2 × 1; allowed with 'grid: "
+             "box': "
+             "any other"},
+            {"{box_min: [0, 0, 0], box_max: [1, 2, 1], grid: box}", ""},
+            {"{box_min: [0, 0, 0], box_max: [1, 2, 0], grid: box}",
+             "31: the box must not be empty; it is 1 × 2 × 0"},
             {"{box_min: [0, 0, 0], box_max: [1, 1, 1]}", ""},
         });
 }
@@ -131,6 +149,7 @@ TEST_F(VoxelizationTest, RecordsTheGrid) {
     EXPECT_EQ(metrics.at("triangles"), 1280.0);
     EXPECT_EQ(metrics.at("vertices"), 642.0);
     EXPECT_EQ(metrics.at("voxel_bits"), 8.0);
+    EXPECT_EQ(metrics.at("grid_voxels"), 64.0 * 64 * 64);
     EXPECT_EQ(metrics.at("worksheet_bytes"), 64.0 * 64 * 64);
     EXPECT_GT(metrics.at("missed_thin_voxels"), 0.0);
     EXPECT_GT(metrics.at("memory_bytes"), 3.0 * 64 * 64 * 64);
@@ -146,6 +165,32 @@ TEST_F(VoxelizationTest, RecordsTheGrid) {
     EXPECT_FALSE(direct.contains("fragments"));
     EXPECT_TRUE(hasPass("voxelization", gl::PassTime::Clock::Gpu));
     EXPECT_FALSE(hasPass("synthesis", gl::PassTime::Clock::Gpu));
+}
+
+// The same voxels, as many of them as the model needs: with whole numbers they lie in both grids
+// alike.
+TEST_F(VoxelizationTest, ABoxHoldsTheVoxelsOfTheCube) {
+    const scene::Scene flat =
+        scene::sceneOf(shapes::cube(glm::vec3(1, 2, 3), glm::vec3(31, 8, 17)));
+    for (const char* how : {"rule: thin", "rule: conservative", "fill: solid", "method: worksheet",
+                            "method: worksheet, fill: solid, fill_rule: surface_voxels"}) {
+        const auto cube = run(fmt::format("{{resolution: 32, {}}}", how), flat);
+        const auto box = run(fmt::format("{{resolution: 32, grid: box, {}}}", how), flat);
+        EXPECT_EQ(box.at("voxels"), cube.at("voxels")) << how;
+        EXPECT_EQ(cube.at("grid_voxels"), 32.0 * 32 * 32);
+        EXPECT_EQ(box.at("grid_voxels"), 32.0 * 8 * 16) << how;
+        EXPECT_LT(box.at("memory_bytes"), cube.at("memory_bytes")) << how;
+    }
+    const auto torus =
+        run("{input: parametric, resolution: 100, grid: box, samples: [900, 500]}", {});
+    EXPECT_EQ(torus.at("grid_voxels"), 100.0 * 100 * 30);
+    const auto given =
+        run("{input: implicit, formula: z - 0.5, resolution: 40, grid: box, box_min: [0, 0, 0], "
+            "box_max: "
+            "[4, 2.05, 1]}",
+            {});
+    EXPECT_EQ(given.at("grid_voxels"), 40.0 * 21 * 10);
+    EXPECT_EQ(given.at("voxels"), 40.0 * 21 * 2);  // on the face between two layers
 }
 
 TEST_F(VoxelizationTest, TimesPreprocessAndReadBackEachFrame) {

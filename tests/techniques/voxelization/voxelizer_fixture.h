@@ -123,15 +123,15 @@ struct Voxelized {
 
 class VoxelizerTest : public GlTest {
   protected:
-    static MeshVoxelizerSettings settings(int resolution, Rule rule, int voxelBits = 1) {
+    static MeshVoxelizerSettings settings(const GridShape& shape, Rule rule, int voxelBits = 1) {
         MeshVoxelizerSettings result;
-        result.grid.layout = WorksheetLayout(resolution, voxelBits);
+        result.grid.layout = WorksheetLayout(shape, voxelBits);
         result.method = rule == Rule::Rasterized ? Method::Worksheet : Method::Direct;
         result.rule = rule;
         return result;
     }
-    static MeshVoxelizerSettings solid(int resolution, int voxelBits = 1) {
-        MeshVoxelizerSettings result = settings(resolution, Rule::Thin, voxelBits);
+    static MeshVoxelizerSettings solid(const GridShape& shape, int voxelBits = 1) {
+        MeshVoxelizerSettings result = settings(shape, Rule::Thin, voxelBits);
         result.grid.fill = Fill::Solid;
         return result;
     }
@@ -151,10 +151,10 @@ class VoxelizerTest : public GlTest {
         return voxelize(mesh, settings, boxOf(mesh, settings));
     }
     static scene::Box boxOf(const scene::Mesh& mesh, const MeshVoxelizerSettings& settings) {
-        return cubicBox(mesh.bounds(), settings.grid.layout.resolution(), 1);
+        return gridBox(mesh.bounds(), settings.grid.layout.shape(), 1);
     }
     static LatticeMesh lattice(const scene::Mesh& mesh, const MeshVoxelizerSettings& settings) {
-        return snapped(mesh, boxOf(mesh, settings), settings.grid.layout.resolution());
+        return snapped(mesh, boxOf(mesh, settings), settings.grid.layout.shape());
     }
 };
 

@@ -10,21 +10,54 @@ namespace gfxrepro::voxelization {
 namespace {
 
 constexpr int kVoxelBits[] = {1, 8, 16, 32};
+const GridShape kShapes[] = {
+    32,
+    64,
+    45,
+    GridShape({70, 5, 39}),
+    GridShape({3, 90, 64}),
+    GridShape({1, 1, 101}),
+    GridShape({700, 300, 3}),
+};
 
 TEST(WorksheetTest, EveryVoxelHasItsOwnBits) {
     for (const int bits : kVoxelBits) {
-        for (const int n : {32, 64}) {
-            const WorksheetLayout layout(n, bits);
+        for (const GridShape& shape : kShapes) {
+            const WorksheetLayout layout(shape, bits);
             std::vector<std::uint32_t> words(layout.wordCount());
-            forEachVoxel(n, [&](const glm::ivec3& local) {
+            forEachVoxel(shape, [&](const glm::ivec3& local) {
                 const std::uint32_t mask = layout.laneMask() << layout.shift(local.z);
                 std::uint32_t& word = words.at(layout.wordIndex(local));
                 ASSERT_EQ(word & mask, 0U) << local.x << " " << local.y << " " << local.z;
                 word |= mask;
             });
+            if (shape != GridShape(32) && shape != GridShape(64)) continue;
             for (const std::uint32_t word : words) ASSERT_EQ(word, ~0U);
         }
     }
+}
+
+// A third is wasted at most, beside the last slab's bits, whatever the shape.
+TEST(WorksheetTest, PatchesFillTheirSheets) {
+    for (const int bits : kVoxelBits) {
+        for (int n = 1; n < 1300; n += 7) {
+            for (const GridShape& shape : {GridShape(n), GridShape({n, 40, 300}),
+                                           GridShape({900, n, 20}), GridShape({30, 500, n})}) {
+                const WorksheetLayout layout(shape, bits);
+                const glm::ivec2 size = layout.sheetSizePx();
+                ASSERT_LE(std::max(size.x, size.y), 2048) << shape.text();
+                const int patches = layout.patchesPerSheet() * layout.layers();
+                ASSERT_LT(2 * (patches - layout.slabCount()), layout.slabCount()) << shape.text();
+            }
+        }
+    }
+}
+
+// What is longer than the thesis's sheet has a larger one.
+TEST(WorksheetTest, PatchesMayBeLargerThanTheThesisSheet) {
+    const WorksheetLayout layout(GridShape({5000, 30, 40}), 1);
+    EXPECT_EQ(layout.sheetSizePx(), glm::ivec2(5000, 60));
+    EXPECT_EQ(layout.layers(), 1);
 }
 
 TEST(WorksheetTest, CapacityIsTheNumberOfVoxels) {
@@ -100,20 +133,22 @@ layout(local_size_x = 64) in;
 layout(std430) buffer Out { ivec4 address[]; };
 void main() {
     int i = int(gl_GlobalInvocationID.x);
-    ivec3 local = ivec3(i % RESOLUTION, i / RESOLUTION % RESOLUTION, i / RESOLUTION / RESOLUTION);
+    if (i >= SIZE.x * SIZE.y * SIZE.z) return;
+    ivec3 local = ivec3(i % SIZE.x, i / SIZE.x % SIZE.y, i / SIZE.x / SIZE.y);
     address[i] = ivec4(worksheetTexel(local), worksheetShift(local.z));
 }
 )");
     for (const int bits : kVoxelBits) {
-        const WorksheetLayout layout(64, bits);
-        const int count = 64 * 64 * 64;
-        gl::Buffer buffer(static_cast<std::size_t>(count) * sizeof(glm::ivec4));
-        folder.pass(layout.defines()).dispatch({count / 64, 1, 1}, {{"Out", buffer}});
-        const auto addresses = buffer.read<glm::ivec4>(static_cast<std::size_t>(count));
-        for (int i = 0; i < count; ++i) {
-            const glm::ivec3 local(i % 64, i / 64 % 64, i / 64 / 64);
-            ASSERT_EQ(addresses[static_cast<std::size_t>(i)],
-                      glm::ivec4(layout.texel(local), layout.shift(local.z)));
+        for (const GridShape& shape : kShapes) {
+            const WorksheetLayout layout(shape, bits);
+            const std::size_t count = shape.voxelCount();
+            gl::Buffer buffer(count * sizeof(glm::ivec4));
+            folder.pass(layout.defines()).dispatch({count / 64 + 1, 1, 1}, {{"Out", buffer}});
+            const auto addresses = buffer.read<glm::ivec4>(count);
+            std::size_t i = 0;
+            forEachVoxel(shape, [&](const glm::ivec3& local) {
+                ASSERT_EQ(addresses[i++], glm::ivec4(layout.texel(local), layout.shift(local.z)));
+            });
         }
     }
 }
