@@ -25,16 +25,17 @@ WorksheetLayout::WorksheetLayout(const GridShape& shape, int voxelBits)
     const glm::ivec2 most = glm::max(kMaxSheetSizePx / glm::ivec2(shape.size), glm::ivec2(1));
     const int sheets = dividedUp(slabCount(), most.x * most.y);
     const int patches = dividedUp(slabCount(), sheets);
-    // As square as powers of two make it, the wider side along x, unless another wastes less.
+    // As square as powers of two make it, the wider side along x, unless less is wasted otherwise.
     int widest = 1;
     while (widest * widest < patches) widest *= 2;
     widest = std::clamp(widest, dividedUp(patches, most.y), most.x);
     int fewest = std::numeric_limits<int>::max();
     for (int across = widest; across > 0; --across) {
-        const int down = dividedUp(patches, across);
-        if (down > most.y) break;
-        if (across * down >= fewest) continue;
-        fewest = across * down;
+        const int down = std::min(dividedUp(patches, across), most.y);
+        const int layers = dividedUp(slabCount(), across * down);
+        if (layers > 1 && sheets == 1) break;
+        if (across * down * layers >= fewest) continue;
+        fewest = across * down * layers;
         patchesX_ = across;
         patchesY_ = down;
     }

@@ -11,9 +11,9 @@ namespace gfxrepro::voxelization {
 namespace {
 
 // No side divides a texel's voxels or a work group but those of the last.
-const GridShape kShapes[] = {37, GridShape({53, 11, 38}), GridShape({6, 70, 41}),
-                             GridShape({64, 8, 32})};
-constexpr int kVoxelBits[] = {1, 8, 32};
+const GridShape kOddShapes[] = {37, GridShape({53, 11, 38}), GridShape({6, 70, 41}),
+                                GridShape({64, 8, 32})};
+constexpr int kWidths[] = {1, 8, 32};
 
 /// With voxels of an edge of 1/8.
 scene::Box placeOf(const GridShape& shape) {
@@ -26,7 +26,7 @@ scene::Mesh stretched(scene::Mesh mesh, const scene::Box& from, const scene::Box
     mesh.normals = scene::vertexNormals(mesh);
     return mesh;
 }
-scene::Mesh triangles(const GridShape& shape) {
+scene::Mesh scattered(const GridShape& shape) {
     const scene::Box part{glm::vec3(0.1F), glm::vec3(0.9F)};
     return stretched(shapes::randomTriangles(300, 7), part, placeOf(shape));
 }
@@ -62,12 +62,12 @@ class GridShapeTest : public VoxelizerTest {
 };
 
 TEST_F(GridShapeTest, ExactRulesAreAsOnTheCpu) {
-    for (const GridShape& shape : kShapes) {
-        const scene::Mesh mesh = triangles(shape);
+    for (const GridShape& shape : kOddShapes) {
+        const scene::Mesh mesh = scattered(shape);
         const LatticeMesh lattice = latticeOf(mesh, shape);
         const DenseGrid thin = reference::thin(lattice, shape);
         const DenseGrid conservative = reference::conservative(lattice, shape);
-        for (const int bits : kVoxelBits) {
+        for (const int bits : kWidths) {
             EXPECT_EQ(occupancyOf(gridOf(mesh, settings(shape, Rule::Thin, bits))), thin)
                 << shape.text() << bits;
             EXPECT_EQ(occupancyOf(gridOf(mesh, settings(shape, Rule::Conservative, bits))),
@@ -78,13 +78,13 @@ TEST_F(GridShapeTest, ExactRulesAreAsOnTheCpu) {
 }
 
 TEST_F(GridShapeTest, SolidsAreAsOnTheCpu) {
-    for (const GridShape& shape : kShapes) {
+    for (const GridShape& shape : kOddShapes) {
         scene::Mesh mesh = closedMesh(shape);
         for (const bool isOpen : {false, true}) {
             if (isOpen) mesh.triangles.resize(mesh.triangles.size() * 9 / 10);
             const reference::SolidVoxels expected = reference::solid(latticeOf(mesh, shape), shape);
             EXPECT_EQ(expected.ambiguousScanLines > 0, isOpen) << shape.text();
-            for (const int bits : kVoxelBits) {
+            for (const int bits : kWidths) {
                 const Voxelized result = voxelize(mesh, solid(shape, bits), placeOf(shape));
                 EXPECT_EQ(occupancyOf(result.grid), expected.grid) << shape.text() << bits;
                 EXPECT_EQ(result.grid.countFull(), countVoxels(result.grid)) << shape.text();
@@ -99,10 +99,10 @@ TEST_F(GridShapeTest, SolidsAreAsOnTheCpu) {
 
 // By worksheets, whose three sheets have three layouts, and each other way.
 TEST_F(GridShapeTest, RasterizedIsOneGridByAllMethods) {
-    for (const GridShape& shape : kShapes) {
-        const scene::Mesh mesh = triangles(shape);
+    for (const GridShape& shape : kOddShapes) {
+        const scene::Mesh mesh = scattered(shape);
         const DenseGrid along = reference::thinAlongDominantAxes(latticeOf(mesh, shape), shape);
-        for (const int bits : kVoxelBits) {
+        for (const int bits : kWidths) {
             for (const VoxelValue value : {VoxelValue::Occupancy, VoxelValue::Normal}) {
                 if (bits == 1 && value == VoxelValue::Normal) continue;
                 MeshVoxelizerSettings s = settings(shape, Rule::Rasterized, bits);
@@ -127,7 +127,7 @@ TEST_F(GridShapeTest, RasterizedIsOneGridByAllMethods) {
 // The voxels of a cube that lie in it, by occupancy and by value.
 TEST_F(GridShapeTest, ABoxIsPartOfACube) {
     const GridShape shape({53, 11, 38});
-    const scene::Mesh mesh = triangles(shape);
+    const scene::Mesh mesh = scattered(shape);
     for (const Rule rule : {Rule::Thin, Rule::Conservative}) {
         for (const int bits : {8, 16, 32}) {
             MeshVoxelizerSettings s = settings(shape, rule, bits);
@@ -150,7 +150,7 @@ TEST_F(GridShapeTest, FlippingAtVoxelsEndsWithTheGrid) {
     const scene::Mesh cube = shapes::cube(glm::vec3(1.2F), glm::vec3(17.8F));
     const scene::Mesh plate = shapes::cube(glm::vec3(4, 4, 10.2F), glm::vec3(14, 14, 10.4F));
     const scene::Box box{glm::vec3(0.0F), glm::vec3(shape.size)};
-    for (const int bits : kVoxelBits) {
+    for (const int bits : kWidths) {
         auto s = flipped(shape, bits);
         for (const Addressing addressing : {Addressing::Instructions, Addressing::Tables}) {
             s.addressing = addressing;
@@ -166,7 +166,7 @@ TEST_F(GridShapeTest, FlippingAtVoxelsEndsWithTheGrid) {
 
 TEST_F(GridShapeTest, FormulasFillABoxAsACube) {
     const GridShape shape({40, 21, 35});
-    for (const int bits : kVoxelBits) {
+    for (const int bits : kWidths) {
         for (const Fill fill : {Fill::Surface, Fill::Solid}) {
             const auto gridOfFormula = [&](const GridShape& of) {
                 Params params(parseYaml("{formula: x^2 + y^2 + z^2 - 9}", "test.yaml"), "test");
@@ -207,8 +207,8 @@ TEST_F(GridShapeTest, FormulasFillABoxAsACube) {
 }
 
 TEST_F(GridShapeTest, CombinedVoxelByVoxel) {
-    for (const GridShape& shape : kShapes) {
-        for (const int bits : kVoxelBits) {
+    for (const GridShape& shape : kOddShapes) {
+        for (const int bits : kWidths) {
             const WorksheetLayout layout(shape, bits);
             Random random(5);
             DenseGrid a(layout), b(layout);

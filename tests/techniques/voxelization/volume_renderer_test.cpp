@@ -90,8 +90,8 @@ std::uint32_t firstHit(const DenseGrid& grid, const Ray& ray) {
 }
 
 // Of which kBox holds the first.
-const GridShape kShapes[] = {32, GridShape({32, 6, 20}), GridShape({9, 32, 7})};
-scene::Box boxOf(const GridShape& shape) {
+const GridShape kDrawnShapes[] = {32, GridShape({32, 6, 20}), GridShape({9, 32, 7})};
+scene::Box drawnBoxOf(const GridShape& shape) {
     return {kBox.min, kBox.min + glm::vec3(shape.size) / 8.0F};
 }
 
@@ -132,11 +132,11 @@ INSTANTIATE_TEST_SUITE_P(Views, VolumeRendering, testing::ValuesIn(kViews),
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST_P(VolumeRendering, OpaqueShowsTheVoxelsThatARayMeetsFirst) {
-    for (const GridShape& shape : kShapes) {
+    for (const GridShape& shape : kDrawnShapes) {
         const int voxelBits = shape.size.y < 32 ? 8 : shape.size.x < 32 ? 32 : 1;
         const WorksheetLayout layout(shape, voxelBits);
         const DenseGrid grid = shell(layout);
-        const scene::Box box = boxOf(shape);
+        const scene::Box box = drawnBoxOf(shape);
         const scene::Camera camera =
             orbitCamera(box, GetParam().azimuthDeg, GetParam().elevationDeg, 1.5F);
         VolumeRenderer renderer(shaders(), layout, box, camera, kSizePx, {});
