@@ -88,7 +88,7 @@ void splitByAxis(std::span<const glm::vec3> positions, std::span<const glm::uvec
 enum class Rule {
     Rasterized,    // the thesis's: what the hardware rasterizer samples along the dominant axis
     Thin,          // 6-separating
-    Conservative,  // every voxel whose closed cube meets the triangle
+    Conservative,  // every voxel whose closed cube meets the triangle, and few more
 };
 
 /// How the worksheet method finds the bits of a voxel.

@@ -54,9 +54,10 @@ glm::ivec3 lastVoxel(const Triangle& t, const glm::ivec3& size) {
     return glm::min(glm::ivec3(glm::floor(high / 256.0)), size - 1);
 }
 
-/// Whether the projections on `axis` of the triangle and of the cube of half edge 128 are apart.
+/// Whether the projections on `axis` of the triangle and of the cube, half a lattice unit larger on
+/// all sides, are apart.
 bool isSeparating(const glm::dvec3& axis, const Triangle& t) {
-    const double radius = 128.0 * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
+    const double radius = 128.5 * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
     const double a = glm::dot(axis, t[0]);
     const double b = glm::dot(axis, t[1]);
     const double c = glm::dot(axis, t[2]);

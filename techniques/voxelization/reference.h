@@ -7,7 +7,8 @@
 
 namespace gfxrepro::voxelization::reference {
 
-/// Every voxel whose closed cube meets a triangle: 13 separating axes (Akenine-Möller 2001).
+/// Every voxel whose closed cube meets a triangle of the mesh as given, and those that come as near
+/// to the snapped one as half a lattice unit: 13 separating axes (Akenine-Möller 2001).
 DenseGrid conservative(const LatticeMesh& mesh, const GridShape& shape);
 
 /// Every voxel in which one of the three axis-parallel lines through voxel centres crosses a

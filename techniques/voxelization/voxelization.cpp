@@ -44,7 +44,8 @@ constexpr Choice<Method> kMethods[] = {
 constexpr Choice<Rule> kRules[] = {
     {Rule::Rasterized, "rasterized", "pixels that the hardware samples, as the thesis"},
     {Rule::Thin, "thin", "6-separating: no path over faces leaks through"},
-    {Rule::Conservative, "conservative", "every voxel whose closed cube meets a triangle"},
+    {Rule::Conservative, "conservative",
+     "every voxel whose closed cube meets a triangle, and some that are within 2⁻⁸ voxel of one"},
 };
 constexpr Choice<Fill> kFills[] = {
     {Fill::Surface, "surface", "voxels of the surface"},
@@ -516,9 +517,9 @@ config::Outputs outputs() {
              "of these, voxels that a line along a triangle's dominant axis crosses",
              Better::Lower},
             {"missed_conservative_voxels", "voxel",
-             "voxels that the surface touches and the grid lacks", Better::Lower},
+             "voxels of the exact conservative surface that the grid lacks", Better::Lower},
             {"added_conservative_voxels", "voxel",
-             "voxels of the grid that the surface does not touch", Better::Lower},
+             "voxels of the grid that are not of the exact conservative surface", Better::Lower},
             detail("planes", "plane",
                    "planes of voxels that were blended or searched for the picture"),
             {"samples", "sample", "samples of a parametric surface"},

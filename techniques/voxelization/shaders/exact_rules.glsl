@@ -6,7 +6,9 @@
 //                     voxel's centre, one an axis).
 //  RULE_TOGGLE        as thin, but the first voxel whose centre lies behind the crossing; a crossing
 //                     behind the grid goes to w = its size. [zju2005] Sec. 2.2.3.
-//  RULE_CONSERVATIVE  every voxel of the column whose closed cube meets the triangle.
+//  RULE_CONSERVATIVE  every voxel of the column whose closed cube meets the triangle, or comes as near to
+//                     it as half a lattice unit: that is how far the mesh as given may lie from its
+//                     corners on the lattice.
 // Sample lines that meet an edge are shifted by an infinitely small (ε, ε², ε³) in x, y, z, the same
 // for the three axes: each closed surface is then crossed an even number of times, and a face on a
 // voxel's centre gives all axes the same inside.
@@ -148,9 +150,12 @@ void fillColumn(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
 
 const whole kHalf = whole(128);  // half a voxel
 
+// Half a voxel and half a lattice unit, times `s`. Whole numbers are compared with it: a half is dropped.
+whole reachOf(whole s) { return kHalf * s + s / 2; }
+
 // Separating axis "edge × unit axis": the projection of the triangle against that of the cube.
 bool isSeparated(whole2 edge, whole2 p, whole2 q, whole2 r) {
-    whole radius = kHalf * (abs(edge.x) + abs(edge.y));
+    whole radius = reachOf(abs(edge.x) + abs(edge.y));
     precise whole s = edge.x * p.y - edge.y * p.x;
     precise whole t = edge.x * q.y - edge.y * q.x;
     precise whole u = edge.x * r.y - edge.y * r.x;
@@ -162,15 +167,16 @@ bool isSeparated(whole3 edge, whole3 a, whole3 b, whole3 c) {
            isSeparated(edge.zx, a.zx, b.zx, c.zx);
 }
 
-// Closed cube around `centre` against the closed triangle: 13 axes (Akenine-Möller 2001). Complete
-// for triangles that are a segment or a point.
+// Cube around `centre` against the closed triangle: 13 axes (Akenine-Möller 2001). Complete for
+// triangles that are a segment or a point. A corner lies on the lattice: it is within reach of a face
+// of the cube where it is in the closed cube.
 bool overlaps(whole3 a, whole3 b, whole3 c, whole3 n, whole3 centre) {
     a -= centre;
     b -= centre;
     c -= centre;
     if (any(greaterThan(min(a, min(b, c)), whole3(kHalf)))) return false;
     if (any(lessThan(max(a, max(b, c)), whole3(-kHalf)))) return false;
-    if (abs(planeValue(n, a)) > kHalf * (abs(n.x) + abs(n.y) + abs(n.z))) return false;
+    if (abs(planeValue(n, a)) > reachOf(abs(n.x) + abs(n.y) + abs(n.z))) return false;
     // No array of edges: NVIDIA's compiler (580.159) stops at an index into one of 64-bit integers.
     return !isSeparated(b - a, a, b, c) && !isSeparated(c - b, a, b, c) && !isSeparated(a - c, a, b, c);
 }
@@ -182,7 +188,7 @@ void fillColumn(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
         // Heights of the plane over the pixel, times |n.z|; one voxel of slack on both sides for the rounding.
         whole across = n.x * (p.x - a.x) + n.y * (p.y - a.y);
         whole centre = a.z * abs(n.z) - (n.z > 0 ? across : -across);
-        whole reach = kHalf * (abs(n.x) + abs(n.y));
+        whole reach = reachOf(abs(n.x) + abs(n.y));
         float voxel = 256.0 * float(abs(n.z));
         first = int(max(float(first), floor(float(centre - reach) / voxel) - 1.0));
         last = int(min(float(last), floor(float(centre + reach) / voxel) + 1.0));

@@ -1,7 +1,10 @@
 // The rules of surface voxelization against the CPU references, voxel by voxel.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
+#include "engine/core/random.h"
 #include "engine/scene/load.h"
 #include "tests/techniques/voxelization/voxel_value.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
@@ -85,6 +88,88 @@ TEST_F(RulesTest, RasterizedIsTheExactSetAlongDominantAxes) {
         // a cube is seen along its own axis alone.
         EXPECT_EQ(reference::countMissing(thin, along) == 0, shape.name == std::string("cube"));
     }
+}
+
+/// In whole numbers of 4,096 a voxel: products of three differences are exact.
+using FineTriangle = std::array<glm::dvec3, 3>;
+constexpr double kFinePerVoxel = 4096.0;
+
+/// Whether a triangle meets the closed cube of this half edge around 0: 13 axes.
+bool meets(const FineTriangle& t, double half) {
+    const std::array<glm::dvec3, 3> edges = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+    const auto separates = [&](const glm::dvec3& axis) {
+        const double reach = half * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
+        const auto [low, high] =
+            std::minmax({glm::dot(axis, t[0]), glm::dot(axis, t[1]), glm::dot(axis, t[2])});
+        return low > reach || high < -reach;
+    };
+    for (int k = 0; k < 3; ++k) {
+        glm::dvec3 unit(0.0);
+        unit[k] = 1.0;
+        if (separates(unit)) return false;
+        for (const glm::dvec3& edge : edges) {
+            if (separates(glm::cross(unit, edge))) return false;
+        }
+    }
+    return !separates(glm::cross(edges[0], edges[1]));
+}
+
+/// Voxels whose cube, larger by `slack` on all sides, meets a triangle.
+DenseGrid voxelsThatMeet(const std::vector<FineTriangle>& triangles, int n, double slack) {
+    DenseGrid grid(WorksheetLayout(n, 1));
+    for (const FineTriangle& t : triangles) {
+        const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2])) / kFinePerVoxel;
+        const glm::dvec3 high = glm::max(t[0], glm::max(t[1], t[2])) / kFinePerVoxel;
+        const glm::ivec3 first = glm::max(glm::ivec3(glm::floor(low)) - 1, glm::ivec3(0));
+        const glm::ivec3 last = glm::min(glm::ivec3(glm::floor(high)) + 1, glm::ivec3(n - 1));
+        for (int z = first.z; z <= last.z; ++z) {
+            for (int y = first.y; y <= last.y; ++y) {
+                for (int x = first.x; x <= last.x; ++x) {
+                    const glm::dvec3 centre = (glm::dvec3(x, y, z) + 0.5) * kFinePerVoxel;
+                    if (meets({t[0] - centre, t[1] - centre, t[2] - centre},
+                              0.5 * kFinePerVoxel + slack)) {
+                        grid.set({x, y, z}, 1);
+                    }
+                }
+            }
+        }
+    }
+    return grid;
+}
+
+// Of a mesh whose corners lie between the lattice's points. What is too much lies within one unit
+// of the lattice: half of it by rounding a corner, half by the rule.
+TEST_F(RulesTest, ConservativeMissesNothingOfTheMeshAsGiven) {
+    constexpr int kN = 32;
+    constexpr double kLatticeUnit = kFinePerVoxel / kLatticePerVoxel;
+    Random random(4);
+    const auto point = [&](float low, float high) {
+        const glm::vec3 p{random.uniform(low, high), random.uniform(low, high),
+                          random.uniform(low, high)};
+        return glm::floor(glm::dvec3(p) * kFinePerVoxel);
+    };
+    scene::Mesh mesh;
+    std::vector<FineTriangle> given, rounded;
+    for (std::uint32_t i = 0; i < 1500; ++i) {
+        const glm::dvec3 at = point(0.0F, kN);
+        FineTriangle triangle, onLattice;
+        for (std::size_t k = 0; k < 3; ++k) {
+            triangle[k] = at + point(-1.0F, 1.0F);
+            onLattice[k] = glm::floor(triangle[k] / kLatticeUnit + 0.5) * kLatticeUnit;
+            mesh.positions.emplace_back(triangle[k] / kFinePerVoxel);
+        }
+        given.push_back(triangle);
+        rounded.push_back(onLattice);
+        mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    const scene::Box box{glm::vec3(0.0F), glm::vec3(kN)};
+    const DenseGrid grid = voxelize(mesh, settings(kN, Rule::Conservative), box).grid;
+    const DenseGrid expected = voxelsThatMeet(given, kN, 0.0);
+    EXPECT_GT(expected.countFull(), 5000U);
+    EXPECT_EQ(reference::countMissing(expected, grid), 0U);
+    EXPECT_EQ(reference::countMissing(grid, voxelsThatMeet(given, kN, kLatticeUnit)), 0U);
+    // That corners are rounded would be seen.
+    EXPECT_GT(reference::countMissing(expected, voxelsThatMeet(rounded, kN, 0.0)), 0U);
 }
 
 // 6 · 30² + … : a cube of 30 voxels' edge touches the two layers of voxels at each of its faces.
